@@ -71,17 +71,23 @@ FieldRun run_cells(const Options& options) {
   return run;
 }
 
+std::vector<std::string> names_of(const Actions& all) {
+  std::vector<std::string> names;
+  for (const lattice::Action& action : all.actions) names.push_back(action.name);
+  return names;
+}
+
 /// Of bodies that do what a policy says.
 FieldRun run_policy(const Options& options) {
   refuse(options, {"passages", "cell-file", "cell-program"}, "with --policy");
   Subject s = open_subject(options, "scene");
   if (!s.scene || s.file)
     throw UsageError(s.path + ": is no scene of gates, which a policy is made for");
-  const std::vector<lattice::Action> actions =
-      actions_of(options, *s.scene, s.problem.start).actions;
+  Actions all = actions_of(options, *s.scene, s.problem.start);
   const lattice::Policy policy = read_policy(options.text("policy"), *s.scene);
   FieldRun run = run_of(options, s);
-  run.tally = lattice::policy_trials(actions, policy, options.trial_range(), options.seed(),
+  run.may_do = {names_of(all), std::move(all.methods)};
+  run.tally = lattice::policy_trials(all.actions, policy, options.trial_range(), options.seed(),
                                      options.work(), lattice::added_to(run.costs, run.exits));
   options.work().end_part();
   return run;
@@ -89,15 +95,15 @@ FieldRun run_policy(const Options& options) {
 
 }  // namespace
 
-lattice::ChosenGates policy_gates(const Options& options, const lattice::Scene& scene,
-                                  std::vector<std::string>& actions) {
+PolicyGates policy_gates(const Options& options, const lattice::Scene& scene) {
   Actions all = actions_of(options, scene, lattice::own_start(scene).entry());
-  for (const lattice::Action& action : all.actions) actions.push_back(action.name);
-  return lattice::chosen_gates(std::move(all.scenes),
-                               [policy = read_policy(options.text("policy"), scene)](
-                                   const lattice::Place& at, const dynamics::Entry& entry) {
-                                 return policy.action(at, entry);
-                               });
+  std::vector<std::string> names = names_of(all);
+  return {lattice::chosen_gates(names, std::move(all.scenes),
+                                [policy = read_policy(options.text("policy"), scene)](
+                                    const lattice::Place& at, const dynamics::Entry& entry) {
+                                  return policy.action(at, entry);
+                                }),
+          {std::move(names), std::move(all.methods)}};
 }
 
 FieldRun field_run(const Options& options) {

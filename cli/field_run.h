@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/render/choice.h"
 #include "cli/render/field_runs.h"
 #include "lattice/exits.h"
 #include "lattice/field_costs.h"
@@ -24,11 +25,14 @@ struct FieldRun {
   lattice::ExitCounts exits;
   std::optional<RunScene> scene{};  // of gates
   lattice::FieldTally tally;
+  ActionMethods may_do{};  // under a policy
 };
-/// The scene's gates, in which bodies do what the file of --policy says; `actions` takes the names
-/// of what they may do.
-[[nodiscard]] lattice::ChosenGates policy_gates(const Options& options, const lattice::Scene& scene,
-                                                std::vector<std::string>& actions);
+/// The scene's gates, in which bodies do what the file of --policy says, and what they may do.
+struct PolicyGates {
+  lattice::ChosenGates gates;
+  ActionMethods may_do;
+};
+[[nodiscard]] PolicyGates policy_gates(const Options& options, const lattice::Scene& scene);
 /// As --trials says; writes the tables of --passages and --cell-file.
 [[nodiscard]] FieldRun field_run(const Options& options);
 

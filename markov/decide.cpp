@@ -98,7 +98,7 @@ struct ActionRows {
     for (int input = 0; input < chain.inputs(); ++input) {
       first.push_back(moves.size());
       double now = draw ? (*draw)[static_cast<std::size_t>(input)] : 0.0;
-      if (!chain.is_sampled(input)) now = gain(Ending::unsampled);
+      if (!chain.is_sampled(input)) now += gain(Ending::unsampled);
       for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {
         const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
         if (exit.next_input == Exit::kTrapped)

@@ -50,6 +50,7 @@ class Designer {
       require(type >= 0 && type < types, "a cell cannot become what the chain does not have");
     may_become_.assign(static_cast<std::size_t>(types), options.become.empty());
     for (const int type : options.become) may_become_[static_cast<std::size_t>(type)] = 1;
+    require(options.most_solves >= 0, "maps to solve: 0 (no bound) or more");
     require(options.kind_of_type.empty() || std::ssize(options.kind_of_type) == types,
             "there is a kind for each type");
     for (int row = 0; row < field.rows; ++row)
@@ -88,6 +89,7 @@ class Designer {
                      [&](const auto& a, const auto& b) { return sign_ * a.gain > sign_ * b.gain; });
     found.gradient = std::move(own_gradient_);
     found.solves = static_cast<std::int64_t>(known_.size());
+    found.finished = !has_enough_;
     return found;
   }
 
@@ -307,6 +309,10 @@ class Designer {
         if (first == 0 && all_may_change())
           for (const std::size_t n : {1, 2, 4, 8}) maps.push_back(changed_at_once(map, changes, n));
         if (options_.told) options_.told(search_);
+        if (options_.most_solves > 0 && std::ssize(known_) >= options_.most_solves) {
+          has_enough_ = true;
+          break;
+        }
         const std::vector<double> gains = solved_of(maps);
         for (std::size_t i = 0; i < maps.size(); ++i) {
           if (!std::isfinite(gains[i])) continue;
@@ -355,6 +361,7 @@ class Designer {
   std::map<std::vector<std::size_t>, FieldDesign> ends_;  // of searches that come by these maps
   std::vector<double> own_gradient_;
   std::size_t search_ = 0;
+  bool has_enough_ = false;  // maps were solved
 };
 
 }  // namespace

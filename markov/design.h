@@ -21,12 +21,14 @@ struct DesignOptions {
   std::vector<int> kind_of_type{};
   /// Maps of types to search from, beside the field's own: (rows * columns), within most_changes.
   std::vector<std::vector<int>> from{};
+  /// Once so many maps are solved searches end with the best so far; 0: no bound.
+  std::int64_t most_solves = 0;
   /// Told before maps are solved, with the number of the search; may throw to stop.
   std::function<void(std::size_t search)> told{};
 };
 
 /// A map that no change of one cell and no exchange of two improves by more than rounding, of those
-/// that were tried.
+/// that were tried; none of exchanges where all cells may change.
 struct FieldDesign {
   std::vector<int> type_of_cell{};  // (rows * columns), cell row * columns + column
   double gain = 0.0;                // of a walk from the start
@@ -40,14 +42,15 @@ struct Designs {
   /// the derivative of the gain by the share of draws that are made from that type.
   std::vector<double> gradient{};
   std::int64_t solves = 0;  // of the field
+  bool finished = true;     // no search was ended by most_solves
 };
 
 /// At each step changes of one cell that walks come to and exchanges of two are tried in the order
 /// of what the gradient says, eight at a time, and the best of the first eight that gain is made; a
 /// search ends once what is left says so little that not even the largest error so far of what the
-/// gradient said would make it a gain. Where all cells may change there are no
-/// exchanges, but many changes at once. A map in which walks can circle almost for ever is not
-/// taken. The same on any number of threads. Gains are found by predict.
+/// gradient said would make it a gain. Where all cells may change there are no exchanges, but many
+/// changes at once. A map in which walks can circle almost for ever is not taken. The same on any
+/// number of threads. Gains are found by predict.
 /// Throws std::invalid_argument where field, start, gains and options cannot belong together and
 /// where draws have gains; std::runtime_error where values of all draws take more than 2 GB, and
 /// where walks can circle almost for ever in the field as it is.

@@ -40,6 +40,10 @@ int run_lattice(const Arguments& arguments) {
   Json json = to_json(run.tally, run.shown, run.scene);
   json["exits"] = to_json(exits, run.shown);
   json["costs"] = to_json(run.costs, run.shown);
+  if (!run.may_do.actions.empty()) {
+    json["actions"] = run.may_do.actions;
+    json["methods"] = to_json(run.may_do);
+  }
   json["made_by"] = run.made_by;
   const FieldPicture picture("full dynamics, " + std::to_string(run.tally.trials) + " trials",
                              run.tally, exits);
@@ -47,7 +51,7 @@ int run_lattice(const Arguments& arguments) {
     options.write(options.text("netcdf"),
                   netcdf_of({{picture, run.start}}, run.shown.map.section, json["made_by"]));
   options.give_out(json, table_of(run.tally, run.shown, run.scene) + table_of(exits, run.shown) +
-                             table_of(run.costs, run.shown));
+                             table_of(run.costs, run.shown) + method_lines(run.may_do));
   options.remark(fixed(seconds, 2) + " s");
   options.warn(too_few_gates(run.shown));
   const int exit = status_of(options, run.tally.health);

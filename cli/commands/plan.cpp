@@ -8,8 +8,34 @@
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "dynamics/base/work.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
+namespace {
+
+std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const ShownField& shown) {
+  if (!options.has("least")) {
+    for (const char* other : {"points", "chance"})
+      if (options.has(other)) throw UsageError(std::string("--") + other + ": only with --least");
+    return {};
+  }
+  lattice::ThriftOptions thrift;
+  const std::vector<dynamics::CostInfo>& costs = shown.map.section.costs;
+  std::string known;
+  while (thrift.cost < costs.size() && costs[thrift.cost].key != options.text("least"))
+    known += (known.empty() ? "" : ", ") + costs[thrift.cost++].key;
+  if (thrift.cost == costs.size())
+    throw UsageError("--least: '" + lattice::printable(options.text("least")) + "' is none of " +
+                     known);
+  if (options.has("points")) thrift.points = static_cast<int>(options.count("points", 2, 100));
+  if (options.has("chance")) thrift.chance = options.number("chance");
+  if (options.has("chance") && !(thrift.chance > 0.0 && thrift.chance < 1.0))
+    throw UsageError("--chance: must lie between 0 and 1");
+  return thrift;
+}
+
+}  // namespace
+
 int run_plan(const Arguments& arguments) {
   Options options(
       "plan SCENE [options]",
@@ -20,9 +46,11 @@ int run_plan(const Arguments& arguments) {
       "  forces.propulsion_N = 9\n"
       "each with keys of forces and beams as they are while a body takes it; an empty table is the "
       "scene\n"
-      "as it is. The best policy of chains of all actions is run in full, its trials are added, "
-      "and so on;\n"
-      "new trials say how often it crosses, beside each action all the time.",
+      "as it is. They are numbered in the order of their names. The best policy of chains of all "
+      "actions is\n"
+      "run in full, its trials are added, and so on; new trials say how often it crosses, beside "
+      "each action\n"
+      "all the time.",
       "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 --set "
       "actions.fast.forces.propulsion_N=9");
   options.scene();
@@ -31,32 +59,42 @@ int run_plan(const Arguments& arguments) {
                       "write what to do in each gate, for --policy of gatewalk lattice and trace");
   options.output_file("gate-policy", "FILE.json",
                       "the same of the best that knows the gate alone, not the way in");
+  options.add_text("least", "COST",
+                   "also policies that cross less often and take less of this (time_s, work_J, "
+                   "...), to that which takes least for each crossing");
+  options.add_count("points", "N", "such policies, at most (default: 5)");
+  options.add_number("chance", "P",
+                     "--policy writes the one that takes least of those that cross so often");
   options.add_figure("the actions by gate, and how often bodies cross");
   if (!options.parse(arguments)) return kFine;
   lattice::PlanOptions how;
   take_choosing(options, how);
   Subject s = scene_to_run(options, "a plan is made");
+  how.thrift = thrift_of(options, s.shown());
   if (options.has("policy") || options.has("gate-policy")) require_file_for(*s.scene);
   Actions all = actions_of(options, *s.scene, s.problem.start);
   std::vector<std::string> names;
   for (const lattice::Action& action : all.actions) names.push_back(action.name);
   const dynamics::Stopwatch watch;
   lattice::Plan plan = lattice::make_plan(all.actions, how, options.work());
-  const PlannedField planned{s.shown(), std::move(names), std::move(all.methods), std::move(plan),
-                             watch.seconds()};
+  const PlannedField planned{s.shown(),       std::move(names), std::move(all.methods),
+                             std::move(plan), watch.seconds(),  how.thrift};
   Json json = to_json(planned);
   json["made_by"] = s.made_by(options);
   options.give_out(json, table_of(planned));
   if (options.has("policy"))
-    options.write(options.text("policy"), policy_text(planned.plan.policy, *s.scene));
+    options.write(options.text("policy"), policy_text(chosen_policy(planned), *s.scene));
   if (options.has("gate-policy")) {
     if (!planned.plan.by_cell)
-      throw std::runtime_error(
-          "--gate-policy: there is none: values of so many gates and states do not fit into "
-          "memory");
+      throw std::runtime_error("--gate-policy: there is none: no body crossed");
     options.write(options.text("gate-policy"), policy_text(planned.plan.by_cell->policy, *s.scene));
   }
   options.warn(few_crossings(planned.plan.crossings));
+  if (options.has("policy") && !cheapest(planned) && !gains(planned))
+    options.warn("--policy: " + options.text("policy") + " is not shown to gain anything over " +
+                 planned.actions[best_alone(planned.plan)] + " all the time, which is simpler");
+  if (how.thrift && how.thrift->chance > 0.0 && !cheapest(planned))
+    options.warn("--chance: none of these policies crosses so often; --policy is the plan's own");
   if (!planned.plan.settled)
     options.warn("choosing was not finished after " + std::to_string(planned.plan.gate_runs) +
                  " gate runs; --gate-runs allows more");

@@ -60,9 +60,9 @@ int run_trace(const Arguments& arguments) {
                   "beams, forces, contacts\n"
                   "and energies. A trial is the very same one as in `gatewalk gate` (with --field: "
                   "in `gatewalk lattice`)\n"
-                  "of that seed and number. CSV and NetCDF have all of it; --replay makes a page "
-                  "that plays the runs,\n"
-                  "--video a film of the first one.",
+                  "of that seed and number; with --policy as in `gatewalk lattice --policy`. CSV "
+                  "and NetCDF have all of\n"
+                  "it; --replay makes a page that plays the runs, --video a film of the first one.",
                   "gatewalk trace scenes/soft_left.toml --trials 20 --only 'traversed left' "
                   "--replay runs.html --csv runs.csv");
   declare(options);
@@ -71,13 +71,16 @@ int run_trace(const Arguments& arguments) {
   lattice::Scene scene = options.read_scene();
   const std::optional<double> speed = video_speed(options, scene);
   std::optional<lattice::Settled> settled;
-  std::vector<std::string> actions;
-  if (options.has("policy"))
-    wanted.chosen = policy_gates(options, scene, actions);
-  else
+  ActionMethods may_do;
+  if (options.has("policy")) {
+    PolicyGates policy = policy_gates(options, scene);
+    wanted.chosen = std::move(policy.gates);
+    may_do = std::move(policy.may_do);
+  } else {
     settled = settle_method(
         options, scene,
         wanted.across_field ? lattice::RunsFrom::everywhere : lattice::RunsFrom::start);
+  }
   const lattice::Recordings recordings = lattice::record_trials(scene, wanted, options.work());
 
   const Json made_by = to_json(options.provenance(scene));
@@ -85,7 +88,7 @@ int run_trace(const Arguments& arguments) {
   if (options.has("netcdf")) options.write(options.text("netcdf"), netcdf_of(recordings, made_by));
   Json json = Json::object();
   if (options.has("replay") || options.has("video") || options.has("json")) {
-    const Film film = film_of(scene, recordings, std::move(actions));
+    const Film film = film_of(scene, recordings);
     if (options.has("replay") || options.has("json")) json = to_json(film);
     if (options.has("replay")) options.write(options.text("replay"), replay_page(json));
     if (options.has("video")) {
@@ -99,10 +102,14 @@ int run_trace(const Arguments& arguments) {
   json["recorded"] = recordings.runs.size();
   json["trials"] = recordings.trials;
   if (settled) json["method"] = to_json(*settled);
+  if (!may_do.actions.empty()) json["methods"] = to_json(may_do);
   json["status"] = to_json(recordings.health);
   json["made_by"] = made_by;
   const bool to_stdout = options.text("csv") == "-" || options.text("replay") == "-";
-  options.give_out(json, to_stdout ? "" : table_of(scene, recordings) + method_line(settled), -1);
+  options.give_out(
+      json,
+      to_stdout ? "" : table_of(scene, recordings) + method_line(settled) + method_lines(may_do),
+      -1);
   const int exit = status_of(options, recordings.health);
   options.draw([&] { return figure_of(scene, recordings); });
   return exit;

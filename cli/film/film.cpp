@@ -54,14 +54,13 @@ FilmStep film_step(const lattice::Moment& m, const dynamics::Scale& scale) {
 
 }  // namespace
 
-Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings,
-             std::vector<std::string> actions) {
+Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings) {
   Film film;
-  film.title = title_of(scene, actions);
+  film.title = title_of(scene, recordings.actions);
   film.gate = scene.gate;
   if (recordings.across_field) film.field = scene.field;
   if (recordings.gates.types().size() > 1) film.types = recordings.gates;
-  film.actions = std::move(actions);
+  film.actions = recordings.actions;
   const dynamics::Scale scale = dynamics::scale_of(scene.gate);
   for (const lattice::Recording& r : recordings.runs) {
     FilmRun run{label_of(r, recordings.across_field, scale), r.ending, {}};

@@ -57,7 +57,6 @@ struct Film {
 };
 
 /// All runs as a film, with seven digits in the scene's own units.
-[[nodiscard]] Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings,
-                           std::vector<std::string> actions = {});
+[[nodiscard]] Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings);
 
 }  // namespace gatewalk::cli

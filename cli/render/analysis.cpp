@@ -24,7 +24,6 @@ using lattice::Mean95;
 constexpr std::int64_t kFew = 50;  // walks or trials
 constexpr double kLevels[] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
-Json or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }
 Json interval(const std::array<double, 2>& i) { return std::isfinite(i[0]) ? Json(i) : Json(); }
 
 const std::vector<dynamics::CostInfo>& costs_of(const ShownField& shown) {

@@ -72,4 +72,19 @@ std::string method_line(const std::optional<lattice::Settled>& settled) {
   return text + "\n";
 }
 
+Json to_json(const ActionMethods& all) {
+  Json json;
+  for (std::size_t a = 0; a < all.actions.size(); ++a)
+    if (all.methods[a])
+      json.push_back({{"action", all.actions[a]}, {"method", to_json(*all.methods[a])}});
+  return json;
+}
+
+std::string method_lines(const ActionMethods& all) {
+  std::string text;
+  for (std::size_t a = 0; a < all.actions.size(); ++a)
+    if (all.methods[a]) text += all.actions[a] + ": " + method_line(all.methods[a]);
+  return text;
+}
+
 }  // namespace gatewalk::cli

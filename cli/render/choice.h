@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/render/json_fwd.h"
 #include "lattice/scene/settle.h"
@@ -15,5 +16,15 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string complaint(const lattice::Settled& settled);
 /// "method stable, run.step_s = 0.02: chosen by ..." as a line of a table; empty for none.
 [[nodiscard]] std::string method_line(const std::optional<lattice::Settled>& settled);
+
+/// What a body may do, and the methods that were chosen for it.
+struct ActionMethods {
+  std::vector<std::string> actions;
+  std::vector<std::optional<lattice::Settled>> methods;
+};
+/// {"action", "method"} of those for which one was chosen; null: for none.
+[[nodiscard]] Json to_json(const ActionMethods& all);
+/// A line for each of these.
+[[nodiscard]] std::string method_lines(const ActionMethods& all);
 
 }  // namespace gatewalk::cli

@@ -2,6 +2,7 @@
 #pragma once
 /// JSON, keys in the order in which they were written.
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -11,6 +12,9 @@ namespace gatewalk::cli {
 
 /// JSON as text; bytes that are no UTF-8 (names of files) become U+FFFD. `indent` -1: on one line.
 [[nodiscard]] std::string text_of(const Json& json, int indent = 2);
+
+/// null for what JSON has no number for.
+[[nodiscard]] inline Json or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }
 
 /// Of the JSON that commands write; a key that goes, or changes its meaning, makes another one.
 inline constexpr int kFormatVersion = 1;

@@ -45,9 +45,6 @@ std::string ringing(const dynamics::RingDown& r) {
                                : "does not come back";
 }
 
-/// null for what JSON has no number for.
-Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }
-
 }  // namespace
 
 std::vector<FarFromWalkers> far_from_walkers(const Meaning& m, const lattice::Scene& scene) {
@@ -97,23 +94,22 @@ std::string far_from_walkers_line(const lattice::Scene& scene) {
 
 Json to_json(const Meaning& m, const lattice::Scene& scene) {
   const auto of_beam = [](const dynamics::RingDown& r) {
-    return Json{{"period_s", finite_or_null(r.period)},
-                {"kept_per_swing", r.kept},
-                {"half_s", finite_or_null(r.half)}};
+    return Json{
+        {"period_s", or_null(r.period)}, {"kept_per_swing", r.kept}, {"half_s", or_null(r.half)}};
   };
-  Json json{{"top_speed_m_per_s", finite_or_null(m.top_speed)},
-            {"top_speed_time_s", finite_or_null(m.top_speed_time)},
-            {"passage_s", finite_or_null(m.passage)},
-            {"passage_speed_m_per_s", finite_or_null(m.passage_speed)},
+  Json json{{"top_speed_m_per_s", or_null(m.top_speed)},
+            {"top_speed_time_s", or_null(m.top_speed_time)},
+            {"passage_s", or_null(m.passage)},
+            {"passage_speed_m_per_s", or_null(m.passage_speed)},
             {"shaken_sideways_m", m.shaken},
-            {"draws_per_body_length", finite_or_null(m.draws_per_length)},
-            {"froude", finite_or_null(m.froude)},
+            {"draws_per_body_length", or_null(m.draws_per_length)},
+            {"froude", or_null(m.froude)},
             {"push_per_weight", m.push_per_weight},
             {"random_per_weight", m.random_per_weight},
             {"passages_waited", m.passages_waited},
-            {"resistance_N", finite_or_null(m.beams.resistance)},
-            {"resistance_angle_rad", finite_or_null(m.beams.angle)},
-            {"held_angle_rad", finite_or_null(m.beams.held_angle)},
+            {"resistance_N", or_null(m.beams.resistance)},
+            {"resistance_angle_rad", or_null(m.beams.angle)},
+            {"held_angle_rad", or_null(m.beams.held_angle)},
             {"ring_down",
              {{"left", of_beam(m.ring_down[dynamics::kLeft])},
               {"right", of_beam(m.ring_down[dynamics::kRight])}}}};

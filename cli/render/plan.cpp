@@ -9,12 +9,14 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
+#include "cli/render/quantity.h"
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
 
 constexpr int kMostPrinted = 40;  // columns and rows of a map in the table
+constexpr int kFewVisits = 10;    // of all trials: maps leave out what fewer show
 
 std::size_t cells_in(const PlannedField& p) {
   return static_cast<std::size_t>(p.shown.field.columns) *
@@ -39,13 +41,14 @@ std::string map_text(const PlannedField& p) {
   const int columns = p.shown.field.columns, rows = p.shown.field.rows;
   if (columns > kMostPrinted || rows > kMostPrinted || p.actions.size() > kMarks.size()) return "";
   const std::vector<MostTaken> most = most_taken(p);
-  std::string text =
-      "\nthe action that is taken most in each gate (.: nobody came), far row first:\n";
+  std::string text = "\nthe action that is taken most in each gate (.: fewer than " +
+                     std::to_string(kFewVisits) + " of " + std::to_string(p.plan.crossings.trials) +
+                     " bodies came), far row first:\n";
   for (int r = rows; r-- > 0;) {
     text += padded(std::to_string(r), 4) + " ";
     for (int c = 0; c < columns; ++c) {
-      const int action = most[static_cast<std::size_t>(r * columns + c)].action;
-      text += {' ', action < 0 ? '.' : mark_of(static_cast<std::size_t>(action))};
+      const MostTaken& here = most[static_cast<std::size_t>(r * columns + c)];
+      text += {' ', here.shown ? mark_of(static_cast<std::size_t>(here.action)) : '.'};
     }
     text += "\n";
   }
@@ -74,11 +77,12 @@ std::string verdict(const PlannedField& p) {
 /// The action that a policy of gates alone takes in each: (rows x columns).
 Json by_gate_of(const PlannedField& p) {
   if (!p.plan.by_cell) return {};
-  const auto& [policy, crossings, worth] = *p.plan.by_cell;
+  const auto& [policy, crossings, worth, searched] = *p.plan.by_cell;
   Json json{{"crossed", crossings.share()},
             {"interval_95", crossings.interval_95()},
             {"gain", worth.difference},
-            {"gain_95", worth.interval_95}};
+            {"gain_95", worth.interval_95},
+            {"searched", searched}};
   const markov::Decisions& d = policy.decisions;
   for (int r = 0; r < d.field.rows; ++r) {
     Json row;
@@ -88,7 +92,65 @@ Json by_gate_of(const PlannedField& p) {
   return json;
 }
 
+Json interval_of(const std::array<double, 2>& interval) {
+  return {or_null(interval[0]), or_null(interval[1])};
+}
+Json front_of(const PlannedField& p) {
+  Json json = Json::array();
+  const std::optional<std::size_t> chosen = cheapest(p);
+  for (std::size_t i = 0; i < p.plan.front.size(); ++i) {
+    const lattice::FrontPoint& point = p.plan.front[i];
+    json.push_back({{"price", point.price},
+                    {"crossed", point.crossings.share()},
+                    {"interval_95", point.crossings.interval_95()},
+                    {"mean", point.spent.mean},
+                    {"mean_95", point.spent.mean_95},
+                    {"per_crossing", or_null(point.spent.per_crossing)},
+                    {"per_crossing_95", interval_of(point.spent.per_crossing_95)},
+                    {"chosen", chosen == i}});
+  }
+  return json;
+}
+std::string front_text(const PlannedField& p) {
+  if (!p.thrift) return "";
+  const dynamics::CostInfo& cost = p.shown.map.section.costs[p.thrift->cost];
+  const auto amount = [&](double x) {
+    return std::isinf(x) ? std::string("no end") : quantity(x, cost.unit, 3);
+  };
+  const auto between = [&](double mean, const std::array<double, 2>& interval) {
+    return amount(mean) + " [" + amount(interval[0]) + ", " + amount(interval[1]) + "]";
+  };
+  if (p.plan.front.size() < 2)
+    return "\nno policy was found that takes less for each crossing (" + cost.words + ")\n";
+  std::string text = "\npolicies that take less (" + cost.words + "), under the same noise:\n\n" +
+                     padded("crossed, %", 24) + padded("a trial takes", 32) +
+                     padded("each crossing takes", 32) + "\n";
+  const std::optional<std::size_t> chosen = cheapest(p);
+  for (std::size_t i = 0; i < p.plan.front.size(); ++i) {
+    const lattice::FrontPoint& point = p.plan.front[i];
+    text += (chosen == i ? "* " : "  ") +
+            padded(with_interval(point.crossings.share(), point.crossings.interval_95()), 22) +
+            padded(between(point.spent.mean, point.spent.mean_95), 32) +
+            padded(between(point.spent.per_crossing, point.spent.per_crossing_95), 32) + "\n";
+  }
+  return text;
+}
+
 }  // namespace
+
+std::optional<std::size_t> cheapest(const PlannedField& p) {
+  std::optional<std::size_t> best;
+  if (!p.thrift || p.thrift->chance == 0.0) return best;
+  for (std::size_t i = 0; i < p.plan.front.size(); ++i)
+    if (p.plan.front[i].crossings.share() >= p.thrift->chance &&
+        (!best || p.plan.front[i].spent.mean < p.plan.front[*best].spent.mean))
+      best = i;
+  return best;
+}
+const lattice::Policy& chosen_policy(const PlannedField& p) {
+  const std::optional<std::size_t> best = cheapest(p);
+  return best ? p.plan.front[*best].policy : p.plan.policy;
+}
 
 std::string gain_text(const lattice::Gain& gain) {
   const auto points = [](double x) { return fixed(100.0 * x, 2); };
@@ -120,8 +182,14 @@ std::vector<MostTaken> most_taken(const PlannedField& p) {
       }
     }
     if (highest > 0.0) most[cell].share = highest / most[cell].visits;
+    most[cell].shown =
+        std::lround(most[cell].visits * static_cast<double>(p.plan.crossings.trials)) >= kFewVisits;
   }
   return most;
+}
+
+bool gains(const PlannedField& p) {
+  return p.plan.policy.always || p.plan.gains[best_alone(p.plan)].interval_95[0] > 0.0;
 }
 
 std::size_t best_alone(const lattice::Plan& plan) {
@@ -160,6 +228,10 @@ Json to_json(const PlannedField& p) {
     json["most_taken"].push_back(std::move(row));
   }
   json["by_gate"] = by_gate_of(p);
+  if (p.thrift) {
+    json["least"] = p.shown.map.section.costs[p.thrift->cost].key;
+    json["front"] = front_of(p);
+  }
   json["rounds"] = plan.rounds;
   json["settled"] = plan.settled;
   json["gate_runs"] = plan.gate_runs;
@@ -192,7 +264,10 @@ std::string table_of(const PlannedField& p) {
                                   plan.by_cell->crossings.interval_95()),
                     22) +
              padded(gain_text(plan.by_cell->worth), 28) + "\n";
-  return table + map_text(p) + std::to_string(plan.gate_runs) + " gate runs in " +
+  if (plan.by_cell && !plan.by_cell->searched)
+    table +=
+        "gate alone: not all that was to be tried was, in so large a field; there may be better\n";
+  return table + front_text(p) + map_text(p) + std::to_string(plan.gate_runs) + " gate runs in " +
          std::to_string(plan.rounds) + (plan.rounds == 1 ? " round, " : " rounds, ") +
          fixed(p.seconds, 1) + " s\n";
 }

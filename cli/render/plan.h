@@ -21,6 +21,7 @@ struct PlannedField {
   std::vector<std::optional<lattice::Settled>> methods;  // that were chosen for these
   lattice::Plan plan;
   double seconds = 0.0;
+  std::optional<lattice::ThriftOptions> thrift{};
 };
 
 [[nodiscard]] Json to_json(const PlannedField& p);
@@ -34,13 +35,22 @@ struct PlannedField {
 /// That so few trials crossed that they say little; empty where they are not few.
 [[nodiscard]] std::string few_crossings(const lattice::Crossings& c);
 
+/// Number of the policy of the front that takes least of those that cross as often as asked for;
+/// none where none does, or no chance was asked for.
+[[nodiscard]] std::optional<std::size_t> cheapest(const PlannedField& p);
+/// That policy, or the plan's.
+[[nodiscard]] const lattice::Policy& chosen_policy(const PlannedField& p);
+
 /// By cell (near row first): the action that is taken most there, and how often a trial takes any;
 /// -1 where none ever came.
 struct MostTaken {
   int action = -1;
   double share = 0.0, visits = 0.0;  // of the visits; per trial
+  bool shown = false;                // so many visits that they say something
 };
 [[nodiscard]] std::vector<MostTaken> most_taken(const PlannedField& p);
+/// Whether the plan is shown to cross more often than any action all the time, or is one.
+[[nodiscard]] bool gains(const PlannedField& p);
 /// The action that alone crosses most often; the first of several.
 [[nodiscard]] std::size_t best_alone(const lattice::Plan& plan);
 

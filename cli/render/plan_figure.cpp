@@ -44,6 +44,34 @@ std::string colours_of(const PlannedField& p, const Sheet& sheet, const Box& box
          digits((box.bottom - box.top) / sheet.height) + "\n";
 }
 
+/// Chance to cross against what a trial takes, of the policies that take less.
+std::string front_panel(const PlannedField& p, const Sheet& sheet, const Box& box) {
+  const dynamics::CostInfo& cost = p.shown.map.section.costs[p.thrift->cost];
+  double low = p.plan.front[0].spent.mean_95[0], high = p.plan.front[0].spent.mean_95[1];
+  double lowest = 1.0, highest = 0.0;
+  std::string rows;
+  for (const lattice::FrontPoint& point : p.plan.front) {
+    const auto [from, to] = point.spent.mean_95;
+    const auto [least, most] = point.crossings.interval_95();
+    low = std::min(low, from);
+    high = std::max(high, to);
+    lowest = std::min(lowest, least);
+    highest = std::max(highest, most);
+    for (const double x : {point.spent.mean, from, to - from, 100.0 * point.crossings.share(),
+                           100.0 * least, 100.0 * (most - least)})
+      rows += digits(x) + " ";
+    rows += "\n";
+  }
+  const double margin = 0.05 * (high - low), step = tic_step(high - low, 3);
+  return "set xrange [" + digits(low - margin) + ":" + digits(high + margin) +
+         "]\nset yrange [*:*]\nset xtics " + digits(step) + "\nset ytics " +
+         digits(tic_step(100.0 * (highest - lowest), 4)) + "\n" + data_block("$front", rows) +
+         kFrame + sheet.margins(box) +
+         Sheet::axes("'mean of a trial, " + plain(cost.unit) + "'", "'% crossed'") +
+         "plot $front using 2:4:3:(0)" + kInterval + ", '' using 1:5:(0):6" + kInterval +
+         ", '' using 1:4 with linespoints pt 7 ps 0.6 lw 1 lc rgb '#365c8d'\n";
+}
+
 }  // namespace
 
 Figure figure_of(const PlannedField& p) {
@@ -66,7 +94,10 @@ Figure figure_of(const PlannedField& p) {
     bars.insert(bars.begin() + 1,
                 {"gate alone", by_cell->crossings.share(), by_cell->crossings.interval_95()});
   const Box bars_box{130, 330, bars_top, bars_top + height_of_bars(bars.size())};
-  const Sheet sheet{static_cast<int>(std::ceil(bars_box.bottom + 12))};
+  const bool with_front = p.plan.front.size() > 1;
+  const Box front_box{70, 330, bars_box.bottom + 56, bars_box.bottom + 196};
+  const Sheet sheet{
+      static_cast<int>(std::ceil(with_front ? front_box.bottom + 56 : bars_box.bottom + 12))};
 
   // In a block of several gates the one that most bodies visit stands for all.
   std::string data;
@@ -79,7 +110,7 @@ Figure figure_of(const PlannedField& p) {
                              column = map.columns.first + c * map.columns.block + j;
           if (row < 0 || row >= visits.rows() || column < 0 || column >= visits.cols()) continue;
           const MostTaken& here = most[static_cast<std::size_t>(row * visits.cols() + column)];
-          if (here.action >= 0 && (!shown || here.visits > shown->visits)) shown = &here;
+          if (here.shown && (!shown || here.visits > shown->visits)) shown = &here;
         }
       if (shown)
         data += std::to_string(c) + " " + std::to_string(r) + " " + std::to_string(shown->action) +
@@ -90,21 +121,28 @@ Figure figure_of(const PlannedField& p) {
   if (width / columns >= 26 && height / rows >= 15)
     plot += ", '' using 1:2:4:" + ink(static_cast<double>(p.actions.size() - 1)) +
             " with labels tc rgb variable font ',12'";
-  return {Sheet::kWidth, sheet.height,
-          "set multiplot\n" + data_block("$actions", data) + marks.data + sheet.margins(box) +
-              kFrame + "set xrange " + range_of(map.columns) + "\nset yrange " +
-              range_of(map.rows) + "\nset xtics " +
-              tics_of(map.columns, map.middle_column, width, 30) + "\nset ytics " +
-              tics_of(map.rows, 0, height, 22) + "\n" +
-              Sheet::map_axes(map.rows.first + map.rows.count) +
-              sheet.text("most frequent action in each gate, and its % of the visits", 8, 18) +
-              colours_of(p, sheet, {box.right + 12, box.right + 22, box.top, box.bottom}) +
-              types.legend(sheet, legend, marks.fits) + plot + marks.plot +
-              "\nunset label\nunset colorbox\n" +
-              sheet.text("crossed, %, by the plan, by the gate alone and by each action", 8,
-                         bars_top - 14) +
-              share_bars(sheet, bars_box, "$crossed", bars) + "unset multiplot\n",
-          kFont};
+  return {
+      Sheet::kWidth, sheet.height,
+      "set multiplot\n" + data_block("$actions", data) + marks.data + sheet.margins(box) + kFrame +
+          "set xrange " + range_of(map.columns) + "\nset yrange " + range_of(map.rows) +
+          "\nset xtics " + tics_of(map.columns, map.middle_column, width, 30) + "\nset ytics " +
+          tics_of(map.rows, 0, height, 22) + "\n" +
+          Sheet::map_axes(map.rows.first + map.rows.count) +
+          sheet.text("most frequent action in each gate that enough bodies visit, its %", 8, 18) +
+          colours_of(p, sheet, {box.right + 12, box.right + 22, box.top, box.bottom}) +
+          types.legend(sheet, legend, marks.fits) + plot + marks.plot +
+          "\nunset label\nunset colorbox\n" +
+          sheet.text("crossed, %, by the plan, by the gate alone and by each action", 8,
+                     bars_top - 14) +
+          share_bars(sheet, bars_box, "$crossed", bars) +
+          (with_front ? "\nunset label\n" +
+                            sheet.text("policies that take less: " +
+                                           p.shown.map.section.costs[p.thrift->cost].key,
+                                       8, front_box.top - 18) +
+                            front_panel(p, sheet, front_box)
+                      : "") +
+          "unset multiplot\n",
+      kFont};
 }
 
 }  // namespace gatewalk::cli

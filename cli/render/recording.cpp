@@ -107,8 +107,9 @@ std::string table_of(const lattice::Scene& scene, const Recordings& recordings) 
   for (std::size_t i = 0; i < shown; ++i)
     longest_ending = std::max(longest_ending, runs[i].ending.size());
   const int ending_width = static_cast<int>(longest_ending) + 2;
-  std::string text = scene_line(scene) + "   trial  " + padded("ending", -ending_width) +
-                     "      time  steps   hits" + (recordings.across_field ? "  gates" : "") +
+  std::string text = scene_line(scene, recordings.actions) + "   trial  " +
+                     padded("ending", -ending_width) + "      time  steps   hits" +
+                     (recordings.across_field ? "  gates" : "") +
                      "        work        lost  of it in hits   left over\n";
   const Readings show(scene, runs);
   for (std::size_t i = 0; i < shown; ++i) {
@@ -128,14 +129,14 @@ std::string table_of(const lattice::Scene& scene, const Recordings& recordings) 
 }
 
 std::string csv_of(const Recordings& recordings) {
+  const std::vector<Column> columns = lattice::columns_of(recordings);
   std::string text;
-  for (const Column& c : lattice::columns())
-    text += (text.empty() ? "" : ",") + std::string(c.name);
+  for (const Column& c : columns) text += (text.empty() ? "" : ",") + std::string(c.name);
   text += '\n';
   for (const Recording& r : recordings.runs)
     for (const Moment& m : r.moments) {
       std::string row;
-      for (const Column& c : lattice::columns()) {
+      for (const Column& c : columns) {
         const double x = c.value({recordings.of(m), r.trial, m});
         row += row.empty() ? "" : ",";
         if (!c.words.empty())
@@ -160,7 +161,7 @@ std::string netcdf_of(const Recordings& recordings, const Json& made_by) {
   for (const Recording& r : recordings.runs) samples += r.moments.size();
   const int sample = define_dimension(nc, "sample", samples);
   put_runs(nc, recordings);
-  for (const Column& c : lattice::columns()) put_column(nc, sample, c, recordings);
+  for (const Column& c : lattice::columns_of(recordings)) put_column(nc, sample, c, recordings);
   const std::vector<char> bytes = nc.close_image();
   return {bytes.begin(), bytes.end()};
 }

@@ -58,7 +58,7 @@ std::string too_few_gates(const ShownField& shown) {
          " is less than field.rows = " + std::to_string(field.rows);
 }
 
-std::string scene_line(const lattice::Scene& scene) {
+std::string scene_line(const lattice::Scene& scene, const std::vector<std::string>& actions) {
   const auto& gate = scene.gate;
   const auto& start = scene.start;
   const auto number = [](double x) {
@@ -69,13 +69,19 @@ std::string scene_line(const lattice::Scene& scene) {
   // Two numbers with one unit, that of the larger.
   const Sized place = readable_unit("m", std::max(std::abs(start.x), std::abs(start.y)));
   const Sized speed = readable_unit("m/s", std::max(std::abs(start.vx), std::abs(start.vy)));
-  return scene.source + ": start x " + number(start.x / place.size) + ", y " +
-         number(start.y / place.size) + " " + place.name + ", v (" + number(start.vx / speed.size) +
-         ", " + number(start.vy / speed.size) + ") " + speed.name + "; disc " +
-         quantity(gate.body.mass, "kg", 6) + ", R " + quantity(gate.body.radius, "m", 6) + "; F " +
-         quantity(gate.forces.propulsion, "N", 6) + ", Rm " + quantity(gate.forces.random, "N", 6) +
-         "; beams k " + number(gate.beams.stiffness_left) + " / " +
-         number(gate.beams.stiffness_right) + ", d " + number(gate.beams.damping) + "; " +
+  const std::string text = scene.source + ": start x " + number(start.x / place.size) + ", y " +
+                           number(start.y / place.size) + " " + place.name + ", v (" +
+                           number(start.vx / speed.size) + ", " + number(start.vy / speed.size) +
+                           ") " + speed.name + "; disc " + quantity(gate.body.mass, "kg", 6) +
+                           ", R " + quantity(gate.body.radius, "m", 6) + "; ";
+  if (!actions.empty()) {
+    std::string all;
+    for (const std::string& action : actions) all += (all.empty() ? "" : ", ") + action;
+    return text + "actions " + all + "\n";
+  }
+  return text + "F " + quantity(gate.forces.propulsion, "N", 6) + ", Rm " +
+         quantity(gate.forces.random, "N", 6) + "; beams k " + number(gate.beams.stiffness_left) +
+         " / " + number(gate.beams.stiffness_right) + ", d " + number(gate.beams.damping) + "; " +
          gate.run.method + " " +
          (gate.run.method == "event" ? quantity(gate.run.event_tolerance, "m", 6)
                                      : quantity(gate.run.step, "s", 6)) +

@@ -11,7 +11,8 @@
 namespace gatewalk::cli {
 
 /// What is run, in one line: start, body, forces, beams, method.
-[[nodiscard]] std::string scene_line(const lattice::Scene& scene);
+[[nodiscard]] std::string scene_line(const lattice::Scene& scene,
+                                     const std::vector<std::string>& actions = {});
 /// What two of the endings mean in this scene, below them.
 [[nodiscard]] std::string limits_text(const ShownField& shown);
 /// That no body can cross the field within the gates it may visit; empty if one can.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -70,11 +71,20 @@ std::invalid_argument too_long(const std::string& what, bool across_field) {
 
 }  // namespace
 
-ChosenGates chosen_gates(std::vector<Scene> taken, CellChoice action) {
+ChosenGates chosen_gates(std::vector<std::string> actions, std::vector<Scene> taken,
+                         CellChoice action) {
+  if (taken.empty() || actions.size() != taken.size())
+    throw std::invalid_argument("a scene for each action, at least one");
   const auto n = static_cast<int>(taken.size());
   std::vector<FieldGates> each;
   for (const Scene& scene : taken) each.push_back(all_gates_of(scene));
   const FieldGates& first = each.front();
+  for (std::size_t a = 0; a < taken.size(); ++a)
+    if (taken[a].field.columns != taken[0].field.columns ||
+        taken[a].field.rows != taken[0].field.rows ||
+        taken[a].field.max_gates != taken[0].field.max_gates ||
+        each[a].types().size() != first.types().size())
+      throw std::invalid_argument("action " + actions[a] + " has another field");
   std::vector<dynamics::GateParams> types;
   for (std::size_t t = 0; t < first.types().size(); ++t)
     for (const FieldGates& gates : each) types.push_back(gates.types()[t]);
@@ -84,12 +94,14 @@ ChosenGates chosen_gates(std::vector<Scene> taken, CellChoice action) {
     for (int column = 0; column < field.columns; ++column)
       type_of_cell.push_back(first.type_of(column, row) * n);
   return {FieldGates::by_cell(std::move(types), field.columns, type_of_cell),
-          [type_of_cell, columns = field.columns, action = std::move(action)](
+          [type_of_cell, columns = field.columns, n, action = std::move(action)](
               const Place& at, const dynamics::Entry& entry) {
-            return type_of_cell[static_cast<std::size_t>(at.row * columns + at.column)] +
-                   action(at, entry);
+            const int chosen = action(at, entry);
+            if (chosen < 0 || chosen >= n)
+              throw std::out_of_range("there is no action number " + std::to_string(chosen));
+            return type_of_cell[static_cast<std::size_t>(at.row * columns + at.column)] + chosen;
           },
-          std::move(taken)};
+          std::move(actions), std::move(taken)};
 }
 
 std::vector<std::string> endings(bool across_field) {
@@ -153,6 +165,7 @@ Recordings record_trials(const Scene& scene, const RecordingOptions& options,
   Recordings kept{.gates = chosen                 ? chosen->gates
                            : options.across_field ? gates_of(scene)
                                                   : FieldGates(scene.gate),
+                  .actions = chosen ? chosen->actions : std::vector<std::string>{},
                   .across_field = options.across_field,
                   .trials = options.trials,
                   .runs = {},
@@ -182,13 +195,18 @@ Recordings record_trials(const Scene& scene, const RecordingOptions& options,
     throw std::runtime_error("none of " + named(options.first, options.first + options.trials - 1) +
                              " ends '" + options.only + "': nothing was written");
   const std::int64_t checked = std::max(options.trials, kCheckedAs);
-  if (chosen)
-    for (const Scene& taken : chosen->taken)
-      check_outcomes(taken, RunsFrom::all_types, options.seed,
-                     checked / std::ssize(chosen->taken) + 1, kept.health, work);
-  else
+  if (chosen) {
+    std::set<std::size_t> taken;
+    for (const Recording& run : kept.runs)
+      for (const Moment& m : run.moments)
+        taken.insert(static_cast<std::size_t>(m.type) % chosen->actions.size());
+    for (const std::size_t action : taken)
+      check_outcomes(chosen->taken[action], RunsFrom::all_types, options.seed,
+                     checked / std::ssize(taken) + 1, kept.health, work);
+  } else {
     check_outcomes(scene, options.across_field ? RunsFrom::everywhere : RunsFrom::start,
                    options.seed, checked, kept.health, work);
+  }
   return kept;
 }
 

@@ -43,6 +43,7 @@ struct Recording {
 /// Trials of one scene.
 struct Recordings {
   FieldGates gates;  // that they run through: those of the field, or the scene's own alone
+  std::vector<std::string> actions{};  // of a policy: type t of the gates is with t % actions
   bool across_field = false;
   std::int64_t trials = 0;      // that were run; those that end otherwise are not kept
   std::vector<Recording> runs;  // in the order of their trials, at least one
@@ -57,11 +58,15 @@ struct Recordings {
 struct ChosenGates {
   FieldGates gates;
   CellChoice type;
+  std::vector<std::string> actions;
   std::vector<Scene> taken;  // the scene while each action is taken (with_action)
 };
-/// `action`: which of these a body takes where it enters. The gates have all types with all
-/// actions, numbered as cells_of (study/plan.h) does.
-[[nodiscard]] ChosenGates chosen_gates(std::vector<Scene> taken, CellChoice action);
+/// `action`: which of the actions a body takes where it enters. The gates have all types with all
+/// actions, numbered as cells_of (study/plan.h) does. Throws std::invalid_argument unless there is
+/// a scene for each action, at least one, all with the same field and as many types of gates;
+/// `type` throws std::out_of_range for an action of others.
+[[nodiscard]] ChosenGates chosen_gates(std::vector<std::string> actions, std::vector<Scene> taken,
+                                       CellChoice action);
 
 /// Every ending that a recording may have, in the order of their codes.
 [[nodiscard]] std::vector<std::string> endings(bool across_field);
@@ -117,8 +122,10 @@ struct Column {
   std::vector<std::string_view> words = {};  // what codes 0, 1, ... stand for
 };
 
-/// All of them; the place first, then contacts, then energies.
+/// All of every recording; the place first, then contacts, then energies.
 [[nodiscard]] const std::vector<Column>& columns();
+/// The same, and what the body does where it chooses; valid as long as the recordings are.
+[[nodiscard]] std::vector<Column> columns_of(const Recordings& recordings);
 /// The column of that name. Throws std::out_of_range.
 [[nodiscard]] const Column& column(std::string_view name);
 

@@ -150,6 +150,17 @@ const std::vector<Column>& columns() {
   return all;
 }
 
+std::vector<Column> columns_of(const Recordings& recordings) {
+  std::vector<Column> all = columns();
+  if (const auto n = static_cast<int>(recordings.actions.size()); n > 0)
+    all.push_back({"action",
+                   kCounted,
+                   "what the body does",
+                   [n](const Line& l) { return static_cast<double>(l.m.type % n); },
+                   {recordings.actions.begin(), recordings.actions.end()}});
+  return all;
+}
+
 const Column& column(std::string_view name) {
   const auto found = std::find_if(columns().begin(), columns().end(),
                                   [&](const Column& c) { return c.name == name; });

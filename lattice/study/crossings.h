@@ -3,6 +3,7 @@
 /// How many trials crossed the field, and how many more than others under the same noise.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "lattice/reference.h"
@@ -25,5 +26,17 @@ struct Gain {
   std::array<double, 2> interval_95{};  // Bonett and Price 2012
 };
 [[nodiscard]] Gain gain_over(const FieldTrials& with, const FieldTrials& without);
+
+/// What trials take of one cost, with 95 % intervals: a trial's mean, however it ends; and that of
+/// all trials for each that crossed, which is what it takes to try until a body crosses (Fieller's
+/// interval, whose end is infinite where too few crossed; NaN where none did).
+struct Spent {
+  double mean = 0.0;
+  std::array<double, 2> mean_95{};
+  double per_crossing = 0.0;
+  std::array<double, 2> per_crossing_95{};
+};
+/// `cost`: by Section::costs. Throws std::invalid_argument for fewer than two trials.
+[[nodiscard]] Spent spent_by(const FieldTrials& trials, std::size_t cost);
 
 }  // namespace gatewalk::lattice

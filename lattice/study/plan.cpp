@@ -76,48 +76,19 @@ class Planner {
   [[nodiscard]] Plan carry_out() {
     trials_.add(
         run([&](const Place& at, const Entry&) { return any(at); }, actions() * count_ / 2));
-    std::optional<Plan> best;
-    for (;;) {
-      // Small leaves tell ways to enter apart, large ones know better what each action does there.
-      std::vector<Plan> plans;
-      for (const int times : {1, 8, 64}) plans.push_back(choose(times * options_.per_leaf));
-      for (int a = 0; a < actions(); ++a) plans.push_back(always(a, plans[2]));
-      if (best) plans.push_back(std::move(*best));
-      ++rounds_;
-      std::vector<FieldTrials> trials;
-      std::vector<std::int64_t> counts;
-      const std::int64_t first = trials_.next();
-      for (const Plan& plan : plans) {
-        trials_.go_back_to(first);
-        trials.push_back(run(choice_of(plan), count_));
-        counts.push_back(crossings_of(trials.back()).crossed);
-      }
-      const auto most = std::max_element(counts.begin(), counts.end());
-      // Rare crossings gain little of all trials, but much beside chance.
-      const auto gained = static_cast<double>(*most - counts.back());
-      const bool settled = rounds_ > 1 &&
-                           gained <= 0.5 * options_.accuracy * static_cast<double>(count_) &&
-                           gained <= 2.0 * std::sqrt(static_cast<double>(*most));
-      const auto winner = static_cast<std::size_t>(most - counts.begin());
-      trials_.add(trials[winner]);
-      best = std::move(plans[winner]);
-      best->settled = settled;
-      if (settled || trials_.gate_runs() >= options_.most_runs) break;
-      trials_.add(run(
-          [&](const Place& at, const Entry& entry) {
-            return word(at, 1) % kTries == 0 ? any(at) : best->policy.action(at, entry);
-          },
-          count_));
-    }
-    best->by_cell = choose_by_cell();
-    judge(*best);
-    return std::move(*best);
+    Tried best = best_for(0.0, {});
+    std::vector<Tried> front;
+    if (options_.thrift) front = find_front(best);
+    if (best.crossed > 0) best.plan.by_cell = best_by_cell();
+    judge(best.plan, std::move(front));
+    return std::move(best.plan);
   }
 
  private:
   static constexpr std::uint64_t kTries = 4;   // other actions are tried: once in so many cells
   static constexpr double kMostBytes = 8.0e9;  // of decisions
   static constexpr double kMostBytesByCell = 2.0e9;  // of values, as markov::design has them
+  static constexpr double kMostSearched = 1.0e9;     // values by draws, of all maps: some seconds
 
   [[nodiscard]] int actions() const { return static_cast<int>(actions_.size()); }
   [[nodiscard]] std::uint64_t word(const Place& at, std::uint64_t what) const {
@@ -126,8 +97,163 @@ class Planner {
   [[nodiscard]] int any(const Place& at) const {
     return static_cast<int>(word(at, 0) % static_cast<std::uint64_t>(actions()));
   }
-  [[nodiscard]] static ActionChoice choice_of(const Plan& plan) {
-    return [&plan](const Place& at, const Entry& entry) { return plan.policy.action(at, entry); };
+  [[nodiscard]] static ActionChoice choice_of(const Policy& policy) {
+    return [&policy](const Place& at, const Entry& entry) { return policy.action(at, entry); };
+  }
+
+  /// A plan, what a unit of the cost was worth when it was chosen, and what trials say that it was
+  /// chosen by.
+  struct Tried {
+    Plan plan;
+    double price = 0.0;
+    std::int64_t crossed = 0;
+    double spent = 0.0;  // of all these trials
+
+    [[nodiscard]] double value(double at_price) const {
+      return static_cast<double>(crossed) - at_price * spent;
+    }
+  };
+  [[nodiscard]] Tried tried(Plan plan, double price, const FieldTrials& trials) const {
+    Tried all{std::move(plan), price, crossings_of(trials).crossed};
+    for (const Costs& costs : trials.costs)
+      if (options_.thrift) all.spent += costs[options_.thrift->cost];
+    return all;
+  }
+
+  /// Rare crossings gain little of all trials, but much beside chance.
+  [[nodiscard]] bool little(double gained, double squares) const {
+    return gained <= 0.5 * options_.accuracy * static_cast<double>(count_) &&
+           gained <= 2.0 * std::sqrt(squares);
+  }
+  [[nodiscard]] double value_of(const FieldTrials& trials, std::size_t i, double price) const {
+    double value = trials.endings[i] == markov::Ending::far_edge ? 1.0 : 0.0;
+    if (price > 0.0) value -= price * trials.costs[i][options_.thrift->cost];
+    return value;
+  }
+  [[nodiscard]] double squares(const FieldTrials& trials, double price) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < trials.endings.size(); ++i) {
+      const double value = value_of(trials, i, price);
+      sum += value * value;
+    }
+    return sum;
+  }
+  /// Whether trials of one are worth more than the same of another by more than a standard error.
+  [[nodiscard]] bool clearly_better(const FieldTrials& one, const FieldTrials& other,
+                                    double price) const {
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t i = 0; i < one.endings.size(); ++i) {
+      const double gained = value_of(one, i, price) - value_of(other, i, price);
+      sum += gained;
+      squares += gained * gained;
+    }
+    return sum > 0.0 && sum * sum > squares - sum * sum / static_cast<double>(count_);
+  }
+
+  /// Chooses, runs what was chosen, adds its runs, and so on. `known`: plans to begin with.
+  [[nodiscard]] Tried best_for(double price, std::vector<Plan> known) {
+    for (;;) {
+      // Small leaves tell ways to enter apart, large ones know better what each action does there.
+      std::vector<Plan> plans;
+      for (const int times : {1, 8, 64}) plans.push_back(choose(times * options_.per_leaf, price));
+      for (int a = 0; a < actions(); ++a) plans.push_back(always(a, plans[2]));
+      for (Plan& plan : known) plans.push_back(std::move(plan));
+      ++rounds_;
+      std::vector<FieldTrials> trials;
+      std::vector<Tried> all;
+      const std::int64_t first = trials_.next();
+      for (Plan& plan : plans) {
+        trials_.go_back_to(first);
+        trials.push_back(run(choice_of(plan.policy), count_));
+        all.push_back(tried(std::move(plan), price, trials.back()));
+      }
+      const auto less = [price](const Tried& a, const Tried& b) {
+        return a.value(price) < b.value(price);
+      };
+      const auto most = std::max_element(all.begin(), all.end(), less);
+      const auto winner = static_cast<std::size_t>(most - all.begin());
+      const bool settled = !known.empty() && little(most->value(price) - all.back().value(price),
+                                                    squares(trials[winner], price));
+      trials_.add(trials[winner]);
+      if (settled || trials_.gate_runs() >= options_.most_runs) {
+        // One action all the time unless the other is better by more than a standard error, as
+        // trees are pruned (Breiman et al. 1984, section 3.4.3).
+        const auto alone = std::max_element(all.begin() + 3, all.begin() + 3 + actions(), less);
+        const bool simple = !clearly_better(
+            trials[winner], trials[static_cast<std::size_t>(alone - all.begin())], price);
+        Tried best = std::move(simple ? *alone : *most);
+        best.plan.settled = settled;
+        return best;
+      }
+      Tried best = std::move(*most);
+      trials_.add(run(
+          [&](const Place& at, const Entry& entry) {
+            return word(at, 1) % kTries == 0 ? any(at) : best.plan.policy.action(at, entry);
+          },
+          count_));
+      known.clear();
+      known.push_back(std::move(best.plan));
+    }
+  }
+
+  /// The policies whose chance to cross less a price for each unit of the cost is the largest, for
+  /// prices from 0 to that at which nothing is gained any more: there it is least what each
+  /// crossing takes (Dinkelbach 1967). Between two of them lies one for the price at which both are
+  /// worth the same, or none.
+  [[nodiscard]] std::vector<Tried> find_front(const Tried& best) {
+    const ThriftOptions& thrift = *options_.thrift;
+    std::vector<Tried> front{best};
+    const auto has_room = [&] {
+      return std::ssize(front) < thrift.points && trials_.gate_runs() < options_.most_runs;
+    };
+    const auto tell = [&] {
+      work_.tell("policies that take less", std::ssize(front), thrift.points);
+    };
+    while (has_room() && front.back().crossed > 0 && front.back().spent > 0.0) {
+      tell();
+      const Tried& last = front.back();
+      const double price = static_cast<double>(last.crossed) / last.spent;
+      Tried next = best_for(price, {last.plan});
+      const bool gains = next.value(price) > 0.5 * options_.accuracy * static_cast<double>(count_);
+      if (!gains || next.spent >= last.spent) break;
+      front.push_back(std::move(next));
+    }
+    std::vector<char> closed(front.size(), 0);  // nothing lies between this one and the next
+    while (has_room()) {
+      tell();
+      const auto at = widest(front, closed);
+      if (!at) break;
+      const Tried &more = front[*at], &less = front[*at + 1];
+      const double price =
+          static_cast<double>(more.crossed - less.crossed) / (more.spent - less.spent);
+      Tried next = best_for(price, {more.plan, less.plan});
+      if (next.crossed < more.crossed && next.crossed > less.crossed && next.spent < more.spent &&
+          next.spent > less.spent) {
+        front.insert(front.begin() + static_cast<std::ptrdiff_t>(*at) + 1, std::move(next));
+        closed.insert(closed.begin() + static_cast<std::ptrdiff_t>(*at) + 1, 0);
+      } else {
+        closed[*at] = 1;
+      }
+    }
+    return front;
+  }
+
+  /// The first of the two neighbours that are to have one between them: those of the chance asked
+  /// for, or those whose chances differ most.
+  [[nodiscard]] std::optional<std::size_t> widest(const std::vector<Tried>& front,
+                                                  const std::vector<char>& closed) const {
+    const double asked = options_.thrift->chance * static_cast<double>(count_);
+    std::optional<std::size_t> best;
+    std::int64_t most = 0;
+    for (std::size_t i = 0; i + 1 < front.size(); ++i) {
+      const std::int64_t more = front[i].crossed, less = front[i + 1].crossed;
+      const bool beside =
+          asked == 0.0 || (static_cast<double>(more) >= asked && static_cast<double>(less) < asked);
+      if (closed[i] || !beside || more - less <= most) continue;
+      most = more - less;
+      best = i;
+    }
+    return best;
   }
 
   [[nodiscard]] FieldTrials run(const ActionChoice& choice, std::int64_t count) {
@@ -144,10 +270,46 @@ class Planner {
     gains.ending[static_cast<std::size_t>(markov::Ending::far_edge)] = 1.0;
     return gains;
   }
+  /// The same less what passages take. A state that an action was never tried in is worth less than
+  /// any that it was tried in.
+  [[nodiscard]] markov::Gains gains_of(const Kernel& kernel, double price) const {
+    markov::Gains gains = crossing();
+    if (price == 0.0) return gains;
+    const auto sums = cost_sums(kernel, cells_.map, trials_.pool());
+    std::vector<std::vector<double>> mean(kernel.counts.size());  // by type and state
+    double most = 0.0;
+    for (std::size_t type = 0; type < mean.size(); ++type) {
+      auto of = sums[type].begin();
+      for (int state = 0; state < kernel.space.size(); ++state) {
+        double runs = 0.0, spent = 0.0;
+        for (markov::Counts::InnerIterator it(kernel.counts[type], state); it; ++it) {
+          runs += static_cast<double>(it.value());
+          spent += of++->sum[options_.thrift->cost];
+        }
+        mean[type].push_back(spent / runs);
+        if (runs == 0.0) continue;
+        most = std::max(most, mean[type].back());
+        if (first_.field.max_gates == 0 && !(spent > 0.0))
+          throw std::runtime_error(
+              "plan: " + first_.map().section.costs[options_.thrift->cost].words +
+              " of a passage may be 0 or less: policies that take least need "
+              "field.max_gates, or a cost that each passage has");
+      }
+    }
+    const double untried = 1.0 + price * most * first_.field.columns * first_.field.rows;
+    gains.draw.resize(actions_.size());
+    for (std::size_t type = 0; type < mean.size(); ++type) {
+      auto& of_type = gains.draw[type % actions_.size()].emplace_back();
+      for (const double spent : mean[type])
+        of_type.push_back(std::isnan(spent) ? -untried : -price * spent);
+    }
+    return gains;
+  }
 
-  [[nodiscard]] Plan choose(int per_leaf) const {
+  [[nodiscard]] Plan choose(int per_leaf, double price) const {
     Kernel kernel = kernel_of(cells_.map, trials_.pool(), per_leaf);
-    if (4.0 * bytes_of(kernel.space) > kMostBytes)  // of three sizes of leaves, and the best so far
+    const int kept = options_.thrift ? options_.thrift->points : 1;
+    if ((3.0 + kept) * bytes_of(kernel.space) > kMostBytes)  // of three sizes of leaves too
       throw std::runtime_error(
           "plan: decisions for so many cells, states and gates do not fit into memory; a smaller "
           "field.max_gates (0: no limit) needs less");
@@ -159,18 +321,50 @@ class Planner {
                                                       exits_of(kernel.space)));
       chains.push_back(field_chain(first_.map(), std::move(of_types)));
     }
-    markov::Decisions best = markov::decide(chains, {first_.field.columns, first_.field.rows},
-                                            crossing(), {.max_cells = first_.field.max_gates});
+    markov::Decisions best =
+        markov::decide(chains, {first_.field.columns, first_.field.rows}, gains_of(kernel, price),
+                       {.max_cells = first_.field.max_gates});
     const double says = best.value[best.at(first_.field.start_column(), 0,
                                            kernel.space.index_of(first_.start).state)];
     return {.policy = {std::move(kernel.space), std::move(best)}, .chain_says = says};
   }
 
-  /// A map of types, all of them with all actions: searches from each action everywhere.
-  [[nodiscard]] std::optional<Plan::ByCell> choose_by_cell() const {
+  /// Of what the chain finds and each action everywhere, the one that crosses oftest in new trials.
+  [[nodiscard]] std::optional<Plan::ByCell> best_by_cell() {
+    const auto cells = static_cast<std::size_t>(first_.field.columns) *
+                       static_cast<std::size_t>(first_.field.rows);
+    std::vector<std::vector<int>> maps;
+    for (int a = 0; a < actions(); ++a) maps.emplace_back(cells, a);
+    bool finished = false;
+    if (std::optional<std::vector<int>> searched = search_by_cell(finished))
+      maps.push_back(std::move(*searched));
+    std::optional<Policy> best;
+    std::int64_t most = -1;
+    const std::int64_t first = trials_.next();
+    for (const std::vector<int>& map : maps) {
+      Policy policy = by_cell(map);
+      trials_.go_back_to(first);
+      if (const std::int64_t crossed = crossings_of(run(choice_of(policy), count_)).crossed;
+          crossed > most) {
+        most = crossed;
+        best = std::move(policy);
+      }
+    }
+    return Plan::ByCell{.policy = std::move(*best), .searched = finished};
+  }
+
+  /// By cell: the action of a map of types, all of them with all actions; searched for from each
+  /// action everywhere. None where there is no memory or time for it.
+  [[nodiscard]] std::optional<std::vector<int>> search_by_cell(bool& finished) const {
     const FieldParams& field = first_.field;
     const Kernel kernel = kernel_of(cells_.map, trials_.pool(), 8 * options_.per_leaf);
-    if (4.0 * bytes_of(kernel.space) > kMostBytesByCell) return {};  // a number for a decision
+    finished = false;
+    const double draws = field.max_gates > 0 ? field.max_gates : field.columns + field.rows;
+    const double most_solves =
+        kMostSearched / (draws * field.columns * field.rows * kernel.space.size());
+    if (4.0 * bytes_of(kernel.space) > kMostBytesByCell ||  // a number for a decision
+        most_solves < 2.0 * actions())
+      return {};
     std::vector<markov::Chain> chains;
     for (const markov::Counts& counts : kernel.counts)
       chains.push_back(markov::Chain::from_counts(counts, exits_of(kernel.space)));
@@ -187,22 +381,29 @@ class Planner {
     how.told = [this](std::size_t search) {
       work_.tell("searches for actions by gate", static_cast<std::int64_t>(search), actions());
     };
-    const markov::Field size{field.columns, field.rows};
-    const std::vector<int> best =
-        markov::design(
-            markov::FieldChain::by_cell(std::move(chains), field.columns, everywhere.front()), size,
-            chain_start(kernel.space, field, first_.start).start, crossing(), how)
-            .optima.front()
-            .type_of_cell;
-    const Section& section = kernel.space.section();
+    how.most_solves = static_cast<std::int64_t>(most_solves);
+    markov::Designs best = markov::design(
+        markov::FieldChain::by_cell(std::move(chains), field.columns, everywhere.front()),
+        {field.columns, field.rows}, chain_start(kernel.space, field, first_.start).start,
+        crossing(), how);
+    finished = best.finished;
+    std::vector<int> action = std::move(best.optima.front().type_of_cell);
+    for (int& type : action) type %= actions();
+    return action;
+  }
+
+  /// The same action however a body enters, and whenever.
+  [[nodiscard]] Policy by_cell(const std::vector<int>& map) const {
+    const Section& section = first_.map().section;
     StateSpace space(section, std::vector<Tree>(section.faces.size()), {});  // a leaf for each face
-    markov::Decisions decisions{
-        .field = size, .inputs = space.size(), .max_cells = field.max_gates};
-    for (int draw = 0; draw < std::max(1, field.max_gates); ++draw)
-      for (const int type : best)
+    markov::Decisions decisions{.field = {first_.field.columns, first_.field.rows},
+                                .inputs = space.size(),
+                                .max_cells = first_.field.max_gates};
+    for (int draw = 0; draw < std::max(1, first_.field.max_gates); ++draw)
+      for (const int action : map)
         decisions.action.insert(decisions.action.end(), static_cast<std::size_t>(space.size()),
-                                static_cast<std::uint16_t>(type % actions()));
-    return Plan::ByCell{.policy = {std::move(space), std::move(decisions)}};
+                                static_cast<std::uint16_t>(action));
+    return {std::move(space), std::move(decisions)};
   }
 
   [[nodiscard]] static Plan always(int action, const Plan& like) {
@@ -214,17 +415,14 @@ class Planner {
   }
 
   /// By trials that nothing was chosen by.
-  void judge(Plan& plan) {
+  void judge(Plan& plan, std::vector<Tried> front) {
     const std::int64_t first = trials_.next();
-    const FieldTrials own = run(choice_of(plan), count_);
+    const FieldTrials own = run(choice_of(plan.policy), count_);
     plan.crossings = crossings_of(own);
     plan.usage = usage_of(own);
     if (plan.by_cell) {
       trials_.go_back_to(first);
-      const FieldTrials by_cell =
-          run([&policy = plan.by_cell->policy](
-                  const Place& at, const Entry& entry) { return policy.action(at, entry); },
-              count_);
+      const FieldTrials by_cell = run(choice_of(plan.by_cell->policy), count_);
       plan.by_cell->crossings = crossings_of(by_cell);
       plan.by_cell->worth = gain_over(own, by_cell);
     }
@@ -234,6 +432,20 @@ class Planner {
       plan.alone.push_back(crossings_of(alone));
       plan.gains.push_back(gain_over(own, alone));
     }
+    for (Tried& point : front) {
+      trials_.go_back_to(first);
+      const FieldTrials trials = run(choice_of(point.plan.policy), count_);
+      plan.front.push_back({point.price, std::move(point.plan.policy), crossings_of(trials),
+                            spent_by(trials, options_.thrift->cost)});
+    }
+    // What another one beats in both was chosen by chance.
+    for (std::size_t i = plan.front.size(); i-- > 1;)
+      if (std::any_of(plan.front.begin(), plan.front.end(), [&, i](const FrontPoint& other) {
+            const FrontPoint& point = plan.front[i];
+            return &other != &point && other.crossings.crossed >= point.crossings.crossed &&
+                   other.spent.mean <= point.spent.mean;
+          }))
+        plan.front.erase(plan.front.begin() + static_cast<std::ptrdiff_t>(i));
     plan.rounds = rounds_;
     plan.gate_runs = trials_.gate_runs();
     plan.health = trials_.health();
@@ -329,6 +541,14 @@ Plan make_plan(const std::vector<Action>& actions, const PlanOptions& options, c
   if (options.per_leaf < 1 || options.per_leaf > 1'000'000)
     throw std::invalid_argument("plan: leaves of 1 to 1000000 entries");
   require_actions(actions);
+  if (const auto& thrift = options.thrift) {
+    if (thrift->cost >= actions.front().problem.map().section.costs.size())
+      throw std::invalid_argument("plan: there is no such cost");
+    if (thrift->points < 1 || thrift->points > 100)
+      throw std::invalid_argument("plan: a front of 1 to 100 policies");
+    if (!(thrift->chance >= 0.0 && thrift->chance < 1.0))
+      throw std::invalid_argument("plan: a chance to cross lies in [0, 1)");
+  }
   return Planner(actions, options, work).carry_out();
 }
 

@@ -44,11 +44,32 @@ struct Policy {
   [[nodiscard]] int action(const Place& place, const dynamics::Entry& entry) const;
 };
 
+/// Whether to give up some of the chance to cross for less of a cost.
+struct ThriftOptions {
+  std::size_t cost = 0;  // by Section::costs; more than 0 in the mean of each state's passages
+  int points = 5;        // policies of the front at most, the plan's own among them
+  /// More points where bodies cross so often; 0: all along the front.
+  double chance = 0.0;
+};
+
 struct PlanOptions {
   double accuracy = 0.02;  // half of the widest interval that a chance to cross may have
   std::int64_t most_runs = 20'000'000;  // gate runs to choose by, about
   int per_leaf = dynamics::kEntriesPerLeaf;
   std::uint64_t seed = 1;
+  std::optional<ThriftOptions> thrift{};
+};
+
+/// A policy that crosses less often and takes less. With a bound of the mean cost the best policy
+/// is one of these, or one of two by chance (Altman 1999, Constrained Markov Decision Processes,
+/// chapter 3).
+struct FrontPoint {
+  /// Of the policies that were found its chance to cross less so much for each unit of the cost is
+  /// the largest; 0: the plan.
+  double price = 0.0;
+  Policy policy;
+  Crossings crossings{};  // of the trials that judge the plan
+  Spent spent{};          // by the same
 };
 
 struct Plan {
@@ -62,15 +83,18 @@ struct Plan {
   std::vector<Crossings> alone{};
   std::vector<Gain> gains{};  // over each action alone
   /// The best that was found of policies that know the cell alone, which choose the same action
-  /// however a body enters and how many it has passed; how often it crosses in the same trials, and
-  /// what the plan gains over it: what knowing the way in is worth. None where the chain's values
-  /// do not fit into memory.
+  /// however a body enters and how many it has passed: of what the chain finds and each action
+  /// everywhere. How often it crosses in the same trials, and what the plan gains over it: what
+  /// knowing the way in, and how many were passed, is worth. None where nothing crossed.
   struct ByCell {
     Policy policy;
     Crossings crossings{};
     Gain worth{};
+    bool searched = false;  // in the chain, to the end: larger fields take too long
   };
   std::optional<ByCell> by_cell{};
+  /// If asked for: from the plan to what takes least for each crossing, by price.
+  std::vector<FrontPoint> front{};
   std::vector<double> usage{};  // (actions x cells) how often it is taken there, per trial
   int rounds = 0;               // of trials and choosing again
   bool settled = false;  // the last round gained less than half of the accuracy, and than chance

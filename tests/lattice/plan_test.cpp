@@ -97,6 +97,93 @@ TEST(Plan, EachBodyTakesTheActionThatItsEntryAsksFor) {
   }
 }
 
+/// A lane whose cells let a body through by chance, and take so long.
+Action toll(std::string name, double chance, double time, int rows) {
+  Action action = lane(std::move(name), chance, chance, {1, rows, 0});
+  Section section = action.problem.map().section;
+  section.costs = {{"time_s", "s", "duration"}};
+  action.problem.cells =
+      CellField::uniform(std::make_shared<FunctionCell>(section, [=](Body& body) {
+        const Fate fate = body.random.uniform() < chance ? Fate::left : Fate::trapped;
+        return Passage{fate, body.entry, {time}};
+      }));
+  return action;
+}
+
+TEST(Plan, TheFrontIsThatOfAllPoliciesAndEndsWhereACrossingTakesLeast) {
+  // Slow is sure, fast is not: of three rows all eight policies by row, in closed form.
+  constexpr int kThree = 3;
+  constexpr double kChance[] = {0.95, 0.75}, kTime[] = {4.0, 1.0};
+  const auto exact = [&](int policy) {
+    double alive = 1.0, time = 0.0;
+    for (int row = 0; row < kThree; ++row) {
+      time += alive * kTime[policy >> row & 1];
+      alive *= kChance[policy >> row & 1];
+    }
+    return std::pair(alive, time);
+  };
+  const std::vector<Action> actions{toll("slow", kChance[0], kTime[0], kThree),
+                                    toll("fast", kChance[1], kTime[1], kThree)};
+  const Plan plan = make_plan(actions, {.accuracy = 0.01, .seed = 8, .thrift = ThriftOptions{}});
+  ASSERT_GE(plan.front.size(), 3U);
+  double least = 1e9;
+  for (int policy = 0; policy < 1 << kThree; ++policy)
+    least = std::min(least, exact(policy).second / exact(policy).first);
+  double price = -1.0;
+  for (const FrontPoint& point : plan.front) {
+    int policy = 0;
+    for (int row = 0; row < kThree; ++row)
+      policy |= point.policy.action({0, row, row}, {0, {-0.5}}) << row;
+    const auto [chance, time] = exact(policy);
+    for (int other = 0; other < 1 << kThree; ++other)
+      EXPECT_LE(exact(other).first - point.price * exact(other).second,
+                chance - point.price * time + 0.01)
+          << policy << ' ' << other << ' ' << point.price;
+    EXPECT_NEAR(point.crossings.share(), chance, 0.015);
+    EXPECT_NEAR(point.spent.mean, time, point.spent.mean_95[1] - point.spent.mean_95[0]);
+    EXPECT_TRUE(point.spent.mean_95[0] < point.spent.mean &&
+                point.spent.mean < point.spent.mean_95[1]);
+    EXPECT_NEAR(point.spent.per_crossing, point.spent.mean / point.crossings.share(), 1e-9);
+    EXPECT_GT(point.price, price);
+    price = point.price;
+    EXPECT_EQ(point.crossings.trials, plan.crossings.trials);
+  }
+  EXPECT_EQ(plan.front[0].price, 0.0);
+  EXPECT_EQ(plan.front[0].crossings.crossed, plan.crossings.crossed);
+  EXPECT_NEAR(plan.front.back().spent.per_crossing, least, 0.1);
+  for (const ThriftOptions& wrong :
+       {ThriftOptions{.cost = 1}, ThriftOptions{.points = 0}, ThriftOptions{.chance = 1.0}})
+    EXPECT_THROW((void)make_plan(actions, {.thrift = wrong}), std::invalid_argument);
+}
+
+// By simulation: 2000 sets of trials, whose means are known.
+TEST(Plan, WhatTrialsTakeIsHeldByItsIntervals) {
+  int mean = 0, ratio = 0;
+  for (int set = 0; set < 2000; ++set) {
+    Random random(Purpose::plan, {7, static_cast<std::uint64_t>(set), 0});
+    FieldTrials trials;
+    for (int i = 0; i < 200; ++i) {
+      const bool crosses = random.uniform() < 0.3;
+      trials.endings.emplace_back(crosses ? markov::Ending::far_edge : markov::Ending::trapped);
+      trials.costs.push_back({crosses ? 3.0 : 1.0 + random.uniform()});
+    }
+    const Spent spent = spent_by(trials, 0);
+    mean += holds(spent.mean_95, 0.3 * 3.0 + 0.7 * 1.5);
+    ratio += holds(spent.per_crossing_95, (0.3 * 3.0 + 0.7 * 1.5) / 0.3);
+  }
+  for (const int held : {mean, ratio}) EXPECT_NEAR(held, 1900, 5 * std::sqrt(2000 * 0.95 * 0.05));
+  FieldTrials none;
+  none.endings.assign(2, markov::Ending::trapped);
+  none.costs.assign(2, {1.0});
+  EXPECT_TRUE(std::isnan(spent_by(none, 0).per_crossing));
+  none.endings[0] = markov::Ending::far_edge;
+  EXPECT_TRUE(std::isinf(spent_by(none, 0).per_crossing_95[1]));
+  EXPECT_GT(spent_by(none, 0).per_crossing_95[0], 0.0);
+  none.endings.pop_back();
+  none.costs.pop_back();
+  EXPECT_THROW((void)spent_by(none, 0), std::invalid_argument);
+}
+
 TEST(Plan, WhereAllActionsAreAlikeNothingIsGained) {
   const Plan plan = make_plan({lane("one", 0.9, 0.9), lane("other", 0.9, 0.9)}, {.seed = 5});
   for (const Gain& gain : plan.gains) {

@@ -125,11 +125,12 @@ TEST(Recording, DoesWhatAPolicySays) {
         return first.map().type_of(at.column, at.row) * 3 + action(at, entry);
       },
       4, {0, 30}, counted);
-  const Recordings all = record_trials(s, {.seed = 4,
-                                           .trials = 30,
-                                           .across_field = true,
-                                           .only = {},
-                                           .chosen = chosen_gates(taken, action)});
+  const Recordings all =
+      record_trials(s, {.seed = 4,
+                        .trials = 30,
+                        .across_field = true,
+                        .only = {},
+                        .chosen = chosen_gates({"push", "soft", "wait"}, taken, action)});
   ASSERT_EQ(all.runs.size(), 30u);
   std::set<int> met;
   for (std::size_t i = 0; i < all.runs.size(); ++i) {
@@ -151,6 +152,35 @@ TEST(Recording, DoesWhatAPolicySays) {
               taken[static_cast<std::size_t>(types.back() % 3)].gate.forces.propulsion);
   }
   EXPECT_EQ(met.size(), 6u);
+  const std::vector<Column> with_action = columns_of(all);
+  ASSERT_EQ(with_action.size(), columns().size() + 1);
+  const Column& said = with_action.back();
+  EXPECT_EQ(said.name, "action");
+  for (const Moment& m : all.runs.front().moments) {
+    const double code = said.value({all.of(m), 0, m});
+    EXPECT_EQ(code, m.type % 3);
+    EXPECT_EQ(said.words.at(static_cast<std::size_t>(code)),
+              actions.at(static_cast<std::size_t>(m.type % 3)).name);
+  }
+  EXPECT_EQ(columns_of(record_trials(s, {.seed = 4, .only = {}, .chosen = {}})).size(),
+            columns().size());
+}
+
+TEST(Recording, RefusesActionsThatCannotBelongTogether) {
+  const Scene s = scene();
+  const CellChoice first = [](const Place&, const dynamics::Entry&) { return 0; };
+  const CellChoice third = [](const Place&, const dynamics::Entry&) { return 2; };
+  EXPECT_THROW((void)chosen_gates({}, {}, first), std::invalid_argument);
+  EXPECT_THROW((void)chosen_gates({"a"}, {s, s}, first), std::invalid_argument);
+  Scene wider = s;
+  wider.field.columns += 2;
+  EXPECT_THROW((void)chosen_gates({"a", "b"}, {s, wider}, first), std::invalid_argument);
+  const auto run = [&](const CellChoice& action) {
+    return record_trials(
+        s, {.across_field = true, .only = {}, .chosen = chosen_gates({"a", "b"}, {s, s}, action)});
+  };
+  EXPECT_EQ(run(first).runs.size(), 1u);
+  EXPECT_THROW((void)run(third), std::out_of_range);
 }
 
 // A moment made by hand: 3 m beside the joint's height in gate (1, 2) of a field of 50 m x 65 m

@@ -197,6 +197,20 @@ Chain reversed(const Chain& chain) {
 }
 
 // Of actions that are as good but for rounding the first is taken.
+TEST(Decide, ADrawThatWasNeverSampledCostsToo) {
+  // The first action's row was never sampled: a walk ends there, which is worth nothing, less its
+  // cost.
+  const Chain never = Chain::from_counts(Counts(1, 1), {{0, 0, 1}});
+  const Chain sure = Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{0, 0, 1}});
+  for (const double cost : {-0.4, -2.0}) {
+    Gains gains = crossing();
+    gains.draw = {{{cost}}, {{-1.5}}};
+    const Decisions best = decide({never, sure}, {1, 1}, gains, {.max_cells = 2});
+    EXPECT_EQ(best.action[0], cost == -0.4 ? 0 : 1);
+    EXPECT_EQ(best.value[0], cost == -0.4 ? -0.4 : -0.5);
+  }
+}
+
 TEST(Decide, TakesTheFirstOfEqualActions) {
   const Chain one = nine_actions()[3].chains()[0];
   Gains gains = crossing();

@@ -47,6 +47,20 @@ expect 2 'sides.policy.json: was made for another scene: ' "$gatewalk" trace own
 holds '.by_gate.crossed > 0 and .by_gate.gain_95[0] <= .by_gate.gain and (.by_gate.action | length) == 4 and (.by_gate.action[0] | length) == 9 and (.by_gate.action | add | unique | inside(["left", "right"]))' gates.json
 "$gatewalk" lattice "${sides[@]}" --policy gates.policy.json --trials 2000 --seed 3 --quiet --json run.json --force
 jq -s '.[0].by_gate.interval_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' gates.json run.json | grep -q true || fail "the policy by gates crosses less or more often than planned"
+# Policies that take less, from the plan's own on; the one that is written crosses so often.
+least=("$scenes/field.toml" --set run.method=moreau --set field.rows=2 --set actions.slow.forces.propulsion_N=5 --set actions.fast.forces.propulsion_N=11 --accuracy 0.05)
+expect 0 '^policies that take less (work of the propulsion), under the same noise:$' "$gatewalk" plan "${least[@]}" --least work_J --points 4 --json least.json
+holds '.least == "work_J" and (.front | length) > 1 and (.front | length) <= 4 and .front[0].crossed == .crossed and .front[0].price == 0 and (.front | map(.price) | . == sort) and (.front | map(.chosen) | any | not)' least.json
+holds '.front | map(.per_crossing / .mean * .crossed | . > 0.999 and . < 1.001) | all' least.json
+chance=$(jq '.front[-1].crossed' least.json)
+expect 0 '^[*] ' "$gatewalk" plan "${least[@]}" --least work_J --points 4 --chance "$chance" --policy least.policy.json --json chosen.json
+holds ".front | map(select(.chosen)) | length == 1 and .[0].crossed >= $chance" chosen.json
+"$gatewalk" lattice "${least[@]:0:9}" --policy least.policy.json --trials 2000 --seed 3 --quiet --json run.json --force
+jq -s '(.[0].front | map(select(.chosen))[0].interval_95) as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' chosen.json run.json | grep -q true || fail "the policy that takes less crosses less or more often than said"
+expect 0 'none of these policies crosses so often' "$gatewalk" plan "${least[@]}" --least time_s --points 2 --chance 0.99
+expect 2 "'heat_J' is none of time_s, forward_m, work_J, random_work_J, lost_J" "$gatewalk" plan "${least[@]}" --least heat_J
+expect 2 '--points: only with --least' "$gatewalk" plan "${least[@]}" --points 3
+expect 2 '--chance: must lie between 0 and 1' "$gatewalk" plan "${least[@]}" --least time_s --chance 1
 # One action all the time is the scene with its keys.
 "$gatewalk" plan "${small[@]}" "${actions[@]}" --quiet --policy fast.json
 "$gatewalk" lattice "${small[@]:0:5}" "${actions[@]}" --policy fast.json --trials 300 --quiet --json policy.json
