@@ -86,7 +86,7 @@ class Arrays {
          std::uint64_t seed)
       : cells_(cells), field_(field), trials_(trials) {
     const auto count = static_cast<std::size_t>(trials.count());
-    for (std::size_t place = 0; place < count; ++place) running_.emplace_back(field);
+    for (std::size_t place = 0; place < count; ++place) running_.emplace_back(field.start_column());
     bodies_.assign(count, Body{.entry = {}, .random = Random(Purpose::field, {})});
     const Cell& first = cells.at(field.start_column(), 0);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t place) {

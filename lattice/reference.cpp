@@ -184,7 +184,16 @@ FieldTally run_field(const CellField& cells, const FieldParams& field, const Beg
   require_cells(cells);
   const bool keep_passages = each != nullptr && each->keep_passages;
   std::vector<RunningTrial> trials;
-  for (std::int64_t i = 0; i < range.count; ++i) trials.emplace_back(field);
+  const auto start_of = [&](std::int64_t i) {
+    return choice.from ? choice.from(range.first + i)
+                       : TrialStart{field.start_column(), choice.start};
+  };
+  for (std::int64_t i = 0; i < range.count; ++i) {
+    const std::int32_t column = start_of(i).column;
+    if (!field.contains(column, 0))
+      throw std::invalid_argument("field: a trial is to begin in a column that there is not");
+    trials.emplace_back(column);
+  }
 
   const auto type_at = [&](std::int64_t i, const Entry& entry) {
     const RunningTrial& t = trials[static_cast<std::size_t>(i)];
@@ -198,7 +207,7 @@ FieldTally run_field(const CellField& cells, const FieldParams& field, const Beg
   // same; else it waits for the next wave of its own.
   std::vector<Wave> waves(types);
   for (std::int64_t i = 0; i < range.count; ++i)
-    waves[type_at(i, choice.start)].trials.push_back(i);
+    waves[type_at(i, start_of(i).entry)].trials.push_back(i);
   Health health;
   tbb::enumerable_thread_specific<Moves> moves;  // sums: any order will do
   for (bool more = true; more;) {

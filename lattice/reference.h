@@ -113,11 +113,18 @@ struct Place {
 };
 /// A type of cells, for a body that enters there so.
 using CellChoice = std::function<int(const Place& place, const dynamics::Entry& entry)>;
-/// Which of a field's types of cells a body meets that enters there, where its map does not say.
-/// All trials begin by `start`.
+/// Where a trial begins, in the first row.
+struct TrialStart {
+  std::int32_t column = 0;
+  dynamics::Entry entry{};
+};
+using StartOfTrial = std::function<TrialStart(std::int64_t trial)>;
+/// Which of a field's types of cells a body meets that enters there, where its map does not say,
+/// and where trials begin.
 struct TypeChoice {
   dynamics::Entry start{};
-  CellChoice type{};  // empty: the map's
+  CellChoice type{};    // empty: the map's
+  StartOfTrial from{};  // empty: all by `start`, in the field's start column
 };
 
 /// Puts the body of trial number i of a range, from 0, there, as it enters its first cell.
@@ -135,7 +142,8 @@ void require_cells(const dynamics::CellField& cells);
 /// may be entered again. Trials in cells of one type are run together. `space` only counts what its
 /// bins would have clamped. What each trial did is appended to `each`, if given. On all threads of
 /// the current TBB arena, same result for any number of them. Throws std::invalid_argument where
-/// the cells' map is not of this field, or has no cells to run, and for a `choice` of none of them.
+/// the cells' map is not of this field, or has no cells to run, and for a `choice` of none of them,
+/// or of columns that there are not.
 [[nodiscard]] FieldTally run_field(const dynamics::CellField& cells, const FieldParams& field,
                                    const BeginTrial& begin, dynamics::TrialRange range,
                                    FieldTrials* each = nullptr,
@@ -151,7 +159,7 @@ void require_cells(const dynamics::CellField& cells);
 /// One trial on its way through the field, whoever carries its body.
 class RunningTrial {
  public:
-  explicit RunningTrial(const FieldParams& field) : column_(field.start_column()) {}
+  explicit RunningTrial(std::int32_t start_column) : column_(start_column) {}
 
   /// Takes a passage through the cell where the trial is, of this type. The entry into the next
   /// cell; none when the trial ends here. Passages are kept if asked for.

@@ -3,6 +3,7 @@
 #include "cli/arguments.h"
 #include "cli/choosing.h"
 #include "cli/exchange/policy_file.h"
+#include "cli/planned_start.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
@@ -50,11 +51,18 @@ int run_plan(const Arguments& arguments) {
       "actions is\n"
       "run in full, its trials are added, and so on; new trials say how often it crosses, beside "
       "each action\n"
-      "all the time.",
+      "all the time.\n"
+      "Without actions: the start from which bodies cross most often, in a terrain in any "
+      "column.",
       "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 --set "
       "actions.fast.forces.propulsion_N=9");
   options.scene();
   add_choosing(options);
+  options.add_texts(
+      "over", "KEY=LOW:HIGH",
+      "without actions: where bodies may start (start.x_m, start.vx_m_per_s, "
+      "start.vy_m_per_s;\ndefault: a radius from the joints, up to the speed of an open "
+      "gate; may be repeated)");
   options.output_file("policy", "FILE.json",
                       "write what to do in each gate, for --policy of gatewalk lattice and trace");
   options.output_file("gate-policy", "FILE.json",
@@ -70,6 +78,9 @@ int run_plan(const Arguments& arguments) {
   lattice::PlanOptions how;
   take_choosing(options, how);
   Subject s = scene_to_run(options, "a plan is made");
+  if (s.scene->actions.empty()) return plan_start(options, std::move(s));
+  if (options.has("over"))
+    throw UsageError("--over: is for a scene without actions; " + s.path + " has some");
   how.thrift = thrift_of(options, s.shown());
   if (options.has("policy") || options.has("gate-policy")) require_file_for(*s.scene);
   Actions all = actions_of(options, *s.scene, s.problem.start);

@@ -30,7 +30,7 @@ FieldTally run_with_beams(const GateParams& p, const FieldParams& field, const C
                           FieldTrials* each, const StateSpace* space, Memory memory) {
   (void)make_method(p);  // refuses what cannot be run
   std::vector<RunningTrial> trials;
-  for (std::int64_t i = 0; i < range.count; ++i) trials.emplace_back(field);
+  for (std::int64_t i = 0; i < range.count; ++i) trials.emplace_back(field.start_column());
   struct Seen {
     Health health;
     std::vector<Entry> entries;
@@ -96,7 +96,7 @@ FieldTrace trace_field(const FieldGates& gates, const FieldParams& field, const 
   for (const GateParams& p : gates.types()) validate(p, field);
   const CellMap map = gates.map();
   map.require_fits(field.columns, field.rows);
-  RunningTrial t(field);
+  RunningTrial t(field.start_column());
   const auto type_at = [&](const Entry& entry) {
     return choice ? choice({t.column(), t.row(), t.passed(), trial}, entry)
                   : gates.type_of(t.column(), t.row());

@@ -22,13 +22,35 @@ FieldTally chosen_trials(const CellField& cells, const Problem& first, const Cel
 }
 
 FieldTrials ChosenTrials::run(const CellChoice& choice, std::int64_t count) {
+  return in_pieces(
+      [&](TrialRange range, FieldTrials& each) {
+        return chosen_trials(cells_, first_, choice, seed_, range, each);
+      },
+      count);
+}
+
+FieldTrials ChosenTrials::run_from(const StartOfTrial& from, std::int64_t count) {
+  return in_pieces(
+      [&](TrialRange range, FieldTrials& each) {
+        return run_field(cells_, first_.field,
+                         [&](std::int64_t i, Body& body) {
+                           const std::int64_t trial = range.first + i;
+                           const TrialStart start = from(trial);
+                           begin_trial(cells_.at(start.column, 0), start.entry, seed_, trial, body);
+                         },
+                         range, &each, nullptr, Memory::kept, {.from = from});
+      },
+      count);
+}
+
+FieldTrials ChosenTrials::in_pieces(const RunRange& run_range, std::int64_t count) {
   FieldTrials all{.final_gates = {}, .keep_passages = true};
   const RunTrials none{FieldTally(first_.field), {.final_gates = {}, .keep_passages = true}};
   work_.in_kept_pieces(
       {"trials of a " + name_, {next_, count}}, none,
       [&](TrialRange range) {
         RunTrials piece = none;
-        piece.tally = chosen_trials(cells_, first_, choice, seed_, range, piece.each);
+        piece.tally = run_range(range, piece.each);
         return piece;
       },
       [&](const RunTrials& piece) {
@@ -44,9 +66,9 @@ FieldTrials ChosenTrials::run(const CellChoice& choice, std::int64_t count) {
   return all;
 }
 
-void ChosenTrials::add(const FieldTrials& trials) {
-  pool_.scattered.starts.insert(pool_.scattered.starts.end(), trials.final_gates.size(),
-                                first_.start);
+void ChosenTrials::add(const FieldTrials& trials, std::vector<Entry> starts) {
+  if (starts.size() == 1) starts.resize(trials.final_gates.size(), starts.front());
+  pool_.scattered.starts.insert(pool_.scattered.starts.end(), starts.begin(), starts.end());
   pool_.scattered.each.append(trials);
 }
 

@@ -4,7 +4,10 @@
 /// that something is to be chosen by.
 
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "dynamics/base/work.h"
 #include "lattice/pool/run_pool.h"
@@ -30,13 +33,17 @@ class ChosenTrials {
 
   /// The next `count` of them. Throws std::runtime_error when a run broke.
   [[nodiscard]] FieldTrials run(const CellChoice& choice, std::int64_t count);
+  /// The same in the map's cells, each trial from a start of its own.
+  [[nodiscard]] FieldTrials run_from(const StartOfTrial& from, std::int64_t count);
   [[nodiscard]] std::int64_t next() const { return next_; }
   /// The trials from that number on once more.
   void go_back_to(std::int64_t next) { next_ = next; }
 
   /// Into the pool. Of several runs of the same trials one only: a run that is twice in a leaf says
   /// nothing new.
-  void add(const FieldTrials& trials);
+  void add(const FieldTrials& trials) { add(trials, {first_.start}); }
+  /// `starts`: of each trial, or one of all.
+  void add(const FieldTrials& trials, std::vector<dynamics::Entry> starts);
   [[nodiscard]] const RunPool& pool() const { return pool_; }
 
   /// Chance that the noise of the trials knows nothing of.
@@ -46,6 +53,10 @@ class ChosenTrials {
   [[nodiscard]] const dynamics::Health& health() const { return health_; }
 
  private:
+  /// Of a range of trials, each of which is appended.
+  using RunRange = std::function<FieldTally(dynamics::TrialRange range, FieldTrials& each)>;
+  [[nodiscard]] FieldTrials in_pieces(const RunRange& run_range, std::int64_t count);
+
   std::string name_;
   const dynamics::CellField& cells_;
   const Problem& first_;

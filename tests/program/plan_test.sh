@@ -75,7 +75,21 @@ done
 echo '{}' >bad.json
 expect 2 'bad.json: is no policy that gatewalk plan --policy wrote' "$gatewalk" lattice "${sides[@]}" --policy bad.json
 # What cannot be planned.
-expect 2 'has 0 tables \[actions.NAME\]: a plan needs two at least' "$gatewalk" plan "$scenes/field.toml"
+# Without actions: the best start, in a terrain in any column; the chance that trials from there have.
+expect 0 '^  best .* start d -*[0-9.]* m, vx 0 m/s, vy [0-9.]* m/s, i_x -*[0-4]$' "$gatewalk" plan "$scenes/mixed.toml" --set run.method=moreau --set field.rows=4 --accuracy 0.05 --json start.json --figure start.svg
+holds '.is_own == false and .gain_95[0] > 0 and .crossed > .own.crossed and (.starts | length) == 9 and (.starts[0].chance | length) == 40 and (.starts[0].chance[0] | length) == 40 and ([.starts[].chance[][]] | min >= 0 and max <= 1)' start.json
+grep -q 'by the chain; x: best' start.svg || fail "no map of starts"
+"$gatewalk" plan "$scenes/mixed.toml" --set run.method=moreau --set field.rows=4 --accuracy 0.05 --threads 1 --quiet --json again.json --force
+jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' start.json again.json | grep -q true || fail "plan: another start on one thread"
+"$gatewalk" plan "${small[@]:0:5}" --accuracy 0.02 --over start.x_cm=-500:500 --over start.vy_m_per_s=5:25 --quiet --json start.json --force
+holds '.ranges == {"d_m": [-5, 5], "vy_m_per_s": [5, 25]} and (.starts | length) == 1 and .start.i_x == 0' start.json
+start=$(jq -r '.start | "\(.d_m),\(.vx_m_per_s),\(.vy_m_per_s)"' start.json)
+"$gatewalk" lattice "${small[@]:0:5}" --set start.x_m="${start%%,*}" --set start.vy_m_per_s="${start##*,}" --trials 2000 --seed 3 --quiet --json run.json --force
+jq -s '.[0].interval_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' start.json run.json | grep -q true || fail "bodies from the best start cross less or more often than planned"
+expect 2 'over: is for a scene without actions' "$gatewalk" plan "${small[@]}" "${actions[@]}" --over start.x_m=-5:5
+expect 2 'a start is planned over start.x_m, start.vx_m_per_s and start.vy_m_per_s alone' "$gatewalk" plan "${small[@]}" --over forces.propulsion_N=5:9
+expect 2 'start.x_m = -30 is not permitted' "$gatewalk" plan "${small[@]}" --over start.x_m=-30:30
+expect 2 'policy: is for a scene with actions' "$gatewalk" plan "${small[@]}" --policy p.json
 expect 2 'has 1 tables \[actions.NAME\]' "$gatewalk" plan "$scenes/field.toml" --set actions.a.forces.propulsion_N=9
 expect 2 'accuracy: must lie in \[0.001, 0.5)' "$gatewalk" plan own.toml --accuracy 0.6
 expect 2 'a plan is made for one start' "$gatewalk" plan own.toml --start 0,0,15 --start 4,0,15

@@ -434,7 +434,8 @@ def plan(subject: _t.Any, *, accuracy: float | None = None, seed: int | None = N
     Parameters
     ----------
     subject : Scene, path, text or dict
-        With two tables ``[actions.NAME]`` at least: keys of forces and beams as they are while a body takes the action.
+        With two tables ``[actions.NAME]`` at least: keys of forces and beams as they are while a body takes the action. Without
+        any: the start is planned, over the ranges of ``over`` (``["start.x_m=-5:5"]``).
     accuracy : float, optional
         Half of the interval that a chance to cross may have.
     seed, progress, **more
@@ -443,7 +444,7 @@ def plan(subject: _t.Any, *, accuracy: float | None = None, seed: int | None = N
     Returns
     -------
     Result
-        ``crossed``, ``actions``, ``most_taken`` and more of ``gatewalk plan --json``.
+        ``crossed``, ``actions``, ``most_taken`` (or ``start``, ``starts``) and more of ``gatewalk plan --json``.
 
     Raises
     ------

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "cli/planned_start.h"
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "cli/choosing.h"
+#include "cli/ranged.h"
+#include "cli/render/best_start.h"
+#include "cli/render/choice.h"
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/plan.h"
+#include "cli/render/scene.h"
+#include "cli/render/text.h"
+#include "dynamics/base/work.h"
+#include "dynamics/disc/disc_section.h"
+#include "dynamics/disc/study/meaning.h"
+#include "lattice/text/digits.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// Keys of a start, by the coordinates of an entry.
+constexpr std::array<std::string_view, 3> kStartKeys{"start.x_m", "start.vx_m_per_s",
+                                                     "start.vy_m_per_s"};
+
+/// A radius from the joints, and up to the speed at the end of a gate without beams.
+std::vector<std::string> all_of(const lattice::Scene& scene) {
+  const double speed = dynamics::meaning_of(scene.gate, scene.start).passage_speed;
+  if (!std::isfinite(speed))
+    throw UsageError("--over: say where bodies may start, such as --over start.vy_m_per_s=0:1; " +
+                     scene.source + " has no push through a gate that tells a speed");
+  const std::string x = lattice::toml_float(scene.gate.beams.joint_x - scene.gate.body.radius);
+  return {"start.x_m=-" + x + ":" + x, "start.vy_m_per_s=0:" + lattice::toml_float(speed)};
+}
+
+std::vector<lattice::CoordinateRange> ranges_in(const lattice::RangedScene& ranged) {
+  const std::vector<double> none(ranged.ranges().size(), 0.0), all(ranged.ranges().size(), 1.0);
+  const dynamics::Entry low = dynamics::entry_of(ranged.at(none).start),
+                        high = dynamics::entry_of(ranged.at(all).start);
+  std::vector<lattice::CoordinateRange> ranges;
+  for (std::size_t c = 0; c < kStartKeys.size(); ++c)
+    if (low.at[c] < high.at[c]) ranges.push_back({c, low.at[c], high.at[c]});
+  if (ranges.size() != ranged.ranges().size())
+    throw UsageError(
+        "--over: a start is planned over start.x_m, start.vx_m_per_s and "
+        "start.vy_m_per_s alone");
+  return ranges;
+}
+
+}  // namespace
+
+int plan_start(const Options& options, Subject s) {
+  for (const char* other : {"policy", "gate-policy", "least", "points", "chance"})
+    if (options.has(other))
+      throw UsageError("--" + std::string(other) + ": is for a scene with actions; " + s.path +
+                       " has no tables [actions.NAME]");
+  lattice::BestStartOptions how;
+  take_choosing(options, how);
+  const auto given = options.texts("over");
+  const lattice::RangedScene ranged(lattice::scene_text(s.path), s.path, options.overrides(),
+                                    given.empty() ? all_of(*s.scene) : given, "--over");
+  how.ranges = ranges_in(ranged);
+  if (s.given && !given.empty())
+    throw UsageError("--over: varies the scene's start, and --start gives another");
+  const lattice::FieldParams& field = s.scene->field;
+  if (s.scene->terrain)
+    for (int column = 0; column < field.columns; ++column) how.columns.push_back(column);
+  else
+    how.columns = {field.start_column()};
+  s.settle(options);
+  const dynamics::Stopwatch watch;
+  lattice::BestStart found = lattice::best_start(s.problem, how, options.work());
+  const FoundStart shown{s.shown(),   s.problem.start,  how.ranges,
+                         how.columns, std::move(found), watch.seconds()};
+  Json json = to_json(shown);
+  if (s.settled) json["method"] = to_json(*s.settled);
+  json["made_by"] = s.made_by(options);
+  options.give_out(json, table_of(shown) + method_line(s.settled));
+  options.warn(few_crossings(shown.found.crossings));
+  if (!shown.found.settled)
+    options.warn("choosing was not finished after " + std::to_string(shown.found.gate_runs) +
+                 " gate runs; --gate-runs allows more");
+  options.warn(too_few_gates(s.shown()));
+  const int exit = status_of(options, shown.found.health);
+  options.draw([&] { return figure_of(shown); });
+  return exit;
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include "lattice/study/best_start.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "tests/support/threads.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+
+constexpr double kSlopeTop = 0.35, kSlopeHeight = 0.9, kBeyond = 0.8;
+constexpr int kSlopeRows = 3;
+
+/// Who enters at x with speed v gets through a cell with a chance of its own, then enters the next
+/// one at a place outside the ranges, through which it gets by kBeyond.
+std::shared_ptr<const Cell> slope(double share) {
+  Section section;
+  section.faces = {{"S", 0, 1, 0, 1, "from below", {}}};
+  section.coordinates = {{"x", "x", "1", "place", 1.0}, {"v", "v", "1", "speed", 1.0}};
+  return std::make_shared<FunctionCell>(section, [=](Body& body) {
+    const double x = body.entry.at[0], v = body.entry.at[1];
+    const double first = kSlopeHeight - std::abs(x - kSlopeTop) - 0.3 * std::abs(v - 1.0);
+    const bool left = body.random.uniform() < share * (x > 5.0 ? kBeyond : first);
+    body.entry = {0, {10.0, 0.5}};
+    return Passage{left ? Fate::left : Fate::trapped, body.entry};
+  });
+}
+
+Problem slope_lane(int columns = 1) {
+  Problem problem;
+  problem.cells = CellField::uniform(slope(1.0));
+  problem.field = {columns, kSlopeRows, 0};
+  problem.start = {0, {-0.2, 0.0}};
+  return problem;
+}
+
+const BestStartOptions kSlopeRanges{
+    .ranges = {{0, -1.0, 1.0}, {1, 0.0, 2.0}}, .accuracy = 0.01, .seed = 3};
+
+bool lies_in(const std::array<double, 2>& interval, double value) {
+  return interval[0] <= value && value <= interval[1];
+}
+
+TEST(BestStart, IsFoundAndHeldByItsInterval) {
+  const BestStart found = best_start(slope_lane(), kSlopeRanges);
+  const double later = kBeyond * kBeyond, own = (kSlopeHeight - 0.55 - 0.3) * later;
+  EXPECT_TRUE(found.settled);
+  EXPECT_FALSE(found.own);
+  const auto [x, v] = std::pair(found.best.entry.at[0], found.best.entry.at[1]);
+  EXPECT_NEAR(x, kSlopeTop, 0.1);
+  EXPECT_NEAR(v, 1.0, 0.3);
+  const double exact = (kSlopeHeight - std::abs(x - kSlopeTop) - 0.3 * std::abs(v - 1.0)) * later;
+  EXPECT_GT(exact, (kSlopeHeight - 0.1) * later);
+  EXPECT_TRUE(lies_in(found.crossings.interval_95(), exact)) << exact;
+  EXPECT_TRUE(lies_in(found.crossings_of_own.interval_95(), own)) << own;
+  EXPECT_TRUE(lies_in(found.gain.interval_95, exact - own));
+  // The map, on the whole range.
+  for (const double at : {-0.5, -0.4, 0.1, 0.3, 0.8})
+    EXPECT_NEAR(found.chance({0, {0, {at, 1.0}}}),
+                (kSlopeHeight - std::abs(at - kSlopeTop)) * later, 0.1)
+        << at;
+}
+
+TEST(BestStart, IsInTheColumnThatLetsBodiesThrough) {
+  Problem problem = slope_lane(3);
+  CellField& cells = problem.cells;
+  cells.cells.push_back(slope(0.5));
+  cells.map.types.push_back({});
+  cells.map.columns = 3;
+  for (int row = 0; row < kSlopeRows; ++row)
+    for (int column = 0; column < 3; ++column)
+      cells.map.type_of_cell.push_back(column == 2 ? 0 : 1);
+  BestStartOptions options = kSlopeRanges;
+  options.columns = {0, 1, 2};
+  const BestStart found = best_start(problem, options);
+  EXPECT_EQ(found.best.column, 2);
+  EXPECT_NEAR(found.best.entry.at[0], kSlopeTop, 0.1);
+  EXPECT_GT(found.crossings.share(), (kSlopeHeight - 0.15) * kBeyond * kBeyond);
+  EXPECT_NEAR(found.chance({0, found.best.entry}), found.chance(found.best) / 8.0, 0.03);
+  EXPECT_LT(found.crossings_of_own.share(), 0.05);
+}
+
+TEST(BestStart, IsTheOwnOneWhereAllAreAlike) {
+  Problem problem = slope_lane();
+  problem.start.at[0] = 10.0;
+  const BestStart found =
+      best_start(problem, {.ranges = {{0, 6.0, 9.0}}, .accuracy = 0.02, .seed = 4});
+  EXPECT_TRUE(found.own);
+  EXPECT_EQ(found.best.entry, problem.start);
+  EXPECT_EQ(found.gain.difference, 0.0);
+  EXPECT_TRUE(lies_in(found.crossings.interval_95(), std::pow(kBeyond, kSlopeRows)));
+}
+
+TEST(BestStart, IsTheSameOnOneThread) {
+  BestStartOptions options = kSlopeRanges;
+  options.accuracy = 0.03;
+  const BestStart three = best_start(slope_lane(), options);
+  const auto one = test::on_threads(1, [&] { return best_start(slope_lane(), options); });
+  EXPECT_EQ(one.best.entry, three.best.entry);
+  EXPECT_EQ(one.crossings.crossed, three.crossings.crossed);
+  EXPECT_EQ(one.chances.value, three.chances.value);
+}
+
+TEST(BestStart, RefusesWhatItCannotDo) {
+  const auto refused = [](const auto& change) {
+    BestStartOptions options = kSlopeRanges;
+    change(options);
+    EXPECT_THROW((void)best_start(slope_lane(), options), std::invalid_argument);
+  };
+  refused([](BestStartOptions& o) { o.ranges.clear(); });
+  refused([](BestStartOptions& o) { o.ranges[0].coordinate = 2; });
+  refused([](BestStartOptions& o) { o.ranges[0].high = o.ranges[0].low; });
+  refused([](BestStartOptions& o) { o.ranges[1].high = INFINITY; });
+  refused([](BestStartOptions& o) { o.columns = {1}; });
+  refused([](BestStartOptions& o) { o.accuracy = 0.0; });
+  refused([](BestStartOptions& o) { o.per_leaf = 0; });
+}
+
+}  // namespace
+}  // namespace gatewalk::lattice
