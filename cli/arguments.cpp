@@ -281,8 +281,8 @@ Actions actions_of(const Options& options, const lattice::Scene& scene,
                    const dynamics::Entry& start) {
   if (scene.actions.size() < 2)
     throw UsageError(scene.source + ": has " + std::to_string(scene.actions.size()) +
-                     " tables [actions.NAME]: a plan needs two at least; an empty one is the scene "
-                     "as it is");
+                     " tables [actions.NAME]: to choose among takes two at least; an empty one is the "
+                     "scene as it is");
   Actions all;
   for (const lattice::Terrain::Type& action : scene.actions) {
     lattice::Scene taken = lattice::with_action(scene, action);

@@ -36,6 +36,7 @@ sample
 sample walker
 scene walker.toml
 scene mixed.toml
+scene field.toml --set actions.a.forces.propulsion_N=6 --set actions.b={}
 gate field.toml --trials 100
 gate walker.toml --set run.method=auto --trials 50
 sweep field.toml --vary forces.propulsion_N=6,8 --trials 20

@@ -65,7 +65,14 @@ int run_scene(const Arguments& arguments) {
     map = "\nmap, the far side first:\n";
     for (const std::string& row : rows) map += row + "\n";
   }
-  options.give_out(json, table_of(keys) + meaning_text(meaning, scene) + map);
+  std::string actions;
+  for (const lattice::Terrain::Type& action : scene.actions) {
+    json["actions"].push_back(action.name);
+    actions += (actions.empty() ? "\nactions: " : ", ") + action.name +
+               (action.keys.empty() ? " (the scene as it is)" : "");
+  }
+  if (!actions.empty()) actions += "\n";
+  options.give_out(json, table_of(keys) + meaning_text(meaning, scene) + map + actions);
   options.draw([&] { return figure_of(scene); });
   return kFine;
 }

@@ -501,7 +501,7 @@ const gatewalkReplay = (() => {
     for (let k = Math.ceil(low / step); k * step <= high; ++k) {
       const at = Math.round(y(k * step)) + 0.5;
       ctx.beginPath(); ctx.moveTo(kLeft, at); ctx.lineTo(w - kRight, at); ctx.stroke();
-      ctx.fillText(minus(String(Number((k * step / joules).toPrecision(6)))), kLeft - 6, at);
+      ctx.fillText(minus(String(Number((k * step / joules).toPrecision(6)))), kLeft - 6, at, kLeft - 8);
     }
     ctx.textBaseline = 'top';
     const [unit, name] = readableUnit('s', Math.max(Math.abs(t0), Math.abs(t1)));

@@ -23,6 +23,8 @@ jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' pla
 "$gatewalk" gate "$scenes/field.toml" --trials 20 --quiet --json without.json
 jq -s '.[0].fates == .[1].fates' with.json without.json | grep -q true || fail "a scene's actions change its gate"
 expect 0 '^actions.fast.forces.propulsion_N  *9.0 ' "$gatewalk" scene own.toml
+expect 0 '^actions: fast, slow, wait (the scene as it is)$' "$gatewalk" scene own.toml --set actions.wait={} --json scene.json
+holds '.actions == ["fast", "slow", "wait"]' scene.json
 # Gates of several types; an action that is the scene as it is.
 expect 0 '^chance to cross: ' "$gatewalk" plan "$scenes/mixed.toml" --set run.method=moreau --set field.max_gates=30 --set actions.fast.forces.propulsion_N=12 --set actions.wait={} --accuracy 0.2 --json mixed.json
 holds '.most_taken | length == 9' mixed.json
