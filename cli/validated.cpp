@@ -49,6 +49,8 @@ void warn_of_trials(const Options& options, const lattice::Observed& observed) {
   const std::int64_t n = observed.seen.trials();
   options.warn(who_went_back(observed));
   options.warn(too_few_observed(observed));
+  if (!observed.timed.empty())
+    options.warn("--observed: times are not looked at here; gatewalk fit does");
   if (options.has("trials") && options.trials() < kTrialsPerObserved * n)
     options.warn("--trials " + std::to_string(options.trials()) + " for " + std::to_string(n) +
                  " observed: chance in the dynamics' own trials hides differences too; take " +

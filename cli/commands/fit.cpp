@@ -27,14 +27,15 @@ int run_fit(const Arguments& arguments) {
       "ranges alike before. The chances of final gates and endings come from full trials at points "
       "of the\n"
       "ranges, more and more of them where the counts are likely. Counts: as of validate "
-      "--observed, of one start.",
+      "--observed, of one start;\n"
+      "lines of trials may have time_s, when a body left the field.",
       "gatewalk fit scenes/field.toml counts.csv --free forces.propulsion_N=5:9 --free "
       "forces.random_N=10:40");
   options.scene();
   options.positional(
       "counts",
       "what the experiment saw (CSV: gate_x,gate_y,count; ending,count; or, for both, "
-      "trial,ending,gate_x,gate_y)",
+      "trial,ending,gate_x,gate_y; also with time_s)",
       true);
   options.add_texts("free", "KEY=LOW:HIGH",
                     "a number of the scene and its range (at most " +

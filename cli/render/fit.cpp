@@ -21,9 +21,26 @@ constexpr double kTogether = 0.9;  // a correlation, from which on two numbers a
 constexpr double kUnexplained = 0.01;  // p, below which no number of the ranges explains the counts
 constexpr std::size_t kMostShown = 3;  // groups of outcomes that differ most
 
+/// When bodies of an outcome left: " within 2 s", " from 2 s to 3 s", " after 3 s".
+std::string time_of(const lattice::FittedOutcomes& of, std::size_t outcome) {
+  if (of.times.empty()) return "";
+  if (of.endings) {
+    const auto ending =
+        static_cast<markov::Ending>(outcome / of.parts() / std::max<std::size_t>(1, of.gates));
+    if (ending == markov::Ending::trapped || ending == markov::Ending::cut_off) return "";
+  }
+  const std::size_t part = outcome % of.parts();
+  const auto time = [](double t) { return quantity(t, "s", 3); };
+  if (part == 0) return " within " + time(of.times.front());
+  if (part == of.times.size()) return " after " + time(of.times.back());
+  return " from " + time(of.times[part - 1]) + " to " + time(of.times[part]);
+}
+
 /// An outcome in words: "trapped in (0, 3)", "crossed", "(0, 3)".
 std::string words_of(const FittedScene& f, std::size_t outcome) {
   const lattice::FittedOutcomes& of = f.fit.outcomes;
+  const std::string time = time_of(of, outcome);
+  outcome /= of.parts();
   std::string words;
   if (of.endings) {
     const auto ending = static_cast<markov::Ending>(of.gates == 0 ? outcome : outcome / of.gates);
@@ -31,11 +48,12 @@ std::string words_of(const FittedScene& f, std::size_t outcome) {
                                  [&](const EndingName& e) { return e.ending == ending; });
     words = at == kAllEndingNames.end() ? "other" : at->name;
   }
-  if (of.gates == 0) return words;
+  if (of.gates == 0) return words + time;
   const auto columns = static_cast<std::size_t>(f.field.columns), gate = outcome % of.gates;
   const int x = static_cast<int>(gate % columns) - f.field.start_column(),
             y = static_cast<int>(gate / columns);
-  return words + (words.empty() ? "(" : " (") + std::to_string(x) + ", " + std::to_string(y) + ")";
+  return words + (words.empty() ? "(" : " (") + std::to_string(x) + ", " + std::to_string(y) + ")" +
+         time;
 }
 std::string words_of(const FittedScene& f, const lattice::OutcomeGroup& group) {
   const std::string first = words_of(f, group.outcomes.front()),

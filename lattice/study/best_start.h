@@ -21,9 +21,10 @@ struct CoordinateRange {
 };
 
 struct BestStartOptions {
-  std::vector<CoordinateRange> ranges{};  // at least one; other numbers are those of the problem's start
-  std::vector<int> columns{};        // of the first row; empty: that of the field's start
-  double accuracy = 0.02;            // half of the widest interval that a chance to cross may have
+  std::vector<CoordinateRange>
+      ranges{};                // at least one; other numbers are those of the problem's start
+  std::vector<int> columns{};  // of the first row; empty: that of the field's start
+  double accuracy = 0.02;      // half of the widest interval that a chance to cross may have
   std::int64_t most_runs = 20'000'000;  // gate runs to choose by, about
   int per_leaf = dynamics::kEntriesPerLeaf;
   std::uint64_t seed = 1;

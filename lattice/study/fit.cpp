@@ -35,6 +35,7 @@ constexpr int kRounds = 10;             // at most, before the last
 constexpr int kParts = 12;              // of the trials: one a round, what is left in the last
 constexpr std::int64_t kLeastEach = 8;  // trials of a point, for each number
 constexpr std::int64_t kFirstTrial = std::int64_t{1} << 51;  // numbers that no other trials have
+constexpr std::size_t kTimeParts = 8;                        // of the observed times: by quantiles
 constexpr double kLeastShare = 0.01;       // of all trials, in a group of neighbouring gates
 constexpr std::int64_t kFewestAlone = 50;  // trials of a group that is an ending's last
 constexpr double kMostParameters = 600.0;  // of a model of degree 2: what is fitted in a second
@@ -62,15 +63,37 @@ void each_part(Archive& archive, PointOutcomes& p) {
 std::vector<std::size_t> neighbours(const FittedOutcomes& of, const FieldParams& field) {
   std::vector<std::size_t> order;
   const auto columns = static_cast<std::size_t>(field.columns);
-  for (std::size_t i = 0; i < of.size(); ++i) {
-    if (of.gates == 0) {
-      order.push_back(i);
-      continue;
+  for (std::size_t i = 0; i < of.size() / of.parts(); ++i) {
+    std::size_t way = i;
+    if (of.gates > 0) {
+      const std::size_t row = i % of.gates / columns, column = i % columns;
+      if (row % 2 == 1) way = i - column + (columns - 1 - column);
     }
-    const std::size_t row = i % of.gates / columns, column = i % columns;
-    order.push_back(row % 2 == 0 ? i : i - column + (columns - 1 - column));
+    for (std::size_t part = 0; part < of.parts(); ++part)
+      order.push_back(way * of.parts() + (i % 2 == 0 ? part : of.parts() - 1 - part));
   }
   return order;
+}
+
+/// Between parts with as many of the observed times each, as far as these differ.
+std::vector<double> time_parts(const std::vector<Observed::Timed>& trials) {
+  std::vector<double> times, between;
+  for (const Observed::Timed& trial : trials)
+    if (trial.seconds > 0.0) times.push_back(trial.seconds);
+  std::sort(times.begin(), times.end());
+  for (std::size_t part = 1; part < kTimeParts; ++part) {
+    const std::size_t at = part * times.size() / kTimeParts;
+    if (at == 0 || times[at - 1] == times[at]) continue;
+    between.push_back(0.5 * (times[at - 1] + times[at]));
+  }
+  between.erase(std::unique(between.begin(), between.end()), between.end());
+  return between;
+}
+
+std::size_t time_cost(const Section& section) {
+  const auto at = std::find_if(section.costs.begin(), section.costs.end(),
+                               [](const CostInfo& cost) { return cost.key == "time_s"; });
+  return static_cast<std::size_t>(at - section.costs.begin());
 }
 
 class Fitter {
@@ -81,7 +104,9 @@ class Fitter {
         problem_at_(problem_at),
         options_(options),
         work_(work),
-        field_(problem_at(std::vector<double>(static_cast<std::size_t>(numbers), 0.5)).field) {
+        middle_(problem_at(std::vector<double>(static_cast<std::size_t>(numbers), 0.5))),
+        field_(middle_.field),
+        time_(time_cost(middle_.map().section)) {
     const SeenEndings& seen = observed.seen;
     FittedOutcomes& of = fit_.outcomes;
     const auto require = [](bool holds, const char* what) {
@@ -101,7 +126,16 @@ class Fitter {
     const auto add = [&](const CellCounts& gates) {
       seen_.insert(seen_.end(), gates.data(), gates.data() + gates.size());
     };
-    if (both)
+    if (!observed.timed.empty()) {
+      require(time_ < middle_.map().section.costs.size(),
+              "these cells do not say how long bodies take");
+      of.times = time_parts(observed.timed);
+      seen_.assign(of.size(), 0);
+      for (const Observed::Timed& trial : observed.timed)
+        ++seen_[static_cast<std::size_t>(
+            outcome(trial.ending, static_cast<std::size_t>(std::max<std::int64_t>(0, trial.gate)),
+                    trial.seconds))];
+    } else if (both)
       for (const CellCounts& gates : observed.gates_by_ending) add(gates);
     else if (of.endings)
       seen_.assign(seen.endings.begin(), seen.endings.end());
@@ -228,11 +262,19 @@ class Fitter {
     return all;
   }
   [[nodiscard]] std::int32_t outcome(const FieldTrials& done, std::size_t trial) const {
+    return outcome(static_cast<std::size_t>(*done.endings[trial]),
+                   static_cast<std::size_t>(done.final_gates[trial]),
+                   fit_.outcomes.times.empty() ? 0.0 : done.costs[trial][time_]);
+  }
+  /// `seconds`: of who left the field.
+  [[nodiscard]] std::int32_t outcome(std::size_t ending, std::size_t gate, double seconds) const {
     const FittedOutcomes& of = fit_.outcomes;
-    const auto ending = static_cast<std::size_t>(*done.endings[trial]);
-    const auto gate = static_cast<std::size_t>(done.final_gates[trial]);
-    if (of.gates == 0) return static_cast<std::int32_t>(ending);
-    return static_cast<std::int32_t>(of.endings ? ending * of.gates + gate : gate);
+    const bool left = std::find(markov::kEdges.begin(), markov::kEdges.end(),
+                                static_cast<markov::Ending>(ending)) != markov::kEdges.end();
+    const auto part =
+        left ? std::upper_bound(of.times.begin(), of.times.end(), seconds) - of.times.begin() : 0;
+    const std::size_t way = of.gates == 0 ? ending : of.endings ? ending * of.gates + gate : gate;
+    return static_cast<std::int32_t>(way * of.parts() + static_cast<std::size_t>(part));
   }
 
   /// Points of later rounds follow from earlier ones, by logarithms that other machines may round
@@ -316,7 +358,8 @@ class Fitter {
         kLeastShare, static_cast<double>(OutcomeModel::terms(numbers_, 2)) / kMostParameters);
     const auto enough = std::max(
         kFewestAlone, static_cast<std::int64_t>(std::ceil(share * static_cast<double>(trials))));
-    const std::size_t of_ending = std::max<std::size_t>(1, fit_.outcomes.gates);
+    const std::size_t of_ending =
+        std::max<std::size_t>(1, fit_.outcomes.gates) * fit_.outcomes.parts();
     std::int64_t size = 0;   // of the last group
     std::size_t ending = 0;  // its last one
     fit_.groups.clear();
@@ -549,7 +592,9 @@ class Fitter {
   const ProblemAt& problem_at_;
   const FitOptions& options_;
   const Work& work_;
+  Problem middle_;  // of the ranges
   FieldParams field_;
+  std::size_t time_;                 // of the costs
   std::vector<std::int64_t> seen_;   // by outcome
   std::vector<std::size_t> order_;   // of outcomes, neighbours together
   MatrixXd points_;                  // (points x numbers), all
@@ -568,7 +613,7 @@ class Fitter {
 }  // namespace
 
 std::size_t FittedOutcomes::size() const {
-  return std::max<std::size_t>(1, gates) * (endings ? markov::kEndings : 1);
+  return std::max<std::size_t>(1, gates) * (endings ? markov::kEndings : 1) * parts();
 }
 
 std::int64_t least_trials_of_fit(int numbers) { return kLeastEach * kParts * kPoints * numbers; }

@@ -32,10 +32,13 @@ struct OutcomeGroup {
 };
 
 /// How trials end: gates where gates were counted (row * columns + column), endings where endings
-/// were, and for lines of trials with both, each ending's gates: ending * gates + gate.
+/// were, and for lines of trials with both, each ending's gates: ending * gates + gate. Where times
+/// were measured each of these has parts, by when a body left the field: way * parts + part.
 struct FittedOutcomes {
   std::size_t gates = 0;  // 0: endings alone
   bool endings = false;
+  std::vector<double> times{};  // s, rising: between the parts; none: one part
+  [[nodiscard]] std::size_t parts() const { return times.size() + 1; }
   [[nodiscard]] std::size_t size() const;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -19,7 +20,7 @@ namespace {
 using Fields = std::vector<std::string>;
 
 constexpr const char* kTables =
-    "trial,ending (also trial,ending,gate_x,gate_y), gate_x,gate_y,count, or ending,count";
+    "trial,ending (also with gate_x,gate_y, and with time_s), gate_x,gate_y,count, or ending,count";
 
 std::string quoted(const std::string& text) {
   std::string shown = "\"";
@@ -70,18 +71,21 @@ struct CountTable {
 
 /// `given`: the columns as they are written.
 void require_columns(const CountTable& table, const Fields& given, std::size_t line) {
-  static const std::array<Fields, 5> kPermitted{{{"count", "gate_x", "gate_y"},
-                                                 {"count", "ending"},
-                                                 {"ending", "trial"},
-                                                 {"gate_x", "gate_y", "trial"},
-                                                 {"ending", "gate_x", "gate_y", "trial"}}};
+  static const std::array<Fields, 7> kPermitted{
+      {{"count", "gate_x", "gate_y"},
+       {"count", "ending"},
+       {"ending", "trial"},
+       {"gate_x", "gate_y", "trial"},
+       {"ending", "gate_x", "gate_y", "trial"},
+       {"ending", "time_s", "trial"},
+       {"ending", "gate_x", "gate_y", "time_s", "trial"}}};
   Fields sorted = table.columns;
   std::sort(sorted.begin(), sorted.end());
   if (std::find(kPermitted.begin(), kPermitted.end(), sorted) != kPermitted.end()) return;
   for (std::size_t i = 0; i < given.size(); ++i)
     if (const std::string& column = table.columns[i]; column != "count" && column != "trial" &&
                                                       column != "ending" && column != "gate_x" &&
-                                                      column != "gate_y")
+                                                      column != "gate_y" && column != "time_s")
       table.refuse(line, "unknown column " + quoted(given[i]) + ": the first line must be " +
                              kTables + ", with commas between");
   table.refuse(line, std::string("the columns must be ") + kTables + ", each once");
@@ -217,8 +221,24 @@ void require_at_side(const CountTable& table, const CountTable::Row& row, std::s
   }
 }
 
+/// When a body left the field.
+double time_of(const CountTable& table, const CountTable::Row& row, std::size_t ending) {
+  const auto e = static_cast<markov::Ending>(ending);
+  if (e == markov::Ending::trapped || e == markov::Ending::cut_off) return 0.0;
+  const std::string& text = table.at(row, "time_s");
+  double value = 0.0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value) ||
+      value <= 0.0)
+    table.refuse(row.line, "column time_s: " + (text.empty() ? "nothing" : quoted(text)) +
+                               " is not permitted: must be the seconds until the body left the "
+                               "field, above 0");
+  return value;
+}
+
 void add_lines(Observed& observed, const CountTable& table, const FieldParams& field) {
-  const bool has_gates = table.has("gate_x"), has_endings = table.has("ending");
+  const bool has_gates = table.has("gate_x"), has_endings = table.has("ending"),
+             has_times = table.has("time_s");
   CellCounts& gates = observed.seen.final_gates;
   if (has_gates) gates = CellCounts::Zero(field.rows, field.columns);
   if (has_gates && has_endings) observed.gates_by_ending.fill(gates);
@@ -242,9 +262,11 @@ void add_lines(Observed& observed, const CountTable& table, const FieldParams& f
       require_limit(table, row, *ending, field);
       ++observed.seen.endings[*ending];
     }
+    if (has_times) observed.timed.push_back({*ending, -1, time_of(table, row, *ending)});
     if (!has_gates) continue;
     const auto gate = counted_gate(table, row, field);
     ++gates(gate[0], gate[1]);
+    if (has_times) observed.timed.back().gate = gate[0] * field.columns + gate[1];
     if (!ending) continue;
     require_at_side(table, row, *ending, gate, field);
     ++observed.gates_by_ending[*ending](gate[0], gate[1]);

@@ -20,6 +20,13 @@ namespace gatewalk::lattice {
 struct Observed {
   SeenEndings seen;
   std::array<bool, markov::kEndings> listed{};  // endings that its table has
+  /// Where lines of trials have times, each of these trials.
+  struct Timed {
+    std::size_t ending = 0;  // markov::Ending
+    std::int64_t gate = -1;  // row * columns + column, where lines have gates
+    double seconds = 0.0;    // until it left the field; 0: it did not
+  };
+  std::vector<Timed> timed{};
   /// By Ending (rows x columns), where lines of trials have both; else empty.
   std::array<CellCounts, markov::kEndings> gates_by_ending{};
   std::int64_t went_back =
@@ -27,11 +34,12 @@ struct Observed {
 };
 
 /// Reads what an experiment saw, in CSV whose first line names the columns: a line per trial (trial
-/// and ending, gate_x and gate_y, or all four; i_x and i_y of the final gate as everywhere), or
-/// counts of final gates (gate_x, gate_y, count; gates without a row have none), or of endings
-/// (ending, count), or a file of each of the counts. Endings are named as in kEndingNames, in
-/// either way, or "went back". Throws std::invalid_argument naming file, line and column for
-/// anything else, for no trial at all, and for two tables of different totals.
+/// and ending, gate_x and gate_y, or all four; i_x and i_y of the final gate as everywhere; with
+/// endings also time_s, which may be empty for who did not leave the field), or counts of final
+/// gates (gate_x, gate_y, count; gates without a row have none), or of endings (ending, count), or
+/// a file of each of the counts. Endings are named as in kEndingNames, in either way, or "went
+/// back". Throws std::invalid_argument naming file, line and column for anything else, for no trial
+/// at all, and for two tables of different totals.
 [[nodiscard]] Observed read_observed(const std::vector<std::string>& paths,
                                      const FieldParams& field);
 

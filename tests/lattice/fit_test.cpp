@@ -82,6 +82,74 @@ TEST(Fit, IsTheExactPosteriorOfOneNumber) {
   EXPECT_EQ(grouped, 300);
 }
 
+/// Each passage takes an exponential time.
+Problem waiting_lane(double rate) {
+  Problem problem = two_lane(0.8, 0.8);
+  Section section = problem.map().section;
+  section.costs = {{"time_s", "s", "duration"}};
+  problem.cells = CellField::uniform(std::make_shared<FunctionCell>(section, [=](Body& body) {
+    const Fate fate = body.random.uniform() < 0.8 ? Fate::left : Fate::trapped;
+    return Passage{fate, body.entry, {-std::log(body.random.uniform()) / rate}};
+  }));
+  return problem;
+}
+
+// Endings say nothing of the rate, the times of who crossed all.
+TEST(Fit, TimesTellWhatEndingsDoNot) {
+  const Problem truth = waiting_lane(1.1);
+  FieldTrials each;
+  const FieldTally tally =
+      run_field(truth.cells, truth.field, truth.start, 9, {1'000'000'000, 300}, &each);
+  Observed o;
+  o.seen = {{}, tally.endings};
+  double sum = 0.0, crossed = 0.0;
+  for (std::size_t i = 0; i < each.endings.size(); ++i) {
+    const bool crosses = each.endings[i] == markov::Ending::far_edge;
+    o.timed.push_back(
+        {static_cast<std::size_t>(*each.endings[i]), -1, crosses ? each.costs[i][0] : 0.0});
+    sum += crosses ? each.costs[i][0] : 0.0;
+    crossed += crosses;
+  }
+  const auto problem_at = [](const std::vector<double>& x) {
+    return waiting_lane(0.5 + 1.5 * x[0]);
+  };
+  const Fit timed = fit(1, problem_at, o, {.trials = 200'000, .seed = 2});
+  EXPECT_EQ(timed.outcomes.times.size(), 7U);
+  EXPECT_EQ(timed.observed, 300);
+  const double shape = crossed * kLaneRows + 1.0, mean = shape / sum, sd = std::sqrt(shape) / sum;
+  EXPECT_NEAR(0.5 + 1.5 * timed.numbers[0].mean, mean, sd);
+  EXPECT_NEAR(1.5 * timed.numbers[0].sd, sd, 0.25 * sd);  // the parts know a little less
+  EXPECT_TRUE(timed.numbers[0].told);
+  o.timed.clear();
+  EXPECT_FALSE(fit(1, problem_at, o, {.trials = 200'000, .seed = 2}).numbers[0].told);
+}
+
+// By simulation: 60 experiments whose rates are drawn from the range.
+TEST(Fit, IntervalsOfTimesHoldWhatTheyShould) {
+  int held = 0;
+  constexpr int kExperiments = 60;
+  const auto problem_at = [](const std::vector<double>& x) {
+    return waiting_lane(0.5 + 1.5 * x[0]);
+  };
+  for (int i = 0; i < kExperiments; ++i) {
+    Random random(Purpose::fit, {5, static_cast<std::uint64_t>(i), 0});
+    const double at = random.uniform();
+    const Problem truth = problem_at({at});
+    FieldTrials each;
+    const FieldTally tally =
+        run_field(truth.cells, truth.field, truth.start, 9, {1'000'000'000 + 1000 * i, 100}, &each);
+    Observed o;
+    o.seen = {{}, tally.endings};
+    for (std::size_t t = 0; t < each.endings.size(); ++t)
+      o.timed.push_back({static_cast<std::size_t>(*each.endings[t]), -1,
+                         each.endings[t] == markov::Ending::far_edge ? each.costs[t][0] : 0.0});
+    const Fit f = fit(1, problem_at, o, {.trials = 60'000, .seed = 2});
+    held += f.numbers[0].interval[0] <= at && at <= f.numbers[0].interval[1];
+  }
+  // 95 % but for chance (p > 0.001 by the binomial distribution).
+  EXPECT_GE(held, 51);
+}
+
 TEST(Fit, TellsTwoNumbersApart) {
   const Observed o = experiment(two_lane(0.7, 0.9), 400, 8);
   const Fit f = fit(

@@ -149,6 +149,29 @@ TEST_F(CountsFile, OfTrialsWithTheirGatesCountAsTheTwoTablesDo) {
   EXPECT_FALSE(gates.seen.has_endings());
 }
 
+TEST_F(CountsFile, OfTimes) {
+  const Observed o =
+      read("trial,time_s,ending\n1,2.5,crossed\n2,,trapped\n3,7,went back\n4,9,cut off\n");
+  ASSERT_EQ(o.timed.size(), 3U);
+  EXPECT_EQ(o.timed[0].seconds, 2.5);
+  EXPECT_EQ(o.timed[0].ending, static_cast<std::size_t>(markov::Ending::far_edge));
+  EXPECT_EQ(o.timed[0].gate, -1);
+  EXPECT_EQ(o.timed[1].seconds, 0.0);
+  EXPECT_EQ(o.timed[2].seconds, 0.0);
+  EXPECT_EQ(o.went_back, 1);
+  const Observed gates = read("trial,ending,gate_x,gate_y,time_s\n1,crossed,-1,2,0.5\n");
+  ASSERT_EQ(gates.timed.size(), 1U);
+  EXPECT_EQ(gates.timed[0].gate, 2 * 4 + 1);
+  EXPECT_EQ(gates.gates_by_ending[gates.timed[0].ending](2, 1), 1);
+  for (const char* wrong : {"", "0", "-1", "inf", "2 s"})
+    EXPECT_NE(refusal("trial,ending,time_s\n1,crossed," + std::string(wrong) + "\n")
+                  .find("x.csv:2: column time_s: "),
+              std::string::npos)
+        << wrong;
+  EXPECT_NE(refusal("trial,gate_x,gate_y,time_s\n1,0,0,1\n").find("the columns must be"),
+            std::string::npos);
+}
+
 TEST_F(CountsFile, RefusalsOfLinesOfTrials) {
   const std::string header = "trial,ending\n";
   EXPECT_EQ(refusal(header + "7,crossed\n8,trapped\n7,trapped\n"),

@@ -28,6 +28,20 @@ same() { jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .secon
 same two.json one.json "fit: other results on one thread"
 "$gatewalk" fit "${small[@]}" lines.csv "${both[@]}" --checkpoint kept --resume --quiet --force --json again.json
 same two.json again.json "fit: other results when resumed"
+# Times of who left the field tell the drag, of which endings say little.
+fast=("${small[@]}" --set forces.propulsion_N=14)
+"$gatewalk" trace "${fast[@]}" --set forces.drag_Ns_per_m=0.12 --field --trials 90 --seed 11 --quiet --json traced.json
+jq -r '"trial,ending,time_s", (.runs[] | [.trial, .ending, if .ending == "trapped" or .ending == "cut off" then "" else .t[-1] end] | map(tostring) | join(","))' traced.json >timed.csv
+cut -d, -f1,2 timed.csv >untimed.csv
+drag=(--free forces.drag_Ns_per_m=0.02:0.3 --trials 16384)
+"$gatewalk" fit "${fast[@]}" timed.csv "${drag[@]}" --quiet --json timed.json --force
+"$gatewalk" fit "${fast[@]}" untimed.csv "${drag[@]}" --quiet --json untimed.json --force
+holds '.numbers[0] | .interval_95[0] < 0.12 and 0.12 < .interval_95[1]' timed.json
+holds '[.outcomes[].outcomes] | any(test("crossed .*(within|from) [0-9.]+ s"))' timed.json
+jq -s '.[0].numbers[0].sd < 0.2 * .[1].numbers[0].sd' timed.json untimed.json | grep -q true || fail "times tell nothing: $(jq -c .numbers timed.json untimed.json)"
+expect 0 'times are not looked at here; gatewalk fit does' "$gatewalk" validate "${fast[@]}" --observed timed.csv --trials 200 --accuracy 0.1
+printf 'trial,ending,time_s\na,trapped,\nb,crossed,\n' >none.csv
+expect 2 'none.csv:3: column time_s: nothing is not permitted' "$gatewalk" fit "${fast[@]}" none.csv "${drag[@]}"
 # No number of the range explains them; the likeliest lies beyond its end.
 printf 'gate_x,gate_y,count\n-4,0,50\n4,3,50\n' >odd.csv
 expect 0 'no numbers in these ranges explain the counts' "$gatewalk" fit "${small[@]}" odd.csv "${free[@]}" --trials 16384
