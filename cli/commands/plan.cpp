@@ -39,18 +39,14 @@ std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const Sh
 int run_plan(const Arguments& arguments) {
   Options options(
       "plan SCENE [options]",
-      "What a body should do in each gate, by how it enters, to cross the field as often as it "
-      "can.\n"
+      "What a body should do in each gate, by how it enters, to cross as often as it can.\n"
       "Its actions are tables of the scene, such as\n"
       "  [actions.push]\n"
       "  forces.propulsion_N = 9\n"
-      "each with keys of forces and beams as they are while a body takes it; an empty table is the "
-      "scene\n"
-      "as it is. They are numbered in the order of their names. The best policy of chains of all "
-      "actions is\n"
-      "run in full, its trials are added, and so on; new trials say how often it crosses, beside "
-      "each action\n"
-      "all the time.",
+      "each with keys of forces and beams as they are while a body takes it; an empty table is\n"
+      "the scene as it is. They are numbered in the order of their names. The best policy of\n"
+      "chains of all actions is run in full, its trials are added, and so on; new trials say how\n"
+      "often it crosses, beside each action all the time.",
       "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 --set "
       "actions.fast.forces.propulsion_N=9");
   options.scene();
@@ -65,12 +61,16 @@ int run_plan(const Arguments& arguments) {
   options.add_count("points", "N", "such policies, at most (default: 5)");
   options.add_number("chance", "P",
                      "--policy writes the one that takes least of those that cross so often");
+  options.add_flag("robust",
+                   "policies that are best where the chain is as bad as its runs leave possible");
   options.add_figure("the actions by gate, and how often bodies cross");
   if (!options.parse(arguments)) return kFine;
   lattice::PlanOptions how;
   take_choosing(options, how);
   Subject s = scene_to_run(options, "a plan is made");
   how.thrift = thrift_of(options, s.shown());
+  how.robust = options.has("robust");
+  if (how.robust && how.thrift) throw UsageError("--robust: not with --least");
   if (options.has("policy") || options.has("gate-policy")) require_file_for(*s.scene);
   Actions all = actions_of(options, *s.scene, s.problem.start);
   std::vector<std::string> names;
