@@ -331,6 +331,8 @@ TEST(Decide, WhatIsSureIsBelowTheTruth) {
     sure += is_below_truth(doubt(1.96, 3, {kRuns, kRuns}));
     plain += is_below_truth({});
   }
+  RecordProperty("sure", sure);
+  RecordProperty("plain", plain);
   EXPECT_GE(sure, kSets * 99 / 100);
   EXPECT_LE(plain, kSets * 45 / 100);
 }
