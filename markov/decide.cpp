@@ -88,13 +88,22 @@ struct ActionRows {
     double p;
     std::ptrdiff_t step;
   };
+  /// Of a row in doubt; its set is a single row where `radius` is 0.
+  struct Doubted {
+    double radius = 0.0;   // the most that sum (q - p)^2 / p may be
+    double known = 0.0;    // mean gain of a draw
+    double trapped = 0.0;  // p
+  };
   std::vector<double> at_once;     // (inputs) mean gain of a draw, and of being trapped by it
   std::vector<std::size_t> first;  // (inputs + 1)
   std::vector<Move> moves;
+  std::vector<Doubted> doubted;  // (inputs), or none at all
+  ColumnValues when_trapped{};   // the same in all columns
 
   ActionRows(const Chain& chain, const Gains& gains, const std::vector<double>* draw,
              const ValuePlane& plane) {
     const auto gain = [&](Ending e) { return gains.ending[static_cast<std::size_t>(e)]; };
+    when_trapped.fill(gain(Ending::trapped));
     for (int input = 0; input < chain.inputs(); ++input) {
       first.push_back(moves.size());
       double now = draw ? (*draw)[static_cast<std::size_t>(input)] : 0.0;
@@ -111,9 +120,23 @@ struct ActionRows {
     first.push_back(moves.size());
   }
 
+  void doubt(const Chain& chain, const std::vector<double>* draw, double deviations,
+             const std::vector<double>& runs) {
+    doubted.resize(at_once.size());
+    for (std::size_t i = 0; i < doubted.size(); ++i) {
+      const int input = static_cast<int>(i);
+      if (!chain.is_sampled(input)) continue;
+      doubted[i] = {.radius = deviations * deviations / runs[i], .known = draw ? (*draw)[i] : 0.0};
+      for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it)
+        if (chain.exits()[static_cast<std::size_t>(it.col())].next_input == Exit::kTrapped)
+          doubted[i].trapped += it.value();
+    }
+  }
+
   /// Of some columns; `here`: the first of them, for input 0.
   [[nodiscard]] ColumnValues value(int input, const double* here) const {
     const auto i = static_cast<std::size_t>(input);
+    if (!doubted.empty() && doubted[i].radius > 0.0) return worst(i, here);
     ColumnValues sum;
     sum.fill(at_once[i]);
     for (std::size_t m = first[i]; m < first[i + 1]; ++m) {
@@ -122,11 +145,89 @@ struct ActionRows {
     }
     return sum;
   }
+
+ private:
+  template <class Do>
+  void each_output(std::size_t i, const double* here, const Do& what) const {
+    for (std::size_t m = first[i]; m < first[i + 1]; ++m) what(moves[m].p, here + moves[m].step);
+    if (doubted[i].trapped > 0.0) what(doubted[i].trapped, when_trapped.data());
+  }
+
+  /// The least mean in the row's set: there q is 0 above some limit, below it p times a factor that
+  /// falls with the value. Of outputs that keep a share P the least mean is mean - sqrt(variance *
+  /// (P radius - (1 - P))), which says a limit in turn; begun with all outputs it only falls, to
+  /// the set's own, so that no output that is left out comes back.
+  [[nodiscard]] ColumnValues worst(std::size_t i, const double* here) const {
+    constexpr double kAll = std::numeric_limits<double>::infinity();
+    ColumnValues limit, least, value;
+    limit.fill(kAll);
+    least.fill(kAll);
+    each_output(i, here, [&](double, const double* from) {
+      for (std::size_t k = 0; k < kColumns; ++k) least[k] = std::min(least[k], from[k]);
+    });
+    for (bool finished = false; !finished;) {
+      ColumnValues kept{}, left_out{}, mean{}, squares{}, most = least;
+      each_output(i, here, [&](double p, const double* from) {
+        for (std::size_t k = 0; k < kColumns; ++k) {
+          const double part = from[k] <= limit[k] ? p : 0.0;
+          kept[k] += part;
+          left_out[k] += p - part;
+          mean[k] += part * from[k];
+        }
+      });
+      for (std::size_t k = 0; k < kColumns; ++k) mean[k] /= kept[k];
+      each_output(i, here, [&](double p, const double* from) {
+        for (std::size_t k = 0; k < kColumns; ++k) {
+          const bool in = from[k] <= limit[k];
+          const double off = from[k] - mean[k];
+          squares[k] += in ? p * off * off : 0.0;
+          most[k] = in ? std::max(most[k], from[k]) : most[k];
+        }
+      });
+      finished = true;
+      for (std::size_t k = 0; k < kColumns; ++k) {
+        const double variance = squares[k] / kept[k];
+        const double room = std::max(0.0, doubted[i].radius * kept[k] - left_out[k]);
+        value[k] = std::max(least[k], mean[k] - std::sqrt(variance * room));
+        // Rounding must not leave the least out.
+        limit[k] = room > 0.0 ? std::max(least[k], mean[k] + std::sqrt(variance / room)) : kAll;
+        finished = finished && most[k] <= limit[k];
+      }
+    }
+    for (double& v : value) v += doubted[i].known;
+    return value;
+  }
 };
+
+using Require = void (*)(bool holds, const std::string& what);
+
+void check_doubt(const std::vector<FieldChain>& actions, const Gains& gains,
+                 const DecideOptions& options, Require require) {
+  const Doubt& doubt = options.doubt;
+  require(std::isfinite(doubt.deviations) && doubt.deviations >= 0.0,
+          "deviations of doubt must be at least 0");
+  if (doubt.deviations == 0.0) return;
+  require(options.max_cells > 0 || gains.draw.empty(),
+          "without limit of cells there must be no gains of draws where rows are in doubt: walks "
+          "could circle for ever");
+  require(doubt.runs.size() == actions.size(), "runs of rows: one list for each action");
+  for (std::size_t a = 0; a < actions.size(); ++a) {
+    const std::vector<Chain>& chains = actions[a].chains();
+    require(doubt.runs[a].size() == chains.size(), "runs of rows: one list for each type of cell");
+    for (std::size_t type = 0; type < chains.size(); ++type) {
+      const std::vector<double>& runs = doubt.runs[a][type];
+      require(std::ssize(runs) == chains[type].inputs(), "runs of rows: one for each input");
+      for (std::size_t i = 0; i < runs.size(); ++i)
+        require(std::isfinite(runs[i]) && runs[i] >= 0.0 &&
+                    (runs[i] > 0.0 || !chains[type].is_sampled(static_cast<int>(i))),
+                "runs of rows must be more than 0, or 0 of one that is unsampled");
+    }
+  }
+}
 
 void check_actions(const std::vector<FieldChain>& actions, const Field& field, const Gains& gains,
                    const DecideOptions& options) {
-  const auto require = [](bool holds, const std::string& what) {
+  const Require require = [](bool holds, const std::string& what) {
     if (!holds) throw std::invalid_argument(what);
   };
   require(!actions.empty() && actions.size() <= std::numeric_limits<std::uint16_t>::max(),
@@ -153,6 +254,7 @@ void check_actions(const std::vector<FieldChain>& actions, const Field& field, c
                 "of draws");
     }
   }
+  check_doubt(actions, gains, options, require);
 }
 
 /// The largest gain of an ending or a draw.
@@ -189,6 +291,7 @@ class Decider {
       : actions_(actions),
         options_(options),
         costs_(!gains.draw.empty()),
+        doubts_(options.doubt.deviations > 0.0),
         rounding_(rounding_of(actions)),
         tolerance_(std::max(options.tolerance, rounding_)),
         least_(costs_ ? largest(gains) : 0.0),
@@ -196,9 +299,13 @@ class Decider {
         plane_(field, actions.front().inputs(), reach_),
         rows_(actions.size()) {
     for (std::size_t a = 0; a < actions.size(); ++a)
-      for (std::size_t type = 0; type < actions[a].chains().size(); ++type)
-        rows_[a].emplace_back(actions[a].chains()[type], gains,
-                              gains.draw.empty() ? nullptr : &gains.draw[a][type], plane_);
+      for (std::size_t type = 0; type < actions[a].chains().size(); ++type) {
+        const Chain& chain = actions[a].chains()[type];
+        const std::vector<double>* const draw = costs_ ? &gains.draw[a][type] : nullptr;
+        rows_[a].emplace_back(chain, gains, draw, plane_);
+        if (doubts_)
+          rows_[a].back().doubt(chain, draw, options.doubt.deviations, options.doubt.runs[a][type]);
+      }
     d_.field = field;
     d_.inputs = actions.front().inputs();
     d_.max_cells = options.max_cells;
@@ -255,6 +362,9 @@ class Decider {
   /// are done together. Without costs values rise from 0, and decisions are worth at least what is
   /// known of them: what they are worth in full is found before they are improved again. Where
   /// draws cost, decisions may circle, whose value falls for ever: each sweep improves them.
+  /// In doubt all this holds as well: where values rise the least mean of a row does, by no more
+  /// than they do. From 0 they rise to those of the rows that are worst for ever; where these keep
+  /// a walk from ending its states have one value, 0, and are left for what is better.
   Decisions unlimited() {
     d_.action.resize(size_);
     for (int row = d_.field.rows - 1; row >= 0; --row)
@@ -348,6 +458,9 @@ class Decider {
       if (improves) now = choose(row, column, count, input, here, now);
       for (int k = 0; k < count; ++k) {
         const auto at = static_cast<std::size_t>(k);
+        // A least mean is a difference, off by more than its own rounding: values that could fall
+        // by that might change for ever.
+        if (doubts_) now.value[at] = std::max(now.value[at], values[k]);
         std::uint16_t& action = d_.action[d_.at(column + k, row, input)];
         const double size = std::max({std::abs(now.value[at]), std::abs(values[k]), least_});
         if (action == now.action[at] && std::abs(now.value[at] - values[k]) <= tolerance_ * size)
@@ -371,6 +484,7 @@ class Decider {
   const std::vector<FieldChain>& actions_;
   DecideOptions options_;
   bool costs_;        // of draws
+  bool doubts_;       // rows may be worse than they are
   double rounding_;   // share of a value
   double tolerance_;  // the same, of a change
   double least_;      // value of which it is the share at least

@@ -18,6 +18,18 @@ struct Gains {
   std::vector<std::vector<std::vector<double>>> draw;
 };
 
+/// How far each row may be from what was counted in it. Nature may draw from any q on the row's
+/// outputs with sum (q - p)^2 / p <= deviations^2 / runs, each row for itself: rectangular sets
+/// (Iyengar, Robust dynamic programming, Math. Oper. Res. 30, 2005; Nilim and El Ghaoui, Oper. Res.
+/// 53, 2005) of chi-square (Ben-Tal et al., Manag. Sci. 59, 2013). The least mean of given values
+/// is their mean less so many of its standard errors, unless a q would have to be below 0.
+struct Doubt {
+  double deviations = 0.0;  // 0: none, p is known
+  /// [action][type of cell][input]: the runs that a row was counted from; more than 0 unless it is
+  /// unsampled.
+  std::vector<std::vector<std::vector<double>>> runs{};
+};
+
 struct DecideOptions {
   /// Cells a walk may visit before it is cut off; 0: no limit.
   int max_cells = 0;
@@ -26,6 +38,8 @@ struct DecideOptions {
   /// does; else std::runtime_error. Not below what rounding makes of a draw.
   double tolerance = 1e-15;
   int max_sweeps = 1'000'000;
+  /// Decisions are then the best in the worst case, and values are those of the worst case.
+  Doubt doubt{};
 };
 
 /// For each cell and state what to draw from, and what that gains from there on.
@@ -58,9 +72,12 @@ struct Decisions {
 /// that is better by more than rounding, so that no decisions circle for ever where all ways look
 /// alike. Memory: the values, in a border as wide as moves reach, twice with a limit; 10 bytes for
 /// each cell and state, and with a limit 2 more for each draw.
-/// Throws std::invalid_argument where actions, field and gains cannot belong together; without
-/// limit also unless all endings gain at least 0 and Gains::draw is empty or every draw costs
-/// something: else to circle for ever may be the best.
+/// In doubt each draw has the worst rows for what it is worth to go on: with a limit they may
+/// differ by draw, without they are the same for ever. Gains of draws and of unsampled rows are
+/// known. Throws std::invalid_argument where actions, field, gains and doubt cannot belong
+/// together; without limit also unless all endings gain at least 0 and Gains::draw is empty or,
+/// without doubt, every draw costs something: else to circle for ever may be the best, or the
+/// worst.
 [[nodiscard]] Decisions decide(const std::vector<FieldChain>& actions, const Field& field,
                                const Gains& gains, const DecideOptions& options = {});
 

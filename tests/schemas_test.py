@@ -86,6 +86,7 @@ plan field.toml --set field.rows=2 --set run.method=auto --set actions.a.forces.
 plan field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2 --least work_J
 plan mixed.toml --set field.rows=2 --set run.method=auto --accuracy 0.2
 plan field.toml --set field.rows=2 --over start.x_m=-5:5 --accuracy 0.2
+plan field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2 --robust
 design mixed.toml --set field.rows=2 --changes 2 --accuracy 0.2
 design mixed.toml --set field.rows=2 --set run.method=auto --types s --least --accuracy 0.2
 fit field.toml observed.csv --set field.rows=4 --free forces.propulsion_N=5:9 --trials 12288

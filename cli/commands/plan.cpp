@@ -3,57 +3,27 @@
 #include "cli/arguments.h"
 #include "cli/choosing.h"
 #include "cli/exchange/policy_file.h"
-#include "cli/planned_start.h"
+#include "cli/planned.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "dynamics/base/work.h"
-#include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
-namespace {
-
-std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const ShownField& shown) {
-  if (!options.has("least")) {
-    for (const char* other : {"points", "chance"})
-      if (options.has(other)) throw UsageError(std::string("--") + other + ": only with --least");
-    return {};
-  }
-  lattice::ThriftOptions thrift;
-  const std::vector<dynamics::CostInfo>& costs = shown.map.section.costs;
-  std::string known;
-  while (thrift.cost < costs.size() && costs[thrift.cost].key != options.text("least"))
-    known += (known.empty() ? "" : ", ") + costs[thrift.cost++].key;
-  if (thrift.cost == costs.size())
-    throw UsageError("--least: '" + lattice::printable(options.text("least")) + "' is none of " +
-                     known);
-  if (options.has("points")) thrift.points = static_cast<int>(options.count("points", 2, 100));
-  if (options.has("chance")) thrift.chance = options.number("chance");
-  if (options.has("chance") && !(thrift.chance > 0.0 && thrift.chance < 1.0))
-    throw UsageError("--chance: must lie between 0 and 1");
-  return thrift;
-}
-
-}  // namespace
 
 int run_plan(const Arguments& arguments) {
   Options options(
       "plan SCENE [options]",
-      "What a body should do in each gate, by how it enters, to cross the field as often as it "
-      "can.\n"
+      "What a body should do in each gate, by how it enters, to cross as often as it can.\n"
       "Its actions are tables of the scene, such as\n"
       "  [actions.push]\n"
       "  forces.propulsion_N = 9\n"
-      "each with keys of forces and beams as they are while a body takes it; an empty table is the "
-      "scene\n"
-      "as it is. They are numbered in the order of their names. The best policy of chains of all "
-      "actions is\n"
-      "run in full, its trials are added, and so on; new trials say how often it crosses, beside "
-      "each action\n"
-      "all the time.\n"
-      "Without actions: the start from which bodies cross most often, in a terrain in any "
-      "column.",
+      "each with keys of forces and beams as they are while a body takes it; an empty table is\n"
+      "the scene as it is. They are numbered in the order of their names. The best policy of\n"
+      "chains of all actions is run in full, its trials are added, and so on; new trials say how\n"
+      "often it crosses, beside each action all the time.\n"
+      "Without actions: the start from which bodies cross most often, in a terrain in any column.",
       "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 --set "
       "actions.fast.forces.propulsion_N=9");
   options.scene();
@@ -73,6 +43,8 @@ int run_plan(const Arguments& arguments) {
   options.add_count("points", "N", "such policies, at most (default: 5)");
   options.add_number("chance", "P",
                      "--policy writes the one that takes least of those that cross so often");
+  options.add_flag("robust",
+                   "policies that are best where the chain is as bad as its runs leave possible");
   options.add_figure("the actions by gate, and how often bodies cross");
   if (!options.parse(arguments)) return kFine;
   lattice::PlanOptions how;
@@ -82,6 +54,8 @@ int run_plan(const Arguments& arguments) {
   if (options.has("over"))
     throw UsageError("--over: is for a scene without actions; " + s.path + " has some");
   how.thrift = thrift_of(options, s.shown());
+  how.robust = options.has("robust");
+  if (how.robust && how.thrift) throw UsageError("--robust: not with --least");
   if (options.has("policy") || options.has("gate-policy")) require_file_for(*s.scene);
   Actions all = actions_of(options, *s.scene, s.problem.start);
   std::vector<std::string> names;

@@ -74,6 +74,11 @@ std::string verdict(const PlannedField& p) {
          " points; a smaller --accuracy\nshows a smaller gain, if there is one\n";
 }
 
+std::string worst_text(const lattice::Plan& plan) {
+  if (!plan.worst_case) return "";
+  return "in the worst case of each row's 95 % set: " + fixed(100.0 * *plan.worst_case, 2) + " %\n";
+}
+
 /// The action that a policy of gates alone takes in each: (rows x columns).
 Json by_gate_of(const PlannedField& p) {
   if (!p.plan.by_cell) return {};
@@ -207,6 +212,7 @@ Json to_json(const PlannedField& p) {
   json["interval_95"] = plan.crossings.interval_95();
   json["trials"] = plan.crossings.trials;
   json["chain"] = std::isnan(plan.chain_says) ? Json() : Json(plan.chain_says);
+  if (plan.worst_case) json["worst_case"] = *plan.worst_case;
   json["best_alone"] = p.actions[best_alone(plan)];
   for (std::size_t a = 0; a < p.actions.size(); ++a) {
     Json action{{"name", p.actions[a]},
@@ -248,7 +254,7 @@ std::string table_of(const PlannedField& p) {
   std::string table =
       "chance to cross: " + with_interval(plan.crossings.share(), plan.crossings.interval_95()) +
       " % of " + std::to_string(plan.crossings.trials) + " trials by which nothing was chosen\n" +
-      verdict(p) + "\neach action all the time, under the same noise:\n\n    " +
+      worst_text(plan) + verdict(p) + "\neach action all the time, under the same noise:\n\n    " +
       padded("action", name_width) + padded("crossed, %", 22) +
       padded("the plan's gain, points", 28) + padded("the plan takes it", 20) + "\n";
   double all = 0.0;

@@ -79,12 +79,15 @@ class Planner {
     Tried best = best_for(0.0, {});
     std::vector<Tried> front;
     if (options_.thrift) front = find_front(best);
+    if (options_.robust && best.plan.policy.always)
+      best.plan.worst_case = worst_alone(static_cast<std::size_t>(*best.plan.policy.always));
     if (best.crossed > 0) best.plan.by_cell = best_by_cell();
     judge(best.plan, std::move(front));
     return std::move(best.plan);
   }
 
  private:
+  static constexpr int kLargest = 64;          // leaves have so many times the entries
   static constexpr std::uint64_t kTries = 4;   // other actions are tried: once in so many cells
   static constexpr double kMostBytes = 8.0e9;  // of decisions
   static constexpr double kMostBytesByCell = 2.0e9;  // of values, as markov::design has them
@@ -155,7 +158,8 @@ class Planner {
     for (;;) {
       // Small leaves tell ways to enter apart, large ones know better what each action does there.
       std::vector<Plan> plans;
-      for (const int times : {1, 8, 64}) plans.push_back(choose(times * options_.per_leaf, price));
+      for (const int times : {1, 8, kLargest})
+        plans.push_back(choose(times * options_.per_leaf, price));
       for (int a = 0; a < actions(); ++a) plans.push_back(always(a, plans[2]));
       for (Plan& plan : known) plans.push_back(std::move(plan));
       ++rounds_;
@@ -313,20 +317,56 @@ class Planner {
       throw std::runtime_error(
           "plan: decisions for so many cells, states and gates do not fit into memory; a smaller "
           "field.max_gates (0: no limit) needs less");
+    std::vector<std::size_t> all;
+    for (std::size_t a = 0; a < actions_.size(); ++a) all.push_back(a);
+    markov::Decisions best = decide_among(all, kernel, gains_of(kernel, price));
+    const double says = at_start(best, kernel.space);
+    Plan plan{.policy = {std::move(kernel.space), std::move(best)}, .chain_says = says};
+    if (options_.robust) {
+      plan.worst_case = says;
+      plan.chain_says = std::nan("");
+    }
+    return plan;
+  }
+
+  /// What an action all the time is worth in the worst case.
+  [[nodiscard]] double worst_alone(std::size_t action) const {
+    const Kernel kernel = kernel_of(cells_.map, trials_.pool(), kLargest * options_.per_leaf);
+    return at_start(decide_among({action}, kernel, crossing()), kernel.space);
+  }
+
+  [[nodiscard]] double at_start(const markov::Decisions& d, const StateSpace& space) const {
+    return d.value[d.at(first_.field.start_column(), 0, space.index_of(first_.start).state)];
+  }
+
+  [[nodiscard]] markov::Decisions decide_among(const std::vector<std::size_t>& actions,
+                                               const Kernel& kernel,
+                                               const markov::Gains& gains) const {
     std::vector<markov::FieldChain> chains;
-    for (std::size_t a = 0; a < actions_.size(); ++a) {
+    markov::Doubt doubt;
+    if (options_.robust) doubt.deviations = kNormal95;
+    for (const std::size_t a : actions) {
       std::vector<markov::Chain> of_types;
-      for (std::size_t t = 0; t < first_.map().types.size(); ++t)
-        of_types.push_back(markov::Chain::from_counts(kernel.counts[t * actions_.size() + a],
-                                                      exits_of(kernel.space)));
+      auto& runs = doubt.runs.emplace_back();
+      for (std::size_t t = 0; t < first_.map().types.size(); ++t) {
+        const std::size_t type = t * actions_.size() + a;
+        of_types.push_back(markov::Chain::from_counts(kernel.counts[type], exits_of(kernel.space)));
+        runs.push_back(runs_of(kernel.counts[type], cells_.map.types[type].symmetric));
+      }
       chains.push_back(field_chain(first_.map(), std::move(of_types)));
     }
-    markov::Decisions best =
-        markov::decide(chains, {first_.field.columns, first_.field.rows}, gains_of(kernel, price),
-                       {.max_cells = first_.field.max_gates});
-    const double says = best.value[best.at(first_.field.start_column(), 0,
-                                           kernel.space.index_of(first_.start).state)];
-    return {.policy = {std::move(kernel.space), std::move(best)}, .chain_says = says};
+    return markov::decide(chains, {first_.field.columns, first_.field.rows}, gains,
+                          {.max_cells = first_.field.max_gates, .doubt = std::move(doubt)});
+  }
+
+  /// By row. A row may have counted a run and its mirror image, which is no other run.
+  [[nodiscard]] static std::vector<double> runs_of(const markov::Counts& counts, bool symmetric) {
+    std::vector<double> runs(static_cast<std::size_t>(counts.rows()), 0.0);
+    for (int row = 0; row < counts.rows(); ++row)
+      for (markov::Counts::InnerIterator it(counts, row); it; ++it)
+        runs[static_cast<std::size_t>(row)] +=
+            static_cast<double>(it.value()) / (symmetric ? 2 : 1);
+    return runs;
   }
 
   /// Of what the chain finds and each action everywhere, the one that crosses oftest in new trials.
@@ -541,6 +581,8 @@ Plan make_plan(const std::vector<Action>& actions, const PlanOptions& options, c
   if (options.per_leaf < 1 || options.per_leaf > 1'000'000)
     throw std::invalid_argument("plan: leaves of 1 to 1000000 entries");
   require_actions(actions);
+  if (options.robust && options.thrift)
+    throw std::invalid_argument("plan: robust policies that take less are not found");
   if (const auto& thrift = options.thrift) {
     if (thrift->cost >= actions.front().problem.map().section.costs.size())
       throw std::invalid_argument("plan: there is no such cost");

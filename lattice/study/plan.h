@@ -58,6 +58,9 @@ struct PlanOptions {
   int per_leaf = dynamics::kEntriesPerLeaf;
   std::uint64_t seed = 1;
   std::optional<ThriftOptions> thrift{};
+  /// Policies that are best where each row of the matrices is as bad as its runs leave possible
+  /// with 95 %, all rows at once (markov::Doubt); not with thrift.
+  bool robust = false;
 };
 
 /// A policy that crosses less often and takes less. With a bound of the mean cost the best policy
@@ -75,8 +78,13 @@ struct FrontPoint {
 struct Plan {
   Policy policy;
   /// Chance to cross by the chain that it was chosen by, too good where that takes chance for
-  /// skill; NaN where one action alone crossed oftest.
+  /// skill; NaN where one action alone crossed oftest, and of robust policies.
   double chain_says = 0.0;
+  /// Of robust policies: what that chain says in the worst case; of one action alone, what a chain
+  /// of large leaves says. Each row is as bad as its runs leave possible for itself, so that it
+  /// lies far below what is likely; but it knows only what rows have seen, and believes that a
+  /// leaf's entries are alike. The chance to cross is `crossings`.
+  std::optional<double> worst_case{};
   /// New trials in full, none of which it was chosen by: of the policy, and of each action alone,
   /// under the same noise as far as bodies take the same ways.
   Crossings crossings{};
@@ -105,11 +113,13 @@ struct Plan {
 /// Trials in which bodies try all actions fill a matrix for each over common states. The best
 /// policies for these (markov/decide.h), with leaves of three sizes, are carried out in full,
 /// beside each action alone and the best so far, all with the same trials; these are added, and so
-/// on until a round gains little or there are no more runs; one round there always is. Where the
+/// on until a round gains little or there are no more runs; one round there always is. Robust
+/// policies are found for each size of leaves and chosen among in the same way, since small leaves
+/// have few runs and large ones lump entries together, of which their sets know nothing. Where the
 /// field does not limit the cells, bodies must not circle for ever. The same on any number of
-/// threads. Throws std::invalid_argument as cells_of, for fewer than two actions and for an
-/// accuracy outside [0.001, 0.5), and std::runtime_error when a run broke, where decisions do not
-/// fit into memory, and as markov::decide.
+/// threads. Throws std::invalid_argument as cells_of, for fewer than two actions, for an accuracy
+/// outside [0.001, 0.5) and for robust policies that take less, and std::runtime_error when a run
+/// broke, where decisions do not fit into memory, and as markov::decide.
 [[nodiscard]] Plan make_plan(const std::vector<Action>& actions, const PlanOptions& options,
                              const dynamics::Work& work = {});
 

@@ -192,6 +192,32 @@ TEST(Plan, WhereAllActionsAreAlikeNothingIsGained) {
   }
 }
 
+// It takes what is known to be good, and what it promises is kept: less than the truth, and more
+// than an action all the time could.
+TEST(Plan, RobustPoliciesKeepWhatTheyPromise) {
+  const double best = std::pow(kGood, kRows), alone = kGood * std::pow(0.5 * (kGood + kBad), 4);
+  for (const int limit : {0, kRows + 1}) {
+    const Plan plan =
+        make_plan(two_ways({1, kRows, limit}), {.accuracy = 0.01, .seed = 3, .robust = true});
+    ASSERT_TRUE(plan.worst_case) << limit;
+    EXPECT_LT(*plan.worst_case, best);
+    EXPECT_GT(*plan.worst_case, alone + 0.1);
+    EXPECT_LT(*plan.worst_case, plan.crossings.share() + 0.01);
+    EXPECT_TRUE(std::isnan(plan.chain_says));
+    EXPECT_TRUE(holds(plan.crossings.interval_95(), best)) << plan.crossings.share();
+    for (const double x : {-0.9, -0.5, 0.5, 0.9})
+      EXPECT_EQ(plan.policy.action({0, 2, 2}, {0, {x}}), x < 0.0 ? 0 : 1) << x;
+  }
+  // One action all the time has its own worst case, a row of all runs of each cell.
+  const Plan same = make_plan({lane("good", kGood, kGood), lane("bad", kBad, kBad)},
+                              {.accuracy = 0.01, .seed = 4, .robust = true});
+  EXPECT_EQ(same.policy.always, 0);
+  ASSERT_TRUE(same.worst_case);
+  EXPECT_LT(*same.worst_case, best);
+  EXPECT_GT(*same.worst_case, best - 0.25);
+  EXPECT_FALSE(make_plan(two_ways(), {.seed = 3}).worst_case);
+}
+
 // In every other row what is left is right.
 TEST(Plan, TypesOfCellsAreToldApart) {
   const std::vector<Action> actions =
@@ -335,6 +361,8 @@ TEST(Plan, RefusesWhatDoesNotBelongTogether) {
   refused(two_ways(), {.per_leaf = 0});
   refused(two_ways(), {.accuracy = 0.5});
   refused(two_ways(), {.accuracy = std::nan("")});
+  refused({toll("slow", 0.9, 2.0, 2), toll("fast", 0.5, 1.0, 2)},
+          {.thrift = ThriftOptions{}, .robust = true});
 }
 
 }  // namespace

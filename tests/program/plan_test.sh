@@ -63,6 +63,13 @@ expect 0 'none of these policies crosses so often' "$gatewalk" plan "${least[@]}
 expect 2 "'heat_J' is none of time_s, forward_m, work_J, random_work_J, lost_J" "$gatewalk" plan "${least[@]}" --least heat_J
 expect 2 '--points: only with --least' "$gatewalk" plan "${least[@]}" --points 3
 expect 2 '--chance: must lie between 0 and 1' "$gatewalk" plan "${least[@]}" --least time_s --chance 1
+# What is best in the worst case, and how bad that is.
+expect 0 "^in the worst case of each row's 95 % set: [0-9.]* %$" "$gatewalk" plan "${sides[@]}" --accuracy 0.05 --robust --json robust.json --policy robust.policy.json
+holds '.worst_case >= 0 and .worst_case < .interval_95[1] and .chain == null' robust.json
+holds 'has("worst_case") | not' sides.json
+"$gatewalk" lattice "${sides[@]}" --policy robust.policy.json --trials 2000 --seed 3 --quiet --json run.json --force
+jq -s '.[0].interval_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' robust.json run.json | grep -q true || fail "the robust policy crosses less or more often than planned"
+expect 2 '--robust: not with --least' "$gatewalk" plan "${least[@]}" --robust --least time_s
 # One action all the time is the scene with its keys.
 "$gatewalk" plan "${small[@]}" "${actions[@]}" --quiet --policy fast.json
 "$gatewalk" lattice "${small[@]:0:5}" "${actions[@]}" --policy fast.json --trials 300 --quiet --json policy.json

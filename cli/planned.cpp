@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/planned_start.h"
+#include "cli/planned.h"
 
 #include <array>
 #include <cmath>
@@ -18,6 +18,7 @@
 #include "dynamics/disc/disc_section.h"
 #include "dynamics/disc/study/meaning.h"
 #include "lattice/text/digits.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -51,6 +52,27 @@ std::vector<lattice::CoordinateRange> ranges_in(const lattice::RangedScene& rang
 }
 
 }  // namespace
+
+std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const ShownField& shown) {
+  if (!options.has("least")) {
+    for (const char* other : {"points", "chance"})
+      if (options.has(other)) throw UsageError(std::string("--") + other + ": only with --least");
+    return {};
+  }
+  lattice::ThriftOptions thrift;
+  const std::vector<dynamics::CostInfo>& costs = shown.map.section.costs;
+  std::string known;
+  while (thrift.cost < costs.size() && costs[thrift.cost].key != options.text("least"))
+    known += (known.empty() ? "" : ", ") + costs[thrift.cost++].key;
+  if (thrift.cost == costs.size())
+    throw UsageError("--least: '" + lattice::printable(options.text("least")) + "' is none of " +
+                     known);
+  if (options.has("points")) thrift.points = static_cast<int>(options.count("points", 2, 100));
+  if (options.has("chance")) thrift.chance = options.number("chance");
+  if (options.has("chance") && !(thrift.chance > 0.0 && thrift.chance < 1.0))
+    throw UsageError("--chance: must lie between 0 and 1");
+  return thrift;
+}
 
 int plan_start(const Options& options, Subject s) {
   for (const char* other : {"policy", "gate-policy", "least", "points", "chance"})
