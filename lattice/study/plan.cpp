@@ -2,6 +2,7 @@
 #include "lattice/study/plan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -87,7 +88,7 @@ class Planner {
   }
 
  private:
-  static constexpr int kLargest = 64;          // leaves have so many times the entries
+  static constexpr std::array<int, 3> kSizes{1, 8, 64};  // of leaves, in those asked for
   static constexpr std::uint64_t kTries = 4;   // other actions are tried: once in so many cells
   static constexpr double kMostBytes = 8.0e9;  // of decisions
   static constexpr double kMostBytesByCell = 2.0e9;  // of values, as markov::design has them
@@ -158,8 +159,7 @@ class Planner {
     for (;;) {
       // Small leaves tell ways to enter apart, large ones know better what each action does there.
       std::vector<Plan> plans;
-      for (const int times : {1, 8, kLargest})
-        plans.push_back(choose(times * options_.per_leaf, price));
+      for (const int times : kSizes) plans.push_back(choose(times * options_.per_leaf, price));
       for (int a = 0; a < actions(); ++a) plans.push_back(always(a, plans[2]));
       for (Plan& plan : known) plans.push_back(std::move(plan));
       ++rounds_;
@@ -329,9 +329,10 @@ class Planner {
     return plan;
   }
 
-  /// What an action all the time is worth in the worst case.
+  /// What an action all the time is worth in the worst case. Small leaves doubt all, large ones
+  /// forget too much.
   [[nodiscard]] double worst_alone(std::size_t action) const {
-    const Kernel kernel = kernel_of(cells_.map, trials_.pool(), kLargest * options_.per_leaf);
+    const Kernel kernel = kernel_of(cells_.map, trials_.pool(), kSizes[1] * options_.per_leaf);
     return at_start(decide_among({action}, kernel, crossing()), kernel.space);
   }
 

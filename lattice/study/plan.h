@@ -80,10 +80,11 @@ struct Plan {
   /// Chance to cross by the chain that it was chosen by, too good where that takes chance for
   /// skill; NaN where one action alone crossed oftest, and of robust policies.
   double chain_says = 0.0;
-  /// Of robust policies: what that chain says in the worst case; of one action alone, what a chain
-  /// of large leaves says. Each row is as bad as its runs leave possible for itself, so that it
-  /// lies far below what is likely; but it knows only what rows have seen, and believes that a
-  /// leaf's entries are alike. The chance to cross is `crossings`.
+  /// Of robust policies: what that chain says in the worst case; of one action alone, what the
+  /// chain of leaves of the middle size says. Each row is as bad as its runs leave possible for
+  /// itself, so that it lies far below what is likely; but it knows only what rows have seen, and
+  /// believes that a leaf's entries are alike, so that it may be too good too. The chance to cross
+  /// is `crossings`.
   std::optional<double> worst_case{};
   /// New trials in full, none of which it was chosen by: of the policy, and of each action alone,
   /// under the same noise as far as bodies take the same ways.
