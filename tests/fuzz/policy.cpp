@@ -7,19 +7,19 @@
 namespace gatewalk::fuzz {
 
 void policy(std::string_view bytes) {
-  static const lattice::Scene scene = lattice::parse_scene(
+  static const cli::PolicyField made_for = cli::policy_field(lattice::parse_scene(
       "field = { columns = 3, rows = 2, max_gates = 2 }\nrun.method = \"moreau\"\n"
       "[actions.a]\n[actions.b]\nforces.propulsion_N = 9.0\n",
-      "x.toml");
-  const auto read = accepted([&] { return cli::read_policy(file_of(bytes, ".json"), scene); });
+      "x.toml"));
+  const auto read = accepted([&] { return cli::read_policy(file_of(bytes, ".json"), made_for); });
   if (!read) return;
   for (int state = 0; state < read->space.size(); ++state) {
     const int action = read->action({1, 1, 1}, read->space.range(state).middle());
     require(action == 0 || action == 1, "a decision is one of the actions");
   }
-  const std::string text = cli::policy_text(*read, scene);
+  const std::string text = cli::policy_text(*read, made_for);
   const auto again =
-      accepted([&] { return cli::read_policy(file_of(text, ".again.json"), scene); });
+      accepted([&] { return cli::read_policy(file_of(text, ".again.json"), made_for); });
   require(again && again->space == read->space && again->always == read->always &&
               again->decisions.action == read->decisions.action,
           "a policy that was written and read is the same");

@@ -81,7 +81,7 @@ expect 2 'accuracy: must lie in \[0.001, 0.5)' "$gatewalk" plan own.toml --accur
 expect 2 'a plan is made for one start' "$gatewalk" plan own.toml --start 0,0,15 --start 4,0,15
 expect 2 'actions.a.contact.restitution is not permitted: a body cannot choose it' "$gatewalk" plan own.toml --set actions.a.contact.restitution=0.5
 "$gatewalk" build "$scenes/field.toml" --accuracy 0.2 -o tree.nc --quiet
-expect 2 'is no scene of gates' "$gatewalk" plan tree.nc
+expect 2 'is a matrix, and new bodies are to be run' "$gatewalk" plan tree.nc
 # Nobody can cross.
 expect 0 'none of 25 trials crossed: too rare to choose by' "$gatewalk" plan own.toml --set run.method=moreau --set field.max_gates=2 --accuracy 0.2
 
