@@ -44,9 +44,10 @@ Actions program_actions(const Options& options, const Subject& s) {
   for (const lattice::Terrain::Type& action : file.actions) {
     all.actions.push_back({action.name, s.problem});
     const auto& cell = all.actions.back().problem.cells.cells.front() = cell_with(action, *program);
-    told += "# " + action.name + ": " + told_by(*cell) + "\n";
+    const std::string words = action.name + ": " + told_by(*cell);
+    options.depends_on(words);
+    told += "# " + words + "\n";
   }
-  options.depends_on(told);
   all.methods.resize(all.actions.size());
   all.made_for = policy_field(file, told);
   return all;

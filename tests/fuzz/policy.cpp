@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What a body does in each gate: a file of gatewalk plan.
+// What a body does in each gate, or each cell of a program: a file of gatewalk plan.
 #include "cli/exchange/policy_file.h"
 
 #include "tests/fuzz/fuzz.h"
 
 namespace gatewalk::fuzz {
+namespace {
 
-void policy(std::string_view bytes) {
-  static const cli::PolicyField made_for = cli::policy_field(lattice::parse_scene(
-      "field = { columns = 3, rows = 2, max_gates = 2 }\nrun.method = \"moreau\"\n"
-      "[actions.a]\n[actions.b]\nforces.propulsion_N = 9.0\n",
-      "x.toml"));
+void policy_for(const cli::PolicyField& made_for, std::string_view bytes) {
   const auto read = accepted([&] { return cli::read_policy(file_of(bytes, ".json"), made_for); });
   if (!read) return;
   for (int state = 0; state < read->space.size(); ++state) {
@@ -23,6 +20,25 @@ void policy(std::string_view bytes) {
   require(again && again->space == read->space && again->always == read->always &&
               again->decisions.action == read->decisions.action,
           "a policy that was written and read is the same");
+}
+
+}  // namespace
+
+void policy(std::string_view bytes) {
+  static const cli::PolicyField
+      of_gates = cli::policy_field(lattice::parse_scene(
+          "field = { columns = 3, rows = 2, max_gates = 2 }\nrun.method = \"moreau\"\n"
+          "[actions.a]\n[actions.b]\nforces.propulsion_N = 9.0\n",
+          "x.toml")),
+      of_cells = cli::policy_field(
+          lattice::parse_cell_file("[cell]\nwidth_m = 1\nlength_m = 1\n[[cell.faces]]\n"
+                                   "name = \"S\"\nmove = [0, 1]\n[[cell.coordinates]]\n"
+                                   "name = \"s\"\nunit = \"m\"\n[field]\ncolumns = 3\nrows = 2\n"
+                                   "max_gates = 2\n[actions.a]\n[actions.b]\nparameters.p = 9\n",
+                                   "x.toml"),
+          "# a: p = 1\n# b: p = 9\n");
+  policy_for(of_gates, bytes);
+  policy_for(of_cells, bytes);
 }
 
 }  // namespace gatewalk::fuzz
