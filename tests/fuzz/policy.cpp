@@ -32,11 +32,12 @@ void policy(std::string_view bytes) {
           "x.toml")),
       of_cells = cli::policy_field(
           lattice::parse_cell_file("[cell]\nwidth_m = 1\nlength_m = 1\n[[cell.faces]]\n"
-                                   "name = \"S\"\nmove = [0, 1]\n[[cell.coordinates]]\n"
-                                   "name = \"s\"\nunit = \"m\"\n[field]\ncolumns = 3\nrows = 2\n"
-                                   "max_gates = 2\n[actions.a]\n[actions.b]\nparameters.p = 9\n",
+                                   "name = \"S\"\nmove = [0, 1]\nusual.s = [-0.5, 0.5]\n"
+                                   "[[cell.coordinates]]\nname = \"s\"\nunit = \"m\"\n"
+                                   "[field]\ncolumns = 3\nrows = 2\nmax_gates = 2\n"
+                                   "[actions.a]\n[actions.b]\nparameters.p = 9\n",
                                    "x.toml"),
-          "# a: p = 1\n# b: p = 9\n");
+          "# a: cell program: S; s; time_s; p = 1\n# b: cell program: S; s; time_s; p = 9\n");
   policy_for(of_gates, bytes);
   policy_for(of_cells, bytes);
 }
