@@ -47,8 +47,8 @@ int run_plan(const Arguments& arguments) {
       "  forces.propulsion_N = 9\n"
       "each with keys of forces and beams as they are while a body takes it, or parameters.KEY\n"
       "of a cell program; an empty table is the scene as it is. They are numbered in the order of\n"
-      "their names. The best policy of chains of all actions is run in full, its trials are added,\n"
-      "and so on; new trials say how often it crosses, beside each action all the time.",
+      "their names. The best policy of chains of all actions is run in full, its trials are\n"
+      "added, and so on; new trials say how often it crosses, beside each action all the time.",
       "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 --set "
       "actions.fast.forces.propulsion_N=9");
   options.scene();
