@@ -277,28 +277,6 @@ std::optional<lattice::Settled> settle_method(const Options& options, lattice::S
   return settled;
 }
 
-Actions actions_of(const Options& options, const lattice::Scene& scene,
-                   const dynamics::Entry& start) {
-  if (scene.actions.size() < 2)
-    throw UsageError(scene.source + ": has " + std::to_string(scene.actions.size()) +
-                     " tables [actions.NAME]: to choose among takes two at least; an empty one is the "
-                     "scene as it is");
-  Actions all;
-  for (const lattice::Terrain::Type& action : scene.actions) {
-    lattice::Scene taken = lattice::with_action(scene, action);
-    const auto from = lattice::RunsFrom::everywhere;
-    const bool first = all.actions.empty();
-    all.methods.push_back(
-        first ? settle_method(options, taken, from)  // says what keys do, once
-              : lattice::settle_method(taken, from, options.seed(), options.work()));
-    if (all.methods.back() && !first) options.warn(complaint(*all.methods.back()));
-    all.actions.push_back({action.name, lattice::problem_with_all_types(taken)});
-    all.actions.back().problem.start = start;
-    all.scenes.push_back(std::move(taken));
-  }
-  return all;
-}
-
 lattice::States states_of(const Options& options, const lattice::Scene& scene,
                           const lattice::BinsChoice& choice,
                           const std::vector<dynamics::BodyState>& starts) {

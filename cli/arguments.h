@@ -13,7 +13,6 @@
 #include "lattice/scene/scene_problem.h"
 #include "lattice/scene/settle.h"
 #include "lattice/scene/table4.h"
-#include "lattice/study/plan.h"
 
 namespace gatewalk::cli {
 
@@ -80,15 +79,6 @@ void require_active(const Options& options, const lattice::Scene& scene);
 [[nodiscard]] std::optional<lattice::Settled> settle_method(const Options& options,
                                                             lattice::Scene& scene,
                                                             lattice::RunsFrom from);
-/// What a body may do by table [actions] of a scene, in its order.
-struct Actions {
-  std::vector<lattice::Scene> scenes;                    // while each is taken
-  std::vector<lattice::Action> actions;                  // with problems of these, from a start
-  std::vector<std::optional<lattice::Settled>> methods;  // where the scene leaves them to a pilot
-};
-/// Throws UsageError for fewer than two.
-[[nodiscard]] Actions actions_of(const Options& options, const lattice::Scene& scene,
-                                 const dynamics::Entry& start);
 /// lattice::states_of; warns when auto takes Table III's place.
 [[nodiscard]] lattice::States states_of(const Options& options, const lattice::Scene& scene,
                                         const lattice::BinsChoice& choice,

@@ -7,10 +7,11 @@
 
 namespace gatewalk::cli {
 
-inline void add_choosing(Options& options) {
+/// `also`: what else a start may be.
+inline void add_choosing(Options& options, const std::string& also = "") {
   options.add_texts(
       "start", "D,VX,VY",
-      "start at x = D m, y = 0 with this velocity in m/s (default: the scene's start)");
+      "start at x = D m, y = 0 with this velocity in m/s (default: the scene's start)" + also);
   options.add_number("accuracy", "A",
                      "half of the interval that a chance to cross may have (default: 0.02)");
   options.add_count(
@@ -31,12 +32,19 @@ void take_choosing(const Options& options, How& how) {
   if (options.has("gate-runs")) how.most_runs = options.count("gate-runs", 1000);
 }
 
-/// A scene of gates with one start; `made` ("a plan is made") is for it. Throws UsageError.
-[[nodiscard]] inline Subject scene_to_run(const Options& options, const std::string& made) {
+/// A scene of gates, or cells of a program, with one start; `made` ("a plan is made") is for it.
+/// Throws UsageError.
+[[nodiscard]] inline Subject field_to_run(const Options& options, const std::string& made) {
   Subject s = open_subject(options, "scene");
-  if (!s.scene || s.file)
-    throw UsageError(s.path + ": is no scene of gates, and new bodies are to be run: give a scene");
+  if (s.file)
+    throw UsageError(s.path + ": is a matrix, and new bodies are to be run: give a scene");
   if (s.starts.size() > 1) throw UsageError("--start: " + made + " for one start");
+  return s;
+}
+/// The same of gates alone.
+[[nodiscard]] inline Subject scene_to_run(const Options& options, const std::string& made) {
+  Subject s = field_to_run(options, made);
+  if (!s.scene) throw UsageError(s.path + ": is no scene of gates");
   return s;
 }
 

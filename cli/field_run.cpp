@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/field_run.h"
 
+#include "cli/actions.h"
 #include "cli/arguments.h"
 #include "cli/exchange/policy_file.h"
 #include "cli/render/json.h"
@@ -71,22 +72,18 @@ FieldRun run_cells(const Options& options) {
   return run;
 }
 
-std::vector<std::string> names_of(const Actions& all) {
-  std::vector<std::string> names;
-  for (const lattice::Action& action : all.actions) names.push_back(action.name);
-  return names;
-}
-
 /// Of bodies that do what a policy says.
 FieldRun run_policy(const Options& options) {
-  refuse(options, {"passages", "cell-file", "cell-program"}, "with --policy");
+  refuse(options, {"passages", "cell-file"}, "with --policy");
   Subject s = open_subject(options, "scene");
-  if (!s.scene || s.file)
-    throw UsageError(s.path + ": is no scene of gates, which a policy is made for");
-  Actions all = actions_of(options, *s.scene, s.problem.start);
-  const lattice::Policy policy = read_policy(options.text("policy"), *s.scene);
+  if (s.file)
+    throw UsageError(s.path +
+                     ": is a matrix, and bodies that do what a policy says are to be run: "
+                     "give what it was made for");
+  Actions all = actions_of(options, s);
+  const lattice::Policy policy = read_policy(options.text("policy"), all.made_for);
   FieldRun run = run_of(options, s);
-  run.may_do = {names_of(all), std::move(all.methods)};
+  run.may_do = {all.names(), std::move(all.methods)};
   run.tally = lattice::policy_trials(all.actions, policy, options.trial_range(), options.seed(),
                                      options.work(), lattice::added_to(run.costs, run.exits));
   options.work().end_part();
@@ -97,9 +94,9 @@ FieldRun run_policy(const Options& options) {
 
 PolicyGates policy_gates(const Options& options, const lattice::Scene& scene) {
   Actions all = actions_of(options, scene, lattice::own_start(scene).entry());
-  std::vector<std::string> names = names_of(all);
+  std::vector<std::string> names = all.names();
   return {lattice::chosen_gates(names, std::move(all.scenes),
-                                [policy = read_policy(options.text("policy"), scene)](
+                                [policy = read_policy(options.text("policy"), all.made_for)](
                                     const lattice::Place& at, const dynamics::Entry& entry) {
                                   return policy.action(at, entry);
                                 }),

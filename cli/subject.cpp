@@ -24,7 +24,7 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr std::string_view kParameters = "parameters.";  // --set parameters.KEY=VALUE
+using lattice::kParameters;  // --set parameters.KEY=VALUE
 
 /// The starts that are given, else `own`.
 void put_starts(Subject& s, const Options& options, const Start& own, StartsFrom from) {
@@ -148,15 +148,6 @@ std::shared_ptr<const dynamics::Cell> cell_of(const Options& options) {
   return options.cell();
 }
 
-/// What a program says of its cell: another one is told by it, mostly.
-std::string told_by(const dynamics::Cell& cell) {
-  std::string text = "cell program: " + names_of(cell.section().faces) + "; " +
-                     names_of(cell.section().coordinates) + "; " + names(cell.section().costs);
-  for (const dynamics::Cell::Number& n : cell.numbers())
-    text += "; " + n.key + " = " + digits(n.value);
-  return text;
-}
-
 /// Throws UsageError where the cell of a program is not that of a file.
 void require_same(const dynamics::Cell& cell, const lattice::CellFile& file,
                   const std::string& path) {
@@ -201,6 +192,14 @@ void require_same(const dynamics::Cell& cell, const lattice::CellFile& file,
 }
 
 }  // namespace
+
+std::string told_by(const dynamics::Cell& cell) {
+  std::string text = "cell program: " + names_of(cell.section().faces) + "; " +
+                     names_of(cell.section().coordinates) + "; " + names(cell.section().costs);
+  for (const dynamics::Cell::Number& n : cell.numbers())
+    text += "; " + n.key + " = " + digits(n.value);
+  return text;
+}
 
 Subject open_program(const Options& options, const std::string& path) {
   Subject s{.path = path};

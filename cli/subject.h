@@ -67,6 +67,9 @@ void refuse_files_of_cells(const std::string& path);
 /// A cell file, or a matrix of such cells, and the program of --cell-program. As open_subject.
 [[nodiscard]] Subject open_program(const Options& options, const std::string& path);
 
+/// What a program says of its cell: another one is told by it, mostly.
+[[nodiscard]] std::string told_by(const dynamics::Cell& cell);
+
 /// The scene of power --versus, as a subject of its own; none without it. Throws UsageError.
 [[nodiscard]] std::optional<Subject> versus(const Options& options, const Subject& s);
 

@@ -66,6 +66,11 @@ std::size_t parameter_of(const Hello& hello, const Cell::Number& wanted) {
   throw std::invalid_argument("cell program: it has no parameter '" + wanted.key + "'" + all);
 }
 
+/// Values of all parameters, of which some are set.
+void put(std::vector<double>& values, const Hello& hello, const std::vector<Cell::Number>& set) {
+  for (const Cell::Number& number : set) values[parameter_of(hello, number)] = number.value;
+}
+
 }  // namespace
 
 struct ProgramCell::Program {
@@ -99,7 +104,7 @@ ProgramCell::ProgramCell(std::string command, const ProgramOptions& options,
                           "; the line is '" + excerpt(program.first_line) + "'");
   }
   for (const Hello::Parameter& p : program.hello.parameters) values_.push_back(p.number.value);
-  for (const Number& number : set) values_[parameter_of(program.hello, number)] = number.value;
+  put(values_, program.hello, set);
   program_ = std::make_shared<const Program>(std::move(program));
   tell_values(*running);
   idle_.push_back(std::move(running));
@@ -128,6 +133,12 @@ std::unique_ptr<Cell> ProgramCell::with(std::size_t number, double times) const 
   values[number] *= times;
   if (!program_->hello.parameters[number].permits(values[number])) return nullptr;
   return std::unique_ptr<Cell>(new ProgramCell(program_, std::move(values)));
+}
+
+std::unique_ptr<ProgramCell> ProgramCell::with(const std::vector<Number>& set) const {
+  std::vector<double> values = values_;
+  put(values, program_->hello, set);
+  return std::unique_ptr<ProgramCell>(new ProgramCell(program_, std::move(values)));
 }
 
 void ProgramCell::tell_values(Running& running) const {

@@ -43,6 +43,8 @@ class ProgramCell : public dynamics::Cell {
   [[nodiscard]] std::vector<Number> numbers() const override;
   /// In processes of its own.
   [[nodiscard]] std::unique_ptr<Cell> with(std::size_t number, double times) const override;
+  /// The same with these values. Throws std::invalid_argument for what is not permitted.
+  [[nodiscard]] std::unique_ptr<ProgramCell> with(const std::vector<Number>& set) const;
 
  private:
   struct Program;  // what all cells of one command share

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/plan.h"
+#include "cli/actions.h"
 #include "cli/arguments.h"
 #include "cli/choosing.h"
 #include "cli/exchange/policy_file.h"
@@ -19,15 +20,16 @@ int run_plan(const Arguments& arguments) {
       "Its actions are tables of the scene, such as\n"
       "  [actions.push]\n"
       "  forces.propulsion_N = 9\n"
-      "each with keys of forces and beams as they are while a body takes it; an empty table is\n"
-      "the scene as it is. They are numbered in the order of their names. The best policy of\n"
-      "chains of all actions is run in full, its trials are added, and so on; new trials say how\n"
-      "often it crosses, beside each action all the time.\n"
+      "each with keys of forces and beams as they are while a body takes it, or parameters.KEY\n"
+      "of a cell program; an empty table is the scene as it is. They are numbered in the order of\n"
+      "their names. The best policy of chains of all actions is run in full, its trials are\n"
+      "added, and so on; new trials say how often it crosses, beside each action all the time.\n"
       "Without actions: the start from which bodies cross most often, in a terrain in any column.",
       "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 --set "
       "actions.fast.forces.propulsion_N=9");
   options.scene();
-  add_choosing(options);
+  add_choosing(options, "; of a cell program FACE:c1,c2,...");
+  add_cell_program(options);
   options.add_texts(
       "over", "KEY=LOW:HIGH",
       "without actions: where bodies may start (start.x_m, start.vx_m_per_s, "
@@ -49,30 +51,29 @@ int run_plan(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   lattice::PlanOptions how;
   take_choosing(options, how);
-  Subject s = scene_to_run(options, "a plan is made");
-  if (s.scene->actions.empty()) return plan_start(options, std::move(s));
+  Subject s = field_to_run(options, "a plan is made");
+  if (s.scene && s.scene->actions.empty()) return plan_start(options, std::move(s));
   if (options.has("over"))
     throw UsageError("--over: is for a scene without actions; " + s.path + " has some");
   how.thrift = thrift_of(options, s.shown());
   how.robust = options.has("robust");
   if (how.robust && how.thrift) throw UsageError("--robust: not with --least");
-  if (options.has("policy") || options.has("gate-policy")) require_file_for(*s.scene);
-  Actions all = actions_of(options, *s.scene, s.problem.start);
-  std::vector<std::string> names;
-  for (const lattice::Action& action : all.actions) names.push_back(action.name);
+  if (options.has("policy") || options.has("gate-policy")) require_file_for(s);
+  Actions all = actions_of(options, s);
   const dynamics::Stopwatch watch;
   lattice::Plan plan = lattice::make_plan(all.actions, how, options.work());
-  const PlannedField planned{s.shown(),       std::move(names), std::move(all.methods),
-                             std::move(plan), watch.seconds(),  how.thrift};
+  const PlannedField planned{s.shown(),       all.names(),     std::move(all.methods),
+                             std::move(plan), watch.seconds(), how.thrift};
   Json json = to_json(planned);
   json["made_by"] = s.made_by(options);
   options.give_out(json, table_of(planned));
   if (options.has("policy"))
-    options.write(options.text("policy"), policy_text(chosen_policy(planned), *s.scene));
+    options.write(options.text("policy"), policy_text(chosen_policy(planned), all.made_for));
   if (options.has("gate-policy")) {
     if (!planned.plan.by_cell)
       throw std::runtime_error("--gate-policy: there is none: no body crossed");
-    options.write(options.text("gate-policy"), policy_text(planned.plan.by_cell->policy, *s.scene));
+    options.write(options.text("gate-policy"),
+                  policy_text(planned.plan.by_cell->policy, all.made_for));
   }
   options.warn(few_crossings(planned.plan.crossings));
   if (options.has("policy") && !cheapest(planned) && !gains(planned))

@@ -25,12 +25,6 @@ constexpr double kMostGates = 1e6;
 constexpr std::size_t kMostPoints = 1000;  // a plan has its start
 constexpr int kPolicyFormat = 1;
 
-/// The scene without its start, which a policy does not depend on.
-std::string text_of(lattice::Scene scene) {
-  scene.start = {};
-  return lattice::to_toml(scene);
-}
-
 /// The first line that differs.
 std::string difference(const std::string& here, const std::string& there) {
   const auto [a, b] = std::mismatch(here.begin(), here.end(), there.begin(), there.end());
@@ -58,8 +52,8 @@ int number_in(const Json& json, std::size_t most) {
                            " is no whole number from -1 to " + std::to_string(most));
 }
 
-lattice::Policy policy_of(const Json& json, const lattice::Scene& scene) {
-  const dynamics::Section section = dynamics::disc_section(scene.gate);
+lattice::Policy policy_of(const Json& json, const PolicyField& made_for) {
+  const dynamics::Section& section = made_for.section;
   std::vector<dynamics::Tree> trees;
   for (const Json& given : json.at("trees")) {
     std::vector<int> axes;
@@ -87,10 +81,10 @@ lattice::Policy policy_of(const Json& json, const lattice::Scene& scene) {
     std::copy(at.begin(), at.end(), point.at.begin());
   }
   dynamics::StateSpace space(section, std::move(trees), std::move(points));
-  const lattice::FieldParams& field = scene.field;
+  const lattice::FieldParams& field = made_for.field;
   markov::Decisions decisions{
       .field = {field.columns, field.rows}, .inputs = space.size(), .max_cells = field.max_gates};
-  const std::size_t actions = scene.actions.size();
+  const std::size_t actions = made_for.actions;
   if (json.contains("always")) {
     const int always = number_in(json.at("always"), actions - 1);
     if (always < 0) throw std::runtime_error("there is no action number -1");
@@ -120,21 +114,35 @@ lattice::Policy policy_of(const Json& json, const lattice::Scene& scene) {
 
 }  // namespace
 
-void require_file_for(const lattice::Scene& scene) {
-  const lattice::FieldParams& field = scene.field;
+PolicyField policy_field(const lattice::Scene& scene) {
+  lattice::Scene own = scene;
+  own.start = {};
+  return {"scene",     lattice::to_toml(own), dynamics::disc_section(scene.gate),
+          scene.field, scene.actions.size(),  scene.source};
+}
+
+PolicyField policy_field(const lattice::CellFile& cells, const std::string& told) {
+  lattice::CellFile own = cells;
+  own.start.reset();
+  return {"cell",      lattice::to_toml(own) + told, cells.map.section,
+          cells.field, cells.actions.size(),         cells.source};
+}
+
+void require_file_for(const PolicyField& made_for) {
+  const lattice::FieldParams& field = made_for.field;
   const double gates =
       static_cast<double>(field.columns) * field.rows * std::max(1, field.max_gates);
-  if (scene.actions.size() > kLetters.size() || gates > kMostGates)
+  if (made_for.actions > kLetters.size() || gates > kMostGates)
     throw std::runtime_error(
-        scene.source + ": a policy is a file for at most " + std::to_string(kLetters.size()) +
+        made_for.source + ": a policy is a file for at most " + std::to_string(kLetters.size()) +
         " actions and " + std::to_string(static_cast<int>(kMostGates)) +
         " gates (field.columns times field.rows, and times field.max_gates if there is a limit)");
 }
 
-std::string policy_text(const lattice::Policy& policy, const lattice::Scene& scene) {
-  require_file_for(scene);
+std::string policy_text(const lattice::Policy& policy, const PolicyField& made_for) {
+  require_file_for(made_for);
   const std::vector<std::uint16_t>& action = policy.decisions.action;
-  Json json{{"policy_format", kPolicyFormat}, {"scene", text_of(scene)}};
+  Json json{{"policy_format", kPolicyFormat}, {made_for.kind, made_for.text}};
   for (const dynamics::Tree& given : policy.space.trees()) {
     Json tree{{"axis", Json::array()}, {"cut", Json::array()}};
     for (std::size_t c = 0; c < policy.space.section().coordinates.size(); ++c)
@@ -166,15 +174,17 @@ std::string policy_text(const lattice::Policy& policy, const lattice::Scene& sce
   return json.dump(0) + "\n";
 }
 
-lattice::Policy read_policy(const std::string& path, const lattice::Scene& scene) try {
+lattice::Policy read_policy(const std::string& path, const PolicyField& made_for) try {
   const Json json = Json::parse(bytes_of(path), nullptr, false);
   if (!json.is_object() || !json.contains("policy_format") ||
       json["policy_format"] != kPolicyFormat)
     throw std::runtime_error("is no policy that gatewalk plan --policy wrote");
-  const std::string own = json.at("scene").get<std::string>(), given = text_of(scene);
-  if (own != given)
-    throw std::runtime_error("was made for another scene: " + difference(given, own));
-  return policy_of(json, scene);
+  if (!json.contains(made_for.kind) && (json.contains("scene") || json.contains("cell")))
+    throw std::runtime_error("was made for cells of another kind");
+  if (const auto own = json.at(made_for.kind).get<std::string>(); own != made_for.text)
+    throw std::runtime_error("was made for another " + made_for.kind + ": " +
+                             difference(made_for.text, own));
+  return policy_of(json, made_for);
 } catch (const std::runtime_error& e) {
   throw markov::BadFile(path + ": " + e.what());
 } catch (const Json::exception& e) {

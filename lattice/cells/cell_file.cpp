@@ -30,7 +30,8 @@ constexpr std::size_t kMostCellTypes = 100;
 constexpr Interval kPositive{0.0, 1e300, true}, kAnyNumber{-1e300, 1e300};
 constexpr const char* kNameRule =
     "be letters, digits and _, at most 60, and begin with a letter, such as ";
-const Names kTables{"cell", "field", "start", std::string(kTerrainTable)};
+const Names kTables{"cell", "field", "start", std::string(kTerrainTable),
+                    std::string(kActionsTable)};
 const Names kFieldKeys{"columns", "rows", "max_gates"};
 const Names kCellKeys{"width_m", "length_m",    "symmetric", "trapped_after_s",
                       "faces",   "coordinates", "costs",     "types"};
@@ -423,7 +424,7 @@ void add_settings(Settings& settings, const toml::table& document, const Origin&
   require_tables(document, origin);
   for (const auto& [table_name, node] : document) {
     const std::string name(table_name.str());
-    if (name == kTerrainTable) continue;  // read apart
+    if (name == kTerrainTable || name == kActionsTable) continue;  // read apart
     const GivenTable given{*node.as_table(), name, origin};
     Settings added;
     for (const auto& [key, value] : given.table) {
@@ -558,7 +559,8 @@ CellFile parse_cell_file(std::string_view text, const std::string& name,
   for (const Coordinate& c : section.coordinates) known.push_back("start." + c.key);
   Settings settings;
   add_settings(settings, document, origin, known);
-  TerrainSettings map_settings;
+  TerrainSettings map_settings, actions;
+  add_program_actions(actions, document, origin);
   add_map(map_settings, document, origin, std::filesystem::path(name).parent_path().string());
   std::vector<Override> read;
   read.reserve(overrides.size());  // settings point into it
@@ -568,6 +570,7 @@ CellFile parse_cell_file(std::string_view text, const std::string& name,
     const Origin of_override = [begin = read.back().begin](std::size_t) { return begin; };
     add_settings(settings, read.back().document, of_override, known);
     add_map(map_settings, read.back().document, of_override, "");
+    add_program_actions(actions, read.back().document, of_override);
   }
 
   bool symmetric = false;
@@ -588,6 +591,10 @@ CellFile parse_cell_file(std::string_view text, const std::string& name,
     file.map.columns = file.field.columns;
     file.map.type_of_cell = std::move(terrain.type_of_cell);
   }
+  file.actions = actions_in(
+      actions, [](std::string_view key, const TerrainSetting& given, const std::string& shown) {
+        return number_of({given.value, given.where(), given.spelled}, key, kAnyNumber, shown);
+      });
   try {
     section.validate();
   } catch (const std::invalid_argument& error) {
@@ -651,7 +658,7 @@ std::string to_toml(const CellFile& file) {
       text += "  \"" + row + "\",\n";
     text += "]\n";
   }
-  return text;
+  return text + gates_toml(kActionsTable, file.actions);
 }
 
 }  // namespace gatewalk::lattice

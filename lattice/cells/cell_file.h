@@ -10,6 +10,7 @@
 
 #include "dynamics/cells/cell_map.h"
 #include "lattice/field.h"
+#include "lattice/scene/terrain.h"
 
 namespace gatewalk::lattice {
 
@@ -23,6 +24,9 @@ struct CellFile {
   std::optional<double> trapped_after{};  // s
   FieldParams field;
   std::optional<dynamics::Entry> start{};  // none: everything that was seen to enter first
+  /// Table [actions]: what a body may do, numbers of the program ("parameters.KEY") that are other
+  /// while it does. By name.
+  std::vector<Terrain::Type> actions{};
 };
 
 /// Reads `path`, applies `overrides` ("field.rows=5") as for a scene. Throws SceneError naming

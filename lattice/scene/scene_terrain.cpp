@@ -209,6 +209,7 @@ struct Group {
   std::string key, table;  // "types", "terrain.types"
   std::string one, other;  // for messages
   bool (*may_have)(std::string_view key);
+  std::string (*known)(const std::string& given, const std::string& where) = known_key;
 };
 const Group kTypes{
     "types.", "terrain.types", "a type's",
@@ -219,6 +220,21 @@ const Group kActions{
     "actions.", std::string(kActionsTable), "an action's",
     "a body cannot choose it; an action has forces and beams (but their joints) of its own",
     [](std::string_view key) { return may_differ(key) && !key.starts_with("contact."); }};
+
+/// Whether it names a number that a program may have: a word without blanks and '='.
+bool is_parameter(std::string_view key) {
+  constexpr unsigned char kDelete = 127;
+  return key.starts_with(kParameters) && key.size() > kParameters.size() &&
+         std::none_of(key.begin(), key.end(),
+                      [](unsigned char c) { return c <= ' ' || c == '=' || c == kDelete; });
+}
+const Group kProgramActions{
+    "actions.",
+    std::string(kActionsTable),
+    "an action's",
+    "an action of cells has numbers of the program that carries bodies through, parameters.KEY",
+    is_parameter,
+    [](const std::string& given, const std::string&) { return given; }};
 
 void add_gate(TerrainSettings& settings, const Group& group, const std::string& name,
               const toml::node& node, const Origin& origin, const std::string& folder) {
@@ -235,9 +251,9 @@ void add_gate(TerrainSettings& settings, const Group& group, const std::string& 
   std::map<std::string, std::pair<const toml::node*, std::string>> seen;  // in this document
   const auto add_key = [&](const std::string& key, const toml::node& value) {
     const std::string where = origin(value.source().begin.line) + ": " + shown;
-    const std::string known = known_key(key, where);
+    const std::string known = group.known(key, where);
     if (!group.may_have(known))
-      throw SceneError(where + "." + key + " is not permitted: " + group.other);
+      throw SceneError(where + "." + printable(key) + " is not permitted: " + group.other);
     if (const auto [other, is_new] = seen.try_emplace(known, &value, key); !is_new)
       throw SceneError(given_twice(*other->second.first, shown + "." + other->second.second, value,
                                    shown + "." + key, origin));
@@ -288,6 +304,12 @@ std::vector<Terrain::Type> gates_in(const TerrainSettings& settings, const Group
 void add_actions(TerrainSettings& settings, const toml::table& document, const Origin& origin) {
   if (const toml::node* const actions = document.get(kActionsTable))
     add_gates(settings, kActions, *actions, origin, "");
+}
+
+void add_program_actions(TerrainSettings& settings, const toml::table& document,
+                         const Origin& origin) {
+  if (const toml::node* const actions = document.get(kActionsTable))
+    add_gates(settings, kProgramActions, *actions, origin, "");
 }
 
 std::vector<Terrain::Type> actions_in(const TerrainSettings& settings, const TypeValue& value) {

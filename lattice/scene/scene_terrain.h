@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Reads tables [terrain] and [actions] of a scene.
+/// Reads tables [terrain] and [actions] of a scene, and [actions] of a file of cells.
 
 #include <toml++/toml.h>
 
@@ -51,6 +51,9 @@ void read_map(Terrain& terrain, const TerrainSettings& settings, const FieldPara
 /// The same for the table [actions] of `document`: settings of their own. Throws SceneError for
 /// what a body cannot choose.
 void add_actions(TerrainSettings& settings, const toml::table& document, const Origin& origin);
+/// The same of a file of cells, whose actions have keys parameters.KEY: numbers of a program.
+void add_program_actions(TerrainSettings& settings, const toml::table& document,
+                         const Origin& origin);
 /// By name. Throws SceneError for more than a hundred.
 [[nodiscard]] std::vector<Terrain::Type> actions_in(const TerrainSettings& settings,
                                                     const TypeValue& value);

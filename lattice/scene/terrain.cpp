@@ -34,6 +34,18 @@ std::pair<std::vector<GateParams>, std::vector<int>> sorted_out(const Scene& sce
   return {std::move(gates), std::move(types)};
 }
 
+/// As TOML has it, in quotation marks where a part of it is more than letters, digits, _ and -.
+std::string key_toml(const std::string& key) {
+  constexpr std::string_view kBare =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+  const std::size_t dot = key.find_first_not_of(kBare);
+  if (dot == key.npos || (key[dot] == '.' && key.find_first_not_of(kBare, dot + 1) == key.npos))
+    return key;
+  std::string quoted = "\"";
+  for (const char c : key) quoted += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+  return quoted + "\"";
+}
+
 }  // namespace
 
 bool may_differ(std::string_view key) {
@@ -71,7 +83,7 @@ std::string gates_toml(std::string_view table, const std::vector<Terrain::Type>&
   for (const Terrain::Type& gate : gates) {
     text += "\n[" + std::string(table) + "." + gate.name + "]\n";
     for (const Terrain::Key& key : gate.keys)
-      text += key.name + " = " + toml_float(key.value) + "\n";
+      text += key_toml(key.name) + " = " + toml_float(key.value) + "\n";
   }
   return text;
 }

@@ -15,6 +15,8 @@ namespace gatewalk::lattice {
 struct Scene;
 
 inline constexpr std::string_view kOwnGate = ".";
+/// How keys of a cell program's own numbers begin, in actions and in --set.
+inline constexpr std::string_view kParameters = "parameters.";
 
 /// What stands where.
 struct Terrain {

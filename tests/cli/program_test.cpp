@@ -498,6 +498,18 @@ TEST(ProgramCell, TheExampleInPython) {
   EXPECT_NEAR(straight.costs[0], 1.0, 1e-12);
 }
 
+TEST(ProgramCell, HasOtherValuesInProcessesOfItsOwn) {
+  if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "python3 is not installed";
+  const ProgramCell cell("python3 " GATEWALK_PROGRAMS "/pillars.py", {}, {{"radius_m", 0.0}});
+  const auto straight = cell.with({{"turning_rad_per_sqrt_s", 0.0}});
+  ASSERT_EQ(straight->numbers().size(), 2u);
+  EXPECT_EQ(straight->numbers()[0].value, 0.0);
+  EXPECT_EQ(straight->numbers()[1].value, 0.0);
+  EXPECT_NEAR(pass_at(*straight, 0.0).costs[0], 1.0, 1e-12);
+  EXPECT_GT(std::abs(pass_at(cell, 0.0).costs[0] - 1.0), 1e-6);  // its own are as they were
+  EXPECT_THROW((void)cell.with({{"turning", 0.0}}), std::invalid_argument);
+}
+
 TEST(ProgramCell, TheGateInChipmunk) {
 #ifdef GATEWALK_CHIPMUNK_GATE
   const ProgramCell cell(GATEWALK_CHIPMUNK_GATE);

@@ -255,6 +255,62 @@ TEST(CellFile, OverridesSetSingleKeys) {
             "rows and max_gates");
 }
 
+const std::string kActions =
+    "[actions.slow]\nparameters.push = 1\n[actions.fast.parameters]\npush = 3.25\n"
+    "\"a.b \\u0022\" = -1e-3\n[actions.as_it_is]\n";
+
+TEST(CellFile, ActionsAreNumbersOfAProgramByName) {
+  // A blank is no part of what a program calls its numbers.
+  const std::string text = with(" \\u0022", "\\u0022", kTracks + kActions);
+  const CellFile file = parse(text, {"actions.slow.parameters.push=2"});
+  ASSERT_EQ(file.actions.size(), 3u);
+  EXPECT_EQ(file.actions[0].name, "as_it_is");
+  EXPECT_TRUE(file.actions[0].keys.empty());
+  EXPECT_EQ(file.actions[1].name, "fast");
+  ASSERT_EQ(file.actions[1].keys.size(), 2u);
+  EXPECT_EQ(file.actions[1].keys[0].name, "parameters.a.b\"");
+  EXPECT_EQ(file.actions[1].keys[0].value, -1e-3);
+  EXPECT_EQ(file.actions[1].keys[1].name, "parameters.push");
+  EXPECT_EQ(file.actions[1].keys[1].value, 3.25);
+  EXPECT_EQ(file.actions[1].keys[1].origin, "x.toml:41");
+  EXPECT_EQ(file.actions[2].name, "slow");
+  ASSERT_EQ(file.actions[2].keys.size(), 1u);
+  EXPECT_EQ(file.actions[2].keys[0].value, 2.0);
+  EXPECT_EQ(file.actions[2].keys[0].origin, "--set actions.slow.parameters.push=2");
+  EXPECT_TRUE(parse(kTracks).actions.empty());
+
+  const std::string printed = to_toml(file);
+  EXPECT_NE(printed.find("\n[actions.as_it_is]\n\n[actions.fast]\n\"parameters.a.b\\\"\" = "
+                         "-0.001\nparameters.push = 3.25\n\n[actions.slow]\nparameters.push = "
+                         "2.0\n"),
+            printed.npos)
+      << printed;
+  EXPECT_EQ(to_toml(parse(printed)), printed);
+}
+
+TEST(CellFile, RefusesOtherActions) {
+  const std::string numbers =
+      " is not permitted: an action of cells has numbers of the program that carries bodies "
+      "through, parameters.KEY";
+  EXPECT_EQ(refused_as(kTracks + kActions), "x.toml:42: actions.fast.parameters.a.b \"" + numbers);
+  EXPECT_EQ(refused_as(kTracks + "[actions.slow]\nforces.propulsion_N = 6\n"),
+            "x.toml:39: actions.slow.forces.propulsion_N" + numbers);
+  EXPECT_EQ(refused_as(kTracks + "[actions.slow]\nparameters = 6\n"),
+            "x.toml:39: actions.slow.parameters" + numbers);
+  EXPECT_EQ(refused_as(kTracks + "[actions.slow]\nparameters.push = \"1\"\n"),
+            "x.toml:39: actions.slow.parameters.push = \"1\" is not permitted: must be a number in "
+            "[-1e+300, 1e+300]");
+  EXPECT_EQ(refused_as(kTracks, {"actions.slow.parameters.push=inf"}),
+            "--set actions.slow.parameters.push=inf: actions.slow.parameters.push = inf is not "
+            "permitted: must lie in [-1e+300, 1e+300]");
+  EXPECT_EQ(refused_as(kTracks, {"actions.slow=1"}),
+            "--set actions.slow=1: actions.slow = 1 is not permitted: must be a table");
+  EXPECT_EQ(
+      refused_as(kTracks, {"actions.2nd={}"}),
+      "--set actions.2nd={}: actions.2nd: an action's name must be letters, digits and _, and "
+      "begin with a letter");
+}
+
 TEST(CellFile, ACellThatIsNotSymmetricNeedsNoOddCoordinates) {
   std::string text = with("symmetric = true", "symmetric = false");
   for (const char* odd : {"odd = [\"s\", \"vx\"]\n", "odd = [\"vx\"]\n", "odd = [\"vx\"]\n"})
@@ -273,10 +329,10 @@ TEST(CellFile, RefusesByFileLineAndKey) {
   const std::vector<WrongFile> all{
       {"[cell]\nwidth_m = 0.1", "[cel]\nwidth_m = 0.1",
        "x.toml:1: unknown table cel (did you mean cell?); a file of cells has the tables cell, "
-       "field, start and terrain"},
+       "field, start, terrain and actions"},
       {"[field]", "[sweep]",
-       "x.toml:34: unknown table sweep; a file of cells has the tables cell, field, start and "
-       "terrain"},
+       "x.toml:34: unknown table sweep; a file of cells has the tables cell, field, start, terrain "
+       "and actions"},
       {"width_m = 0.1\n", "",
        "x.toml:1: [cell] has no key width_m: it must be the size of a cell, a number > 0"},
       {"width_m = 0.1", "widht_m = 0.1",

@@ -104,8 +104,77 @@ expect 2 'accuracy: must lie in \[0.001, 0.5)' "$gatewalk" plan own.toml --accur
 expect 2 'a plan is made for one start' "$gatewalk" plan own.toml --start 0,0,15 --start 4,0,15
 expect 2 'actions.a.contact.restitution is not permitted: a body cannot choose it' "$gatewalk" plan own.toml --set actions.a.contact.restitution=0.5
 "$gatewalk" build "$scenes/field.toml" --accuracy 0.2 -o tree.nc --quiet
-expect 2 'is no scene of gates' "$gatewalk" plan tree.nc
+expect 2 'is a matrix, and new bodies are to be run' "$gatewalk" plan tree.nc
 # Nobody can cross.
 expect 0 'none of 25 trials crossed: too rare to choose by' "$gatewalk" plan own.toml --set run.method=moreau --set field.max_gates=2 --accuracy 0.2
+
+# Cells of another program, whose own numbers are the actions. Here the chances are known: a hopper that pushes as the
+# ground wants gets on 9 times of 10, else 3 times of 10, and comes down on either ground as likely. Three rows of it are
+# crossed with 0.9^3 = 0.729 at best; with one push, right for the start's ground or wrong, 0.9 or 0.3 times 0.6^2.
+if command -v python3 >/dev/null; then
+  cp "$scenes/programs/hopper.toml" .
+  hopper=(hopper.toml --cell-program "python3 $scenes/programs/hopper.py")
+  expect 0 '^choosing by the way in gains ' "$gatewalk" plan "${hopper[@]}" --seed 2 --json hops.json --policy hops.policy.json --gate-policy push.policy.json --threads 2
+  holds '[.actions[].name] == ["gently", "hard"] and .trials == 2401 and .best_alone == "hard" and .settled' hops.json
+  holds '(.crossed - 0.729 | fabs) < 0.03 and (.actions[0].crossed - 0.108 | fabs) < 0.02 and (.actions[1].crossed - 0.324 | fabs) < 0.03 and (.by_gate.crossed - 0.324 | fabs) < 0.03' hops.json
+  # The first one is always taken on hard ground.
+  holds '.most_taken[0] == [null, "hard", null] and .actions[0].taken[0][1] == 0' hops.json
+  "$gatewalk" lattice "${hopper[@]}" --policy hops.policy.json --trials 4000 --seed 3 --quiet --json hopped.json --threads 2
+  jq -s '(.[0].interval_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02) and .[1].actions == ["gently", "hard"] and .[1].methods == null and (.[1].made_by.cell | contains("[actions.hard]\nparameters.push_J = 3.0"))' hops.json hopped.json | grep -q true || fail "a program's policy crosses less or more often than planned"
+  "$gatewalk" lattice "${hopper[@]}" --policy push.policy.json --trials 4000 --seed 3 --quiet --json push.json
+  holds '.endings.crossed / .trials - 0.324 | fabs < 0.03' push.json
+  # The same bits on one thread, from --set, and when kept pieces are taken up again; which others' are not.
+  "$gatewalk" lattice "${hopper[@]}" --policy hops.policy.json --trials 4000 --seed 3 --quiet --json again.json --force --threads 1
+  cmp -s hopped.json again.json || fail "a program's policy runs otherwise on one thread"
+  sed '/^\[actions/,$d' hopper.toml >bare.toml
+  bare=(bare.toml "${hopper[@]:1}")
+  pushes=(--set actions.gently.parameters.push_J=1 --set actions.hard.parameters.push_J=3)
+  "$gatewalk" plan "${bare[@]}" "${pushes[@]}" --seed 2 --threads 1 --quiet --json sets.json --policy sets.policy.json
+  jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' hops.json sets.json | grep -q true || fail "a program's plan is another one on one thread, or by --set"
+  cmp -s hops.policy.json sets.policy.json || fail "a program's policy is another one on one thread, or by --set"
+  expect 75 'kept in hops' "$gatewalk" plan "${hopper[@]}" --seed 2 --checkpoint hops --max-time 0.000001s
+  cp hops other
+  "$gatewalk" plan "${hopper[@]}" --seed 2 --checkpoint hops --resume --quiet --json again.json --force
+  jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' hops.json again.json | grep -q true || fail "a program's plan is another one when resumed"
+  sed -i.old 's/push_J = 3$/push_J = 2.5/' hopper.toml
+  expect 2 'other: ' "$gatewalk" plan "${hopper[@]}" --seed 2 --checkpoint other --resume
+  expect 2 'hops.policy.json: was made for another cell: "parameters.push_J = 2.5" here, "parameters.push_J = 3.0" there' "$gatewalk" lattice "${hopper[@]}" --policy hops.policy.json
+  mv hopper.toml.old hopper.toml
+  # Numbers that no action has are part of what a policy was made for; an empty action is the cell as it is.
+  expect 0 '^  1 as_it_is  ' "$gatewalk" plan "${bare[@]}" --set parameters.push_J=3 --set actions.gently.parameters.push_J=1 --set 'actions.as_it_is={}' --policy as.policy.json --json as.json
+  holds '(.actions[0].crossed - 0.324 | fabs) < 0.03 and (.crossed - 0.729 | fabs) < 0.03' as.json
+  expect 2 'as.policy.json: was made for another cell: .*push_J = 2.*push_J = 3' "$gatewalk" lattice "${bare[@]}" --set parameters.push_J=2 --set actions.gently.parameters.push_J=1 --set 'actions.as_it_is={}' --policy as.policy.json
+  # Costs are those of the cell: the push that gets on best also takes least time for each crossing.
+  expect 0 '^no policy was found that takes less for each crossing (time_s)$' "$gatewalk" plan "${hopper[@]}" --accuracy 0.05 --least time_s --points 3
+  expect 2 "'lost_J' is none of time_s, work_J" "$gatewalk" plan "${hopper[@]}" --least lost_J
+  # Other commands leave the actions alone, and a matrix keeps them.
+  "$gatewalk" lattice "${hopper[@]}" --trials 200 --quiet --json with.json --force
+  "$gatewalk" lattice "${bare[@]}" --trials 200 --quiet --json without.json --force
+  jq -s '.[0].final_gates == .[1].final_gates' with.json without.json | grep -q true || fail "actions change the cells of a program"
+  expect 0 'bodies' "$gatewalk" build "${hopper[@]}" --accuracy 0.1 -o hopper.nc
+  expect 0 '^crossed' "$gatewalk" predict hopper.nc --set field.rows=2
+  expect 0 '^crossed' "$gatewalk" predict hopper.nc "${hopper[@]:1}" --start S:-0.2
+  # What cannot be planned.
+  expect 2 'hopper.nc: is a matrix, and new bodies are to be run' "$gatewalk" plan hopper.nc
+  expect 2 'hopper.nc: is a matrix, and bodies that do what a policy says are to be run' "$gatewalk" lattice hopper.nc "${hopper[@]:1}" --policy hops.policy.json
+  expect 2 'hopper.toml: has cells of another kind, \[cell\]: --cell-program' "$gatewalk" plan hopper.toml
+  expect 2 'is a table, and no scene' "$gatewalk" plan "$scenes/tracks/runs.csv"
+  expect 2 'bare.toml: has 0 tables \[actions.NAME\]: a plan needs two at least; an empty one is the cell as it is' "$gatewalk" plan "${bare[@]}"
+  expect 2 'bare.toml: has 1 tables' "$gatewalk" plan "${bare[@]}" "${pushes[@]:0:2}"
+  expect 2 "^gatewalk: --set actions.hard.parameters.shove=1: actions.hard.parameters.shove: cell program: it has no parameter 'shove', but push_J$" "$gatewalk" plan "${hopper[@]}" --set actions.hard.parameters.shove=1
+  sed 's/push_J = 3$/push_J = 4/' hopper.toml >much.toml
+  expect 2 "^gatewalk: much.toml:[0-9]*: actions.hard.parameters.push_J: cell program: parameter 'push_J' must be a number from 1.0 to 3.0$" "$gatewalk" plan much.toml "${hopper[@]:1}"
+  expect 2 'actions.hard.parameters.push_J = "3" is not permitted: must be a number' "$gatewalk" plan "${hopper[@]}" --set 'actions.hard.parameters.push_J="3"'
+  expect 2 'actions.hard.forces.propulsion_N is not permitted: an action of cells has numbers of the program' "$gatewalk" plan "${hopper[@]}" --set actions.hard.forces.propulsion_N=9
+  expect 2 'actions.hard.parameters.push_J is not permitted\|unknown key' "$gatewalk" plan "$scenes/field.toml" --set actions.hard.parameters.push_J=3
+  # A policy of gates is none of cells, and the other way round.
+  expect 2 'sides.policy.json: was made for cells of another kind' "$gatewalk" lattice "${hopper[@]}" --policy sides.policy.json
+  expect 2 'hops.policy.json: was made for cells of another kind' "$gatewalk" lattice "${sides[@]}" --policy hops.policy.json
+  for change in '.action[0] = "0"' 'del(.cell)' '.trees[0].axis[0] = 1' '.action[0] |= sub("[01]"; "2")'; do
+    jq -c "$change" hops.policy.json >bad.json
+    expect 2 '^gatewalk: bad.json: ' "$gatewalk" lattice "${hopper[@]}" --policy bad.json
+  done
+  expect 1 'exit' "$gatewalk" plan hopper.toml --cell-program 'exit 3'
+fi
 
 finish

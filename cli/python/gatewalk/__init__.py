@@ -434,7 +434,8 @@ def plan(subject: _t.Any, *, accuracy: float | None = None, seed: int | None = N
     Parameters
     ----------
     subject : Scene, path, text or dict
-        With two tables ``[actions.NAME]`` at least: keys of forces and beams as they are while a body takes the action. Without
+        With two tables ``[actions.NAME]`` at least: keys of forces and beams as they are while a body takes the action. With
+        ``cell_program="COMMAND"`` a cell file, whose actions are numbers of that program, ``parameters.KEY``. A scene without
         any: the start is planned, over the ranges of ``over`` (``["start.x_m=-5:5"]``).
     accuracy : float, optional
         Half of the interval that a chance to cross may have.
