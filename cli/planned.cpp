@@ -17,6 +17,7 @@
 #include "dynamics/base/work.h"
 #include "dynamics/disc/disc_section.h"
 #include "dynamics/disc/study/meaning.h"
+#include "lattice/cells/cell_file.h"
 #include "lattice/text/digits.h"
 #include "lattice/text/toml_text.h"
 
@@ -51,6 +52,32 @@ std::vector<lattice::CoordinateRange> ranges_in(const lattice::RangedScene& rang
   return ranges;
 }
 
+/// Numbers of the start of a cell file.
+std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& given,
+                                                const Options& options, const Subject& s) {
+  std::vector<lattice::CoordinateRange> ranges;
+  const std::vector<dynamics::Coordinate>& coordinates = s.problem.map().section.coordinates;
+  for (const std::string& text : given) {
+    const lattice::NumberRange range = lattice::range_in(text, "--over");
+    std::string known;
+    std::size_t c = 0;
+    while (c < coordinates.size() && "start." + coordinates[c].key != range.key)
+      known += (known.empty() ? "start." : ", start.") + coordinates[c++].key;
+    if (c == coordinates.size())
+      throw UsageError("--over: " + lattice::printable(range.key) + " is none of " + known);
+    for (const double end : {range.low, range.high}) {  // refuses what is not permitted
+      std::vector<std::string> overrides = options.overrides();
+      overrides.push_back(range.key + "=" + lattice::toml_float(end));
+      (void)lattice::read_cell_file(s.path, overrides);
+    }
+    ranges.push_back({c, range.low, range.high});
+  }
+  if (ranges.empty())
+    throw UsageError("--over: says where bodies may start, such as --over start." +
+                     coordinates.front().key + "=0:1");
+  return ranges;
+}
+
 }  // namespace
 
 std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const ShownField& shown) {
@@ -74,21 +101,27 @@ std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const Sh
   return thrift;
 }
 
+bool has_actions(const Subject& s) {
+  return !(s.scene ? s.scene->actions : s.cells->actions).empty();
+}
+
 int plan_start(const Options& options, Subject s) {
-  for (const char* other : {"policy", "gate-policy", "least", "points", "chance"})
+  for (const char* other : {"policy", "gate-policy", "least", "points", "chance", "robust"})
     if (options.has(other))
       throw UsageError("--" + std::string(other) + ": is for a scene with actions; " + s.path +
                        " has no tables [actions.NAME]");
   lattice::BestStartOptions how;
   take_choosing(options, how);
   const auto given = options.texts("over");
-  const lattice::RangedScene ranged(lattice::scene_text(s.path), s.path, options.overrides(),
-                                    given.empty() ? all_of(*s.scene) : given, "--over");
-  how.ranges = ranges_in(ranged);
+  if (s.scene)
+    how.ranges = ranges_in({lattice::scene_text(s.path), s.path, options.overrides(),
+                            given.empty() ? all_of(*s.scene) : given, "--over"});
+  else
+    how.ranges = ranges_in(given, options, s);
   if (s.given && !given.empty())
     throw UsageError("--over: varies the scene's start, and --start gives another");
-  const lattice::FieldParams& field = s.scene->field;
-  if (s.scene->terrain)
+  const lattice::FieldParams& field = s.problem.field;
+  if (s.problem.map().types.size() > 1)
     for (int column = 0; column < field.columns; ++column) how.columns.push_back(column);
   else
     how.columns = {field.start_column()};

@@ -52,7 +52,7 @@ int run_plan(const Arguments& arguments) {
   lattice::PlanOptions how;
   take_choosing(options, how);
   Subject s = field_to_run(options, "a plan is made");
-  if (s.scene && s.scene->actions.empty()) return plan_start(options, std::move(s));
+  if (!has_actions(s)) return plan_start(options, std::move(s));
   if (options.has("over"))
     throw UsageError("--over: is for a scene without actions; " + s.path + " has some");
   how.thrift = thrift_of(options, s.shown());

@@ -42,8 +42,7 @@ RangedScene::RangedScene(std::string text, std::string source, std::vector<std::
   }
 }
 
-void RangedScene::add(const std::string& given) {
-  const std::string origin = option_ + " " + given;
+NumberRange range_in(const std::string& given, const std::string& option) {
   const std::size_t equals = given.find('='),
                     colon = given.find(':', std::min(equals, given.size()));
   const auto low = colon == given.npos
@@ -52,8 +51,14 @@ void RangedScene::add(const std::string& given) {
   const auto high =
       colon == given.npos ? std::nullopt : number_in(std::string_view(given).substr(colon + 1));
   if (!low || !high || !(*low < *high))
-    throw SceneError(origin + ": must be KEY=LOW:HIGH, two numbers, the low one first");
-  const NumberRange range{given.substr(0, equals), *low, *high};
+    throw SceneError(option + " " + given +
+                     ": must be KEY=LOW:HIGH, two numbers, the low one first");
+  return {given.substr(0, equals), *low, *high};
+}
+
+void RangedScene::add(const std::string& given) {
+  const std::string origin = option_ + " " + given;
+  const NumberRange range = range_in(given, option_);
   const std::string key = known_key(range.key, origin);
   for (const NumberRange& other : ranges_)
     if (known_key(other.key, origin) == key)

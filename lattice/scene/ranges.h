@@ -15,6 +15,9 @@ struct NumberRange {
   double low = 0.0, high = 0.0;
 };
 
+/// Of "KEY=LOW:HIGH"; `option` begins the message. Throws SceneError.
+[[nodiscard]] NumberRange range_in(const std::string& given, const std::string& option);
+
 class RangedScene {
  public:
   /// A scene as text, what messages call it, its overrides, and the ranges, each "KEY=LOW:HIGH".

@@ -212,6 +212,10 @@ BestStart best_start(const Problem& problem, const BestStartOptions& options, co
   require(options.accuracy >= 0.001 && options.accuracy < 0.5, "accuracy must lie in [0.001, 0.5)");
   require(options.per_leaf >= 1 && options.per_leaf <= 1'000'000, "leaves of 1 to 1000000 entries");
   require(!options.ranges.empty(), "needs a range of one number at least");
+  for (std::size_t r = 0; r < options.ranges.size(); ++r)
+    for (std::size_t other = 0; other < r; ++other)
+      require(options.ranges[r].coordinate != options.ranges[other].coordinate,
+              "two ranges are of the same number");
   for (const CoordinateRange& range : options.ranges)
     require(range.coordinate < problem.map().section.coordinates.size() &&
                 std::isfinite(range.low) && std::isfinite(range.high) && range.low < range.high,

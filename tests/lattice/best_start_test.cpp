@@ -117,6 +117,7 @@ TEST(BestStart, RefusesWhatItCannotDo) {
   refused([](BestStartOptions& o) { o.ranges[0].coordinate = 2; });
   refused([](BestStartOptions& o) { o.ranges[0].high = o.ranges[0].low; });
   refused([](BestStartOptions& o) { o.ranges[1].high = INFINITY; });
+  refused([](BestStartOptions& o) { o.ranges[1].coordinate = 0; });
   refused([](BestStartOptions& o) { o.columns = {1}; });
   refused([](BestStartOptions& o) { o.accuracy = 0.0; });
   refused([](BestStartOptions& o) { o.per_leaf = 0; });

@@ -159,7 +159,11 @@ if command -v python3 >/dev/null; then
   expect 2 'hopper.nc: is a matrix, and bodies that do what a policy says are to be run' "$gatewalk" lattice hopper.nc "${hopper[@]:1}" --policy hops.policy.json
   expect 2 'hopper.toml: has cells of another kind, \[cell\]: --cell-program' "$gatewalk" plan hopper.toml
   expect 2 'is a table, and no scene' "$gatewalk" plan "$scenes/tracks/runs.csv"
-  expect 2 'bare.toml: has 0 tables \[actions.NAME\]: a plan needs two at least; an empty one is the cell as it is' "$gatewalk" plan "${bare[@]}"
+  expect 2 'over: says where bodies may start, such as --over start.s_m=0:1' "$gatewalk" plan "${bare[@]}"
+  expect 2 'over: start.z_m is none of start.s_m' "$gatewalk" plan "${bare[@]}" --over start.z_m=0:1
+  # With a push of 1 J it gets on best from the left.
+  "$gatewalk" plan "${bare[@]}" --set parameters.push_J=1 --over start.s_m=-0.5:0.5 --accuracy 0.05 --quiet --json start.json --force
+  holds '.start.s_m < 0 and .crossed > 0.25 and .crossed < 0.4 and .own.crossed < 0.2 and .gain_95[0] > 0 and (.starts | length) == 1 and (.starts[0].chance | length) == 1' start.json
   expect 2 'bare.toml: has 1 tables' "$gatewalk" plan "${bare[@]}" "${pushes[@]:0:2}"
   expect 2 "^gatewalk: --set actions.hard.parameters.shove=1: actions.hard.parameters.shove: cell program: it has no parameter 'shove', but push_J$" "$gatewalk" plan "${hopper[@]}" --set actions.hard.parameters.shove=1
   sed 's/push_J = 3$/push_J = 4/' hopper.toml >much.toml
