@@ -66,7 +66,9 @@ std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& 
     if (c == coordinates.size())
       throw UsageError("--over: " + lattice::printable(range.key) + " is none of " + known);
     for (const double end : {range.low, range.high}) {  // refuses what is not permitted
-      std::vector<std::string> overrides = options.overrides();
+      std::vector<std::string> overrides;
+      for (const std::string& set : options.overrides())
+        if (!set.starts_with(lattice::kParameters)) overrides.push_back(set);
       overrides.push_back(range.key + "=" + lattice::toml_float(end));
       (void)lattice::read_cell_file(s.path, overrides);
     }
