@@ -176,16 +176,21 @@ Figure figure_of(const FoundStart& f) {
           : "set yrange [0:*]\nset ytics auto\n" + Sheet::axes(axis(0), "'% crossed'") +
                 "plot $starts using 1:2 with lines lw 1.5 lc rgb '" + std::string(kFirstColour) +
                 "'";
+  const auto marked = [](int type) {
+    return " with points pt " + std::to_string(type) + " ps 1 lw 2 lc rgb '" + kSecondColour + "'";
+  };
+  const bool here = found.best.column == f.shown.field.start_column();  // as the own start
   const std::string column = f.columns.size() > 1 ? " in " + column_text(f, found.best.column) : "";
   return {Sheet::kWidth, sheet.height,
           "set multiplot\n" + data_block("$starts", rows) +
               data_block("$best", place(found.best.entry)) + data_block("$own", place(f.own)) +
               sheet.margins(box) + kFrame + "set xrange " + range(f.ranges[0]) + "\nset xtics " +
               tics(f.ranges[0]) + "\n" +
-              sheet.text("% crossed by start" + column + ", by the chain; x: best, +: own", 8, 18) +
-              plot + ", $best with points pt 2 ps 1 lw 2 lc rgb '" + kSecondColour +
-              "', $own with points pt 1 ps 1 lw 2 lc rgb '" + kSecondColour +
-              "'\nunset label\nunset colorbox\n" +
+              sheet.text("% crossed by start" + column + ", by the chain; x: best" +
+                             (here ? ", +: own" : ""),
+                         8, 18) +
+              plot + ", $best" + marked(2) + (here ? ", $own" + marked(1) : "") +
+              "\nunset label\nunset colorbox\n" +
               sheet.text("crossed, % of trials in full", 8, bars_box.top - 14) +
               share_bars(sheet, bars_box, "$crossed", bars) + "unset multiplot\n",
           kFont};
