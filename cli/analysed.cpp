@@ -98,12 +98,16 @@ SharesAnswer shares_of(const Options& options, const std::optional<lattice::Rang
   if (!ranged) return {};
   lattice::VarianceSharesOptions how{.seed = options.seed()};
   if (options.has("over-trials")) how.trials = options.count("over-trials");
-  const RangedShares shares{
+  RangedShares shares{
       ranged->ranges(), target,
       lattice::variance_shares(static_cast<int>(ranged->ranges().size()), problem_at(*ranged, s),
                                target, how, options.work())};
-  return {cli::to_json(shares), table_of(shares),
-          status_of(options, shares.found.health, "at the points of --over ") == kFine};
+  SharesAnswer answer{{},
+                      cli::to_json(shares),
+                      table_of(shares),
+                      status_of(options, shares.found.health, "at the points of --over ") == kFine};
+  answer.shares = std::move(shares);
+  return answer;
 }
 
 }  // namespace gatewalk::cli

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/render/json.h"
+#include "cli/render/variance_shares.h"
 #include "cli/subject.h"
 #include "lattice/pool/costed_chain.h"
 #include "lattice/scene/ranges.h"
@@ -44,6 +45,7 @@ void add_ranges(Options& options);
 [[nodiscard]] std::optional<lattice::RangedScene> over_of(const Options& options, const Subject& s);
 /// How much of the variance of the target's chance over them each number makes; null without them.
 struct SharesAnswer {
+  std::optional<RangedShares> shares;
   Json json;
   std::string table;
   bool clean = true;

@@ -87,14 +87,15 @@ int run_analyze(const Arguments& arguments) {
     direct = DirectTrials{std::move(tally), std::move(costs)};
   }
   const ShownField field = s.shown();
-  const AnalysedField shown{field,       s.starts.front(), c.endings,     analysis,
-                            effects,     direct,           c.from_trials, c.reached,
-                            c.gate_runs, c.states,         c.seconds,     parameters.relative_step};
+  AnalysedField shown{field,       s.starts.front(), c.endings,     analysis,
+                      effects,     direct,           c.from_trials, c.reached,
+                      c.gate_runs, c.states,         c.seconds,     parameters.relative_step};
   Json json = to_json(shown);
   json["status"] = c.status;
   json["sensitivities"]["status"] = to_json(effects.health);
   if (!c.method.is_null()) json["method"] = c.method;
   const SharesAnswer shares = shares_of(options, ranged, s, how.target);
+  if (shares.shares) shown.shares = &*shares.shares;
   json["variance_shares"] = shares.json;
   json["made_by"] = s.made_by(options);
   options.give_out(json, table_of(shown) + shares.table);

@@ -8,6 +8,7 @@
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
 #include "cli/render/shown_field.h"
+#include "cli/render/variance_shares.h"
 #include "lattice/field_costs.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/study/analysis.h"
@@ -32,8 +33,9 @@ struct AnalysedField {
   bool reached = true;         // the accuracy asked for
   std::int64_t gate_runs = 0;  // made for the chain
   int states = 0;
-  double seconds = 0.0;  // of the prediction behind the endings
-  double step = 0.0;     // of the parameters
+  double seconds = 0.0;                  // of the prediction behind the endings
+  double step = 0.0;                     // of the parameters
+  const RangedShares* shares = nullptr;  // of --over, for the picture
 };
 
 /// How far the durations of the chain's walks are from those of trials: the largest difference

@@ -204,12 +204,48 @@ void add_parameters(Script& out, const AnalysedField& f) {
   out.top = box.bottom + 66;
 }
 
+/// How much of the variance of the target's chance each number of --over makes.
+void add_shares(Script& out, const AnalysedField& f) {
+  if (!f.shares || std::isnan(f.shares->found.indices.variance.mean)) return;
+  const lattice::SobolIndices& indices = f.shares->found.indices;
+  const std::size_t n = f.shares->ranges.size();
+  std::string first, total, tics;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto row = [&](const lattice::Mean95& index, double offset) {
+      return digits(index.mean) + " " + digits(offset - static_cast<double>(i)) + " " +
+             digits(index.interval[0]) + " " + digits(index.interval[1]) + "\n";
+    };
+    first += row(indices.first[i], 0.15);
+    total += row(indices.total[i], -0.15);
+    const std::string name = literal(f.shares->ranges[i].key);
+    tics += (i == 0 ? "" : ", ") + name.substr(0, name.rfind(" noenhanced")) + " " +
+            std::to_string(-static_cast<int>(i));
+  }
+  const Box box{236, 488, out.top + 36, out.top + 36 + 30.0 * static_cast<double>(n)};
+  const auto plotted = [](const char* data, int type, const char* colour) {
+    return std::string(data) + " using 1:2:3:4 with xerrorbars pt " + std::to_string(type) +
+           " ps 0.7 lw 1.5 lc rgb '" + colour + "'";
+  };
+  out.text += data_block("$first", first) + data_block("$total", total) + kFrame +
+              out.sheet.margins(box) + "set xrange [-0.05:1.05]\nset yrange [" +
+              digits(0.5 - static_cast<double>(n)) + ":0.5]\nset xtics 0.2\nset ytics (" + tics +
+              ") noenhanced font ',12' scale 0\n" + Sheet::x_axis("'share of the variance, 95 %'") +
+              "unset ylabel\n" +
+              out.sheet.text("variance of \"" + std::string(target_name(f)) +
+                                 "\" by number: alone (dot), with others (ring)",
+                             8, out.top + 18) +
+              "plot " + plotted("$first", 7, kFirstColour) + ", " +
+              plotted("$total", 6, kSecondColour) + "\nunset label\n";
+  out.top = box.bottom + 66;
+}
+
 std::string drawn(const AnalysedField& f, const Sheet& sheet, double& height) {
   Script out{sheet, "set multiplot\nunset key\n", 0.0};
   add_visits(out, f);
   add_durations(out, f);
   add_starts(out, f);
   add_parameters(out, f);
+  add_shares(out, f);
   height = out.top;
   return out.text + "unset multiplot\n";
 }

@@ -44,7 +44,8 @@ holds '([.costs | to_entries[] | select(.key != "all") | .value.trials] | add) =
 # How much of the variance each number makes over its range.
 over=(analyze "$scenes/field.toml" --set run.method=moreau --set field.rows=2 --accuracy 0.2 --runs 0 --quiet)
 ranges=(--over forces.propulsion_N=4:9 --over beams.mass_kg=0.1:0.11)
-"$gatewalk" "${over[@]}" "${ranges[@]}" --over-trials 30000 --json over.json || fail "--over"
+"$gatewalk" "${over[@]}" "${ranges[@]}" --over-trials 30000 --json over.json --figure over.svg || fail "--over"
+grep -q 'share of the variance' over.svg || fail "no picture of the variance"
 holds '.variance_shares | .of == "crossed" and (.numbers | length) == 2 and .numbers[0].low == 4 and .trials <= 30000' over.json
 holds '.variance_shares.numbers | .[0].first > 0.8 and .[0].total_95[0] > 0.8 and .[1].total < 0.2 and .[1].first_95[0] < 0.05' over.json
 "$gatewalk" "${over[@]}" "${ranges[@]}" --over-trials 30000 --threads 1 --json - | jq .variance_shares.numbers >one.json
