@@ -142,18 +142,6 @@ class Planner {
     }
     return sum;
   }
-  /// Whether trials of one are worth more than the same of another by more than a standard error.
-  [[nodiscard]] bool clearly_better(const FieldTrials& one, const FieldTrials& other,
-                                    double price) const {
-    double sum = 0.0, squares = 0.0;
-    for (std::size_t i = 0; i < one.endings.size(); ++i) {
-      const double gained = value_of(one, i, price) - value_of(other, i, price);
-      sum += gained;
-      squares += gained * gained;
-    }
-    return sum > 0.0 && sum * sum > squares - sum * sum / static_cast<double>(count_);
-  }
-
   /// Chooses, runs what was chosen, adds its runs, and so on. `known`: plans to begin with.
   [[nodiscard]] Tried best_for(double price, std::vector<Plan> known) {
     for (;;) {
@@ -179,17 +167,9 @@ class Planner {
       const bool settled = !known.empty() && little(most->value(price) - all.back().value(price),
                                                     squares(trials[winner], price));
       trials_.add(trials[winner]);
-      if (settled || trials_.gate_runs() >= options_.most_runs) {
-        // One action all the time unless the other is better by more than a standard error, as
-        // trees are pruned (Breiman et al. 1984, section 3.4.3).
-        const auto alone = std::max_element(all.begin() + 3, all.begin() + 3 + actions(), less);
-        const bool simple = !clearly_better(
-            trials[winner], trials[static_cast<std::size_t>(alone - all.begin())], price);
-        Tried best = std::move(simple ? *alone : *most);
-        best.plan.settled = settled;
-        return best;
-      }
       Tried best = std::move(*most);
+      best.plan.settled = settled;
+      if (settled || trials_.gate_runs() >= options_.most_runs) return best;
       trials_.add(run(
           [&](const Place& at, const Entry& entry) {
             return word(at, 1) % kTries == 0 ? any(at) : best.plan.policy.action(at, entry);
