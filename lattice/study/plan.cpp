@@ -148,7 +148,8 @@ class Planner {
       // Small leaves tell ways to enter apart, large ones know better what each action does there.
       std::vector<Plan> plans;
       for (const int times : kSizes) plans.push_back(choose(times * options_.per_leaf, price));
-      for (int a = 0; a < actions(); ++a) plans.push_back(always(a, plans[2]));
+      // First, so that of several as good ones the simplest is taken.
+      for (int a = actions(); a-- > 0;) plans.insert(plans.begin(), always(a, plans.back()));
       for (Plan& plan : known) plans.push_back(std::move(plan));
       ++rounds_;
       std::vector<FieldTrials> trials;
