@@ -86,6 +86,8 @@ int run_fit(const Arguments& arguments) {
       ranged->ranges(), s.scene->field, s.settled,
       lattice::fit(numbers, problem_at(*ranged, s), observed, how, options.work())};
   const lattice::Fit& fit = fitted.fit;
+  if (!observed.timed.empty() && fit.outcomes.times.empty())
+    options.warn("the times are all alike, or there are none: they tell nothing");
   Json json = to_json(fitted);
   const Json made_by = s.made_by(options);
   json["made_by"] = made_by;

@@ -28,11 +28,10 @@ double best_in(const FoundStart& f, int column) {
 
 std::string verdict(const FoundStart& f) {
   if (f.found.own)
-    return "no start was found that is better than the scene's own by more than chance\n";
+    return "no start was found that is better than the own one by more than chance\n";
   const std::string gain = gain_text(f.found.gain);
-  if (f.found.gain.interval_95[0] > 0.0)
-    return "it gains " + gain + " points over the scene's own start\n";
-  return "it is not shown to gain anything over the scene's own start: " + gain +
+  if (f.found.gain.interval_95[0] > 0.0) return "it gains " + gain + " points over the own start\n";
+  return "it is not shown to gain anything over the own start: " + gain +
          " points; a smaller --accuracy\nshows a smaller gain, if there is one\n";
 }
 

@@ -76,7 +76,8 @@ std::string verdict(const PlannedField& p) {
 
 std::string worst_text(const lattice::Plan& plan) {
   if (!plan.worst_case) return "";
-  return "in the worst case of each row's 95 % set: " + fixed(100.0 * *plan.worst_case, 2) + " %\n";
+  return "with each row 1.96 standard errors worse than counted: " +
+         fixed(100.0 * *plan.worst_case, 2) + " %\n";
 }
 
 /// The action that a policy of gates alone takes in each: (rows x columns).
@@ -237,6 +238,7 @@ Json to_json(const PlannedField& p) {
   if (p.thrift) {
     json["least"] = p.shown.map.section.costs[p.thrift->cost].key;
     json["front"] = front_of(p);
+    json["front_finished"] = p.plan.front_finished;
   }
   json["rounds"] = plan.rounds;
   json["settled"] = plan.settled;

@@ -82,8 +82,9 @@ std::vector<double> time_parts(const std::vector<Observed::Timed>& trials) {
     if (trial.seconds > 0.0) times.push_back(trial.seconds);
   std::sort(times.begin(), times.end());
   for (std::size_t part = 1; part < kTimeParts; ++part) {
-    const std::size_t at = part * times.size() / kTimeParts;
-    if (at == 0 || times[at - 1] == times[at]) continue;
+    std::size_t at = std::max<std::size_t>(1, part * times.size() / kTimeParts);
+    while (at < times.size() && times[at - 1] == times[at]) ++at;
+    if (at >= times.size()) break;
     between.push_back(0.5 * (times[at - 1] + times[at]));
   }
   between.erase(std::unique(between.begin(), between.end()), between.end());

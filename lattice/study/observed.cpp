@@ -224,8 +224,9 @@ void require_at_side(const CountTable& table, const CountTable::Row& row, std::s
 /// When a body left the field.
 double time_of(const CountTable& table, const CountTable::Row& row, std::size_t ending) {
   const auto e = static_cast<markov::Ending>(ending);
-  if (e == markov::Ending::trapped || e == markov::Ending::cut_off) return 0.0;
+  const bool stayed = e == markov::Ending::trapped || e == markov::Ending::cut_off;
   const std::string& text = table.at(row, "time_s");
+  if (stayed && text.empty()) return 0.0;
   double value = 0.0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
   if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value) ||
@@ -233,7 +234,7 @@ double time_of(const CountTable& table, const CountTable::Row& row, std::size_t 
     table.refuse(row.line, "column time_s: " + (text.empty() ? "nothing" : quoted(text)) +
                                " is not permitted: must be the seconds until the body left the "
                                "field, above 0");
-  return value;
+  return stayed ? 0.0 : value;
 }
 
 void add_lines(Observed& observed, const CountTable& table, const FieldParams& field) {

@@ -111,14 +111,18 @@ class Planner {
     Plan plan;
     double price = 0.0;
     std::int64_t crossed = 0;
-    double spent = 0.0;  // of all these trials
+    double spent = 0.0;    // of all these trials
+    double squares = 0.0;  // of what each was worth at the price
 
     [[nodiscard]] double value(double at_price) const {
       return static_cast<double>(crossed) - at_price * spent;
     }
   };
   [[nodiscard]] Tried tried(Plan plan, double price, const FieldTrials& trials) const {
-    Tried all{std::move(plan), price, crossings_of(trials).crossed};
+    Tried all{.plan = std::move(plan),
+              .price = price,
+              .crossed = crossings_of(trials).crossed,
+              .squares = squares(trials, price)};
     for (const Costs& costs : trials.costs)
       if (options_.thrift) all.spent += costs[options_.thrift->cost];
     return all;
@@ -199,8 +203,10 @@ class Planner {
       const Tried& last = front.back();
       const double price = static_cast<double>(last.crossed) / last.spent;
       Tried next = best_for(price, {last.plan});
-      const bool gains = next.value(price) > 0.5 * options_.accuracy * static_cast<double>(count_);
-      if (!gains || next.spent >= last.spent) break;
+      if (little(next.value(price), next.squares) || next.spent >= last.spent) {
+        front_finished_ = true;
+        break;
+      }
       front.push_back(std::move(next));
     }
     std::vector<char> closed(front.size(), 0);  // nothing lies between this one and the next
@@ -468,6 +474,7 @@ class Planner {
                    other.spent.mean <= point.spent.mean;
           }))
         plan.front.erase(plan.front.begin() + static_cast<std::ptrdiff_t>(i));
+    plan.front_finished = front_finished_;
     plan.rounds = rounds_;
     plan.gate_runs = trials_.gate_runs();
     plan.health = trials_.health();
@@ -504,6 +511,7 @@ class Planner {
   ChosenTrials trials_;
   std::int64_t count_;  // trials of a plan in a round
   int rounds_ = 0;
+  bool front_finished_ = false;
 };
 
 }  // namespace

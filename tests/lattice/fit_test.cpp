@@ -124,6 +124,19 @@ TEST(Fit, TimesTellWhatEndingsDoNot) {
   EXPECT_FALSE(fit(1, problem_at, o, {.trials = 200'000, .seed = 2}).numbers[0].told);
 }
 
+TEST(Fit, PartsOfTimesLieBetweenThoseThatDiffer) {
+  Observed o;
+  for (int i = 0; i < 300; ++i) {
+    const bool crosses = i < 100;
+    const auto ending = crosses ? markov::Ending::far_edge : markov::Ending::trapped;
+    o.timed.push_back({static_cast<std::size_t>(ending), -1, !crosses ? 0.0 : i < 30 ? 7.0 : 8.0});
+    ++o.seen.endings[static_cast<std::size_t>(ending)];
+  }
+  const auto problem_at = [](const std::vector<double>& x) { return waiting_lane(0.5 + x[0]); };
+  EXPECT_EQ(fit(1, problem_at, o, {.trials = 20'000, .seed = 2}).outcomes.times,
+            std::vector<double>{7.5});
+}
+
 // By simulation: 60 experiments whose rates are drawn from the range.
 TEST(Fit, IntervalsOfTimesHoldWhatTheyShould) {
   int held = 0;

@@ -168,6 +168,8 @@ TEST_F(CountsFile, OfTimes) {
                   .find("x.csv:2: column time_s: "),
               std::string::npos)
         << wrong;
+  EXPECT_EQ(refusal("trial,ending,time_s\n1,trapped,hello\n").substr(0, 24),
+            "x.csv:2: column time_s: ");
   EXPECT_NE(refusal("trial,gate_x,gate_y,time_s\n1,0,0,1\n").find("the columns must be"),
             std::string::npos);
 }

@@ -64,7 +64,7 @@ expect 2 "'heat_J' is none of time_s, forward_m, work_J, random_work_J, lost_J" 
 expect 2 '--points: only with --least' "$gatewalk" plan "${least[@]}" --points 3
 expect 2 '--chance: must lie between 0 and 1' "$gatewalk" plan "${least[@]}" --least time_s --chance 1
 # What is best in the worst case, and how bad that is.
-expect 0 "^in the worst case of each row's 95 % set: [0-9.]* %$" "$gatewalk" plan "${sides[@]}" --accuracy 0.05 --robust --json robust.json --policy robust.policy.json
+expect 0 "^with each row 1.96 standard errors worse than counted: [0-9.]* %$" "$gatewalk" plan "${sides[@]}" --accuracy 0.05 --robust --json robust.json --policy robust.policy.json
 holds '.worst_case >= 0 and .worst_case < .interval_95[1] and .chain == null' robust.json
 holds 'has("worst_case") | not' sides.json
 "$gatewalk" lattice "${sides[@]}" --policy robust.policy.json --trials 2000 --seed 3 --quiet --json run.json --force
