@@ -58,8 +58,8 @@ struct PlanOptions {
   int per_leaf = dynamics::kEntriesPerLeaf;
   std::uint64_t seed = 1;
   std::optional<ThriftOptions> thrift{};
-  /// Policies that are best where each row of the matrices is as bad as its runs leave possible
-  /// with 95 %, all rows at once (markov::Doubt); not with thrift.
+  /// Policies that are best where the mean of each row of the matrices is 1.96 standard errors
+  /// worse than was counted, all rows at once (markov::Doubt); not with thrift.
   bool robust = false;
 };
 
