@@ -84,23 +84,23 @@ void add_ranges(Options& options) {
                     "full trials for that, at most, all together (default: 200000)");
 }
 
-std::optional<lattice::RangedScene> over_of(const Options& options, const Subject& s) {
+std::optional<Ranged> over_of(const Options& options, const Subject& s) {
   auto ranged = ranges_of(options, s, "over", lattice::kMostVaried);
   if (!options.has("over-trials")) return ranged;
   if (!ranged) throw UsageError("--over-trials: is for --over");
   (void)options.count("over-trials",
-                      lattice::least_trials_of_shares(static_cast<int>(ranged->ranges().size())));
+                      lattice::least_trials_of_shares(static_cast<int>(ranged->ranges.size())));
   return ranged;
 }
 
-SharesAnswer shares_of(const Options& options, const std::optional<lattice::RangedScene>& ranged,
+SharesAnswer shares_of(const Options& options, const std::optional<Ranged>& ranged,
                        const Subject& s, markov::Ending target) {
   if (!ranged) return {};
   lattice::VarianceSharesOptions how{.seed = options.seed()};
   if (options.has("over-trials")) how.trials = options.count("over-trials");
   RangedShares shares{
-      ranged->ranges(), target,
-      lattice::variance_shares(static_cast<int>(ranged->ranges().size()), problem_at(*ranged, s),
+      ranged->ranges, target,
+      lattice::variance_shares(static_cast<int>(ranged->ranges.size()), problem_at(*ranged, s),
                                target, how, options.work())};
   SharesAnswer answer{{},
                       cli::to_json(shares),

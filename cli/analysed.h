@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
+#include "cli/ranged.h"
 #include "cli/render/json.h"
 #include "cli/render/variance_shares.h"
 #include "cli/subject.h"
 #include "lattice/pool/costed_chain.h"
-#include "lattice/scene/ranges.h"
 #include "lattice/study/analysis.h"
 #include "lattice/study/parameter_effects.h"
 #include "lattice/study/prediction.h"
@@ -42,7 +42,7 @@ struct AnalysedSubject {
 /// Declares --over and --over-trials.
 void add_ranges(Options& options);
 /// The scene over the ranges of --over; none without them. Throws UsageError and SceneError.
-[[nodiscard]] std::optional<lattice::RangedScene> over_of(const Options& options, const Subject& s);
+[[nodiscard]] std::optional<Ranged> over_of(const Options& options, const Subject& s);
 /// How much of the variance of the target's chance over them each number makes; null without them.
 struct SharesAnswer {
   std::optional<RangedShares> shares;
@@ -50,8 +50,7 @@ struct SharesAnswer {
   std::string table;
   bool clean = true;
 };
-[[nodiscard]] SharesAnswer shares_of(const Options& options,
-                                     const std::optional<lattice::RangedScene>& ranged,
+[[nodiscard]] SharesAnswer shares_of(const Options& options, const std::optional<Ranged>& ranged,
                                      const Subject& s, markov::Ending target);
 
 }  // namespace gatewalk::cli

@@ -3,6 +3,9 @@
 
 #include <filesystem>
 
+#include "cli/render/observed.h"
+#include "lattice/cells/recorded_pool.h"
+
 namespace gatewalk::cli {
 namespace {
 
@@ -12,6 +15,48 @@ std::string file_of_draw(const std::string& path, std::int64_t draw) {
   const std::size_t at =
       dot == path.npos || (slash != path.npos && dot < slash) ? path.size() : dot;
   return path.substr(0, at) + "-" + std::to_string(draw) + path.substr(at);
+}
+
+/// Endings that the table has no row of count as 0; empty if it has all.
+std::string not_listed(const lattice::Observed& observed, const lattice::FieldParams& field) {
+  std::string names;
+  if (!observed.seen.has_endings()) return names;
+  for (const lattice::EndingName& e : lattice::kEndingNames)
+    if (!observed.listed[static_cast<std::size_t>(e.ending)] &&
+        (e.ending != markov::Ending::cut_off || field.max_gates > 0))
+      names += (names.empty() ? "" : ", ") + std::string(e.name);
+  return names.empty() ? names : "the counts do not list " + names + ": taken as 0";
+}
+
+lattice::FitData of_passages(const Options& options, const Subject& s,
+                             const lattice::Problem& problem, const std::string& path) {
+  refuse(options, {"start"}, "for passages, which begin as they were seen to");
+  lattice::CellFile cells = s.cells ? *s.cells : lattice::cells_of(problem);
+  const lattice::RecordedRuns runs =
+      lattice::read_runs(path, cells, lattice::CostColumns::as_there_are);
+  if (runs.lost > 0)
+    options.warn(
+        std::to_string(runs.lost) + " of " + std::to_string(runs.passages.size()) +
+        " passages were lost and are left out: that is right if losing bodies has nothing to do "
+        "with how they get on");
+  lattice::FitData data = lattice::passages_to_fit(lattice::entered_passages(runs), problem);
+  if (data.inside > 0)
+    options.warn(std::to_string(data.inside) + " of " + std::to_string(runs.passages.size()) +
+                 " passages begin with the body in an obstacle of the scene: places in the table "
+                 "are off, or "
+                 "obstacles in the scene");
+  return data;
+}
+
+lattice::FitData of_trials(const Options& options, const lattice::Problem& problem,
+                           const std::string& path) {
+  const lattice::Observed observed = lattice::read_observed({path}, problem.field);
+  options.warn(who_went_back(observed));
+  options.warn(not_listed(observed, problem.field));
+  lattice::FitData data = lattice::trials_to_fit(observed, problem);
+  if (!observed.timed.empty() && data.outcomes.times.empty())
+    options.warn("the times are all alike, or there are none: they tell nothing");
+  return data;
 }
 
 }  // namespace
@@ -34,14 +79,10 @@ std::vector<std::string> files_of_draws(const Options& options, std::int64_t cou
   return files;
 }
 
-std::string not_listed(const lattice::Observed& observed, const lattice::FieldParams& field) {
-  std::string names;
-  if (!observed.seen.has_endings()) return names;
-  for (const lattice::EndingName& e : lattice::kEndingNames)
-    if (!observed.listed[static_cast<std::size_t>(e.ending)] &&
-        (e.ending != markov::Ending::cut_off || field.max_gates > 0))
-      names += (names.empty() ? "" : ", ") + std::string(e.name);
-  return names.empty() ? names : "the counts do not list " + names + ": taken as 0";
+lattice::FitData data_to_fit(const Options& options, const Subject& s,
+                             const lattice::Problem& problem, const std::string& path) {
+  return lattice::is_table_of_runs(path) ? of_passages(options, s, problem, path)
+                                         : of_trials(options, problem, path);
 }
 
 }  // namespace gatewalk::cli

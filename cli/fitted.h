@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "lattice/study/observed.h"
+#include "cli/subject.h"
+#include "lattice/study/fit_data.h"
 
 namespace gatewalk::cli {
 
@@ -15,8 +16,11 @@ namespace gatewalk::cli {
 /// read by the command, or another output of it.
 [[nodiscard]] std::vector<std::string> files_of_draws(const Options& options, std::int64_t count);
 
-/// Endings that the table has no row of count as 0; empty if it has all.
-[[nodiscard]] std::string not_listed(const lattice::Observed& observed,
-                                     const lattice::FieldParams& field);
+/// What an experiment saw of the subject, from a table of counts, of trials, or of passages; and
+/// warns of what it leaves out. `problem`: of the subject, with all types of cells if it is of
+/// passages (is_table_of_runs). Throws UsageError, and std::invalid_argument.
+[[nodiscard]] lattice::FitData data_to_fit(const Options& options, const Subject& s,
+                                           const lattice::Problem& problem,
+                                           const std::string& path);
 
 }  // namespace gatewalk::cli

@@ -1,20 +1,78 @@
 // SPDX-License-Identifier: MIT
 #include "cli/ranged.h"
 
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "cli/cells/program.h"
 #include "lattice/scene/scene_problem.h"
+#include "lattice/scene/terrain.h"
 
 namespace gatewalk::cli {
+namespace {
 
-std::optional<lattice::RangedScene> ranges_of(const Options& options, const Subject& s,
-                                              const std::string& option, int most) {
+std::string parameter_of(const lattice::NumberRange& range) {
+  return range.key.substr(lattice::kParameters.size());
+}
+
+/// Numbers of a program are as the program permits.
+std::vector<lattice::NumberRange> ranges_in_program(const Options& options, const Subject& s,
+                                                    const std::vector<std::string>& given,
+                                                    const std::string& option) {
+  const auto* const program = dynamic_cast<const ProgramCell*>(s.problem.cells.cells.front().get());
+  if (program == nullptr)
+    throw UsageError(option +
+                     ": a cell is given, and numbers are those of a program, --cell-program");
+  std::vector<lattice::NumberRange> ranges;
+  for (const std::string& text : given) {
+    const lattice::NumberRange range = lattice::range_in(text, option);
+    const std::string origin = option + " " + text;
+    if (!range.key.starts_with(lattice::kParameters))
+      throw UsageError(origin + ": numbers of a program are " + std::string(lattice::kParameters) +
+                       "KEY");
+    for (const lattice::NumberRange& other : ranges)
+      if (other.key == range.key)
+        throw UsageError(origin + ": " + range.key + " is varied already");
+    for (const std::string& set : options.overrides())
+      if (set.starts_with(range.key + "="))
+        throw UsageError("--set " + set + " has no effect: " + range.key + " is varied (" + origin +
+                         ")");
+    for (const double end : {range.low, range.high}) try {
+        (void)program->with({{parameter_of(range), end}});
+      } catch (const std::invalid_argument& e) {
+        throw UsageError(origin + ": " + e.what());
+      }
+    ranges.push_back(range);
+  }
+  return ranges;
+}
+
+/// With its cell at a point of the ranges.
+lattice::Problem program_at(const Ranged& ranged, const Subject& s,
+                            const std::vector<double>& point) {
+  std::vector<dynamics::Cell::Number> numbers;
+  for (std::size_t k = 0; k < point.size(); ++k)
+    numbers.push_back({parameter_of(ranged.ranges[k]), ranged.ranges[k].at(point[k])});
+  lattice::Problem problem = s.problem;
+  problem.cells.cells = {
+      dynamic_cast<const ProgramCell&>(*s.problem.cells.cells.front()).with(numbers)};
+  return problem;
+}
+
+}  // namespace
+
+std::optional<Ranged> ranges_of(const Options& options, const Subject& s, const std::string& option,
+                                int most) {
   const auto given = options.texts(option);
   const std::string shown = "--" + option;
   if (given.empty()) return {};
-  if (!s.scene || s.file)
-    throw UsageError(shown + ": is for a scene of gates, whose numbers vary; " + s.path +
-                     " is none");
+  if (s.file || s.is_recorded())
+    throw UsageError(shown + ": is for a scene, or a program's cells, whose numbers vary; " +
+                     s.path + " is a matrix");
   if (std::ssize(given) > most)
     throw UsageError(shown + ": at most " + std::to_string(most) + " numbers can vary");
+  if (!s.scene) return Ranged{ranges_in_program(options, s, given, shown)};
   lattice::RangedScene ranged(lattice::scene_text(s.path), s.path, options.overrides(), given,
                               shown);
   for (const lattice::NumberRange& r : ranged.ranges()) {
@@ -25,12 +83,11 @@ std::optional<lattice::RangedScene> ranges_of(const Options& options, const Subj
       throw UsageError(shown + " " + r.key +
                        ": varies what run.method = \"auto\" chooses; name a method");
   }
-  return ranged;
+  return Ranged{ranged.ranges(), std::move(ranged)};
 }
 
-lattice::Scene scene_at(const lattice::RangedScene& ranged, const Subject& s,
-                        const std::vector<double>& point) {
-  lattice::Scene scene = ranged.at(point);
+lattice::Scene scene_at(const Ranged& ranged, const Subject& s, const std::vector<double>& point) {
+  lattice::Scene scene = ranged.scene->at(point);
   if (s.settled) {
     const dynamics::RunParams& chosen = s.scene->gate.run;
     scene.gate.run.method = chosen.method;
@@ -44,9 +101,13 @@ lattice::Scene scene_at(const lattice::RangedScene& ranged, const Subject& s,
   return scene;
 }
 
-lattice::ProblemAt problem_at(const lattice::RangedScene& ranged, const Subject& s) {
-  return [&ranged, &s](const std::vector<double>& point) {
-    return lattice::problem_of(scene_at(ranged, s, point));
+lattice::ProblemAt problem_at(const Ranged& ranged, const Subject& s, CellTypes types) {
+  return [&ranged, &s, types](const std::vector<double>& point) {
+    if (!ranged.scene) return program_at(ranged, s, point);
+    lattice::Scene scene = scene_at(ranged, s, point);
+    if (scene.gate.run.method == "auto") scene.gate.run.method = "paper";  // not chosen yet
+    return types == CellTypes::all ? lattice::problem_with_all_types(scene)
+                                   : lattice::problem_of(scene);
   };
 }
 

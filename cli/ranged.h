@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A scene of gates whose numbers vary, each over a range: of analyze --over and fit --free.
+/// Numbers of a scene of gates, or of a program that carries out cells, which vary, each over a
+/// range: of analyze --over and fit --free.
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/subject.h"
 #include "lattice/scene/ranges.h"
@@ -11,16 +13,24 @@
 
 namespace gatewalk::cli {
 
-/// The scene over the ranges of this option, at most so many; none without it. Throws UsageError
-/// and SceneError.
-[[nodiscard]] std::optional<lattice::RangedScene> ranges_of(const Options& options,
-                                                            const Subject& s,
-                                                            const std::string& option, int most);
+struct Ranged {
+  std::vector<lattice::NumberRange> ranges;
+  std::optional<lattice::RangedScene> scene{};  // of gates; else of a program
+};
 
-/// The scene at a point of the ranges, started where the subject is and by the method that was
-/// chosen for it. What is given outlives it.
-[[nodiscard]] lattice::Scene scene_at(const lattice::RangedScene& ranged, const Subject& s,
+/// The subject over the ranges of this option, at most so many; none without it. Throws UsageError
+/// and SceneError.
+[[nodiscard]] std::optional<Ranged> ranges_of(const Options& options, const Subject& s,
+                                              const std::string& option, int most);
+
+/// The scene of gates at a point of the ranges, started where the subject is and by the method that
+/// was chosen for it.
+[[nodiscard]] lattice::Scene scene_at(const Ranged& ranged, const Subject& s,
                                       const std::vector<double>& point);
-[[nodiscard]] lattice::ProblemAt problem_at(const lattice::RangedScene& ranged, const Subject& s);
+/// What is given outlives it. Cells: a type for each of a map's, or also for those that stand
+/// nowhere, in the order of the scene.
+enum class CellTypes { of_the_map, all };
+[[nodiscard]] lattice::ProblemAt problem_at(const Ranged& ranged, const Subject& s,
+                                            CellTypes types = CellTypes::of_the_map);
 
 }  // namespace gatewalk::cli

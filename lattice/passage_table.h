@@ -21,6 +21,12 @@ struct CellPassage {
   dynamics::Costs costs{};
 };
 
+/// A passage, and the entry by which it began.
+struct EnteredPassage {
+  dynamics::Entry from{};
+  CellPassage passage{};
+};
+
 class PassageTable {
  public:
   PassageTable() = default;

@@ -5,8 +5,7 @@
 #include "cli/fitted.h"
 #include "cli/ranged.h"
 #include "cli/render/json.h"
-#include "cli/render/observed.h"
-#include "lattice/scene/scene_problem.h"
+#include "lattice/cells/recorded.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -21,32 +20,35 @@ std::vector<double> point_of(const Eigen::MatrixXd& draws, Eigen::Index draw) {
 
 int run_fit(const Arguments& arguments) {
   Options options(
-      "fit SCENE COUNTS.csv --free KEY=LOW:HIGH [options]",
+      "fit SCENE SEEN.csv --free KEY=LOW:HIGH [options]",
       "Which numbers of the scene an experiment speaks for: their posterior, all of them anywhere "
       "in their\n"
       "ranges alike before. The chances of final gates and endings come from full trials at points "
       "of the\n"
       "ranges, more and more of them where the counts are likely. Counts: as of validate "
       "--observed, of one start;\n"
-      "lines of trials may have time_s, when a body left the field.",
+      "lines of trials may have time_s, when a body left the field. Of recorded passages "
+      "(runs.csv) each is\n"
+      "carried out from where it began. Cells of a program: its numbers, parameters.KEY.",
       "gatewalk fit scenes/field.toml counts.csv --free forces.propulsion_N=5:9 --free "
       "forces.random_N=10:40");
   options.scene();
   options.positional(
       "counts",
       "what the experiment saw (CSV: gate_x,gate_y,count; ending,count; or, for both, "
-      "trial,ending,gate_x,gate_y; also with time_s)",
+      "trial,ending,gate_x,gate_y; also with time_s; or passages: runs.csv)",
       true);
   options.add_texts("free", "KEY=LOW:HIGH",
                     "a number of the scene and its range (at most " +
                         std::to_string(lattice::kMostFitted) + "; may be repeated)");
   options.add_count("trials", "N",
-                    "full trials, all points together; " +
+                    "full trials, or passages, all points together; " +
                         std::to_string(lattice::least_trials_of_fit(1)) +
                         " or more for each number",
                     "400000");
   options.add_texts("start", "D,VX,VY", "where bodies started (default: the scene's start)");
   options.add_seed();
+  add_cell_program(options);
   options.output_file(
       "output", "FILE.toml",
       "write the scene in which the counts are likeliest, with --scenes others too");
@@ -60,15 +62,19 @@ int run_fit(const Arguments& arguments) {
   options.add_strict();
   options.add_figure("the posterior of each number and of each pair");
   if (!options.parse(arguments)) return kFine;
-  Subject s = scene_to_run(options, "counts are");
+  Subject s = field_to_run(options, "what was seen is");
   const auto ranged = ranges_of(options, s, "free", lattice::kMostFitted);
   if (!ranged) throw UsageError("--free KEY=LOW:HIGH says which numbers are to be found: give one");
-  const auto numbers = static_cast<int>(ranged->ranges().size());
-  const std::vector<double> middle(ranged->ranges().size(), 0.5);
-  for (const std::string& text :
-       lattice::keys_without_effect(ranged->at(middle), lattice::RunsFrom::everywhere))
-    for (const lattice::NumberRange& r : ranged->ranges())
-      if (text.starts_with(r.key + " ")) throw UsageError("--free " + text);
+  const auto numbers = static_cast<int>(ranged->ranges.size());
+  const std::vector<double> middle(ranged->ranges.size(), 0.5);
+  if (ranged->scene) {
+    for (const std::string& text :
+         lattice::keys_without_effect(ranged->scene->at(middle), lattice::RunsFrom::everywhere))
+      for (const lattice::NumberRange& r : ranged->ranges)
+        if (text.starts_with(r.key + " ")) throw UsageError("--free " + text);
+  } else if (options.has("output")) {
+    throw UsageError("-o: writes scenes of gates; a program's numbers are given by --set");
+  }
   const lattice::FitOptions how{
       .trials = options.count("trials", lattice::least_trials_of_fit(numbers)),
       .seed = options.seed()};
@@ -77,17 +83,15 @@ int run_fit(const Arguments& arguments) {
   std::vector<std::string> scenes;
   if (options.has("scenes"))
     scenes = files_of_draws(options, options.count("scenes", 1, kMostScenes));
-  const lattice::Observed observed =
-      lattice::read_observed({options.text("counts")}, s.scene->field);
-  options.warn(who_went_back(observed));
-  options.warn(not_listed(observed, s.scene->field));
+  const std::string seen = options.text("counts");
+  const lattice::ProblemAt at = problem_at(
+      *ranged, s, lattice::is_table_of_runs(seen) ? CellTypes::all : CellTypes::of_the_map);
+  const lattice::Problem problem = at(middle);
+  const lattice::FitData data = data_to_fit(options, s, problem, seen);
   s.settle(options);
-  const FittedScene fitted{
-      ranged->ranges(), s.scene->field, s.settled,
-      lattice::fit(numbers, problem_at(*ranged, s), observed, how, options.work())};
+  const FittedScene fitted{ranged->ranges, problem.field, s.settled,
+                           lattice::fit(numbers, at, data, how, options.work())};
   const lattice::Fit& fit = fitted.fit;
-  if (!observed.timed.empty() && fit.outcomes.times.empty())
-    options.warn("the times are all alike, or there are none: they tell nothing");
   Json json = to_json(fitted);
   const Json made_by = s.made_by(options);
   json["made_by"] = made_by;

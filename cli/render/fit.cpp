@@ -24,7 +24,9 @@ constexpr std::size_t kMostShown = 3;  // groups of outcomes that differ most
 /// When bodies of an outcome left: " within 2 s", " from 2 s to 3 s", " after 3 s".
 std::string time_of(const lattice::FittedOutcomes& of, std::size_t outcome) {
   if (of.times.empty()) return "";
-  if (of.endings) {
+  if (of.is_of_passages()) {
+    if (outcome / of.parts() % (of.faces.size() + 1) == of.faces.size()) return "";
+  } else if (of.endings) {
     const auto ending =
         static_cast<markov::Ending>(outcome / of.parts() / std::max<std::size_t>(1, of.gates));
     if (ending == markov::Ending::trapped || ending == markov::Ending::cut_off) return "";
@@ -36,11 +38,15 @@ std::string time_of(const lattice::FittedOutcomes& of, std::size_t outcome) {
   return " from " + time(of.times[part - 1]) + " to " + time(of.times[part]);
 }
 
-/// An outcome in words: "trapped in (0, 3)", "crossed", "(0, 3)".
+/// An outcome in words: "trapped in (0, 3)", "crossed", "(0, 3)"; of passages "to RT", "trapped".
 std::string words_of(const FittedScene& f, std::size_t outcome) {
   const lattice::FittedOutcomes& of = f.fit.outcomes;
   const std::string time = time_of(of, outcome);
   outcome /= of.parts();
+  if (of.is_of_passages()) {
+    const std::size_t to = outcome % (of.faces.size() + 1);
+    return to < of.faces.size() ? "to " + of.faces[to] + time : "trapped";
+  }
   std::string words;
   if (of.endings) {
     const auto ending = static_cast<markov::Ending>(of.gates == 0 ? outcome : outcome / of.gates);
@@ -56,9 +62,14 @@ std::string words_of(const FittedScene& f, std::size_t outcome) {
          time;
 }
 std::string words_of(const FittedScene& f, const lattice::OutcomeGroup& group) {
-  const std::string first = words_of(f, group.outcomes.front()),
-                    last = words_of(f, group.outcomes.back());
-  return first == last ? first : first + " to " + last;
+  const std::size_t front = group.outcomes.front(), back = group.outcomes.back();
+  const std::string first = words_of(f, front), last = words_of(f, back);
+  const lattice::FittedOutcomes& of = f.fit.outcomes;
+  if (!of.is_of_passages()) return first == last ? first : first + " to " + last;
+  const std::string &begin = of.begins[front / of.together()],
+                    &other = of.begins[back / of.together()];
+  if (front == back) return begin + ": " + first;
+  return begin + ": " + first + " ... " + (begin == other ? "" : other + ": ") + last;
 }
 
 /// How far a count lies from what is expected, by chance alone.
@@ -71,11 +82,15 @@ std::string in_range(const FittedScene& f, std::size_t k, double at) {
   const lattice::NumberRange& r = f.ranges[k];
   const double step = 1e-3 * (r.high - r.low);
   const int decimals = static_cast<int>(std::ceil(-std::log10(step)));
-  return decimals > 9 || decimals < -3 ? digits(f.value(k, at))
-                                       : fixed(f.value(k, at), std::max(0, decimals));
+  return decimals > 9 || decimals < -3 ? digits(f.ranges[k].at(at))
+                                       : fixed(f.ranges[k].at(at), std::max(0, decimals));
 }
 
 }  // namespace
+
+std::string counted(const FittedScene& f) {
+  return f.fit.outcomes.is_of_passages() ? "passages" : "trials";
+}
 
 Json to_json(const FittedScene& f) {
   const lattice::Fit& fit = f.fit;
@@ -84,7 +99,7 @@ Json to_json(const FittedScene& f) {
   for (std::size_t k = 0; k < f.ranges.size(); ++k) {
     const lattice::FittedNumber& n = fit.numbers[k];
     const lattice::NumberRange& r = f.ranges[k];
-    const auto at = [&](double x) { return f.value(k, x); };
+    const auto at = [&](double x) { return f.ranges[k].at(x); };
     json["numbers"].push_back({{"key", r.key},
                                {"low", r.low},
                                {"high", r.high},
@@ -103,6 +118,7 @@ Json to_json(const FittedScene& f) {
     json["correlation"].push_back(std::vector<double>(row.begin(), row.end()));
   json["p"] = fit.p;
   json["observed"] = fit.observed;
+  json["of"] = counted(f);
   json["outcomes"] = Json::array();
   for (const lattice::OutcomeGroup& g : fit.groups)
     json["outcomes"].push_back({{"outcomes", words_of(f, g)},
@@ -153,8 +169,9 @@ std::string table_of(const FittedScene& f) {
         table += "these data tell " + f.ranges[other].key + " and " + key +
                  " only together: correlation " + fixed(c, 2) + "\n";
   }
-  table += std::to_string(fit.observed) + " observed trials; of experiments like this one " +
-           percent(fit.p, 1.0) + " are further from what is expected (" + p_words(fit.p) + ")\n";
+  table += std::to_string(fit.observed) + " observed " + counted(f) +
+           "; of experiments like this one " + percent(fit.p, 1.0) +
+           " are further from what is expected (" + p_words(fit.p) + ")\n";
   if (fit.p < kUnexplained) {
     std::vector<lattice::OutcomeGroup> sorted = fit.groups;
     std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
@@ -186,8 +203,9 @@ std::vector<std::string> warnings_of(const FittedScene& f) {
              ", where its range ends: a wider one tells, if that is permitted");
   }
   if (fit.never > 0)
-    warn(std::to_string(fit.never) + " of " + std::to_string(fit.observed) +
-         " observed trials ended as none of the model did where their numbers are likeliest: they "
+    warn(std::to_string(fit.never) + " of " + std::to_string(fit.observed) + " observed " +
+         counted(f) +
+         " ended as none of the model did where their numbers are likeliest: they "
          "are counted with their neighbours");
   for (std::size_t k = 0; k < f.ranges.size(); ++k)
     if (const lattice::FittedNumber& n = fit.numbers[k];
@@ -211,7 +229,7 @@ std::string draws_csv(const FittedScene& f) {
   text += "log_likelihood\n";
   for (Eigen::Index i = 0; i < f.fit.draws.rows(); ++i) {
     for (std::size_t k = 0; k < f.ranges.size(); ++k)
-      text += digits(f.value(k, f.fit.draws(i, static_cast<Eigen::Index>(k)))) + ",";
+      text += digits(f.ranges[k].at(f.fit.draws(i, static_cast<Eigen::Index>(k)))) + ",";
     text += digits(f.fit.log_likelihoods[i]) + "\n";
   }
   return text;
@@ -272,7 +290,7 @@ std::string inference_data(const FittedScene& f, const Json& made_by) {
   for (std::size_t k = 0; k < f.ranges.size(); ++k) {
     std::vector<double> values;
     for (const double x : fit.draws.col(static_cast<Eigen::Index>(k)))
-      values.push_back(f.value(k, x));
+      values.push_back(f.ranges[k].at(x));
     put(posterior.id, f.ranges[k].key, {posterior.chain, posterior.draw}, values,
         "uniform from " + lattice::shortest(f.ranges[k].low) + " to " +
             lattice::shortest(f.ranges[k].high) + " before the data");
@@ -286,11 +304,11 @@ std::string inference_data(const FittedScene& f, const Json& made_by) {
   for (const auto row : fit.predicted.rowwise())
     counts.insert(counts.end(), row.begin(), row.end());
   put(predictive.id, "count", {predictive.chain, predictive.draw, predictive.outcome}, counts,
-      "trials of an experiment like it that end so");
+      counted(f) + " of an experiment like it that end so");
   const Group observed = group("observed_data", false, true);
   std::vector<double> seen;
   for (const lattice::OutcomeGroup& g : fit.groups) seen.push_back(static_cast<double>(g.observed));
-  put(observed.id, "count", {observed.outcome}, seen, "observed trials that ended so");
+  put(observed.id, "count", {observed.outcome}, seen, "observed " + counted(f) + " that ended so");
   const std::vector<char> bytes = nc.close_image();
   return {bytes.begin(), bytes.end()};
 }

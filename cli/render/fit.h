@@ -20,13 +20,10 @@ struct FittedScene {
   lattice::FieldParams field;
   std::optional<lattice::Settled> method;  // that was chosen
   lattice::Fit fit;
-
-  /// Of a number in its unit.
-  [[nodiscard]] double value(std::size_t number, double at) const {
-    return ranges[number].low + at * (ranges[number].high - ranges[number].low);
-  }
 };
 
+/// What was seen and run: "trials", or "passages".
+[[nodiscard]] std::string counted(const FittedScene& f);
 [[nodiscard]] Json to_json(const FittedScene& f);
 [[nodiscard]] std::string table_of(const FittedScene& f);
 /// A line for each draw: the numbers in their units, and the log likelihood.

@@ -20,7 +20,8 @@ std::array<double, 2> shown_range(const FittedScene& f, std::size_t k) {
   const double low = sorted[sorted.size() / 1000],
                high = sorted[sorted.size() - 1 - sorted.size() / 1000];
   const double margin = std::max(0.1 * (high - low), 1e-6);
-  return {f.value(k, std::max(0.0, low - margin)), f.value(k, std::min(1.0, high + margin))};
+  return {f.ranges[k].at(std::max(0.0, low - margin)),
+          f.ranges[k].at(std::min(1.0, high + margin))};
 }
 
 std::size_t bin_of(double x, const std::array<double, 2>& range) {
@@ -75,7 +76,7 @@ Figure figure_of(const FittedScene& f) {
   const Sheet sheet{static_cast<int>(kTop + static_cast<double>(numbers) * (side + kGap) + 60)};
   std::string out =
       std::string("set multiplot\n") + kSequential +
-      sheet.text("posterior after " + std::to_string(f.fit.observed) + " trials; dashed: 95 %", 8,
+      sheet.text("posterior after " + std::to_string(f.fit.observed) + " " + counted(f) + "; dashed: 95 %", 8,
                  18);
   if (numbers > 2)
     for (std::size_t k = 0; k < numbers; ++k)
@@ -97,7 +98,7 @@ Figure figure_of(const FittedScene& f) {
       if (right == down) {
         std::vector<double> counts(kBins, 0.0);
         for (Eigen::Index i = 0; i < draws; ++i)
-          counts[bin_of(f.value(down, f.fit.draws(i, static_cast<Eigen::Index>(down))),
+          counts[bin_of(f.ranges[down].at(f.fit.draws(i, static_cast<Eigen::Index>(down))),
                         ranges[down])] += 1.0;
         std::string data;
         for (std::size_t b = 0; b < kBins; ++b)
@@ -105,7 +106,7 @@ Figure figure_of(const FittedScene& f) {
         const lattice::FittedNumber& n = f.fit.numbers[down];
         out += data_block(name, data) + "set border 1\nunset ytics\nset ylabel\nset yrange [0:*]\n";
         for (const double end : n.interval) {
-          const std::string x = digits(f.value(down, end));
+          const std::string x = digits(f.ranges[down].at(end));
           out += "set arrow from " + x + ", graph 0 to " + x +
                  ", graph 1 nohead front dt 2 lw 1.2 lt -1\n";
         }
@@ -114,10 +115,10 @@ Figure figure_of(const FittedScene& f) {
       } else {
         std::vector<double> counts(kBins * kBins, 0.0);
         for (Eigen::Index i = 0; i < draws; ++i)
-          counts[bin_of(f.value(down, f.fit.draws(i, static_cast<Eigen::Index>(down))),
+          counts[bin_of(f.ranges[down].at(f.fit.draws(i, static_cast<Eigen::Index>(down))),
                         ranges[down]) *
                      kBins +
-                 bin_of(f.value(right, f.fit.draws(i, static_cast<Eigen::Index>(right))),
+                 bin_of(f.ranges[right].at(f.fit.draws(i, static_cast<Eigen::Index>(right))),
                         ranges[right])] += 1.0;
         std::string data;
         for (std::size_t b = 0; b < counts.size(); ++b)

@@ -10,9 +10,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -143,6 +145,12 @@ class Lines {
   std::size_t begin_ = 0, end_ = 0;  // of what is left in it
 };
 
+/// Blank, or a comment.
+bool is_no_data(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  return first == line.npos || line[first] == '#';
+}
+
 /// Names in the order in which they first come.
 class NameTable {
  public:
@@ -167,8 +175,8 @@ class NameTable {
 
 class RunsReader {
  public:
-  RunsReader(const std::string& path, const CellFile& cells)
-      : lines_(path), cells_(cells), section_(cells.map.section) {
+  RunsReader(const std::string& path, const CellFile& cells, CostColumns costs)
+      : lines_(path), cells_(cells), section_(cells.map.section), cost_columns_(costs) {
     runs_.passages.begin(section_);
   }
 
@@ -191,11 +199,9 @@ class RunsReader {
  private:
   /// The next line that is neither blank nor a comment, as fields.
   bool next_line() {
-    constexpr std::string_view kBlank = " \t";
     std::string_view line;
     while (lines_.next(line)) {
-      const std::size_t first = line.find_first_not_of(kBlank);
-      if (first == line.npos || line[first] == '#') continue;
+      if (is_no_data(line)) continue;
       split(line);
       return true;
     }
@@ -258,8 +264,12 @@ class RunsReader {
       columns_.in_at[c] = place(section_.coordinates[c].name);
       columns_.out_at[c] = place("out_" + section_.coordinates[c].name);
     }
-    for (std::size_t c = 0; c < section_.costs.size(); ++c)
-      columns_.costs[c] = place(section_.costs[c].key);
+    for (std::size_t c = 0; c < section_.costs.size(); ++c) {
+      const std::string& key = section_.costs[c].key;
+      const bool is_there = std::find(given.begin(), given.end(), key) != given.end();
+      const bool must = c == 0 || cost_columns_ == CostColumns::all;
+      columns_.costs[c] = must || is_there ? place(key) : kMostColumns;
+    }
     if (cells_.types.size() > 1 || std::find(given.begin(), given.end(), "type") != given.end())
       columns_.type = place("type");
     columns_.names = given;
@@ -404,7 +414,7 @@ class RunsReader {
   double cost_in(std::size_t cost, const CellPassage& passage) {
     const std::size_t column = columns_.costs[cost];
     const bool lost = passage.fate == Fate::broken;
-    if (fields_[column].empty() && (cost > 0 || lost)) {
+    if (column == kMostColumns || (fields_[column].empty() && (cost > 0 || lost))) {
       runs_.unknown[cost] += !lost;
       return std::numeric_limits<double>::quiet_NaN();
     }
@@ -456,6 +466,7 @@ class RunsReader {
   Lines lines_;
   const CellFile& cells_;
   const Section& section_;
+  CostColumns cost_columns_;
   Columns columns_;
   std::vector<std::string_view> fields_;
   std::vector<std::string> unquoted_;
@@ -590,8 +601,35 @@ class RunsWriter {
 
 }  // namespace
 
-RecordedRuns read_runs(const std::string& path, CellFile& cells) {
-  RecordedRuns runs = RunsReader(path, cells).read();
+std::vector<EnteredPassage> entered_passages(const RecordedRuns& runs) {
+  std::vector<EnteredPassage> all;
+  for (const RecordedTrial& trial : runs.trials) {
+    Entry from = trial.start;
+    for (const CellPassage passage : runs.of_trial(trial)) {
+      all.push_back({from, passage});
+      from = passage.entry;
+    }
+  }
+  return all;
+}
+
+bool is_table_of_runs(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe is read only once
+  Lines lines(path);
+  for (std::string_view line; lines.next(line);) {
+    if (is_no_data(line)) continue;
+    const auto fields = csv_fields(line);
+    const auto has = [&](const char* name) {
+      return fields && std::find(fields->begin(), fields->end(), name) != fields->end();
+    };
+    return has("in") && has("out");
+  }
+  return false;
+}
+
+RecordedRuns read_runs(const std::string& path, CellFile& cells, CostColumns costs) {
+  RecordedRuns runs = RunsReader(path, cells, costs).read();
   set_scales(cells, runs);
   return runs;
 }

@@ -34,10 +34,22 @@ struct RecordedRuns {
   }
 };
 
+/// All passages, each with the entry by which it began.
+[[nodiscard]] std::vector<EnteredPassage> entered_passages(const RecordedRuns& runs);
+
+/// Whether the file's first line names columns as runs.csv has them; false for what is no regular
+/// file.
+[[nodiscard]] bool is_table_of_runs(const std::string& path);
+
+/// Costs but the time that a table must have a column of: all of the cells, or none; without one
+/// they are not known.
+enum class CostColumns : std::uint8_t { all, as_there_are };
+
 /// Reads `path` (-: standard input). Coordinates of `cells` without a scale get the standard
 /// deviation of all entries (1 where all are the same). Throws std::invalid_argument naming file,
 /// line, column and what is allowed.
-[[nodiscard]] RecordedRuns read_runs(const std::string& path, CellFile& cells);
+[[nodiscard]] RecordedRuns read_runs(const std::string& path, CellFile& cells,
+                                     CostColumns costs = CostColumns::all);
 
 /// Writes what reads back the same; trials of a body get numbers from 1. Throws
 /// std::invalid_argument for passages that read_runs would refuse, std::runtime_error when `path`

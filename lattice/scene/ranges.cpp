@@ -74,7 +74,7 @@ Scene RangedScene::at(const std::vector<double>& point) const {
   std::vector<std::string> all = overrides_;
   for (std::size_t k = 0; k < ranges_.size(); ++k) {
     const NumberRange& r = ranges_[k];
-    all.push_back(r.key + "=" + shortest(r.low + point[k] * (r.high - r.low)));
+    all.push_back(r.key + "=" + shortest(r.at(point[k])));
   }
   try {
     return parse_scene(text_, source_, all);

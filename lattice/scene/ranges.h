@@ -13,6 +13,9 @@ namespace gatewalk::lattice {
 struct NumberRange {
   std::string key;
   double low = 0.0, high = 0.0;
+
+  /// 0 the low end, 1 the high one.
+  [[nodiscard]] double at(double share) const { return low + share * (high - low); }
 };
 
 /// Of "KEY=LOW:HIGH"; `option` begins the message. Throws SceneError.

@@ -11,13 +11,12 @@
 #include <limits>
 #include <memory>
 #include <numeric>
-#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "dynamics/base/points.h"
-#include "lattice/reference.h"
 #include "lattice/statistics/draws.h"
 #include "lattice/statistics/ensemble.h"
 #include "lattice/statistics/outcome_model.h"
@@ -35,7 +34,6 @@ constexpr int kRounds = 10;             // at most, before the last
 constexpr int kParts = 12;              // of the trials: one a round, what is left in the last
 constexpr std::int64_t kLeastEach = 8;  // trials of a point, for each number
 constexpr std::int64_t kFirstTrial = std::int64_t{1} << 51;  // numbers that no other trials have
-constexpr std::size_t kTimeParts = 8;                        // of the observed times: by quantiles
 constexpr double kLeastShare = 0.01;       // of all trials, in a group of neighbouring gates
 constexpr std::int64_t kFewestAlone = 50;  // trials of a group that is an ending's last
 constexpr double kMostParameters = 600.0;  // of a model of degree 2: what is fitted in a second
@@ -58,92 +56,13 @@ void each_part(Archive& archive, PointOutcomes& p) {
   archive(p.points, p.outcomes, p.health);
 }
 
-/// Outcomes in an order in which neighbours are alike: by ending, and gates row by row, there and
-/// back again.
-std::vector<std::size_t> neighbours(const FittedOutcomes& of, const FieldParams& field) {
-  std::vector<std::size_t> order;
-  const auto columns = static_cast<std::size_t>(field.columns);
-  for (std::size_t i = 0; i < of.size() / of.parts(); ++i) {
-    std::size_t way = i;
-    if (of.gates > 0) {
-      const std::size_t row = i % of.gates / columns, column = i % columns;
-      if (row % 2 == 1) way = i - column + (columns - 1 - column);
-    }
-    for (std::size_t part = 0; part < of.parts(); ++part)
-      order.push_back(way * of.parts() + (i % 2 == 0 ? part : of.parts() - 1 - part));
-  }
-  return order;
-}
-
-/// Between parts with as many of the observed times each, as far as these differ.
-std::vector<double> time_parts(const std::vector<Observed::Timed>& trials) {
-  std::vector<double> times, between;
-  for (const Observed::Timed& trial : trials)
-    if (trial.seconds > 0.0) times.push_back(trial.seconds);
-  std::sort(times.begin(), times.end());
-  for (std::size_t part = 1; part < kTimeParts; ++part) {
-    std::size_t at = std::max<std::size_t>(1, part * times.size() / kTimeParts);
-    while (at < times.size() && times[at - 1] == times[at]) ++at;
-    if (at >= times.size()) break;
-    between.push_back(0.5 * (times[at - 1] + times[at]));
-  }
-  between.erase(std::unique(between.begin(), between.end()), between.end());
-  return between;
-}
-
-std::size_t time_cost(const Section& section) {
-  const auto at = std::find_if(section.costs.begin(), section.costs.end(),
-                               [](const CostInfo& cost) { return cost.key == "time_s"; });
-  return static_cast<std::size_t>(at - section.costs.begin());
-}
-
 class Fitter {
  public:
-  Fitter(int numbers, const ProblemAt& problem_at, const Observed& observed,
-         const FitOptions& options, const Work& work)
-      : numbers_(numbers),
-        problem_at_(problem_at),
-        options_(options),
-        work_(work),
-        middle_(problem_at(std::vector<double>(static_cast<std::size_t>(numbers), 0.5))),
-        field_(middle_.field),
-        time_(time_cost(middle_.map().section)) {
-    const SeenEndings& seen = observed.seen;
-    FittedOutcomes& of = fit_.outcomes;
-    const auto require = [](bool holds, const char* what) {
-      if (!holds) throw std::invalid_argument(std::string("fit: ") + what);
-    };
-    const bool both = observed.gates_by_ending[0].size() > 0;
-    require(both || !(seen.has_gates() && seen.has_endings()),
-            "final gates and endings were counted, and not which belong together: give a line for "
-            "each trial, or one of the two");
-    require(seen.has_gates() || seen.has_endings(), "nothing was counted");
-    of.endings = seen.has_endings();
-    if (seen.has_gates()) {
-      require(seen.final_gates.rows() == field_.rows && seen.final_gates.cols() == field_.columns,
-              "counts are of a field of another size");
-      of.gates = static_cast<std::size_t>(seen.final_gates.size());
-    }
-    const auto add = [&](const CellCounts& gates) {
-      seen_.insert(seen_.end(), gates.data(), gates.data() + gates.size());
-    };
-    if (!observed.timed.empty()) {
-      require(time_ < middle_.map().section.costs.size(),
-              "these cells do not say how long bodies take");
-      of.times = time_parts(observed.timed);
-      seen_.assign(of.size(), 0);
-      for (const Observed::Timed& trial : observed.timed)
-        ++seen_[static_cast<std::size_t>(
-            outcome(trial.ending, static_cast<std::size_t>(std::max<std::int64_t>(0, trial.gate)),
-                    trial.seconds))];
-    } else if (both)
-      for (const CellCounts& gates : observed.gates_by_ending) add(gates);
-    else if (of.endings)
-      seen_.assign(seen.endings.begin(), seen.endings.end());
-    else
-      add(seen.final_gates);
-    fit_.observed = std::accumulate(seen_.begin(), seen_.end(), std::int64_t{0});
-    order_ = neighbours(of, field_);
+  Fitter(int numbers, const ProblemAt& problem_at, const FitData& data, const FitOptions& options,
+         const Work& work)
+      : numbers_(numbers), problem_at_(problem_at), data_(data), options_(options), work_(work) {
+    fit_.outcomes = data.outcomes;
+    fit_.observed = std::accumulate(data.seen.begin(), data.seen.end(), std::int64_t{0});
   }
 
   [[nodiscard]] Fit carry_out() {
@@ -251,33 +170,13 @@ class Fitter {
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
       const std::int64_t number = range.first + static_cast<std::int64_t>(i);
       const VectorXd point = points.row(number).transpose();
-      const Problem problem = problem_at_({point.begin(), point.end()});
-      FieldTrials done;
-      health[i] = run_field(problem.cells, problem.field, problem.start, options_.seed,
-                            {kFirstTrial + fit_.trials + number * each, each}, &done)
-                      .health;
-      for (std::size_t t = 0; t < trials; ++t)
-        all.outcomes[i * trials + t] = done.endings[t] ? outcome(done, t) : -1;
+      health[i] = data_.run(problem_at_({point.begin(), point.end()}), options_.seed,
+                            {kFirstTrial + fit_.trials + number * each, each},
+                            std::span(all.outcomes).subspan(i * trials, trials));
     });
     for (const Health& h : health) all.health += h;
     return all;
   }
-  [[nodiscard]] std::int32_t outcome(const FieldTrials& done, std::size_t trial) const {
-    return outcome(static_cast<std::size_t>(*done.endings[trial]),
-                   static_cast<std::size_t>(done.final_gates[trial]),
-                   fit_.outcomes.times.empty() ? 0.0 : done.costs[trial][time_]);
-  }
-  /// `seconds`: of who left the field.
-  [[nodiscard]] std::int32_t outcome(std::size_t ending, std::size_t gate, double seconds) const {
-    const FittedOutcomes& of = fit_.outcomes;
-    const bool left = std::find(markov::kEdges.begin(), markov::kEdges.end(),
-                                static_cast<markov::Ending>(ending)) != markov::kEdges.end();
-    const auto part =
-        left ? std::upper_bound(of.times.begin(), of.times.end(), seconds) - of.times.begin() : 0;
-    const std::size_t way = of.gates == 0 ? ending : of.endings ? ending * of.gates + gate : gate;
-    return static_cast<std::int32_t>(way * of.parts() + static_cast<std::size_t>(part));
-  }
-
   /// Points of later rounds follow from earlier ones, by logarithms that other machines may round
   /// otherwise: what was kept there is not mixed with what is asked here.
   void take(const PointOutcomes& done, std::int64_t each) {
@@ -290,7 +189,7 @@ class Fitter {
       same = done.points[i] == points_(static_cast<Index>(first) + static_cast<Index>(i) / numbers_,
                                        static_cast<Index>(i) % numbers_);
     for (const std::int32_t o : done.outcomes)
-      same = same && o >= -1 && o < static_cast<std::int32_t>(order_.size());
+      same = same && o >= -1 && o < static_cast<std::int32_t>(data_.order.size());
     if (!same)
       throw std::runtime_error(
           "fit: kept pieces are of other points than this run's, as another kind of machine may "
@@ -317,11 +216,12 @@ class Fitter {
     for (Index i = 0; i < points_.rows(); ++i)
       if (inside(points_.row(i).transpose())) at.push_back(i);
     used_ = points_(at, Eigen::all);
-    std::vector<std::int64_t> all(order_.size(), 0);
+    std::vector<std::int64_t> all(data_.order.size(), 0);
     for (const Index point : at) each_outcome(point, [&](std::size_t outcome) { ++all[outcome]; });
+    trials_used_ = std::accumulate(all.begin(), all.end(), std::int64_t{0});
     group(all);
     const Index groups = std::ssize(fit_.groups);
-    std::vector<Index> group_of(order_.size(), 0);
+    std::vector<Index> group_of(data_.order.size(), 0);
     observed_ = VectorXd::Zero(groups);
     for (Index g = 0; g < groups; ++g) {
       const OutcomeGroup& group = fit_.groups[static_cast<std::size_t>(g)];
@@ -359,8 +259,7 @@ class Fitter {
         kLeastShare, static_cast<double>(OutcomeModel::terms(numbers_, 2)) / kMostParameters);
     const auto enough = std::max(
         kFewestAlone, static_cast<std::int64_t>(std::ceil(share * static_cast<double>(trials))));
-    const std::size_t of_ending =
-        std::max<std::size_t>(1, fit_.outcomes.gates) * fit_.outcomes.parts();
+    const std::size_t of_ending = fit_.outcomes.together();
     std::int64_t size = 0;   // of the last group
     std::size_t ending = 0;  // its last one
     fit_.groups.clear();
@@ -370,16 +269,16 @@ class Fitter {
       if (!whole_ending) return size >= enough;
       return size >= kFewestAlone || (size > 0 && fit_.groups.back().observed > 0);
     };
-    for (const std::size_t outcome : order_) {
-      if (all[outcome] == 0 && seen_[outcome] == 0) continue;
-      if (all[outcome] == 0) fit_.never += seen_[outcome];
+    for (const std::size_t outcome : data_.order) {
+      if (all[outcome] == 0 && data_.seen[outcome] == 0) continue;
+      if (all[outcome] == 0) fit_.never += data_.seen[outcome];
       if (fit_.groups.empty() || is_enough(outcome / of_ending != ending)) {
         fit_.groups.emplace_back();
         size = 0;
       }
       ending = outcome / of_ending;
       fit_.groups.back().outcomes.push_back(outcome);
-      fit_.groups.back().observed += seen_[outcome];
+      fit_.groups.back().observed += data_.seen[outcome];
       size += all[outcome];
     }
     if (fit_.groups.size() > 1 && !is_enough(true)) {
@@ -394,16 +293,17 @@ class Fitter {
           "fit: nearly all trials end alike anywhere in the ranges: how they end tells nothing");
   }
 
-  [[nodiscard]] Ensemble walk_of(const OutcomeModel::Coefficients& coefficients) const {
+  [[nodiscard]] Ensemble walk_of(const OutcomeModel::Coefficients& coefficients,
+                                 const VectorXd& observed) const {
     std::vector<std::pair<double, Index>> best;
     for (Index i = 0; i < used_.rows(); ++i)
-      best.emplace_back(-likelihood(*model_, coefficients, observed_, used_.row(i).transpose()), i);
+      best.emplace_back(-likelihood(*model_, coefficients, observed, used_.row(i).transpose()), i);
     std::sort(best.begin(), best.end());
     MatrixXd from(numbers_, kWalkers);
     for (Index i = 0; i < kWalkers; ++i)
       from.col(i) = used_.row(best[static_cast<std::size_t>(i)].second).transpose();
-    return {[this, coefficients](const VectorXd& at) {
-              return inside(at) ? likelihood(*model_, coefficients, observed_, at) : -HUGE_VAL;
+    return {[this, coefficients, observed](const VectorXd& at) {
+              return inside(at) ? likelihood(*model_, coefficients, observed, at) : -HUGE_VAL;
             },
             std::move(from)};
   }
@@ -411,7 +311,12 @@ class Fitter {
   /// A bound more. How many of the points keep it.
   [[nodiscard]] double narrow() {
     Random chance = random(2);
-    Ensemble walk = walk_of(model_->best());
+    // As many as a model of these trials can tell of: what its coefficients have by chance looks
+    // like (groups - 1) * observed / trials of what the range tells.
+    const double by_chance = static_cast<double>((observed_.size() - 1) * fit_.observed) /
+                             static_cast<double>(trials_used_);
+    const VectorXd observed = observed_ / std::max(1.0, by_chance);
+    Ensemble walk = walk_of(model_->best(), observed);
     double most = -HUGE_VAL;
     draws_.resize(numbers_, 0);
     for (int step = 0; step < kFirstSteps + kSteps; ++step) {
@@ -428,16 +333,16 @@ class Fitter {
     std::vector<double> likelihoods;
     for (Index i = 0; i < used_.rows(); ++i)
       likelihoods.push_back(
-          likelihood(*model_, model_->best(), observed_, used_.row(i).transpose()));
+          likelihood(*model_, model_->best(), observed, used_.row(i).transpose()));
     std::sort(likelihoods.begin(), likelihoods.end(), std::greater<>());
     const double least =
         std::min(most - below, likelihoods[static_cast<std::size_t>(used_.rows() / kMostNarrowed)]);
-    Bound bound{model_, observed_, {{model_->best(), least}}};
+    Bound bound{model_, observed, {{model_->best(), least}}};
     for (int k = 0; k < kBoundsOfEach; ++k) {
       auto coefficients = model_->drawn(chance);
       double greatest = -HUGE_VAL;
       const auto look = [&](const VectorXd& at) {
-        greatest = std::max(greatest, likelihood(*model_, coefficients, observed_, at));
+        greatest = std::max(greatest, likelihood(*model_, coefficients, observed, at));
       };
       for (Index i = 0; i < used_.rows(); ++i) look(used_.row(i).transpose());
       for (Index i = 0; i < draws_.cols(); ++i) look(draws_.col(i));
@@ -466,7 +371,7 @@ class Fitter {
     tbb::parallel_for(std::size_t{0}, walked.size(), [&](std::size_t w) {
       Random chance = random(3 + w);
       coefficients_[w] = model_->drawn(chance);
-      Ensemble walk = walk_of(coefficients_[w]);
+      Ensemble walk = walk_of(coefficients_[w], observed_);
       const Index walkers = walk.walkers().cols();
       MatrixXd& all = walked[w];
       all.resize(numbers_, walkers * (kSteps / kEvery));
@@ -554,6 +459,28 @@ class Fitter {
       fit_.mixing = std::max(fit_.mixing, std::sqrt(1.0 + 2.0 * by_length / within));
   }
 
+  /// Groups, one behind the other, of which it is given how many there are in all: trials, or
+  /// passages that begin alike.
+  struct Given {
+    Index first = 0, count = 0;
+    std::int64_t observed = 0;
+  };
+  [[nodiscard]] std::vector<Given> given_groups() const {
+    std::vector<Given> given;
+    const auto begins = [&](std::size_t outcome) {
+      return fit_.outcomes.is_of_passages() ? outcome / fit_.outcomes.together() : 0;
+    };
+    for (std::size_t g = 0; g < fit_.groups.size(); ++g) {
+      const OutcomeGroup& group = fit_.groups[g];
+      const bool goes_on =
+          g > 0 && begins(fit_.groups[g - 1].outcomes.back()) == begins(group.outcomes.front());
+      if (!goes_on) given.push_back({static_cast<Index>(g), 0, 0});
+      ++given.back().count;
+      given.back().observed += group.observed;
+    }
+    return given;
+  }
+
   /// Experiments like this one, at each draw.
   void predict() {
     const Index draws = fit_.draws.rows(), groups = observed_.size();
@@ -562,16 +489,23 @@ class Fitter {
     VectorXd logs, mean = VectorXd::Zero(groups);
     std::vector<std::int64_t> counts(static_cast<std::size_t>(groups));
     Index further = 0;
+    const std::vector<Given> given = given_groups();
     for (Index i = 0; i < draws; ++i) {
       const auto walk = static_cast<std::size_t>(fit_.walks[static_cast<std::size_t>(i)]);
       model_->log_chances(coefficients_[walk], fit_.draws.row(i).transpose(), logs);
-      const VectorXd chances = logs.array().exp();
-      multinomial(fit_.observed, {chances.data(), static_cast<std::size_t>(groups)}, counts,
-                  chance);
+      VectorXd chances = logs.array().exp();
+      for (const Given& g : given) {
+        auto among = chances.segment(g.first, g.count);
+        if (given.size() > 1) among /= among.sum();
+        const auto first = static_cast<std::size_t>(g.first),
+                   count = static_cast<std::size_t>(g.count);
+        multinomial(g.observed, {among.data(), count}, std::span(counts).subspan(first, count),
+                    chance);
+        among *= static_cast<double>(g.observed);
+      }
       for (Index g = 0; g < groups; ++g)
         fit_.predicted(i, g) = static_cast<double>(counts[static_cast<std::size_t>(g)]);
-      const VectorXd expected = (static_cast<double>(fit_.observed) * chances)
-                                    .cwiseMax(std::numeric_limits<double>::min());
+      const VectorXd expected = chances.cwiseMax(std::numeric_limits<double>::min());
       const auto distance = [&](const VectorXd& n) {
         return (n - expected).cwiseAbs2().cwiseQuotient(expected).sum();
       };
@@ -591,19 +525,16 @@ class Fitter {
 
   int numbers_;
   const ProblemAt& problem_at_;
+  const FitData& data_;
   const FitOptions& options_;
   const Work& work_;
-  Problem middle_;  // of the ranges
-  FieldParams field_;
-  std::size_t time_;                 // of the costs
-  std::vector<std::int64_t> seen_;   // by outcome
-  std::vector<std::size_t> order_;   // of outcomes, neighbours together
   MatrixXd points_;                  // (points x numbers), all
   std::vector<std::int32_t> ended_;  // outcomes of their trials, one point behind the other
   std::vector<std::size_t> ends_;    // of each point's among these
   std::vector<Bound> bounds_;
-  MatrixXd used_;      // points of the model
-  VectorXd observed_;  // (groups)
+  MatrixXd used_;                 // points of the model
+  std::int64_t trials_used_ = 0;  // at these
+  VectorXd observed_;             // (groups)
   std::shared_ptr<const OutcomeModel> model_;
   MatrixXd draws_;   // (numbers x draws), of a round
   MatrixXd inside_;  // (numbers x points), those of the model that its bound leaves
@@ -612,10 +543,6 @@ class Fitter {
 };
 
 }  // namespace
-
-std::size_t FittedOutcomes::size() const {
-  return std::max<std::size_t>(1, gates) * (endings ? markov::kEndings : 1) * parts();
-}
 
 std::int64_t least_trials_of_fit(int numbers) { return kLeastEach * kParts * kPoints * numbers; }
 
@@ -627,14 +554,14 @@ bool Fit::settled() const {
                      [](const FittedNumber& n) { return n.by_runs <= kPermittedByRuns; });
 }
 
-Fit fit(int numbers, const ProblemAt& problem_at, const Observed& observed,
-        const FitOptions& options, const Work& work) {
+Fit fit(int numbers, const ProblemAt& problem_at, const FitData& data, const FitOptions& options,
+        const Work& work) {
   if (numbers < 1 || numbers > kMostFitted)
     throw std::invalid_argument("fit: 1 to " + std::to_string(kMostFitted) + " numbers");
   if (options.trials < least_trials_of_fit(numbers))
     throw std::invalid_argument("fit: " + std::to_string(numbers) + " numbers need " +
                                 std::to_string(least_trials_of_fit(numbers)) + " trials");
-  return Fitter(numbers, problem_at, observed, options, work).carry_out();
+  return Fitter(numbers, problem_at, data, options, work).carry_out();
 }
 
 }  // namespace gatewalk::lattice

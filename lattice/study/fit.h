@@ -9,7 +9,7 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/cells/health.h"
-#include "lattice/study/observed.h"
+#include "lattice/study/fit_data.h"
 #include "lattice/study/variance_shares.h"
 
 namespace gatewalk::lattice {
@@ -23,23 +23,13 @@ inline constexpr int kMostFitted = 6;
 [[nodiscard]] std::int64_t least_trials_of_fit(int numbers);
 
 /// Trials that ended in one of several gates or ways, which are counted together: as many
-/// neighbours of one ending as have a hundredth of all trials at the points or more.
+/// neighbours of one ending as have a hundredth of all trials at the points or more. Of passages
+/// the same: those that begin by one face, and end alike.
 struct OutcomeGroup {
   std::int64_t observed = 0;
   double expected = 0.0;              // of as many trials, mean over the posterior
   std::array<double, 2> interval{};   // 95 % of experiments like it have
   std::vector<std::size_t> outcomes;  // FittedOutcomes, in order
-};
-
-/// How trials end: gates where gates were counted (row * columns + column), endings where endings
-/// were, and for lines of trials with both, each ending's gates: ending * gates + gate. Where times
-/// were measured each of these has parts, by when a body left the field: way * parts + part.
-struct FittedOutcomes {
-  std::size_t gates = 0;  // 0: endings alone
-  bool endings = false;
-  std::vector<double> times{};  // s, rising: between the parts; none: one part
-  [[nodiscard]] std::size_t parts() const { return times.size() + 1; }
-  [[nodiscard]] std::size_t size() const;
 };
 
 struct FittedNumber {
@@ -77,11 +67,11 @@ struct Fit {
 };
 
 /// The posterior of numbers that may be anywhere in their ranges alike. Chances of outcomes come
-/// from full trials at points of the ranges, as a smooth function between them (OutcomeModel);
-/// points of the next round lie where the likelihood of this one is not small; its own uncertainty
-/// is counted. Throws std::invalid_argument for counts of another field, of both gates and
-/// endings without saying which belong together, or of none, and for too few trials.
-[[nodiscard]] Fit fit(int numbers, const ProblemAt& problem_at, const Observed& observed,
+/// from trials, or passages, at points of the ranges, as a smooth function between them
+/// (OutcomeModel); points of the next round lie where the likelihood of this one is not small; its
+/// own uncertainty is counted. `data` is of the fields at these points. Throws
+/// std::invalid_argument for another number of numbers, and for too few trials.
+[[nodiscard]] Fit fit(int numbers, const ProblemAt& problem_at, const FitData& data,
                       const FitOptions& options, const dynamics::Work& work = {});
 
 }  // namespace gatewalk::lattice

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "lattice/reference.h"
 #include "tests/support/lane.h"
 #include "tests/support/threads.h"
 
@@ -19,6 +20,12 @@ namespace {
 using namespace dynamics;
 
 constexpr int kLaneRows = 8;
+
+Fit fit_trials(int numbers, const ProblemAt& problem_at, const Observed& observed,
+               const FitOptions& options) {
+  const Problem middle = problem_at(std::vector<double>(static_cast<std::size_t>(numbers), 0.5));
+  return fit(numbers, problem_at, trials_to_fit(observed, middle), options);
+}
 
 /// Cells of even rows let bodies through by one chance, those of odd rows by another.
 Problem two_lane(double even, double odd) {
@@ -61,7 +68,7 @@ double chance_at(double point) { return kLow + point * (kHigh - kLow); }
 
 TEST(Fit, IsTheExactPosteriorOfOneNumber) {
   const Observed o = experiment(two_lane(0.8, 0.8), 300, 7);
-  const Fit f = fit(
+  const Fit f = fit_trials(
       1, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[0])); }, o,
       {.trials = 200'000, .seed = 2});
   EXPECT_TRUE(f.settled()) << f.misfit << " " << f.mixing << " " << f.numbers[0].by_runs;
@@ -113,7 +120,7 @@ TEST(Fit, TimesTellWhatEndingsDoNot) {
   const auto problem_at = [](const std::vector<double>& x) {
     return waiting_lane(0.5 + 1.5 * x[0]);
   };
-  const Fit timed = fit(1, problem_at, o, {.trials = 200'000, .seed = 2});
+  const Fit timed = fit_trials(1, problem_at, o, {.trials = 200'000, .seed = 2});
   EXPECT_EQ(timed.outcomes.times.size(), 7U);
   EXPECT_EQ(timed.observed, 300);
   const double shape = crossed * kLaneRows + 1.0, mean = shape / sum, sd = std::sqrt(shape) / sum;
@@ -121,7 +128,7 @@ TEST(Fit, TimesTellWhatEndingsDoNot) {
   EXPECT_NEAR(1.5 * timed.numbers[0].sd, sd, 0.25 * sd);  // the parts know a little less
   EXPECT_TRUE(timed.numbers[0].told);
   o.timed.clear();
-  EXPECT_FALSE(fit(1, problem_at, o, {.trials = 200'000, .seed = 2}).numbers[0].told);
+  EXPECT_FALSE(fit_trials(1, problem_at, o, {.trials = 200'000, .seed = 2}).numbers[0].told);
 }
 
 TEST(Fit, PartsOfTimesLieBetweenThoseThatDiffer) {
@@ -133,7 +140,7 @@ TEST(Fit, PartsOfTimesLieBetweenThoseThatDiffer) {
     ++o.seen.endings[static_cast<std::size_t>(ending)];
   }
   const auto problem_at = [](const std::vector<double>& x) { return waiting_lane(0.5 + x[0]); };
-  EXPECT_EQ(fit(1, problem_at, o, {.trials = 20'000, .seed = 2}).outcomes.times,
+  EXPECT_EQ(fit_trials(1, problem_at, o, {.trials = 20'000, .seed = 2}).outcomes.times,
             std::vector<double>{7.5});
 }
 
@@ -156,7 +163,7 @@ TEST(Fit, IntervalsOfTimesHoldWhatTheyShould) {
     for (std::size_t t = 0; t < each.endings.size(); ++t)
       o.timed.push_back({static_cast<std::size_t>(*each.endings[t]), -1,
                          each.endings[t] == markov::Ending::far_edge ? each.costs[t][0] : 0.0});
-    const Fit f = fit(1, problem_at, o, {.trials = 60'000, .seed = 2});
+    const Fit f = fit_trials(1, problem_at, o, {.trials = 60'000, .seed = 2});
     held += f.numbers[0].interval[0] <= at && at <= f.numbers[0].interval[1];
   }
   // 95 % but for chance (p > 0.001 by the binomial distribution).
@@ -165,7 +172,7 @@ TEST(Fit, IntervalsOfTimesHoldWhatTheyShould) {
 
 TEST(Fit, TellsTwoNumbersApart) {
   const Observed o = experiment(two_lane(0.7, 0.9), 400, 8);
-  const Fit f = fit(
+  const Fit f = fit_trials(
       2, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[1])); }, o,
       {.trials = 200'000, .seed = 3});
   EXPECT_TRUE(f.settled()) << f.misfit << " " << f.mixing;
@@ -181,31 +188,114 @@ TEST(Fit, TellsTwoNumbersApart) {
   EXPECT_LT(std::abs(f.correlation(0, 1)), 0.15);
 }
 
+/// Each passage of such trials, with the entry by which it began.
+std::vector<EnteredPassage> passages_of(const Problem& problem, std::int64_t trials,
+                                        std::uint64_t seed) {
+  FieldTrials each{.keep_passages = true};
+  (void)run_field(problem.cells, problem.field, problem.start, seed, {1'000'000'000, trials},
+                  &each);
+  std::vector<EnteredPassage> all;
+  for (std::size_t i = 0; i < each.passed.size(); ++i) {
+    Entry from = problem.start;
+    for (const CellPassage passage : each.of_trial(i)) {
+      all.push_back({from, passage});
+      from = passage.entry;
+    }
+  }
+  return all;
+}
+
+// Each of its own type: what trials can tell only of where they end.
+TEST(Fit, PassagesAreTheExactPosteriorOfEachType) {
+  const std::vector<EnteredPassage> seen = passages_of(two_lane(0.7, 0.9), 120, 8);
+  const auto problem_at = [](const std::vector<double>& x) {
+    return two_lane(chance_at(x[0]), chance_at(x[1]));
+  };
+  const FitData data = passages_to_fit(seen, problem_at({0.5, 0.5}));
+  EXPECT_EQ(data.outcomes.faces.size(), 1U);
+  const std::size_t begins = data.outcomes.begins.size();
+  EXPECT_GE(begins, 8U);
+  EXPECT_LE(begins, 16U);
+  EXPECT_EQ(data.inside, 0);
+  const Fit f = fit(2, problem_at, data, {.trials = 200'000, .seed = 3});
+  EXPECT_TRUE(f.settled()) << f.misfit << " " << f.mixing;
+  EXPECT_EQ(f.observed, std::ssize(seen));
+  EXPECT_GT(f.p, 0.01);
+  for (const int type : {0, 1}) {
+    double met = 0.0, on = 0.0, predicted_met = 0.0;
+    for (const EnteredPassage& p : seen)
+      if (p.passage.type == type) {
+        met += 1.0;
+        on += p.passage.fate == Fate::left;
+      }
+    const boost::math::beta_distribution<> exact(on + 1.0, met - on + 1.0);
+    const double sd = boost::math::standard_deviation(exact);
+    const FittedNumber& number = f.numbers[static_cast<std::size_t>(type)];
+    EXPECT_NEAR(chance_at(number.mean), boost::math::mean(exact), 0.25 * sd);
+    EXPECT_NEAR((kHigh - kLow) * number.sd, sd, 0.1 * sd);
+    // An experiment like it has as many passages through this type.
+    for (Eigen::Index g = 0; g < std::ssize(f.groups); ++g)
+      if (data.outcomes.begins[f.groups[static_cast<std::size_t>(g)].outcomes.front() / 2]
+              .starts_with(problem_at({0.5, 0.5}).types[static_cast<std::size_t>(type)] + ":"))
+        predicted_met += f.predicted(0, g);
+    EXPECT_EQ(predicted_met, met);
+  }
+  EXPECT_LT(std::abs(f.correlation(0, 1)), 0.15);
+}
+
+TEST(Fit, TimesOfPassagesTellWhatTheirEndsDoNot) {
+  const std::vector<EnteredPassage> seen = passages_of(waiting_lane(1.1), 60, 9);
+  double sum = 0.0, left = 0.0;
+  for (const EnteredPassage& p : seen)
+    if (p.passage.fate == Fate::left) {
+      sum += p.passage.costs[0];
+      left += 1.0;
+    }
+  const auto problem_at = [](const std::vector<double>& x) {
+    return waiting_lane(0.5 + 1.5 * x[0]);
+  };
+  const FitData data = passages_to_fit(seen, problem_at({0.5}));
+  EXPECT_EQ(data.outcomes.times.size(), 7U);
+  const Fit f = fit(1, problem_at, data, {.trials = 200'000, .seed = 2});
+  const double mean = (left + 1.0) / sum, sd = std::sqrt(left + 1.0) / sum;
+  EXPECT_NEAR(0.5 + 1.5 * f.numbers[0].mean, mean, sd);  // only quantiles of them are known
+  EXPECT_NEAR(1.5 * f.numbers[0].sd, sd, 0.2 * sd);
+}
+
+TEST(Fit, PassagesThatWereLostAreLeftOut) {
+  std::vector<EnteredPassage> seen = passages_of(two_lane(0.7, 0.9), 20, 8);
+  const Problem problem = two_lane(0.7, 0.7);
+  const FitData all = passages_to_fit(seen, problem);
+  seen.push_back({problem.start, {Fate::broken, 0, {}, {}}});
+  EXPECT_EQ(passages_to_fit(seen, problem).seen, all.seen);
+  EXPECT_THROW((void)passages_to_fit({seen.back()}, problem), std::invalid_argument);
+}
+
 TEST(Fit, SaysWhatTheDataCannotTell) {
   const Observed o = experiment(two_lane(0.8, 0.8), 300, 9);
-  const Fit f = fit(
+  const Fit f = fit_trials(
       2, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[0])); }, o,
       {.trials = 200'000, .seed = 4});
   EXPECT_TRUE(f.numbers[0].told);
   EXPECT_FALSE(f.numbers[1].told);  // it changes nothing
   // Only the product of these is seen.
-  const Fit product = fit(2,
-                          [](const std::vector<double>& x) {
-                            const double both = chance_at(x[0]) * (0.8 + 0.4 * x[1]) / 1.2;
-                            return two_lane(both, both);
-                          },
-                          o, {.trials = 200'000, .seed = 5});
+  const Fit product = fit_trials(2,
+                                 [](const std::vector<double>& x) {
+                                   const double both = chance_at(x[0]) * (0.8 + 0.4 * x[1]) / 1.2;
+                                   return two_lane(both, both);
+                                 },
+                                 o, {.trials = 200'000, .seed = 5});
   EXPECT_LT(product.correlation(0, 1), -0.9);
 }
 
 TEST(Fit, SeesThatNoNumberFits) {
   const Observed o = experiment(two_lane(0.95, 0.5), 400, 10);
-  const Fit f = fit(
+  const Fit f = fit_trials(
       1, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[0])); }, o,
       {.trials = 100'000, .seed = 6});
   EXPECT_LT(f.p, 0.001);
   const Observed above = experiment(two_lane(0.98, 0.98), 400, 11);
-  const Fit edge = fit(
+  const Fit edge = fit_trials(
       1, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[0])); },
       above, {.trials = 100'000, .seed = 6});
   EXPECT_TRUE(edge.numbers[0].goes_on[1]);
@@ -215,7 +305,7 @@ TEST(Fit, SeesThatNoNumberFits) {
 TEST(Fit, CountsWhatNoBodyOfTheModelDoes) {
   Observed o = experiment(two_lane(0.8, 0.8), 300, 14);
   o.gates_by_ending[static_cast<std::size_t>(markov::Ending::left_edge)](2, 0) = 5;
-  const Fit f = fit(
+  const Fit f = fit_trials(
       1, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[0])); }, o,
       {.trials = 50'000, .seed = 7});
   EXPECT_EQ(f.never, 5);
@@ -229,7 +319,7 @@ TEST(Fit, RanksOfTheTruthAreUniform) {  // simulation-based calibration (Talts e
     Random random(Purpose::fit, {99, 0, static_cast<std::uint64_t>(e)});
     const std::vector<double> truth{random.uniform(), random.uniform()};
     const Observed o = experiment(two_lane(chance_at(truth[0]), chance_at(truth[1])), 60, 1000 + e);
-    const Fit f = fit(
+    const Fit f = fit_trials(
         2, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[1])); },
         o, {.trials = 25'000, .seed = static_cast<std::uint64_t>(e)});
     for (const std::size_t k : {0U, 1U}) {
@@ -251,7 +341,7 @@ TEST(Fit, RanksOfTheTruthAreUniform) {  // simulation-based calibration (Talts e
 TEST(Fit, IsTheSameOnOneThread) {
   const Observed o = experiment(two_lane(0.7, 0.8), 100, 12);
   const auto one_fit = [&] {
-    return fit(
+    return fit_trials(
         2, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[1])); },
         o, {.trials = 25'000, .seed = 1});
   };
@@ -264,15 +354,16 @@ TEST(Fit, IsTheSameOnOneThread) {
 TEST(Fit, RefusesWhatItCannotUse) {
   const ProblemAt at = [](const std::vector<double>& x) { return two_lane(x[0], x[0]); };
   Observed o = experiment(two_lane(0.7, 0.8), 100, 13);
-  EXPECT_THROW((void)fit(0, at, o, {}), std::invalid_argument);
-  EXPECT_THROW((void)fit(7, at, o, {}), std::invalid_argument);
-  EXPECT_THROW((void)fit(1, at, o, {.trials = 100}), std::invalid_argument);
-  EXPECT_THROW((void)fit(1, at, {}, {}), std::invalid_argument);
+  const FitData data = trials_to_fit(o, at({0.5}));
+  EXPECT_THROW((void)fit(0, at, data, {}), std::invalid_argument);
+  EXPECT_THROW((void)fit(7, at, data, {}), std::invalid_argument);
+  EXPECT_THROW((void)fit_trials(1, at, o, {.trials = 100}), std::invalid_argument);
+  EXPECT_THROW((void)fit_trials(1, at, {}, {}), std::invalid_argument);
   o.gates_by_ending = {};  // which belong together?
-  EXPECT_THROW((void)fit(1, at, o, {}), std::invalid_argument);
+  EXPECT_THROW((void)fit_trials(1, at, o, {}), std::invalid_argument);
   o.seen.endings = {};
   o.seen.final_gates = CellCounts::Zero(3, 1);
-  EXPECT_THROW((void)fit(1, at, o, {}), std::invalid_argument);
+  EXPECT_THROW((void)fit_trials(1, at, o, {}), std::invalid_argument);
 }
 
 }  // namespace

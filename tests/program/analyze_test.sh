@@ -61,5 +61,5 @@ expect 2 'has no effect: field.rows is varied' "$gatewalk" "${over[@]}" --over f
 expect 2 'at most 4 numbers' "$gatewalk" "${over[@]}" "${ranges[@]}" --over a=1:2 --over b=1:2 --over c=1:2
 expect 2 'must be at least 4096' "$gatewalk" "${over[@]}" "${ranges[@]}" --over-trials 4000
 expect 2 'is for --over' "$gatewalk" "${over[@]}" --over-trials 50000
-expect 2 'is for a scene of gates' "$gatewalk" analyze fast.nc "${ranges[@]}"
+expect 2 'is for a scene, or a program.s cells, whose numbers vary' "$gatewalk" analyze fast.nc "${ranges[@]}"
 finish

@@ -51,6 +51,45 @@ printf 'ending,count\ncrossed,300\n' >all.csv
 "$gatewalk" fit "${small[@]}" all.csv --free forces.propulsion_N=4:6 --trials 16384 --quiet --json all.json
 holds '.p < 0.001 and .numbers[0].sd > 0.02' all.json
 
+# Passages tell more than endings do: each is carried out from where it began. Costs but the time may be left out.
+"$gatewalk" lattice "${small[@]}" --set forces.propulsion_N=7.2 --trials 300 --seed 11 --quiet --passages runs.csv --cell-file cell.toml --json again.json --force
+expect 0 '^[0-9]* observed passages; ' "$gatewalk" fit "${small[@]}" runs.csv "${free[@]}" --trials 16384 --json passages.json
+holds '.of == "passages" and (.numbers[0] | .interval_95[0] < 7.2 and 7.2 < .interval_95[1] and .interval_95[1] - .interval_95[0] < 0.3)' passages.json
+holds '.observed == ([.outcomes[].observed] | add) and ([.outcomes[].outcomes] | any(test("^EN d .* m/s: to [ELR][DNT] (within|from|after) ")) and any(test("trapped$")))' passages.json
+cut -d, -f1-11 runs.csv >bare.csv
+"$gatewalk" fit "${small[@]}" bare.csv "${free[@]}" --trials 16384 --quiet --json bare.json
+jq -s '.[0].numbers == .[1].numbers' passages.json bare.json | grep -q true || fail "fit: other numbers without the costs"
+sed '2s/^.*$/1,1,EN,0,0,15,lost,,,,0.1/;3,$d' bare.csv >lost.csv
+expect 2 'no passage was seen to its end' "$gatewalk" fit "${small[@]}" lost.csv "${free[@]}"
+sed -n '2,$p' bare.csv | sed 's/^/x/' | cat lost.csv - >also.csv
+expect 0 '^gatewalk: 1 of [0-9]* passages were lost' "$gatewalk" fit "${small[@]}" also.csv "${free[@]}" --trials 16384
+expect 2 'start has no meaning for passages' "$gatewalk" fit "${small[@]}" bare.csv "${free[@]}" --start 0,0,15
+# A program's numbers, by how trials ended and by passages, which say where bodies entered. hopper.py in awk, which starts at once.
+cat >hopper.awk <<'END'
+BEGIN { p = 2; print "{\"gatewalk\": 1, \"uniforms\": 2, \"parameters\": {\"push_J\": [2, 1, 3]}, \"costs\": [{\"key\": \"time_s\", \"unit\": \"s\"}, {\"key\": \"work_J\", \"unit\": \"J\"}], \"coordinates\": [{\"name\": \"s\", \"unit\": \"m\", \"scale\": 0.1}], \"faces\": [{\"name\": \"S\", \"move\": [0, 1]}]}"; fflush() }
+NF == 0 { fflush(); next }
+$1 == "set" { p = $3; next }
+{ off = p - ($3 < 0 ? 1 : 3); if ($5 < 0.9 - 0.3 * (off < 0 ? -off : off)) print $1, "left S", $6 - 0.5, 1, p, "-"; else print $1, "trapped", 1, p }
+END
+hopper=("$scenes/programs/hopper.toml" --cell-program "mawk -W interactive -f $work/hopper.awk")
+"$gatewalk" lattice "${hopper[@]}" --set parameters.push_J=1.4 --trials 300 --seed 3 --quiet --passages hops.csv --cell-file hops.toml --json hops.json --force
+push=(--free parameters.push_J=1:3 --trials 12288 --quiet)
+"$gatewalk" fit "${hopper[@]}" hops.csv "${push[@]}" --json hopped.json
+holds '.of == "passages" and (.numbers[0] | .key == "parameters.push_J" and .told and .interval_95[0] < 1.4 and 1.4 < .interval_95[1] and .interval_95[1] < 2)' hopped.json
+jq -r '"ending,count", (.endings | to_entries[] | select(.key != "broken") | "\(.key),\(.value)")' hops.json >ends.csv
+"$gatewalk" fit "${hopper[@]}" ends.csv "${push[@]}" --json ended.json
+holds '.of == "trials" and (.numbers[0] | .interval_95[0] < 1.4 and 1.4 < .interval_95[1])' ended.json
+# Sobol indices of such a number: all of the variance is its own.
+"$gatewalk" analyze "${hopper[@]}" --over parameters.push_J=1:3 --over-trials 4000 --runs 0 --quiet --json over.json
+holds '.variance_shares.numbers[0] | .key == "parameters.push_J" and .total_95[1] > 0.9' over.json
+expect 2 'unknown column "d"' "$gatewalk" fit "${hopper[@]}" bare.csv --free parameters.push_J=1:3
+expect 2 'free push_J=1:3: numbers of a program are parameters.KEY' "$gatewalk" fit "${hopper[@]}" hops.csv --free push_J=1:3
+expect 2 "parameter 'push_J' must be" "$gatewalk" fit "${hopper[@]}" hops.csv --free parameters.push_J=1:4
+expect 2 "has no parameter 'pull_J', but push_J" "$gatewalk" fit "${hopper[@]}" hops.csv --free parameters.pull_J=1:3
+expect 2 'push_J is varied already' "$gatewalk" fit "${hopper[@]}" hops.csv --free parameters.push_J=1:2 --free parameters.push_J=1:3
+expect 2 'has no effect: parameters.push_J is varied' "$gatewalk" fit "${hopper[@]}" hops.csv --set parameters.push_J=2 --free parameters.push_J=1:3
+expect 2 'writes scenes of gates' "$gatewalk" fit "${hopper[@]}" hops.csv --free parameters.push_J=1:3 -o best.toml --force
+
 expect 2 'free KEY=LOW:HIGH says which numbers' "$gatewalk" fit "${small[@]}" endings.csv
 expect 2 'free forces.push=4:8: ' "$gatewalk" fit "${small[@]}" endings.csv --free forces.push=4:8
 expect 2 'scenes: needs -o' "$gatewalk" fit "${small[@]}" endings.csv "${free[@]}" --scenes 3

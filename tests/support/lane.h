@@ -3,6 +3,7 @@
 /// A field whose answers are known: cells that let a body through by a chance of their type.
 
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,7 @@ inline lattice::Problem lane(const std::vector<double>& chances, std::vector<int
       return Passage{fate, body.entry};
     }));
     problem.cells.map.types.push_back({});
+    problem.types.push_back("type " + std::to_string(problem.types.size()));
   }
   problem.cells.map.columns = 1;
   problem.cells.map.type_of_cell = std::move(type_of_cell);

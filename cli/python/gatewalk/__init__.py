@@ -492,13 +492,13 @@ def fit(subject: _t.Any, observed: _t.Any, *, free: _t.Any, trials: int | None =
     Parameters
     ----------
     subject : Scene, path, text or dict
-        A scene of gates.
+        A scene of gates; with ``cell_program`` a file of cells.
     observed : dict, DataFrame or path
-        What an experiment saw, as in `validate`; with columns trial,ending,gate_x,gate_y too.
+        What an experiment saw, as in `validate`; with columns trial,ending,gate_x,gate_y too; or passages, as in `from_passages`.
     free : dict
-        Numbers of the scene and their ranges, ``{"forces.propulsion_N": (5, 9)}``; six at most.
+        Numbers of the scene and their ranges, ``{"forces.propulsion_N": (5, 9)}``, or a program's (``"parameters.KEY"``); six at most.
     trials : int, optional
-        Bodies of the full dynamics, at all points of the ranges together; 400 000.
+        Bodies of the full dynamics, or passages, at all points of the ranges together; 400 000.
     seed, progress, **more
         See `predict`; ``**more`` is any option of ``gatewalk fit``, such as ``inference_data="posterior.nc"``, which ArviZ reads.
 

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// What a posterior is made from: how trials of an experiment ended, or recorded passages, and how
+/// to make the like of them.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dynamics/base/trial_set.h"
+#include "dynamics/cells/health.h"
+#include "lattice/passage_table.h"
+#include "lattice/problem.h"
+#include "lattice/study/observed.h"
+
+namespace gatewalk::lattice {
+
+/// How trials end: gates where gates were counted (row * columns + column), endings where endings
+/// were, and for lines of trials with both, each ending's gates: ending * gates + gate. Passages:
+/// from entries that are alike to a face, or trapped, begin * (faces + 1) + face. Where times were
+/// measured each of these has parts, by when a body left: way * parts + part.
+struct FittedOutcomes {
+  std::size_t gates = 0;  // 0: endings alone
+  bool endings = false;
+  std::vector<double> times{};  // s, rising: between the parts; none: one part
+  /// In words, of passages: how they begin, as leaves of a tree for each type of cell; and faces.
+  std::vector<std::string> begins{}, faces{};
+
+  [[nodiscard]] bool is_of_passages() const { return !begins.empty(); }
+  [[nodiscard]] std::size_t parts() const { return times.size() + 1; }
+  [[nodiscard]] std::size_t size() const;
+  /// So many, one behind the other, are of the same ending, or of passages that begin alike.
+  [[nodiscard]] std::size_t together() const;
+};
+
+struct FitData {
+  FittedOutcomes outcomes;
+  std::vector<std::int64_t> seen;  // (outcomes.size())
+  std::vector<std::size_t> order;  // of outcomes, in which neighbours are alike
+  /// Runs these trials, or passages, in a field: the outcome of each; -1 where a run broke.
+  using Run =
+      std::function<dynamics::Health(const Problem& problem, std::uint64_t seed,
+                                     dynamics::TrialRange range, std::span<std::int32_t> ended)>;
+  Run run;
+  /// Passages that begin in an obstacle, by more than rounding: places are wrong, or obstacles.
+  std::int64_t inside = 0;
+};
+
+/// Trials from the problem's start. Throws std::invalid_argument for counts of another field, of
+/// both gates and endings without saying which belong together, and of none.
+[[nodiscard]] FitData trials_to_fit(const Observed& observed, const Problem& problem);
+
+/// Passages through the problem's types of cells, each from where it was seen to begin, by bodies
+/// that remember nothing; those that broke are left out. Throws std::invalid_argument where none is
+/// left.
+[[nodiscard]] FitData passages_to_fit(const std::vector<EnteredPassage>& seen,
+                                      const Problem& problem);
+
+}  // namespace gatewalk::lattice
