@@ -74,10 +74,10 @@ Figure figure_of(const FittedScene& f) {
   constexpr double kLeft = 84, kTop = 40, kGap = 10;
   const double side = std::min(300.0, (478.0 - kLeft + kGap) / static_cast<double>(numbers) - kGap);
   const Sheet sheet{static_cast<int>(kTop + static_cast<double>(numbers) * (side + kGap) + 60)};
-  std::string out =
-      std::string("set multiplot\n") + kSequential +
-      sheet.text("posterior after " + std::to_string(f.fit.observed) + " " + counted(f) + "; dashed: 95 %", 8,
-                 18);
+  std::string out = std::string("set multiplot\n") + kSequential +
+                    sheet.text("posterior after " + std::to_string(f.fit.observed) + " " +
+                                   counted(f) + "; dashed: 95 %",
+                               8, 18);
   if (numbers > 2)
     for (std::size_t k = 0; k < numbers; ++k)
       out += sheet.text(std::string(1, static_cast<char>('a' + k)) + ": " + f.ranges[k].key,
