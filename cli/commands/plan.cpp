@@ -81,7 +81,9 @@ int run_plan(const Arguments& arguments) {
                  planned.actions[best_alone(planned.plan)] + " all the time, which is simpler");
   if (how.thrift && how.thrift->chance > 0.0 && !cheapest(planned))
     options.warn("--chance: none of these policies crosses so often; --policy is the plan's own");
-  if (how.thrift && !planned.plan.front_finished)
+  if (!planned.plan.front_refused.empty())
+    options.warn("--least: " + planned.plan.front_refused);
+  else if (how.thrift && !planned.plan.front_finished)
     options.warn("--least: the search was not finished; --gate-runs and --points allow more");
   if (!planned.plan.settled)
     options.warn("choosing was not finished after " + std::to_string(planned.plan.gate_runs) +

@@ -37,8 +37,7 @@ class Starter {
                                          : options.columns),
         own_{problem.field.start_column(), problem.start},
         trials_("start", problem.cells, problem, options.seed, work),
-        count_(static_cast<std::int64_t>(
-            std::ceil(std::pow(kNormal95 / (2.0 * options.accuracy), 2.0)))) {}
+        count_(trials_for(options.accuracy)) {}
 
   [[nodiscard]] BestStart carry_out() {
     explore({}, kSpread * count_);
@@ -46,10 +45,10 @@ class Starter {
     for (int rounds = 1;; ++rounds) {
       std::vector<TrialStart> starts;
       std::optional<Values> middle;
-      for (const int times : {1, 8, 64}) {
+      for (const int times : kLeafSizes) {
         Values values = values_of(times * options_.per_leaf);
         starts.push_back(best_of(values));
-        if (times == 8) middle = std::move(values);
+        if (times == kLeafSizes[1]) middle = std::move(values);
       }
       starts.push_back(own_);
       if (known) starts.push_back(*known);
@@ -78,10 +77,9 @@ class Starter {
   }
 
  private:
-  static constexpr std::int64_t kSpread = 8;   // trials of the first round, by those of a start
-  static constexpr int kTournament = 4;        // drawn starts, of which the best is taken
-  static constexpr std::size_t kOwn = 3;       // behind those of three sizes of leaves
-  static constexpr double kMostBytes = 8.0e9;  // of decisions
+  static constexpr std::int64_t kSpread = 8;  // trials of the first round, by those of a start
+  static constexpr int kTournament = 4;       // drawn starts, of which the best is taken
+  static constexpr std::size_t kOwn = kLeafSizes.size();  // behind those of each size of leaves
 
   /// Another start is taken if it is better by more than a standard error.
   [[nodiscard]] bool clearly_more(std::int64_t one, std::int64_t other) const {
@@ -127,7 +125,7 @@ class Starter {
     const FieldParams& field = problem_.field;
     Kernel kernel = kernel_of(problem_.map(), trials_.pool(), per_leaf);
     if (2.0 * std::max(1, field.max_gates) * field.columns * field.rows * kernel.space.size() >
-        kMostBytes)
+        kMostDecisionBytes)
       throw std::runtime_error(
           "plan: values of so many cells, states and gates do not fit into memory; a smaller "
           "field.max_gates (0: no limit) needs less");

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/study/chosen_trials.h"
 
+#include <cmath>
 #include <stdexcept>
+
+#include "dynamics/base/share.h"
 
 namespace gatewalk::lattice {
 
@@ -19,6 +22,10 @@ FieldTally chosen_trials(const CellField& cells, const Problem& first, const Cel
                     first.start, seed, trial, body);
       },
       range, &each, nullptr, Memory::kept, type);
+}
+
+std::int64_t trials_for(double accuracy) {
+  return static_cast<std::int64_t>(std::ceil(std::pow(kNormal95 / (2.0 * accuracy), 2.0)));
 }
 
 FieldTrials ChosenTrials::run(const CellChoice& choice, std::int64_t count) {

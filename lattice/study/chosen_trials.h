@@ -3,6 +3,7 @@
 /// Trials in which the type of each cell is chosen when a body enters it, and the runs of those
 /// that something is to be chosen by.
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -22,6 +23,14 @@ namespace gatewalk::lattice {
 [[nodiscard]] FieldTally chosen_trials(const dynamics::CellField& cells, const Problem& first,
                                        const CellChoice& choice, std::uint64_t seed,
                                        dynamics::TrialRange range, FieldTrials& each);
+
+/// Of so many trials a chance of one half has an interval of twice the accuracy.
+[[nodiscard]] std::int64_t trials_for(double accuracy);
+/// Sizes of leaves to choose by, in those asked for: small ones tell ways to enter apart, large
+/// ones know better what comes of each.
+inline constexpr std::array<int, 3> kLeafSizes{1, 8, 64};
+/// Bytes that decisions or values of all cells, states and gates may take.
+inline constexpr double kMostDecisionBytes = 8.0e9;
 
 /// Such trials one behind the other, of numbers that trials of a field do not have.
 class ChosenTrials {

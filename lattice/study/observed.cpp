@@ -20,7 +20,9 @@ namespace {
 using Fields = std::vector<std::string>;
 
 constexpr const char* kTables =
-    "trial,ending (also with gate_x,gate_y, and with time_s), gate_x,gate_y,count, or ending,count";
+    "trial,ending, trial,gate_x,gate_y, or all four (with endings also time_s), "
+    "gate_x,gate_y,count, "
+    "or ending,count";
 
 std::string quoted(const std::string& text) {
   std::string shown = "\"";
@@ -233,7 +235,7 @@ double time_of(const CountTable& table, const CountTable::Row& row, std::size_t 
       value <= 0.0)
     table.refuse(row.line, "column time_s: " + (text.empty() ? "nothing" : quoted(text)) +
                                " is not permitted: must be the seconds until the body left the "
-                               "field, above 0");
+                               "field, above 0, such as 12.5");
   return stayed ? 0.0 : value;
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <typeinfo>
 #include <utility>
 
@@ -20,6 +21,11 @@ namespace gatewalk::lattice {
 namespace {
 
 using namespace dynamics;
+
+/// Where nothing is known to be the least, as passages may cost nothing.
+struct FreePassages : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// What a body that enters there does.
 using ActionChoice = std::function<int(const Place& place, const Entry& entry)>;
@@ -71,15 +77,21 @@ class Planner {
         options_(options),
         work_(work),
         trials_("plan", cells_, first_, options.seed, work),
-        count_(static_cast<std::int64_t>(
-            std::ceil(std::pow(kNormal95 / (2.0 * options.accuracy), 2.0)))) {}
+        count_(trials_for(options.accuracy)) {}
 
   [[nodiscard]] Plan carry_out() {
     trials_.add(
         run([&](const Place& at, const Entry&) { return any(at); }, actions() * count_ / 2));
     Tried best = best_for(0.0, {});
     std::vector<Tried> front;
-    if (options_.thrift) front = find_front(best);
+    if (options_.thrift) {
+      front.push_back(best);
+      try {
+        find_front(front);
+      } catch (const FreePassages& e) {
+        front_refused_ = e.what();
+      }
+    }
     if (options_.robust && best.plan.policy.always)
       best.plan.worst_case = worst_alone(static_cast<std::size_t>(*best.plan.policy.always));
     if (best.crossed > 0) best.plan.by_cell = best_by_cell();
@@ -88,9 +100,7 @@ class Planner {
   }
 
  private:
-  static constexpr std::array<int, 3> kSizes{1, 8, 64};  // of leaves, in those asked for
-  static constexpr std::uint64_t kTries = 4;   // other actions are tried: once in so many cells
-  static constexpr double kMostBytes = 8.0e9;  // of decisions
+  static constexpr std::uint64_t kTries = 4;  // other actions are tried: once in so many cells
   static constexpr double kMostBytesByCell = 2.0e9;  // of values, as markov::design has them
   static constexpr double kMostSearched = 1.0e9;     // values by draws, of all maps: some seconds
 
@@ -149,9 +159,8 @@ class Planner {
   /// Chooses, runs what was chosen, adds its runs, and so on. `known`: plans to begin with.
   [[nodiscard]] Tried best_for(double price, std::vector<Plan> known) {
     for (;;) {
-      // Small leaves tell ways to enter apart, large ones know better what each action does there.
       std::vector<Plan> plans;
-      for (const int times : kSizes) plans.push_back(choose(times * options_.per_leaf, price));
+      for (const int times : kLeafSizes) plans.push_back(choose(times * options_.per_leaf, price));
       // First, so that of several as good ones the simplest is taken.
       for (int a = actions(); a-- > 0;) plans.insert(plans.begin(), always(a, plans.back()));
       for (Plan& plan : known) plans.push_back(std::move(plan));
@@ -188,10 +197,9 @@ class Planner {
   /// The policies whose chance to cross less a price for each unit of the cost is the largest, for
   /// prices from 0 to that at which nothing is gained any more: there it is least what each
   /// crossing takes (Dinkelbach 1967). Between two of them lies one for the price at which both are
-  /// worth the same, or none.
-  [[nodiscard]] std::vector<Tried> find_front(const Tried& best) {
+  /// worth the same, or none. `front` begins with the plan.
+  void find_front(std::vector<Tried>& front) {
     const ThriftOptions& thrift = *options_.thrift;
-    std::vector<Tried> front{best};
     const auto has_room = [&] {
       return std::ssize(front) < thrift.points && trials_.gate_runs() < options_.most_runs;
     };
@@ -226,7 +234,6 @@ class Planner {
         closed[*at] = 1;
       }
     }
-    return front;
   }
 
   /// The first of the two neighbours that are to have one between them: those of the chance asked
@@ -281,10 +288,9 @@ class Planner {
         if (runs == 0.0) continue;
         most = std::max(most, mean[type].back());
         if (first_.field.max_gates == 0 && !(spent > 0.0))
-          throw std::runtime_error(
-              "plan: " + first_.map().section.costs[options_.thrift->cost].words +
-              " of a passage may be 0 or less: policies that take least need "
-              "field.max_gates, or a cost that each passage has");
+          throw FreePassages(first_.map().section.costs[options_.thrift->cost].words +
+                             " of a passage may be 0 or less: policies that take least need "
+                             "field.max_gates, or a cost that each passage has");
       }
     }
     const double untried = 1.0 + price * most * first_.field.columns * first_.field.rows;
@@ -300,7 +306,7 @@ class Planner {
   [[nodiscard]] Plan choose(int per_leaf, double price) const {
     Kernel kernel = kernel_of(cells_.map, trials_.pool(), per_leaf);
     const int kept = options_.thrift ? options_.thrift->points : 1;
-    if ((3.0 + kept) * bytes_of(kernel.space) > kMostBytes)  // of three sizes of leaves too
+    if ((3.0 + kept) * bytes_of(kernel.space) > kMostDecisionBytes)  // of three sizes of leaves too
       throw std::runtime_error(
           "plan: decisions for so many cells, states and gates do not fit into memory; a smaller "
           "field.max_gates (0: no limit) needs less");
@@ -319,7 +325,7 @@ class Planner {
   /// What an action all the time is worth in the worst case. Small leaves doubt all, large ones
   /// forget too much.
   [[nodiscard]] double worst_alone(std::size_t action) const {
-    const Kernel kernel = kernel_of(cells_.map, trials_.pool(), kSizes[1] * options_.per_leaf);
+    const Kernel kernel = kernel_of(cells_.map, trials_.pool(), kLeafSizes[1] * options_.per_leaf);
     return at_start(decide_among({action}, kernel, crossing()), kernel.space);
   }
 
@@ -475,6 +481,7 @@ class Planner {
           }))
         plan.front.erase(plan.front.begin() + static_cast<std::ptrdiff_t>(i));
     plan.front_finished = front_finished_;
+    plan.front_refused = front_refused_;
     plan.rounds = rounds_;
     plan.gate_runs = trials_.gate_runs();
     plan.health = trials_.health();
@@ -512,6 +519,7 @@ class Planner {
   std::int64_t count_;  // trials of a plan in a round
   int rounds_ = 0;
   bool front_finished_ = false;
+  std::string front_refused_;
 };
 
 }  // namespace

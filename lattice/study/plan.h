@@ -105,6 +105,7 @@ struct Plan {
   /// If asked for: from the plan to what takes least for each crossing, by price.
   std::vector<FrontPoint> front{};
   bool front_finished = false;  // nothing was found that takes less for each crossing than its end
+  std::string front_refused{};  // why no more of it was looked for; mostly empty
   std::vector<double> usage{};  // (actions x cells) how often it is taken there, per trial
   int rounds = 0;               // of trials and choosing again
   bool settled = false;  // the last round gained less than half of the accuracy, and than chance

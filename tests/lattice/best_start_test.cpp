@@ -86,15 +86,33 @@ TEST(BestStart, IsInTheColumnThatLetsBodiesThrough) {
   EXPECT_LT(found.crossings_of_own.share(), 0.05);
 }
 
-TEST(BestStart, IsTheOwnOneWhereAllAreAlike) {
+/// As slope_lane, but one chance everywhere, and other luck at every place.
+Problem lucky_lane() {
   Problem problem = slope_lane();
-  problem.start.at[0] = 10.0;
-  const BestStart found =
-      best_start(problem, {.ranges = {{0, 6.0, 9.0}}, .accuracy = 0.02, .seed = 4});
-  EXPECT_TRUE(found.own);
-  EXPECT_EQ(found.best.entry, problem.start);
-  EXPECT_EQ(found.gain.difference, 0.0);
-  EXPECT_TRUE(lies_in(found.crossings.interval_95(), std::pow(kBeyond, kSlopeRows)));
+  const Section section = problem.map().section;
+  problem.cells = CellField::uniform(std::make_shared<FunctionCell>(section, [](Body& body) {
+    const double luck = body.random.uniform() + 1e3 * std::abs(body.entry.at[0]);
+    const Fate fate = luck - std::floor(luck) < kBeyond ? Fate::left : Fate::trapped;
+    return Passage{fate, body.entry};
+  }));
+  return problem;
+}
+
+// The luckiest of four starts is the own one in a quarter of all cases; it is kept in more, as
+// nothing is better by more than chance.
+TEST(BestStart, IsTheOwnOneWhereAllAreAlike) {
+  constexpr int kCases = 24;
+  int own = 0;
+  for (int seed = 1; seed <= kCases; ++seed) {
+    const BestStart found = best_start(
+        lucky_lane(),
+        {.ranges = {{0, 6.0, 9.0}}, .accuracy = 0.02, .seed = static_cast<std::uint64_t>(seed)});
+    own += found.own;
+    if (!found.own) continue;
+    EXPECT_EQ(found.best.entry, lucky_lane().start);
+    EXPECT_EQ(found.gain.difference, 0.0);
+  }
+  EXPECT_GE(own, kCases / 2);
 }
 
 TEST(BestStart, IsTheSameOnOneThread) {

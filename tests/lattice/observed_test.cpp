@@ -211,7 +211,8 @@ TEST_F(CountsFile, ABodyLeavesByASideFromAGateAtThatSide) {
 TEST_F(CountsFile, RefusalsNameFileLineColumnAndWhatIsAllowed) {
   const std::string header = "gate_x,gate_y,count\n";
   const std::string kTables =
-      "trial,ending (also with gate_x,gate_y, and with time_s), gate_x,gate_y,count, or "
+      "trial,ending, trial,gate_x,gate_y, or all four (with endings also time_s), "
+      "gate_x,gate_y,count, or "
       "ending,count";
   EXPECT_EQ(refusal("gatex,gate_y,count\n"),
             "x.csv:1: unknown column \"gatex\": the first line must be " + kTables +

@@ -156,6 +156,15 @@ TEST(Plan, TheFrontIsThatOfAllPoliciesAndEndsWhereACrossingTakesLeast) {
     EXPECT_THROW((void)make_plan(actions, {.thrift = wrong}), std::invalid_argument);
 }
 
+TEST(Plan, IsNotLostWherePassagesMayTakeNothing) {
+  const std::vector<Action> actions{toll("sure", 0.95, 1.0, 3), toll("free", 0.75, 0.0, 3)};
+  const Plan plan = make_plan(actions, {.accuracy = 0.05, .seed = 8, .thrift = ThriftOptions{}});
+  EXPECT_NE(plan.front_refused.find("may be 0 or less"), std::string::npos);
+  EXPECT_FALSE(plan.front_finished);
+  EXPECT_EQ(plan.front.size(), 1U);
+  EXPECT_GT(plan.crossings.share(), 0.75);
+}
+
 // By simulation: 2000 sets of trials, whose means are known.
 TEST(Plan, WhatTrialsTakeIsHeldByItsIntervals) {
   int mean = 0, ratio = 0;
