@@ -76,7 +76,8 @@ lattice::ParameterEffects effects_of(const lattice::ParameterOptions& how, Subje
 
 void add_ranges(Options& options) {
   options.add_texts("over", "KEY=LOW:HIGH",
-                    "a number of the scene and a range: how much of the variance of the target's "
+                    "a number of the scene, or of the program, and a range: how much of the "
+                    "variance of the target's "
                     "chance each of these\nmakes, all of them anywhere in their ranges alike "
                     "(Sobol's first and total indices; at most " +
                         std::to_string(lattice::kMostVaried) + ";\nmay be repeated)");

@@ -28,23 +28,34 @@ std::string not_listed(const lattice::Observed& observed, const lattice::FieldPa
   return names.empty() ? names : "the counts do not list " + names + ": taken as 0";
 }
 
-lattice::FitData of_passages(const Options& options, const Subject& s,
-                             const lattice::Problem& problem, const std::string& path) {
-  refuse(options, {"start"}, "for passages, which begin as they were seen to");
-  lattice::CellFile cells = s.cells ? *s.cells : lattice::cells_of(problem);
+lattice::FitData of_passages(const Options& options, const Subject& s, const Ranged& ranged,
+                             const lattice::ProblemAt& at, const std::string& path,
+                             std::int64_t trials) {
+  for (const lattice::NumberRange& r : ranged.ranges)
+    if (r.key.starts_with("start.") || r.key.starts_with("field."))
+      throw UsageError("--free " + r.key + ": says nothing of passages, which begin as they were " +
+                       "seen to, each through one cell");
+  if (!s.cells || s.cells->start)
+    refuse(options, {"start"}, "for passages, which begin as they were seen to");
+  const auto numbers = static_cast<int>(ranged.ranges.size());
+  lattice::CellFile cells =
+      s.cells ? *s.cells : lattice::cells_of(at(std::vector<double>(ranged.ranges.size(), 0.5)));
+  if (s.scene) cells.trapped_after = s.scene->gate.run.time_limit;
   const lattice::RecordedRuns runs =
       lattice::read_runs(path, cells, lattice::CostColumns::as_there_are);
+  const auto of_all = [&](std::int64_t some) {
+    return std::to_string(some) + " of " + std::to_string(runs.passages.size()) + " passages ";
+  };
   if (runs.lost > 0)
-    options.warn(
-        std::to_string(runs.lost) + " of " + std::to_string(runs.passages.size()) +
-        " passages were lost and are left out: that is right if losing bodies has nothing to do "
-        "with how they get on");
-  lattice::FitData data = lattice::passages_to_fit(lattice::entered_passages(runs), problem);
+    options.warn(of_all(runs.lost) +
+                 "were lost and are left out: that is right if losing bodies has nothing to do "
+                 "with how they get on");
+  lattice::FitData data =
+      lattice::passages_to_fit(lattice::entered_passages(runs), numbers, at, trials);
   if (data.inside > 0)
-    options.warn(std::to_string(data.inside) + " of " + std::to_string(runs.passages.size()) +
-                 " passages begin with the body in an obstacle of the scene: places in the table "
-                 "are off, or "
-                 "obstacles in the scene");
+    options.warn(of_all(data.inside) +
+                 "begin with the body well inside an obstacle of the scene: places in the table "
+                 "are off, or obstacles in the scene");
   return data;
 }
 
@@ -79,10 +90,18 @@ std::vector<std::string> files_of_draws(const Options& options, std::int64_t cou
   return files;
 }
 
-lattice::FitData data_to_fit(const Options& options, const Subject& s,
-                             const lattice::Problem& problem, const std::string& path) {
-  return lattice::is_table_of_runs(path) ? of_passages(options, s, problem, path)
-                                         : of_trials(options, problem, path);
+bool is_of_passages(const std::string& path) { return lattice::has_columns(path, {"in", "out"}); }
+
+CellTypes types_in(const std::string& path) {
+  return is_of_passages(path) && lattice::has_columns(path, {"type"}) ? CellTypes::all
+                                                                      : CellTypes::of_the_map;
+}
+
+lattice::FitData data_to_fit(const Options& options, const Subject& s, const Ranged& ranged,
+                             const lattice::ProblemAt& at, const std::string& path,
+                             std::int64_t trials) {
+  if (is_of_passages(path)) return of_passages(options, s, ranged, at, path, trials);
+  return of_trials(options, at(std::vector<double>(ranged.ranges.size(), 0.5)), path);
 }
 
 }  // namespace gatewalk::cli

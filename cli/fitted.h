@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/ranged.h"
 #include "cli/subject.h"
 #include "lattice/study/fit_data.h"
 
@@ -16,11 +17,14 @@ namespace gatewalk::cli {
 /// read by the command, or another output of it.
 [[nodiscard]] std::vector<std::string> files_of_draws(const Options& options, std::int64_t count);
 
-/// What an experiment saw of the subject, from a table of counts, of trials, or of passages; and
-/// warns of what it leaves out. `problem`: of the subject, with all types of cells if it is of
-/// passages (is_table_of_runs). Throws UsageError, and std::invalid_argument.
+/// Whether it is a table of passages.
+[[nodiscard]] bool is_of_passages(const std::string& path);
+/// The types of cells that such a table names, or those of the map.
+[[nodiscard]] CellTypes types_in(const std::string& path);
+/// What an experiment saw, from a table of counts, of trials, or of passages; and warns of what it
+/// leaves out. `at`: with types_in(path). Throws UsageError, and std::invalid_argument.
 [[nodiscard]] lattice::FitData data_to_fit(const Options& options, const Subject& s,
-                                           const lattice::Problem& problem,
-                                           const std::string& path);
+                                           const Ranged& ranged, const lattice::ProblemAt& at,
+                                           const std::string& path, std::int64_t trials);
 
 }  // namespace gatewalk::cli

@@ -27,9 +27,9 @@ struct Ranged {
 /// was chosen for it.
 [[nodiscard]] lattice::Scene scene_at(const Ranged& ranged, const Subject& s,
                                       const std::vector<double>& point);
-/// What is given outlives it. Cells: a type for each of a map's, or also for those that stand
-/// nowhere, in the order of the scene.
+/// Types of cells: those that stand in the map, or all of the scene in their order.
 enum class CellTypes { of_the_map, all };
+/// What is given outlives it.
 [[nodiscard]] lattice::ProblemAt problem_at(const Ranged& ranged, const Subject& s,
                                             CellTypes types = CellTypes::of_the_map);
 

@@ -5,7 +5,6 @@
 #include "cli/fitted.h"
 #include "cli/ranged.h"
 #include "cli/render/json.h"
-#include "lattice/cells/recorded.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -39,7 +38,7 @@ int run_fit(const Arguments& arguments) {
       "trial,ending,gate_x,gate_y; also with time_s; or passages: runs.csv)",
       true);
   options.add_texts("free", "KEY=LOW:HIGH",
-                    "a number of the scene and its range (at most " +
+                    "a number of the scene, or of the program, and its range (at most " +
                         std::to_string(lattice::kMostFitted) + "; may be repeated)");
   options.add_count("trials", "N",
                     "full trials, or passages, all points together; " +
@@ -66,10 +65,11 @@ int run_fit(const Arguments& arguments) {
   const auto ranged = ranges_of(options, s, "free", lattice::kMostFitted);
   if (!ranged) throw UsageError("--free KEY=LOW:HIGH says which numbers are to be found: give one");
   const auto numbers = static_cast<int>(ranged->ranges.size());
-  const std::vector<double> middle(ranged->ranges.size(), 0.5);
+  const std::string seen = options.text("counts");
   if (ranged->scene) {
-    for (const std::string& text :
-         lattice::keys_without_effect(ranged->scene->at(middle), lattice::RunsFrom::everywhere))
+    for (const std::string& text : lattice::keys_without_effect(
+             ranged->scene->at(std::vector<double>(ranged->ranges.size(), 0.5)),
+             is_of_passages(seen) ? lattice::RunsFrom::all_types : lattice::RunsFrom::everywhere))
       for (const lattice::NumberRange& r : ranged->ranges)
         if (text.starts_with(r.key + " ")) throw UsageError("--free " + text);
   } else if (options.has("output")) {
@@ -83,13 +83,10 @@ int run_fit(const Arguments& arguments) {
   std::vector<std::string> scenes;
   if (options.has("scenes"))
     scenes = files_of_draws(options, options.count("scenes", 1, kMostScenes));
-  const std::string seen = options.text("counts");
-  const lattice::ProblemAt at = problem_at(
-      *ranged, s, lattice::is_table_of_runs(seen) ? CellTypes::all : CellTypes::of_the_map);
-  const lattice::Problem problem = at(middle);
-  const lattice::FitData data = data_to_fit(options, s, problem, seen);
+  const lattice::ProblemAt at = problem_at(*ranged, s, types_in(seen));
+  const lattice::FitData data = data_to_fit(options, s, *ranged, at, seen, how.trials);
   s.settle(options);
-  const FittedScene fitted{ranged->ranges, problem.field, s.settled,
+  const FittedScene fitted{ranged->ranges, s.problem.field, s.settled,
                            lattice::fit(numbers, at, data, how, options.work())};
   const lattice::Fit& fit = fitted.fit;
   Json json = to_json(fitted);

@@ -613,17 +613,16 @@ std::vector<EnteredPassage> entered_passages(const RecordedRuns& runs) {
   return all;
 }
 
-bool is_table_of_runs(const std::string& path) {
+bool has_columns(const std::string& path, std::initializer_list<std::string_view> columns) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe is read only once
   Lines lines(path);
   for (std::string_view line; lines.next(line);) {
     if (is_no_data(line)) continue;
     const auto fields = csv_fields(line);
-    const auto has = [&](const char* name) {
-      return fields && std::find(fields->begin(), fields->end(), name) != fields->end();
-    };
-    return has("in") && has("out");
+    return fields && std::all_of(columns.begin(), columns.end(), [&](std::string_view column) {
+             return std::find(fields->begin(), fields->end(), column) != fields->end();
+           });
   }
   return false;
 }

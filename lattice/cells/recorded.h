@@ -5,7 +5,9 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lattice/cells/cell_file.h"
@@ -37,9 +39,9 @@ struct RecordedRuns {
 /// All passages, each with the entry by which it began.
 [[nodiscard]] std::vector<EnteredPassage> entered_passages(const RecordedRuns& runs);
 
-/// Whether the file's first line names columns as runs.csv has them; false for what is no regular
-/// file.
-[[nodiscard]] bool is_table_of_runs(const std::string& path);
+/// Whether the first line of a table names all these columns; false for what is no regular file.
+[[nodiscard]] bool has_columns(const std::string& path,
+                               std::initializer_list<std::string_view> columns);
 
 /// Costs but the time that a table must have a column of: all of the cells, or none; without one
 /// they are not known.

@@ -29,14 +29,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kPoints = 128;          // of a round; of the last one twice as many
-constexpr int kRounds = 10;             // at most, before the last
-constexpr int kParts = 12;              // of the trials: one a round, what is left in the last
-constexpr std::int64_t kLeastEach = 8;  // trials of a point, for each number
+constexpr Index kPoints = 128;               // of a round; of the last one twice as many
+constexpr int kRounds = 10;                  // at most, before the last
+constexpr int kParts = 12;                   // of the trials: one a round, what is left in the last
+constexpr std::int64_t kLeastEach = 8;       // trials of a point, for each number
+constexpr std::int64_t kOfEachObserved = 4;  // trials of a round, for each observed one
 constexpr std::int64_t kFirstTrial = std::int64_t{1} << 51;  // numbers that no other trials have
-constexpr double kLeastShare = 0.01;       // of all trials, in a group of neighbouring gates
 constexpr std::int64_t kFewestAlone = 50;  // trials of a group that is an ending's last
-constexpr double kMostParameters = 600.0;  // of a model of degree 2: what is fitted in a second
 constexpr int kMostDegree = 4;
 constexpr Index kWalkers = 32;  // of a walk
 constexpr Index kWalks = 16;    // each with coefficients of its own
@@ -88,32 +87,49 @@ class Fitter {
   }
 
  private:
+  /// Groups, one behind the other, of which it is given how many there are in all: trials, or
+  /// passages that begin alike.
+  struct Given {
+    Index first = 0, count = 0;
+  };
+  /// The log of it, of a model and what was observed.
+  struct Likelihood {
+    std::shared_ptr<const OutcomeModel> model;
+    std::vector<Given> given;
+    VectorXd observed;  // (groups)
+
+    [[nodiscard]] double operator()(const OutcomeModel::Coefficients& coefficients,
+                                    const VectorXd& point) const {
+      VectorXd logs;
+      model->log_chances(coefficients, point, logs);
+      double sum = observed.dot(logs);
+      if (given.size() > 1)
+        for (const Given& g : given) {
+          const auto among = logs.segment(g.first, g.count).array();
+          const double most = among.maxCoeff();
+          sum -= observed.segment(g.first, g.count).sum() *
+                 (most + std::log((among - most).exp().sum()));
+        }
+      return sum;
+    }
+  };
   /// Where the likelihood of a round's model is not small, whichever of these coefficients it has.
   struct Bound {
-    std::shared_ptr<const OutcomeModel> model;
-    VectorXd observed;  // (groups)
+    Likelihood likelihood;
     std::vector<std::pair<OutcomeModel::Coefficients, double>> least;
   };
-
-  [[nodiscard]] static double likelihood(const OutcomeModel& model,
-                                         const OutcomeModel::Coefficients& coefficients,
-                                         const VectorXd& observed, const VectorXd& point) {
-    VectorXd logs;
-    model.log_chances(coefficients, point, logs);
-    return observed.dot(logs);
-  }
   /// How far the log likelihood may fall before the point is outside.
   [[nodiscard]] static double margin(const Bound& b, const VectorXd& point) {
     double most = -HUGE_VAL;
     for (const auto& [coefficients, least] : b.least)
-      most = std::max(most, likelihood(*b.model, coefficients, b.observed, point) - least);
+      most = std::max(most, b.likelihood(coefficients, point) - least);
     return most;
   }
   [[nodiscard]] bool inside(const VectorXd& point) const {
     if ((point.array() < 0.0).any() || (point.array() > 1.0).any()) return false;
     return std::all_of(bounds_.begin(), bounds_.end(), [&](const Bound& b) {
       return std::any_of(b.least.begin(), b.least.end(), [&](const auto& of) {
-        return likelihood(*b.model, of.first, b.observed, point) >= of.second;
+        return b.likelihood(of.first, point) >= of.second;
       });
     });
   }
@@ -246,6 +262,7 @@ class Fitter {
         break;
       }
     }
+    likelihood_ = {model_, given_groups(), observed_};
     fit_.degree = model_->degree();
     fit_.points = used_.rows();
     fit_.misfit = std::sqrt(2.0 * static_cast<double>(fit_.observed) * model_->lack_of_fit());
@@ -255,8 +272,8 @@ class Fitter {
   /// end so that nothing could be learnt from them alone.
   void group(const std::vector<std::int64_t>& all) {
     const std::int64_t trials = std::accumulate(all.begin(), all.end(), std::int64_t{0});
-    const double share = std::max(
-        kLeastShare, static_cast<double>(OutcomeModel::terms(numbers_, 2)) / kMostParameters);
+    const double share = least_share(numbers_, static_cast<double>(trials_used_),
+                                     static_cast<double>(fit_.observed));
     const auto enough = std::max(
         kFewestAlone, static_cast<std::int64_t>(std::ceil(share * static_cast<double>(trials))));
     const std::size_t of_ending = fit_.outcomes.together();
@@ -293,17 +310,31 @@ class Fitter {
           "fit: nearly all trials end alike anywhere in the ranges: how they end tells nothing");
   }
 
+  [[nodiscard]] std::vector<Given> given_groups() const {
+    std::vector<Given> given;
+    const auto begins = [&](std::size_t outcome) {
+      return fit_.outcomes.is_of_passages() ? outcome / fit_.outcomes.together() : 0;
+    };
+    for (std::size_t g = 0; g < fit_.groups.size(); ++g) {
+      const bool goes_on = g > 0 && begins(fit_.groups[g - 1].outcomes.back()) ==
+                                        begins(fit_.groups[g].outcomes.front());
+      if (!goes_on) given.push_back({static_cast<Index>(g), 0});
+      ++given.back().count;
+    }
+    return given;
+  }
+
   [[nodiscard]] Ensemble walk_of(const OutcomeModel::Coefficients& coefficients,
-                                 const VectorXd& observed) const {
+                                 const Likelihood& likelihood) const {
     std::vector<std::pair<double, Index>> best;
     for (Index i = 0; i < used_.rows(); ++i)
-      best.emplace_back(-likelihood(*model_, coefficients, observed, used_.row(i).transpose()), i);
+      best.emplace_back(-likelihood(coefficients, used_.row(i).transpose()), i);
     std::sort(best.begin(), best.end());
     MatrixXd from(numbers_, kWalkers);
     for (Index i = 0; i < kWalkers; ++i)
       from.col(i) = used_.row(best[static_cast<std::size_t>(i)].second).transpose();
-    return {[this, coefficients, observed](const VectorXd& at) {
-              return inside(at) ? likelihood(*model_, coefficients, observed, at) : -HUGE_VAL;
+    return {[this, coefficients, likelihood](const VectorXd& at) {
+              return inside(at) ? likelihood(coefficients, at) : -HUGE_VAL;
             },
             std::move(from)};
   }
@@ -311,12 +342,8 @@ class Fitter {
   /// A bound more. How many of the points keep it.
   [[nodiscard]] double narrow() {
     Random chance = random(2);
-    // As many as a model of these trials can tell of: what its coefficients have by chance looks
-    // like (groups - 1) * observed / trials of what the range tells.
-    const double by_chance = static_cast<double>((observed_.size() - 1) * fit_.observed) /
-                             static_cast<double>(trials_used_);
-    const VectorXd observed = observed_ / std::max(1.0, by_chance);
-    Ensemble walk = walk_of(model_->best(), observed);
+    const Likelihood likelihood = likelihood_;
+    Ensemble walk = walk_of(model_->best(), likelihood);
     double most = -HUGE_VAL;
     draws_.resize(numbers_, 0);
     for (int step = 0; step < kFirstSteps + kSteps; ++step) {
@@ -332,17 +359,16 @@ class Fitter {
     // But no fewer points than these are kept: what is wrong far from the best is seen later.
     std::vector<double> likelihoods;
     for (Index i = 0; i < used_.rows(); ++i)
-      likelihoods.push_back(
-          likelihood(*model_, model_->best(), observed, used_.row(i).transpose()));
+      likelihoods.push_back(likelihood(model_->best(), used_.row(i).transpose()));
     std::sort(likelihoods.begin(), likelihoods.end(), std::greater<>());
     const double least =
         std::min(most - below, likelihoods[static_cast<std::size_t>(used_.rows() / kMostNarrowed)]);
-    Bound bound{model_, observed, {{model_->best(), least}}};
+    Bound bound{likelihood, {{model_->best(), least}}};
     for (int k = 0; k < kBoundsOfEach; ++k) {
       auto coefficients = model_->drawn(chance);
       double greatest = -HUGE_VAL;
       const auto look = [&](const VectorXd& at) {
-        greatest = std::max(greatest, likelihood(*model_, coefficients, observed, at));
+        greatest = std::max(greatest, likelihood(coefficients, at));
       };
       for (Index i = 0; i < used_.rows(); ++i) look(used_.row(i).transpose());
       for (Index i = 0; i < draws_.cols(); ++i) look(draws_.col(i));
@@ -371,7 +397,7 @@ class Fitter {
     tbb::parallel_for(std::size_t{0}, walked.size(), [&](std::size_t w) {
       Random chance = random(3 + w);
       coefficients_[w] = model_->drawn(chance);
-      Ensemble walk = walk_of(coefficients_[w], observed_);
+      Ensemble walk = walk_of(coefficients_[w], likelihood_);
       const Index walkers = walk.walkers().cols();
       MatrixXd& all = walked[w];
       all.resize(numbers_, walkers * (kSteps / kEvery));
@@ -390,8 +416,7 @@ class Fitter {
       fit_.walks.insert(fit_.walks.end(), static_cast<std::size_t>(of_each), w);
     }
     for (Index i = 0; i < fit_.draws.rows(); ++i)
-      fit_.log_likelihoods[i] =
-          likelihood(*model_, model_->best(), observed_, fit_.draws.row(i).transpose());
+      fit_.log_likelihoods[i] = likelihood_(model_->best(), fit_.draws.row(i).transpose());
     fit_.log_likelihoods.maxCoeff(&fit_.best);
   }
 
@@ -459,28 +484,6 @@ class Fitter {
       fit_.mixing = std::max(fit_.mixing, std::sqrt(1.0 + 2.0 * by_length / within));
   }
 
-  /// Groups, one behind the other, of which it is given how many there are in all: trials, or
-  /// passages that begin alike.
-  struct Given {
-    Index first = 0, count = 0;
-    std::int64_t observed = 0;
-  };
-  [[nodiscard]] std::vector<Given> given_groups() const {
-    std::vector<Given> given;
-    const auto begins = [&](std::size_t outcome) {
-      return fit_.outcomes.is_of_passages() ? outcome / fit_.outcomes.together() : 0;
-    };
-    for (std::size_t g = 0; g < fit_.groups.size(); ++g) {
-      const OutcomeGroup& group = fit_.groups[g];
-      const bool goes_on =
-          g > 0 && begins(fit_.groups[g - 1].outcomes.back()) == begins(group.outcomes.front());
-      if (!goes_on) given.push_back({static_cast<Index>(g), 0, 0});
-      ++given.back().count;
-      given.back().observed += group.observed;
-    }
-    return given;
-  }
-
   /// Experiments like this one, at each draw.
   void predict() {
     const Index draws = fit_.draws.rows(), groups = observed_.size();
@@ -489,7 +492,7 @@ class Fitter {
     VectorXd logs, mean = VectorXd::Zero(groups);
     std::vector<std::int64_t> counts(static_cast<std::size_t>(groups));
     Index further = 0;
-    const std::vector<Given> given = given_groups();
+    const std::vector<Given>& given = likelihood_.given;
     for (Index i = 0; i < draws; ++i) {
       const auto walk = static_cast<std::size_t>(fit_.walks[static_cast<std::size_t>(i)]);
       model_->log_chances(coefficients_[walk], fit_.draws.row(i).transpose(), logs);
@@ -499,9 +502,10 @@ class Fitter {
         if (given.size() > 1) among /= among.sum();
         const auto first = static_cast<std::size_t>(g.first),
                    count = static_cast<std::size_t>(g.count);
-        multinomial(g.observed, {among.data(), count}, std::span(counts).subspan(first, count),
+        const auto observed = static_cast<std::int64_t>(observed_.segment(g.first, g.count).sum());
+        multinomial(observed, {among.data(), count}, std::span(counts).subspan(first, count),
                     chance);
-        among *= static_cast<double>(g.observed);
+        among *= static_cast<double>(observed);
       }
       for (Index g = 0; g < groups; ++g)
         fit_.predicted(i, g) = static_cast<double>(counts[static_cast<std::size_t>(g)]);
@@ -535,6 +539,7 @@ class Fitter {
   MatrixXd used_;                 // points of the model
   std::int64_t trials_used_ = 0;  // at these
   VectorXd observed_;             // (groups)
+  Likelihood likelihood_;         // of these
   std::shared_ptr<const OutcomeModel> model_;
   MatrixXd draws_;   // (numbers x draws), of a round
   MatrixXd inside_;  // (numbers x points), those of the model that its bound leaves
@@ -561,6 +566,15 @@ Fit fit(int numbers, const ProblemAt& problem_at, const FitData& data, const Fit
   if (options.trials < least_trials_of_fit(numbers))
     throw std::invalid_argument("fit: " + std::to_string(numbers) + " numbers need " +
                                 std::to_string(least_trials_of_fit(numbers)) + " trials");
+  const std::size_t outcomes = data.outcomes.size();
+  if (data.seen.size() != outcomes || data.order.size() != outcomes || !data.run)
+    throw std::invalid_argument("fit: data that are not whole");
+  const std::int64_t observed =
+      std::accumulate(data.seen.begin(), data.seen.end(), std::int64_t{0});
+  if (options.trials < kOfEachObserved * kParts * observed)
+    throw std::invalid_argument("fit: " + std::to_string(observed) + " observed ones need " +
+                                std::to_string(kOfEachObserved * kParts * observed) +
+                                " trials or more (--trials)");
   return Fitter(numbers, problem_at, data, options, work).carry_out();
 }
 

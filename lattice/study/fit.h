@@ -70,7 +70,8 @@ struct Fit {
 /// from trials, or passages, at points of the ranges, as a smooth function between them
 /// (OutcomeModel); points of the next round lie where the likelihood of this one is not small; its
 /// own uncertainty is counted. `data` is of the fields at these points. Throws
-/// std::invalid_argument for another number of numbers, and for too few trials.
+/// std::invalid_argument for another number of numbers, and for too few trials, also for as many as
+/// were observed.
 [[nodiscard]] Fit fit(int numbers, const ProblemAt& problem_at, const FitData& data,
                       const FitOptions& options, const dynamics::Work& work = {});
 

@@ -2,22 +2,29 @@
 #include "lattice/study/fit_data.h"
 
 #include <algorithm>
-#include <iterator>
+#include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "dynamics/cells/tree_space.h"
 #include "lattice/reference.h"
+#include "lattice/statistics/outcome_model.h"
 
 namespace gatewalk::lattice {
 namespace {
 
 using namespace dynamics;
 
-constexpr std::size_t kTimeParts = 8;    // of the observed times: by quantiles
-constexpr std::size_t kBeginnings = 16;  // of passages, about: by where and how bodies enter
-constexpr double kRounding = 1e-6;       // of a face's length
+constexpr std::size_t kTimeParts = 8;       // of the observed times: by quantiles
+constexpr double kLeastShare = 0.01;        // of all trials, in a group, ...
+constexpr double kMostShare = 0.2;          // ... which is not larger because much was observed
+constexpr double kByChance = 4.0;           // see least_share
+constexpr double kLastRound = 6.0;          // the last round has a sixth of all trials
+constexpr double kGroupsOfBeginning = 6.0;  // of passages that begin alike
+constexpr double kWellInside = 0.01;        // of a face's length
 
 /// Outcomes in an order in which neighbours are alike: by ending, and gates row by row, there and
 /// back again; by face.
@@ -74,40 +81,55 @@ std::int32_t of_trial(const FittedOutcomes& of, std::size_t ending, std::size_t 
                  left, seconds);
 }
 
-std::int32_t of_passage(const FittedOutcomes& of, std::size_t begin, bool left, const Entry& next,
-                        double seconds) {
-  const std::size_t to = left ? static_cast<std::size_t>(next.face) : of.faces.size();
-  return outcome(of, begin * (of.faces.size() + 1) + to, left, seconds);
-}
-
 /// A passage that was seen to its end, and which of the outcomes' beginnings it has.
 struct Begun {
   Entry from;
   std::uint8_t type = 0;
+  bool mirrored = false;  // its mirror image is told of
   std::size_t begin = 0;
 };
 
+std::int32_t of_passage(const FittedOutcomes& of, const Section& section, const Begun& begun,
+                        bool left, const Entry& next, double seconds) {
+  std::size_t to = of.faces.size();
+  if (left)
+    to = static_cast<std::size_t>(begun.mirrored ? mirrored(section, next).face : next.face);
+  return outcome(of, begun.begin * (of.faces.size() + 1) + to, left, seconds);
+}
+
+/// Of an entry and its mirror image one is told of.
+bool is_told_of(const Section& section, const Entry& entry) {
+  const Entry other = mirrored(section, entry);
+  return std::pair(entry.face, other.at) <= std::pair(other.face, entry.at);
+}
+
 /// Puts those that begin alike together: leaves of a tree over all entries into a type of cell.
-void put_beginnings(std::vector<Begun>& begun, FittedOutcomes& of, const Problem& problem) {
+void put_beginnings(std::vector<Begun>& begun, FittedOutcomes& of, const Problem& problem,
+                    std::size_t beginnings) {
   const Section& section = problem.map().section;
   const std::size_t types = problem.cells.cells.size();
-  const auto per_leaf = static_cast<int>(std::max<std::size_t>(1, begun.size() / kBeginnings));
+  const auto per_leaf = static_cast<int>((begun.size() + beginnings - 1) / beginnings);
   for (std::size_t type = 0; type < types; ++type) {
     EntryTable entries(section);
-    for (const Begun& b : begun)
-      if (b.type == type) entries.push_back(b.from);
-    const StateSpace space = tree_space(section, entries, per_leaf);
-    for (Begun& b : begun)
-      if (b.type == type)
-        b.begin = of.begins.size() + static_cast<std::size_t>(space.index_of(b.from).state);
+    std::vector<Begun*> these;
+    for (Begun& b : begun) {
+      if (b.type != type) continue;
+      entries.push_back(b.mirrored ? mirrored(section, b.from) : b.from);
+      these.push_back(&b);
+    }
+    std::vector<int> states;
+    const StateSpace space = tree_space(section, entries, per_leaf, {}, &states);
+    for (std::size_t i = 0; i < these.size(); ++i)
+      these[i]->begin = of.begins.size() + static_cast<std::size_t>(states[i]);
+    const bool both = std::any_of(these.begin(), these.end(), [](Begun* b) { return b->mirrored; });
     for (int state = 0; state < space.size(); ++state)
       of.begins.push_back((types > 1 ? problem.types[type] + ": " : "") +
-                          text_of(section, space.range(state)));
+                          text_of(section, space.range(state)) + (both ? " or mirrored" : ""));
   }
 }
 
-/// Carries out passages that begin as some did: evenly among these, so that as many begin so, from
-/// a place by chance.
+/// Carries out passages that begin as some did: evenly among these, which stand in the order of
+/// their beginnings, so that of each there are as many; from a place by chance.
 Health carry_out_again(
     const std::vector<Begun>& seen, const CellField& cells, std::uint64_t seed, TrialRange range,
     const std::function<void(std::size_t i, const Begun&, const Passage&)>& take) {
@@ -158,6 +180,12 @@ std::size_t FittedOutcomes::size() const {
 
 std::size_t FittedOutcomes::together() const {
   return parts() * (is_of_passages() ? faces.size() + 1 : std::max<std::size_t>(1, gates));
+}
+
+double least_share(int numbers, double trials, double observed) {
+  return std::max({kLeastShare,
+                   static_cast<double>(OutcomeModel::terms(numbers, 2)) / kMostParameters,
+                   std::min(kMostShare, kByChance * observed / trials)});
 }
 
 FitData trials_to_fit(const Observed& observed, const Problem& problem) {
@@ -213,49 +241,64 @@ FitData trials_to_fit(const Observed& observed, const Problem& problem) {
   return data;
 }
 
-FitData passages_to_fit(const std::vector<EnteredPassage>& seen, const Problem& problem) {
+FitData passages_to_fit(const std::vector<EnteredPassage>& seen, int numbers,
+                        const ProblemAt& problem_at, std::int64_t trials) {
+  std::vector<double> point;  // where what is symmetric is so by no chance
+  for (int k = 1; k <= numbers; ++k) point.push_back(std::fmod(0.381966 * k, 1.0));
+  const Problem problem = problem_at(point);
   const Section& section = problem.map().section;
   const std::size_t time = time_cost(section);
   const auto seconds = [time](const Costs& costs) {
     return time < costs.size() ? costs[time] : 0.0;
   };
-  std::vector<EnteredPassage> whole;
-  std::copy_if(seen.begin(), seen.end(), std::back_inserter(whole),
-               [](const EnteredPassage& p) { return p.passage.fate != Fate::broken; });
-  require(!whole.empty(), "no passage was seen to its end");
   FitData data;
   FittedOutcomes& of = data.outcomes;
   for (const Face& face : section.faces) of.faces.push_back(face.name);
   std::vector<double> times;
   std::vector<Begun> begun;
-  for (const auto& [from, passage] : whole) {
+  std::vector<std::size_t> whole;  // those seen to their end
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const auto& [from, passage] = seen[i];
+    if (passage.fate == Fate::broken) continue;
     const auto& usual = section.faces[static_cast<std::size_t>(from.face)].usual.front();
-    data.inside +=
-        problem.cells.cells[passage.type]->clearance(from) < -kRounding * (usual[1] - usual[0]);
-    if (passage.fate == Fate::left && time < section.costs.size())
+    const Cell& cell = *problem.cells.cells[passage.type];
+    data.inside += cell.clearance(from) < -kWellInside * (usual[1] - usual[0]);
+    if (passage.fate == Fate::left && time < section.costs.size()) {
+      require(std::isfinite(passage.costs[time]), "a passage has no time");
       times.push_back(passage.costs[time]);
-    begun.push_back({from, passage.type});
+    }
+    whole.push_back(i);
+    begun.push_back({from, passage.type, cell.is_symmetric() && !is_told_of(section, from)});
   }
+  require(!begun.empty(), "no passage was seen to its end");
   of.times = time_parts(std::move(times));
-  put_beginnings(begun, of, problem);
+  // As many of the last round's trials as there are, in groups, a few of each beginning.
+  const double groups = 1.0 / least_share(numbers, static_cast<double>(trials) / kLastRound,
+                                          static_cast<double>(begun.size()));
+  put_beginnings(begun, of, problem,
+                 static_cast<std::size_t>(std::max(1.0, groups / kGroupsOfBeginning)));
   data.seen.assign(of.size(), 0);
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    const CellPassage& passage = whole[i].passage;
-    ++data.seen[static_cast<std::size_t>(of_passage(of, begun[i].begin, passage.fate == Fate::left,
-                                                    passage.entry, seconds(passage.costs)))];
+  for (std::size_t i = 0; i < begun.size(); ++i) {
+    const CellPassage& passage = seen[whole[i]].passage;
+    ++data.seen[static_cast<std::size_t>(of_passage(
+        of, section, begun[i], passage.fate == Fate::left, passage.entry, seconds(passage.costs)))];
   }
   data.order = neighbours(of, problem.field);
-  data.run = [of, seconds, begun = std::move(begun)](const Problem& at, std::uint64_t seed,
-                                                     TrialRange range,
-                                                     std::span<std::int32_t> ended) {
-    return carry_out_again(begun, at.cells, seed, range,
-                           [&](std::size_t i, const Begun& b, const Passage& passage) {
-                             ended[i] = passage.fate == Fate::broken
-                                            ? -1
-                                            : of_passage(of, b.begin, passage.fate == Fate::left,
-                                                         passage.next, seconds(passage.costs));
-                           });
-  };
+  std::sort(begun.begin(), begun.end(), [](const Begun& a, const Begun& b) {
+    return std::tie(a.begin, a.from.at, a.from.face) < std::tie(b.begin, b.from.at, b.from.face);
+  });
+  data.run =
+      [of, section, seconds, begun = std::make_shared<const std::vector<Begun>>(std::move(begun))](
+          const Problem& at, std::uint64_t seed, TrialRange range, std::span<std::int32_t> ended) {
+        return carry_out_again(*begun, at.cells, seed, range,
+                               [&](std::size_t i, const Begun& b, const Passage& passage) {
+                                 ended[i] =
+                                     passage.fate == Fate::broken
+                                         ? -1
+                                         : of_passage(of, section, b, passage.fate == Fate::left,
+                                                      passage.next, seconds(passage.costs));
+                               });
+      };
   return data;
 }
 

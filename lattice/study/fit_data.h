@@ -15,6 +15,7 @@
 #include "lattice/passage_table.h"
 #include "lattice/problem.h"
 #include "lattice/study/observed.h"
+#include "lattice/study/variance_shares.h"
 
 namespace gatewalk::lattice {
 
@@ -45,18 +46,27 @@ struct FitData {
       std::function<dynamics::Health(const Problem& problem, std::uint64_t seed,
                                      dynamics::TrialRange range, std::span<std::int32_t> ended)>;
   Run run;
-  /// Passages that begin in an obstacle, by more than rounding: places are wrong, or obstacles.
+  /// Passages that begin well inside an obstacle: places are wrong, or obstacles.
   std::int64_t inside = 0;
 };
+
+/// Of a model of degree 2: so many are fitted in a second.
+inline constexpr double kMostParameters = 600.0;
+/// The share of all trials that a group of outcomes has at least: a hundredth; more where there are
+/// many numbers; and so much that by chance in the model of all groups the likelihood of what was
+/// observed seems to tell a fourth of what the range does, or less.
+[[nodiscard]] double least_share(int numbers, double trials, double observed);
 
 /// Trials from the problem's start. Throws std::invalid_argument for counts of another field, of
 /// both gates and endings without saying which belong together, and of none.
 [[nodiscard]] FitData trials_to_fit(const Observed& observed, const Problem& problem);
 
-/// Passages through the problem's types of cells, each from where it was seen to begin, by bodies
-/// that remember nothing; those that broke are left out. Throws std::invalid_argument where none is
-/// left.
-[[nodiscard]] FitData passages_to_fit(const std::vector<EnteredPassage>& seen,
-                                      const Problem& problem);
+/// Passages through the types of cells of these problems, each from where it was seen to begin, by
+/// bodies that remember nothing; those that broke are left out. They are told apart by where and
+/// how they begin as finely as so many trials of a fit permit, mirror images not where all cells
+/// are symmetric. Throws std::invalid_argument where none is left, and for costs of a passage that
+/// left that are not finite.
+[[nodiscard]] FitData passages_to_fit(const std::vector<EnteredPassage>& seen, int numbers,
+                                      const ProblemAt& problem_at, std::int64_t trials);
 
 }  // namespace gatewalk::lattice
