@@ -105,9 +105,9 @@ int run_fit(const Arguments& arguments) {
     }
   }
   for (const std::string& warning : warnings_of(fitted)) options.warn(warning);
-  const int exit = status_of(options, fit.health);
+  (void)status_of(options, fit.health);
   options.draw([&] { return figure_of(fitted); });
-  return exit;
+  return exit_status(options, is_clean(fitted));
 }
 
 }  // namespace gatewalk::cli

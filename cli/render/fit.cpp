@@ -177,23 +177,31 @@ std::string table_of(const FittedScene& f) {
     std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
       return std::abs(surprise(a)) > std::abs(surprise(b));
     });
-    table +=
-        "no numbers in these ranges explain the counts; furthest off, expected and observed:\n";
+    table += "no numbers in these ranges explain the counts" +
+             std::string(fit.outcomes.is_of_passages() ? " (of cells of other lengths?)" : "") +
+             "; furthest off, expected and observed:\n";
     for (std::size_t i = 0; i < std::min(kMostShown, sorted.size()); ++i)
       table += "  " + words_of(f, sorted[i]) + ": " + fixed(sorted[i].expected, 1) + ", " +
                std::to_string(sorted[i].observed) + "\n";
   }
-  return table + method_line(f.method) + std::to_string(fit.trials) + " trials, in the last of " +
-         std::to_string(fit.rounds + 1) + " rounds at " + std::to_string(fit.points) +
-         " points of " + percent(fit.volume, 1.0, fit.volume < 0.01 ? 3 : 1) +
+  return table + method_line(f.method) + std::to_string(fit.trials) + " " + counted(f) +
+         ", in the last of " + std::to_string(fit.rounds + 1) + " rounds at " +
+         std::to_string(fit.points) + " points of " +
+         percent(fit.volume, 1.0, fit.volume < 0.01 ? 3 : 1) +
          " of the ranges; chances between them by polynomials of degree " +
          std::to_string(fit.degree) + ", " + fixed(fit.seconds, 1) + " s\n";
+}
+
+bool is_clean(const FittedScene& f) {
+  return f.fit.health.clean() && f.fit.settled() && f.fit.p >= kUnexplained;
 }
 
 std::vector<std::string> warnings_of(const FittedScene& f) {
   std::vector<std::string> all;
   const auto warn = [&](const std::string& text) { all.push_back(text); };
   const lattice::Fit& fit = f.fit;
+  const bool goes_on = std::any_of(fit.numbers.begin(), fit.numbers.end(),
+                                   [](const auto& n) { return n.goes_on[0] || n.goes_on[1]; });
   for (std::size_t k = 0; k < f.ranges.size(); ++k) {
     const lattice::FittedNumber& n = fit.numbers[k];
     for (const std::size_t end : {0U, 1U})
@@ -209,7 +217,7 @@ std::vector<std::string> warnings_of(const FittedScene& f) {
          "are counted with their neighbours");
   for (std::size_t k = 0; k < f.ranges.size(); ++k)
     if (const lattice::FittedNumber& n = fit.numbers[k];
-        n.best < n.interval[0] || n.best > n.interval[1])
+        !n.goes_on[0] && !n.goes_on[1] && (n.best < n.interval[0] || n.best > n.interval[1]))
       warn("the counts are likeliest outside the interval of " + f.ranges[k].key +
            ": many other values fit nearly as well, and the ranges decide how many");
   if (fit.settled()) return all;
@@ -218,8 +226,9 @@ std::vector<std::string> warnings_of(const FittedScene& f) {
   warn("the posterior is rough: chances between the points change the log likelihood by " +
        fixed(fit.misfit, 2) + ", trials make " + percent(by_trials, 1.0, 0) +
        " of a variance (which is counted), R of the walks is " + fixed(fit.mixing, 2) + ", " +
-       percent(fit.near_bounds, 1.0) + " of the draws lie at the edge of the points" +
-       "; more --trials, or narrower ranges, help");
+       percent(fit.near_bounds, 1.0) +
+       " of the draws lie at the edge of the points; more --trials" +
+       (goes_on ? " help" : ", or narrower ranges, help"));
   return all;
 }
 

@@ -34,6 +34,8 @@ struct FittedScene {
 /// posterior_predictive (chain, draw, outcome), observed_data (outcome).
 [[nodiscard]] std::string inference_data(const FittedScene& f, const Json& made_by);
 
+/// Nothing went wrong in the runs, the posterior is settled, and it explains the counts.
+[[nodiscard]] bool is_clean(const FittedScene& f);
 /// What keeps the posterior from being taken at face value; empty if nothing does.
 [[nodiscard]] std::vector<std::string> warnings_of(const FittedScene& f);
 

@@ -253,7 +253,7 @@ class RunsReader {
       const auto found = std::find(given.begin(), given.end(), name);
       if (found == given.end())
         lines_.refuse("column " + name + " is missing: the columns must be " +
-                      with_commas(column_names(cells_, cells_.types.size() > 1)));
+                      with_commas(needed()));
       return static_cast<std::size_t>(found - given.begin());
     };
     columns_.body = place("body");
@@ -274,6 +274,13 @@ class RunsReader {
       columns_.type = place("type");
     columns_.names = given;
     columns_.count = given.size();
+  }
+
+  [[nodiscard]] std::vector<std::string> needed() const {
+    std::vector<std::string> names = column_names(cells_, cells_.types.size() > 1);
+    if (cost_columns_ == CostColumns::as_there_are)
+      names.resize(names.size() - (section_.costs.size() - 1));
+    return names;
   }
 
   [[noreturn]] void refuse(std::size_t column, const std::string& what) const {

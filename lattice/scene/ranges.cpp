@@ -82,7 +82,8 @@ Scene RangedScene::at(const std::vector<double>& point) const {
     const std::string what = e.what();
     for (const NumberRange& r : ranges_)
       if (what.starts_with("--set " + r.key + "="))
-        throw SceneError(option_ + what.substr(what.find(' ')));
+        throw SceneError(option_ + " " + r.key + "=" + shortest(r.low) + ":" + shortest(r.high) +
+                         what.substr(what.find(": ")));
     throw;
   }
 }
