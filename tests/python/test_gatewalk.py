@@ -142,6 +142,13 @@ class SameAsTheProgram(unittest.TestCase):
             table.write_text("ending,count\ncrossed,20\ntrapped,60\nleft side,2\n")
             self.check(seen, "fit", FIELD, table, "--free", "forces.propulsion_N=5:9", "--trials", 12288, "--set", "field.rows=3", "--set",
                        "run.method=moreau")
+            runs = Path(folder) / "runs.csv"
+            subprocess.run([PROGRAM, "lattice", FIELD, "--set", "field.rows=3", "--set", "run.method=moreau", "--trials", "20", "--passages", runs,
+                            "--cell-file", Path(folder) / "cell.toml", "--quiet"], check=True, stdout=subprocess.DEVNULL)
+            of_passages = gw.fit(FIELD, runs, free=free, trials=30000, set=few)
+            self.assertEqual(of_passages["of"], "passages")
+            self.check(of_passages, "fit", FIELD, runs, "--free", "forces.propulsion_N=5:9", "--trials", 30000, "--set", "field.rows=3", "--set",
+                       "run.method=moreau")
         with self.assertRaises(gw.SceneError):
             gw.fit(FIELD, {"crossed": 20, "trapped": 60}, free={"forces.push": (5, 9)})
 
