@@ -448,8 +448,11 @@ class Fitter {
       for (std::size_t i = 0; i < sorted.size(); ++i)
         from_flat = std::max(
             from_flat, std::abs(sorted[i] - static_cast<double>(i) / static_cast<double>(draws)));
-      constexpr double kHardlyMore = 0.15;
-      number.told = from_flat > kHardlyMore;
+      // A slope of the log likelihood by chance in the trials, which moves means of flat draws by
+      // so much, makes a distance of 1.5 times that.
+      walks_of(k, number);
+      constexpr double kHardlyMore = 0.15, kByChance = 2.0 * 1.5;
+      number.told = from_flat > kHardlyMore + kByChance * number.sd * std::sqrt(number.by_runs);
       constexpr double kEdge = 0.02, kOften = 0.05;  // flat draws: 0.02 of all
       const auto often = [&](auto count) {
         return number.told && static_cast<double>(count) > kOften * static_cast<double>(draws);
@@ -457,7 +460,6 @@ class Fitter {
       number.goes_on = {
           often(std::lower_bound(sorted.begin(), sorted.end(), kEdge) - sorted.begin()),
           often(sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), 1.0 - kEdge))};
-      walks_of(k, number);
       fit_.numbers.push_back(number);
     }
     predict();

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <boost/math/distributions/beta.hpp>
 #include <cmath>
@@ -260,6 +261,55 @@ TEST(Fit, TimesOfPassagesTellWhatTheirEndsDoNot) {
   const double mean = (left + 1.0) / sum, sd = std::sqrt(left + 1.0) / sum;
   EXPECT_NEAR(0.5 + 1.5 * f.numbers[0].mean, mean, sd);  // only quantiles of them are known
   EXPECT_NEAR(1.5 * f.numbers[0].sd, sd, 0.2 * sd);
+}
+
+// Much was seen, and the number changes nothing: chance in the trials is not taken for what it
+// does.
+TEST(Fit, MuchThatWasSeenTellsNothingOfWhatChangesNothing) {
+  const std::vector<EnteredPassage> seen = passages_of(waiting_lane(1.1), 300, 9);
+  const ProblemAt at = [](const std::vector<double>&) { return waiting_lane(1.1); };
+  constexpr std::int64_t kTrials = 150'000;
+  const FitData data = passages_to_fit(seen, 1, at, kTrials);
+  int told = 0;
+  double sd = 0.0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Fit f = fit(1, at, data, {.trials = kTrials, .seed = seed});
+    told += f.numbers[0].told && f.settled();
+    sd += f.numbers[0].sd / 6.0;
+  }
+  EXPECT_EQ(told, 0);
+  EXPECT_NEAR(sd, 1.0 / std::sqrt(12.0), 0.02);
+}
+
+TEST(Fit, PassagesMayStandInAnyOrder) {
+  std::vector<EnteredPassage> seen = passages_of(two_lane(0.7, 0.9), 60, 8);
+  const ProblemAt at = [](const std::vector<double>& x) {
+    return two_lane(chance_at(x[0]), chance_at(x[1]));
+  };
+  const auto draws = [&] {
+    return fit(2, at, passages_to_fit(seen, 2, at, 50'000), {.trials = 50'000, .seed = 1}).draws;
+  };
+  const Eigen::MatrixXd in_order = draws();
+  std::reverse(seen.begin(), seen.end());
+  EXPECT_EQ(draws(), in_order);
+}
+
+// By simulation: 60 experiments whose rates are drawn from the range.
+TEST(Fit, IntervalsOfPassagesHoldWhatTheyShould) {
+  int held = 0;
+  constexpr int kExperiments = 60;
+  const auto problem_at = [](const std::vector<double>& x) {
+    return waiting_lane(0.5 + 1.5 * x[0]);
+  };
+  for (int i = 0; i < kExperiments; ++i) {
+    Random random(Purpose::fit, {6, static_cast<std::uint64_t>(i), 0});
+    const double at = random.uniform();
+    const auto seen = passages_of(problem_at({at}), 40, 100 + static_cast<std::uint64_t>(i));
+    const FitData data = passages_to_fit(seen, 1, problem_at, 60'000);
+    const Fit f = fit(1, problem_at, data, {.trials = 60'000, .seed = 2});
+    held += f.numbers[0].interval[0] <= at && at <= f.numbers[0].interval[1];
+  }
+  EXPECT_GE(held, 51);  // 95 % but for chance (p > 0.001 by the binomial distribution)
 }
 
 TEST(Fit, PassagesThatWereLostAreLeftOut) {
