@@ -234,7 +234,6 @@ class Fitter {
     used_ = points_(at, Eigen::all);
     std::vector<std::int64_t> all(data_.order.size(), 0);
     for (const Index point : at) each_outcome(point, [&](std::size_t outcome) { ++all[outcome]; });
-    trials_used_ = std::accumulate(all.begin(), all.end(), std::int64_t{0});
     group(all);
     const Index groups = std::ssize(fit_.groups);
     std::vector<Index> group_of(data_.order.size(), 0);
@@ -272,8 +271,8 @@ class Fitter {
   /// end so that nothing could be learnt from them alone.
   void group(const std::vector<std::int64_t>& all) {
     const std::int64_t trials = std::accumulate(all.begin(), all.end(), std::int64_t{0});
-    const double share = least_share(numbers_, static_cast<double>(trials_used_),
-                                     static_cast<double>(fit_.observed));
+    const double share =
+        least_share(numbers_, static_cast<double>(trials), static_cast<double>(fit_.observed));
     const auto enough = std::max(
         kFewestAlone, static_cast<std::int64_t>(std::ceil(share * static_cast<double>(trials))));
     const std::size_t of_ending = fit_.outcomes.together();
@@ -342,8 +341,7 @@ class Fitter {
   /// A bound more. How many of the points keep it.
   [[nodiscard]] double narrow() {
     Random chance = random(2);
-    const Likelihood likelihood = likelihood_;
-    Ensemble walk = walk_of(model_->best(), likelihood);
+    Ensemble walk = walk_of(model_->best(), likelihood_);
     double most = -HUGE_VAL;
     draws_.resize(numbers_, 0);
     for (int step = 0; step < kFirstSteps + kSteps; ++step) {
@@ -359,16 +357,16 @@ class Fitter {
     // But no fewer points than these are kept: what is wrong far from the best is seen later.
     std::vector<double> likelihoods;
     for (Index i = 0; i < used_.rows(); ++i)
-      likelihoods.push_back(likelihood(model_->best(), used_.row(i).transpose()));
+      likelihoods.push_back(likelihood_(model_->best(), used_.row(i).transpose()));
     std::sort(likelihoods.begin(), likelihoods.end(), std::greater<>());
     const double least =
         std::min(most - below, likelihoods[static_cast<std::size_t>(used_.rows() / kMostNarrowed)]);
-    Bound bound{likelihood, {{model_->best(), least}}};
+    Bound bound{likelihood_, {{model_->best(), least}}};
     for (int k = 0; k < kBoundsOfEach; ++k) {
       auto coefficients = model_->drawn(chance);
       double greatest = -HUGE_VAL;
       const auto look = [&](const VectorXd& at) {
-        greatest = std::max(greatest, likelihood(coefficients, at));
+        greatest = std::max(greatest, likelihood_(coefficients, at));
       };
       for (Index i = 0; i < used_.rows(); ++i) look(used_.row(i).transpose());
       for (Index i = 0; i < draws_.cols(); ++i) look(draws_.col(i));
@@ -538,10 +536,9 @@ class Fitter {
   std::vector<std::int32_t> ended_;  // outcomes of their trials, one point behind the other
   std::vector<std::size_t> ends_;    // of each point's among these
   std::vector<Bound> bounds_;
-  MatrixXd used_;                 // points of the model
-  std::int64_t trials_used_ = 0;  // at these
-  VectorXd observed_;             // (groups)
-  Likelihood likelihood_;         // of these
+  MatrixXd used_;          // points of the model
+  VectorXd observed_;      // (groups)
+  Likelihood likelihood_;  // of these
   std::shared_ptr<const OutcomeModel> model_;
   MatrixXd draws_;   // (numbers x draws), of a round
   MatrixXd inside_;  // (numbers x points), those of the model that its bound leaves
