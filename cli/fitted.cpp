@@ -28,6 +28,15 @@ std::string not_listed(const lattice::Observed& observed, const lattice::FieldPa
   return names.empty() ? names : "the counts do not list " + names + ": taken as 0";
 }
 
+/// Throws UsageError for a number of a scene that changes nothing there.
+void require_effect(const Ranged& ranged, lattice::RunsFrom from) {
+  if (!ranged.scene) return;
+  const std::vector<double> middle(ranged.ranges.size(), 0.5);
+  for (const std::string& text : lattice::keys_without_effect(ranged.scene->at(middle), from))
+    for (const lattice::NumberRange& r : ranged.ranges)
+      if (text.starts_with(r.key + " ")) throw UsageError("--free " + text);
+}
+
 lattice::FitData of_passages(const Options& options, const Subject& s, const Ranged& ranged,
                              const lattice::ProblemAt& at, const std::string& path,
                              std::int64_t trials) {
@@ -100,7 +109,9 @@ CellTypes types_in(const std::string& path) {
 lattice::FitData data_to_fit(const Options& options, const Subject& s, const Ranged& ranged,
                              const lattice::ProblemAt& at, const std::string& path,
                              std::int64_t trials) {
-  if (is_of_passages(path)) return of_passages(options, s, ranged, at, path, trials);
+  const bool passages = is_of_passages(path);
+  require_effect(ranged, passages ? lattice::RunsFrom::all_types : lattice::RunsFrom::everywhere);
+  if (passages) return of_passages(options, s, ranged, at, path, trials);
   return of_trials(options, at(std::vector<double>(ranged.ranges.size(), 0.5)), path);
 }
 

@@ -66,15 +66,8 @@ int run_fit(const Arguments& arguments) {
   if (!ranged) throw UsageError("--free KEY=LOW:HIGH says which numbers are to be found: give one");
   const auto numbers = static_cast<int>(ranged->ranges.size());
   const std::string seen = options.text("counts");
-  if (ranged->scene) {
-    for (const std::string& text : lattice::keys_without_effect(
-             ranged->scene->at(std::vector<double>(ranged->ranges.size(), 0.5)),
-             is_of_passages(seen) ? lattice::RunsFrom::all_types : lattice::RunsFrom::everywhere))
-      for (const lattice::NumberRange& r : ranged->ranges)
-        if (text.starts_with(r.key + " ")) throw UsageError("--free " + text);
-  } else if (options.has("output")) {
+  if (!ranged->scene && options.has("output"))
     throw UsageError("-o: writes scenes of gates; a program's numbers are given by --set");
-  }
   const lattice::FitOptions how{
       .trials = options.count("trials", lattice::least_trials_of_fit(numbers)),
       .seed = options.seed()};
