@@ -158,10 +158,12 @@ KernelAnswers PoolChains::answers(const GroupChain& chain, int group, const Rows
 PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<PoolStart>& starts) {
   renew(pool);
   if (!chains_.front().adjoint && by_adjoint(pool, starts.size()))
-    for (GroupChain& c : chains_)
+    tbb::parallel_for(std::size_t{0}, chains_.size(), [&](std::size_t g) {
+      GroupChain& c = chains_[g];
       c.adjoint.emplace(chain_of(c.kernel, map_, field_, {}).chains().front(),
                         markov::Field{field_.columns, field_.rows}, field_.start_column(), 0,
                         field_.max_gates);
+    });
   const std::size_t n = starts.size();
   PoolAnswers said{.whole = {},
                    .groups = {n, std::vector<FinalDistribution>(kTrialGroups)},

@@ -126,9 +126,11 @@ struct Sums {
   [[nodiscard]] RowChance chance(std::size_t r) const {
     const auto n = static_cast<double>(trials);
     const double mean = sum[r] / n;
-    if (!(mean > 0.0)) return {0.0, std::numeric_limits<double>::quiet_NaN(), none_seen(r)};
+    if (!(mean > 0.0)) return {0.0, std::numeric_limits<double>::quiet_NaN(), none_seen(r), trials};
     const double variance = std::max(0.0, squares[r] / n / mean / mean - 1.0);
-    return {mean, std::sqrt(variance / (n - 1.0))};
+    return {.probability = mean,
+            .relative_standard_error = std::sqrt(variance / (n - 1.0)),
+            .trials = trials};
   }
 
  private:
@@ -153,6 +155,13 @@ struct Sums {
 
 std::array<double, 2> RowChance::interval_95() const {
   if (!(probability > 0.0)) return {0.0, at_most};
+  if (probability > 0.5) {
+    const double share = std::min(1.0, probability), error = share * relative_standard_error,
+                 like = share * (1.0 - share) / (error * error);
+    return dynamics::interval_of_share(
+        share,
+        like > 0.0 ? like : static_cast<double>(trials));  // NaN: 0/0
+  }
   const double factor = std::exp(dynamics::kNormal95 * relative_standard_error);
   return {probability / factor, std::min(1.0, probability * factor)};
 }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include <tbb/enumerable_thread_specific.h>
+#include <hwy/aligned_allocator.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <new>
+#include <numeric>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "markov/predict/ends.h"
 #include "markov/predict/layout.h"
@@ -50,6 +53,7 @@ struct Sums {
       most_terms = std::max(most_terms, static_cast<int>(terms.size()) - ends.back());
       ends.push_back(static_cast<int>(terms.size()));
     }
+    terms.insert(terms.end(), kTermsAhead, {0.0, 0, 0});  // looked at ahead
   }
   [[nodiscard]] int shares_each() const { return kMovedShare + static_cast<int>(moves.size()); }
 
@@ -87,116 +91,178 @@ struct Question {
   std::optional<Ending> why{};  // none: draws, in any cell
 };
 
-}  // namespace
+/// Columns and rows, the last ones included; none where an end lies before its beginning.
+struct Box {
+  std::int64_t left, right, bottom, top;
 
-/// The answer to a question, from the last step back to the first.
-class AdjointPredictor::Backward {
+  [[nodiscard]] bool is_empty() const { return left > right || bottom > top; }
+  [[nodiscard]] bool holds(std::int64_t column, std::int64_t row) const {
+    return column >= left && column <= right && row >= bottom && row <= top;
+  }
+  [[nodiscard]] std::int64_t columns() const { return right - left + 1; }
+  [[nodiscard]] std::int64_t cells() const { return columns() * (top - bottom + 1); }
+};
+
+/// The answers to kLanes questions of walks about to draw, by cell of a box and input; zero in
+/// all other cells. Those of an input lie side by side.
+class Layer {
  public:
-  /// In the memory of `buffer`.
-  Backward(const Plan& plan, const Question& question, PlaneBuffer& buffer)
-      : plan_(plan),
-        sums_(plan.sums),
-        question_(question),
-        box_(box()),
-        layout_(box_.right - box_.left + 1 + 2 * std::int64_t{sums_.widest},
-                box_.top - box_.bottom + 1, sums_.moves, sums_.is_chequered ? 2 : 1, {0}),
-        colours_(layout_.colours()),
-        inputs_(std::ssize(sums_.ends) - 1) {
-    buffer.reset(2 * inputs_ + colours_, layout_.stride());
-    mask_ = buffer.take(colours_);
-    now_ = buffer.take(inputs_);
-    next_ = buffer.take(inputs_);
-    each_place(box_, [&](std::int64_t, std::int64_t, Layout::Place p) {
-      mask_.data()[p.colour * layout_.stride() + p.at] = 1.0;
-    });
+  explicit Layer(std::ptrdiff_t inputs) : each_(inputs * kLanes) {}
+
+  /// Calls use(column, row, its answers, not set) for those cells of the window that
+  /// is_asked(column, row). All that was before is forgotten.
+  template <class Is, class Use>
+  void cover(const Box& window, Is is_asked, Use use) {
+    window_ = window;
+    places_.assign(window.is_empty() ? 0 : static_cast<std::size_t>(window.cells()), nullptr);
+    std::vector<std::size_t> asked;
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      if (is_asked(column_of(i), row_of(i))) asked.push_back(i);
+    double* next = reserved(std::ssize(asked));
+    for (const std::size_t i : asked) {
+      use(column_of(i), row_of(i), places_[i] = next);
+      next += each_;
+    }
+  }
+  void clear() {
+    cover(
+        {0, -1, 0, -1}, [](auto, auto) { return false; }, [](auto, auto, auto) {});
   }
 
-  /// Of walks that draw each output first.
-  [[nodiscard]] Eigen::ArrayXd answer() {
-    for (int moves = plan_.last; moves >= 1; --moves) step(moves);
-    Eigen::ArrayXd by_output(std::ssize(plan_.exits));
-    for (Eigen::Index output = 0; output < by_output.size(); ++output)
-      by_output[output] = of_exit(plan_.exits[static_cast<std::size_t>(output)]);
-    return by_output;
+  /// Null: all zero.
+  [[nodiscard]] const double* at(std::int64_t column, std::int64_t row) const {
+    if (!window_.holds(column, row)) return nullptr;
+    return places_[static_cast<std::size_t>((row - window_.bottom) * window_.columns() + column -
+                                            window_.left)];
   }
 
  private:
-  struct Window {
-    std::int64_t left, right, bottom, top;
-  };
+  [[nodiscard]] std::int64_t column_of(std::size_t i) const {
+    return window_.left + static_cast<std::int64_t>(i) % window_.columns();
+  }
+  [[nodiscard]] std::int64_t row_of(std::size_t i) const {
+    return window_.bottom + static_cast<std::int64_t>(i) / window_.columns();
+  }
+  [[nodiscard]] double* reserved(std::ptrdiff_t cells) {
+    if (cells * each_ > size_) {
+      memory_ = nullptr;
+      size_ = cells * each_;
+      memory_ = hwy::AllocateAligned<double>(static_cast<std::size_t>(size_));
+      if (!memory_) throw std::bad_alloc();
+      ask_for_large_pages(memory_.get(), size_);
+    }
+    return memory_.get();
+  }
 
-  [[nodiscard]] Window reached(std::int64_t moves) const {
+  std::ptrdiff_t each_, size_ = 0;
+  Box window_{0, -1, 0, -1};
+  std::vector<double*> places_{};  // by cell of the window
+  hwy::AlignedFreeUniquePtr<double[]> memory_{};
+};
+
+}  // namespace
+
+/// The answers to kLanes questions at a time, from the last step back to the first.
+class AdjointPredictor::Backward {
+ public:
+  explicit Backward(const Plan& plan)
+      : plan_(plan),
+        sums_(plan.sums),
+        inputs_(std::ssize(sums_.ends) - 1),
+        nothing_(static_cast<std::size_t>(inputs_ * kLanes)),
+        now_(inputs_),
+        next_(inputs_) {}
+
+  /// Sets answers(output, question), of walks that draw this output first.
+  template <class Answers>
+  void answer(const std::vector<Question>& questions, Answers answers) {
+    questions_ = questions;
+    now_.clear();
+    for (int moves = plan_.last; moves >= 1; --moves) step(moves);
+    for (Eigen::Index output = 0; output < std::ssize(plan_.exits); ++output)
+      for (std::size_t q = 0; q < questions_.size(); ++q)
+        answers(output, q) = of_exit(plan_.exits[static_cast<std::size_t>(output)], q);
+  }
+
+ private:
+  [[nodiscard]] Box reached(std::int64_t moves) const {
     return {std::max<std::int64_t>(0, plan_.column - sums_.widest * moves),
             std::min<std::int64_t>(plan_.field.columns - 1, plan_.column + sums_.widest * moves),
             std::max<std::int64_t>(0, plan_.row + sums_.lowest * moves),
             std::min<std::int64_t>(plan_.field.rows - 1, plan_.row + sums_.highest * moves)};
   }
-  /// Cells that can be reached in so many moves and from which the cell asked for still can.
-  [[nodiscard]] Window window(std::int64_t moves) const {
-    const Window w = reached(moves);
-    if (!question_.why) return w;
-    const std::int64_t column = question_.cell % plan_.field.columns,
-                       row = question_.cell / plan_.field.columns, more = plan_.last - moves;
-    return {std::max(w.left, column - sums_.widest * more),
-            std::min(w.right, column + sums_.widest * more),
-            std::max(w.bottom, row - sums_.highest * more),
-            std::min(w.top, row - sums_.lowest * more)};
-  }
-  /// All windows together.
-  [[nodiscard]] Window box() const {
-    Window all = window(0);
-    for (int moves = 0; moves <= plan_.last; ++moves) {
-      const Window w = window(moves);
-      if (is_empty(w)) continue;
-      if (is_empty(all)) all = w;
-      all = {std::min(all.left, w.left), std::max(all.right, w.right),
-             std::min(all.bottom, w.bottom), std::max(all.top, w.top)};
+  /// Cells that can be reached in so many moves and from which a cell asked for still can.
+  [[nodiscard]] Box window(std::int64_t moves) const {
+    const Box w = reached(moves);
+    const std::int64_t more = plan_.last - moves;
+    Box from{w.right + 1, w.left - 1, w.top + 1, w.bottom - 1};
+    for (const Question& q : questions_) {
+      if (!q.why) return w;
+      const std::int64_t column = q.cell % plan_.field.columns, row = q.cell / plan_.field.columns;
+      from = {std::min(from.left, column - sums_.widest * more),
+              std::max(from.right, column + sums_.widest * more),
+              std::min(from.bottom, row - sums_.highest * more),
+              std::max(from.top, row - sums_.lowest * more)};
     }
-    return is_empty(all) ? Window{0, 0, 0, 0} : all;
-  }
-  [[nodiscard]] static bool is_empty(const Window& w) {
-    return w.left > w.right || w.bottom > w.top;
-  }
-  [[nodiscard]] Layout::Place place(std::int64_t column, std::int64_t row) const {
-    return layout_.place(0, column - box_.left + sums_.widest, row - box_.bottom);
-  }
-  template <class Do>
-  void each_place(const Window& w, Do act) const {
-    for (std::int64_t row = w.bottom; row <= w.top; ++row)
-      for (std::int64_t column = w.left; column <= w.right; ++column)
-        act(column, row, place(column, row));
+    return {std::max(w.left, from.left), std::min(w.right, from.right),
+            std::max(w.bottom, from.bottom), std::min(w.top, from.top)};
   }
 
-  /// From the answers after one move more, those after so many. What lies outside a window is not
-  /// always zero, but is never read from within.
+  struct Cell {
+    std::int64_t column, row;
+    double* to;
+    std::vector<const double*> from;  // by move
+  };
+
+  /// From the answers after one move more, those after so many.
   void step(int moves) {
-    const Window w = window(moves);
     std::swap(now_, next_);
-    if (is_empty(w)) return now_.clear();
-    const int colour = (place(plan_.column, plan_.row).colour + moves) % colours_;
-    std::vector<Range> ranges;
-    layout_.cover(w.left - box_.left + sums_.widest, w.right - box_.left + sums_.widest,
-                  w.bottom - box_.bottom, w.top - box_.bottom, ranges);
-    gather({sums_.terms.data(), sums_.ends.data(), static_cast<int>(inputs_),
-            layout_.shifts(colour), layout_.stride(), mask_.data() + colour * layout_.stride(),
-            sums_.shares.data(), sums_.shares_each()},
-           ranges, rewards(w, colour, moves == plan_.last), next_.data(), now_.data());
+    std::vector<Cell> cells;
+    now_.cover(
+        window(moves),
+        [&](std::int64_t column, std::int64_t row) {
+          const std::int64_t way = column - plan_.column + row - plan_.row + moves;
+          return !sums_.is_chequered || way % 2 == 0;
+        },
+        [&](std::int64_t column, std::int64_t row, double* to) {
+          Cell& cell = cells.emplace_back(Cell{column, row, to, {}});
+          for (const Move& m : sums_.moves) {
+            const double* const there = next_.at(column + m.di_x, row + m.di_y);
+            cell.from.push_back(there ? there : nothing_.data());
+          }
+        });
+    constexpr std::ptrdiff_t together = kMostGathered;
+    const std::ptrdiff_t blocks = (std::ssize(cells) + together - 1) / together;
+    tbb::parallel_for(std::ptrdiff_t{0}, blocks, [&](std::ptrdiff_t b) {
+      std::vector<GatherCell> block;
+      const std::ptrdiff_t end = std::min(std::ssize(cells), (b + 1) * together);
+      for (std::ptrdiff_t i = b * together; i < end; ++i) {
+        const Cell& cell = cells[static_cast<std::size_t>(i)];
+        block.push_back({cell.from.data(), cell.to});
+      }
+      gather({sums_.terms.data(), sums_.ends.data(), static_cast<int>(inputs_)}, block);
+      for (std::ptrdiff_t i = b * together; i < end; ++i)
+        reward(cells[static_cast<std::size_t>(i)], moves == plan_.last);
+    });
   }
 
-  /// What one draw ends with in the cells of a colour.
-  [[nodiscard]] std::vector<GatherReward> rewards(const Window& w, int colour, bool is_last) const {
-    std::vector<GatherReward> all;
-    each_place(w, [&](std::int64_t column, std::int64_t row, Layout::Place p) {
-      if (p.colour != colour) return;
-      if (!question_.why) all.push_back({p.at, kDrawn});
-      if (!question_.why || row * plan_.field.columns + column != question_.cell) return;
-      if (question_.why == Ending::trapped) all.push_back({p.at, kTrappedShare});
-      if (question_.why == Ending::unsampled) all.push_back({p.at, kUnsampledShare});
+  /// Adds what one draw in the cell ends with.
+  void reward(const Cell& cell, bool is_last) const {
+    const auto add = [&](std::size_t question, int share) {
+      for (std::ptrdiff_t input = 0; input < inputs_; ++input)
+        cell.to[input * kLanes + static_cast<std::ptrdiff_t>(question)] +=
+            sums_.shares[static_cast<std::size_t>(input * sums_.shares_each() + share)];
+    };
+    for (std::size_t k = 0; k < questions_.size(); ++k) {
+      const Question& q = questions_[k];
+      if (!q.why) add(k, kDrawn);
+      if (!q.why || cell.row * plan_.field.columns + cell.column != q.cell) continue;
+      if (q.why == Ending::trapped) add(k, kTrappedShare);
+      if (q.why == Ending::unsampled) add(k, kUnsampledShare);
       for (std::size_t m = 0; m < sums_.moves.size(); ++m)
-        if (ends_by(sums_.moves[m], column, row, is_last) == question_.why)
-          all.push_back({p.at, kMovedShare + static_cast<int>(m)});
-    });
-    return all;
+        if (ends_by(sums_.moves[m], cell.column, cell.row, is_last) == q.why)
+          add(k, kMovedShare + static_cast<int>(m));
+    }
   }
   [[nodiscard]] std::optional<Ending> ends_by(const Move& m, std::int64_t column, std::int64_t row,
                                               bool is_last) const {
@@ -205,28 +271,27 @@ class AdjointPredictor::Backward {
     return is_last ? std::optional(Ending::cut_off) : std::nullopt;
   }
 
-  [[nodiscard]] double of_exit(const Exit& exit) const {
+  [[nodiscard]] double of_exit(const Exit& exit, std::size_t question) const {
+    const Question& q = questions_[question];
     std::optional<Ending> why = Ending::trapped;
     if (exit.next_input != Exit::kTrapped)
       why = ends_by({exit.di_x, exit.di_y}, plan_.column, plan_.row, plan_.last == 0);
-    const double first = question_.why ? 0.0 : 1.0;
-    if (!why)
-      return first + now_.data()[exit.next_input * layout_.stride() +
-                                 place(plan_.column + exit.di_x, plan_.row + exit.di_y).at];
-    const bool here =
-        question_.cell == std::int64_t{plan_.row} * plan_.field.columns + plan_.column;
-    return here && why == question_.why ? 1.0 : first;
+    const double first = q.why ? 0.0 : 1.0;
+    if (!why) {
+      const double* const there = now_.at(plan_.column + exit.di_x, plan_.row + exit.di_y);
+      return there ? first + there[exit.next_input * kLanes + static_cast<std::ptrdiff_t>(question)]
+                   : first;
+    }
+    const bool here = q.cell == std::int64_t{plan_.row} * plan_.field.columns + plan_.column;
+    return here && why == q.why ? 1.0 : first;
   }
 
   const Plan& plan_;
   const Sums& sums_;
-  Question question_;
-  Window box_;
-  Layout layout_;  // with columns beside the field, in which all is zero
-  int colours_;
   std::ptrdiff_t inputs_;
-  Planes mask_;        // (colours): 1 in cells of the field
-  Planes now_, next_;  // by input: answers for walks about to draw in the cells of a colour
+  std::vector<double> nothing_;  // answers in cells that cannot be reached
+  std::vector<Question> questions_{};
+  Layer now_, next_;
 };
 
 AdjointPredictor::AdjointPredictor(const Chain& chain, const Field& field, int column, int row,
@@ -263,12 +328,25 @@ AdjointPredictor::AdjointPredictor(const Chain& chain, const Field& field, int c
             }))
           ask(cell, edge);
     }
+  // Neighbours are asked for together: of them the same cells matter.
+  std::vector<std::size_t> order(questions.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto block = [&](std::size_t q) {
+    const std::int64_t c = questions[q].cell % field.columns, r = questions[q].cell / field.columns;
+    return std::pair(r / 2, c / 2);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return block(a) < block(b); });
   answers_.resize(chain.outputs(), std::ssize(questions));
-  tbb::enumerable_thread_specific<PlaneBuffer> buffers;
-  tbb::parallel_for(std::size_t{0}, questions.size(), [&](std::size_t q) {
-    answers_.col(static_cast<Eigen::Index>(q)) =
-        Backward(*plan_, questions[q], buffers.local()).answer();
-  });
+  Backward backward(*plan_);
+  for (std::size_t first = 0; first < order.size(); first += kLanes) {
+    const std::size_t last = std::min<std::size_t>(order.size(), first + kLanes);
+    std::vector<Question> some;
+    for (std::size_t k = first; k < last; ++k) some.push_back(questions[order[k]]);
+    backward.answer(some, [&](Eigen::Index output, std::size_t k) -> double& {
+      return answers_(output, static_cast<Eigen::Index>(order[first + k]));
+    });
+  }
 }
 
 AdjointPredictor::~AdjointPredictor() = default;

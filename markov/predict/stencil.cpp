@@ -48,24 +48,6 @@ void apply_block(const StencilPass& pass, const double* HWY_RESTRICT from, doubl
 }
 
 template <int Width>
-void gather_block(const GatherPass& pass, int plane, const double* HWY_RESTRICT from,
-                  double* HWY_RESTRICT to, std::ptrdiff_t c) {
-  const D d;
-  const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-  hn::Vec<D> s[Width];
-  for (int i = 0; i < Width; ++i) s[i] = hn::Zero(d);
-  const GatherTerm* const end = pass.terms + pass.ends[plane + 1];
-  for (const GatherTerm* k = pass.terms + pass.ends[plane]; k != end; ++k) {
-    const auto p = hn::Set(d, k->p);
-    const double* const in = from + k->source * pass.stride + pass.shifts[k->move].offset + c;
-    for (int i = 0; i < Width; ++i) s[i] = hn::Add(s[i], hn::Mul(p, hn::LoadU(d, in + i * n)));
-  }
-  for (int i = 0; i < Width; ++i)
-    hn::StoreU(hn::Mul(s[i], hn::LoadU(d, pass.mask + c + i * n)), d,
-               to + plane * pass.stride + c + i * n);
-}
-
-template <int Width>
 using Registers = std::integral_constant<int, Width>;
 
 /// Calls block(Registers<Width>(), c) for the registers from `first` to `last`, some together.
@@ -108,16 +90,50 @@ void in_blocks(std::ptrdiff_t first, std::ptrdiff_t last, Block block) {
   }
 }
 
-void gather_in_registers(const GatherPass& pass, const std::vector<Range>& ranges,
-                         const std::vector<GatherReward>& rewards, const double* HWY_RESTRICT from,
-                         double* HWY_RESTRICT to) {
-  for (int plane = 0; plane < pass.planes; ++plane) {
-    for (const Range& r : ranges)
-      in_blocks(r.first, r.last, [&]<int Width>(Registers<Width>, std::ptrdiff_t c) {
-        gather_block<Width>(pass, plane, from, to, c);
-      });
-    const double* const shares = pass.shares + std::ptrdiff_t{plane} * pass.shares_per_plane;
-    for (const GatherReward& r : rewards) to[plane * pass.stride + r.place] += shares[r.share];
+template <int Cells, bool Ahead>
+void gather_cells(const GatherPass& pass, const GatherCell* cells) {
+  const D d;
+  constexpr int kRegisters = kLanes / hn::MaxLanes(D());
+  const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  const auto numbers = [cells](int cell, const GatherTerm& term) {
+    return cells[cell].from[term.move] + std::ptrdiff_t{term.source} * kLanes;
+  };
+  const GatherTerm* k = pass.terms + pass.ends[0];
+  for (int state = 0; state < pass.states; ++state) {
+    hn::Vec<D> s[Cells][kRegisters];
+    for (auto& of_cell : s)
+      for (auto& part : of_cell) part = hn::Zero(d);
+    for (const GatherTerm* const end = pass.terms + pass.ends[state + 1]; k != end; ++k) {
+      const auto p = hn::Set(d, k->p);
+      if constexpr (Ahead)
+        for (int c = 0; c < Cells; ++c) hwy::Prefetch(numbers(c, k[kTermsAhead]));
+      for (int c = 0; c < Cells; ++c)
+        for (int i = 0; i < kRegisters; ++i)
+          s[c][i] = hn::Add(s[c][i], hn::Mul(p, hn::LoadU(d, numbers(c, *k) + i * n)));
+    }
+    for (int c = 0; c < Cells; ++c)
+      for (int i = 0; i < kRegisters; ++i)
+        hn::StoreU(s[c][i], d, cells[c].to + std::ptrdiff_t{state} * kLanes + i * n);
+  }
+}
+
+template <int Cells>
+void gather_near_or_far(const GatherPass& pass, const GatherCell* cells) {
+  constexpr int kNear = 8192;  // states: of a cell half a MiB, within a core's own cache
+  pass.states <= kNear ? gather_cells<Cells, false>(pass, cells)
+                       : gather_cells<Cells, true>(pass, cells);
+}
+
+void gather_in_registers(const GatherPass& pass, const std::vector<GatherCell>& cells) {
+  switch (cells.size()) {
+    case 1:
+      return gather_near_or_far<1>(pass, cells.data());
+    case 2:
+      return gather_near_or_far<2>(pass, cells.data());
+    case 3:
+      return gather_near_or_far<3>(pass, cells.data());
+    default:
+      return gather_near_or_far<kMostGathered>(pass, cells.data());
   }
 }
 
@@ -204,9 +220,8 @@ void apply_pass(const StencilPass& pass, const double* from, double* to, std::pt
   HWY_DYNAMIC_DISPATCH(apply_in_registers)(pass, from, to, first, last, add);
 }
 
-void gather(const GatherPass& pass, const std::vector<Range>& ranges,
-            const std::vector<GatherReward>& rewards, const double* from, double* to) {
-  HWY_DYNAMIC_DISPATCH(gather_in_registers)(pass, ranges, rewards, from, to);
+void gather(const GatherPass& pass, const std::vector<GatherCell>& cells) {
+  HWY_DYNAMIC_DISPATCH(gather_in_registers)(pass, cells);
 }
 
 void sweep_strips(const StripPass& pass, int first, int last, bool upwards, const double* b,

@@ -58,43 +58,39 @@ struct StencilPass {
 void apply_pass(const StencilPass& pass, const double* from, double* to, std::ptrdiff_t first,
                 std::ptrdiff_t last, bool add);
 
-/// p times the number in plane `source` a move away.
+/// So many terms are looked at ahead; as many more must follow the last.
+inline constexpr int kTermsAhead = 48;
+
+/// p times the numbers of state `source` a move away.
 struct GatherTerm {
   double p;
   int source, move;
 };
 
-/// `share` of the plane's own shares is added at a place.
-struct GatherReward {
-  std::ptrdiff_t place;
-  int share;
-};
-
 struct GatherPass {
   const GatherTerm* terms;
-  const int* ends;  // of each plane's terms, the first plane's begin before it (planes + 1)
-  int planes;
-  const Shift* shifts;  // by move; only their offsets count
-  std::ptrdiff_t stride;
-  const double* mask;    // by place: 1 for a cell of the field, else 0
-  const double* shares;  // (planes x shares_per_plane)
-  int shares_per_plane;
+  const int* ends;  // of each state's terms, the first state's begin before it (states + 1)
+  int states;
 };
 
-/// The adjoint of apply_pass(): for each plane and each place c in the ranges, which begin and end
-/// at multiples of kLanes:
-/// to[plane][c] = mask[c] * sum of p * from[source][c + offset], then the rewards.
-void gather(const GatherPass& pass, const std::vector<Range>& ranges,
-            const std::vector<GatherReward>& rewards, const double* from, double* to);
+/// Where a cell's numbers are gathered from, by move, and go to: (states x kLanes) each.
+struct GatherCell {
+  const double* const* from;
+  double* to;
+};
+/// So many cells share each term.
+inline constexpr int kMostGathered = 4;
+
+/// The adjoint of apply_pass(), of kLanes numbers side by side: for each of 1 to kMostGathered
+/// cells and each state, to[state] = sum of p * from[move][source]. Terms are summed in their
+/// order, rounded after each product and each sum.
+void gather(const GatherPass& pass, const std::vector<GatherCell>& cells);
 
 /// A share (its number) times the number `offset` on. Small, as large chains are read from beyond
 /// the caches that are near.
 struct StripTerm {
   std::int32_t share, offset;
 };
-/// So many terms are looked at ahead; as many more must follow the last.
-inline constexpr int kTermsAhead = 48;
-
 /// A row in strips, one for each of kLanes numbers side by side: of each place along the strips all
 /// states.
 struct StripPass {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dynamics/base/share.h"
 #include "lattice/study/trials.h"
 #include "tests/support/disc_fields.h"
 #include "tests/support/long.h"
@@ -69,7 +70,10 @@ std::vector<RowChance> direct(const Scene& scene, int rows, std::int64_t trials)
   const FieldTally tally = field_trials(problem_of(up_to_row(scene, rows)), {0, trials}, 77);
   const auto share = [&](std::int64_t entered) {
     const double p = static_cast<double>(entered) / static_cast<double>(trials);
-    return RowChance{p, std::sqrt((1.0 - p) / p / static_cast<double>(trials))};
+    return RowChance{
+        .probability = p,
+        .relative_standard_error = std::sqrt((1.0 - p) / p / static_cast<double>(trials)),
+        .trials = trials};
   };
   std::vector<RowChance> shares;
   for (int row = 1; row < rows; ++row)
@@ -105,11 +109,24 @@ TEST(Splitting, WithoutValuesIsPlainTrials) {
   expect_agree(s.rows[1], fast_truth(2), 4.0);
 }
 
-TEST(Splitting, IntervalIsThatOfTheLogarithm) {
-  const auto [low, high] = RowChance{1e-3, 0.1}.interval_95();
+TEST(Splitting, IntervalOfASmallChanceIsThatOfTheLogarithm) {
+  const auto [low, high] =
+      RowChance{.probability = 1e-3, .relative_standard_error = 0.1}.interval_95();
   EXPECT_NEAR(low, 1e-3 * std::exp(-0.196), 1e-8);
   EXPECT_NEAR(high, 1e-3 * std::exp(0.196), 1e-8);
-  EXPECT_EQ((RowChance{0.9, 0.5}.interval_95()[1]), 1.0);
+}
+
+// Where all trials came, as many may still not as where none did.
+TEST(Splitting, IntervalOfALargeChanceIsThatOfTheTrials) {
+  const auto chance = [](double p, double error) {
+    return RowChance{.probability = p, .relative_standard_error = error, .trials = 1000};
+  };
+  EXPECT_EQ(chance(1.0, 0.0).interval_95(), dynamics::share_interval(1000, 1000));
+  EXPECT_EQ(chance(1.0 + 1e-9, 0.0).interval_95(), dynamics::share_interval(1000, 1000));
+  const auto [low, high] = chance(0.998, std::sqrt(0.002 / 0.998 / 1000)).interval_95();
+  EXPECT_NEAR(low, dynamics::share_interval(998, 1000)[0], 1e-12);
+  EXPECT_NEAR(high, dynamics::share_interval(998, 1000)[1], 1e-12);
+  EXPECT_LT(high, 1.0);
 }
 
 // As many trials at once as the last ones say are wanted.
