@@ -118,20 +118,21 @@ StartAnswer answer_of(const FieldParams& field, const StartTrials& s, std::int64
 /// By how much a round of more trials goes on. Errors fall as 1 / sqrt(trials); but an error bar is
 /// an estimate itself, the better the nearer it is to what is wanted.
 struct Schedule {
-  double far = 2.5;           // from so many times the trials on ...
-  double part_of_far = 0.6;   // ... only so much of them at once, ...
-  double most = 16.0;         // ... and no more than so many times: else trials may be wasted
-  double margin = 1.1;        // nearer by, so much more than needed, and ...
-  double least = 1.2;         // ... no less than so many times: else rounds may be many ...
-  double least_of_few = 2.0;  // ... which take as long where few of many starts are left
+  double far = 2.5;          // from so many times the trials on ...
+  double part_of_far = 0.6;  // ... only so much of them at once, ...
+  double most = 16.0;        // ... and no more than so many times: else trials may be wasted
+  double margin = 1.1;       // nearer by, so much more than needed, and ...
+  double least = 1.2;        // ... no less than so many times: else rounds may be many
 };
 
+/// Chains that answer for many starts take as long as the runs: fewer rounds, and larger ones.
+constexpr Schedule kForMany{.part_of_far = 0.8, .margin = 1.6, .least = 1.6};
+
 /// So many times the trials.
-double times_more(double error, double wanted, bool for_few = false) {
-  constexpr Schedule by;
+double times_more(double error, double wanted, const Schedule& by = {}) {
   const double times = (error / wanted) * (error / wanted);
   return times > by.far ? std::min(by.part_of_far * times, by.most)
-                        : std::max(by.margin * times, for_few ? by.least_of_few : by.least);
+                        : std::max(by.margin * times, by.least);
 }
 
 /// What direct simulation would take for the same error bar, by this run's speed.
@@ -266,7 +267,9 @@ class PredictionRun {
            std::sqrt(std::clamp(shared / std::max(1e-9, shared + own), 0.2, 0.72));
   }
 
-  [[nodiscard]] bool few_are_left() const { return 8 * open_.size() <= result_.starts.size(); }
+  [[nodiscard]] Schedule schedule() const {
+    return chains_.by_adjoint(pool_, result_.starts.size()) ? kForMany : Schedule{};
+  }
 
   void add_trials() {
     if (by_walks_) {  // rounds take long, and walks have their chance too: the shortest way
@@ -293,7 +296,7 @@ class PredictionRun {
       const bool lacks = std::find(lacking.begin(), lacking.end(), k) != lacking.end();
       const double kernel = lacks ? goal : a.kernel_error_95;
       const double wanted = std::sqrt(options_.accuracy * options_.accuracy - kernel * kernel);
-      const double times = times_more(first_error(a), wanted, few_are_left());
+      const double times = times_more(first_error(a), wanted, schedule());
       const StartTrials& s = pool_.starts[places_[k]];
       const auto more =
           static_cast<double>(a.first_runs) * times - static_cast<double>(s.first_runs());
@@ -306,7 +309,7 @@ class PredictionRun {
   /// if all helped alike, whichever is less.
   void improve_kernel(std::size_t k, double goal, std::int64_t lacking) {
     const StartAnswer& a = result_.starts[k];
-    const double more = times_more(a.kernel_error_95, goal, few_are_left()) - 1.0;
+    const double more = times_more(a.kernel_error_95, goal, schedule()) - 1.0;
     const std::int64_t trials = std::ssize(pool_.starts[places_[k]].full.final_gates);
     const auto own = static_cast<double>(std::max(trials, kFirstRound / 2));
     const double all = static_cast<double>(pool_.gate_runs()) / std::max(1.0, a.final.mean_steps) /
