@@ -124,10 +124,11 @@ PoolChains::PoolChains(const dynamics::CellMap& map, const FieldParams& field, i
       seed_(seed) {}
 
 bool PoolChains::by_adjoint(const RunPool& pool, std::size_t starts) const {
-  constexpr std::int64_t kMostNumbers = 100'000'000;  // that adjoints keep
+  // That adjoints keep, and need meanwhile: some 2 and 8 for each cell and state.
+  constexpr std::int64_t kMostNumbers = 400'000'000;
   const std::int64_t cells = std::int64_t{field_.columns} * field_.rows,
                      states = 2 * 2 * kernel_runs(pool) / per_leaf_;  // of all chains, at most
-  return pays_adjoint(map_, field_, starts) && 2 * cells * states <= kMostNumbers;
+  return pays_adjoint(map_, field_, starts) && 10 * cells * states <= kMostNumbers;
 }
 
 void PoolChains::renew(const RunPool& pool) {

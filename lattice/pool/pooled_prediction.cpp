@@ -125,7 +125,7 @@ struct Schedule {
   double least = 1.2;        // ... no less than so many times: else rounds may be many
 };
 
-/// Chains that answer for many starts take as long as the runs: fewer rounds, and larger ones.
+/// Of many starts chains and their answers take as long as the runs: fewer rounds, and larger ones.
 constexpr Schedule kForMany{.part_of_far = 0.8, .margin = 1.6, .least = 1.6};
 
 /// So many times the trials.
@@ -267,10 +267,6 @@ class PredictionRun {
            std::sqrt(std::clamp(shared / std::max(1e-9, shared + own), 0.2, 0.72));
   }
 
-  [[nodiscard]] Schedule schedule() const {
-    return chains_.by_adjoint(pool_, result_.starts.size()) ? kForMany : Schedule{};
-  }
-
   void add_trials() {
     if (by_walks_) {  // rounds take long, and walks have their chance too: the shortest way
       for (const std::size_t k : open_) {
@@ -281,6 +277,7 @@ class PredictionRun {
       }
       return;
     }
+    const Schedule by = chains_.by_adjoint(pool_, result_.starts.size()) ? kForMany : Schedule{};
     const double goal = kernel_goal();
     std::vector<std::size_t> lacking;  // starts for which the kernel is too uncertain
     for (const std::size_t k : open_)
@@ -290,13 +287,13 @@ class PredictionRun {
       std::erase_if(lacking, [&](std::size_t k) {
         return result_.starts[k].kernel_error_95 < 0.85 * options_.accuracy;
       });
-    for (const std::size_t k : lacking) improve_kernel(k, goal, std::ssize(lacking));
+    for (const std::size_t k : lacking) improve_kernel(k, goal, std::ssize(lacking), by);
     for (const std::size_t k : open_) {
       const StartAnswer& a = result_.starts[k];
       const bool lacks = std::find(lacking.begin(), lacking.end(), k) != lacking.end();
       const double kernel = lacks ? goal : a.kernel_error_95;
       const double wanted = std::sqrt(options_.accuracy * options_.accuracy - kernel * kernel);
-      const double times = times_more(first_error(a), wanted, schedule());
+      const double times = times_more(first_error(a), wanted, by);
       const StartTrials& s = pool_.starts[places_[k]];
       const auto more =
           static_cast<double>(a.first_runs) * times - static_cast<double>(s.first_runs());
@@ -307,9 +304,9 @@ class PredictionRun {
 
   /// By full trials of this start: as many as if only its own could help, or its part of as many as
   /// if all helped alike, whichever is less.
-  void improve_kernel(std::size_t k, double goal, std::int64_t lacking) {
+  void improve_kernel(std::size_t k, double goal, std::int64_t lacking, const Schedule& by) {
     const StartAnswer& a = result_.starts[k];
-    const double more = times_more(a.kernel_error_95, goal, schedule()) - 1.0;
+    const double more = times_more(a.kernel_error_95, goal, by) - 1.0;
     const std::int64_t trials = std::ssize(pool_.starts[places_[k]].full.final_gates);
     const auto own = static_cast<double>(std::max(trials, kFirstRound / 2));
     const double all = static_cast<double>(pool_.gate_runs()) / std::max(1.0, a.final.mean_steps) /

@@ -38,6 +38,12 @@ EndingShares::EndingShares(const markov::FinalDistribution& prediction, const Ma
     if (interval[e][1] - interval[e][0] <= kRounding)
       interval[e] = dynamics::interval_of_share(std::clamp(share[e], 0.0, 1.0),
                                                 static_cast<double>(noise.runs()));
+    // No narrower than if each gate run were a trial, as share_95 has it.
+    if (noise.of_small_rows() > 0) {
+      const auto [low, high] = dynamics::interval_of_share(
+          std::clamp(share[e], 0.0, 1.0), static_cast<double>(noise.of_small_rows()));
+      interval[e] = {std::min(interval[e][0], low), std::max(interval[e][1], high)};
+    }
   }
   *this = with_limit(max_gates);
 }

@@ -22,6 +22,9 @@ struct CountedField {
 
   /// Runs of the row that a walk begins in, mirror images not counted twice.
   [[nodiscard]] std::int64_t runs_at(const markov::Start& start) const;
+  /// Those of all rows where they are small, else 0: only resampled rows that are not small have
+  /// what no run showed.
+  [[nodiscard]] std::int64_t runs_of_small_rows() const;
 };
 
 /// The counts that another set of runs might have given: every row's trials drawn anew from its own
@@ -58,14 +61,16 @@ struct CountedField {
 /// The spread of predictions that the sampling of the matrix makes.
 class MatrixNoise {
  public:
-  /// `runs`: of the matrix's row that the walks begin in.
-  MatrixNoise(const markov::FinalDistribution& prediction, std::int64_t runs);
+  /// `runs`: of the matrix's row that the walks begin in; `of_small_rows`: runs_of_small_rows().
+  MatrixNoise(const markov::FinalDistribution& prediction, std::int64_t runs,
+              std::int64_t of_small_rows = 0);
   void add(const markov::FinalDistribution& replicate);
 
   [[nodiscard]] std::int64_t replicates() const {
     return static_cast<std::int64_t>(distances_.size());
   }
   [[nodiscard]] std::int64_t runs() const { return runs_; }
+  [[nodiscard]] std::int64_t of_small_rows() const { return of_small_rows_; }
   /// Between what lie the shares of this ending in the middle 95 % of the replicates, and the
   /// prediction's own. Needs a replicate at least. No spread at all says only that no run of the
   /// matrix shows any.
@@ -78,7 +83,7 @@ class MatrixNoise {
 
  private:
   const markov::FinalDistribution& prediction_;
-  std::int64_t runs_;
+  std::int64_t runs_, of_small_rows_;
   std::vector<std::array<double, markov::kEndings>> endings_;  // (replicates) by Ending
   std::vector<double> distances_;
 };

@@ -22,7 +22,8 @@ std::vector<Resampled> resampled_predictions(const CountedField& gates, const ma
   constexpr std::int64_t kMost = 200, kTogether = 8;
   std::vector<Resampled> all;
   for (std::size_t k = 0; k < starts.size(); ++k)
-    all.push_back({MatrixNoise(prediction.starts[k].final, gates.runs_at(starts[k]))});
+    all.push_back({MatrixNoise(prediction.starts[k].final, gates.runs_at(starts[k]),
+                               gates.runs_of_small_rows())});
   const std::int64_t replicates =
       gates.exact ? 0 : affordable_replicates(gates, field, max_cells, kMost);
   const auto add = [&](std::int64_t begin) {

@@ -155,15 +155,12 @@ struct Sums {
 
 std::array<double, 2> RowChance::interval_95() const {
   if (!(probability > 0.0)) return {0.0, at_most};
-  if (probability > 0.5) {
-    const double share = std::min(1.0, probability), error = share * relative_standard_error,
-                 like = share * (1.0 - share) / (error * error);
-    return dynamics::interval_of_share(
-        share,
-        like > 0.0 ? like : static_cast<double>(trials));  // NaN: 0/0
-  }
   const double factor = std::exp(dynamics::kNormal95 * relative_standard_error);
-  return {probability / factor, std::min(1.0, probability * factor)};
+  const std::array of_logarithm{probability / factor, std::min(1.0, probability * factor)};
+  if (probability <= 0.5) return of_logarithm;
+  const auto [low, high] =
+      dynamics::interval_of_share(std::min(1.0, probability), static_cast<double>(trials));
+  return {std::min(low, of_logarithm[0]), std::max(high, of_logarithm[1])};
 }
 
 Problem up_to_row(const Problem& problem, int row) {

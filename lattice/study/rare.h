@@ -35,10 +35,10 @@ struct RowChance {
   double probability = 0.0;
   double relative_standard_error = 0.0;  // NaN where no body came; and then ...
   double at_most = 1.0;                  // ... the upper end of the interval
-  std::int64_t trials = 0;               // behind it
-  /// Two-sided, from 0 where no body came. Of a chance up to a half by its logarithm, in which such
-  /// estimates are less skewed; else Jeffreys' of as many independent trials as would make the
-  /// error: where all came, some may still not.
+  std::int64_t trials = 0;               // independent ones behind it
+  /// Two-sided. That of the logarithm, in which such estimates are less skewed, and of a chance
+  /// above a half no narrower than Jeffreys' of the trials: where all came, some may still not.
+  /// From 0 where no body came.
   [[nodiscard]] std::array<double, 2> interval_95() const;
 };
 

@@ -222,7 +222,7 @@ StartValidation validate_start(const Setup& setup, const dynamics::Entry& start,
   const std::int64_t runs = setup.gates.runs_at(chain_start.start);
   // Resampled bins have one run more in each row; trees' rows, of which a run is a large part, not.
   const std::int64_t may_miss = setup.space.has_trees() ? runs : 0;
-  MatrixNoise noise(exact, runs);
+  MatrixNoise noise(exact, runs, setup.gates.runs_of_small_rows());
   std::vector<ExitShares> resampled_exits;
   for (const markov::FinalDistribution& other : resampled) {
     noise.add(other);

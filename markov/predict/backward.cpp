@@ -3,8 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <new>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -125,8 +127,8 @@ class Layer {
     }
   }
   void clear() {
-    cover(
-        {0, -1, 0, -1}, [](auto, auto) { return false; }, [](auto, auto, auto) {});
+    window_ = {0, -1, 0, -1};
+    places_.clear();
   }
 
   /// Null: all zero.
@@ -145,10 +147,11 @@ class Layer {
   }
   [[nodiscard]] double* reserved(std::ptrdiff_t cells) {
     if (cells * each_ > size_) {
+      size_ = 0;
       memory_ = nullptr;
-      size_ = cells * each_;
-      memory_ = hwy::AllocateAligned<double>(static_cast<std::size_t>(size_));
+      memory_ = hwy::AllocateAligned<double>(static_cast<std::size_t>(cells * each_));
       if (!memory_) throw std::bad_alloc();
+      size_ = cells * each_;
       ask_for_large_pages(memory_.get(), size_);
     }
     return memory_.get();
@@ -169,7 +172,8 @@ class AdjointPredictor::Backward {
       : plan_(plan),
         sums_(plan.sums),
         inputs_(std::ssize(sums_.ends) - 1),
-        nothing_(static_cast<std::size_t>(inputs_ * kLanes)),
+        zeros_(1, inputs_ * kLanes),
+        nothing_(zeros_.take(1).data()),
         now_(inputs_),
         next_(inputs_) {}
 
@@ -228,21 +232,18 @@ class AdjointPredictor::Backward {
           Cell& cell = cells.emplace_back(Cell{column, row, to, {}});
           for (const Move& m : sums_.moves) {
             const double* const there = next_.at(column + m.di_x, row + m.di_y);
-            cell.from.push_back(there ? there : nothing_.data());
+            cell.from.push_back(there ? there : nothing_);
           }
         });
-    constexpr std::ptrdiff_t together = kMostGathered;
-    const std::ptrdiff_t blocks = (std::ssize(cells) + together - 1) / together;
-    tbb::parallel_for(std::ptrdiff_t{0}, blocks, [&](std::ptrdiff_t b) {
-      std::vector<GatherCell> block;
-      const std::ptrdiff_t end = std::min(std::ssize(cells), (b + 1) * together);
-      for (std::ptrdiff_t i = b * together; i < end; ++i) {
-        const Cell& cell = cells[static_cast<std::size_t>(i)];
-        block.push_back({cell.from.data(), cell.to});
-      }
-      gather({sums_.terms.data(), sums_.ends.data(), static_cast<int>(inputs_)}, block);
-      for (std::ptrdiff_t i = b * together; i < end; ++i)
-        reward(cells[static_cast<std::size_t>(i)], moves == plan_.last);
+    const GatherPass pass{sums_.terms.data(), sums_.ends.data(), static_cast<int>(inputs_)};
+    constexpr std::size_t kEach = kMostGathered;
+    tbb::parallel_for(std::size_t{0}, (cells.size() + kEach - 1) / kEach, [&](std::size_t b) {
+      const std::span some =
+          std::span(cells).subspan(b * kEach).first(std::min(kEach, cells.size() - b * kEach));
+      std::array<GatherCell, kEach> gathered;
+      for (std::size_t i = 0; i < some.size(); ++i) gathered[i] = {some[i].from.data(), some[i].to};
+      gather(pass, std::span(gathered).first(some.size()));
+      for (const Cell& cell : some) reward(cell, moves == plan_.last);
     });
   }
 
@@ -289,7 +290,8 @@ class AdjointPredictor::Backward {
   const Plan& plan_;
   const Sums& sums_;
   std::ptrdiff_t inputs_;
-  std::vector<double> nothing_;  // answers in cells that cannot be reached
+  PlaneBuffer zeros_;
+  const double* nothing_;  // answers in cells that cannot be reached
   std::vector<Question> questions_{};
   Layer now_, next_;
 };
@@ -328,12 +330,12 @@ AdjointPredictor::AdjointPredictor(const Chain& chain, const Field& field, int c
             }))
           ask(cell, edge);
     }
-  // Neighbours are asked for together: of them the same cells matter.
+  // Neighbours are asked for together: of them the same cells matter. (Every other row backwards.)
   std::vector<std::size_t> order(questions.size());
   std::iota(order.begin(), order.end(), 0);
   const auto block = [&](std::size_t q) {
     const std::int64_t c = questions[q].cell % field.columns, r = questions[q].cell / field.columns;
-    return std::pair(r / 2, c / 2);
+    return std::pair(r / 2, r / 2 % 2 == 0 ? c / 2 : -c / 2);
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return block(a) < block(b); });

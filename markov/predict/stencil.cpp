@@ -2,6 +2,7 @@
 #include "markov/predict/stencil.h"
 
 #include <algorithm>
+#include <cassert>
 #include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
@@ -119,12 +120,12 @@ void gather_cells(const GatherPass& pass, const GatherCell* cells) {
 
 template <int Cells>
 void gather_near_or_far(const GatherPass& pass, const GatherCell* cells) {
-  constexpr int kNear = 8192;  // states: of a cell half a MiB, within a core's own cache
+  constexpr int kNear = 8192;  // states, half a MiB a cell: from then on looking ahead is faster
   pass.states <= kNear ? gather_cells<Cells, false>(pass, cells)
                        : gather_cells<Cells, true>(pass, cells);
 }
 
-void gather_in_registers(const GatherPass& pass, const std::vector<GatherCell>& cells) {
+void gather_in_registers(const GatherPass& pass, std::span<const GatherCell> cells) {
   switch (cells.size()) {
     case 1:
       return gather_near_or_far<1>(pass, cells.data());
@@ -220,7 +221,8 @@ void apply_pass(const StencilPass& pass, const double* from, double* to, std::pt
   HWY_DYNAMIC_DISPATCH(apply_in_registers)(pass, from, to, first, last, add);
 }
 
-void gather(const GatherPass& pass, const std::vector<GatherCell>& cells) {
+void gather(const GatherPass& pass, std::span<const GatherCell> cells) {
+  assert(!cells.empty() && cells.size() <= kMostGathered);
   HWY_DYNAMIC_DISPATCH(gather_in_registers)(pass, cells);
 }
 

@@ -4,11 +4,11 @@
 /// set is chosen when the program runs; the same bits with any).
 ///
 /// The numbers of all cells lie in planes, one per input state. A cell has the same place in each
-/// plane; the next plane begins `stride` numbers on.
+/// plane; the next plane begins `stride` numbers on. (But see gather() and sweep_strips().)
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <span>
 
 namespace gatewalk::markov {
 
@@ -84,13 +84,14 @@ inline constexpr int kMostGathered = 4;
 /// The adjoint of apply_pass(), of kLanes numbers side by side: for each of 1 to kMostGathered
 /// cells and each state, to[state] = sum of p * from[move][source]. Terms are summed in their
 /// order, rounded after each product and each sum.
-void gather(const GatherPass& pass, const std::vector<GatherCell>& cells);
+void gather(const GatherPass& pass, std::span<const GatherCell> cells);
 
 /// A share (its number) times the number `offset` on. Small, as large chains are read from beyond
 /// the caches that are near.
 struct StripTerm {
   std::int32_t share, offset;
 };
+
 /// A row in strips, one for each of kLanes numbers side by side: of each place along the strips all
 /// states.
 struct StripPass {

@@ -10,10 +10,12 @@
 #include <stdexcept>
 #include <vector>
 
+#include "dynamics/base/share.h"
 #include "dynamics/disc/disc_section.h"
 #include "lattice/gate_chain.h"
 #include "lattice/statistics/compare.h"
 #include "lattice/statistics/draws.h"
+#include "lattice/statistics/ending_shares.h"
 #include "markov/predict.h"
 #include "tests/support/threads.h"
 
@@ -98,6 +100,31 @@ TEST(MatrixNoise, IntervalsCoverTheTruth) {
     EXPECT_GE(covered[k], 0.92 * kMatrices) << "ending " << static_cast<int>(kAll[k]);
     EXPECT_LE(covered[k], 0.98 * kMatrices) << "ending " << static_cast<int>(kAll[k]);
   }
+}
+
+// Of trees' rows, which hold nothing of what no run showed.
+TEST(MatrixNoise, SmallRowsLeaveOpenWhatTheirRunsMayHaveMissed) {
+  FinalDistribution p = predicted(truth());
+  const auto trapped = static_cast<std::size_t>(Ending::trapped),
+             crossed = static_cast<std::size_t>(Ending::far_edge);
+  p.endings[trapped] = 0.8;
+  p.endings[crossed] = 1e-6;
+  MatrixNoise bins(p, 100), trees(p, 100, 10'000);
+  for (const double factor : {0.9, 1.1}) {
+    FinalDistribution other = p;
+    for (double& e : other.endings) e *= factor;
+    bins.add(other);
+    trees.add(other);
+  }
+  const EndingShares of_bins(p, bins, 5), of_trees(p, trees, 5);
+  EXPECT_EQ(of_trees.interval[trapped], of_bins.interval[trapped]);  // wider than that of all runs
+  EXPECT_LT(of_bins.interval[crossed][1], 2e-6);
+  EXPECT_EQ(of_trees.interval[crossed], dynamics::interval_of_share(1e-6, 10'000));
+
+  CountedField field = counted_field(truth());
+  EXPECT_EQ(field.runs_of_small_rows(), 0);
+  field.small_rows = true;
+  EXPECT_EQ(field.runs_of_small_rows(), 5000);  // 1000 a row
 }
 
 // The spread is that of matrices really drawn anew.

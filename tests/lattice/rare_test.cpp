@@ -116,17 +116,22 @@ TEST(Splitting, IntervalOfASmallChanceIsThatOfTheLogarithm) {
   EXPECT_NEAR(high, 1e-3 * std::exp(0.196), 1e-8);
 }
 
-// Where all trials came, as many may still not as where none did.
-TEST(Splitting, IntervalOfALargeChanceIsThatOfTheTrials) {
-  const auto chance = [](double p, double error) {
-    return RowChance{.probability = p, .relative_standard_error = error, .trials = 1000};
+// Where all trials came, some may still not.
+TEST(Splitting, IntervalOfALargeChanceIsNoNarrowerThanThatOfTheTrials) {
+  const auto interval = [](double p, double error) {
+    return RowChance{.probability = p, .relative_standard_error = error, .trials = 1000}
+        .interval_95();
   };
-  EXPECT_EQ(chance(1.0, 0.0).interval_95(), dynamics::share_interval(1000, 1000));
-  EXPECT_EQ(chance(1.0 + 1e-9, 0.0).interval_95(), dynamics::share_interval(1000, 1000));
-  const auto [low, high] = chance(0.998, std::sqrt(0.002 / 0.998 / 1000)).interval_95();
-  EXPECT_NEAR(low, dynamics::share_interval(998, 1000)[0], 1e-12);
-  EXPECT_NEAR(high, dynamics::share_interval(998, 1000)[1], 1e-12);
-  EXPECT_LT(high, 1.0);
+  const auto all = dynamics::share_interval(1000, 1000);
+  EXPECT_EQ(interval(1.0, 0.0), all);
+  EXPECT_EQ(interval(1.0 + 1e-9, 0.0), all);  // weights may add up to more
+  EXPECT_NEAR(interval(std::nextafter(1.0, 0.0), 0.0)[0], all[0], 1e-9);
+  const auto plain = interval(0.998, std::sqrt(0.002 / 0.998 / 1000));
+  EXPECT_EQ(plain[0], dynamics::share_interval(998, 1000)[0]);
+  EXPECT_EQ(plain[1], 1.0);
+  // Bodies of different weights make more chance than trials of one each.
+  for (const double p : {0.9, 0.9999, 1.003})
+    EXPECT_NEAR(interval(p, 0.05)[0], p * std::exp(-0.05 * dynamics::kNormal95), 1e-12) << p;
 }
 
 // As many trials at once as the last ones say are wanted.
@@ -332,6 +337,25 @@ TEST(Splitting, IntervalsHoldAsOftenAsTheySay) {
   RecordProperty("below", below);  // the truth: those intervals
   EXPECT_GE(holds, test::usual_or_full(34, 930));
   EXPECT_LE(holds, test::usual_or_full(40, 970));
+}
+
+// Most enter row 1, with weights that values without sense make.
+TEST(Splitting, IntervalsOfLargeChancesHold) {
+  Scene scene = fast_scene();
+  scene.gate.forces.propulsion = 12.0;
+  const RowChance truth = direct(scene, 1, 40'000).front();
+  ASSERT_GT(truth.probability, 0.9);
+  const auto by_place = [](int column, int row, const Entry& entry) {
+    return row == 0 ? 1.0 : wrong_worth(column, row, entry);
+  };
+  int holds = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Splitting s =
+        split(problem_of(scene), 1.0, by_place, {.row = 2, .trials = 200, .seed = seed});
+    const auto [low, high] = s.rows.front().interval_95();
+    holds += low <= truth.probability && truth.probability <= high;
+  }
+  EXPECT_GE(holds, 34);
 }
 
 }  // namespace
