@@ -77,12 +77,10 @@ ExitShares exit_shares(const markov::FinalDistribution& d) {
 }
 
 FieldExits exits_of(const ExitShares& prediction, const std::vector<ExitShares>& resampled,
-                    std::int64_t runs) {
+                    const Evidence& from) {
   return with_intervals(prediction, resampled, [&](double share, std::vector<double> drawn) {
     if (drawn.empty()) return std::array{std::nan(""), std::nan("")};
-    const auto interval = middle_95(std::move(drawn), share);
-    if (interval[0] < interval[1]) return interval;  // else nothing that was drawn shows a spread
-    return dynamics::interval_of_share(std::clamp(share, 0.0, 1.0), static_cast<double>(runs));
+    return resampled_95(middle_95(std::move(drawn), share), share, from);
   });
 }
 

@@ -45,10 +45,10 @@ using FieldExits = std::array<SideExits, kSides.size()>;  // by kSides
 
 using ExitShares = std::array<std::vector<double>, kSides.size()>;  // by kSides (places)
 [[nodiscard]] ExitShares exit_shares(const markov::FinalDistribution& prediction);
-/// What is predicted, with intervals from predictions of resampled matrices (MatrixNoise), of whose
-/// first row there are so many runs. Without any resampled: none.
+/// What is predicted, with intervals from predictions of resampled matrices (resampled_95). Without
+/// any resampled: none.
 [[nodiscard]] FieldExits exits_of(const ExitShares& prediction,
-                                  const std::vector<ExitShares>& resampled, std::int64_t runs);
+                                  const std::vector<ExitShares>& resampled, const Evidence& from);
 /// The same from predictions of groups of the trials, by share_95.
 [[nodiscard]] FieldExits exits_of_groups(const ExitShares& prediction,
                                          const std::vector<ExitShares>& groups,

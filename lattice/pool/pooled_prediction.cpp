@@ -434,7 +434,7 @@ PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
       a.kernel_error_95 = unknown;
       a.final = std::move(said.whole.final[i]);
       a.endings = EndingShares(a.final.endings);
-      a.exits = exits_of(exit_shares(a.final), {}, 0);
+      a.exits = exits_of(exit_shares(a.final), {}, {});
       a.gates_95.fill(
           CellProbabilities::Constant(problem.field.rows, problem.field.columns, unknown));
     }

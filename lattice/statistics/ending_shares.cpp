@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/statistics/ending_shares.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "dynamics/base/share.h"
+#include "lattice/statistics/share_95.h"
 
 namespace gatewalk::lattice {
 
@@ -30,21 +30,9 @@ EndingShares::EndingShares(const markov::FinalDistribution& prediction, const Ma
                            int max_gates)
     : EndingShares(prediction.endings) {
   if (noise.replicates() == 0) return;
-  constexpr double kRounding = 1e-12;
-  for (std::size_t e = 0; e < markov::kEndings; ++e) {
-    interval[e] = noise.interval_95(static_cast<markov::Ending>(e));
-    // Where no resampled matrix shows a spread: what the runs of the row that all walks begin in
-    // can rule out.
-    if (interval[e][1] - interval[e][0] <= kRounding)
-      interval[e] = dynamics::interval_of_share(std::clamp(share[e], 0.0, 1.0),
-                                                static_cast<double>(noise.runs()));
-    // No narrower than if each gate run were a trial, as share_95 has it.
-    if (noise.of_small_rows() > 0) {
-      const auto [low, high] = dynamics::interval_of_share(
-          std::clamp(share[e], 0.0, 1.0), static_cast<double>(noise.of_small_rows()));
-      interval[e] = {std::min(interval[e][0], low), std::max(interval[e][1], high)};
-    }
-  }
+  for (std::size_t e = 0; e < markov::kEndings; ++e)
+    interval[e] =
+        resampled_95(noise.interval_95(static_cast<markov::Ending>(e)), share[e], noise.from());
   *this = with_limit(max_gates);
 }
 

@@ -198,6 +198,16 @@ std::array<double, 2> share_95(double whole, const std::vector<double>& groups,
   return dynamics::interval_of_share(whole, std::min(like, from.gate_runs));
 }
 
+std::array<double, 2> resampled_95(const std::array<double, 2>& middle, double own,
+                                   const Evidence& from) {
+  const double share = std::clamp(own, 0.0, 1.0);
+  if (middle[1] - middle[0] <= kShareRounding)
+    return dynamics::interval_of_share(share, from.trials);
+  if (!(from.gate_runs > 0.0)) return middle;
+  const auto [low, high] = dynamics::interval_of_share(share, from.gate_runs);
+  return {std::min(middle[0], low), std::max(middle[1], high)};
+}
+
 Evidence evidence_of(const markov::FinalDistribution& whole, std::int64_t trials) {
   const auto n = static_cast<double>(trials);
   return {n, n * std::max(1.0, whole.mean_steps)};

@@ -36,15 +36,16 @@ bool equals_row_before(const markov::Counts& counts, int row) {
 
 }  // namespace
 
-std::int64_t CountedField::runs_of_small_rows() const {
-  if (!small_rows) return 0;
-  std::int64_t runs = 0;
+Evidence CountedField::evidence_at(const markov::Start& start) const {
+  Evidence from{static_cast<double>(runs_at(start)), 0.0};
+  if (!small_rows) return from;
   for (std::size_t type = 0; type < counts.size(); ++type)
-    for (int row = 0; row < counts[type].rows(); ++row)
-      if (!equals_row_before(counts[type], row))
-        runs += counts[type].row(row).sum() /
-                (images.empty() ? 1 : images[type][static_cast<std::size_t>(row)]);
-  return runs;
+    for (int row = 0; row < counts[type].rows(); ++row) {
+      if (equals_row_before(counts[type], row)) continue;
+      const std::int64_t each = images.empty() ? 1 : images[type][static_cast<std::size_t>(row)];
+      from.gate_runs += static_cast<double>(counts[type].row(row).sum() / each);
+    }
+  return from;
 }
 
 markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed, std::uint64_t replicate,
@@ -143,9 +144,8 @@ std::int64_t affordable_replicates(const CountedField& gates, const markov::Fiel
   return affordable_replicates(field, max_cells, nonzeros, most);
 }
 
-MatrixNoise::MatrixNoise(const FinalDistribution& prediction, std::int64_t runs,
-                         std::int64_t of_small_rows)
-    : prediction_(prediction), runs_(runs), of_small_rows_(of_small_rows) {}
+MatrixNoise::MatrixNoise(const FinalDistribution& prediction, const Evidence& from)
+    : prediction_(prediction), from_(from) {}
 
 void MatrixNoise::add(const FinalDistribution& replicate) {
   endings_.push_back(replicate.endings);

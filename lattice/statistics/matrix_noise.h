@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lattice/statistics/share_95.h"
 #include "markov/predict.h"
 
 namespace gatewalk::lattice {
@@ -22,9 +23,8 @@ struct CountedField {
 
   /// Runs of the row that a walk begins in, mirror images not counted twice.
   [[nodiscard]] std::int64_t runs_at(const markov::Start& start) const;
-  /// Those of all rows where they are small, else 0: only resampled rows that are not small have
-  /// what no run showed.
-  [[nodiscard]] std::int64_t runs_of_small_rows() const;
+  /// These, and where rows are small (else 0) those of all rows.
+  [[nodiscard]] Evidence evidence_at(const markov::Start& start) const;
 };
 
 /// The counts that another set of runs might have given: every row's trials drawn anew from its own
@@ -61,16 +61,14 @@ struct CountedField {
 /// The spread of predictions that the sampling of the matrix makes.
 class MatrixNoise {
  public:
-  /// `runs`: of the matrix's row that the walks begin in; `of_small_rows`: runs_of_small_rows().
-  MatrixNoise(const markov::FinalDistribution& prediction, std::int64_t runs,
-              std::int64_t of_small_rows = 0);
+  /// `from`: the runs behind it, see resampled_95().
+  MatrixNoise(const markov::FinalDistribution& prediction, const Evidence& from);
   void add(const markov::FinalDistribution& replicate);
 
   [[nodiscard]] std::int64_t replicates() const {
     return static_cast<std::int64_t>(distances_.size());
   }
-  [[nodiscard]] std::int64_t runs() const { return runs_; }
-  [[nodiscard]] std::int64_t of_small_rows() const { return of_small_rows_; }
+  [[nodiscard]] const Evidence& from() const { return from_; }
   /// Between what lie the shares of this ending in the middle 95 % of the replicates, and the
   /// prediction's own. Needs a replicate at least. No spread at all says only that no run of the
   /// matrix shows any.
@@ -83,7 +81,7 @@ class MatrixNoise {
 
  private:
   const markov::FinalDistribution& prediction_;
-  std::int64_t runs_, of_small_rows_;
+  Evidence from_;
   std::vector<std::array<double, markov::kEndings>> endings_;  // (replicates) by Ending
   std::vector<double> distances_;
 };

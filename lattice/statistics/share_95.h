@@ -24,6 +24,13 @@ struct Evidence {
 [[nodiscard]] std::array<double, 2> share_95(double whole, const std::vector<double>& groups,
                                              const Evidence& from, double besides = 0.0);
 
+/// 95 % interval of a share that a matrix predicts, `own`, from the middle 95 % of what resampled
+/// ones do (MatrixNoise). Where these show no spread, it is what the trials `from` the row that all
+/// walks begin in leave open; of small rows, which hold nothing that no run showed, it is no
+/// narrower than if each of their gate runs were a trial (0: rows are not small).
+[[nodiscard]] std::array<double, 2> resampled_95(const std::array<double, 2>& middle, double own,
+                                                 const Evidence& from);
+
 /// Between what lie the middle 95 % of what was drawn (one at least), and `own`.
 [[nodiscard]] std::array<double, 2> middle_95(std::vector<double> drawn, double own);
 

@@ -22,8 +22,7 @@ std::vector<Resampled> resampled_predictions(const CountedField& gates, const ma
   constexpr std::int64_t kMost = 200, kTogether = 8;
   std::vector<Resampled> all;
   for (std::size_t k = 0; k < starts.size(); ++k)
-    all.push_back({MatrixNoise(prediction.starts[k].final, gates.runs_at(starts[k]),
-                               gates.runs_of_small_rows())});
+    all.push_back({MatrixNoise(prediction.starts[k].final, gates.evidence_at(starts[k]))});
   const std::int64_t replicates =
       gates.exact ? 0 : affordable_replicates(gates, field, max_cells, kMost);
   const auto add = [&](std::int64_t begin) {
@@ -70,11 +69,11 @@ Prediction predict(const CountedField& gates, const FieldParams& field_params,
       resampled_predictions(gates, field, places, result, how.max_cells, seed, work);
   for (std::size_t k = 0; k < starts.size(); ++k) {
     StartPrediction& s = result.starts[k];
-    const Resampled none{MatrixNoise(s.final, 0)};
+    const Resampled none{MatrixNoise(s.final, {})};
     const Resampled& of_start = resampled.empty() ? none : resampled[k];
     const MatrixNoise& spread = of_start.noise;
     s.shares = EndingShares(s.final, spread, how.max_cells);
-    s.exits = exits_of(exit_shares(s.final), of_start.exits, spread.runs());
+    s.exits = exits_of(exit_shares(s.final), of_start.exits, spread.from());
     s.replicates = spread.replicates();
     s.mean_total_variation = spread.mean_total_variation();
     s.total_variation_95 = spread.total_variation_95();

@@ -222,7 +222,7 @@ StartValidation validate_start(const Setup& setup, const dynamics::Entry& start,
   const std::int64_t runs = setup.gates.runs_at(chain_start.start);
   // Resampled bins have one run more in each row; trees' rows, of which a run is a large part, not.
   const std::int64_t may_miss = setup.space.has_trees() ? runs : 0;
-  MatrixNoise noise(exact, runs, setup.gates.runs_of_small_rows());
+  MatrixNoise noise(exact, setup.gates.evidence_at(chain_start.start));
   std::vector<ExitShares> resampled_exits;
   for (const markov::FinalDistribution& other : resampled) {
     noise.add(other);
@@ -252,7 +252,7 @@ StartValidation validate_start(const Setup& setup, const dynamics::Entry& start,
       .walks_endings = EndingShares(walked.tally.endings, walked.tally.walks).with_limit(max_gates),
       .exact_endings = EndingShares(exact, noise, max_gates),
       .dynamics_exits = exits_of(seen.exits),
-      .exact_exits = exits_of(exit_shares(exact), resampled_exits, noise.runs()),
+      .exact_exits = exits_of(exit_shares(exact), resampled_exits, noise.from()),
       .dynamics_seconds = seen.seconds,
       .walks_seconds = walked.seconds,
       .exact_seconds = exact_seconds,

@@ -123,11 +123,11 @@ TEST(Exits, IntervalsOfGroupsAndOfResampledMatrices) {
   // Nobody was seen there, and nothing varies: what 1000 trials can rule out.
   EXPECT_EQ(groups[0].interval[1], dynamics::interval_of_share(0.0, 1000.0));
   EXPECT_GT(groups[1].interval[0][1] - groups[1].interval[0][0], 0.02);
-  const FieldExits resampled = exits_of(own, others, 1000);
+  const FieldExits resampled = exits_of(own, others, {1000, 0});
   EXPECT_DOUBLE_EQ(resampled[0].interval[0][0], 0.065);
   EXPECT_DOUBLE_EQ(resampled[0].interval[0][1], 0.135);
   EXPECT_LT(resampled[1].interval[0][0], 0.2);
-  EXPECT_TRUE(std::isnan(exits_of(own, {}, 1000)[0].interval[0][0]));
+  EXPECT_TRUE(std::isnan(exits_of(own, {}, {1000, 0})[0].interval[0][0]));
 }
 
 TEST(Exits, Middle95LeavesOutTheOutermost) {

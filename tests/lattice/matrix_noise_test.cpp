@@ -88,7 +88,7 @@ TEST(MatrixNoise, IntervalsCoverTheTruth) {
   for (int i = 0; i < kMatrices; ++i) {
     const Transitions t = simulated(100, static_cast<std::uint64_t>(i));
     const FinalDistribution p = predicted(t);
-    MatrixNoise noise(p, 100);
+    MatrixNoise noise(p, {100, 0});
     for (const FinalDistribution& r : replicates(t, 5, 200)) noise.add(r);
     for (std::size_t k = 0; k < kAll.size(); ++k) {
       const auto e = static_cast<std::size_t>(kAll[k]);
@@ -109,7 +109,7 @@ TEST(MatrixNoise, SmallRowsLeaveOpenWhatTheirRunsMayHaveMissed) {
              crossed = static_cast<std::size_t>(Ending::far_edge);
   p.endings[trapped] = 0.8;
   p.endings[crossed] = 1e-6;
-  MatrixNoise bins(p, 100), trees(p, 100, 10'000);
+  MatrixNoise bins(p, {100, 0}), trees(p, {100, 10'000});
   for (const double factor : {0.9, 1.1}) {
     FinalDistribution other = p;
     for (double& e : other.endings) e *= factor;
@@ -122,16 +122,17 @@ TEST(MatrixNoise, SmallRowsLeaveOpenWhatTheirRunsMayHaveMissed) {
   EXPECT_EQ(of_trees.interval[crossed], dynamics::interval_of_share(1e-6, 10'000));
 
   CountedField field = counted_field(truth());
-  EXPECT_EQ(field.runs_of_small_rows(), 0);
+  EXPECT_EQ(field.evidence_at(kStart).trials, 1000);
+  EXPECT_EQ(field.evidence_at(kStart).gate_runs, 0);
   field.small_rows = true;
-  EXPECT_EQ(field.runs_of_small_rows(), 5000);  // 1000 a row
+  EXPECT_EQ(field.evidence_at(kStart).gate_runs, 5000);  // 1000 a row
 }
 
 // The spread is that of matrices really drawn anew.
 TEST(MatrixNoise, IsTheSpreadOfOtherMatrices) {
   const Transitions t = truth();
   const FinalDistribution p = predicted(t);
-  MatrixNoise noise(p, 1000), drawn(p, 1000);
+  MatrixNoise noise(p, {1000, 0}), drawn(p, {1000, 0});
   const auto sd = [&](const std::vector<FinalDistribution>& all, Ending e) {
     double squares = 0.0;
     for (const FinalDistribution& f : all)
@@ -152,7 +153,6 @@ TEST(MatrixNoise, IsTheSpreadOfOtherMatrices) {
   EXPECT_NEAR(noise.mean_total_variation() / drawn.mean_total_variation(), 1.0, 0.1);
   EXPECT_GT(noise.total_variation_95(), noise.mean_total_variation());
   EXPECT_EQ(noise.replicates(), 400);
-  EXPECT_EQ(noise.runs(), 1000);
   for (const Ending e : kAll) {
     const auto [low, high] = noise.interval_95(e);
     EXPECT_LT(low, p.endings[static_cast<std::size_t>(e)]);
