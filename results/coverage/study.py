@@ -29,7 +29,7 @@ SCENES = {
 }
 TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 200, 0.04
 LATTICE_TRIALS, LATTICE_SEEDS = 1000, 200
-UNSEEN = {"A": 10, "B": 6, "C": 10, "R": 10, "M": 6}  # chains of results/tree's scenes, 24 starts each
+UNSEEN = {"A": 10, "B": 6, "C": 10, "R": 40, "M": 6}  # chains of results/tree's scenes, 24 starts each
 SEEDS_OF = {"analyze": 40, "validate": 30, "power": 2, "rare": 35, "build": 40}  # of each scene
 VALIDATE_TRIALS, RARE_ROW, RARE_RUNS, MORE_TRUTH_TRIALS = 1000, 6, 100_000, 100_000
 COSTS = ("time_s", "forward_m", "work_J", "random_work_J", "lost_J")

@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Less chance by points in the noise: variances over replicates, with points beside plain runs, and what points cost.
-# And how alike neighbouring starts are.
-#   results/points/run.sh [BUILD]      BUILD: with tests; about 7 minutes on two cores, needs python3
-# Writes points.csv, neighbours.csv, manifest.txt.
+#   results/points/run.sh [BUILD]      BUILD: with tests; about 5 minutes on two cores
+# Writes points.csv, manifest.txt.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -26,5 +25,4 @@ printf '%s\0' "A field" "B field forces.propulsion_N=8 forces.random_N=10" \
   echo "scene,what,trials,replicates,plain,points"
   for name in A B C robot mixed; do cat "$scratch/$name"; done
 } >"$here/points.csv"
-python3 "$here/neighbours.py" "$gatewalk" "$here"
 manifest "results/points/run.sh" >"$here/manifest.txt"

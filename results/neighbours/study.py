@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""How alike are the final gates of neighbouring starts? neighbours.py GATEWALK DIR: writes DIR/neighbours.csv.
+"""How alike are the final gates of neighbouring starts? study.py GATEWALK DIR: writes DIR/neighbours.csv.
 
 Starts stand on a line, all else equal. By how far apart they are: the total variation between two of them, and between
 the one in the middle and the mean of the two on its sides, on average and at most along the line. A mean over all
