@@ -89,9 +89,7 @@ int predict_from_matrix(const Options& options, const Subject& s,
                      std::to_string(field.max_gates));
   const auto prediction = lattice::predict(gates, field, starts, {.solver = solver_of(options)},
                                            options.seed(), options.work());
-  if (prediction.failed)
-    options.warn("no interval counts the sampling of the matrix: a resampled one fails: " +
-                 *prediction.failed);
+  options.warn(text_of(prediction.left_out));
   const ShownField field_shown = s.shown();
   const PredictedField shown{*s.file, field_shown, s.given ? s.starts : std::vector<Start>(),
                              others, gates.exact};

@@ -127,8 +127,8 @@ class Predictor {
 
 /// Predictions for many start rows in one cell of a uniform field, by the adjoint: how walks end is
 /// found once for each output that may be drawn first, exactly, and a prediction is a sum over the
-/// start row. The preparation takes as long as some 45 predictions for 9 x 9 cells (its time grows
-/// with the square of the number of cells), a prediction next to nothing.
+/// start row. The preparation takes about as long as a prediction for each of 9 x 9 cells (its
+/// time grows with the square of their number), a prediction next to nothing.
 class AdjointPredictor {
  public:
   /// On all threads of the current TBB arena; the same bits for any number of them. Throws

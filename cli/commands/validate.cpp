@@ -3,6 +3,7 @@
 #include "cli/commands/recorded.h"
 #include "cli/render/json.h"
 #include "cli/render/observed.h"
+#include "cli/render/prediction.h"
 #include "cli/render/validation.h"
 #include "cli/subject.h"
 #include "cli/validated.h"
@@ -100,6 +101,7 @@ int run_validate(const Arguments& arguments) {
   }
   json["made_by"] = subject.made_by;
   options.give_out(json, table);
+  options.warn(text_of(result.left_out));
   if (subject.observed) options.warn(endings_not_listed(*subject.observed, result.starts.front()));
   const int exit = status_of(options, result.health);
   options.draw([&] { return figure_of(result, *subject.shown); });

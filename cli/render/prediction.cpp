@@ -44,7 +44,7 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
                        ? "of all walks; no intervals: the matrix holds probabilities, not counts"
                        : "of all walks; no intervals: the field is too large for many predictions, "
                          "rows have few runs each, "
-                         "or a resampled matrix failed") +
+                         "or resampled matrices fail") +
       limits_text(of.shown) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) +
       "departed " + percent(f.left_field, 1.0, 2) + "\n" + cli::table_of(s.exits, of.shown) +
       "start: " +
@@ -102,6 +102,12 @@ std::string table_of(const lattice::Prediction& prediction, const PredictedField
     table += "rows " + std::to_string(o.first) + " to " + std::to_string(o.last) + ": gates of " +
              o.path + "\n";
   return table;
+}
+
+std::string text_of(const lattice::LeftOut& left_out) {
+  if (left_out.matrices == 0) return "";
+  return "intervals leave out " + std::to_string(left_out.matrices) + " of " +
+         std::to_string(left_out.of) + " resampled matrices: " + left_out.why;
 }
 
 }  // namespace gatewalk::cli

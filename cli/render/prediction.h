@@ -28,4 +28,7 @@ struct PredictedField {
                            const std::string& solver);
 [[nodiscard]] std::string table_of(const lattice::Prediction& prediction, const PredictedField& of);
 
+/// Empty if none is.
+[[nodiscard]] std::string text_of(const lattice::LeftOut& left_out);
+
 }  // namespace gatewalk::cli

@@ -7,9 +7,12 @@
 namespace gatewalk::dynamics {
 namespace {
 
+/// Of a product that is rounded.
+constexpr double kOneTrial = 1.0 - 1e-9;
+
 std::array<double, 2> jeffreys(double part, double others) {
-  return {part == 0.0 ? 0.0 : boost::math::ibeta_inv(part + 0.5, others + 0.5, 0.025),
-          others == 0.0 ? 1.0 : boost::math::ibeta_inv(part + 0.5, others + 0.5, 0.975)};
+  return {part < kOneTrial ? 0.0 : boost::math::ibeta_inv(part + 0.5, others + 0.5, 0.025),
+          others < kOneTrial ? 1.0 : boost::math::ibeta_inv(part + 0.5, others + 0.5, 0.975)};
 }
 
 }  // namespace
@@ -21,7 +24,7 @@ std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole) {
 std::array<double, 2> interval_of_share(double share, double equivalent_trials) {
   const auto [low, high] =
       jeffreys(equivalent_trials * share, equivalent_trials * std::max(0.0, 1.0 - share));
-  return {std::min(low, share), std::max(high, share)};  // a share far below one trial is no trial
+  return {std::min(low, share), std::max(high, share)};
 }
 
 }  // namespace gatewalk::dynamics

@@ -15,7 +15,8 @@ inline constexpr double kNormal95 = 1.959963984540054;
 /// high]; low is 0 for no trial, high 1 for all of them.
 [[nodiscard]] std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole);
 /// The same for a share that varies as that of so many independent trials would; it contains the
-/// share.
+/// share. Of less than one trial low is 0, of less than one that is not, high 1: so little may as
+/// well be none.
 [[nodiscard]] std::array<double, 2> interval_of_share(double share, double equivalent_trials);
 
 }  // namespace gatewalk::dynamics

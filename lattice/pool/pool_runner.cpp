@@ -67,7 +67,7 @@ std::optional<FirstPoints> PoolRunner::points_of(const Begun& begun) const {
 
 void PoolRunner::run(const Begun& begun, std::int64_t count, FieldTrials& all) {
   const Stopwatch watch;
-  const auto most = static_cast<double>(most_runs_ - gate_runs);
+  const auto most = static_cast<double>(runs_left());
   count = std::max<std::int64_t>(
       kLeastTrials, static_cast<std::int64_t>(
                         std::min(static_cast<double>(count),

@@ -42,7 +42,8 @@ class PoolRunner {
   /// Start number `i` in the range.
   [[nodiscard]] dynamics::Entry drawn(const StartRange& starts, std::int64_t i) const;
 
-  [[nodiscard]] bool may_go_on() const { return gate_runs < most_runs_; }
+  [[nodiscard]] std::int64_t runs_left() const { return most_runs_ - gate_runs; }
+  [[nodiscard]] bool may_go_on() const { return runs_left() > 0; }
   /// Gate runs of a trial through the field, in the mean of those so far.
   [[nodiscard]] double gates_per_trial() const {
     return trials_ > 0 ? static_cast<double>(trial_runs_) / static_cast<double>(trials_) : 1.0;

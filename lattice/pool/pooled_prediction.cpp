@@ -267,16 +267,46 @@ class PredictionRun {
            std::sqrt(std::clamp(shared / std::max(1e-9, shared + own), 0.2, 0.72));
   }
 
+  /// What a start lacks: so many full trials more, and so many runs through its first gate in all.
+  struct Order {
+    std::size_t start;
+    double full = 0.0, first = 0.0;
+  };
+
+  /// A round. If it would take more gate runs than are left, each order gets its part of them.
   void add_trials() {
-    if (by_walks_) {  // rounds take long, and walks have their chance too: the shortest way
-      for (const std::size_t k : open_) {
-        const std::int64_t trials = std::ssize(pool_.starts[places_[k]].full.final_gates);
-        run_full(
-            k, static_cast<double>(std::max(trials, kFirstRound / 2)) *
-                   (times_more(result_.starts[k].error.total_variation, options_.accuracy) - 1.0));
-      }
-      return;
+    const std::vector<Order> orders = by_walks_ ? orders_for_walks() : orders_for_kernels();
+    std::vector<double> costs;
+    for (const Order& o : orders)
+      costs.push_back(o.full * runner_.gates_per_trial() + more_first(o, o.full));
+    double wanted = std::accumulate(costs.begin(), costs.end(), 0.0);
+    for (std::size_t i = 0; i < orders.size() && runner_.may_go_on(); wanted -= costs[i++]) {
+      const Order& o = orders[i];
+      StartTrials& s = pool_.starts[places_[o.start]];
+      const double part = std::min(1.0, static_cast<double>(runner_.runs_left()) / wanted);
+      if (o.full > 0.0) runner_.run_full(s, static_cast<std::int64_t>(part * o.full));
+      if (const double more = more_first(o); more > 0.0)
+        runner_.run_first(s, static_cast<std::int64_t>(part * more));
     }
+  }
+
+  /// First runs that an order still asks for, when so many full trials are there too.
+  [[nodiscard]] double more_first(const Order& order, double full = 0.0) const {
+    const auto made = static_cast<double>(pool_.starts[places_[order.start]].first_runs());
+    return std::max(0.0, order.first - made - full);
+  }
+
+  /// Rounds take long, and walks have their chance too: the shortest way.
+  [[nodiscard]] std::vector<Order> orders_for_walks() const {
+    std::vector<Order> orders;
+    for (const std::size_t k : open_) {
+      const double times = times_more(result_.starts[k].error.total_variation, options_.accuracy);
+      orders.push_back({k, own_trials_of(k) * (times - 1.0)});
+    }
+    return orders;
+  }
+
+  [[nodiscard]] std::vector<Order> orders_for_kernels() const {
     const Schedule by = chains_.by_adjoint(pool_, result_.starts.size()) ? kForMany : Schedule{};
     const double goal = kernel_goal();
     std::vector<std::size_t> lacking;  // starts for which the kernel is too uncertain
@@ -287,36 +317,34 @@ class PredictionRun {
       std::erase_if(lacking, [&](std::size_t k) {
         return result_.starts[k].kernel_error_95 < 0.85 * options_.accuracy;
       });
-    for (const std::size_t k : lacking) improve_kernel(k, goal, std::ssize(lacking), by);
+    std::vector<Order> orders;
     for (const std::size_t k : open_) {
       const StartAnswer& a = result_.starts[k];
       const bool lacks = std::find(lacking.begin(), lacking.end(), k) != lacking.end();
       const double kernel = lacks ? goal : a.kernel_error_95;
       const double wanted = std::sqrt(options_.accuracy * options_.accuracy - kernel * kernel);
-      const double times = times_more(first_error(a), wanted, by);
-      const StartTrials& s = pool_.starts[places_[k]];
-      const auto more =
-          static_cast<double>(a.first_runs) * times - static_cast<double>(s.first_runs());
-      if (runner_.may_go_on() && more > 0.0 && (!lacks || first_error(a) > wanted))
-        runner_.run_first(pool_.starts[places_[k]], static_cast<std::int64_t>(more));
+      Order& order = orders.emplace_back(k);
+      if (lacks) order.full = trials_for_kernel(k, goal, std::ssize(lacking), by);
+      if (!lacks || first_error(a) > wanted)
+        order.first = static_cast<double>(a.first_runs) * times_more(first_error(a), wanted, by);
     }
+    return orders;
   }
 
-  /// By full trials of this start: as many as if only its own could help, or its part of as many as
-  /// if all helped alike, whichever is less.
-  void improve_kernel(std::size_t k, double goal, std::int64_t lacking, const Schedule& by) {
+  /// Full trials of this start: as many as if only its own could help, or its part of as many as if
+  /// all helped alike, whichever is less.
+  [[nodiscard]] double trials_for_kernel(std::size_t k, double goal, std::int64_t lacking,
+                                         const Schedule& by) const {
     const StartAnswer& a = result_.starts[k];
-    const double more = times_more(a.kernel_error_95, goal, by) - 1.0;
-    const std::int64_t trials = std::ssize(pool_.starts[places_[k]].full.final_gates);
-    const auto own = static_cast<double>(std::max(trials, kFirstRound / 2));
     const double all = static_cast<double>(pool_.gate_runs()) / std::max(1.0, a.final.mean_steps) /
                        static_cast<double>(lacking);
-    run_full(k, std::min(own, all) * more);
+    return std::min(own_trials_of(k), all) * (times_more(a.kernel_error_95, goal, by) - 1.0);
   }
 
-  void run_full(std::size_t k, double count) {
-    if (runner_.may_go_on())
-      runner_.run_full(pool_.starts[places_[k]], static_cast<std::int64_t>(count));
+  /// Those that it has, at least half of a first round.
+  [[nodiscard]] double own_trials_of(std::size_t k) const {
+    const std::int64_t trials = std::ssize(pool_.starts[places_[k]].full.final_gates);
+    return static_cast<double>(std::max(trials, kFirstRound / 2));
   }
 
   const Stopwatch watch_;

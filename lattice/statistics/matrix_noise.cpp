@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "dynamics/base/random.h"
@@ -26,6 +27,10 @@ std::int64_t CountedField::runs_at(const markov::Start& start) const {
 
 namespace {
 
+/// A way out of a row of a few runs is taken once in a few visits; four such rows in a circle are
+/// left in so many. Walks that take longer circle for ever.
+constexpr int kMostMovesInSmallRows = 100'000;
+
 bool equals_row_before(const markov::Counts& counts, int row) {
   const int* const begin = counts.outerIndexPtr() + row;
   const auto same = [&](const auto* values) {
@@ -38,7 +43,8 @@ bool equals_row_before(const markov::Counts& counts, int row) {
 
 Evidence CountedField::evidence_at(const markov::Start& start) const {
   Evidence from{static_cast<double>(runs_at(start)), 0.0};
-  if (!small_rows) return from;
+  if (small_rows == 0) return from;
+  if (start.input < small_rows) return {from.trials, from.trials};
   for (std::size_t type = 0; type < counts.size(); ++type)
     for (int row = 0; row < counts[type].rows(); ++row) {
       if (equals_row_before(counts[type], row)) continue;
@@ -90,11 +96,20 @@ markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed, std::
   return result;
 }
 
-std::vector<std::vector<FinalDistribution>> replicate_predictions(
-    const CountedField& gates, const markov::Field& field, const std::vector<markov::Start>& starts,
-    int max_cells, std::uint64_t seed, std::int64_t first, std::int64_t count) {
-  std::vector<std::vector<FinalDistribution>> found(
-      starts.size(), std::vector<FinalDistribution>(static_cast<std::size_t>(count)));
+LeftOut& LeftOut::operator+=(const LeftOut& other) {
+  matrices += other.matrices;
+  of += other.of;
+  if (!other.why.empty()) why = other.why;
+  return *this;
+}
+
+Replicates replicate_predictions(const CountedField& gates, const markov::Field& field,
+                                 const std::vector<markov::Start>& starts, int max_cells,
+                                 std::uint64_t seed, std::int64_t first, std::int64_t count) {
+  std::vector<std::vector<FinalDistribution>> found(static_cast<std::size_t>(count));
+  std::vector<std::string> why(found.size());
+  markov::PredictOptions how{.max_cells = max_cells};
+  if (gates.small_rows > 0) how.max_steps = kMostMovesInSmallRows;
   tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t k) {
     std::vector<markov::Chain> chains;
     for (std::size_t m = 0; m < gates.counts.size(); ++m) {
@@ -102,17 +117,25 @@ std::vector<std::vector<FinalDistribution>> replicate_predictions(
       const std::uint64_t replicate =
           static_cast<std::uint64_t>(first + k) + (std::uint64_t{m} << 32);
       chains.push_back(markov::Chain::from_counts(
-          resampled(gates.counts[m], seed, replicate, gates.small_rows,
+          resampled(gates.counts[m], seed, replicate, gates.small_rows > 0,
                     gates.images.empty() ? std::vector<std::int64_t>{} : gates.images[m]),
           gates.chains.chains()[m].exits()));
     }
     const markov::Predictor predictor(gates.chains.with(std::move(chains)));
-    std::vector<FinalDistribution> of_starts =
-        predictor.predict_all(field, starts, {.max_cells = max_cells});
-    for (std::size_t s = 0; s < starts.size(); ++s)
-      found[s][static_cast<std::size_t>(k)] = std::move(of_starts[s]);
+    const auto i = static_cast<std::size_t>(k);
+    try {
+      found[i] = predictor.predict_all(field, starts, how);
+    } catch (const std::runtime_error& e) {
+      why[i] = e.what();
+    }
   });
-  return found;
+  Replicates all{std::vector<std::vector<FinalDistribution>>(starts.size()), {0, count}};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!why[i].empty()) all.left_out += {1, 0, why[i]};
+    for (std::size_t s = 0; s < found[i].size(); ++s)
+      all.predictions[s].push_back(std::move(found[i][s]));
+  }
+  return all;
 }
 
 std::int64_t affordable_replicates(const markov::Field& field, int max_cells, std::int64_t nonzeros,
@@ -120,7 +143,6 @@ std::int64_t affordable_replicates(const markov::Field& field, int max_cells, st
   // Measured: some 40 ns a cell without limit, and a cell and step with one, of a matrix of 300
   // nonzeros.
   constexpr double kCellSteps = 1e8, kNonzeros = 300.0;
-  constexpr std::int64_t kTooFew = 50;
   const double steps = std::max(1, max_cells);
   const double cells =
       std::min(static_cast<double>(field.columns) * field.rows,
@@ -128,7 +150,7 @@ std::int64_t affordable_replicates(const markov::Field& field, int max_cells, st
   const double replicates = std::min(
       static_cast<double>(most),
       kCellSteps / (cells * steps * std::max(1.0, static_cast<double>(nonzeros) / kNonzeros)));
-  return replicates < kTooFew ? 0 : static_cast<std::int64_t>(replicates);
+  return replicates < kLeastReplicates ? 0 : static_cast<std::int64_t>(replicates);
 }
 
 std::int64_t affordable_replicates(const CountedField& gates, const markov::Field& field,

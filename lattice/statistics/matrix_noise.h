@@ -16,14 +16,15 @@ namespace gatewalk::lattice {
 struct CountedField {
   markov::FieldChain chains;
   std::vector<markov::Counts> counts;  // one per type, as chains.chains()
-  bool small_rows = false;             // rows of a few runs each, as those of trees
+  int small_rows = 0;  // of each: the first so many rows are of a few runs each, leaves of trees
   /// By matrix and row: how many counts a run makes in it, 2 with its mirror image; empty: 1.
   std::vector<std::vector<std::int64_t>> images{};
   bool exact = false;  // probabilities were given, not counted: nothing is known of their sampling
 
   /// Runs of the row that a walk begins in, mirror images not counted twice.
   [[nodiscard]] std::int64_t runs_at(const markov::Start& start) const;
-  /// These, and where rows are small (else 0) those of all rows.
+  /// These, and where rows are small (else 0) those of all rows; of a walk that begins in a small
+  /// row these alone: what it never saw, no other row tells.
   [[nodiscard]] Evidence evidence_at(const markov::Start& start) const;
 };
 
@@ -40,15 +41,34 @@ struct CountedField {
                                        std::uint64_t replicate, bool small_rows = false,
                                        const std::vector<std::int64_t>& images = {});
 
+/// Resampled matrices that cannot be predicted from: in a leaf of which all ways out were drawn
+/// away bodies circle for ever.
+struct LeftOut {
+  std::int64_t matrices = 0, of = 0;
+  std::string why{};  // of the last one
+
+  LeftOut& operator+=(const LeftOut& other);
+};
+
+struct Replicates {
+  std::vector<std::vector<markov::FinalDistribution>> predictions;  // (starts x matrices)
+  LeftOut left_out;                                                 // of these there are none
+};
+
 /// Predictions from replicates first, ... first + count - 1: each matrix resampled() on its own.
-/// (starts x count) by Predictor::predict, on all threads of the current TBB arena; the same bits
-/// for any number of them. Throws as Predictor::predict does.
-[[nodiscard]] std::vector<std::vector<markov::FinalDistribution>> replicate_predictions(
-    const CountedField& gates, const markov::Field& field, const std::vector<markov::Start>& starts,
-    int max_cells, std::uint64_t seed, std::int64_t first, std::int64_t count);
+/// By Predictor::predict, on all threads of the current TBB arena; the same bits for any number of
+/// them. Throws std::invalid_argument as Predictor::predict does.
+[[nodiscard]] Replicates replicate_predictions(const CountedField& gates,
+                                               const markov::Field& field,
+                                               const std::vector<markov::Start>& starts,
+                                               int max_cells, std::uint64_t seed,
+                                               std::int64_t first, std::int64_t count);
+
+/// Fewer replicates than this say too little.
+inline constexpr std::int64_t kLeastReplicates = 50;
 
 /// How many replicates a field and a matrix of this size let one make in some seconds: 0 to `most`.
-/// Below 50 it is 0: so few say too little.
+/// Below kLeastReplicates it is 0.
 /// `nonzeros` of the matrix.
 [[nodiscard]] std::int64_t affordable_replicates(const markov::Field& field, int max_cells,
                                                  std::int64_t nonzeros, std::int64_t most);

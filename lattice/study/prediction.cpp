@@ -13,8 +13,8 @@ struct Resampled {
   std::vector<ExitShares> exits{};
 };
 
-/// Replicates' spread around the predictions, one per start; none, and prediction.failed, where a
-/// resampled matrix cannot be predicted from.
+/// Replicates' spread around the predictions, one per start; none where too few can be predicted
+/// from.
 std::vector<Resampled> resampled_predictions(const CountedField& gates, const markov::Field& field,
                                              const std::vector<markov::Start>& starts,
                                              Prediction& prediction, int max_cells,
@@ -26,24 +26,21 @@ std::vector<Resampled> resampled_predictions(const CountedField& gates, const ma
   const std::int64_t replicates =
       gates.exact ? 0 : affordable_replicates(gates, field, max_cells, kMost);
   const auto add = [&](std::int64_t begin) {
-    const auto found = replicate_predictions(gates, field, starts, max_cells, seed, begin,
-                                             std::min(kTogether, replicates - begin));
+    const Replicates some = replicate_predictions(gates, field, starts, max_cells, seed, begin,
+                                                  std::min(kTogether, replicates - begin));
+    prediction.left_out += some.left_out;
     for (std::size_t k = 0; k < starts.size(); ++k)
-      for (const markov::FinalDistribution& f : found[k]) {
+      for (const markov::FinalDistribution& f : some.predictions[k]) {
         all[k].noise.add(f);
         all[k].exits.push_back(exit_shares(f));
       }
   };
   work.in_pieces("resampled matrices", (replicates + kTogether - 1) / kTogether,
                  [&](dynamics::TrialRange batches) {
-                   try {
-                     for (std::int64_t i = 0; i < batches.count && !prediction.failed; ++i)
-                       add((batches.first + i) * kTogether);
-                   } catch (const std::runtime_error& e) {
-                     prediction.failed = e.what();
-                   }
+                   for (std::int64_t i = 0; i < batches.count; ++i)
+                     add((batches.first + i) * kTogether);
                  });
-  if (prediction.failed) all.clear();
+  if (replicates - prediction.left_out.matrices < kLeastReplicates) all.clear();
   return all;
 }
 

@@ -27,12 +27,13 @@ struct StartPrediction {
 
 struct Prediction {
   std::vector<StartPrediction> starts;
-  double seconds = 0.0;               // of the predictions alone
-  std::optional<std::string> failed;  // why a resampled matrix could not be predicted from
+  double seconds = 0.0;  // of the predictions alone
+  LeftOut left_out{};
 };
 
 /// One prediction per start. `how.max_cells` is the field's max_gates. Replicates are 200 in small
-/// fields, none where 50 would take too long or where one fails. Throws as markov::predict.
+/// fields, none where kLeastReplicates would take too long or fewer can be predicted from. Throws
+/// as markov::predict.
 [[nodiscard]] Prediction predict(const CountedField& gates, const FieldParams& field,
                                  const std::vector<ChainStart>& starts, markov::PredictOptions how,
                                  std::uint64_t seed, const dynamics::Work& work = {});

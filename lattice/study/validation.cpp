@@ -82,25 +82,27 @@ struct Setup {
 
 /// Predictions from resampled matrices, (starts x replicates): fewer for large fields, which cost
 /// time and memory.
-std::vector<std::vector<markov::FinalDistribution>> resampled_predictions(
-    const Setup& setup, const std::vector<markov::Start>& starts) {
-  constexpr std::int64_t kMost = 999, kAtLeast = 50, kTogether = 8, kMostNumbers = 25'000'000;
+Replicates resampled_predictions(const Setup& setup, const std::vector<markov::Start>& starts) {
+  constexpr std::int64_t kMost = 999, kTogether = 8, kMostNumbers = 25'000'000;
   const markov::Field field = setup.field();
   const int max_gates = setup.problem.field.max_gates;
   const std::int64_t numbers = std::int64_t{field.columns} * field.rows * std::ssize(starts);
   const std::int64_t count =
-      std::max(kAtLeast, affordable_replicates(setup.gates, field, max_gates,
-                                               std::min(kMost, kMostNumbers / numbers)));
-  std::vector<std::vector<markov::FinalDistribution>> all(starts.size());
+      std::max(kLeastReplicates, affordable_replicates(setup.gates, field, max_gates,
+                                                       std::min(kMost, kMostNumbers / numbers)));
+  Replicates all{std::vector<std::vector<markov::FinalDistribution>>(starts.size()), {}};
   setup.work.in_pieces(
       "resampled matrices", (count + kTogether - 1) / kTogether, [&](TrialRange batches) {
         const std::int64_t begin = batches.first * kTogether;
-        auto found =
+        Replicates some =
             replicate_predictions(setup.gates, field, starts, max_gates, setup.options.seed, begin,
                                   std::min(batches.count * kTogether, count - begin));
+        all.left_out += some.left_out;
         for (std::size_t k = 0; k < starts.size(); ++k)
-          std::move(found[k].begin(), found[k].end(), std::back_inserter(all[k]));
+          std::move(some.predictions[k].begin(), some.predictions[k].end(),
+                    std::back_inserter(all.predictions[k]));
       });
+  if (count - all.left_out.matrices < kLeastReplicates) throw std::runtime_error(all.left_out.why);
   return all;
 }
 
@@ -316,9 +318,10 @@ Validation validate_chain(const Problem& problem,
   for (const dynamics::Transitions& t : matrices) v.health += t.health;
   StateWalks remembered = no_walks(space, matrices.size());
   if (work.is_part()) run_part(setup, starts, remembered);
-  const auto resampled = resampled_predictions(setup, places);
+  Replicates resampled = resampled_predictions(setup, places);
+  v.left_out = std::move(resampled.left_out);
   for (std::size_t k = 0; k < starts.size(); ++k) {
-    v.starts.push_back(validate_start(setup, starts[k], resampled[k], remembered));
+    v.starts.push_back(validate_start(setup, starts[k], resampled.predictions[k], remembered));
     const FieldTally& d = v.starts.back().dynamics;
     v.health += d.health;
     for (std::size_t f = 0; f < d.entries.size(); ++f) {

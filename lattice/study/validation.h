@@ -107,6 +107,7 @@ struct Validation {
   std::int64_t entries = 0, clamped = 0;  // between gates, of all trials; outside every bin
   FaceCounts entries_by{};                // of these, by face
   std::size_t threads = 0;
+  LeftOut left_out{};
   MemoryStudy memory{};  // of the first kMostRemembered trials of each start
 };
 

@@ -120,7 +120,7 @@ class Layer {
     std::vector<std::size_t> asked;
     for (std::size_t i = 0; i < places_.size(); ++i)
       if (is_asked(column_of(i), row_of(i))) asked.push_back(i);
-    double* next = reserved(std::ssize(asked));
+    double* next = memory_.reserve(std::ssize(asked) * each_);
     for (const std::size_t i : asked) {
       use(column_of(i), row_of(i), places_[i] = next);
       next += each_;
@@ -145,22 +145,11 @@ class Layer {
   [[nodiscard]] std::int64_t row_of(std::size_t i) const {
     return window_.bottom + static_cast<std::int64_t>(i) / window_.columns();
   }
-  [[nodiscard]] double* reserved(std::ptrdiff_t cells) {
-    if (cells * each_ > size_) {
-      size_ = 0;
-      memory_ = nullptr;
-      memory_ = hwy::AllocateAligned<double>(static_cast<std::size_t>(cells * each_));
-      if (!memory_) throw std::bad_alloc();
-      size_ = cells * each_;
-      ask_for_large_pages(memory_.get(), size_);
-    }
-    return memory_.get();
-  }
 
-  std::ptrdiff_t each_, size_ = 0;
+  std::ptrdiff_t each_;
   Box window_{0, -1, 0, -1};
   std::vector<double*> places_{};  // by cell of the window
-  hwy::AlignedFreeUniquePtr<double[]> memory_{};
+  PlaneBuffer memory_{};
 };
 
 }  // namespace

@@ -71,16 +71,21 @@ class PlaneBuffer {
   PlaneBuffer(std::ptrdiff_t count, std::ptrdiff_t stride) { reset(count, stride); }
   /// Other planes in the same memory, if it is large enough.
   void reset(std::ptrdiff_t count, std::ptrdiff_t stride) {
-    if (count * stride > size_) {
-      p_ = nullptr;
-      p_ = hwy::AllocateAligned<double>(static_cast<std::size_t>(count * stride));
-      if (!p_) throw std::bad_alloc();
-      ask_for_large_pages(p_.get(), count * stride);
-      size_ = count * stride;
-    }
-    std::fill_n(p_.get(), count * stride, 0.0);
+    std::fill_n(reserve(count * stride), count * stride, 0.0);
     stride_ = stride;
     taken_ = 0;
+  }
+  /// Room for so many numbers, not set. What was there before is forgotten.
+  [[nodiscard]] double* reserve(std::ptrdiff_t numbers) {
+    if (numbers > size_) {
+      size_ = 0;
+      p_ = nullptr;
+      p_ = hwy::AllocateAligned<double>(static_cast<std::size_t>(numbers));
+      if (!p_) throw std::bad_alloc();
+      size_ = numbers;
+      ask_for_large_pages(p_.get(), size_);
+    }
+    return p_.get();
   }
   /// The next `count` planes; not more in all than the buffer has.
   [[nodiscard]] Planes take(std::ptrdiff_t count) {

@@ -24,5 +24,11 @@ TEST(ShareInterval, ContainsTheShare) {
   EXPECT_GE(interval_of_share(1.0 - 1e-16, 100.0)[1], 1.0 - 1e-16);
 }
 
+TEST(ShareInterval, LessThanOneTrialMayBeNone) {
+  EXPECT_EQ(interval_of_share(0.009, 100.0)[0], 0.0);
+  EXPECT_EQ(interval_of_share(0.991, 100.0)[1], 1.0);
+  EXPECT_NEAR(interval_of_share(1.0 / 49.0, 49.0)[0], share_interval(1, 49)[0], 1e-12);
+}
+
 }  // namespace
 }  // namespace gatewalk::dynamics

@@ -73,7 +73,7 @@ FinalDistribution predicted(const Transitions& t) {
 std::vector<FinalDistribution> replicates(const Transitions& t, std::uint64_t seed,
                                           std::int64_t count) {
   return replicate_predictions(counted_field(t), kField, {kStart}, kMaxGates, seed, 0, count)
-      .front();
+      .predictions.front();
 }
 
 constexpr std::array<Ending, 5> kAll{Ending::far_edge, Ending::left_edge, Ending::right_edge,
@@ -124,8 +124,9 @@ TEST(MatrixNoise, SmallRowsLeaveOpenWhatTheirRunsMayHaveMissed) {
   CountedField field = counted_field(truth());
   EXPECT_EQ(field.evidence_at(kStart).trials, 1000);
   EXPECT_EQ(field.evidence_at(kStart).gate_runs, 0);
-  field.small_rows = true;
-  EXPECT_EQ(field.evidence_at(kStart).gate_runs, 5000);  // 1000 a row
+  field.small_rows = 2;
+  EXPECT_EQ(field.evidence_at({2, 0, 2}).gate_runs, 5000);  // 1000 a row
+  EXPECT_EQ(field.evidence_at({2, 0, 1}).gate_runs, 1000);
 }
 
 // The spread is that of matrices really drawn anew.
@@ -168,7 +169,7 @@ TEST(Replicates, SameBitsForAnyThreadsAndAnySplit) {
   const std::vector<markov::Start> starts{kStart, {1, 2, 3}};
   const auto on = [&](int threads, std::int64_t first, std::int64_t count) {
     return test::on_threads(threads, [&] {
-      return replicate_predictions(rows, kField, starts, kMaxGates, 8, first, count);
+      return replicate_predictions(rows, kField, starts, kMaxGates, 8, first, count).predictions;
     });
   };
   const auto whole = on(1, 0, 10), again = on(3, 0, 10), part = on(2, 4, 3);
@@ -181,9 +182,10 @@ TEST(Replicates, SameBitsForAnyThreadsAndAnySplit) {
   // A second matrix has draws of its own, though it may hold the same counts.
   rows = {markov::FieldChain::by_row({make_chain(t), make_chain(t)}, {0, 1, 1, 0}),
           {t.counts(), t.counts()}};
-  EXPECT_NE(
-      replicate_predictions(rows, kField, {kStart}, kMaxGates, 8, 0, 1)[0][0].endings,
-      replicate_predictions(counted_field(t), kField, {kStart}, kMaxGates, 8, 0, 1)[0][0].endings);
+  const auto first_of = [](const CountedField& gates) {
+    return replicate_predictions(gates, kField, {kStart}, kMaxGates, 8, 0, 1).predictions[0][0];
+  };
+  EXPECT_NE(first_of(rows).endings, first_of(counted_field(t)).endings);
 }
 
 TEST(Replicates, FewerInLargeFields) {

@@ -43,7 +43,7 @@ TEST(Prediction, OfThreeRowsIsAPower) {
   EXPECT_NEAR(share(p, Ending::far_edge), 27.0 / 64, 1e-15);
   EXPECT_NEAR(share(p, Ending::trapped), 37.0 / 64, 1e-15);
   EXPECT_NEAR(p.starts[0].final.final_cells(1, 1), 0.75 * 0.25, 1e-15);
-  EXPECT_FALSE(p.failed);
+  EXPECT_EQ(p.left_out.matrices, 0);
   // 1000 runs a row, all rows alike but resampled each on its own: the walk uses one of them.
   EXPECT_EQ(p.starts[0].replicates, 200);
   const auto [low, high] = p.starts[0].shares.interval[static_cast<std::size_t>(Ending::far_edge)];
@@ -104,6 +104,33 @@ TEST(Prediction, OfManyStartsIsOneEach) {
   ASSERT_EQ(p.starts.size(), 2u);
   EXPECT_EQ(p.starts[1].start.start.input, b.start.input);
   for (const StartPrediction& s : p.starts) EXPECT_NEAR(s.final.trapped, 1 - 0.216, 1e-14);
+}
+
+// Bodies move to and fro between two gates until one of few runs traps them. Resampled, both rows
+// may have lost theirs.
+TEST(Prediction, LeavesOutResampledMatricesInWhichBodiesCircle) {
+  SceneMatrix m = matrix(1000);
+  m.scene.field.max_gates = 0;
+  dynamics::Transitions t = m.file->transitions;
+  const auto state = [&](int face) { return t.space.first(face); };
+  const int right = state(Boundary::right_deflect), left = state(Boundary::left_deflect);
+  for (std::size_t row = 0; row < t.rows.size(); ++row) {
+    const bool came_right = t.space.face(static_cast<int>(row)) == Boundary::right_deflect;
+    t.rows[row] = {{came_right ? left : right, 5}, {t.space.trapped(), 1}};
+    t.trials[row] = 6;
+  }
+  m.file = std::make_shared<const MatrixFile>(MatrixFile{std::move(t), {}});
+  CountedField gates = field_of(m, "base.nc", {});
+  gates.small_rows = static_cast<int>(gates.counts[0].rows());
+  const ChainStart start =
+      chain_start(m.file->transitions.space, m.scene.field, {0, {0.0, 0.0, 15.0}});
+  const Prediction p = predict(gates, m.scene.field, {start}, {}, 1);
+  EXPECT_NEAR(share(p, Ending::trapped), 1.0, 1e-9);
+  EXPECT_EQ(p.left_out.of, 200);
+  EXPECT_NEAR(static_cast<double>(p.left_out.matrices), 200 * std::pow(5.0 / 6.0, 12.0), 15.0);
+  EXPECT_NE(p.left_out.why.find("circle"), std::string::npos);
+  EXPECT_EQ(p.starts[0].replicates, 200 - p.left_out.matrices);
+  EXPECT_FALSE(std::isnan(p.starts[0].shares.interval[0][0]));
 }
 
 }  // namespace

@@ -512,6 +512,27 @@ TEST(PooledPrediction, StopsAtTheLimitOfRunsAndSaysSo) {
   EXPECT_EQ(p.gate_runs, pool.gate_runs());
 }
 
+std::vector<Entry> many_starts() {
+  std::vector<Entry> starts;
+  for (int k = 0; k < 24; ++k) starts.push_back({0, {-20.0 + k, 8.0 - 0.5 * k, 11.0 + 0.3 * k}});
+  return starts;
+}
+
+TEST(PooledPrediction, StartsShareTheLimitOfRuns) {
+  const Scene scene = fast_scene();
+  RunPool pool;
+  const auto p = predict_pooled(problem_of(scene), pool, many_starts(),
+                                {.accuracy = 0.005, .most_runs = 20'000});
+  EXPECT_FALSE(p.reached);
+  EXPECT_LT(p.gate_runs, 22'000);
+  double least = 1.0, largest = 0.0;
+  for (const StartAnswer& a : p.starts) {
+    least = std::min(least, a.error.total_variation);
+    largest = std::max(largest, a.error.total_variation);
+  }
+  EXPECT_LT(largest, 3.0 * least);
+}
+
 TEST(PooledPrediction, UsesWhatThePoolHolds) {
   const Scene scene = fast_scene();
   RunPool pool;
@@ -522,12 +543,6 @@ TEST(PooledPrediction, UsesWhatThePoolHolds) {
   EXPECT_GT(first.gate_runs, 0);
   EXPECT_EQ(again.gate_runs, 0);
   EXPECT_TRUE((first.starts[0].final.final_cells == again.starts[0].final.final_cells).all());
-}
-
-std::vector<Entry> many_starts() {
-  std::vector<Entry> starts;
-  for (int k = 0; k < 24; ++k) starts.push_back({0, {-20.0 + k, 8.0 - 0.5 * k, 11.0 + 0.3 * k}});
-  return starts;
 }
 
 TEST(PoolChains, ManyStartsByTheAdjointAreAnsweredAsOneByOne) {
