@@ -43,8 +43,8 @@ csv_value() { awk -F, -v key="$1" '$1","$2","$3 == key { print $4","$5","$6 }' p
   fail "trapped: $(csv_value endings.trapped,,)"
 [ "$(csv_value final_gates,1,4)" = "$(jq -r '[.final_gates[1][4], .final_gates_95.low[1][4], .final_gates_95.high[1][4]] | map(tostring) | join(",")' p.json)" ] ||
   fail "final gates: $(csv_value final_gates,1,4)"
-[ "$(csv_value exits.crossed.4.share,,)" = "$(jq -r '.exits.crossed[4] | [.share, .interval_95[]] | map(tostring) | join(",")' p.json)" ] ||
-  fail "exits: $(csv_value exits.crossed.4.share,,)"
+[ "$(csv_value exits.left_side.2.share,,)" = "$(jq -r '.exits.left_side[2] | [.share, .interval_95[]] | map(tostring) | join(",")' p.json)" ] ||
+  fail "exits: $(csv_value exits.left_side.2.share,,)"
 "$gatewalk" gate "$scenes/field.toml" --csv - --quiet >gate.csv
 "$gatewalk" gate "$scenes/field.toml" --json gate.json --quiet
 # Limits of a count are those of its share, times the trials.
