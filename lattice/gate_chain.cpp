@@ -37,15 +37,16 @@ markov::FieldChain make_chain(const CellMap& map, const std::vector<Transitions>
 }
 
 CountedField counted_field(const CellMap& map, const std::vector<dynamics::Transitions>& matrices) {
-  CountedField field{make_chain(map, matrices), {}, matrices.front().space.leaves()};
+  CountedField field{make_chain(map, matrices), {}, matrices.front().space.has_trees()};
   for (const dynamics::Transitions& t : matrices) field.counts.push_back(t.counts());
-  if (field.small_rows == 0) return field;  // bins count no images
+  if (!field.small_rows) return field;  // bins count no images
   for (std::size_t m = 0; m < matrices.size(); ++m) {
     const dynamics::StateSpace& space = matrices[m].space;
     auto& images = field.images.emplace_back(static_cast<std::size_t>(space.size()), 1);
     if (!map.types[m].symmetric) continue;
     for (int row = 0; row < space.size(); ++row) {
-      if (const int point = row - space.leaves(); point >= 0) {
+      const int point = row - (space.size() - static_cast<int>(space.points().size()));
+      if (point >= 0) {
         const dynamics::Entry& entry = space.points()[static_cast<std::size_t>(point)];
         if (dynamics::mirrored(space.section(), entry) != entry) continue;
       }
@@ -56,7 +57,7 @@ CountedField counted_field(const CellMap& map, const std::vector<dynamics::Trans
 }
 
 CountedField counted_field(const dynamics::Transitions& matrix) {
-  return {make_chain(matrix), {matrix.counts()}, matrix.space.leaves()};
+  return {make_chain(matrix), {matrix.counts()}, matrix.space.has_trees()};
 }
 
 ChainStart chain_start(const StateSpace& space, const FieldParams& field, const Entry& entry) {

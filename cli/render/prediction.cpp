@@ -72,6 +72,7 @@ Json to_json(const lattice::Prediction& prediction, const PredictedField& of,
              const std::string& solver) {
   const dynamics::StateSpace& space = of.matrix.transitions.space;
   Json json;
+  json["left_out_matrices"] = prediction.left_out.matrices;
   if (of.starts.empty()) add_to(json, prediction.starts.front(), of.shown);
   for (std::size_t k = 0; k < of.starts.size(); ++k) {
     Json one;
@@ -106,8 +107,10 @@ std::string table_of(const lattice::Prediction& prediction, const PredictedField
 
 std::string text_of(const lattice::LeftOut& left_out) {
   if (left_out.matrices == 0) return "";
-  return "intervals leave out " + std::to_string(left_out.matrices) + " of " +
-         std::to_string(left_out.of) + " resampled matrices: " + left_out.why;
+  return (left_out.too_many() ? "no interval counts the sampling of the matrix: failed "
+                              : "intervals leave out ") +
+         std::to_string(left_out.matrices) + " of " + std::to_string(left_out.of) +
+         " resampled matrices: " + left_out.why;
 }
 
 }  // namespace gatewalk::cli

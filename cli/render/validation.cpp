@@ -281,6 +281,7 @@ Json to_json(const lattice::Validation& v, const ShownField& shown, const Valida
   Json json;
   json["trials"] = v.trials;
   json["walks"] = v.walks;
+  json["left_out_matrices"] = v.left_out.matrices;
   json["starts"] = Json::array();
   for (std::size_t k = 0; k < v.starts.size(); ++k)
     json["starts"].push_back(

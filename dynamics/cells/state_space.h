@@ -69,8 +69,6 @@ class StateSpace {
   [[nodiscard]] const std::vector<Bins>& bins() const { return bins_; }
   /// By face, of a space of trees; else trees of a single leaf.
   [[nodiscard]] const std::vector<Tree>& trees() const { return trees_; }
-  /// States that are leaves of trees: the first ones, points follow. 0 in a space of bins.
-  [[nodiscard]] int leaves() const { return has_trees() ? bins_and_leaves() : 0; }
   [[nodiscard]] bool open() const { return open_; }
   [[nodiscard]] const std::vector<Entry>& points() const { return points_; }
   /// The face's first state.

@@ -203,13 +203,14 @@ class PredictionRun {
   /// Finds the starts in the pool, or puts them there with some trials each.
   void place(const std::vector<Entry>& starts) {
     const bool has_kernel = pool_.gate_runs() > 0;
-    for (const Entry& entry : starts) {
+    for (auto to_place = std::ssize(starts); const Entry& entry : starts) {
+      const std::int64_t part = runner_.runs_left() / to_place--;
       places_.push_back(pool_.place_of(entry));
       if (places_.back() < pool_.starts.size()) continue;
       StartTrials& s = pool_.starts.emplace_back();
       s.start = entry;
       if (has_kernel)
-        runner_.run_first(s, options_.first_runs.value_or(kLeastFirstRuns));
+        runner_.run_first(s, options_.first_runs.value_or(std::min(kLeastFirstRuns, part)));
       else
         runner_.run_full(s, options_.trials.value_or(kFirstRound) / std::ssize(starts));
     }
@@ -285,7 +286,8 @@ class PredictionRun {
       StartTrials& s = pool_.starts[places_[o.start]];
       const double part = std::min(1.0, static_cast<double>(runner_.runs_left()) / wanted);
       if (o.full > 0.0) runner_.run_full(s, static_cast<std::int64_t>(part * o.full));
-      if (const double more = more_first(o); more > 0.0)
+      if (const double more = more_first(o, (1.0 - part) * o.full);
+          more > 0.0 && runner_.may_go_on())
         runner_.run_first(s, static_cast<std::int64_t>(part * more));
     }
   }

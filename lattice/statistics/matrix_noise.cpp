@@ -27,8 +27,8 @@ std::int64_t CountedField::runs_at(const markov::Start& start) const {
 
 namespace {
 
-/// A way out of a row of a few runs is taken once in a few visits; four such rows in a circle are
-/// left in so many. Walks that take longer circle for ever.
+/// A way out of a row of a few runs is taken once in a few visits, one through four such rows once
+/// in some ten thousand. Walks that take much longer are taken to circle for ever.
 constexpr int kMostMovesInSmallRows = 100'000;
 
 bool equals_row_before(const markov::Counts& counts, int row) {
@@ -43,8 +43,7 @@ bool equals_row_before(const markov::Counts& counts, int row) {
 
 Evidence CountedField::evidence_at(const markov::Start& start) const {
   Evidence from{static_cast<double>(runs_at(start)), 0.0};
-  if (small_rows == 0) return from;
-  if (start.input < small_rows) return {from.trials, from.trials};
+  if (!small_rows) return from;
   for (std::size_t type = 0; type < counts.size(); ++type)
     for (int row = 0; row < counts[type].rows(); ++row) {
       if (equals_row_before(counts[type], row)) continue;
@@ -108,8 +107,6 @@ Replicates replicate_predictions(const CountedField& gates, const markov::Field&
                                  std::uint64_t seed, std::int64_t first, std::int64_t count) {
   std::vector<std::vector<FinalDistribution>> found(static_cast<std::size_t>(count));
   std::vector<std::string> why(found.size());
-  markov::PredictOptions how{.max_cells = max_cells};
-  if (gates.small_rows > 0) how.max_steps = kMostMovesInSmallRows;
   tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t k) {
     std::vector<markov::Chain> chains;
     for (std::size_t m = 0; m < gates.counts.size(); ++m) {
@@ -117,12 +114,14 @@ Replicates replicate_predictions(const CountedField& gates, const markov::Field&
       const std::uint64_t replicate =
           static_cast<std::uint64_t>(first + k) + (std::uint64_t{m} << 32);
       chains.push_back(markov::Chain::from_counts(
-          resampled(gates.counts[m], seed, replicate, gates.small_rows > 0,
+          resampled(gates.counts[m], seed, replicate, gates.small_rows,
                     gates.images.empty() ? std::vector<std::int64_t>{} : gates.images[m]),
           gates.chains.chains()[m].exits()));
     }
     const markov::Predictor predictor(gates.chains.with(std::move(chains)));
     const auto i = static_cast<std::size_t>(k);
+    markov::PredictOptions how{.max_cells = max_cells};
+    if (gates.small_rows && predictor.can_go_by_rows()) how.max_steps = kMostMovesInSmallRows;
     try {
       found[i] = predictor.predict_all(field, starts, how);
     } catch (const std::runtime_error& e) {

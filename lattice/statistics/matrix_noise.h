@@ -16,15 +16,14 @@ namespace gatewalk::lattice {
 struct CountedField {
   markov::FieldChain chains;
   std::vector<markov::Counts> counts;  // one per type, as chains.chains()
-  int small_rows = 0;  // of each: the first so many rows are of a few runs each, leaves of trees
+  bool small_rows = false;             // rows of a few runs each, as those of trees
   /// By matrix and row: how many counts a run makes in it, 2 with its mirror image; empty: 1.
   std::vector<std::vector<std::int64_t>> images{};
   bool exact = false;  // probabilities were given, not counted: nothing is known of their sampling
 
   /// Runs of the row that a walk begins in, mirror images not counted twice.
   [[nodiscard]] std::int64_t runs_at(const markov::Start& start) const;
-  /// These, and where rows are small (else 0) those of all rows; of a walk that begins in a small
-  /// row these alone: what it never saw, no other row tells.
+  /// These, and where rows are small (else 0) those of all rows.
   [[nodiscard]] Evidence evidence_at(const markov::Start& start) const;
 };
 
@@ -48,6 +47,8 @@ struct LeftOut {
   std::string why{};  // of the last one
 
   LeftOut& operator+=(const LeftOut& other);
+  /// The others would say too little of what all do.
+  [[nodiscard]] bool too_many() const { return 2 * matrices > of; }
 };
 
 struct Replicates {
@@ -64,7 +65,7 @@ struct Replicates {
                                                int max_cells, std::uint64_t seed,
                                                std::int64_t first, std::int64_t count);
 
-/// Fewer replicates than this say too little.
+/// Fewer replicates than this are not made.
 inline constexpr std::int64_t kLeastReplicates = 50;
 
 /// How many replicates a field and a matrix of this size let one make in some seconds: 0 to `most`.

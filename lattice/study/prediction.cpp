@@ -40,7 +40,7 @@ std::vector<Resampled> resampled_predictions(const CountedField& gates, const ma
                    for (std::int64_t i = 0; i < batches.count; ++i)
                      add((batches.first + i) * kTogether);
                  });
-  if (replicates - prediction.left_out.matrices < kLeastReplicates) all.clear();
+  if (prediction.left_out.too_many()) all.clear();
   return all;
 }
 

@@ -32,7 +32,7 @@ struct Prediction {
 };
 
 /// One prediction per start. `how.max_cells` is the field's max_gates. Replicates are 200 in small
-/// fields, none where kLeastReplicates would take too long or fewer can be predicted from. Throws
+/// fields, none where kLeastReplicates would take too long or too many are left out. Throws
 /// as markov::predict.
 [[nodiscard]] Prediction predict(const CountedField& gates, const FieldParams& field,
                                  const std::vector<ChainStart>& starts, markov::PredictOptions how,

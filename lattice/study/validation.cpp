@@ -102,7 +102,10 @@ Replicates resampled_predictions(const Setup& setup, const std::vector<markov::S
           std::move(some.predictions[k].begin(), some.predictions[k].end(),
                     std::back_inserter(all.predictions[k]));
       });
-  if (count - all.left_out.matrices < kLeastReplicates) throw std::runtime_error(all.left_out.why);
+  if (all.left_out.too_many())
+    throw std::runtime_error(std::to_string(all.left_out.matrices) + " of " +
+                             std::to_string(count) +
+                             " resampled matrices fail: " + all.left_out.why);
   return all;
 }
 

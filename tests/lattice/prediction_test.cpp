@@ -121,7 +121,7 @@ TEST(Prediction, LeavesOutResampledMatricesInWhichBodiesCircle) {
   }
   m.file = std::make_shared<const MatrixFile>(MatrixFile{std::move(t), {}});
   CountedField gates = field_of(m, "base.nc", {});
-  gates.small_rows = static_cast<int>(gates.counts[0].rows());
+  gates.small_rows = true;
   const ChainStart start =
       chain_start(m.file->transitions.space, m.scene.field, {0, {0.0, 0.0, 15.0}});
   const Prediction p = predict(gates, m.scene.field, {start}, {}, 1);

@@ -518,19 +518,33 @@ std::vector<Entry> many_starts() {
   return starts;
 }
 
-TEST(PooledPrediction, StartsShareTheLimitOfRuns) {
-  const Scene scene = fast_scene();
-  RunPool pool;
-  const auto p = predict_pooled(problem_of(scene), pool, many_starts(),
-                                {.accuracy = 0.005, .most_runs = 20'000});
+void expect_alike(const PooledPrediction& p) {
   EXPECT_FALSE(p.reached);
-  EXPECT_LT(p.gate_runs, 22'000);
   double least = 1.0, largest = 0.0;
   for (const StartAnswer& a : p.starts) {
     least = std::min(least, a.error.total_variation);
     largest = std::max(largest, a.error.total_variation);
   }
   EXPECT_LT(largest, 3.0 * least);
+}
+
+TEST(PooledPrediction, StartsShareTheLimitOfRuns) {
+  const Scene scene = fast_scene();
+  RunPool pool;
+  const auto p = predict_pooled(problem_of(scene), pool, many_starts(),
+                                {.accuracy = 0.005, .most_runs = 20'000});
+  EXPECT_LT(p.gate_runs, 22'000);
+  expect_alike(p);
+}
+
+TEST(PooledPrediction, StartsThatMeetAPoolShareTheLimitOfRuns) {
+  const Scene scene = fast_scene();
+  RunPool pool;
+  (void)predict_pooled(problem_of(scene), pool, {entry_of(kStart)}, {.accuracy = 0.05});
+  const auto p = predict_pooled(problem_of(scene), pool, many_starts(),
+                                {.accuracy = 0.005, .most_runs = 3000});
+  EXPECT_LT(p.gate_runs, 3500);
+  expect_alike(p);
 }
 
 TEST(PooledPrediction, UsesWhatThePoolHolds) {
