@@ -34,8 +34,8 @@ bool by_walks(std::int64_t nonzeros, const FieldParams& field) {
 }
 
 /// Whether adjoints of all chains pay: measured, one takes about as long as a prediction for each
-/// cell, and bars ask for several rows of each start. They go through all steps, also those that
-/// nobody walks any more, and are of gates of one type.
+/// cell; bars ask for several rows of each start, so they do for a quarter as many starts as cells.
+/// They go through all steps, also those that nobody walks any more, and are of gates of one type.
 bool pays_adjoint(const dynamics::CellMap& map, const FieldParams& field, std::size_t starts) {
   return map.types.size() == 1 && field.max_gates > 0 &&
          field.max_gates <= 2 * (field.columns + field.rows) &&

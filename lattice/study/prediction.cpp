@@ -2,7 +2,6 @@
 #include "lattice/study/prediction.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace gatewalk::lattice {
 namespace {

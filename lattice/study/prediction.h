@@ -3,7 +3,6 @@
 /// Exact predictions from matrices, with what the sampling of the matrices leaves open.
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 

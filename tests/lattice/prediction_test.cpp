@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <map>
 #include <stdexcept>
 
 namespace gatewalk::lattice {
@@ -106,31 +108,57 @@ TEST(Prediction, OfManyStartsIsOneEach) {
   for (const StartPrediction& s : p.starts) EXPECT_NEAR(s.final.trapped, 1 - 0.216, 1e-14);
 }
 
-// Bodies move to and fro between two gates until one of few runs traps them. Resampled, both rows
-// may have lost theirs.
-TEST(Prediction, LeavesOutResampledMatricesInWhichBodiesCircle) {
+/// Of rows of few runs, by the face that bodies came through; without a limit of gates.
+Prediction of_few_runs(const std::function<std::map<int, std::int64_t>(int face)>& row_of) {
   SceneMatrix m = matrix(1000);
   m.scene.field.max_gates = 0;
   dynamics::Transitions t = m.file->transitions;
-  const auto state = [&](int face) { return t.space.first(face); };
-  const int right = state(Boundary::right_deflect), left = state(Boundary::left_deflect);
   for (std::size_t row = 0; row < t.rows.size(); ++row) {
-    const bool came_right = t.space.face(static_cast<int>(row)) == Boundary::right_deflect;
-    t.rows[row] = {{came_right ? left : right, 5}, {t.space.trapped(), 1}};
-    t.trials[row] = 6;
+    t.rows[row] = row_of(t.space.face(static_cast<int>(row)));
+    t.trials[row] = 0;
+    for (const auto& [to, runs] : t.rows[row]) t.trials[row] += runs;
   }
   m.file = std::make_shared<const MatrixFile>(MatrixFile{std::move(t), {}});
   CountedField gates = field_of(m, "base.nc", {});
   gates.small_rows = true;
   const ChainStart start =
       chain_start(m.file->transitions.space, m.scene.field, {0, {0.0, 0.0, 15.0}});
-  const Prediction p = predict(gates, m.scene.field, {start}, {}, 1);
+  return predict(gates, m.scene.field, {start}, {}, 1);
+}
+
+// Bodies move to and fro between two gates until one of few runs traps them. Resampled, both rows
+// may have lost theirs.
+TEST(Prediction, LeavesOutResampledMatricesInWhichBodiesCircle) {
+  const dynamics::StateSpace space = matrix(1000).file->transitions.space;
+  const int right = space.first(Boundary::right_deflect),
+            left = space.first(Boundary::left_deflect);
+  const Prediction p = of_few_runs([&](int face) {
+    return std::map<int, std::int64_t>{{face == Boundary::right_deflect ? left : right, 5},
+                                       {space.trapped(), 1}};
+  });
   EXPECT_NEAR(share(p, Ending::trapped), 1.0, 1e-9);
   EXPECT_EQ(p.left_out.of, 200);
   EXPECT_NEAR(static_cast<double>(p.left_out.matrices), 200 * std::pow(5.0 / 6.0, 12.0), 15.0);
   EXPECT_NE(p.left_out.why.find("circle"), std::string::npos);
   EXPECT_EQ(p.starts[0].replicates, 200 - p.left_out.matrices);
   EXPECT_FALSE(std::isnan(p.starts[0].shares.interval[0][0]));
+}
+
+// Of two rows, each with a single way on, one has lost it in most resampled matrices.
+TEST(Prediction, HasNoIntervalsWhereMostResampledMatricesFail) {
+  const dynamics::StateSpace space = matrix(1000).file->transitions.space;
+  const int right = space.first(Boundary::right_deflect),
+            left = space.first(Boundary::left_deflect),
+            traverse = space.first(Boundary::left_traverse);
+  const Prediction p = of_few_runs([&](int face) -> std::map<int, std::int64_t> {
+    if (face == Boundary::right_deflect) return {{left, 19}, {traverse, 1}};
+    if (face == Boundary::left_traverse) return {{right, 19}, {space.trapped(), 1}};
+    return {{right, 20}};
+  });
+  EXPECT_NEAR(share(p, Ending::trapped), 1.0, 1e-9);
+  EXPECT_TRUE(p.left_out.too_many());
+  EXPECT_EQ(p.starts[0].replicates, 0);
+  EXPECT_TRUE(std::isnan(p.starts[0].shares.interval[0][0]));
 }
 
 }  // namespace
