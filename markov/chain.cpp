@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "markov/chain.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -20,12 +21,7 @@ std::string row_name(std::int64_t row) {
   return "row " + std::to_string(row + 1) + " (counted from 1)";
 }
 
-std::string printed(double value) {
-  std::ostringstream text;
-  text.precision(std::numeric_limits<double>::max_digits10);
-  text << value;
-  return text.str();
-}
+std::string printed(double value) { return fmt::format("{:.17g}", value); }
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "markov/diffusion.h"
 
+#include <fmt/core.h>
+
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseLU>
 #include <cmath>
@@ -143,7 +145,7 @@ Diffusion diffusion(const Chain& chain, const Eigen::Matrix2d& lattice, const Re
   });
   if (!(mean_time > 0.0 && std::isfinite(mean_time)))
     throw std::invalid_argument("diffusion: the mean time of a draw must be finite and > 0, not " +
-                                std::to_string(mean_time));
+                                fmt::format("{:f}", mean_time));
   out.mean_time = mean_time;
   out.drift = mean_move / mean_time;
   const auto flow = [&](const Eigen::Vector2d& move, std::size_t k) -> Eigen::Vector2d {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "markov/lumping.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -131,8 +133,8 @@ std::vector<double> expected_visits(const FieldChain& chain, const Field& field,
                                         },
                                         {.all = 1e-13});
   if (totals.remainder > 1e-13)
-    throw std::runtime_error("expected visits: a share of " + std::to_string(totals.remainder) +
-                             " still walks");
+    throw std::runtime_error(
+        fmt::format("expected visits: a share of {:.2g} still walks", totals.remainder));
   return visits;
 }
 

@@ -25,6 +25,7 @@ file(CONFIGURE OUTPUT gatewalkConfig.cmake CONTENT [[
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4)
 find_dependency(TBB)
+find_dependency(fmt 9)
 find_dependency(hwy CONFIG)
 find_dependency(netCDF)
 find_dependency(tomlplusplus)
@@ -54,7 +55,7 @@ libdir=${prefix}/@CMAKE_INSTALL_LIBDIR@
 Name: gatewalk
 Description: @PROJECT_DESCRIPTION@
 Version: @PROJECT_VERSION@
-Requires: eigen3 >= 3.4, tbb, libhwy, netcdf, @libpng@tomlplusplus
+Requires: eigen3 >= 3.4, fmt >= 9, tbb, libhwy, netcdf, @libpng@tomlplusplus
 Cflags: -I${includedir} -std=c++20
 Libs: -L${libdir} -lgatewalk_lattice -lgatewalk_markov -lgatewalk_dynamics -lklu
 ]] @ONLY)
@@ -99,7 +100,7 @@ set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Multi-scale Markov chain analysis of lo
  Runs a body through single gates of a cluttered field, chains the outcomes
  over the whole field, and compares the final gates with the full dynamics.")
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev, libhwy-dev, librandom123-dev, libnetcdf-dev, libtomlplusplus-dev, libsuitesparse-dev, libpng-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libtbb-dev, libhwy-dev, librandom123-dev, libnetcdf-dev, libtomlplusplus-dev, libsuitesparse-dev, libpng-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "Libraries of gatewalk: dynamics, chains, fields
  Static libraries with their headers, for CMake and pkg-config.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamics/cells/check_cell.h"
 
+#include <fmt/core.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
@@ -227,7 +228,7 @@ class CellChecker {
       complain(
           "it says that it is symmetric, but sends bodies from mirrored starts elsewhere "
           "(chi-squared " +
-          std::to_string(chi_squared) + " with " + std::to_string(std::lround(free)) +
+          fmt::format("{:f}", chi_squared) + " with " + std::to_string(std::lround(free)) +
           " degrees of freedom)");
   }
 

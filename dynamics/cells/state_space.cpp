@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamics/cells/state_space.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -22,8 +24,8 @@ int bin_of(const std::vector<double>& edges, double v, bool& beyond) {
 }
 
 std::invalid_argument too_many_states(double factor) {
-  return std::invalid_argument("bins: factor " + std::to_string(factor) + " makes more than " +
-                               std::to_string(kMostStates) + " states");
+  return std::invalid_argument(
+      fmt::format("bins: factor {:f} makes more than {} states", factor, kMostStates));
 }
 
 /// `edges` in max(1, round(n * factor)) equal bins; as they are if that is as many as now.
@@ -238,7 +240,7 @@ Entry StateSpace::sample(int state, Random& random) const {
 
 StateSpace refined(const StateSpace& space, double factor) {
   if (!(factor > 0.0) || !std::isfinite(factor))
-    throw std::invalid_argument("bins: factor " + std::to_string(factor) +
+    throw std::invalid_argument("bins: factor " + fmt::format("{:f}", factor) +
                                 " is not permitted: must be finite and > 0");
   if (space.has_trees())
     throw std::invalid_argument("bins: a tree has none that a factor could refine");
@@ -257,13 +259,8 @@ StateSpace refined(const StateSpace& space, double factor) {
 }
 
 std::string text_of(const std::array<double, 2>& range) {
-  std::ostringstream text;
-  text.exceptions(std::ios_base::badbit);
-  if (range[0] == range[1])
-    text << range[0];
-  else
-    text << "[" << range[0] << ", " << range[1] << "]";
-  return text.str();
+  return range[0] == range[1] ? fmt::format("{:.6g}", range[0])
+                              : fmt::format("[{:.6g}, {:.6g}]", range[0], range[1]);
 }
 
 std::string behind_number(const std::string& unit) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamics/disc/disc_section.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -14,10 +16,10 @@ std::vector<Bins> table3_bins(const GateParams& p) {
   const double w = p.beams.joint_x, y = p.beams.joint_y, r = p.body.radius;
   if (!(p.run.traverse_y > y + r))
     throw InvalidParameter("run.traverse_y_m",
-                           "run.traverse_y_m = " + std::to_string(p.run.traverse_y) +
+                           "run.traverse_y_m = " + fmt::format("{:f}", p.run.traverse_y) +
                                " is not permitted for a chain or a field: it must exceed "
                                "beams.joint_y_m + body.radius_m = " +
-                               std::to_string(y + r));
+                               fmt::format("{:f}", y + r));
   const double unit = scale_of(p).speed();
   const auto speeds = [unit](std::vector<double> edges) {  // Table III's, in m/s
     for (double& v : edges) v *= unit;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/pool/pooled_prediction.h"
 
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -26,7 +27,7 @@ constexpr std::int64_t kLeastFirstRuns = 500;            // of a start that meet
 
 void require_fine(const AccuracyOptions& options) {
   if (!(options.accuracy > 0.0 && options.accuracy < 1.0))
-    throw std::invalid_argument("accuracy " + std::to_string(options.accuracy) +
+    throw std::invalid_argument("accuracy " + fmt::format("{:f}", options.accuracy) +
                                 " is not permitted: must lie in (0, 1)");
 }
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/scene/gates.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "dynamics/disc/disc_cell.h"
-#include "lattice/text/text_stream.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -18,25 +19,22 @@ constexpr double kMostGatesOfReach = 3.0;
 
 void validate(const dynamics::GateParams& p, const FieldParams& field) {
   if (field.fidelity == Fidelity::active) return;
-  TextStream text;
-  if (p.run.method != "moreau") {
-    text
-        << "field.fidelity = \"" << name_of(field.fidelity)
-        << "\" is not permitted with run.method = \"" << p.run.method
-        << "\": it is stepped by Moreau's scheme; run.method must be \"moreau\", or field.fidelity "
-           "\"active\"";
-    throw dynamics::InvalidParameter("field.fidelity", text.str());
-  }
+  if (p.run.method != "moreau")
+    throw dynamics::InvalidParameter(
+        "field.fidelity",
+        fmt::format("field.fidelity = \"{}\" is not permitted with run.method = \"{}\": it is "
+                    "stepped by Moreau's scheme; run.method must be \"moreau\", or field.fidelity "
+                    "\"active\"",
+                    name_of(field.fidelity), p.run.method));
   const double reach = p.beams.length + p.body.radius;
   const double gate = std::fmin(p.gate_width(), p.run.traverse_y);
-  if (field.fidelity == Fidelity::all && !(reach <= kMostGatesOfReach * gate)) {
-    text << "field.fidelity = \"all\" is not permitted with these gates: beams.length_m + "
-            "body.radius_m = "
-         << reach << " must not exceed " << kMostGatesOfReach
-         << " times the smaller of 2 beams.joint_x_m and run.traverse_y_m, "
-         << kMostGatesOfReach * gate;
-    throw dynamics::InvalidParameter("field.fidelity", text.str());
-  }
+  if (field.fidelity == Fidelity::all && !(reach <= kMostGatesOfReach * gate))
+    throw dynamics::InvalidParameter(
+        "field.fidelity",
+        fmt::format("field.fidelity = \"all\" is not permitted with these gates: beams.length_m + "
+                    "body.radius_m = {:.6g} must not exceed {:.6g} times the smaller of 2 "
+                    "beams.joint_x_m and run.traverse_y_m, {:.6g}",
+                    reach, kMostGatesOfReach, kMostGatesOfReach * gate));
 }
 
 FieldGates::FieldGates(dynamics::GateParams everywhere) : types_{std::move(everywhere)} {}

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/scene/row_matrices.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <stdexcept>
 
@@ -14,11 +15,7 @@ std::string name_of(const RowMatrix& o) {
          (o.last == o.first ? "" : "-" + std::to_string(o.last)) + "=" + o.path;
 }
 
-std::string metres(double x) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.3f", x);
-  return text;
-}
+std::string metres(double x) { return fmt::format("{:.3f}", x); }
 
 /// Throws std::invalid_argument unless gates of `other` can lie in the field of `base`.
 void require_same_kind(const RowMatrix& other, const SceneMatrix& base,

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/scene/settle.h"
 
+#include <fmt/core.h>
+
 #include <limits>
 #include <utility>
 
 #include "lattice/scene/bins.h"
 #include "lattice/text/digits.h"
-#include "lattice/text/text_stream.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -66,9 +67,8 @@ std::string derived_keys(const Scene& scene) {
     const bool methods_own = k.key == "run.step_s" || k.key == "run.event_tolerance_m" ||
                              k.key == "contact.impulse_threshold_Ns";
     if (k.source != "derived" || methods_own) continue;
-    TextStream value;  // six digits will do; gatewalk scene shows more
-    value << std::stod(k.value);
-    all += (all.empty() ? "" : ", ") + k.key + " = " + value.str();
+    // Six digits will do; gatewalk scene shows more.
+    all += (all.empty() ? "" : ", ") + k.key + fmt::format(" = {:.6g}", number_of(k.value));
   }
   if (all.empty()) return all;
   return scene.source +

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/scene/sweep.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -9,7 +11,6 @@
 
 #include "dynamics/disc/study/accuracy.h"
 #include "lattice/scene/units.h"
-#include "lattice/text/text_stream.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -57,11 +58,9 @@ SweepAxis axis_of(const Variation& v) {
     throw SceneError(v.origin + ": '" + v.values + "' holds more than " +
                      std::to_string(kMostPoints) + " values");
   for (int i = 0; i < static_cast<int>(count); ++i) {
-    TextStream text;
-    text.precision(15);  // 0.1 * 3 is 0.3
     const double value = from + i * step;
-    text << (std::abs(value) < 1e-9 * std::abs(step) ? 0.0 : value);
-    axis.values.push_back(text.str());
+    axis.values.push_back(  // 0.1 * 3 is 0.3
+        fmt::format("{:.15g}", std::abs(value) < 1e-9 * std::abs(step) ? 0.0 : value));
   }
   return axis;
 }

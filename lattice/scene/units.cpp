@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "lattice/text/digits.h"
 
@@ -70,8 +71,10 @@ double with_exponent(double x, int power) {
   const std::string digits = shortest(x);
   const std::size_t e = digits.find('e');
   const int exponent = e == digits.npos ? 0 : std::atoi(digits.c_str() + e + 1);
-  return std::strtod((digits.substr(0, e) + "e" + std::to_string(exponent + power)).c_str(),
-                     nullptr);
+  const std::string scaled = digits.substr(0, e) + "e" + std::to_string(exponent + power);
+  std::string_view text = scaled;
+  const double beyond = power > 0 ? std::numeric_limits<double>::infinity() : 0.0;
+  return take_number(text).value_or(std::copysign(beyond, x));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/statistics/draws.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -69,7 +71,8 @@ std::int64_t by_rejection(double n, double p, Random& random) {
 std::int64_t binomial(std::int64_t trials, double p, Random& random) {
   if (trials < 0 || trials > kMostDrawn || !(p >= 0.0 && p <= 1.0))
     throw std::invalid_argument("binomial: trials " + std::to_string(trials) +
-                                " must lie in [0, 2^53], p " + std::to_string(p) + " in [0, 1]");
+                                " must lie in [0, 2^53], p " + fmt::format("{:f}", p) +
+                                " in [0, 1]");
   if (trials == 0 || p == 0.0) return 0;
   if (p == 1.0) return trials;
   if (p > 0.5) return trials - binomial(trials, 1.0 - p, random);

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Numbers as text, with the shortest digits that read back the same.
+/// Numbers as text, with the shortest digits that read back the same, and text as numbers. No
+/// locale changes either.
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 namespace gatewalk::lattice {
 
@@ -19,5 +25,33 @@ namespace gatewalk::lattice {
   const std::string digits = shortest(x);
   return digits.find_first_of(".en") == digits.npos ? digits + ".0" : digits;  // n: nan, inf
 }
+
+/// What stands behind the blanks that `text` begins with.
+[[nodiscard]] inline std::string_view behind_blanks(std::string_view text) {
+  return text.substr(std::min(text.find_first_not_of(" \t\n\v\f\r"), text.size()));
+}
+
+/// The number that `text` begins with, behind blanks, taken off it; none where there is none that a
+/// double can hold. Unlike std::from_chars alone it takes a plus.
+[[nodiscard]] inline std::optional<double> take_number(std::string_view& text) {
+  std::string_view rest = behind_blanks(text);
+  if (rest.starts_with('+')) rest.remove_prefix(rest.starts_with("+-") ? 0 : 1);
+  double x = 0.0;
+  const auto read = std::from_chars(rest.data(), rest.data() + rest.size(), x);
+  if (read.ec != std::errc()) return {};
+  text.remove_prefix(static_cast<std::size_t>(read.ptr - text.data()));
+  return x;
+}
+
+/// Whether `text` begins with `mark`, behind blanks; both are taken off.
+[[nodiscard]] inline bool take_mark(std::string_view& text, char mark) {
+  const std::string_view rest = behind_blanks(text);
+  if (!rest.starts_with(mark)) return false;
+  text = rest.substr(1);
+  return true;
+}
+
+/// Of text that is known to be a number.
+[[nodiscard]] inline double number_of(std::string_view text) { return take_number(text).value(); }
 
 }  // namespace gatewalk::lattice

@@ -2,6 +2,7 @@
 #include "markov/formats/counts.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -86,7 +87,7 @@ void check_codes(const NamedArray& array) {
   if (!array.whole) return;
   for (const double x : array.values)
     if (!(std::abs(x) <= std::numeric_limits<std::int32_t>::max() && x == std::floor(x)))
-      refuse_counts("array " + array.name + ": " + std::to_string(x) + " is no whole number");
+      refuse_counts("array " + array.name + ": " + fmt::format("{:f}", x) + " is no whole number");
 }
 
 void check_state_names(const CountsFile& file) {

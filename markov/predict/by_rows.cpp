@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -226,7 +228,7 @@ class PredictionRows {
         if (sums == most_sums_)
           throw std::runtime_error("predict by rows: after " + std::to_string(sums) +
                                    " moves within row " + std::to_string(row + 1) + " a share of " +
-                                   std::to_string(walking[j]) +
+                                   fmt::format("{:f}", walking[j]) +
                                    " still walks there: it can circle (almost) for ever");
         ++starts_[j].steps;
         any = true;

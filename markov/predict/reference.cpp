@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
 #include <klu.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -190,10 +190,10 @@ std::vector<double> visits(Transient& t) {
     throw std::runtime_error("absorption: KLU fails with status " + std::to_string(klu.status()));
   }
   if (!(klu.condition() <= kWorstCondition)) {
-    std::ostringstream message;
-    message << "absorption: I - Q is singular or nearly so (condition about " << klu.condition()
-            << "): a walk can circle (almost) for ever, fewer than 6 digits hold";
-    throw std::runtime_error(message.str());
+    throw std::runtime_error(
+        fmt::format("absorption: I - Q is singular or nearly so (condition about {:.6g}): a walk "
+                    "can circle (almost) for ever, fewer than 6 digits hold",
+                    klu.condition()));
   }
   std::vector<double> x(t.states.size(), 0.0);
   x.front() = 1.0;

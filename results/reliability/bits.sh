@@ -67,7 +67,7 @@ libraries() { # ARCHITECTURE
     -o "Dir::Etc::sourceparts=$folder/apt/parts")
   apt-get "${options[@]}" update >"$work/$1-apt.log"
   apt-get "${options[@]}" install --download-only -y --no-install-recommends libeigen3-dev libsuitesparse-dev \
-    libboost-program-options-dev libnetcdf-dev libtbb-dev libhwy-dev librandom123-dev libtomlplusplus-dev \
+    libboost-program-options-dev libnetcdf-dev libfmt-dev libtbb-dev libhwy-dev librandom123-dev libtomlplusplus-dev \
     nlohmann-json3-dev zlib1g-dev libarchive-dev >>"$work/$1-apt.log"
   local deb
   for deb in "$folder"/apt/cache/archives/*.deb; do dpkg-deb -x "$deb" "$folder"; done

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "dynamics/disc/methods/event.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <limits>
-#include <sstream>
 
 namespace gatewalk::dynamics {
 namespace {
@@ -164,14 +165,14 @@ EventMethod::EventMethod(const GateParams& p)
   const double k = std::max(p.beams.stiffness_left, p.beams.stiffness_right);
   const double inertia = p.beams.inertia();
   const double rate = std::max(std::sqrt(k / inertia), p.beams.damping / inertia);
-  if (!(rate * hold_ <= kMaxHoldPhase)) {
-    std::ostringstream text;
-    text << "run.method = \"event\" is not permitted for these beams: their fastest rate, from "
-         << "beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
-         << "beams.damping_Nms_per_rad and beams.mass_kg, is " << rate << " 1/s; at most "
-         << kMaxHoldPhase / hold_ << " 1/s (" << kMaxHoldPhase << " times forces.random_rate_Hz)";
-    throw InvalidParameter("run.method", text.str());
-  }
+  if (!(rate * hold_ <= kMaxHoldPhase))
+    throw InvalidParameter(
+        "run.method",
+        fmt::format("run.method = \"event\" is not permitted for these beams: their fastest rate, "
+                    "from beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
+                    "beams.damping_Nms_per_rad and beams.mass_kg, is {:.6g} 1/s; at most {:.6g} "
+                    "1/s ({:.6g} times forces.random_rate_Hz)",
+                    rate, kMaxHoldPhase / hold_, kMaxHoldPhase));
 }
 
 double EventMethod::advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "dynamics/disc/methods/penalty.h"
 
+#include <fmt/core.h>
+
 #include <limits>
 #include <numbers>
-#include <sstream>
 
 #include "dynamics/disc/methods/march.h"
 
@@ -74,12 +75,14 @@ double penalty_bound(const GateParams& p) {
 PenaltyMethod::PenaltyMethod(const GateParams& p) : p_(p), usual_(p, p.run.step) {
   const double bound = penalty_bound(p);
   if (p.run.step <= bound) return;
-  std::ostringstream text;
-  text << "run.step_s = " << p.run.step << " is not permitted for these beams and contacts, from "
-       << "beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
-       << "beams.damping_Nms_per_rad, beams.mass_kg, forces.drag_Ns_per_m, contact.restitution and "
-       << "contact.tip_restitution; method penalty permits at most " << bound << " s";
-  throw InvalidParameter("run.step_s", text.str());
+  throw InvalidParameter(
+      "run.step_s",
+      fmt::format("run.step_s = {:.6g} is not permitted for these beams and contacts, from "
+                  "beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
+                  "beams.damping_Nms_per_rad, beams.mass_kg, forces.drag_Ns_per_m, "
+                  "contact.restitution and contact.tip_restitution; method penalty permits at most "
+                  "{:.6g} s",
+                  p.run.step, bound));
 }
 
 double PenaltyMethod::advance(GateState& s, double force_x, double duration, EnergyLedger& ledger,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "dynamics/disc/methods/stable.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <sstream>
 #include <utility>
 
 #include "dynamics/disc/methods/march.h"
@@ -29,12 +30,13 @@ void refuse_too_fast(const GateParams& p) {
   const double rate = std::max(std::sqrt(k / inertia), p.beams.damping / inertia);
   const double longest = std::ldexp(kMaxSubstepPhase, StableMethod::kMaxHalvings) / rate;  // s
   if (p.run.step <= longest) return;
-  std::ostringstream text;
-  text << "run.step_s = " << p.run.step << " is not permitted for these beams: their fastest rate, "
-       << "from beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
-       << "beams.damping_Nms_per_rad and beams.mass_kg, is " << rate
-       << " 1/s; method stable permits at most " << longest << " s";
-  throw InvalidParameter("run.step_s", text.str());
+  throw InvalidParameter(
+      "run.step_s",
+      fmt::format("run.step_s = {:.6g} is not permitted for these beams: their fastest rate, from "
+                  "beams.stiffness_left_Nm_per_rad, beams.stiffness_right_Nm_per_rad, "
+                  "beams.damping_Nms_per_rad and beams.mass_kg, is {:.6g} 1/s; method stable "
+                  "permits at most {:.6g} s",
+                  p.run.step, rate, longest));
 }
 
 /// When `gap(t)` falls through zero on (0, dt]: regula falsi, Illinois variant, which keeps a

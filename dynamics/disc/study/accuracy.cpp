@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "dynamics/disc/study/accuracy.h"
 
+#include <fmt/core.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -92,11 +92,7 @@ GateParams Setting::applied_to(GateParams p) const {
 
 const char* Setting::unit() const { return key == kStep ? "s" : "m"; }
 
-std::string Setting::name() const {
-  std::array<char, 32> number;
-  std::snprintf(number.data(), number.size(), "%.7g", value);
-  return method + " " + number.data() + " " + unit();
-}
+std::string Setting::name() const { return fmt::format("{} {:.7g} {}", method, value, unit()); }
 
 std::span<const std::string_view> chart_methods() {
   static constexpr std::array<std::string_view, 5> names{"paper", "stable", "moreau", "penalty",
