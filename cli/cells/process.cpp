@@ -70,7 +70,8 @@ pid_t start_shell(const std::string& script, const std::array<int, 3>& files, pi
                 ? ::posix_spawn_file_actions_addopen(&actions, target, "/dev/null", O_RDWR, 0)
                 : ::posix_spawn_file_actions_adddup2(&actions, files[target], target);
   pid_t id = 0;
-  std::string words[] = {"sh", "-c", script};
+  // Numbers have points, whatever locale a program takes; text stays UTF-8 where that is known.
+  std::string words[] = {"sh", "-c", "export LC_ALL=C.UTF-8; " + script};
   char* const arguments[] = {words[0].data(), words[1].data(), words[2].data(), nullptr};
   if (error == 0) error = ::posix_spawn(&id, "/bin/sh", &actions, &attributes, arguments, environ);
   ::posix_spawnattr_destroy(&attributes);

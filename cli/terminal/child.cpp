@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 
 namespace gatewalk::cli {
 namespace {
@@ -20,6 +21,16 @@ bool read_all(std::FILE* file, std::string& text) {
   char part[4096];
   for (std::size_t n; (n = std::fread(part, 1, sizeof part, file)) > 0;) text.append(part, n);
   return std::ferror(file) == 0;
+}
+
+/// As here, but with numbers as they are in scripts for gnuplot, and arguments of ffmpeg.
+std::vector<char*> plain_environment() {
+  static char locale[] = "LC_ALL=C";  // which counts before all others
+  std::vector<char*> all{locale};
+  for (char* const* at = environ; *at != nullptr; ++at)
+    if (!std::string_view(*at).starts_with("LC_ALL=")) all.push_back(*at);
+  all.push_back(nullptr);
+  return all;
 }
 
 }  // namespace
@@ -52,7 +63,8 @@ Child::Child(std::vector<std::string> arguments, int in, const std::string& miss
   for (int target = 0; target < 3 && error == 0; ++target)
     error = ::posix_spawn_file_actions_adddup2(&files, wanted[target], target);
   if (error == 0)
-    error = ::posix_spawnp(&id_, words[0], &files, &attributes, words.data(), environ);
+    error = ::posix_spawnp(&id_, words[0], &files, &attributes, words.data(),
+                           plain_environment().data());
   ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&files);
   if (error != 0) id_ = 0;  // not said to be left alone
