@@ -7,7 +7,6 @@
 #include <cmath>
 #include <fstream>
 #include <memory>
-#include <sstream>
 #include <utility>
 
 #include "cli/loaded_matrix.h"
@@ -21,6 +20,7 @@
 #include "cli/subject.h"
 #include "dynamics/base/work.h"
 #include "lattice/pool/pool_runner.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
 void add_starts(Options& options, const std::string& by_default) {
@@ -136,20 +136,20 @@ std::optional<lattice::StartRange> range_of(const Options& options, const lattic
   const std::string text = options.text("starts");
   if (text == "all") return lattice::usual_range(lattice::problem_of(scene));
   lattice::StartRange range;
-  std::istringstream in(text);
-  char between = ',';
+  std::string_view rest = text;
   for (std::size_t axis = 0; axis < dynamics::disc_section().coordinates.size(); ++axis) {
-    auto& [low, high] = range.at[axis];
-    char colon = 0;
-    if (between != ',' || !(in >> low >> colon >> high) || colon != ':' || !(low <= high) ||
-        !std::isfinite(high - low))
+    const bool follows = axis == 0 || lattice::take_mark(rest, ',');
+    const auto low = lattice::take_number(rest);
+    const bool has_colon = lattice::take_mark(rest, ':');
+    const auto high = lattice::take_number(rest);
+    if (!follows || !low || !has_colon || !high || !(*low <= *high) || !std::isfinite(*high - *low))
       throw UsageError("--starts " + text +
                        ": must be all, or three ranges of d, vx, vy in m and m/s, e.g. "
                        "-5:5,-10:10,10:20");
-    between = 0;
-    in >> between;
+    range.at[axis] = {*low, *high};
   }
-  if (between != 0) throw UsageError("--starts " + text + ": has more than three ranges");
+  if (!lattice::behind_blanks(rest).empty())
+    throw UsageError("--starts " + text + ": has more than three ranges");
   const double side = scene.gate.beams.joint_x;
   const auto& d = range.at[dynamics::kEntryD];
   if (!(d[0] >= -side && d[1] <= side))

@@ -44,7 +44,7 @@ lattice::RowMatrix parse_rows(const Options& options, const std::string& text) {
 
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
-  std::stringstream stream(text);
+  std::istringstream stream(text);
   stream.exceptions(std::ios_base::badbit);
   for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
   return parts;

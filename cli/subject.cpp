@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <sstream>
 #include <utility>
 
 #include "cli/arguments.h"
@@ -20,6 +19,7 @@
 #include "lattice/cells/cell_matrix.h"
 #include "lattice/scene/scene_trials.h"
 #include "lattice/study/trials.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -100,11 +100,12 @@ std::vector<dynamics::Cell::Number> parameters_of(const Options& options) {
   std::vector<dynamics::Cell::Number> set;
   for (const std::string& text : overrides_of(options, true)) {
     const std::size_t equals = text.find('=');
-    std::istringstream in(equals == std::string::npos ? "" : text.substr(equals + 1));
-    double value = 0.0;
-    if (!(in >> value) || in.peek() != std::char_traits<char>::eof() || !std::isfinite(value))
+    std::string_view rest = text;
+    rest = equals == std::string::npos ? "" : rest.substr(equals + 1);
+    const auto value = lattice::take_number(rest);
+    if (!value || !rest.empty() || !std::isfinite(*value))
       throw UsageError("--set " + std::string(kParameters) + text + ": must be KEY=NUMBER");
-    set.push_back({text.substr(0, equals), value});
+    set.push_back({text.substr(0, equals), *value});
   }
   return set;
 }
@@ -352,14 +353,15 @@ Start parse_start(const std::string& text, const dynamics::Section& section, Sta
       ++entry.face;
     if (entry.face == std::ssize(section.faces)) throw wrong();
   }
-  std::istringstream in(colon == std::string::npos ? text : text.substr(colon + 1));
+  std::string_view rest = text;
+  if (colon != std::string::npos) rest.remove_prefix(colon + 1);
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
-    char comma = ',';
-    if ((axis > 0 && !(in >> comma)) || comma != ',' || !(in >> entry.at[axis]) ||
-        !std::isfinite(entry.at[axis]))
-      throw wrong();
+    if (axis > 0 && !lattice::take_mark(rest, ',')) throw wrong();
+    const auto number = lattice::take_number(rest);
+    if (!number || !std::isfinite(*number)) throw wrong();
+    entry.at[axis] = *number;
   }
-  if (in.peek() != std::char_traits<char>::eof()) throw wrong();
+  if (!rest.empty()) throw wrong();
   return entry;
 }
 

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 
 #include "cli/cells/process.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/json.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -196,7 +195,7 @@ std::string Hello::Parameter::range() const {
 }
 
 Hello read_hello(std::string_view line) {
-  const Json json = Json::parse(line, nullptr, false);
+  const Json json = parsed_json(line);
   if (json.is_discarded()) refuse("it is not JSON");
   const HelloTable table(json, "it",
                          {"gatewalk", "faces", "coordinates", "costs", "symmetric", "normals",

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
-#include <cstdio>
 
 #include "cli/command.h"
 #include "cli/render/cut_tracks.h"
 #include "cli/render/json.h"
 #include "lattice/cells/cut_tracks.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -37,12 +37,15 @@ void declare_all(Options& options) {
 /// Two numbers with a comma between.
 std::array<double, 2> pair_of(const Options& options, const std::string& name) {
   const std::string text = options.text(name);
-  std::array<double, 2> pair{};
-  char behind = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf%c", &pair[0], &pair[1], &behind) != 2 ||
-      !std::isfinite(pair[0]) || !std::isfinite(pair[1]))
+  std::string_view rest = text;
+  const auto first = lattice::take_number(rest);
+  const bool has_comma = rest.starts_with(',');
+  if (has_comma) rest.remove_prefix(1);
+  const auto second = lattice::take_number(rest);
+  if (!first || !has_comma || !second || !rest.empty() || !std::isfinite(*first) ||
+      !std::isfinite(*second))
     throw UsageError("--" + name + " " + text + ": must be two numbers with a comma between");
-  return pair;
+  return {*first, *second};
 }
 
 lattice::TrackOptions track_options(const Options& options) {

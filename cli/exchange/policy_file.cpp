@@ -175,7 +175,7 @@ std::string policy_text(const lattice::Policy& policy, const PolicyField& made_f
 }
 
 lattice::Policy read_policy(const std::string& path, const PolicyField& made_for) try {
-  const Json json = Json::parse(bytes_of(path), nullptr, false);
+  const Json json = parsed_json(bytes_of(path));
   if (!json.is_object() || !json.contains("policy_format") ||
       json["policy_format"] != kPolicyFormat)
     throw std::runtime_error("is no policy that gatewalk plan --policy wrote");

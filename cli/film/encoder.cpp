@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/film/encoder.h"
 
+#include <fmt/core.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -24,7 +25,7 @@ std::vector<std::string> ffmpeg_command(VideoFormat format, const std::string& t
       // Pictures as cairo keeps them, without a header.
       "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size",
       std::to_string(kPictureWidth) + "x" + std::to_string(kPictureHeight), "-framerate",
-      std::to_string(frames_per_second), "-i", "pipe:0", "-an"};
+      fmt::format("{:f}", frames_per_second), "-i", "pipe:0", "-an"};
   const std::vector<std::string> mp4{
       "-c:v", "libx264", "-preset", "veryfast", "-crf", "20",
       // Players take HD pictures for BT.709 ones.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cli/command.h"
+#include "cli/render/json.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "lattice/scene/scene.h"
@@ -24,7 +25,7 @@ constexpr std::int64_t kMostParts = 1'000'000;
 
 /// Throws markov::BadFile unless a head has all that a run writes there.
 Json checked_head(const std::string& path, const std::string& text) {
-  const Json head = Json::parse(text, nullptr, false);
+  const Json head = parsed_json(text);
   // Another commit may have written other keys.
   const std::string commit =
       head.is_object() && head.contains("commit") && head.at("commit").is_string()

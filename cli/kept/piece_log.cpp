@@ -2,15 +2,14 @@
 #include "cli/kept/piece_log.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
-#include <array>
 #include <bit>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -48,10 +47,7 @@ std::string_view checked_part(const RecordHead& head) {
 }
 
 std::string first_line(std::string_view head) {
-  std::array<char, 64> text;
-  std::snprintf(text.data(), text.size(), "%s%c %zu %08x\n", kFirstLine, kByteOrder, head.size(),
-                crc_of(head));
-  return text.data();
+  return fmt::format("{}{} {} {:08x}\n", kFirstLine, kByteOrder, head.size(), crc_of(head));
 }
 
 [[noreturn]] void fail(const std::string& path) {

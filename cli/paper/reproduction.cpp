@@ -66,7 +66,7 @@ std::string file_text(const std::string& path) {
 Json read_json(const std::string& path) {
   std::ifstream in(path);
   if (!in) return {};
-  Json j = Json::parse(in, nullptr, false);
+  Json j = parsed_json(std::string{std::istreambuf_iterator<char>(in), {}});
   return j.is_discarded() ? Json() : j;
 }
 

@@ -4,8 +4,6 @@
 #include <zlib.h>
 
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -14,6 +12,7 @@
 #include "cli/render/little_endian.h"
 #include "cli/render/text.h"
 #include "lattice/scene/gates.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -193,10 +192,9 @@ std::uint16_t share_code(double share) {
   if (std::isnan(share)) return kNone;
   if (!(share > 0.0 && share < 5e-5))
     return static_cast<std::uint16_t>(
-        std::lround(100.0 * std::strtod(fixed(100.0 * share, 2).c_str(), nullptr)));
-  char text[32];
-  (void)std::snprintf(text, sizeof text, "%.1e", 100.0 * share);  // "6.9e-04", 5.0e-03 at most
-  const int digits = (text[0] - '0') * 10 + (text[2] - '0'), power = -std::atoi(text + 4);
+        std::lround(100.0 * lattice::number_of(fixed(100.0 * share, 2))));
+  const std::string text = scientific(100.0 * share, 1);  // "6.9e-04", 5.0e-03 at most
+  const int digits = (text[0] - '0') * 10 + (text[2] - '0'), power = -std::stoi(text.substr(4));
   return static_cast<std::uint16_t>(kSmall + (power - 3) * kDigits + digits - 10);
 }
 

@@ -164,7 +164,7 @@ std::string table_of(const FidelityStudy& study) {
   for (const FidelityOfStart& s : study.starts)
     for (std::size_t v = 0; v < study.variants.size(); ++v)
       out << line_of(s, study.variants[v], s.runs[v]) << "\n";
-  out << "\nActive is enough where TV is at most " << lattice::kSmallChange
+  out << "\nActive is enough where TV is at most " << digits(lattice::kSmallChange)
       << " with its uncertainty (+-) added, and\n"
       << "not enough where it is more with that taken off: what chance makes of pairs 95 times in\n"
       << "100, and 3 trials of " << study.trials << " that may yet show what none did.\n";

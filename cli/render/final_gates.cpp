@@ -7,7 +7,6 @@
 #include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "lattice/statistics/compare.h"
-#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 
@@ -187,11 +186,7 @@ Json by_name(const Values& values, bool back) {
 }  // namespace
 
 std::string percents(double share) {
-  if (!(share > 0.0 && share < 5e-5)) return fixed(100.0 * share, 2);
-  lattice::TextStream text;
-  text.precision(2);
-  text << 100.0 * share;
-  return text.str();
+  return share > 0.0 && share < 5e-5 ? digits(100.0 * share, 2) : fixed(100.0 * share, 2);
 }
 
 Json endings(const std::array<std::int64_t, markov::kEndings>& counts) {

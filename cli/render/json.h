@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "cli/render/json_fwd.h"
 
@@ -12,6 +13,9 @@ namespace gatewalk::cli {
 
 /// JSON as text; bytes that are no UTF-8 (names of files) become U+FFFD. `indent` -1: on one line.
 [[nodiscard]] std::string text_of(const Json& json, int indent = 2);
+
+/// Of a text; one that is_discarded() where it is no JSON.
+[[nodiscard]] Json parsed_json(std::string_view text);
 
 /// null for what JSON has no number for.
 [[nodiscard]] inline Json or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }

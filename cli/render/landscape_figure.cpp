@@ -6,7 +6,6 @@
 #include "cli/render/landscape.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
-#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 
@@ -21,10 +20,7 @@ double ceiling_of(const Landscape& l) {
 }
 
 std::string short_energy(double joules, const Sized& unit) {
-  lattice::TextStream text;
-  text.precision(3);
-  text << joules / unit.size << " " << unit.name;
-  return text.str();
+  return digits(joules / unit.size, 3) + " " + unit.name;
 }
 
 std::string rows_of(const Landscape& l, const Sized& metre, const Sized& joule, double ceiling) {

@@ -110,7 +110,7 @@ std::string types_table(const lattice::MatrixFile& file, const std::string& inde
 Json recorded(const lattice::MatrixFile& file, const std::string& path, const std::string& key) {
   const auto text = file.text.find(key);
   if (text == file.text.end()) return {};
-  Json json = Json::parse(text->second, nullptr, false);
+  Json json = parsed_json(text->second);
   if (json.is_discarded())
     throw markov::BadFile(path + ": its record of the " +
                           (key == "method"   ? "chosen method"
@@ -122,7 +122,7 @@ Json recorded(const lattice::MatrixFile& file, const std::string& path, const st
 
 Json recorded_status(const lattice::MatrixFile& file) {
   const auto text = file.text.find("status");
-  return text == file.text.end() ? Json() : Json::parse(text->second, nullptr, false);
+  return text == file.text.end() ? Json() : parsed_json(text->second);
 }
 
 std::string faults_recorded(const Json& status) {

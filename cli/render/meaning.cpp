@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <sstream>
 
 #include "cli/render/json.h"
 #include "cli/render/quantity.h"
+#include "cli/render/text.h"
 #include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {
@@ -23,10 +23,8 @@ constexpr double kFastestRun = 30.0, kMostGrip = 1.0, kMostSteps = 10.0, kLeastP
 /// Three digits, without an exponent where people need none.
 std::string three_digits(double x) {
   if (!std::isfinite(x)) return "-";
-  char text[32];
   const double size = std::abs(x);
-  std::snprintf(text, sizeof text, size >= 100.0 && size < 1e6 ? "%.0f" : "%.3g", x);
-  return text;
+  return size >= 100.0 && size < 1e6 ? fixed(x, 0) : digits(x, 3);
 }
 
 std::string times_as(double x) {

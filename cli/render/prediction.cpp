@@ -10,7 +10,6 @@
 #include "cli/render/scene.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
-#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -56,14 +55,12 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
     table += "reach a state never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
   if (f.remainder > 1e-8)
     table += "still walking when the sum was stopped: " + percent(f.remainder, 1.0, 6) + "\n";
-  lattice::TextStream bound;
-  bound.precision(2);
-  bound << "The chain's own error (bins, memory, and with bins from a pilot where its rows start) "
-           "is not in the intervals:\n"
-        << "gatewalk validate measures it.\n"
-        << "Rounding and walks not finished, which are not the error of the prediction: at most "
-        << f.remainder + f.rounding << " in all shares together\n";
-  return table + bound.str();
+  return table +
+         "The chain's own error (bins, memory, and with bins from a pilot where its rows start) "
+         "is not in the intervals:\n"
+         "gatewalk validate measures it.\n"
+         "Rounding and walks not finished, which are not the error of the prediction: at most " +
+         digits(f.remainder + f.rounding, 2) + " in all shares together\n";
 }
 
 }  // namespace

@@ -5,9 +5,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <vector>
+
+#include "cli/render/text.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -42,12 +43,6 @@ Sized largest_within(const std::string& unit, double most) {
   return any ? found : Sized{1.0, unit};
 }
 
-std::string printed(const char* format, int digits, double x) {
-  std::array<char, 400> buffer;
-  std::snprintf(buffer.data(), buffer.size(), format, digits, x);
-  return buffer.data();
-}
-
 constexpr double kShort = 1e4;  // what is less has no more than four digits before the point
 
 }  // namespace
@@ -61,12 +56,12 @@ Sized readable_unit(const std::string& unit, double most) {
 std::string quantity(double x, const std::string& unit, int significant) {
   if (!std::isfinite(x)) return "-";
   if (x == 0.0) return "0 " + unit;
-  x = std::strtod(printed("%.*e", significant - 1, x).c_str(), nullptr);  // 9999.7 is 10 k
+  x = lattice::number_of(scientific(x, significant - 1));  // 9999.7 is 10 k
   const Sized shown = readable_unit(unit, std::abs(x));
   const double value = x / shown.size, size = std::abs(value);
-  if (size < 0.01 || size >= kShort) return printed("%.*g", significant, value) + " " + shown.name;
+  if (size < 0.01 || size >= kShort) return digits(value, significant) + " " + shown.name;
   const int before = static_cast<int>(std::floor(std::log10(size) + 1e-9)) + 1;
-  std::string text = printed("%.*f", std::max(0, significant - before), value);
+  std::string text = fixed(value, std::max(0, significant - before));
   if (text.find('.') != text.npos) text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();
   return text + " " + shown.name;
@@ -86,10 +81,10 @@ std::string reading(double x, const std::string& unit, double step) {
     behind = "e" + std::to_string(exponent) + " " + unit;
   }
   const int decimals = std::max(0, static_cast<int>(std::lround(std::log10(shown.size / last))));
-  std::string text = printed("%.*f", decimals, x / shown.size);
+  std::string text = fixed(x / shown.size, decimals);
   if (text.find_first_not_of("-0.") == text.npos) {
-    const std::string least = printed("%.*f", decimals, std::pow(10.0, -decimals));
-    text = x > 0.0 ? "<" + least : x < 0.0 ? ">-" + least : printed("%.*f", decimals, 0.0);
+    const std::string least = fixed(std::pow(10.0, -decimals), decimals);
+    text = x > 0.0 ? "<" + least : x < 0.0 ? ">-" + least : fixed(0.0, decimals);
   }
   return text + behind;
 }

@@ -2,7 +2,6 @@
 #include "cli/render/rare.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "cli/render/health.h"
 #include "cli/render/json.h"
@@ -12,11 +11,7 @@ namespace gatewalk::cli {
 namespace {
 
 /// "1.23e-12"
-std::string chance(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", x);
-  return text;
-}
+std::string chance(double x) { return digits(x, 3); }
 
 std::string interval_text(const std::array<double, 2>& i) {
   return "[" + chance(i[0]) + ", " + chance(i[1]) + "]";

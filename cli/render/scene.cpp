@@ -8,7 +8,7 @@
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
 #include "lattice/scene/scene_bins.h"
-#include "lattice/text/text_stream.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
 
@@ -17,9 +17,9 @@ namespace {
 /// A number of a scene with seven digits at most, unless it is a whole one.
 std::string shortened(const std::string& number) {
   if (number.find_first_of(".en") == number.npos) return number;
-  const double x = std::stod(number);
+  const double x = lattice::number_of(number);
   const std::string text = digits(x);
-  return std::stod(text) == x ? number : text;
+  return lattice::number_of(text) == x ? number : text;
 }
 
 /// A key's value: a number, or text in quotation marks.
@@ -61,11 +61,7 @@ std::string too_few_gates(const ShownField& shown) {
 std::string scene_line(const lattice::Scene& scene, const std::vector<std::string>& actions) {
   const auto& gate = scene.gate;
   const auto& start = scene.start;
-  const auto number = [](double x) {
-    lattice::TextStream text;
-    text << x;
-    return text.str();
-  };
+  const auto number = [](double x) { return digits(x, 6); };
   // Two numbers with one unit, that of the larger.
   const Sized place = readable_unit("m", std::max(std::abs(start.x), std::abs(start.y)));
   const Sized speed = readable_unit("m/s", std::max(std::abs(start.vx), std::abs(start.vy)));
@@ -137,7 +133,8 @@ std::string commented(const lattice::Scene& scene) {
     return k.key.starts_with("terrain.") || k.key.starts_with("actions.");
   };
   for (lattice::KeyInfo& k : keys) {
-    if (k.source == "derived") k.value = digits(std::stod(k.value));  // nobody reads them back
+    if (k.source == "derived")
+      k.value = digits(lattice::number_of(k.value));  // nobody reads them back
     if (!of_terrain(k)) width = std::max(width, leaf(k).size() + k.value.size() + 5);
   }
   for (const lattice::KeyInfo& k : keys) {

@@ -8,6 +8,7 @@
 
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -84,7 +85,7 @@ double draw_table(Drawing& drawing, const Scene& scene) {
     const bool own = found->source != "derived" && found->source != "paper";
     any_left_out |= !own;
     drawing.text("'" + std::string(symbol.sign) + "'", kTable, y, "left");
-    drawing.text(literal(found->key + " = " + digits(std::stod(found->value))), kKeys, y,
+    drawing.text(literal(found->key + " = " + digits(lattice::number_of(found->value))), kKeys, y,
                  own ? "left" : left_out);
     y += kRow;
   }

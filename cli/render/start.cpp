@@ -6,7 +6,6 @@
 
 #include "cli/render/json.h"
 #include "cli/render/text.h"
-#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 
@@ -38,15 +37,14 @@ Json to_json(const dynamics::Section& section, const dynamics::StateRange& range
 
 std::string title_of(const dynamics::Section& section, const Start& start) {
   if (!start) return "start: all entries that were seen first";
-  lattice::TextStream title;
-  title << "start";
-  if (start->face != 0) title << " " << section.faces[static_cast<std::size_t>(start->face)].name;
+  std::string title = "start";
+  if (start->face != 0) title += " " + section.faces[static_cast<std::size_t>(start->face)].name;
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
     const dynamics::Coordinate& c = section.coordinates[axis];
-    title << (axis > 0 ? ", " : " ") << c.name << " " << start->at[axis]
-          << dynamics::behind_number(c.unit);
+    title += (axis > 0 ? ", " : " ") + c.name + " " + digits(start->at[axis], 6) +
+             dynamics::behind_number(c.unit);
   }
-  return title.str();
+  return title;
 }
 
 StartTexts::StartTexts(const dynamics::Section& section, const std::vector<dynamics::Entry>& starts)

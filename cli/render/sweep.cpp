@@ -40,7 +40,7 @@ std::vector<Share> shares_of(const dynamics::GateTally& t) {
 
 Json to_json(const std::vector<SweepAxis>& axes, const std::vector<SweepPoint>& points) {
   const auto value = [](const std::string& given) {
-    const Json number = Json::parse(given, nullptr, false);
+    const Json number = parsed_json(given);
     return number.is_number() ? number : Json(given);
   };
   Json json;
@@ -66,7 +66,6 @@ Json to_json(const std::vector<SweepAxis>& axes, const std::vector<SweepPoint>& 
 
 std::string csv_of(const std::vector<SweepAxis>& axes, const std::vector<SweepPoint>& points) {
   lattice::TextStream out;
-  out.precision(8);
   for (const SweepAxis& axis : axes) out << axis.key << ',';
   out << "method,trials";
   for (const auto& [outcome, key, words] : dynamics::kOutcomeNames) out << ',' << key << "_count";
@@ -84,8 +83,8 @@ std::string csv_of(const std::vector<SweepAxis>& axes, const std::vector<SweepPo
         continue;
       }
       const auto [low, high] = share_interval(s.part, s.whole);
-      out << ',' << static_cast<double>(s.part) / static_cast<double>(s.whole) << ',' << low << ','
-          << high;
+      for (const double x : {static_cast<double>(s.part) / static_cast<double>(s.whole), low, high})
+        out << ',' << digits(x, 8);
     }
     out << ',' << t.health.clean() << '\n';
   }

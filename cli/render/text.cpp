@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/text.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 
 namespace gatewalk::cli {
 
 std::string fixed(double x, int digits) {
   if (!std::isfinite(x)) return "-";
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, "%.*f", digits, x);
-  const std::string text = buffer;
+  std::string text = fmt::format("{:.{}f}", x, digits);
   const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
   return is_zero && text.front() == '-' ? text.substr(1) : text;
 }
@@ -28,11 +26,9 @@ std::string p_words(double p) {
   return p < 0.001 ? "p < 0.001" : "p = " + fixed(p, p < 0.1 ? 3 : 2);
 }
 
-std::string digits(double x) {
-  std::array<char, 32> buffer;
-  std::snprintf(buffer.data(), buffer.size(), "%.7g", x);
-  return buffer.data();
-}
+std::string digits(double x, int significant) { return fmt::format("{:.{}g}", x, significant); }
+
+std::string scientific(double x, int decimals) { return fmt::format("{:.{}e}", x, decimals); }
 
 std::string padded(const std::string& text, int width) {
   const auto wanted = static_cast<std::size_t>(std::abs(width));

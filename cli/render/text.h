@@ -15,8 +15,10 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string p_text(double p);
 /// "p = 0.034", "p = 0.34", "p < 0.001"
 [[nodiscard]] std::string p_words(double p);
-/// Seven digits: for files and figures.
-[[nodiscard]] std::string digits(double x);
+/// Seven digits: for files and figures. Or as many, without zeros at the end.
+[[nodiscard]] std::string digits(double x, int significant = 7);
+/// "6.9e-04" of one decimal.
+[[nodiscard]] std::string scientific(double x, int decimals);
 /// Text padded on the left or (negative width) on the right.
 [[nodiscard]] std::string padded(const std::string& text, int width);
 

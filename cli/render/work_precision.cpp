@@ -2,7 +2,6 @@
 #include "cli/render/work_precision.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "cli/render/csv.h"
 #include "cli/render/figure.h"
@@ -148,12 +147,8 @@ Json to_json(const ChartPoint& p, const WorkPrecision& chart) {
 
 /// "1.20e-03", or "<2.0e-02" below the limit.
 std::string error_text(double value, double limit) {
-  char buffer[32];
-  if (shown(value, limit).below)
-    std::snprintf(buffer, sizeof buffer, "<%.1e", limit);
-  else
-    std::snprintf(buffer, sizeof buffer, std::isfinite(value) ? "%.2e" : "-", value);
-  return buffer;
+  if (shown(value, limit).below) return "<" + scientific(limit, 1);
+  return std::isfinite(value) ? scientific(value, 2) : "-";
 }
 
 std::string line_of(const ChartPoint& p, const WorkPrecision& chart) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli/terminal/interrupt.h"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
 #include <csignal>
-#include <cstdio>
 #include <cstring>
 
 #include "markov/formats/file.h"
@@ -58,10 +58,11 @@ void install_interrupt_handler() {
 void set_kept_file(const std::string& file) {
   is_kept = false;
   if (file.empty()) return;
-  std::snprintf(kept_text.data(), kept_text.size(),
-                "gatewalk: stopped before the end; what is done is kept in %s: the same command "
-                "with --resume goes on\n",
-                file.c_str());
+  *fmt::format_to_n(kept_text.data(), kept_text.size() - 1,
+                    "gatewalk: stopped before the end; what is done is kept in {}: the same "
+                    "command with --resume goes on\n",
+                    file)
+       .out = '\0';
   is_kept = true;
 }
 

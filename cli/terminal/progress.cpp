@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/terminal/progress.h"
 
+#include <fmt/core.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -26,13 +27,8 @@ std::string clock_text(double seconds) {
   constexpr double kDay = 86400.0;
   if (!(seconds < 100.0 * kDay)) return "over 100 days";
   const auto whole = static_cast<int>(seconds);
-  char text[32];
-  if (whole < 3600) {
-    std::snprintf(text, sizeof text, "%d:%02d", whole / 60, whole % 60);
-  } else {
-    std::snprintf(text, sizeof text, "%d:%02d:%02d", whole / 3600, whole / 60 % 60, whole % 60);
-  }
-  return text;
+  return whole < 3600 ? fmt::format("{}:{:02}", whole / 60, whole % 60)
+                      : fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
 /// "some 40 s", "some 3 min", "some 5 h".
@@ -91,12 +87,12 @@ void Progress::redraw(std::int64_t done, Clock::time_point now) {
   const double elapsed = seconds_between(start_, now);
   const double rate = static_cast<double>(done) / elapsed;
   const double left = static_cast<double>(total_ - done) / rate;  // inf while nothing is done
-  char figures[48];
-  std::snprintf(figures, sizeof figures, " %3d%%  %.3g/s  ", whole_percent(done, total_), rate);
   std::string line =
-      label_ + figures + clock_text(elapsed) + " elapsed, " + clock_text(left) + " left";
+      fmt::format("{} {:3}%  {:.3g}/s  {} elapsed, {} left", label_, whole_percent(done, total_),
+                  rate, clock_text(elapsed), clock_text(left));
   line.resize(std::min(line.size(), terminal_columns() - 1));
-  std::fprintf(stderr, "\r%s\x1b[K", line.c_str());
+  line = "\r" + line + "\x1b[K";
+  std::fputs(line.c_str(), stderr);
   std::fflush(stderr);
 }
 
