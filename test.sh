@@ -6,8 +6,8 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 . ./.ci/prepare
-# Results and films as others read them, a browser that shows the pages, the layout of the code.
-packages+=(libgtest-dev jq netcdf-bin ffmpeg chromium clang-format)
+# Results and films as others read them, a browser that shows the pages, the layout of the code, locales.
+packages+=(libgtest-dev jq netcdf-bin ffmpeg chromium clang-format locales)
 # Cells that other programs simulate: in Chipmunk, in Python.
 packages+=(libchipmunk-dev)
 # A cluster on this machine, for parts of runs; processes that share one.

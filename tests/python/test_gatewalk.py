@@ -5,10 +5,12 @@ import atexit
 import copy
 import doctest
 import json
+import locale
 import math
 import os
 import pickle
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -585,6 +587,41 @@ class AsAGuest(unittest.TestCase):
             if waited[-1] < 0.3:
                 break
         self.assertLess(min(waited), 0.3)
+
+    def test_another_locale(self):
+        """Qt, for one, takes the user's for the whole process."""
+        with tempfile.TemporaryDirectory() as name:
+            folder, locales = Path(name) / "out", Path(name) / "locales"
+            locales.mkdir()
+            subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", locales / "de_DE.UTF-8"], check=True)
+
+            def written():
+                """What some calls say, write and draw."""
+                folder.mkdir()
+                self.assertEqual(gw.Scene({"body": {"radius_cm": 12.5}})["body.radius_m"], 0.125)
+                matrix = gw.build(FIELD, bins="paper", trials=10)
+                said = [matrix.predict(figure=folder / "p.svg"), gw.landscape(SINGLE, spacing=2.5, trials=20),
+                        gw.landscape(SINGLE, spacing=2.5).to_frame().to_dict(),
+                        gw.sweep(SINGLE, {"forces.propulsion_N": "4:0.5:6"}, trials=20, csv=folder / "s.csv", figure=folder / "s.pdf"),
+                        gw.trace(SINGLE, csv=folder / "t.csv", figure=folder / "t.png"), gw.predict(FIELD, accuracy=0.2, start="1.5,0,15.25")]
+                matrix.export(folder / "chain.tra")
+                for ending in (".mtx", ".csv"):
+                    matrix.export(folder / f"gate{ending}", gate=True)
+                files = {f.name: re.sub(rb"/CreationDate[^\n]*|gatewalk-\w+\.nc", b"", f.read_bytes()) for f in folder.iterdir()}
+                shutil.rmtree(folder)
+                return [plain(one) for one in said], files
+
+            here, before = written(), locale.setlocale(locale.LC_ALL)
+            os.environ["LOCPATH"] = str(locales)
+            try:
+                locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
+                self.assertEqual(locale.str(0.5), "0,5")
+                there = written()
+            finally:
+                del os.environ["LOCPATH"]
+                locale.setlocale(locale.LC_ALL, before)
+            self.assertGreater(len(here[1]), 8)
+            self.assertEqual(here, there)
 
     def test_forked_processes(self):
         matrix = gw.build(FIELD, bins="paper", trials=5)
