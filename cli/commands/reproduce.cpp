@@ -32,13 +32,12 @@ int run_reproduce(const Arguments& arguments) {
                                       .quick = options.has("quick"),
                                       .talk = options.talk(),
                                       .force = options.has("force")});
-    if (options.has("json"))
-      options.give_out(r.report, "", -1);
-    else if (options.talk())
-      std::cout << "\n"
-                << table_of(r.claims) << "\n"
-                << r.tally() << ". Studies " << fixed(r.seconds, 0) << " s. Open " << folder
-                << (has_pages() ? "/report.html\n" : "/report.json\n") << std::flush;
+    options.give_out(r.report,
+                     options.talk() ? "\n" + table_of(r.claims) + "\n" + r.tally() + ". Studies " +
+                                          fixed(r.seconds, 0) + " s. Open " + folder +
+                                          (has_pages() ? "/report.html\n" : "/report.json\n")
+                                    : "",
+                     -1);
   } catch (const Interrupted&) {
     std::cerr << "gatewalk: stopped before the end; what was finished stays in " << folder
               << ", the same command goes on from there\n";

@@ -121,6 +121,21 @@ class FolderLock {
   int fd_;
 };
 
+/// Work in a folder, and back from there.
+class InFolder {
+ public:
+  explicit InFolder(const std::string& folder) { std::filesystem::current_path(folder); }
+  ~InFolder() {
+    std::error_code ignored;
+    std::filesystem::current_path(before_, ignored);
+  }
+  InFolder(const InFolder&) = delete;
+  InFolder& operator=(const InFolder&) = delete;
+
+ private:
+  std::filesystem::path before_ = std::filesystem::current_path();
+};
+
 /// What the studies gave, by their names.
 struct Results {
   std::map<std::string, Json> data;
@@ -334,7 +349,7 @@ Reproduction reproduce(const ReproductionOptions& options) {
   require_folder(folder + "/scenes");
   require_gnuplot();
   // The commands are recorded as they work inside the folder.
-  std::filesystem::current_path(folder);
+  const InFolder inside(folder);
   const FolderLock lock(folder);
   if (const Json old = read_json("report.json");
       options.quick && old.is_object() && old.value("quick", Json()) == false)

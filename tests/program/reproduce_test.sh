@@ -21,6 +21,9 @@ grep -q '^[1-9].* studies are done already' out.txt || fail "reproduce: did not 
 head -c 1000 paper/data/fig9_100.json >half && mv half paper/data/fig9_100.json
 expect 0 '\[30/30\]  fig9_100' "$gatewalk" reproduce -o paper --quick
 grep -q '^29 of 30 studies are done already' out.txt && [ "$(grep -c '^ *\[' out.txt)" = 1 ] || fail "reproduce: did again what was done"
+# Its numbers go where --csv says, from the folder that the command was given in.
+expect 0 'reproduced, .* agree' "$gatewalk" reproduce -o paper --quick --csv numbers.csv
+grep -q '^quick,,,1,,$' numbers.csv || fail "reproduce: --csv wrote nothing"
 kept paper/.
 jq '.quick = false' paper/report.json >full && cp paper/report.json quick && mv full paper/report.json
 expect 2 'holds a full report' "$gatewalk" reproduce -o paper --quick
