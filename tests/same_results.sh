@@ -1,16 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Whether two programs of gatewalk write the same results: JSON, CSV, NetCDF, tables, figures and pages of many command
-# lines, byte by byte, but for what names the program itself (version, commit) and what was timed.
+# lines, byte by byte, but for what names the program itself (version, commit) and what was timed. The help page of every
+# command and the schemas are compared too. Of figures the data are compared beside the picture: the blocks that gnuplot
+# gets. They are compared for PDF and PNG as well, and where the picture shows times.
 #   tests/same_results.sh [--lines PATTERN] [--hashes FILE] [--other-byte-order] OLD NEW [SCENES]
 # OLD, NEW: programs; SCENES: folder of scenes (scenes/); PATTERN: only the lines that this regular expression finds;
 # FILE: gets a hash of what OLD writes for each line. With --other-byte-order NEW reads matrices that it made itself, as
 # netCDF 4.9 reads only those of its own order (netcdf-c, issue 2670), and h5dump, which reads both, shows them.
+# Schemas are those that are installed with a program (../share/gatewalk/schemas beside it), else those of the sources
+# that its build folder names.
 # Status 1: some differ; 2: nothing was compared.
 # To see that it finds what it should, change a constant in a copy of the sources, say kQuantile in
 # lattice/statistics/group_spread.cpp, and compare the programs.
 set -euf
-pattern=. hashes='' other_order='' tools=(jq ncdump)
+pattern=. hashes='' other_order='' tools=(jq ncdump gnuplot)
 while [ $# -gt 0 ]; do
   case $1 in
     --lines) pattern=$2 ;;
@@ -26,11 +30,32 @@ old=$(realpath "$1") new=$(realpath "$2")
 scenes=$(realpath "${3:-$(dirname "$0")/../scenes}")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-mkdir "$work/inputs" "$work/own"
+mkdir "$work/inputs" "$work/own" "$work/bin"
+
+# gnuplot, which also keeps the data blocks of what it draws in the folder that it runs in.
+cat >"$work/bin/gnuplot" <<END
+#!/usr/bin/env bash
+set -euf
+script=\$(mktemp "$work/script.XXXXXX")
+cat >"\$script"
+if grep -q ' << EOD$' "\$script"; then
+  number=1
+  until (set -C; : >"figure-\$number.data") 2>/dev/null; do number=\$((number + 1)); done
+  sed -n '/ << EOD\$/,/^EOD\$/p' "\$script" >"figure-\$number.data"
+fi
+status=0
+'$(command -v gnuplot)' "\$@" <"\$script" || status=\$?
+rm "\$script"
+exit \$status
+END
+chmod +x "$work/bin/gnuplot"
+PATH=$work/bin:$PATH
 
 # The command lines, behind the exit status that each must have; each writes into the folder that it runs in.
+# Where the result is JSON, or a folder of files, its CSV is asked for as well (numbers.csv). The longest comes first.
 lines() {
-  grep -E -e "$pattern" <<'END'
+  cat <<'END'
+0 reproduce -o out --quick
 0 gate field.toml --trials 300 --json out.json --figure out.svg
 0 gate field.toml --set forces.random_rate_Hz=0.05 --trials 100 --json out.json
 0 gate single_gate.toml --set run.method=paper --trials 200 --json out.json
@@ -142,7 +167,15 @@ lines() {
 0 chart-field field.toml --trials 20 -o out
 0 chart-chain field.toml --start 0,0,15 --truth-trials 400 --runs-limit 20000 --bins 0.5 -o out
 0 stability -o out --quick
-0 reproduce -o out --quick
+0 sample
+0 sample walker -o out.toml --json out.json
+0 passages tracks.csv --cell cell.toml -o out.csv --fps 10 --metres-per-unit 0.001 --fastest 0.4 --lattice 9,9 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y --json out.json --figure out.svg
+0 build runs.csv --cell cell.toml -o m.nc --json out.json
+0 build passages.csv --cell cell.toml -o m.nc --json out.json
+0 predict passages.nc --json out.json --figure out.pdf
+0 validate passages.nc --json out.json --figure out.png
+0 import counts.csv --states states.csv --start 0 --set field.rows=3 --set field.columns=3 -o m.nc --json out.json
+0 merge part1 part2 -o out.json
 2 gate nothing.toml
 2 gate field.toml --set body.mass_kg=-1
 2 gate field.toml --set body.mas_kg=1
@@ -160,6 +193,19 @@ lines() {
 2 validate field.toml --matrix matrix.nc --observed wrong.csv
 2 power field.toml --power 1.2
 END
+}
+
+# The commands of both programs.
+commands() { for side in old new; do "${!side}" help 2>/dev/null | sed -n 's/^  \([a-z][a-z-]*\)  .*/\1/p'; done | sort -u; }
+
+# The folder of a program's schemas; nothing where there is none.
+schemas_of() {  # PROGRAM
+  local here sources
+  here=$(dirname "$1")
+  sources=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$here/CMakeCache.txt" 2>/dev/null || true)
+  for folder in "$here/../share/gatewalk/schemas" "$sources/cli/schemas"; do
+    [ ! -e "$folder/common.schema.json" ] || { realpath "$folder"; return; }
+  done
 }
 
 # What they read: scenes beside those of the folder, an experiment's counts, and matrices that OLD builds.
@@ -193,7 +239,22 @@ printf 'body.radius_m = 10\n[beams]\nlength_m = "long"\n' >wrong.toml
 printf 'ending,count\ntrapped,50\nleft_side,6\nright_side,4\n' >ends.csv
 printf 'gate_x,gate_y,count\n0,0,8\n0,1,20\n1,1,12\n-1,2,20\n' >gates.csv
 printf 'gate_x,gate_y,count\n0,9,8\n' >wrong.csv
-lines >"$work/lines" || { echo "no line has '$pattern'" >&2; exit 2; }
+printf 'from,to,count\n0,0,4\n0,1,3\n0,2,2\n1,0,2\n1,1,6\n1,2,1\n' >counts.csv
+printf 'state,move_x,move_y\n0,0,1\n1,1,0\n' >states.csv
+cp "$scenes"/tracks/{tracks.csv,runs.csv,cell.toml} .
+old_schemas=$(schemas_of "$old") new_schemas=$(schemas_of "$new")
+{
+  lines
+  for command in '' $(commands); do echo "0 help $command"; done
+  if [ -n "$old_schemas" ] && [ -n "$new_schemas" ]; then
+    (cd "$old_schemas" && ls; cd "$new_schemas" && ls) | sort -u | sed 's/^/0 schema /'
+  else
+    echo "schemas are not compared: $([ -n "$old_schemas" ] && echo "$new" || echo "$old") has none beside it" >&2
+  fi
+} | grep -E -e "$pattern" >"$work/lines" || { echo "no line has '$pattern'" >&2; exit 2; }
+if grep -q 'passages\.' "$work/lines"; then
+  "$old" $(lines | sed -n 's/ --json.*//; s/^0 \(passages .*\)-o out.csv/\1-o passages.csv/p') --quiet >/dev/null
+fi
 while read -r name arguments; do
   grep -q -w "$name.nc" "$work/lines" || continue
   "$old" build $arguments -o "$name.nc" --quiet >/dev/null 2>"$work/log" || { cat "$work/log" >&2; exit 2; }
@@ -205,20 +266,48 @@ own own.toml --trials 20
 soft field.toml --set beams.stiffness_left_Nm_per_rad=300 --trials 20
 tree field.toml --accuracy 0.1
 mixed mixed.toml --set run.method=moreau --bins paper --trials 3
+passages passages.csv --cell cell.toml
 END
+# A program merges only its own parts.
+if grep -q '^0 merge' "$work/lines"; then
+  for part in 1 2; do
+    for side in old new; do
+      cd "$work/$([ $side = old ] && echo inputs || echo own)"
+      "${!side}" gate "$work/inputs/field.toml" --trials 40 --shard $part/2 --part part$part --quiet 2>"$work/log" ||
+        { cat "$work/log" >&2; exit 2; }
+    done
+  done
+fi
+for command in $(sed -E 's/^[0-9]+ //; s/ .*//' "$work/lines" | sort -u); do
+  # Both have it: a page of help tells where only one has.
+  for side in old new; do "${!side}" help "$command" 2>/dev/null | grep -q -e ' --csv FILE' || continue 2; done
+  echo "$command"
+done >"$work/with_csv"
 
-# What a file says but for what may differ: who made it, on how many threads, and what was timed. Where a table consists of times, its words
-# stay; its other numbers are in the JSON beside it. What chart-chain charts depends on the times, and so do verdicts of
-# reproduce: of it the results of the studies and the tables of the figures but for speed are compared.
+# What a file says but for what may differ: who made it, on how many threads, and what was timed. Where a table consists
+# of times, its words stay; its other numbers are in the CSV beside it. What chart-chain says of direct simulation depends
+# on the times, and so do the claims of reproduce about speed, its page and its words.
 plain() {  # COMMAND FILE
   case $1:$2 in
-    reproduce:*/out/report.json | reproduce:*/out/claims.csv | reproduce:*/out/speed.*) ;;
-    reproduce:*.html | reproduce:*.pdf | reproduce:*/stdout.txt) ;;
+    reproduce:*/out/report.json)
+      jq -S --arg timed "$timed" "$nameless | del(.lead) | .claims |= map(select(.see != \"speed\")) |
+        .sections |= map(select(.id != \"speed\"))" "$2" ;;
+    reproduce:*/out/claims.csv) grep -v ',speed$' "$2" ;;
+    reproduce:*/out/speed.* | reproduce:*.html | reproduce:*.pdf | reproduce:*/stdout.txt) ;;
     *stderr.txt) grep -v -E '^gatewalk: .*: (some [0-9.]+ (s|min|h)|[0-9.]+ %(, .* left)?)$' "$2" || true ;;
     *.json) jq -S --arg timed "$timed" "$nameless" "$2" ;;
     *.nc) content "$2" ;;
-    chart*.svg | chart-chain:*.txt | chart-chain:*.csv) ;;
-    chart*.txt | chart*.csv) sed -E 's/[0-9.]+(e[-+][0-9]+)?/N/g; s/ +/ /g' "$2" ;;
+    *numbers.csv) timed=$timed awk -F, '{ for (i = split($1, key, "."); i > 0; --i)
+      if (key[i] ~ ENVIRON["timed"] || key[i] ~ /^(version|commit|program|machine)$/) next; print }' "$2" ;;
+    chart:*.data) sed 's/^[-+.0-9e]* //' "$2" ;;  # the time comes first
+    chart-chain:*.data) sed '/^\$direct/,/^EOD/d; s/^[-+.0-9e]* //' "$2" ;;
+    chart-field:*.data) sed 's/ [-+.0-9e]*$//' "$2" ;;  # it comes last
+    reproduce:*.data) sed '/^\$times/,/^EOD/d' "$2" ;;
+    chart*.csv) awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) skip[i] = $i ~ /^microseconds_|^seconds_|(build|answer|total)_s$/ }
+      /,direct simulation,/ { next }
+      { for (i = 1; i <= NF; ++i) printf "%s,", skip[i] ? "" : $i; print "" }' "$2" ;;
+    chart*.svg | chart-chain:*.txt | *.pdf | *.png) ;;
+    chart*.txt) sed -E 's/[0-9.]+(e[-+][0-9]+)?/N/g; s/ +/ /g' "$2" ;;
     *.txt) sed -E '/ dynamics\/exact  trial\/walk$/,/^$/d; s/[0-9.]+ s([;,]|$)/... s\1/g' "$2" ;;
     *) cat "$2" ;;
   esac
@@ -244,13 +333,22 @@ compare() {  # NUMBER of the line
   local wanted line command side file differ=() here=$work/$1
   read -r wanted line < <(sed -n "$1p" "$work/lines")
   command=${line%% *}
+  local words=($line)
+  if [ "$wanted" != 2 ] && grep -q -x -e "$command" "$work/with_csv"; then
+    case " $line " in *' --csv '*) ;; *' --json '* | *' -o out '* | *' -o out.json '*) words+=(--csv numbers.csv) ;; esac
+  fi
   for side in old new; do
     mkdir -p "$here/$side"
     cp -r "$work/inputs/." "$here/$side"
     [ "$side" = old ] || cp -r "$work/own/." "$here/$side"
     cd "$here/$side"
     local status=0
-    "${!side}" $line >stdout.txt 2>stderr.txt || status=$?
+    if [ "$command" = schema ]; then
+      local schemas=${side}_schemas
+      cp "${!schemas}/${words[1]}" . 2>stderr.txt || status=$?
+    else
+      "${!side}" "${words[@]}" >stdout.txt 2>stderr.txt || status=$?
+    fi
     [ $status = "$wanted" ] || differ+=("status $status of $side: $(head -n 1 stderr.txt)")
     (cd "$work/inputs" && ls) | xargs rm -f
   done
@@ -266,17 +364,18 @@ compare() {  # NUMBER of the line
   done < <(cd old && find . -type f | sort)
   if [ -n "$hashes" ]; then
     local hash
-    hash=$(find old -type f | sort | while read -r file; do echo "$file"; plain "$command" "$file"; done | sha256sum)
+    # Without what was added to the lines, so that hashes of before hold.
+    hash=$(find old -type f ! -name numbers.csv ! -name 'figure-*.data' | sort | while read -r file; do echo "$file"; plain "$command" "$file"; done | sha256sum)
     printf '%s,"%s"\n' "${hash:0:16}" "$line" >"$work/$1.hash"
   fi
   if [ ${#differ[@]} = 0 ]; then
     echo same >"$work/$1.verdict"
   else
-    printf 'DIFFERS: gatewalk %s: %s\n' "$line" "${differ[*]}"
+    printf 'DIFFERS: gatewalk %s: %s\n' "${words[*]}" "${differ[*]}"
   fi
   rm -r "$here"
 }
-export old new work timed nameless hashes other_order
+export old new old_schemas new_schemas work timed nameless hashes other_order PATH
 export -f compare plain content
 seq "$(wc -l <"$work/lines")" | xargs -P "$(nproc)" -I{} bash -c 'set -euf; compare {}' || true
 if [ -n "$hashes" ]; then
