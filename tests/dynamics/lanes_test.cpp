@@ -19,7 +19,7 @@ namespace {
 using test::expect_same_bits;
 using test::same_bits;
 
-GateParams moreau(GateParams p, double step = 0.004) {
+GateParams marched(GateParams p, double step = 0.004) {
   p.run.method = "moreau";
   p.run.step = step;
   return p;
@@ -39,7 +39,7 @@ std::vector<LaneScene> lane_scenes() {
   std::vector<LaneScene> scenes;
   const auto add = [&](const char* name, GateParams p, const BodyState& start,
                        double step = 0.004) {
-    scenes.push_back({name, moreau(p, step), start});
+    scenes.push_back({name, marched(p, step), start});
   };
   GateParams p;
   add("field", p, {.vy = 15.0});
@@ -141,7 +141,7 @@ TEST(Lanes, HaveTheSameBitsWithAnyInstructionSet) {
 }
 
 TEST(Lanes, TallyIsTheSameOnAnyNumberOfThreads) {
-  const GateParams p = moreau({});
+  const GateParams p = marched({});
   const auto tally = [&](int threads) {
     return test::on_threads(threads, [&] { return run_gate_trials(p, {.vy = 15.0}, 1, {0, 300}); });
   };
@@ -155,7 +155,7 @@ TEST(Lanes, TallyIsTheSameOnAnyNumberOfThreads) {
 // A body that starts outside has ended before the first step; one that is no number is broken; one
 // whose time is over is trapped. Each gives its lane to the next.
 TEST(Lanes, RunsThatEndAtOnce) {
-  GateParams p = moreau({});
+  GateParams p = marched({});
   p.run.time_limit = 0.004;
   const std::vector<BodyState> starts{{0.0, 61.0, 0.0, 15.0}, {-26.0, 0.0, 0.0, 0.0},
                                       {0.0, 0.0, 0.0, 1e308}, {0.0, 0.0, 1e308, 1e308},

@@ -158,6 +158,7 @@ EventMethod::EventMethod(const GateParams& p)
       tolerance_(p.run.event_tolerance),
       time_(scale_of(p).time),
       rest_(rest_speed(p)),
+      weak_(weak_hits(p)),
       loose_(tolerance_ > 1e-5 * scale_of(p).length),
       hold_(1.0 / p.forces.random_rate),
       law_(p),
@@ -328,7 +329,7 @@ void EventMethod::resolve(GateState& s, double force_x, Watch& watch) const {
       const Motion m(p_, s, force_x);
       if (m.force[1 - side] > 0.0) back += t.nx * m.push.ax + t.ny * m.push.ay;
     }
-    return back < 0.0 && rebound * rebound <= 2.0 * -back * rise_;
+    return back < 0.0 && rebound * rebound <= 2.0 * -back * rise_ * weak_;
   });
 }
 

@@ -11,6 +11,19 @@ namespace gatewalk::dynamics {
 /// A contact this slow (m/s) does not close.
 [[nodiscard]] inline double rest_speed(const GateParams& p) { return 1e-12 * scale_of(p).speed(); }
 
+/// Factor of the threshold below which a weak hit ends the bouncing. Up to a restitution e of 0.95
+/// it is 1. The bounces left after a hit take a time in proportion to its speed / (1 - e), so
+/// beyond 0.95 the factor is as small as keeps that time: 0 for e = 1, whose bounces never end.
+/// Without propulsion and random force nothing presses bodies together for long: there it is 0
+/// beyond 0.95.
+[[nodiscard]] inline double weak_hits(const GateParams& p) {
+  constexpr double kElastic = 0.95;
+  const double e = std::min(p.contact.restitution, p.contact.tip_restitution);
+  const bool pressed = p.forces.propulsion != 0.0 || p.forces.random != 0.0;
+  if (e > kElastic && !pressed) return 0.0;
+  return std::min(1.0, (1.0 - e) / (1.0 - kElastic));
+}
+
 /// Contact points of the wanted beams; an unwanted one has no direction and no lever.
 [[nodiscard]] std::array<Touch, 2> touches(const GateParams& p, const GateState& s,
                                            std::array<bool, 2> wanted);

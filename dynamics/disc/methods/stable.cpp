@@ -72,7 +72,8 @@ double crossing(double dt, double start, double end, bool from_zero, double tole
 }  // namespace
 
 StableMethod::Limits::Limits(const GateParams& p)
-    : threshold(p.contact.impulse_threshold * p.run.step / (kPaperStep * scale_of(p).time)),
+    : threshold(p.contact.impulse_threshold * p.run.step / (kPaperStep * scale_of(p).time) *
+                weak_hits(p)),
       touching(1e-10 * p.body.radius),
       rest(rest_speed(p)) {
   const double inertia = p.beams.inertia();
