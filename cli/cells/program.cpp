@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -74,10 +75,13 @@ void put(std::vector<double>& values, const Hello& hello, const std::vector<Cell
 }  // namespace
 
 struct ProgramCell::Program {
+  Program(std::string command_, const ProgramOptions& options_)
+      : command(std::move(command_)), options(options_) {}
   std::string command;
   ProgramOptions options;
   Hello hello;
   std::string first_line;
+  mutable std::atomic<int> starts_again{3};  // new processes that are to answer for others, yet
 };
 
 struct ProgramCell::Running {
@@ -94,7 +98,8 @@ ProgramCell::ProgramCell(std::string command, const ProgramOptions& options,
   if (options.in_flight < 1 || options.in_flight > std::int64_t{kMostInFlight})
     throw std::invalid_argument("cell program: passages in flight must be 1 to " +
                                 std::to_string(kMostInFlight));
-  Program program{std::move(command), options, {}, {}};
+  auto shared = std::make_shared<Program>(std::move(command), options);
+  Program& program = *shared;
   auto running = std::make_unique<Running>(program.command, options);
   program.first_line = running->process.wait_for_line();
   try {
@@ -105,7 +110,7 @@ ProgramCell::ProgramCell(std::string command, const ProgramOptions& options,
   }
   for (const Hello::Parameter& p : program.hello.parameters) values_.push_back(p.number.value);
   put(values_, program.hello, set);
-  program_ = std::make_shared<const Program>(std::move(program));
+  program_ = std::move(shared);
   tell_values(*running);
   idle_.push_back(std::move(running));
 }
@@ -160,6 +165,10 @@ std::unique_ptr<ProgramCell::Running> ProgramCell::take() const {
       return running;
     }
   }
+  return started();
+}
+
+std::unique_ptr<ProgramCell::Running> ProgramCell::started() const {
   auto running = std::make_unique<Running>(program_->command, program_->options);
   if (const std::string_view line = running->process.wait_for_line(); line != program_->first_line)
     running->process.fail("its first line is not the same at each start: '" + excerpt(line) + "'");
@@ -185,6 +194,19 @@ Passage ProgramCell::pass(Body& body) const {
 }
 
 void ProgramCell::carry_out(const NextPassage& next, Health& health, std::int64_t at_once) const {
+  carry_out_by(nullptr, next, health, at_once);
+}
+
+void ProgramCell::carry_out_once_more(const NextPassage& next, Health& health,
+                                      std::int64_t at_once) const {
+  if (program_->starts_again <= 0 || program_->starts_again-- <= 0)
+    return carry_out(next, health, at_once);
+  take().reset();  // there are never more of them than threads
+  carry_out_by(started(), next, health, at_once);
+}
+
+void ProgramCell::carry_out_by(std::unique_ptr<Running> running, const NextPassage& next,
+                               Health& health, std::int64_t at_once) const {
   struct Slot {
     Body body{.entry = {}, .random = Random(Purpose::gate, {})};
     std::optional<std::uint64_t> id{};  // of its line, until that is answered
@@ -198,7 +220,7 @@ void ProgramCell::carry_out(const NextPassage& next, Health& health, std::int64_
 
   // It answers one half while we write the lines of the other.
   const Hello& hello = program_->hello;
-  std::unique_ptr<Running> running = take();
+  if (!running) running = take();
   Process& process = running->process;
   std::size_t under_way = slots.size(), left_in_batch = 0;
   while (under_way > 0) {

@@ -36,6 +36,9 @@ class ProgramCell : public dynamics::Cell {
   [[nodiscard]] dynamics::Passage pass(dynamics::Body& body) const override;
   void carry_out(const dynamics::NextPassage& next, dynamics::Health& health,
                  std::int64_t at_once) const override;
+  /// The first times by a new process, in place of one that was used.
+  void carry_out_once_more(const dynamics::NextPassage& next, dynamics::Health& health,
+                           std::int64_t at_once) const override;
   /// Without memory.
   void begin(dynamics::Body& body) const override;
 
@@ -52,6 +55,9 @@ class ProgramCell : public dynamics::Cell {
   ProgramCell(std::shared_ptr<const Program> program, std::vector<double> values);
   /// One that nobody uses, or a new one.
   [[nodiscard]] std::unique_ptr<Running> take() const;
+  [[nodiscard]] std::unique_ptr<Running> started() const;
+  void carry_out_by(std::unique_ptr<Running> running, const dynamics::NextPassage& next,
+                    dynamics::Health& health, std::int64_t at_once) const;
   void tell_values(Running& running) const;
 
   std::shared_ptr<const Program> program_;

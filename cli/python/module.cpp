@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -19,6 +20,7 @@
 #include "cli/python/python_cell.h"
 #include "cli/render/json.h"
 #include "cli/render/version.h"
+#include "dynamics/cells/check_cell.h"
 #include "lattice/gate_chain.h"
 #include "lattice/scene/scene.h"
 
@@ -241,6 +243,22 @@ py::tuple run(const std::string& name, std::vector<std::string> words, const py:
   return py::make_tuple(status, to_python(result));
 }
 
+/// Complaints about a cell, from starts (face, coordinates).
+std::vector<std::string> check_cell(const py::object& cell,
+                                    const std::vector<std::pair<int, std::vector<double>>>& starts,
+                                    std::int64_t trials, int cells, std::uint64_t seed) {
+  const PythonCell checked(cell);
+  std::vector<dynamics::Entry> entries;
+  for (const auto& [face, at] : starts) {
+    dynamics::Entry& entry = entries.emplace_back();
+    entry.face = face;
+    std::copy_n(at.begin(), std::min(at.size(), entry.at.size()), entry.at.begin());
+  }
+  const Turn turn;
+  const py::gil_scoped_release no_gil;
+  return dynamics::check_cell(checked, entries, {.trials = trials, .cells = cells, .seed = seed});
+}
+
 }  // namespace
 }  // namespace gatewalk::python
 
@@ -262,6 +280,9 @@ PYBIND11_MODULE(_core, m) {
         "Runs a command with these words: (exit status, its result as JSON says it). told(what, "
         "done, total) hears how far it is, warned(text) what it warns of. Files of `matrices` are "
         "not read again.");
+  m.def("check_cell", &python::check_cell, pybind11::arg("cell"), pybind11::arg("starts"),
+        pybind11::arg("trials"), pybind11::arg("cells"), pybind11::arg("seed"),
+        "What is wrong with a cell, in words, of trials from starts (face, coordinates).");
   m.def(
       "threads",
       [](int n) {

@@ -5,8 +5,12 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
+#include <stdexcept>
+
+#include "dynamics/cells/seen_passage.h"
 
 namespace gatewalk::dynamics {
 
@@ -37,29 +41,174 @@ CellField CellField::uniform(std::shared_ptr<const Cell> cell) {
   return {std::move(map), {std::move(cell)}};
 }
 
+/// Trials that several threads share out: whoever is free takes the next one, nobody waits for the
+/// end of a block.
+class TrialsOfCell {
+ public:
+  TrialsOfCell(const Cell& cell, std::int64_t count, const BeginBody& begin,
+               const TakePassage& take, bool once_more)
+      : cell_(cell),
+        count_(count),
+        begin_(begin),
+        take_(take),
+        once_more_(once_more && cell.has_to_show_itself()),
+        passed_before_(cell.passed_.count),
+        first_ones_(passed_before_ == 0 ? kFirstOnes : 0) {}
+
+  void carry_out(Health& health) {
+    const std::int64_t each = (count_ + threads_ - 1) / threads_;  // not what others could do
+    tbb::enumerable_thread_specific<Health> parts;  // sums and largest values: any order will do
+    tbb::parallel_for(0, threads_, [&](int) {
+      try {
+        Share share(*this);
+        share.carry_out(parts.local(), each);
+      } catch (...) {
+        next_trial_ = count_;  // nobody takes another one
+        throw;
+      }
+    });
+    for (const Health& part : parts) health += part;
+  }
+
+ private:
+  /// Of a new cell's passages the first few, and later one of so many, are seen once more: at most
+  /// so many at a time, when the cell has had so many passages, and each time that they doubled.
+  /// A run of fewer than `kFew` sees all of its own at its end.
+  static constexpr std::int64_t kFirstOnes = 4, kOneOf = 20, kMostKept = 64, kFirstTime = 128,
+                                kFew = 2 * kMostKept * kOneOf;
+
+  /// The passages of one thread.
+  class Share {
+   public:
+    explicit Share(TrialsOfCell& all) : all_(all) {
+      while (next_time_ <= all.passed_before_) next_time_ *= 2;
+    }
+    ~Share() { all_.cell_.passed_.count += begun_; }
+    Share(const Share&) = delete;
+    Share& operator=(const Share&) = delete;
+
+    void carry_out(Health& health, std::int64_t at_once) {
+      const NextPassage next = [this](Body& body, const Passage* ended) {
+        return this->next(body, ended);
+      };
+      do {
+        is_time_ = false;
+        all_.cell_.carry_out(next, health, at_once);
+        if (!is_time_ && passed() >= kFew) break;
+        see_once_more(at_once);
+      } while (is_time_);
+    }
+
+   private:
+    /// A passage that ended, and how it began.
+    struct Seen {
+      Body before;
+      SeenPassage once;
+    };
+
+    bool next(Body& body, const Passage* ended) {
+      if (ended != nullptr) {
+        if (!watched_.empty()) keep(body, *ended);
+        if (all_.take_(body, *ended)) return begin(body);
+      }
+      if (is_time_) return false;
+      if (!waiting_.empty()) {
+        body = waiting_.back();
+        waiting_.pop_back();
+        return begin(body);
+      }
+      body.trial = all_.next_trial_.fetch_add(1, std::memory_order_relaxed);
+      if (body.trial >= all_.count_) return false;
+      all_.begin_(body);
+      return begin(body);
+    }
+    /// False: the body waits until what was kept has been seen once more.
+    bool begin(const Body& body) {
+      if (!all_.once_more_) return true;
+      if (passed() >= next_time_ && !(watched_.empty() && seen_.empty())) is_time_ = true;
+      if (is_time_) {
+        waiting_.push_back(body);
+        return false;
+      }
+      ++begun_;
+      if (is_wanted(body.trial)) watched_.push_back(body);
+      return true;
+    }
+    /// As if all threads had begun as many.
+    [[nodiscard]] std::int64_t passed() const {
+      return all_.passed_before_ + begun_ * all_.threads_;
+    }
+    [[nodiscard]] bool is_wanted(std::int64_t trial) {
+      if (std::ssize(watched_) + std::ssize(seen_) >= kMostKept) return false;
+      const bool is_first = all_.first_ones_ > 0 && all_.first_ones_-- > 0;
+      if (!is_first && begun_ % kOneOf != 0) return false;
+      return std::none_of(seen_.begin(), seen_.end(),  // a trial's number tells which one it is
+                          [&](const Seen& seen) { return seen.before.trial == trial; });
+    }
+    void keep(const Body& body, const Passage& passage) {
+      const auto found = std::find_if(watched_.begin(), watched_.end(),
+                                      [&](const Body& w) { return w.trial == body.trial; });
+      if (found == watched_.end()) return;
+      seen_.push_back({*found, {passage, body.entry}});
+      watched_.erase(found);
+    }
+
+    void see_once_more(std::int64_t at_once) {
+      while (next_time_ <= passed()) next_time_ *= 2;
+      if (seen_.empty()) return;
+      const auto seen = std::exchange(seen_, {});
+      auto next_one = seen.rbegin();
+      Health uncounted;
+      all_.cell_.carry_out_once_more(
+          [&](Body& body, const Passage* ended) {
+            if (ended != nullptr) compare(seen, body, *ended);
+            if (next_one == seen.rend()) return false;
+            body = (next_one++)->before;
+            return true;
+          },
+          uncounted, at_once);
+    }
+    void compare(const std::vector<Seen>& seen, const Body& body, const Passage& passage) const {
+      const auto was = std::find_if(seen.begin(), seen.end(),
+                                    [&](const Seen& s) { return s.before.trial == body.trial; });
+      const SeenPassage again{passage, body.entry};
+      if (was == seen.end() || was->once.same_as(again)) return;
+      const Section& section = all_.cell_.section();
+      throw std::runtime_error(
+          "the cell answers the same passage in two ways: a body that entered by " +
+          words_of(section, was->before.entry) + " " + was->once.words(section) +
+          "; sent once more, with the same noise and seed, in another order, it " +
+          again.words(section) +
+          ". What becomes of a body must depend on its entry, its noise (or its seed) and what it "
+          "carries alone: never on the clock, on what came before, or on the process. Seed the "
+          "generator with the seed of each passage, and keep nothing from one to the next");
+    }
+
+    TrialsOfCell& all_;
+    std::int64_t begun_ = 0, next_time_ = kFirstTime;
+    bool is_time_ = false;
+    std::vector<Body> watched_, waiting_;  // under way and to be kept; stopped until it was seen
+    std::vector<Seen> seen_;
+  };
+
+  const Cell& cell_;
+  const std::int64_t count_;
+  const BeginBody& begin_;
+  const TakePassage& take_;
+  const bool once_more_;
+  const int threads_ = tbb::this_task_arena::max_concurrency();
+  const std::int64_t passed_before_;
+  std::atomic<std::int64_t> first_ones_, next_trial_{0};
+};
+
 void carry_out_trials(const Cell& cell, std::int64_t count, const BeginBody& begin,
                       const TakePassage& take, Health& health) {
-  // Whoever is free takes the next trial: nobody waits for the end of a block.
-  std::atomic<std::int64_t> next_trial{0};
-  const NextPassage next = [&](Body& body, const Passage* ended) {
-    if (ended != nullptr && take(body, *ended)) return true;
-    body.trial = next_trial.fetch_add(1, std::memory_order_relaxed);
-    if (body.trial >= count) return false;
-    begin(body);
-    return true;
-  };
-  const int threads = tbb::this_task_arena::max_concurrency();
-  const std::int64_t each = (count + threads - 1) / threads;  // nobody takes what others could do
-  tbb::enumerable_thread_specific<Health> parts;  // sums and largest values: any order will do
-  tbb::parallel_for(0, threads, [&](int) {
-    try {
-      cell.carry_out(next, parts.local(), each);
-    } catch (...) {
-      next_trial = count;  // nobody takes another one
-      throw;
-    }
-  });
-  for (const Health& part : parts) health += part;
+  TrialsOfCell(cell, count, begin, take, true).carry_out(health);
+}
+
+void carry_out_trials_once(const Cell& cell, std::int64_t count, const BeginBody& begin,
+                           const TakePassage& take, Health& health) {
+  TrialsOfCell(cell, count, begin, take, false).carry_out(health);
 }
 
 }  // namespace gatewalk::dynamics

@@ -4,6 +4,7 @@
 /// Pools, chains and predictions need only what the cells look like (CellMap); a Cell makes new
 /// passages.
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -84,6 +85,14 @@ class Cell {
   /// Until `next` has no more; by default pass() after pass(). For cells that carry many bodies at
   /// once, but no more than `at_once`. Adds what went wrong to `health`.
   virtual void carry_out(const NextPassage& next, Health& health, std::int64_t at_once) const;
+  /// Whether carry_out_trials() carries out some passages once more, to see whether they are the
+  /// same: not of a cell whose own tests show it.
+  [[nodiscard]] virtual bool has_to_show_itself() const { return true; }
+  /// carry_out() of those passages: where a cell has processes, by another one.
+  virtual void carry_out_once_more(const NextPassage& next, Health& health,
+                                   std::int64_t at_once) const {
+    carry_out(next, health, at_once);
+  }
 
   /// The memory of a body that begins a trial at its entry is put in place: with noise of
   /// body.random.
@@ -114,6 +123,17 @@ class Cell {
   /// How much room there is about an entry, in a unit of the cell's own; negative: none, a body
   /// cannot enter so.
   [[nodiscard]] virtual double clearance(const Entry&) const { return 0.0; }
+
+ private:
+  friend class TrialsOfCell;
+  /// Passages that carry_out_trials() has had from this object; a copy begins anew.
+  struct Passed {
+    Passed() = default;
+    Passed(const Passed&) {}
+    Passed& operator=(const Passed&) { return *this; }
+    std::atomic<std::int64_t> count{0};
+  };
+  mutable Passed passed_;
 };
 
 /// A cell of a function, which carries a body through as Cell::pass does.
@@ -152,7 +172,14 @@ using TakePassage = std::function<bool(Body& body, const Passage& passage)>;
 /// Carries out all passages of trials 0 .. count - 1 through one cell on all threads of the current
 /// TBB arena. Both functions are called by several threads at once, for different trials. What went
 /// wrong is added to `health`.
+///
+/// Some of the passages, of a new cell the first few, then one of twenty and ever fewer, are
+/// carried out once more, in another order and company. Throws std::runtime_error with both answers
+/// where one differs: such a cell depends on more than its body, and nothing can be told by it.
 void carry_out_trials(const Cell& cell, std::int64_t count, const BeginBody& begin,
                       const TakePassage& take, Health& health);
+/// The same, each passage once.
+void carry_out_trials_once(const Cell& cell, std::int64_t count, const BeginBody& begin,
+                           const TakePassage& take, Health& health);
 
 }  // namespace gatewalk::dynamics

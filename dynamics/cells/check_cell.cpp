@@ -6,31 +6,15 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <stdexcept>
+
+#include "dynamics/cells/seen_passage.h"
 
 namespace gatewalk::dynamics {
 namespace {
 
-bool same_bits(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-/// What was seen of a passage: what it said, and how the body then was.
-struct CheckedPassage {
-  Passage passage;
-  Entry body;
-  [[nodiscard]] bool same_as(const CheckedPassage& o) const {
-    const auto same = [](const auto& a, const auto& b) {
-      return std::equal(a.begin(), a.end(), b.begin(), same_bits);
-    };
-    return passage.fate == o.passage.fate && passage.next.face == o.passage.next.face &&
-           body.face == o.body.face && same(passage.next.at, o.passage.next.at) &&
-           same(body.at, o.body.at) && same(passage.costs, o.passage.costs);
-  }
-};
-using CheckedTrials = std::vector<std::vector<CheckedPassage>>;
+using CheckedTrials = std::vector<std::vector<SeenPassage>>;
 
 class CellChecker {
  public:
@@ -92,7 +76,7 @@ class CellChecker {
   }
   /// Whether the trial goes on.
   bool take(CheckedTrials& trials, const Body& body, const Passage& passage) const {
-    std::vector<CheckedPassage>& trial = trials[static_cast<std::size_t>(body.trial)];
+    std::vector<SeenPassage>& trial = trials[static_cast<std::size_t>(body.trial)];
     trial.push_back({passage, body.entry});
     return passage.fate == Fate::left && std::ssize(trial) < options_.cells &&
            body.entry.face >= 0 && body.entry.face < std::ssize(section_.faces);
@@ -108,7 +92,7 @@ class CellChecker {
     tbb::task_arena arena(threads);
     arena.execute([&] {
       Health health;
-      carry_out_trials(
+      carry_out_trials_once(
           cell, options_.trials, [&](Body& body) { begin(body, body.trial, mirror); },
           [&](Body& body, const Passage& passage) { return take(trials, body, passage); }, health);
     });
@@ -164,7 +148,7 @@ class CellChecker {
     std::int64_t broken = 0, passages = 0;
     for (std::size_t trial = 0; trial < trials.size(); ++trial)
       for (std::size_t k = 0; k < trials[trial].size(); ++k) {
-        const CheckedPassage& seen = trials[trial][k];
+        const SeenPassage& seen = trials[trial][k];
         ++passages;
         broken += seen.passage.fate == Fate::broken;
         if (seen.passage.fate == Fate::broken) continue;
@@ -176,7 +160,7 @@ class CellChecker {
       complain(std::to_string(broken) + " of " + std::to_string(passages) + " passages broke");
   }
 
-  [[nodiscard]] std::string wrong_with(const CheckedPassage& seen) const {
+  [[nodiscard]] std::string wrong_with(const SeenPassage& seen) const {
     const Costs& costs = seen.passage.costs;
     for (std::size_t c = 0; c < costs.size(); ++c) {
       if (c >= section_.costs.size() && costs[c] != 0.0) return "a cost that the section lacks";

@@ -32,6 +32,7 @@ class DiscCell : public Cell {
   [[nodiscard]] bool is_symmetric() const override { return symmetric(p_); }
   [[nodiscard]] Passage pass(Body& body) const override;
   void carry_out(const NextPassage& next, Health& health, std::int64_t at_once) const override;
+  [[nodiscard]] bool has_to_show_itself() const override { return false; }
 
   void begin(Body& body) const override;
   /// At a place inside the gate too, which no entry shows.

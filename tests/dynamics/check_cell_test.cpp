@@ -2,6 +2,7 @@
 #include "dynamics/cells/check_cell.h"
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <cmath>
@@ -159,6 +160,95 @@ TEST(CheckCell, FindsNumbersThatDoNotKeepTheCell) {
                    "it cannot be had with once its own mass_kg");
   expect_complaint(check_cell(Numbered(true), kTwoStarts),
                    "is another one by a copy with the same mass_kg");
+}
+
+using CarryOut = void (*)(const Cell&, std::int64_t, const BeginBody&, const TakePassage&, Health&);
+
+/// Trials of up to `most` passages; what became of them, by trial.
+std::vector<std::vector<Passage>> carried_out(const Cell& cell, std::int64_t trials, int threads,
+                                              CarryOut carry_out = carry_out_trials,
+                                              std::size_t most = 5) {
+  std::vector<std::vector<Passage>> all(static_cast<std::size_t>(trials));
+  tbb::task_arena(threads).execute([&] {
+    Health health;
+    carry_out(
+        cell, trials,
+        [&](Body& body) {
+          body.entry = kTwoStarts[static_cast<std::size_t>(body.trial % 2)];
+          body.random = Random(Purpose::field, {.trial = static_cast<std::uint64_t>(body.trial)});
+          cell.begin(body);
+        },
+        [&](Body& body, const Passage& passage) {
+          auto& trial = all[static_cast<std::size_t>(body.trial)];
+          trial.push_back(passage);
+          return passage.fate == Fate::left && trial.size() < most;
+        },
+        health);
+    std::int64_t passages = 0;
+    for (const auto& trial : all) passages += std::ssize(trial);
+    EXPECT_EQ(health.runs, passages);
+  });
+  return all;
+}
+
+// Of n passages at most n / 20 are carried out once more, and four; of a long run far fewer.
+TEST(OnceMore, CostsLittleAndChangesNothing) {
+  for (const std::int64_t trials : {1, 3, 40, 2000, 40'000})
+    for (const int threads : {1, 4}) {
+      auto calls = std::make_shared<std::atomic<std::int64_t>>(0);
+      const FunctionCell cell(upright(), [=](Body& body) {
+        ++*calls;
+        return fine(body);
+      });
+      const auto once = carried_out(cell, trials, threads, carry_out_trials_once);
+      const std::int64_t passages = calls->exchange(0);
+      const auto some_twice = carried_out(cell, trials, threads);
+      const std::int64_t more = *calls - passages;
+      EXPECT_GT(more, 0) << trials;
+      EXPECT_LE(more, passages / 20 + 4) << trials;
+      if (trials == 40'000) EXPECT_LT(more, passages / 100);
+      for (std::size_t t = 0; t < once.size(); ++t) {
+        ASSERT_EQ(once[t].size(), some_twice[t].size());
+        for (std::size_t k = 0; k < once[t].size(); ++k) {
+          EXPECT_EQ(once[t][k].next, some_twice[t][k].next);
+          EXPECT_EQ(once[t][k].costs, some_twice[t][k].costs);
+        }
+      }
+    }
+}
+
+TEST(OnceMore, FindsCellsThatDependOnMoreThanTheBody) {
+  const auto refusal = [](const FunctionCell& cell, std::int64_t trials, int threads) {
+    try {
+      (void)carried_out(cell, trials, threads);
+    } catch (const std::runtime_error& e) {
+      return std::string(e.what());
+    }
+    return std::string("nothing refused");
+  };
+  for (const std::int64_t trials : {1, 100, 5000})
+    for (const int threads : {1, 4}) {
+      auto passed = std::make_shared<std::atomic<int>>(0);
+      const FunctionCell counts(upright(), [=](Body& body) {
+        body.entry = {0, {0.5}};
+        return Passage{Fate::left, {0, {0.5}}, {1.0 + (*passed)++}};
+      });
+      const std::string said = refusal(counts, trials, threads);
+      EXPECT_NE(said.find("in two ways: a body that entered by "), said.npos) << said;
+      EXPECT_NE(said.find("left by S (s = 0.5), time_s = "), said.npos) << said;
+      EXPECT_NE(said.find(", in another order, it left by S (s = 0.5), time_s = "), said.npos)
+          << said;
+    }
+  // It turns wrong late: a run that goes on is looked at again.
+  auto passed = std::make_shared<std::atomic<int>>(0);
+  const FunctionCell late(upright(), [=](Body& body) {
+    const int n = (*passed)++;
+    Passage passage = fine(body);
+    if (n > 20'000) passage.costs[0] += n;
+    return passage;
+  });
+  EXPECT_NE(refusal(late, 40'000, 1).find("answers the same passage in two ways"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -524,6 +524,86 @@ class Cells(unittest.TestCase):
             gw.lattice(CELLS.replace("symmetric = true\n", ""), cell=Bare(), trials=10)
 
 
+    def test_nothing_is_cast(self):
+        def answering(**more):
+            class Wrong(Pillars):
+                def pass_(self, entries, random):
+                    out = super().pass_(entries, random)
+                    return {**out, **{key: change(out[key]) for key, change in more.items()}}
+            return Wrong()
+
+        def masked(values):
+            return np.ma.masked_array(values, np.arange(len(values)) == 0)
+
+        for cell, text in ((answering(s=masked), "s with masked entries"), (answering(time_s=masked), "time_s with masked entries"),
+                           (answering(face=masked), "face with masked entries"), (answering(memory=masked), "memory with masked entries"),
+                           (answering(s=lambda s: s + 0j), "numbers as s, it gave complex128"), (answering(s=lambda s: s > 0), "numbers as s, it gave bool"),
+                           (answering(time_s=lambda s: s.astype(str)), "numbers as time_s, it gave <U"),
+                           (answering(face=lambda f: np.full(len(f), 2**64 - 1, dtype=np.uint64)), "the face 18446744073709551615; faces are 0 to 2")):
+            with self.assertRaisesRegex(ValueError, text):
+                gw.lattice(CELLS, cell=cell, trials=10)
+        for value in ("0.2", True, None, np.array([0.2])):
+            cell = Pillars()
+            cell.parameters = {**Pillars.parameters, "side": value}
+            with self.assertRaisesRegex(ValueError, "side of parameters must be a number"):
+                gw.lattice(CELLS, cell=cell, trials=10)
+
+    def test_cells_that_depend_on_more_than_the_row(self):
+        class Forgetful(Pillars):
+            def pass_(self, entries, random):
+                random.uniforms = np.random.default_rng().random(random.uniforms.shape)
+                return super().pass_(entries, random)
+
+        class OfTheBatch(Pillars):
+            def pass_(self, entries, random):
+                random.uniforms = np.random.default_rng(random.seed[0]).random(random.uniforms.shape)
+                return super().pass_(entries, random)
+
+        class Counting(Pillars):
+            passed = 0
+
+            def pass_(self, entries, random):
+                out = super().pass_(entries, random)
+                self.passed += len(out["face"])
+                return {**out, "time_s": 1.0 + self.passed + np.arange(len(out["face"]))}
+
+        for threads in (1, 3):
+            gw.threads(threads)
+            for wrong in (Forgetful, OfTheBatch, Counting):
+                for trials in (5, 3000):
+                    with self.assertRaisesRegex(RuntimeError, r"in two ways: a body that entered by [SWE] .* sent once more, with the same noise"):
+                        gw.lattice(CELLS, cell=wrong(), trials=trials)
+        gw.threads(0)
+
+    def test_check_cell(self):
+        self.assertEqual(gw.check_cell(Pillars()), [])
+        self.assertEqual(gw.check_cell(Pillars(), [{"face": "W", "s": 0.05}], trials=50, cells=3, seed=2), [])
+
+        class Timeless(Pillars):
+            def pass_(self, entries, random):
+                return {**super().pass_(entries, random), "time_s": 0.0}
+
+        class Lopsided(Pillars):
+            def pass_(self, entries, random):
+                out = super().pass_(entries, random)
+                return {**out, "face": np.where(out["face"] == 1, 2, out["face"])}
+
+        class Stateful(Pillars):
+            passed = 0
+
+            def pass_(self, entries, random):
+                self.passed += 1
+                return {**super().pass_(entries, random), "time_s": float(self.passed)}
+
+        for cell, words in ((Timeless(), "time_s is not > 0"), (Lopsided(), "it says that it is symmetric"), (Stateful(), "is another one")):
+            self.assertTrue(any(words in complaint for complaint in gw.check_cell(cell)), gw.check_cell(cell))
+        for bad in ([{"face": "Q", "s": 0.0}], [{"face": "S"}], [{"face": "S", "s": 0.0, "vx": 1.0}]):
+            with self.assertRaisesRegex(gw.UsageError, "start 0 must have a face, one of S, W, E, and s"):
+                gw.check_cell(Pillars(), bad)
+        with self.assertRaisesRegex(gw.UsageError, "derived from gatewalk.Cell"):
+            gw.check_cell(Pillars)
+
+
 class Recorded(unittest.TestCase):
     def test_tables_and_tracks(self):
         import pandas

@@ -26,14 +26,14 @@ import typing as _t
 import warnings as _warnings
 
 from . import _core
-from ._cell import BROKEN, TRAPPED, Cell
+from ._cell import BROKEN, TRAPPED, Cell, check_cell
 from ._core import BadFile, SceneError, UsageError, threads
 from ._results import Analysis, Landscape, Prediction, Result, Sweep, Trace
 from ._scene import Scene, file_of as _file_of, is_of_text as _is_of_text
 
 __version__: str = _core.version
 __all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "GatewalkWarning", "Landscape", "Matrix", "Prediction", "Result", "Scene", "SceneError", "Sweep",
-           "TRAPPED", "Trace", "UsageError", "analyze", "build", "design", "fit", "from_counts", "from_passages", "gate", "landscape", "lattice",
+           "TRAPPED", "Trace", "UsageError", "analyze", "build", "check_cell", "design", "fit", "from_counts", "from_passages", "gate", "landscape", "lattice",
            "load", "merge", "options", "passages", "plan", "power", "predict", "rare", "sample", "sweep", "threads", "trace", "validate", "walk"]
 
 

@@ -10,11 +10,23 @@ import typing as t
 
 import numpy as np
 
+from . import _core
+
 if t.TYPE_CHECKING:
     Array = np.ndarray[t.Any, t.Any]
 
 #: What `Cell.pass_` gives as the face of a body that stays, and of one of which nothing is known.
 TRAPPED, BROKEN = -1, -2
+
+
+def _numbers(value: t.Any, what: str, kinds: str = "iuf") -> Array:
+    """An array of numbers as they are: what would have to be cast, or is masked, is none."""
+    if np.ma.is_masked(value):  # type: ignore[no-untyped-call]
+        raise ValueError(f"cell: pass_ gave {what} with masked entries; of a body of which nothing is known the face is BROKEN")
+    array = np.asarray(value)
+    if array.dtype.kind not in kinds:
+        raise ValueError(f"cell: pass_ must give numbers as {what}, it gave {array.dtype}")
+    return array
 
 
 class Cell:
@@ -71,8 +83,13 @@ class Cell:
         raise NotImplementedError("derive from gatewalk.Cell and write pass_(entries, random)")
 
     def _hello(self) -> str:
-        parameters = {key: [float(value), *map(float, self.limits[key])] if key in self.limits else float(value)
-                      for key, value in self.parameters.items()}
+        def number(value: t.Any, what: str) -> float:
+            if isinstance(value, (bool, np.bool_, str, bytes)) or not np.isscalar(value):
+                raise ValueError(f"cell: {what} must be a number, not {value!r}")
+            return float(value)  # type: ignore[arg-type]
+
+        parameters = {key: [number(x, f"{key} of parameters and limits") for x in (value, *self.limits[key])] if key in self.limits
+                      else number(value, f"{key} of parameters") for key, value in self.parameters.items()}
         return json.dumps({"gatewalk": 1, "faces": self.faces, "coordinates": self.coordinates, "costs": self.costs,
                            "symmetric": self.symmetric, "normals": self.normals, "uniforms": self.uniforms,
                            "parameters": parameters})
@@ -102,14 +119,77 @@ class Cell:
         def stacked(keys: list[str]) -> Array:
             if not keys:
                 return np.zeros((n, 0))
-            return np.stack([np.broadcast_to(np.asarray(out[k], dtype=float), (n,)) for k in keys], axis=1)
+            return np.stack([np.broadcast_to(_numbers(out[k], k).astype(float), (n,)) for k in keys], axis=1)
 
+        if np.ma.is_masked(out["face"]):  # type: ignore[no-untyped-call]
+            _numbers(out["face"], "face")
         leaves = np.asarray(out["face"])
         if leaves.shape != (n,) or leaves.dtype.kind not in "iu":
             raise ValueError(f"cell: pass_ must give {n} whole numbers as face, it gave {leaves.dtype} of shape {leaves.shape}")
-        kept = np.asarray(out.get("memory", memory), dtype=float)
+        if leaves.dtype == np.uint64 and (leaves > np.iinfo(np.int64).max).any():
+            raise ValueError(f"cell: pass_ gave the face {leaves.max()}; faces are 0 to {len(self.faces) - 1}, -1 is trapped, -2 broken")
+        kept = _numbers(out.get("memory", memory), "memory").astype(float)
         if kept.shape == (n,) and self.memory == 1:
             kept = kept[:, np.newaxis]
         if kept.shape != (n, self.memory):
             raise ValueError(f"cell: pass_ must give memory of shape ({n}, {self.memory}), it gave {kept.shape}")
         return leaves.astype(np.int64), stacked(names), stacked(wanted[1 + len(names):]), kept
+
+
+def check_cell(cell: Cell, starts: t.Sequence[t.Mapping[str, t.Any]] | None = None, *, trials: int = 200, cells: int = 8,
+               seed: int = 1) -> list[str]:
+    """What is wrong with a cell, in words: a test for cells of your own.
+
+    Trials are carried out several times, on one and on four threads, in batches of any size, alone and in reverse order, and by a
+    copy with the same parameters: all bits must be the same. Entries must be finite and by known faces, costs finite, the time
+    above 0, no body may break, and a symmetric cell must send mirror images to the mirrored faces as often.
+
+    Parameters
+    ----------
+    cell : Cell
+    starts : list of dict, optional
+        How bodies enter: ``{"face": "S", "s": 0.05}``, every coordinate; without it by each face, all coordinates 0.
+    trials : int, optional
+        From the starts in turn.
+    cells : int, optional
+        That a trial passes at most.
+    seed : int, optional
+
+    Returns
+    -------
+    list of str
+        Empty where nothing was found.
+
+    Raises
+    ------
+    ValueError
+        Where `cell` is no cell, or a start none of its entries.
+
+    Examples
+    --------
+    >>> import numpy as np, gatewalk as gw
+    >>> class Coin(gw.Cell):
+    ...     faces = [{"name": "S", "move": [0, 1]}, {"name": "N", "move": [0, -1]}]
+    ...     coordinates = [{"name": "s", "unit": "m", "scale": 0.1}]
+    ...     uniforms = 1
+    ...     def pass_(self, entries, random):
+    ...         return {"face": (random.uniforms[:, 0] < 0.5).astype(int), "s": entries["s"], "time_s": 1.0}
+    >>> gw.check_cell(Coin())
+    []
+    >>> class Forgetful(Coin):
+    ...     def pass_(self, entries, random):
+    ...         return {"face": np.random.randint(2, size=len(random.seed)), "s": entries["s"], "time_s": 1.0}
+    >>> "is another one" in gw.check_cell(Forgetful())[0]
+    True
+    """
+    if not isinstance(cell, Cell):
+        raise _core.UsageError("cell: must be an object of a class derived from gatewalk.Cell")
+    if trials < 1 or cells < 1:
+        raise _core.UsageError("check_cell: trials and cells must be 1 or more")
+    faces, names = [f["name"] for f in cell.faces], [c["name"] for c in cell.coordinates]
+    entries = [(k, [0.0] * len(names)) for k in range(len(faces))] if starts is None else []
+    for k, start in enumerate(starts or []):
+        if set(start) != {"face", *names} or start["face"] not in faces:
+            raise _core.UsageError(f"check_cell: start {k} must have a face, one of {', '.join(faces)}, and {', '.join(names)}; it is {dict(start)}")
+        entries.append((faces.index(start["face"]), [float(start[name]) for name in names]))
+    return _core.check_cell(cell, entries, trials, cells, seed)
