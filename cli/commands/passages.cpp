@@ -15,20 +15,20 @@ void declare_all(Options& options) {
       "tracks", "a table with a line a place (CSV), DeepLabCut's CSV, or movement's NetCDF", true);
   options.input_file("cell", "the cells and what is measured of an entry (cell.toml)");
   options.main_output_file("RUNS.csv", "the passages, a line each", Options::Content::binary);
-  options.add_number("fastest", "M/S",
-                     "no body is faster from frame to frame, its noise included: what is, is a "
-                     "jump (must be given)");
+  options.add_number(
+      "fastest", "M/S",
+      "what is faster from frame to frame, noise included, is a jump (must be given)");
   options.add_text("columns", "MEANING=NAME,...",
-                   "of a table: body=..., frame=... or time=... (s), x=..., y=..., confidence=...");
+                   "of a table: body=..., frame=... or time=..., x=..., y=..., confidence=...");
   options.add_number("fps", "N", "frames per second");
-  options.add_number("metres-per-unit", "X", "of the file's x and y; 1: metres");
+  options.add_number("metres-per-unit", "X", "of the file's x and y, unless it says so; 1: metres");
   options.add_text("key-point", "NAME", "the key point that is the body's place");
   options.add_number("confidence", "X", "places with less are not seen");
   options.add_text("origin", "X,Y", "lower left corner of column 0 and row 0, in the file's unit",
                    "0,0");
   options.add_flag("y-down", "y grows downwards in the file, as in pictures; upwards without it");
   options.add_text("lattice", "COLUMNS,ROWS",
-                   "cells that there are, from the origin on (default: the map's, or all there)");
+                   "cells that there are, from the origin on; all: no end (default: the field's)");
   options.add_text("window", "N|Xs", "of local fits, frames or seconds (default: least error)");
   options.add_count("bridge", "N", "frames that may be missing without a gap", "0");
   options.add_figure("all tracks over the cells, and where they were cut");
@@ -69,11 +69,13 @@ lattice::CutOptions cut_options(const Options& options) {
   lattice::CutOptions cut{.fastest = options.number("fastest"),
                           .window = options.text("window"),
                           .bridge = static_cast<int>(options.count("bridge", 0, 1000))};
-  if (!options.has("lattice")) return cut;
+  const std::string text = options.text("lattice");
+  cut.endless = text == "all";
+  if (text.empty() || cut.endless) return cut;
   const auto [columns, rows] = pair_of(options, "lattice");
-  if (!(columns >= 1 && columns <= 1e6 && rows >= 1 && rows <= 1e6) ||
-      columns != std::floor(columns) || rows != std::floor(rows))
-    throw UsageError("--lattice " + options.text("lattice") + ": must be two whole numbers from 1");
+  const auto is_size = [](double x) { return x >= 1.0 && x <= 1e6 && x == std::floor(x); };
+  if (!is_size(columns) || !is_size(rows))
+    throw UsageError("--lattice " + text + ": must be two whole numbers from 1, or all");
   cut.columns = static_cast<int>(columns);
   cut.rows = static_cast<int>(rows);
   return cut;
@@ -96,6 +98,7 @@ int run_passages(const Arguments& arguments) {
   const auto cell = lattice::read_cell_file(options.text("cell"), options.overrides());
   lattice::require_measurable(cell);
   const auto file = lattice::read_tracks(options.text("tracks"), track_options(options));
+  for (const std::string& text : file.warnings) options.warn(text);
   const auto cut = lattice::cut_tracks(file, cell, cutting);
 
   Json json = to_json(cut, file, cell);

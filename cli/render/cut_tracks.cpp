@@ -71,7 +71,13 @@ std::string table_of(const CutTracks& cut, const lattice::TrackFile& file,
           (cut.columns > 0 ? ", " + std::to_string(cut.columns) + " columns and " +
                                  std::to_string(cut.rows) + " rows from the origin on"
                            : std::string(", as many as there is room for")) +
-          "\nfits of " + std::to_string(noise.window) + " frames (" +
+          "\n";
+  if (cut.places_outside > 0)
+    text += "  " + counted(cut.places_outside, "place lies", "places lie") + " outside them, " +
+            counted(cut.bodies_outside, "body is", "bodies are") +
+            " never seen in them: no passages; " +
+            counted(cut.came_back, "trial begins", "trials begin") + " where a body comes back\n";
+  text += "fits of " + std::to_string(noise.window) + " frames (" +
           quantity(noise.window * file.interval, "s", 3) + "); noise of places " +
           quantity(noise.place, "m", 3) + ", of velocities " +
           quantity(cut.crossing_velocity_noise, "m/s", 3) + " at borders; smoothed away " +
@@ -133,6 +139,10 @@ Json to_json(const CutTracks& cut, const lattice::TrackFile& file, const lattice
   json["short_pieces"] = cut.short_pieces;
   json["short_frames"] = cut.short_frames;
   json["first_stays_left_out"] = cut.first_stays;
+  json["lattice"] = cut.columns > 0 ? Json{{"columns", cut.columns}, {"rows", cut.rows}} : Json();
+  json["places_outside"] = cut.places_outside;
+  json["bodies_outside"] = cut.bodies_outside;
+  json["trials_that_came_back"] = cut.came_back;
   json["window_frames"] = cut.noise.window;
   json["window_s"] = cut.noise.window * file.interval;
   json["noise_m"] = cut.noise.place;

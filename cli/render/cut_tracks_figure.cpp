@@ -17,10 +17,18 @@ using lattice::CutTracks;
 constexpr std::size_t kMostPlaces = 40'000, kMostMarks = 3'000;  // of a picture
 constexpr long kMostBorders = 100;                               // along one axis
 
-/// Whole cells that hold all pieces, in cells: columns and rows, the last ones not included.
+/// Whole cells, columns and rows, the last ones not included.
 struct Span {
   long left, right, bottom, top;
+
+  /// Those of them that are in the lattice.
+  [[nodiscard]] Span within(long columns, long rows) const {
+    if (columns == 0) return *this;
+    return {std::clamp(left, 0L, columns), std::clamp(right, 0L, columns),
+            std::clamp(bottom, 0L, rows), std::clamp(top, 0L, rows)};
+  }
 };
+/// That hold all pieces.
 Span span_of(const CutTracks& cut, const lattice::CellFile& cell) {
   double left = HUGE_VAL, right = -HUGE_VAL, bottom = HUGE_VAL, top = -HUGE_VAL;
   for (const lattice::TrackPiece& p : cut.pieces)
@@ -109,7 +117,7 @@ Figure figure_of(const CutTracks& cut, const lattice::CellFile& cell) {
                     at_trapped = dot("pt 5 ps 0.6 lc rgb '") + kThirdColour + "'";
   std::string data = data_block("$ways", ways_of(cut, metre)), plot, keys;
   if (with_borders) {
-    data += data_block("$borders", borders_of(span, cell, metre));
+    data += data_block("$borders", borders_of(span.within(cut.columns, cut.rows), cell, metre));
     plot += "$borders using 1:2:3:4 with vectors nohead lw 0.6 lc rgb '#999999', ";
   }
   plot += std::string("$ways using 1:2 with lines lw 0.7 lc rgb '") + kFirstColour + "'";

@@ -479,6 +479,7 @@ void read_numbers(CellFile& file, const Settings& settings, const std::string& c
   whole("field.columns", kFieldSizes, file.field.columns);
   whole("field.rows", kFieldSizes, file.field.rows);
   whole("field.max_gates", kGateLimits, file.field.max_gates);
+  file.has_field = found(settings, "field.columns") && found(settings, "field.rows");
 }
 
 void read_start(CellFile& file, const Settings& settings) {

@@ -23,6 +23,7 @@ struct CellFile {
   double width = 0.0, length = 0.0;       // m, of a cell
   std::optional<double> trapped_after{};  // s
   FieldParams field;
+  bool has_field = false;                  // its columns and rows were given
   std::optional<dynamics::Entry> start{};  // none: everything that was seen to enter first
   /// Table [actions]: what a body may do, numbers of the program ("parameters.KEY") that are other
   /// while it does. By name.

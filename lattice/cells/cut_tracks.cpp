@@ -157,6 +157,7 @@ class Cutter {
           rounded(cut_.hysteresis) + " m over it (is --metres-per-unit right?)");
     trials_.assign(file_.tracks.size(), 0);
     for (std::size_t i = 0; i < cut_.pieces.size(); ++i) cut_piece(cut_.pieces[i], ends_[i]);
+    count_outside();
     if (cut_.crossings == 0) refuse_nothing();
     cut_.crossing_velocity_noise =
         cut_.noise.place * std::sqrt(gains_ / static_cast<double>(cut_.crossings));
@@ -166,16 +167,26 @@ class Cutter {
  private:
   void set_lattice() {
     const auto& map = cell_.map;
-    cut_.columns = options_.columns;
-    cut_.rows = options_.rows;
-    if (map.type_of_cell.empty()) return;
-    const int rows = static_cast<int>(map.type_of_cell.size()) / map.columns;
-    if (options_.columns > 0 && (options_.columns != map.columns || options_.rows != rows))
-      throw std::invalid_argument("--lattice: the map of " + cell_.source + " has " +
-                                  std::to_string(map.columns) + " columns and " +
-                                  std::to_string(rows) + " rows");
-    cut_.columns = map.columns;
-    cut_.rows = rows;
+    const bool is_given = options_.columns > 0 || options_.endless;
+    if (!map.type_of_cell.empty()) {
+      cut_.columns = map.columns;
+      cut_.rows = static_cast<int>(map.type_of_cell.size()) / map.columns;
+      if (is_given && (options_.columns != cut_.columns || options_.rows != cut_.rows))
+        throw std::invalid_argument("--lattice: the map of " + cell_.source + " has " +
+                                    std::to_string(cut_.columns) + " columns and " +
+                                    std::to_string(cut_.rows) + " rows");
+    } else if (is_given) {
+      cut_.columns = options_.columns;
+      cut_.rows = options_.rows;
+    } else if (cell_.has_field) {
+      cut_.columns = cell_.field.columns;
+      cut_.rows = cell_.field.rows;
+    } else {
+      throw std::invalid_argument(
+          cell_.source +
+          " does not say how many cells there are: give columns and rows of [field], or --lattice "
+          "COLUMNS,ROWS (all: without end, to all sides of the origin)");
+    }
   }
 
   void cut_at_gaps_and_jumps() {
@@ -258,6 +269,21 @@ class Cutter {
            (column >= 0 && column < cut_.columns && row >= 0 && row < cut_.rows);
   }
 
+  void count_outside() {
+    std::vector<bool> has_pieces(file_.tracks.size(), false), is_in(file_.tracks.size(), false);
+    for (const TrackPiece& p : cut_.pieces) {
+      const std::size_t track = static_cast<std::size_t>(p.track - file_.tracks.data());
+      has_pieces[track] = true;
+      for (std::size_t i = p.begin; i < p.end; ++i)
+        if (is_inside(cell_at(p.track->x[i], cell_.width), cell_at(p.track->y[i], cell_.length)))
+          is_in[track] = true;
+        else
+          ++cut_.places_outside;
+    }
+    for (std::size_t i = 0; i < is_in.size(); ++i)
+      cut_.bodies_outside += has_pieces[i] && !is_in[i];
+  }
+
   void cut_piece(const TrackPiece& piece, LostBy ends) {
     const std::size_t track = static_cast<std::size_t>(piece.track - file_.tracks.data());
     const SmoothPath path = smoothed(piece, cut_.noise.window);
@@ -271,10 +297,14 @@ class Cutter {
     cut_.first_stays += is_inside(column, row) ? 1 : 0;
     std::optional<CutPassage> now;  // under way
     double since = 0.0;
+    bool was_inside = false;
     for (const Crossing& c : crossings) {
+      const bool is_in = is_inside(column, row);
       column += c.di_x;
       row += c.di_y;
       const bool goes_on = is_inside(column, row);
+      cut_.came_back += !is_in && goes_on && (was_inside || trials_[track] > 0) ? 1 : 0;
+      was_inside = was_inside || is_in;
       if (!now && !goes_on) continue;
       const Entry entry = entry_of(c, column, row, *piece.track);
       bool is_new = !now;

@@ -20,7 +20,8 @@ struct CutOptions {
   double fastest = 0.0;  // m/s; a step that is faster is a jump to another place, or another body
   std::string window{};  // of the local fits: "15" (frames), "0.125s"; empty: as noise_of finds it
   int bridge = 0;        // so many frames may be missing without a gap
-  int columns = 0, rows = 0;  // of the lattice, from its origin; 0: the map's, or without end
+  int columns = 0, rows = 0;  // of the lattice, from its origin; 0: the field of the cell file
+  bool endless = false;       // the lattice has no end, to any side
 };
 
 /// What became of a body in a cell; lost: from sight.
@@ -53,8 +54,10 @@ struct CutTracks {
   std::int64_t trials = 0, crossings = 0;
   std::int64_t uncounted = 0;    // crossings to and fro within the hysteresis
   std::int64_t first_stays = 0;  // in cells that nobody saw entered
-  std::int64_t moved_ends = 0;   // places beyond their face's end, by no more than the hysteresis
-  double fastest_step = 0.0;     // m/s, of those that are no jumps
+  std::int64_t places_outside = 0, bodies_outside = 0;  // of the lattice; bodies never seen in it
+  std::int64_t came_back = 0;   // trials that begin where a body comes into the lattice again
+  std::int64_t moved_ends = 0;  // places beyond their face's end, by no more than the hysteresis
+  double fastest_step = 0.0;    // m/s, of those that are no jumps
 
   [[nodiscard]] std::int64_t count(CutEnd end) const;
   [[nodiscard]] std::int64_t lost(LostBy by) const;
@@ -66,10 +69,12 @@ struct CutTracks {
 void require_measurable(const CellFile& cell);
 
 /// Cells are rectangles of `cell`, side by side from the tracks' origin: column and row 0 begin
-/// there. A trial begins where a body is first seen to cross a border into a cell, and ends where
-/// it leaves the lattice, is trapped (CellFile::trapped_after), or is lost: in a gap, by a jump, or
-/// at the track's end. Throws std::invalid_argument for options that make no sense with these
-/// tracks, a crossing by a move that no face has, and where nobody crosses any border.
+/// there, and what lies outside the lattice is no cell. A trial begins where a body is first seen
+/// to cross a border into a cell, and ends where it leaves the lattice, is trapped
+/// (CellFile::trapped_after), or is lost: in a gap, by a jump, or at the track's end. A body that
+/// comes back into the lattice begins another trial there. Throws std::invalid_argument for options
+/// that make no sense with these tracks, a lattice that nobody gave, a crossing by a move that no
+/// face has, and where nobody crosses any border.
 [[nodiscard]] CutTracks cut_tracks(const TrackFile& file, const CellFile& cell,
                                    const CutOptions& options);
 

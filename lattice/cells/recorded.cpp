@@ -145,12 +145,6 @@ class Lines {
   std::size_t begin_ = 0, end_ = 0;  // of what is left in it
 };
 
-/// Blank, or a comment.
-bool is_no_data(std::string_view line) {
-  const std::size_t first = line.find_first_not_of(" \t");
-  return first == line.npos || line[first] == '#';
-}
-
 /// Names in the order in which they first come.
 class NameTable {
  public:
@@ -201,7 +195,7 @@ class RunsReader {
   bool next_line() {
     std::string_view line;
     while (lines_.next(line)) {
-      if (is_no_data(line)) continue;
+      if (has_no_fields(line)) continue;
       split(line);
       return true;
     }
@@ -348,7 +342,7 @@ class RunsReader {
   }
   void begin_trial(const Entry& entry) {
     for (const std::size_t column : {columns_.body, columns_.trial})
-      if (fields_[column].empty()) refuse_value(column, "a name or a number");
+      if (says_nothing(fields_[column])) refuse_value(column, "a name or a number");
     body_ = fields_[columns_.body];
     trial_ = fields_[columns_.trial];
     const std::size_t body = bodies_.place_of(body_);
@@ -519,7 +513,7 @@ void set_scales(CellFile& cells, const RecordedRuns& runs) {
 // ---- Writing
 
 std::string csv_field(const std::string& text) {
-  if (text.empty() || text.find_first_of("\r\n") != text.npos)
+  if (says_nothing(text) || text.find_first_of("\r\n") != text.npos)
     throw std::invalid_argument("write_runs: a body must have a name without line ends, not \"" +
                                 printable(text) + "\"");
   const bool plain = text.find_first_of(",\"") == text.npos && text.front() != '#' &&
@@ -625,7 +619,7 @@ bool has_columns(const std::string& path, std::initializer_list<std::string_view
   if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe is read only once
   Lines lines(path);
   for (std::string_view line; lines.next(line);) {
-    if (is_no_data(line)) continue;
+    if (has_no_fields(line)) continue;
     const auto fields = csv_fields(line);
     return fields && std::all_of(columns.begin(), columns.end(), [&](std::string_view column) {
              return std::find(fields->begin(), fields->end(), column) != fields->end();

@@ -11,7 +11,7 @@
 
 namespace gatewalk::lattice {
 
-/// A number; NaN for an empty field or one that says so; none for anything else, infinity too.
+/// A number; NaN for a field that says nothing, or infinity; none for anything else.
 [[nodiscard]] std::optional<double> coordinate_in(std::string_view text);
 
 /// Whether it can be the number of a frame: a whole one, up to 1e12.
@@ -49,6 +49,7 @@ void refuse_unused(bool given, const std::string& path, const std::string& optio
 /// Sorts out places as they come, one frame of one body after the other.
 class TrackMaker {
  public:
+  /// Of a file whose metres_per_unit is known.
   TrackMaker(TrackFile& file, const TrackOptions& options) : file_(file), options_(options) {}
   /// `x` and `y` in the file's unit, NaN where there is none; `confidence` too, if it is known.
   void add(Track& track, double time, double x, double y, std::optional<double> confidence);
@@ -61,6 +62,10 @@ class TrackMaker {
 /// Where frames have times of their own: the interval that most steps of all tracks have (their
 /// median), which is said.
 [[nodiscard]] double median_step(TrackFile& file);
+/// Throws std::invalid_argument where most steps of the times (s) are no whole number of the frames
+/// that `fps` means; `fps_words` and `time_words` name both.
+void require_steps(std::vector<double> steps, const std::string& source, double fps,
+                   const std::string& fps_words, const std::string& time_words);
 
 [[nodiscard]] TrackFile read_deeplabcut(const std::string& path, const TrackOptions& options);
 [[nodiscard]] TrackFile read_movement(const std::string& path, const TrackOptions& options);

@@ -15,6 +15,7 @@
 #include <unordered_map>
 
 #include "lattice/cells/track_source.h"
+#include "lattice/cells/track_units.h"
 #include "lattice/text/csv.h"
 #include "lattice/text/digits.h"
 #include "lattice/text/toml_text.h"
@@ -25,13 +26,12 @@ std::string in_quotes(const std::string& text) { return '"' + printable(text) + 
 
 std::optional<double> coordinate_in(std::string_view text) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (text.empty() || text == "nan" || text == "NaN" || text == "NA" || text == "NAN") return kNone;
+  if (says_nothing(text)) return kNone;
   if (text.front() == '+') text.remove_prefix(1);
   double value = 0.0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value))
-    return {};
-  return value;
+  if (read.ec != std::errc() || read.ptr != text.data() + text.size()) return {};
+  return std::isfinite(value) ? value : kNone;
 }
 
 bool is_frame(double number) {
@@ -85,32 +85,58 @@ void TrackMaker::add(Track& track, double time, double x, double y,
   } else if (confidence && !(*confidence >= *options_.confidence)) {
     ++file_.unsure;
   } else {
-    const double scale = *options_.metres_per_unit;
+    const double scale = file_.metres_per_unit;
     track.time.push_back(time);
     track.x.push_back(scale * (x - options_.origin_x));
     track.y.push_back(scale * (options_.y_down ? options_.origin_y - y : y - options_.origin_y));
   }
 }
 
-double median_step(TrackFile& file) {
+namespace {
+
+/// Of all tracks, from a frame in which a body was seen to its next one.
+std::vector<double> steps_of(const TrackFile& file) {
   std::vector<double> steps;
   for (const Track& track : file.tracks)
     for (std::size_t i = 1; i < track.time.size(); ++i)
       steps.push_back(track.time[i] - track.time[i - 1]);
-  if (steps.empty())
-    throw std::invalid_argument(file.source + ": no body was seen twice, so there are no tracks");
+  return steps;
+}
+
+double middle_of(std::vector<double> steps) {
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
-  file.remarks.push_back("a frame every " + shortest(*middle) +
-                         " s, the median step (--fps says otherwise)");
   return *middle;
+}
+
+}  // namespace
+
+double median_step(TrackFile& file) {
+  std::vector<double> steps = steps_of(file);
+  if (steps.empty())
+    throw std::invalid_argument(file.source + ": no body was seen twice, so there are no tracks");
+  const double step = middle_of(std::move(steps));
+  file.remarks.push_back("a frame every " + shortest(step) +
+                         " s, the median step (--fps says otherwise)");
+  return step;
+}
+
+void require_steps(std::vector<double> steps, const std::string& source, double fps,
+                   const std::string& fps_words, const std::string& time_words) {
+  constexpr double kOff = 0.1;  // of a frame: times are rounded, and cameras not quite even
+  if (steps.empty()) return;
+  const double step = middle_of(std::move(steps)), frames = step * fps;
+  if (std::round(frames) >= 1.0 && std::abs(frames - std::round(frames)) <= kOff) return;
+  throw std::invalid_argument(source + ": " + fps_words + " is a frame every " +
+                              shortest(1.0 / fps) + " s, but " + time_words + " has steps of " +
+                              shortest(step) + " s: one of both is wrong");
 }
 
 namespace {
 
 constexpr const char* kColumnsHelp =
-    "--columns body=...,frame=...,x=...,y=... with the names of its columns (time=..., in s, in "
-    "place of frame=...; confidence=... if there is one)";
+    "--columns body=...,frame=...,x=...,y=... with the names of its columns (time=..., in s unless "
+    "the file says otherwise, in place of frame=...; confidence=... if there is one)";
 
 /// What a column means.
 enum Meaning : std::size_t { kBody, kFrame, kTime, kX, kY, kConfidence, kMeanings };
@@ -201,7 +227,7 @@ class LongTable {
     const auto names = options_.columns.empty() ? std::array<std::string, kMeanings>{}
                                                 : named_columns(options_.columns);
     if (!options_.fps && names[kTime].empty()) lacking.add("frames per second", "--fps N");
-    if (!options_.metres_per_unit)
+    if (!options_.metres_per_unit && options_.columns.empty())
       lacking.add("what x and y are in", "--metres-per-unit X (1: metres)");
     if (!names[kConfidence].empty() && !options_.confidence)
       lacking.add("from which confidence on a place counts", "--confidence X");
@@ -215,8 +241,7 @@ class LongTable {
     while (next_line_of(in, file_.source, text)) {
       if (++line_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
       if (text.ends_with('\r')) text.pop_back();
-      const std::size_t first = text.find_first_not_of(" \t");
-      if (first != text.npos && text[first] != '#') return true;
+      if (!has_no_fields(text)) return true;
     }
     return false;
   }
@@ -251,6 +276,7 @@ class LongTable {
     held_x_ = fields[column_[kX]];
     if (held_.size() == 3) {
       file_.unit_rows = 3;
+      units_ = fields;
       file_.remarks.push_back("3 rows of descriptions and units behind the header left out, x in " +
                               printable(held_x_));
       held_.clear();
@@ -276,7 +302,7 @@ class LongTable {
 
   void take(const std::vector<std::string>& fields) {
     const std::string& name = fields[column_[kBody]];
-    if (name.empty() || name == "nan" || name == "NaN") {
+    if (says_nothing(name)) {
       ++file_.no_body;
       return;
     }
@@ -299,7 +325,77 @@ class LongTable {
     rows_.push_back(row);
   }
 
+  /// What the file says that a column is in: by the row of units, and by its name.
+  [[nodiscard]] std::vector<StatedUnit> stated_of(Meaning meaning) const {
+    const std::size_t column = column_[meaning];
+    std::vector<StatedUnit> all{unit_in_name(header_[column])};
+    const std::string text = units_.empty() ? std::string() : units_[column];
+    if (text.find_first_not_of(" ()[]") != text.npos)
+      all.insert(all.begin(), {text, "in the row of units", unit_called(text), true, true});
+    return all;
+  }
+  [[nodiscard]] std::string column_words(Meaning meaning) const {
+    return "column " + printable(header_[column_[meaning]]);
+  }
+
+  /// Frames in s, or times in what the file says.
+  double seconds_of(double when) const {
+    return column_[kFrame] != kNoColumn ? when / *options_.fps
+           : time_unit_                 ? time_unit_->in_si(when)
+                                        : when;
+  }
+  void find_units() {
+    if (column_[kFrame] != kNoColumn) {
+      const std::string& name = header_[column_[kFrame]];
+      for (const StatedUnit& stated : stated_of(kFrame))
+        if (stated.unit && stated.unit->kind == UnitKind::time)
+          throw std::invalid_argument(file_.source + ": " + column_words(kFrame) + " is " +
+                                      stated.words() + ", no numbers of frames: time=" +
+                                      printable(name) + " in place of frame= of --columns");
+    } else {
+      const std::string& name = header_[column_[kTime]];
+      time_unit_ =
+          time_unit_of(stated_of(kTime), file_.source + ": " + column_words(kTime),
+                       "give frame=" + printable(name) +
+                           " of --columns in place of time=, and frames per second, --fps N");
+      if (time_unit_ && time_unit_->in_si(1.0) != 1.0)
+        file_.remarks.push_back(column_words(kTime) + " is " + words_of_units(kTime) +
+                                ": converted to s");
+    }
+    file_.metres_per_unit = metres_per_unit_of(stated_of(kX), stated_of(kY), column_words(kX),
+                                               column_words(kY), file_, options_);
+  }
+  [[nodiscard]] std::string words_of_units(Meaning meaning) const {
+    for (const StatedUnit& stated : stated_of(meaning))
+      if (stated.unit) return stated.words();
+    return {};
+  }
+
+  /// Among numbers from 0 on, -1 is what clustering and tracking give to those of no body.
+  void drop_minus_one() {
+    const auto whole = [](const std::string& name) {
+      const auto number = coordinate_in(name);
+      return number && *number == std::floor(*number) ? number : std::nullopt;
+    };
+    std::optional<std::size_t> none;
+    for (std::size_t i = 0; i < file_.tracks.size(); ++i) {
+      const auto number = whole(file_.tracks[i].body);
+      if (!number || *number < -1.0 || (*number == -1.0 && none)) return;
+      if (*number == -1.0) none = i;
+    }
+    if (!none || file_.tracks.size() == 1) return;
+    const std::string name = file_.tracks[*none].body;
+    const auto gone = static_cast<std::int32_t>(*none);
+    file_.no_body += std::erase_if(rows_, [&](const Row& row) { return row.body == gone; });
+    for (Row& row : rows_) row.body -= row.body > gone ? 1 : 0;
+    file_.tracks.erase(file_.tracks.begin() + gone);
+    file_.remarks.push_back("body " + printable(name) +
+                            " beside numbers from 0 is none: its lines are of no body");
+  }
+
   void make_tracks() {
+    find_units();
+    drop_minus_one();
     std::stable_sort(rows_.begin(), rows_.end(), [](const Row& a, const Row& b) {
       return a.body != b.body ? a.body < b.body : a.when < b.when;
     });
@@ -313,10 +409,14 @@ class LongTable {
                                 (by_frame ? "frame " : "the time ") + shortest(row.when) +
                                 " already (line " + std::to_string(rows_[i - 1].line) +
                                 "): a body is at one place at a time");
-      maker.add(track, by_frame ? row.when / *options_.fps : row.when, row.x, row.y,
+      maker.add(track, seconds_of(row.when), row.x, row.y,
                 column_[kConfidence] != kNoColumn ? std::optional(row.confidence) : std::nullopt);
     }
     rows_ = {};
+    if (options_.fps && !by_frame)
+      require_steps(steps_of(file_), file_.source, *options_.fps,
+                    "--fps " + shortest(*options_.fps),
+                    column_words(kTime) + (time_unit_ ? "" : " (in s)"));
     file_.interval = options_.fps ? 1.0 / *options_.fps : median_step(file_);
   }
 
@@ -328,6 +428,8 @@ class LongTable {
   bool may_be_units_ = true;
   std::vector<std::size_t> held_;  // lines that may be units
   std::string held_x_;
+  std::vector<std::string> units_;      // the row of units
+  std::optional<TrackUnit> time_unit_;  // that it states
   std::unordered_map<std::string, std::int32_t> bodies_;
   std::vector<Row> rows_;
 };
@@ -368,7 +470,7 @@ TrackFile read_tracks(const std::string& path, const TrackOptions& options) {
   file.remarks.push_back("the lattice begins at (" + shortest(options.origin_x) + ", " +
                          shortest(options.origin_y) + ") of the file, " +
                          (options.y_down ? "its rows count down along y" : "y grows upwards") +
-                         ", a unit is " + shortest(*options.metres_per_unit) + " m");
+                         ", a unit is " + shortest(file.metres_per_unit) + " m");
   return file;
 }
 

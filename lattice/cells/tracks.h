@@ -14,10 +14,11 @@ namespace gatewalk::lattice {
 /// What the user says of a file of tracks.
 struct TrackOptions {
   /// Of a table with a line a place: "body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y", by the
-  /// names of the file's columns; time= (s) in place of frame=, and confidence=.
+  /// names of the file's columns; time= (s, unless the file says another unit) in place of
+  /// frame=, and confidence=.
   std::string columns{};
   std::optional<double> fps{};              // frames per second
-  std::optional<double> metres_per_unit{};  // of the file's x and y
+  std::optional<double> metres_per_unit{};  // of the file's x and y; none: the file must say it
   std::optional<double> confidence{};       // a place with less is none
   std::string key_point{};                  // of a body that has several
   double origin_x = 0.0, origin_y = 0.0;    // of the lattice, in the file's unit
@@ -35,12 +36,14 @@ struct TrackFile {
   std::string source, kind;          // the file; "a table", "DeepLabCut", "movement"
   std::vector<Track> tracks;         // in the order of the file
   double interval = 0.0;             // s, from frame to frame
+  double metres_per_unit = 0.0;      // of the file's places
   std::int64_t places = 0;           // lines (or frames) of all bodies, seen there or not
   std::int64_t no_place = 0;         // of them without a number
   std::int64_t unsure = 0;           // of them with less confidence than asked for
   std::int64_t no_body = 0;          // lines of no body, left out
   std::int64_t unit_rows = 0;        // rows of descriptions and units, left out
   std::vector<std::string> remarks;  // what was taken for what, in words
+  std::vector<std::string> warnings;
 };
 
 /// Reads a file of either kind, which it tells by its first bytes. Throws std::invalid_argument

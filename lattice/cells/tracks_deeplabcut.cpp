@@ -35,6 +35,7 @@ class WideTable {
     read_header();
     const std::vector<KeyPointColumns> places = places_of_key_point();
     require_options(places);
+    file_.metres_per_unit = *options_.metres_per_unit;
     for (const KeyPointColumns& place : places)
       file_.tracks.push_back({place.individual, {}, {}, {}});
     TrackMaker maker(file_, options_);

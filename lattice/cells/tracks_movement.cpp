@@ -6,9 +6,11 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "lattice/cells/track_source.h"
+#include "lattice/cells/track_units.h"
 #include "lattice/text/digits.h"
 #include "lattice/text/toml_text.h"
 #include "markov/formats/netcdf.h"
@@ -97,19 +99,19 @@ class MovementFile {
     return *found;
   }
 
-  /// Empty for no attribute of text.
-  std::string text_of(const std::string& attribute) const {
+  /// Of a variable, or of the file; empty for no attribute of text.
+  std::string text_of(const std::string& attribute, int of = NC_GLOBAL) const {
     nc_type type = NC_NAT;
     std::size_t length = 0;
-    if (nc_inq_att(image_, NC_GLOBAL, attribute.c_str(), &type, &length) != NC_NOERR) return {};
+    if (nc_inq_att(image_, of, attribute.c_str(), &type, &length) != NC_NOERR) return {};
     if (type == NC_CHAR) {
       std::string text(length, '\0');
-      check(nc_get_att_text(image_, NC_GLOBAL, attribute.c_str(), text.data()), attribute);
+      check(nc_get_att_text(image_, of, attribute.c_str(), text.data()), attribute);
       return text;
     }
     if (type != NC_STRING || length != 1) return {};
     char* raw = nullptr;
-    check(nc_get_att_string(image_, NC_GLOBAL, attribute.c_str(), &raw), attribute);
+    check(nc_get_att_string(image_, of, attribute.c_str(), &raw), attribute);
     const std::string text = raw ? raw : "";
     check(nc_free_string(1, &raw), attribute);
     return text;
@@ -203,19 +205,52 @@ class MovementFile {
     if (has_fps && options_.fps && *options_.fps != given)
       throw std::runtime_error("has an fps of " + shortest(given) + ", not that of --fps, " +
                                shortest(*options_.fps));
-    time_unit_ = text_of("time_unit");
-    if (time_unit_ != "seconds" && time_unit_ != "frames")
-      throw std::runtime_error("its attribute time_unit is " +
-                               (time_unit_.empty() ? "missing" : in_quotes(time_unit_)) +
-                               ": must be \"seconds\" or \"frames\", as movement writes it");
+    read_time_unit();
     Lacking lacking(file_.source);
-    if (fps_ == 0.0 && time_unit_ == "frames") lacking.add("frames per second", "--fps N");
-    if (!options_.metres_per_unit) lacking.add("what x and y are in", "--metres-per-unit X");
+    if (fps_ == 0.0 && in_frames_) lacking.add("frames per second", "--fps N");
     if (has_confidence && !options_.confidence)
       lacking.add("from which confidence on a place counts", "--confidence X");
     lacking.refuse();
     refuse_unused(!has_confidence && options_.confidence, file_.source, "--confidence",
                   "there is no confidence in it");
+    std::vector<StatedUnit> of_places;
+    for (const char* attribute : {"units", "space_unit"})
+      if (const std::string text = text_of(attribute, position_.id); !text.empty())
+        of_places.push_back(
+            {in_quotes(text), std::string("by its attribute ") + attribute, unit_called(text)});
+    file_.metres_per_unit =
+        metres_per_unit_of(of_places, of_places, "position", "position", file_, options_);
+  }
+
+  /// By movement's attribute of the file, and by the units of the variable, which xarray gives to
+  /// times that have some.
+  void read_time_unit() {
+    const std::string of_file = text_of("time_unit");
+    std::string units = text_of("units", required("time").id);
+    if (!of_file.empty() && of_file != "seconds" && of_file != "frames")
+      throw std::runtime_error("its attribute time_unit is " + in_quotes(of_file) +
+                               ": must be \"seconds\" or \"frames\", as movement writes it");
+    if (of_file.empty() && units.empty())
+      throw std::runtime_error(
+          "its attribute time_unit is missing: must be \"seconds\" or \"frames\", as movement "
+          "writes it; or time must have units");
+    in_frames_ = of_file == "frames";
+    if (units.empty()) return;
+    const std::string stated = in_quotes(units);
+    units.erase(std::min(units.find(" since "), units.size()));  // of a date
+    const auto unit = unit_called(units);
+    if (!unit || (unit->kind != UnitKind::time && unit->kind != UnitKind::frame))
+      throw std::runtime_error("the units of time are " + stated +
+                               ": must be seconds, milliseconds, ... or frames");
+    if (!of_file.empty() && in_frames_ != (unit->kind == UnitKind::frame))
+      throw std::runtime_error("its attribute time_unit is " + in_quotes(of_file) +
+                               ", but the units of time are " + stated +
+                               ": one of both has to be mended");
+    in_frames_ = unit->kind == UnitKind::frame;
+    if (in_frames_) return;
+    time_unit_ = *unit;
+    if (unit->in_si(1.0) != 1.0)
+      file_.remarks.push_back("the units of time are " + stated + ": converted to s");
   }
 
   std::vector<double> times_of_frames() const {
@@ -227,12 +262,18 @@ class MovementFile {
       if (!std::isfinite(times[i]) || (i > 0 && times[i] <= times[i - 1]))
         throw std::runtime_error("time[" + std::to_string(i) + "] = " + shortest(times[i]) +
                                  ": times must rise");
-      if (time_unit_ == "frames" && times[i] != std::floor(times[i]))
+      if (in_frames_ && times[i] != std::floor(times[i]))
         throw std::runtime_error("time[" + std::to_string(i) + "] = " + shortest(times[i]) +
                                  " is no whole frame");
     }
-    if (time_unit_ == "frames")
-      for (double& t : times) t /= fps_;
+    for (double& t : times) t = in_frames_ ? t / fps_ : time_unit_.in_si(t);
+    if (fps_ > 0.0 && !in_frames_ && times.size() > 1) {
+      std::vector<double> steps(times.size());
+      std::adjacent_difference(times.begin(), times.end(), steps.begin());
+      steps.erase(steps.begin());
+      require_steps(std::move(steps), file_.source, fps_,
+                    (options_.fps ? "--fps " : "its fps of ") + shortest(fps_), "time");
+    }
     return times;
   }
 
@@ -265,8 +306,10 @@ class MovementFile {
   std::vector<char> bytes_;  // what image_ reads from
   markov::netcdf::Image image_;
   LabelledArray position_, confidence_;
-  std::string individual_, key_point_, time_unit_;
-  std::size_t point_ = 0;  // which of the key points, if there are any
+  std::string individual_, key_point_;
+  bool in_frames_ = false;               // else times are
+  TrackUnit time_unit_{UnitKind::time};  // in this
+  std::size_t point_ = 0;                // which of the key points, if there are any
   double fps_ = 0.0;
 };
 

@@ -104,8 +104,8 @@ CountTable read_table(const std::string& path) {
   CountTable table{path, {}, {}};
   for (std::size_t i = 0; i < lines->size(); ++i) {
     const std::string& text = (*lines)[i];
-    const std::size_t line = i + 1, first = text.find_first_not_of(" \t");
-    if (first == text.npos || text[first] == '#') continue;
+    const std::size_t line = i + 1;
+    if (has_no_fields(text)) continue;
     auto fields = csv_fields(text);
     if (!fields) table.refuse(line, "a quotation mark is not closed, or not at a field's end");
     if (table.columns.empty()) {
@@ -251,7 +251,7 @@ void add_lines(Observed& observed, const CountTable& table, const FieldParams& f
   std::map<std::string, std::size_t, std::less<>> lines;
   for (const CountTable::Row& row : table.rows) {
     const std::string& trial = table.at(row, "trial");
-    if (trial.empty()) table.refuse(row.line, "column trial: has no name or number");
+    if (says_nothing(trial)) table.refuse(row.line, "column trial: has no name or number");
     if (const auto [first, is_new] = lines.emplace(trial, row.line); !is_new)
       table.refuse(row.line, "trial " + quoted(trial) + " was given in line " +
                                  std::to_string(first->second) + " already");

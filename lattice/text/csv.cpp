@@ -2,6 +2,7 @@
 #include "lattice/text/csv.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -56,6 +57,21 @@ std::optional<std::vector<std::string>> csv_fields(std::string_view line) {
     if (at == line.size()) return fields;
     ++at;  // the comma
   }
+}
+
+bool says_nothing(std::string_view field) {
+  constexpr std::array<std::string_view, 12> kWords{"",     "na",  "n/a",  "nan",  "-nan", "none",
+                                                    "null", "nil", "<na>", "#n/a", "#na",  "nat"};
+  std::string word(field);
+  for (char& c : word)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
+}
+
+bool has_no_fields(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  if (first == line.npos) return true;
+  return line[first] == '#' && !says_nothing(line.substr(first, line.find(',', first) - first));
 }
 
 }  // namespace gatewalk::lattice

@@ -17,4 +17,11 @@ namespace gatewalk::lattice {
 /// None when a quotation mark is not closed, or closed within a field.
 [[nodiscard]] std::optional<std::vector<std::string>> csv_fields(std::string_view line);
 
+/// Whether a field says that there is nothing: empty, or a word that programs write for it, NA,
+/// N/A, NaN, None, null, <NA>.
+[[nodiscard]] bool says_nothing(std::string_view field);
+
+/// Whether a line has no fields: it is blank, or a comment, which begins with # but for #N/A.
+[[nodiscard]] bool has_no_fields(std::string_view line);
+
 }  // namespace gatewalk::lattice

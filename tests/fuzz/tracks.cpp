@@ -61,6 +61,7 @@ void tracks(std::string_view bytes) {
   lattice::CutOptions how;
   how.fastest = 1.0;
   how.window = "5";
+  how.endless = true;
   const auto cut = accepted([&] { return lattice::cut_tracks(*file, cell, how); });
   if (!cut) return;
   const lattice::RecordedRuns runs = lattice::recorded_runs(*cut, *file, cell);

@@ -78,8 +78,11 @@ void hide(TrackFile& file, int first, int last) {
   for (auto* values : {&t.time, &t.x, &t.y})
     values->erase(values->begin() + first, values->begin() + last);
 }
-CutOptions fast(double fastest = 100.0) { return {.fastest = fastest}; }
-CutOptions with_window(const std::string& window) { return {.fastest = 100.0, .window = window}; }
+/// In cells without end.
+CutOptions fast(double fastest = 100.0) { return {.fastest = fastest, .endless = true}; }
+CutOptions with_window(const std::string& window) {
+  return {.fastest = 100.0, .window = window, .endless = true};
+}
 
 std::string refusal(const std::function<void()>& act) {
   try {
@@ -372,6 +375,75 @@ TEST(CutTracks, ALatticeHasAnEnd) {
   EXPECT_EQ(cut.passages[2].out.face, kFaceS);
 }
 
+// A chain of known law: in each of four rows a fifth of those who enter it stays. Of 625 bodies
+// 125, 100, 80 and 64 stay, 256 cross: 0.8^4. Before the first row there are four rows' lengths of
+// open ground, behind the last one two; on them nobody ever stays.
+TEST(CutTracks, OpenGroundBeforeAndBehindTheFieldIsNoCell) {
+  CellFile cell = squares();
+  cell.trapped_after = 1.0;
+  cell.field.columns = 1;
+  cell.field.rows = 4;
+  std::vector<Way> ways;
+  for (const auto& [stays_in, bodies] : {std::pair{0, 125}, {1, 100}, {2, 80}, {3, 64}, {9, 256}})
+    for (int b = 0; b < bodies; ++b)
+      ways.push_back([=, last = kSize * (stays_in + 0.5)](double t) {
+        return Place{0.05, std::min(-0.35 + 0.5 * t, last)};
+      });
+  const TrackFile file = file_of(ways, 300);  // 2.5 s: up to y = 0.9; from y = 0.4 on 1 s more
+  EXPECT_REFUSED(
+      "cell.toml does not say how many cells there are: give columns and rows of [field]", file,
+      cell, CutOptions{.fastest = 100.0, .window = "5"});
+  cell.has_field = true;
+  const CutTracks cut = cut_tracks(file, cell, {.fastest = 100.0, .window = "5"});
+  EXPECT_EQ(cut.columns, 1);
+  EXPECT_EQ(cut.rows, 4);
+  EXPECT_EQ(cut.trials, 625);
+  EXPECT_EQ(cut.passages.size(), 625U + 500U + 400U + 320U);
+  EXPECT_EQ(cut.count(CutEnd::trapped), 125 + 100 + 80 + 64);  // a fifth
+  EXPECT_EQ(cut.count(CutEnd::lost), 0);
+  EXPECT_EQ(cut.first_stays, 0);
+  EXPECT_EQ(cut.bodies_outside, 0);
+  EXPECT_EQ(cut.came_back, 0);
+  // Below y = 0 all are for 0.7 s, frames 0 to 83 (that of 84 is on the border, or a bit beside
+  // it); above y = 0.4 the last ones are from 1.5 s on, frames 180 to 299.
+  const double outside = 625.0 * 84.0 + 256.0 * 120.0;
+  EXPECT_NEAR(static_cast<double>(cut.places_outside), outside, 625.0 + 256.0);
+  // The same as with the option; without an end the open ground counts, and nobody stays there.
+  CutOptions given{.fastest = 100.0, .window = "5"};
+  given.columns = 1;
+  given.rows = 4;
+  EXPECT_EQ(cut_tracks(file, cell, given).passages.size(), cut.passages.size());
+  const CutTracks endless = cut_tracks(file, cell, with_window("5"));
+  EXPECT_EQ(endless.count(CutEnd::trapped), 369);
+  EXPECT_EQ(endless.passages.size() - static_cast<std::size_t>(endless.count(CutEnd::lost)),
+            1845U + 3U * 625U + 4U * 256U);
+  EXPECT_EQ(endless.places_outside, 0);
+}
+
+// One that begins inside, one that goes out by a side and comes back, one that is never in.
+TEST(CutTracks, WhatComesBackBeginsAnotherTrial) {
+  CellFile cell = squares();
+  cell.field.columns = cell.field.rows = 2;
+  cell.has_field = true;
+  const auto turns = [](double t) { return Place{0.15 + 0.4 * std::min(t, 1.0 - t), 0.05}; };
+  const CutTracks cut = cut_tracks(
+      file_of({straight({0.05, 0.05}, 0.0, 0.4), turns, straight({0.5, 0.5}, 0.1, 0.1)}, 121), cell,
+      {.fastest = 100.0, .window = "5"});
+  // In rows 0 and 1 until 0.375 s; in column 1 until 0.125 s, again from 0.875 s on.
+  EXPECT_EQ(cut.first_stays, 2);
+  EXPECT_EQ(cut.trials, 2);
+  EXPECT_EQ(cut.came_back, 1);
+  EXPECT_EQ(cut.bodies_outside, 1);
+  ASSERT_EQ(cut.passages.size(), 2U);
+  EXPECT_EQ(cut.passages[0].in.face, kFaceS);
+  EXPECT_EQ(cut.passages[0].end, CutEnd::left);
+  EXPECT_EQ(cut.passages[1].in.face, kFaceE);
+  EXPECT_EQ(cut.passages[1].end, CutEnd::lost);
+  EXPECT_NEAR(cut.passages[1].time, 0.125, 1e-6);
+  // 75 frames of the first, 0.375 to 1 s; 90 of the second; all of the third.
+  EXPECT_NEAR(static_cast<double>(cut.places_outside), 75.0 + 90.0 + 121.0, 3.0);
+}
+
 TEST(CutTracks, TypesAreThoseOfTheMap) {
   CellFile cell = squares();
   cell.map.types = {{false}, {false}};
@@ -379,7 +451,7 @@ TEST(CutTracks, TypesAreThoseOfTheMap) {
   cell.map.columns = 2;
   cell.map.type_of_cell = {0, 1, 1, 0};
   const TrackFile file = file_of({straight({-0.05, 0.05}, 0.4, 0.05)}, 121);
-  const CutTracks cut = cut_tracks(file, cell, fast());
+  const CutTracks cut = cut_tracks(file, cell, {.fastest = 100.0});
   ASSERT_EQ(cut.passages.size(), 2U);
   EXPECT_EQ(cut.passages[0].type, 0);
   EXPECT_EQ(cut.passages[1].type, 1);

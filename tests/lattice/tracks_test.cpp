@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <netcdf.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -146,7 +147,6 @@ TEST_F(TracksFile, TablesAreRefusedByLineAndColumn) {
   expect_refused(head, good, "has no line of any body");
   expect_refused(head + "a,0,1\n", good, "t.csv:2: has 3 fields, the first line 4");
   expect_refused(head + "a,0,1,1\na,1,one,1\n", good, "t.csv:3: column x: \"one\" is no number");
-  expect_refused(head + "a,0,1,1\na,1,inf,1\n", good, "t.csv:3: column x: \"inf\" is no number");
   expect_refused(head + "a,0.5,1,1\n", good, "t.csv:2: column f: \"0.5\" is no whole number");
   expect_refused(head + "a,,1,1\n", good, "t.csv:2: column f: \"\" is no whole number");
   expect_refused(head + "a,7,1,1\nb,7,1,1\na,7,2,2\n", good,
@@ -197,6 +197,147 @@ TEST_F(TracksFile, ColumnsThatMakeNoSense) {
   refused("body=id,frame=f,x=x,x=y,y=y", "x= is given twice");
   refused("body,frame=f,x=x,y=y", "\"body\" is no MEANING=COLUMN");
   refused("\"body=id,frame=f", "a quotation mark is not closed");
+}
+
+// A time of 20 ms, and a place 5 mm from the origin, however the file states what they are in.
+TEST_F(TracksFile, UnitsInNamesAreBelieved) {
+  const auto read_as = [&](const std::string& time, const std::string& x, const std::string& y,
+                           const std::string& values) {
+    TrackOptions options;
+    options.columns = "body=id,\"time=" + time + "\",\"x=" + x + "\",\"y=" + y + "\"";
+    return read("id,\"" + time + "\",\"" + x + "\",\"" + y + "\"\n" + "a,0,0,0\na," + values + "\n",
+                options);
+  };
+  const std::vector<std::array<std::string, 4>> all{
+      {"t_s", "x_m", "y_m", "0.02,0.005,0.005"},
+      {"t_ms", "x_mm", "y_mm", "20,5,5"},
+      {"Time [ms]", "X (cm)", "Y (cm)", "20,0.5,0.5"},
+      {"time (µs)", "x [µm]", "y [um]", "20000,5000,5000"},
+      {"time_milliseconds", "x.mm", "y mm", "20,5,5"},
+      {"T/ns", "x_nm", "y_nm", "2e7,5e6,5e6"},
+      {"TIME_MS", "POSITION_MM", "y_millimeters", "20,5,5"}};
+  for (const auto& [time, x, y, values] : all) {
+    const TrackFile t = read_as(time, x, y, values);
+    EXPECT_DOUBLE_EQ(t.tracks.at(0).time.at(1), 0.02) << time;
+    EXPECT_DOUBLE_EQ(t.tracks.at(0).x.at(1), 0.005) << x;
+    EXPECT_DOUBLE_EQ(t.tracks.at(0).y.at(1), 0.005) << y;
+    EXPECT_DOUBLE_EQ(t.interval, 0.02) << time;
+  }
+  const auto remarks = read_as("t_ms", "x_mm", "y_mm", "20,5,5").remarks;
+  EXPECT_EQ(remarks.at(0), "column t_ms is in ms, by its name: converted to s");
+  EXPECT_EQ(remarks.at(1), "places are in mm, by its name");
+  EXPECT_DOUBLE_EQ(read_as("t_min", "x_m", "y_m", "2,1,1").tracks[0].time[1], 120.0);
+  EXPECT_DOUBLE_EQ(read_as("t (h)", "x_m", "y_m", "0.5,1,1").tracks[0].time[1], 1800.0);
+}
+
+TEST_F(TracksFile, UnitsThatDoNotFitAreRefused) {
+  const auto refused = [&](const std::string& time, const std::string& x, const std::string& y,
+                           const std::string& words, std::optional<double> scale = {},
+                           std::optional<double> fps = {}) {
+    TrackOptions options;
+    options.columns = "body=id,time=" + time + ",x=" + x + ",y=" + y;
+    options.metres_per_unit = scale;
+    options.fps = fps;
+    expect_refused("id," + time + "," + x + "," + y + "\na,0,1,1\na,20,1,2\na,40,1,3\n", options,
+                   words);
+  };
+  refused("frame", "x", "y",
+          "column frame is in frame, by its name: give frame=frame of --columns "
+          "in place of time=, and frames per second, --fps N",
+          1.0);
+  refused("t_frames", "x", "y", "give frame=t_frames", 1.0);
+  refused("t_mm", "x", "y", "column t_mm is in mm, by its name, which is no unit of time", 1.0);
+  refused("t (a.u.)", "x", "y", "column t (a.u.) is in (a.u.), by its name, which is no unit of",
+          1.0);
+  refused("t_s", "x_mm", "y_cm", "column x_mm is in mm, by its name, column y_cm in cm");
+  refused("t_s", "x_mm", "y_px", "both must be in the same unit");
+  refused("t_s", "x [s]", "y", "column x [s] is in [s], by its name, which is no length", 1.0);
+  refused("t_s", "x_mm", "y_mm",
+          "column x_mm is in mm, by its name, which is 0.001 m; "
+          "--metres-per-unit says 1",
+          1.0);
+  refused("t_s", "x_mm", "y", "column x_mm is in mm, by its name, which is 0.001 m", 1.0);
+  refused("t_s", "x_mm", "y", "what column y are in: --metres-per-unit X");
+  refused("t_s", "x_px", "y_px", "are in px, by its name: --metres-per-unit X");
+  refused("t_s", "x", "y", "what x and y are in: --metres-per-unit X");
+  // Steps of 20 ms are 50 frames a second; of 20 s, which the file does not say, every 1000th.
+  refused("t_ms", "x", "y",
+          "--fps 30 is a frame every 0.03333333333333333 s, but column t_ms has "
+          "steps of 0.02 s",
+          1.0, 30.0);
+  refused("t_s", "x", "y", "--fps 0.01 is a frame every 100 s, but column t_s has steps of 20 s",
+          1.0, 0.01);
+  // Numbers of frames are no times.
+  TrackOptions options = table_options("body=id,frame=t_ms,x=x,y=y");
+  expect_refused("id,t_ms,x,y\na,0,1,1\n", options,
+                 "column t_ms is in ms, by its name, no numbers of frames: time=t_ms in place of");
+  // The end of a name may be something else: x_s is smoothed, and what a pixel is was said.
+  options = table_options("body=id,time=t,x=x_s,y=y_s");
+  options.fps = {};
+  EXPECT_EQ(read("id,t,x_s,y_s\na,0,1,1\na,1,1,1\n", options).places, 2);
+  options.columns = "body=id,time=t,x=x_px,y=y_px";
+  EXPECT_EQ(read("id,t,x_px,y_px\na,0,1,1\na,1,1,1\n", options).places, 2);
+}
+
+TEST_F(TracksFile, TrackMatesUnitsAreBelieved) {
+  const auto text = [](const std::string& place, const std::string& time,
+                       const std::string& frame) {
+    return "TRACK_ID,POSITION_X,POSITION_Y,POSITION_T,FRAME\nTrack ID,X,Y,T,Frame\nTrack "
+           "ID,X,Y,T,F\n," +
+           place + "," + place + "," + time + "," + frame + "\n1,1000,2000,0,0\n1,1000,4000,40,2\n";
+  };
+  TrackOptions options;
+  options.columns = "body=TRACK_ID,time=POSITION_T,x=POSITION_X,y=POSITION_Y";
+  const TrackFile t = read(text("(micron)", "(ms)", ""), options);
+  EXPECT_DOUBLE_EQ(t.tracks[0].time[1], 0.04);
+  EXPECT_DOUBLE_EQ(t.tracks[0].y[1], 0.004);
+  EXPECT_EQ(t.remarks.at(1), "column POSITION_T is in (ms), in the row of units: converted to s");
+  expect_refused(text("(micron)", "(frame)", ""), options, "give frame=POSITION_T of --columns");
+  expect_refused(text("(pixel)", "(sec)", ""), options,
+                 "are in (pixel), in the row of units: --metres");
+  expect_refused(text("(micron)", "(parsec)", ""), options, "which is no unit of time");
+  options.metres_per_unit = 0.001;
+  EXPECT_DOUBLE_EQ(read(text("(pixel)", "(sec)", ""), options).tracks[0].y[1], 4.0);
+  // TrackMate writes a unit of places whether or not anybody set it: the user's word counts, and is
+  // said.
+  const TrackFile other = read(text("(micron)", "(ms)", ""), options);
+  EXPECT_DOUBLE_EQ(other.tracks[0].y[1], 4.0);
+  EXPECT_DOUBLE_EQ(other.tracks[0].time[1], 0.04);
+  ASSERT_EQ(other.warnings.size(), 1U);
+  EXPECT_NE(other.warnings[0].find(
+                "column POSITION_X is in (micron), in the row of units, which is 1e-06 "
+                "m; --metres-per-unit says 0.001, which is taken"),
+            std::string::npos)
+      << other.warnings[0];
+  options.metres_per_unit = 1e-6;
+  EXPECT_TRUE(read(text("(micron)", "(ms)", ""), options).warnings.empty());
+  options.columns = "body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y";
+  options.fps = 10.0;
+  EXPECT_DOUBLE_EQ(read(text("(mm)", "(ms)", "(frame)"), options).tracks[0].time[1], 0.2);
+  expect_refused(text("(mm)", "(ms)", "(sec)"), options, "time=FRAME in place of frame=");
+}
+
+TEST_F(TracksFile, WordsForNobody) {
+  for (const char* word :
+       {"NA", "None", "null", "<NA>", "N/A", "#N/A", "NaN", "nan", "NULL", "", "-1"}) {
+    const TrackFile t = read(std::string("id,f,x,y\n0,0,1,1\n") + word + ",0,5,5\n1,0,2,2\n" +
+                                 word + ",1,5,5\n1,1,2,3\n",
+                             table_options());
+    ASSERT_EQ(t.tracks.size(), 2U) << word;
+    EXPECT_EQ(t.tracks[1].body, "1") << word;
+    EXPECT_EQ(t.tracks[1].y, (std::vector{0.002, 0.003})) << word;
+    EXPECT_EQ(t.no_body, 2) << word;
+    EXPECT_EQ(t.places, 3) << word;
+  }
+  // Names, not numbers from 0: -1 may be one of them.
+  for (const char* other : {"a", "-2", "0.5"})
+    EXPECT_EQ(read(std::string("id,f,x,y\n-1,0,1,1\n") + other + ",0,1,1\n", table_options())
+                  .tracks.size(),
+              2U);
+  // A place that says nothing, or infinity, was not seen.
+  const TrackFile t =
+      read("id,f,x,y\n1,0,1,1\n1,1,NA,1\n1,2,1,None\n1,3,inf,1\n1,4,1,-inf\n", table_options());
+  EXPECT_EQ(t.no_place, 4);
 }
 
 constexpr const char* kOneMouse =
@@ -279,6 +420,7 @@ struct MovementWriter {
   std::vector<std::string> order{"time", "space", "K", "I"};
   std::vector<double> times{0.0, 0.02, 0.04};
   std::vector<std::string> spaces{"x", "y"};
+  std::string units{}, place_units{};  // of the times, of the places
   bool has_fps = true, has_confidence = true, all_nan = false, packed = false;
   double fill = kNaN;
 
@@ -303,6 +445,7 @@ struct MovementWriter {
           nc_def_var(nc, name_of(d).c_str(), d == "time" ? NC_DOUBLE : NC_STRING, 1, &id, &label));
       if (d == "time") {
         check(nc_put_var_double(nc, label, times.data()));
+        if (!units.empty()) check(nc_put_att_text(nc, label, "units", units.size(), units.c_str()));
         continue;
       }
       std::vector<std::string> words = d == "space" ? spaces
@@ -319,6 +462,8 @@ struct MovementWriter {
       const float value = static_cast<float>(fill);
       check(nc_put_att_float(nc, position, "_FillValue", NC_FLOAT, 1, &value));
     }
+    if (!place_units.empty())
+      check(nc_put_att_text(nc, position, "units", place_units.size(), place_units.c_str()));
     if (packed) check(nc_put_att_double(nc, position, "scale_factor", NC_DOUBLE, 1, &times[1]));
     // 1000 frame + 100 body + 10 key point + space, so that each place tells whose it is.
     const auto values = [&](const std::vector<std::string>& by, auto&& value) {
@@ -418,6 +563,48 @@ TEST_F(MovementTracks, FramesNeedAFrameRate) {
   EXPECT_DOUBLE_EQ(read(w, with_fps).tracks[1].time[1], 0.2);
   w.times = {0.0, 1.5, 2.0};
   expect_refused(w, with_fps, "time[1] = 1.5 is no whole frame");
+}
+
+TEST_F(MovementTracks, UnitsOfTimeAreBelieved) {
+  MovementWriter w;
+  w.times = {0.0, 20.0, 40.0};
+  for (const char* units : {"milliseconds", "ms", "milliseconds since 2024-05-01 10:00:00"})
+    for (const char* time_unit : {"seconds", ""}) {
+      w.units = units;
+      w.time_unit = time_unit;
+      const TrackFile t = read(w, options());
+      EXPECT_DOUBLE_EQ(t.tracks[1].time[1], 0.04) << units;
+      EXPECT_DOUBLE_EQ(t.interval, 0.02) << units;
+      EXPECT_NE(t.remarks.at(1).find("converted to s"), std::string::npos) << t.remarks.at(1);
+    }
+  w.units = "frames";
+  w.times = {0.0, 1.0, 2.0};
+  EXPECT_DOUBLE_EQ(read(w, options()).tracks[1].time[1], 0.04);
+  w.time_unit = "seconds";
+  expect_refused(w, options(), "time_unit is \"seconds\", but the units of time are \"frames\"");
+  w.time_unit = "frames";
+  w.units = "ms";
+  expect_refused(w, options(), "time_unit is \"frames\", but the units of time are \"ms\"");
+  w.units = "fortnights";
+  expect_refused(w, options(), "the units of time are \"fortnights\": must be seconds");
+  // Its fps is 50.
+  w = {};
+  w.times = {0.0, 0.03, 0.06};
+  expect_refused(w, options(),
+                 "its fps of 50 is a frame every 0.02 s, but time has steps of 0.03 s");
+}
+
+TEST_F(MovementTracks, UnitsOfPlacesAreBelieved) {
+  MovementWriter w;
+  w.place_units = "mm";
+  TrackOptions o = options();
+  EXPECT_DOUBLE_EQ(read(w, o).tracks[1].y[1], 2.111);
+  o.metres_per_unit = {};
+  EXPECT_DOUBLE_EQ(read(w, o).tracks[1].y[1], 2.111);
+  o.metres_per_unit = 1.0;
+  expect_refused(w, o,
+                 "position is in \"mm\", by its attribute units, which is 0.001 m; "
+                 "--metres-per-unit says 1");
 }
 
 TEST_F(MovementTracks, WithoutConfidencesOrFrameRate) {

@@ -66,7 +66,7 @@ awk '{ t = t (NR % 2 ? (NR > 1 ? "," : "") $1 : ""); x[NR] = $3; y[NR] = $4; c =
 ncgen -4 -o movement.nc t.cdl || fail "ncgen"
 
 scale=(--metres-per-unit 0.001)
-shared=(--cell cell.toml "${scale[@]}" --fastest 1 --confidence 0.9 --quiet)
+shared=(--cell cell.toml "${scale[@]}" --fastest 1 --confidence 0.9 --lattice all --quiet)
 table=(spots.csv --fps 100 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y,confidence=QUALITY "${shared[@]}")
 "$gatewalk" passages "${table[@]}" -o runs.csv --json runs.json --figure tracks.svg >table.txt 2>err.txt || fail "passages: $(cat err.txt)"
 "$gatewalk" passages dlc.csv --fps 100 "${shared[@]}" -o dlc_runs.csv --json dlc.json || fail "passages: DeepLabCut"
@@ -95,6 +95,41 @@ expect 2 'by a move of (0, -1).*: no face of cell.toml has that move' "$gatewalk
 holds '.window_frames == 7 and .lost_by == {gap: 0, jump: 2, end: 2}' x.json
 [ "$(grep -c , runs.csv)" = 16 ] || fail "passages: $(wc -l <runs.csv) lines"
 
+# Cells are those of [field], from the origin on: rows 0 to 2, columns 0 to 2, until y = 0.3 m after 0.56 s. Each body
+# enters row 1 and row 2 before; a also column 1, and b column 2 from column 3, before its first row: y = 0.02 + 0.5 t.
+field=("${table[@]/all/3,3}")
+"$gatewalk" passages "${field[@]}" -o given.csv --json given.json || fail "passages: --lattice 3,3"
+own=()
+for word in "${table[@]}"; do [ "$word" = --lattice ] || [ "$word" = all ] || own+=("$word"); done
+"$gatewalk" passages "${own[@]}" -o own.csv --json own.json || fail "passages: the field"
+cmp -s own.csv given.csv || fail "passages: the field's cells are not the default"
+holds '.lattice == {columns: 3, rows: 3} and .places_outside > 100 and .bodies_outside == 0' own.json
+holds '.lattice == null and .places_outside == 0' runs.json
+"$gatewalk" passages "${own[@]:0:$((${#own[@]} - 1))}" -o own.csv --force >table.txt || fail "passages: the field's table"
+grep -q '3 columns and 3 rows from the origin on' table.txt && grep -q 'places lie outside them, 0 bodies are never seen in them' table.txt ||
+  fail "passages: nothing is said of what lies outside: $(cat table.txt)"
+sed '/^\[field\]/,$d' cell.toml >no_field.toml
+expect 2 'no_field.toml does not say how many cells there are: give columns and rows of \[field\], or --lattice' \
+  "$gatewalk" passages "${own[@]}" -o x.csv --cell no_field.toml
+
+# A chain of known law: of 625 bodies a fifth stays in each of four rows, 0.8^4 = 40.96 % cross. Two rows' lengths of
+# open ground before them are no cells.
+sed 's/columns = 3/columns = 1/; s/rows = 3/rows = 4/; s/symmetric = true/symmetric = true\ntrapped_after_s = 2/' cell.toml >law.toml
+awk 'BEGIN {
+  print "body,t_ms,x_cm,y_cm"
+  for (b = 0; b < 625; b++) {
+    stays = b < 125 ? 5 : b < 225 ? 15 : b < 305 ? 25 : b < 369 ? 35 : 99
+    for (f = 0; f < 45; f++) { y = -15 + 2 * f; print b "," 100 * f ",5," (y < stays ? y : stays) }
+  }
+}' >law.csv
+"$gatewalk" passages law.csv --cell law.toml -o law_runs.csv --fastest 1 --window 5 --columns body=body,time=t_ms,x=x_cm,y=y_cm --json law.json >law.txt ||
+  fail "passages: a known law"
+holds '.passages == 1845 and .trials == 625 and .endings == {left: 1476, trapped: 369, lost: 0}' law.json
+grep -q 'column t_ms is in ms, by its name: converted to s' law.txt && grep -q 'places are in cm, by its name' law.txt ||
+  fail "passages: units are not said: $(cat law.txt)"
+"$gatewalk" build law_runs.csv --cell law.toml -o law.nc --quiet 2>err.txt && "$gatewalk" predict law.nc --json law.json --force --quiet 2>err.txt || fail "predict: a known law"
+holds '(.endings.crossed - 0.4096 | fabs) < 1e-12' law.json
+
 # What a file does not say, and what makes no sense.
 lacks() { expect 2 "$1" "$gatewalk" passages "${@:2}" -o x.csv --cell cell.toml; }
 lacks 'which column is what: --columns.*frames per second: --fps N.*--metres-per-unit' spots.csv --fastest 1
@@ -111,7 +146,11 @@ expect 2 'origin 1: must be two numbers' "$gatewalk" passages "${table[@]}" -o x
 for lattice in 0,3 2.5,3 x 3; do expect 2 'lattice .*: must be two' "$gatewalk" passages "${table[@]}" -o x.csv --lattice $lattice; done
 expect 2 'window 4: must be an odd number' "$gatewalk" passages "${table[@]}" -o x.csv --window 4
 expect 2 'fastest -1: must be above 0' "$gatewalk" passages "${table[@]}" -o x.csv --fastest -1
-expect 2 'no body is seen to enter a cell.*are --metres-per-unit, --origin, --fps and --fastest right' "$gatewalk" passages "${table[@]}" -o x.csv --metres-per-unit 1e-6
+expect 2 'no body is seen to enter a cell.*are --metres-per-unit, --origin, --fps and --fastest right' "$gatewalk" passages "${own[@]}" -o x.csv --origin 5000,0
+expect 0 'spots.csv: column POSITION_X is in (mm), in the row of units, which is 0.001 m; --metres-per-unit says 0.002, which is taken' "$gatewalk" passages "${table[@]}" -o x.csv --force --fastest 5 --metres-per-unit 0.002
+expect 2 'column x_cm is in cm, by its name, which is 0.01 m; --metres-per-unit says 0.001: leave it out' "$gatewalk" passages law.csv --cell law.toml -o x.csv --force --fastest 1 --columns body=body,time=t_ms,x=x_cm,y=y_cm --metres-per-unit 0.001
+sed 's/^,,,(mm)/,,(frame),(mm)/' spots.csv >frames.csv
+expect 2 'column FRAME is in (frame), in the row of units: give frame=FRAME of --columns in place of time=' "$gatewalk" passages frames.csv "${table[@]:1}" -o x.csv --columns body=TRACK_ID,time=FRAME,x=POSITION_X,y=POSITION_Y,confidence=QUALITY
 sed 's/name = "vx"/name = "spin"/; s/"vx"/"spin"/' cell.toml >spin.toml
 expect 2 'coordinate spin cannot be measured of tracks: these can, s' "$gatewalk" passages "${table[@]}" -o x.csv --cell spin.toml
 sed '0,/odd = \["s", "vx"\]/s//odd = ["vx"]/' cell.toml >even.toml

@@ -629,6 +629,12 @@ class Recorded(unittest.TestCase):
         cut = gw.passages(tracks, plain_cell, fps=60, metres_per_unit=1, fastest=5.0, columns={"body": "body", "frame": "frame", "x": "x", "y": "y"})
         self.assertGreaterEqual(len(cut), 3)
         self.assertEqual(set(cut["in"]), {"S"})
+        # Rows of 1 m, up to y = 2.4 m; in a field of one row two more of the bodies' rows are outside.
+        fewer = gw.passages(tracks, plain_cell + "\n", fps=60, metres_per_unit=1, fastest=5.0, lattice="1,2",
+                            columns={"body": "body", "frame": "frame", "x": "x", "y": "y"})
+        self.assertEqual((len(fewer), fewer.attrs["lattice"]), (3, {"columns": 1, "rows": 2}))
+        self.assertEqual(fewer.attrs["endings"], {"left": 3, "trapped": 0, "lost": 0})
+        self.assertAlmostEqual(fewer.attrs["places_outside"], 3 * 40, delta=3)
 
 
 class AsAGuest(unittest.TestCase):

@@ -403,7 +403,8 @@ def passages(tracks: t.Any, cell: t.Any, **more: t.Any) -> t.Any:
     Returns
     -------
     pandas.DataFrame
-        A line a passage, as `from_passages` takes it.
+        A line a passage, as `from_passages` takes it; ``attrs`` has what ``gatewalk passages --json`` says: what lies outside
+        the lattice, units that the file states, what was left out.
 
     Raises
     ------
@@ -414,8 +415,10 @@ def passages(tracks: t.Any, cell: t.Any, **more: t.Any) -> t.Any:
 
     columns = more.pop("columns", None)
     if isinstance(columns, dict):
-        columns = ",".join(f"{k}={v}" for k, v in columns.items())
+        columns = ",".join('"' + f"{k}={v}".replace('"', '""') + '"' for k, v in columns.items())
     with _table_file(tracks) as name, file_of(cell) as (path, _), tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, "runs.csv")
-        _run("passages", [name], {**more, "columns": columns}, [f"--cell={path}", f"--output={out}"], gives_json=False)
-        return pandas.read_csv(out, comment="#")
+        said = _run("passages", [name], {**more, "columns": columns}, [f"--cell={path}", f"--output={out}"])
+        table = pandas.read_csv(out, comment="#")
+        table.attrs.update(said)
+        return table
