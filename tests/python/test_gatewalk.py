@@ -332,6 +332,49 @@ class Elsewhere(unittest.TestCase):
         with self.assertRaisesRegex(gw.UsageError, "the chain: is 2 x 2; of 3 states it must be 3 x 4"):
             gw.from_counts(counts[:2, :2], states)
 
+    def test_chains_that_would_have_to_be_guessed(self):
+        states = {"state": [0, 1], "move_x": [0, 0], "move_y": [1, 1]}
+        field = dict(start=0, set={"field.rows": 2, "field.columns": 1, "field.max_gates": 0})
+        # Two lists of two or three numbers: counts, or ways 0 -> 1 -> 1? By hand the answers differ.
+        nested = [[0, 1, 1], [1, 0, 1]]
+        for ambiguous in (nested, [[0, 1], [1, 0]], ((0, 1), (1, 0)), [[0.5, 0.5], [1.0, 0.0]], [[6, 4]]):
+            with self.assertRaisesRegex(gw.UsageError, r"may be a matrix or trajectories: numpy.array\(chain\) is a matrix"):
+                gw.from_counts(ambiguous, states, **field)
+        np.testing.assert_array_equal(gw.from_counts(np.array(nested), states, **field).counts().toarray(), nested)
+        unsigned = gw.from_counts(np.array(nested, dtype=np.uint64), states, **field)
+        np.testing.assert_array_equal(unsigned.counts().toarray(), nested)
+        # 0 -> 1, 1 -> 1 and 1 -> 0, 0 -> 1.
+        np.testing.assert_array_equal(gw.from_counts([np.array(one) for one in nested], states, **field).counts().toarray(), [[0, 2, 0], [1, 1, 0]])
+        whole = [np.array([0.0, 1.0, 1.0]), pandas.Series([1, 0, 1], dtype="Int64"), range(2)]
+        np.testing.assert_array_equal(gw.from_counts(whole, states, **field).counts().toarray(), [[0, 3, 0], [1, 1, 0]])
+        good = np.array([0, 1, 1, 0])
+        for wrong, words in ((np.array([0, 1.5, 1]), "step 1 .*: 1.5 is no whole number"),
+                             (np.array([0, 1, np.nan]), "step 2 .*: nan is no whole number; cut the trajectory there"),
+                             (np.array([0, np.inf]), "step 1 .*: inf is no whole number"),
+                             ([0, 1, None], "step 2 .*: None is no whole number"),
+                             ([0, "1"], "step 1 .*: '1' is no whole number"),
+                             ([0, 0.25, 1, 0], "step 1 .*: 0.25 is no whole number"),
+                             (np.array([True, False]), "step 0 .*True.* is no whole number"),
+                             (np.array([0, 1j]), "step 0 .* is no whole number"),
+                             (pandas.Series([0, None, 1], dtype="Int64"), "step 1 .*: <NA> is no whole number"),
+                             (np.ma.masked_array([0, 1, 1], [False, False, True]), "step 2 .*: masked; cut"),
+                             (np.array([0, -1, 1]), "step 1 .*: -1 is no state"),
+                             (np.zeros((2, 2)), "is no sequence of states")):
+            with self.assertRaisesRegex(gw.UsageError, "the chain: trajectory 1[, ].*" + words):
+                gw.from_counts([good, wrong], states, **field)
+        with self.assertRaisesRegex(gw.UsageError, "row 1, column 0 .* is masked"):
+            gw.from_counts(np.ma.masked_array([[1, 2], [3, 4]], [[False, False], [True, False]]), states, **field)
+        for wrong, words in ((np.array([[True, False], [False, True]]), "a matrix of bool"), (np.array([[1j, 0], [0, 1]]), "a matrix of complex"),
+                             (np.array([[2**63, 1], [1, 1]], dtype=np.uint64), r"more than 2\^63 - 1"),
+                             (np.array([[0.5, np.nan], [1, 0]]), "the chain"), (np.array([[1, -1], [1, 0]]), "the chain"),
+                             (pandas.DataFrame([[1, 2], [3, 4]]), "is DataFrame; a matrix is a numpy array"), (good, "of shape"),
+                             ([0, 1, 1], "one trajectory is a list of one array"), ({0: [0, 1]}, "is dict"), ("01", "01")):
+            with self.assertRaisesRegex(ValueError, words):
+                gw.from_counts(wrong, states, **field)
+        for count in (1.5, float("nan"), True, None, "3"):
+            with self.assertRaisesRegex(gw.UsageError, "the table: the count of crossed must be a whole number"):
+                gw.validate(FIELD, observed={"crossed": count, "trapped": 17})
+
     def test_limits_of_counts_are_counts(self):
         seen = gw.lattice(FIELD, trials=50)
         frame = seen.to_frame()

@@ -282,7 +282,12 @@ def _csv_of(table: t.Any) -> str:
 
 
 def _csv_of_counts(counts: t.Mapping[str, t.Any]) -> str:
-    return "ending,count\n" + "".join(f"{ending},{int(n) if n == int(n) else n}\n" for ending, n in counts.items())
+    import numbers
+
+    for ending, n in counts.items():
+        if isinstance(n, bool) or not isinstance(n, numbers.Real) or n != n // 1:  # NaN too
+            raise _core.UsageError(f"the table: the count of {ending} must be a whole number, it is {n!r}")
+    return "ending,count\n" + "".join(f"{ending},{int(n)}\n" for ending, n in counts.items())
 
 
 @contextlib.contextmanager
@@ -329,6 +334,56 @@ def from_passages(table: t.Any, cell: t.Any, **more: t.Any) -> Matrix:
         return _made("build", [name], dict(more), [f"--cell={path}"])
 
 
+def _first(bad: t.Any) -> int:
+    return int(bad.argmax())
+
+
+def _states_of(one: t.Any, which: int) -> list[int]:
+    """The states of a trajectory. Raises UsageError for what is no whole number from 0, naming the step."""
+    import numbers
+
+    import numpy as np
+
+    def refuse(step: int, what: str) -> t.NoReturn:
+        raise _core.UsageError(f"the chain: trajectory {which}, step {step} (counted from 0): {what}")
+
+    dimensions = 0 if isinstance(one, (str, bytes)) else np.asarray(one, dtype=object).ndim
+    if dimensions != 1:
+        raise _core.UsageError(f"the chain: trajectory {which} is no sequence of states, but {type(one).__name__}"
+                               + ("" if dimensions else "; one trajectory is a list of one array: [states]"))
+    if np.ma.is_masked(one):  # type: ignore[no-untyped-call]
+        refuse(_first(np.ma.getmaskarray(one)), "masked; cut the trajectory there")  # type: ignore[no-untyped-call]
+    states = np.asarray(one)
+    if states.dtype.kind not in "iuf":
+        for step, state in enumerate(one):
+            whole = isinstance(state, numbers.Real) and not isinstance(state, (bool, np.bool_)) and state == state and state == state // 1
+            if not whole:
+                refuse(step, f"{state!r} is no whole number")
+        states = np.array([int(state) for state in one], dtype=object)
+    with np.errstate(invalid="ignore"):
+        bad = ~(states == np.floor(states)) | ~(abs(states) < 2.0**53) if states.dtype.kind == "f" else np.zeros(len(states), bool)
+    if bad.any():
+        refuse(_first(bad), f"{states[_first(bad)]} is no whole number" + ("; cut the trajectory there" if np.isnan(states[_first(bad)]) else ""))
+    if len(states) and (states < 0).any():
+        step = _first(states < 0)
+        refuse(step, f"{states[step]} is no state, they count from 0; cut the trajectory where none is known")
+    return [int(state) for state in states]
+
+
+def _require_matrix(chain: t.Any) -> None:
+    """Raises UsageError for entries of which a number would have to be guessed."""
+    import numpy as np
+
+    if np.ma.is_masked(chain):  # type: ignore[no-untyped-call]
+        row, column = np.argwhere(np.ma.getmaskarray(chain))[0]  # type: ignore[no-untyped-call]
+        raise _core.UsageError(f"the chain: row {row}, column {column} (counted from 0) is masked; fill it with what it is")
+    if chain.dtype.kind not in "iuf":
+        raise _core.UsageError(f"the chain: is a matrix of {chain.dtype}; must be whole numbers (counts) or floats (probabilities)")
+    data = chain.data if hasattr(chain, "tocsr") else chain
+    if chain.dtype.kind == "u" and data.size and int(data.max()) >= 2**63:
+        raise _core.UsageError(f"the chain: has a count of {data.max()}, more than 2^63 - 1")
+
+
 @contextlib.contextmanager
 def _chain_file(chain: t.Any) -> t.Iterator[str]:
     """A file with a sparse or dense matrix, or with trajectories; a path as it is."""
@@ -338,14 +393,27 @@ def _chain_file(chain: t.Any) -> t.Iterator[str]:
     import numpy as np
     from scipy.sparse import csr_matrix, issparse, save_npz
 
+    is_array = isinstance(chain, np.ndarray)
+    if not (issparse(chain) or is_array or isinstance(chain, (list, tuple))):
+        raise _core.UsageError(f"the chain: is {type(chain).__name__}; a matrix is a numpy array or of scipy.sparse (numpy.asarray(chain) "
+                               "makes one), trajectories are a list of 1-D arrays")
+    if is_array and chain.ndim != 2 and chain.dtype != object:
+        raise _core.UsageError(f"the chain: is an array of shape {chain.shape}; a matrix has two dimensions, one trajectory is a list "
+                               "of one array: [states]")
     with tempfile.TemporaryDirectory() as folder:
-        if issparse(chain) or (isinstance(chain, np.ndarray) and chain.ndim == 2):
+        if issparse(chain) or (is_array and chain.ndim == 2):
             name = os.path.join(folder, "chain.npz")
-            save_npz(name, csr_matrix(chain))
+            _require_matrix(chain)
+            save_npz(name, csr_matrix(chain.astype(np.int64) if chain.dtype.kind == "u" else chain))
         else:
+            n, nested = len(chain), all(isinstance(one, (list, tuple)) for one in chain)
+            lengths = {len(one) for one in chain} if nested else set()
+            if n and nested and len(lengths) == 1 and lengths <= {n, n + 1}:
+                raise _core.UsageError(f"the chain: {n} lists of {lengths.pop()} numbers may be a matrix or trajectories: "
+                                       "numpy.array(chain) is a matrix, [numpy.array(one) for one in chain] are trajectories")
             name = os.path.join(folder, "chain.dtrajs")
             with open(name, "w", encoding="utf-8") as file:
-                file.writelines(" ".join(str(int(state)) for state in one) + "\n" for one in chain)
+                file.writelines(" ".join(map(str, _states_of(one, k))) + "\n" for k, one in enumerate(chain))
         with called(name, "the chain"):
             yield name
 
@@ -357,7 +425,8 @@ def from_counts(chain: t.Any, states: t.Any, *, start: int | None = None, **more
     ----------
     chain : scipy.sparse matrix, numpy array of shape (n, n) or (n, n + 1), list of trajectories, or path
         Of one cell: whole numbers are counts, others probabilities; the last of n + 1 columns is trapped. Of a list each
-        element is a trajectory, a sequence of states, whose last may be n: trapped.
+        element is a trajectory, a sequence of states, whose last may be n: trapped. A list of n lists of n or n + 1 numbers
+        may be either and is refused: make it a numpy array, or a list of 1-D arrays.
     states : pandas.DataFrame, dict of lists, or path
         ``state`` (0, 1, ...), ``move_x``, ``move_y``: by which move from cell to cell each is entered; ``name``, ``face``.
     start : int, optional
@@ -372,7 +441,8 @@ def from_counts(chain: t.Any, states: t.Any, *, start: int | None = None, **more
     Raises
     ------
     UsageError
-        What is wrong in the chain or the states, and where.
+        What is wrong in the chain or the states, and where: states that are no whole numbers, NaN and masked entries too, by
+        trajectory and step.
 
     Examples
     --------
