@@ -90,6 +90,7 @@ int predict_from_matrix(const Options& options, const Subject& s,
   const auto prediction = lattice::predict(gates, field, starts, {.solver = solver_of(options)},
                                            options.seed(), options.work());
   options.warn(text_of(prediction.left_out));
+  options.warn(unfinished_text(prediction));
   const ShownField field_shown = s.shown();
   const PredictedField shown{*s.file, field_shown, s.given ? s.starts : std::vector<Start>(),
                              others, gates.exact};

@@ -80,8 +80,15 @@ FieldExits exits_of(const ExitShares& prediction, const std::vector<ExitShares>&
                     const Evidence& from) {
   return with_intervals(prediction, resampled, [&](double share, std::vector<double> drawn) {
     if (drawn.empty()) return std::array{std::nan(""), std::nan("")};
-    return resampled_95(middle_95(std::move(drawn), share), share, from);
+    return resampled_95(std::move(drawn), share, from);
   });
+}
+
+FieldExits with_unfinished(FieldExits exits, const markov::FinalDistribution& d) {
+  for (SideExits& side : exits)
+    for (std::size_t i = 0; i < side.share.size(); ++i)
+      side.interval[i] = with_unfinished(side.interval[i], side.share[i], d.remainder, d.rounding);
+  return exits;
 }
 
 FieldExits exits_of_groups(const ExitShares& prediction, const std::vector<ExitShares>& groups,

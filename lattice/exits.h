@@ -49,6 +49,9 @@ using ExitShares = std::array<std::vector<double>, kSides.size()>;  // by kSides
 /// any resampled: none.
 [[nodiscard]] FieldExits exits_of(const ExitShares& prediction,
                                   const std::vector<ExitShares>& resampled, const Evidence& from);
+/// By with_unfinished() of each share.
+[[nodiscard]] FieldExits with_unfinished(FieldExits exits,
+                                         const markov::FinalDistribution& prediction);
 /// The same from predictions of groups of the trials, by share_95.
 [[nodiscard]] FieldExits exits_of_groups(const ExitShares& prediction,
                                          const std::vector<ExitShares>& groups,

@@ -34,15 +34,19 @@ struct FinalDistribution {
   /// Cells in which walks ended otherwise than trapped, in ascending order. In all others, all of
   /// final_cells was trapped.
   std::vector<CellEndings> mixed_cells;
-  /// Still walking when the sum was stopped; of a solve, what its solution leaves unaccounted for.
-  /// As that would end at most once, it bounds the errors of all cells together, and of each number
-  /// above.
+  /// Still walking when the sum was stopped; of a solve, what its solution leaves unaccounted for;
+  /// and `endless`. As that would end at most once, it bounds the errors of all cells together, and
+  /// of each number above.
   double remainder = 0.0;
+  /// The part of it that can never end: walks in states from which no way leads to an end. Only
+  /// Solver::direct tells it.
+  double endless = 0.0;
   /// What rounding adds to these errors at most, to first order in 1e-16 (that of counts into
   /// probabilities included).
   double rounding = 0.0;
   double mean_steps = 0.0;  // draws per walk, as WalkTally::steps / walks; without the remainder's
   int steps = 0;            // propagation steps done (0 for a solve)
+  double operations = 0.0;  // products that Solver::direct took; 0 for any other
 };
 
 /// Shares of all walks that were trapped in each cell; that left the field from it (rows x
@@ -57,7 +61,8 @@ struct PredictOptions {
   int max_cells = 0;
 
   /// automatic: `rows` if there is no limit of cells and no exit leads to a row below; else
-  ///   `steps`.
+  ///   `steps`. Without limit `direct` instead where these would take more than 10^4 sums, or keep
+  ///   fewer than 6 digits, unless it is too large for that.
   /// steps: forward propagation of all planes of the field, step by step. Memory per start: 4 n_in
   ///   numbers per cell that can be reached, half of that when every move leads to the other colour
   ///   of a chessboard. With a limit it stops once next to nobody walks (1e-30 of all walks in any
@@ -65,9 +70,10 @@ struct PredictOptions {
   /// rows: without limit, row by row: what enters a row walks in it until it has left it, then the
   ///   next row is entered. Memory: a few rows x n_in numbers, whatever the number of rows, and for
   ///   elimination up to 512 MiB.
+  /// direct: solve_directly().
   /// klu: solve_absorption().
   /// plain: propagate().
-  enum class Solver { automatic, steps, rows, klu, plain };
+  enum class Solver { automatic, steps, rows, direct, klu, plain };
   Solver solver = Solver::automatic;
 
   /// How `rows` finds the visits of a row: by elimination of its columns, which takes as long
@@ -102,9 +108,10 @@ class Predictor {
   Predictor& operator=(const Predictor&) = delete;
 
   /// Throws std::invalid_argument when chain, field, start and options cannot belong together
-  /// (`rows` and `klu` with a limit of cells, `rows` unless can_go_by_rows()); std::runtime_error
-  /// when walks can circle (almost) for ever: `rows` takes more than max_steps sums in a row, or
-  /// it or `klu` is left with fewer than 6 digits.
+  /// (`rows`, `direct` and `klu` with a limit of cells, `rows` unless can_go_by_rows());
+  /// std::runtime_error when walks can circle (almost) for ever: `rows` takes more than max_steps
+  /// sums in a row, or it or `klu` is left with fewer than 6 digits, and `automatic` cannot take
+  /// `direct` instead.
   [[nodiscard]] FinalDistribution predict(const Field& field, const Start& start,
                                           const PredictOptions& options = {}) const;
   /// From several starts side by side, on all threads of the current TBB arena: the same bits as
@@ -160,6 +167,16 @@ class AdjointPredictor {
 /// until at most the tolerance still walks, or max_steps are done. Memory: 2 cells x n_in numbers.
 [[nodiscard]] FinalDistribution propagate(const FieldChain& chain, const Field& field,
                                           const Start& start, const PredictOptions& options = {});
+
+/// Without limit, by sparse elimination of one reachable (cell, input) pair after the other, in the
+/// blocks and the order that SuiteSparse KLU finds. As in absorbing.h nothing is subtracted
+/// (Grassmann, Taksar and Heyman 1985), so digits hold however seldom a walk ends, and walks that
+/// can never end are told apart (`endless`). None where it would take more than `most_operations`
+/// products, or more than some 10^7 pairs are in the field.
+[[nodiscard]] std::optional<FinalDistribution> solve_directly(const FieldChain& chain,
+                                                              const Field& field,
+                                                              const Start& start,
+                                                              double most_operations = 2e9);
 
 /// Without limit, by one sparse LU solve of (I - Q)^T visits = start over the reachable transient
 /// (cell, input) pairs (SuiteSparse KLU). Throws std::runtime_error when the matrix is singular (a

@@ -202,7 +202,8 @@ Json endings_95(const lattice::EndingShares& shares) {
 lattice::EndingShares shown_endings(lattice::EndingShares shares,
                                     const markov::FinalDistribution& f) {
   for (std::size_t e = 0; e < markov::kEndings; ++e) {
-    if (shares.share[e] > f.rounding + f.remainder) continue;
+    constexpr double kHardlyAny = 1e-6;  // more than this is no rounding, whatever is left walking
+    if (shares.share[e] > std::min(f.rounding + f.remainder, kHardlyAny)) continue;
     shares.share[e] = 0.0;
     if (!std::isnan(shares.interval[e][0])) shares.interval[e][0] = 0.0;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/prediction.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "cli/render/exits.h"
@@ -38,7 +39,9 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
   const dynamics::StateSpace& space = of.matrix.transitions.space;
   std::string table =
       endings_text(shares,
-                   intervals ? "of all walks, 95 % intervals for the sampling of the matrix"
+                   intervals && s.replicates == 0
+                       ? "of all walks, and what they may be, as some were not followed to an end"
+                   : intervals ? "of all walks, 95 % intervals for the sampling of the matrix"
                    : of.probabilities
                        ? "of all walks; no intervals: the matrix holds probabilities, not counts"
                        : "of all walks; no intervals: the field is too large for many predictions, "
@@ -54,7 +57,9 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
   if (f.unsampled > 0.0)
     table += "reach a state never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
   if (f.remainder > 1e-8)
-    table += "still walking when the sum was stopped: " + percent(f.remainder, 1.0, 6) + "\n";
+    table += (f.endless > 0.0 ? "never end, as they circle in states without a way out: "
+                              : "still walking when the sum was stopped: ") +
+             percent(f.remainder, 1.0, 6) + "\n";
   return table +
          "The chain's own error (bins, memory, and with bins from a pilot where its rows start) "
          "is not in the intervals:\n"
@@ -100,6 +105,20 @@ std::string table_of(const lattice::Prediction& prediction, const PredictedField
     table += "rows " + std::to_string(o.first) + " to " + std::to_string(o.last) + ": gates of " +
              o.path + "\n";
   return table;
+}
+
+std::string unfinished_text(const lattice::Prediction& prediction) {
+  double most = 0.0;
+  for (const lattice::StartPrediction& s : prediction.starts)
+    most = std::max(most, s.final.remainder + s.final.rounding);
+  if (!(most > 1e-6)) return "";
+  lattice::TextStream text;
+  text.precision(2);
+  text << "walks, " << 100.0 * most
+       << " % of all, were not followed to an end (or rounding hides them): each share may be "
+          "larger by "
+          "so much, which its interval counts";
+  return text.str();
 }
 
 std::string text_of(const lattice::LeftOut& left_out) {

@@ -100,4 +100,16 @@ void multinomial(std::int64_t trials, std::span<const double> weights,
   }
 }
 
+double gamma(double shape, Random& random) {
+  // The draw of a larger shape, times a power of a uniform.
+  if (shape < 1.0) return gamma(shape + 1.0, random) * std::pow(random.uniform(), 1.0 / shape);
+  const double d = shape - 1.0 / 3.0, c = 1.0 / std::sqrt(9.0 * d);
+  for (;;) {
+    const double x = random.normal(), root = 1.0 + c * x;
+    if (root <= 0.0) continue;
+    const double v = root * root * root;
+    if (std::log(random.uniform()) < 0.5 * x * x + d - d * v + d * std::log(v)) return d * v;
+  }
+}
+
 }  // namespace gatewalk::lattice

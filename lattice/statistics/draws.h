@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Counts drawn at once instead of trial by trial: binomial and multinomial, from own samplers (the
-/// standard library's differ between vendors).
+/// Counts drawn at once instead of trial by trial: binomial and multinomial; and gamma. From own
+/// samplers (the standard library's differ between vendors).
 
 #include <cstdint>
 #include <span>
@@ -19,5 +19,9 @@ namespace gatewalk::lattice {
 /// same length: one binomial per outcome, given those before. None goes to a weight of 0.
 void multinomial(std::int64_t trials, std::span<const double> weights,
                  std::span<std::int64_t> counts, dynamics::Random& random);
+
+/// Of the gamma distribution with this shape (> 0) and scale 1 (Marsaglia and Tsang, ACM Trans.
+/// Math. Softw. 26, 2000). Several of them over their sum are a draw from a Dirichlet distribution.
+[[nodiscard]] double gamma(double shape, dynamics::Random& random);
 
 }  // namespace gatewalk::lattice

@@ -29,16 +29,16 @@ EndingShares::EndingShares(const std::array<std::int64_t, markov::kEndings>& cou
 EndingShares::EndingShares(const markov::FinalDistribution& prediction, const MatrixNoise& noise,
                            int max_gates)
     : EndingShares(prediction.endings) {
-  if (noise.replicates() == 0) return;
-  for (std::size_t e = 0; e < markov::kEndings; ++e)
-    interval[e] =
-        resampled_95(noise.interval_95(static_cast<markov::Ending>(e)), share[e], noise.from());
-  *this = with_limit(max_gates);
+  for (std::size_t e = 0; e < markov::kEndings; ++e) {
+    if (noise.replicates() > 0) interval[e] = noise.interval_95(static_cast<markov::Ending>(e));
+    interval[e] = with_unfinished(interval[e], share[e], prediction.remainder, prediction.rounding);
+  }
+  if (!std::isnan(interval.front()[0])) *this = with_limit(max_gates);
 }
 
 EndingShares EndingShares::with_limit(int max_gates) const {
   EndingShares shares = *this;
-  if (max_gates == 0)
+  if (max_gates == 0 && share[static_cast<std::size_t>(markov::Ending::cut_off)] == 0.0)
     shares.interval[static_cast<std::size_t>(markov::Ending::cut_off)] = {0.0, 0.0};
   return shares;
 }

@@ -42,11 +42,13 @@ struct EndingShares {
   explicit EndingShares(const std::array<double, markov::kEndings>& shares);
   /// Jeffreys' intervals of these counts.
   EndingShares(const std::array<std::int64_t, markov::kEndings>& counts, std::int64_t trials);
-  /// A prediction's, with what the sampling of its matrix makes.
+  /// A prediction's, with what the sampling of its matrix makes, and walks not followed to their
+  /// end.
   EndingShares(const markov::FinalDistribution& prediction, const MatrixNoise& noise,
                int max_gates);
 
-  /// Without a limit of gates (max_gates 0) nothing is cut off, and that is certain.
+  /// Without a limit of gates (max_gates 0) nothing is cut off, and that is certain; but walks that
+  /// were given up after very many gates are.
   [[nodiscard]] EndingShares with_limit(int max_gates) const;
   /// Whether nobody can end so, as its interval says; of those who went back, whether none did.
   [[nodiscard]] bool rules_out(markov::Ending ending) const;

@@ -176,13 +176,6 @@ double half_width_95(const std::vector<double>& groups) {
   return kQuantile * spread_of(groups).error;
 }
 
-std::array<double, 2> middle_95(std::vector<double> drawn, double own) {
-  std::sort(drawn.begin(), drawn.end());
-  const std::size_t beyond = (drawn.size() + 1) / 40;  // 2.5 % on either side
-  const std::size_t low = beyond > 0 ? beyond - 1 : 0;
-  return {std::min(drawn[low], own), std::max(drawn[drawn.size() - 1 - low], own)};
-}
-
 std::array<double, 2> share_95(double whole, const std::vector<double>& groups,
                                const Evidence& from, double besides) {
   if (whole > 0.5) {
@@ -198,14 +191,32 @@ std::array<double, 2> share_95(double whole, const std::vector<double>& groups,
   return dynamics::interval_of_share(whole, std::min(like, from.gate_runs));
 }
 
-std::array<double, 2> resampled_95(const std::array<double, 2>& middle, double own,
-                                   const Evidence& from) {
+std::array<double, 2> resampled_95(std::vector<double> drawn, double own, const Evidence& from) {
   const double share = std::clamp(own, 0.0, 1.0);
+  std::sort(drawn.begin(), drawn.end());
+  const std::size_t beyond = (drawn.size() + 1) / 40;  // 2.5 % on either side
+  const std::size_t at = beyond > 0 ? beyond - 1 : 0;
+  std::array<double, 2> middle{drawn[at], drawn[drawn.size() - 1 - at]};
   if (middle[1] - middle[0] <= kShareRounding)
     return dynamics::interval_of_share(share, from.trials);
-  if (!(from.gate_runs > 0.0)) return middle;
+  const bool possible = share > 0.0 && share < 1.0;
+  if (possible && !(middle[0] < share && share < middle[1])) {
+    double squares = 0.0;
+    for (const double d : drawn) squares += (d - share) * (d - share);
+    const double like = share * (1.0 - share) * static_cast<double>(drawn.size()) / squares;
+    middle = dynamics::interval_of_share(share, like);
+  }
+  if (!(from.gate_runs > 0.0) || !possible) return middle;
   const auto [low, high] = dynamics::interval_of_share(share, from.gate_runs);
   return {std::min(middle[0], low), std::max(middle[1], high)};
+}
+
+std::array<double, 2> with_unfinished(const std::array<double, 2>& interval, double share,
+                                      double unfinished, double rounding) {
+  constexpr double kNotShown = 1e-9;
+  if (!(unfinished + rounding > kNotShown)) return interval;
+  const auto [low, high] = std::isnan(interval[0]) ? std::array{share, share} : interval;
+  return {std::max(0.0, low - rounding), std::min(1.0, high + unfinished + rounding)};
 }
 
 Evidence evidence_of(const markov::FinalDistribution& whole, std::int64_t trials) {

@@ -27,9 +27,16 @@ std::int64_t CountedField::runs_at(const markov::Start& start) const {
 
 namespace {
 
-/// A way out of a row of a few runs is taken once in a few visits, one through four such rows once
-/// in some ten thousand. Walks that take much longer are taken to circle for ever.
-constexpr int kMostMovesInSmallRows = 100'000;
+/// Walks that never end, so many of all, are none.
+constexpr double kHardlyAny = 1e-6;
+
+/// A resampled row is one of as many steps, but for rounding.
+constexpr double kSteps = 0x1p52;
+/// Of one run that is counted twice, as it was and as its mirror image.
+constexpr double kLeastConcentration = 0.5;
+
+/// Sums of a resampled matrix, where it is too large to be solved.
+constexpr int kMostSums = 100'000;
 
 bool equals_row_before(const markov::Counts& counts, int row) {
   const int* const begin = counts.outerIndexPtr() + row;
@@ -43,10 +50,9 @@ bool equals_row_before(const markov::Counts& counts, int row) {
 
 Evidence CountedField::evidence_at(const markov::Start& start) const {
   Evidence from{static_cast<double>(runs_at(start)), 0.0};
-  if (!small_rows) return from;
   for (std::size_t type = 0; type < counts.size(); ++type)
     for (int row = 0; row < counts[type].rows(); ++row) {
-      if (equals_row_before(counts[type], row)) continue;
+      if (small_rows && equals_row_before(counts[type], row)) continue;
       const std::int64_t each = images.empty() ? 1 : images[type][static_cast<std::size_t>(row)];
       from.gate_runs += static_cast<double>(counts[type].row(row).sum() / each);
     }
@@ -56,39 +62,27 @@ Evidence CountedField::evidence_at(const markov::Start& start) const {
 markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed, std::uint64_t replicate,
                          bool small_rows, const std::vector<std::int64_t>& images) {
   using Entry = markov::Counts::InnerIterator;
-  // What a row never saw may yet happen in it. Its probabilities are its counts and one run more,
-  // which ends as those of all rows together: upto[i] runs ended in outputs 0 .. i.
-  std::vector<std::int64_t> upto(static_cast<std::size_t>(counts.cols()), 0);
-  for (int row = 0; row < counts.rows(); ++row)
-    for (Entry entry(counts, row); entry; ++entry)
-      upto[static_cast<std::size_t>(entry.col())] += entry.value();
-  std::partial_sum(upto.begin(), upto.end(), upto.begin());
-
   std::vector<Eigen::Triplet<std::int64_t>> drawn;
   std::vector<double> weights;
-  std::vector<std::int64_t> of_entries;
   int first = 0;  // of the rows that are the same runs
   for (int row = 0; row < counts.rows(); ++row) {
     if (!small_rows || !equals_row_before(counts, row)) first = row;
-    weights.clear();
-    for (Entry entry(counts, row); entry; ++entry)
-      weights.push_back(static_cast<double>(entry.value()));
-    if (weights.empty()) continue;
-    of_entries.resize(weights.size());
-    const std::int64_t each = images.empty() ? 1 : images[static_cast<std::size_t>(row)];
-    const std::int64_t trials = std::max<std::int64_t>(1, counts.row(row).sum() / each);
+    const auto all = static_cast<double>(counts.row(row).sum()),
+               each = images.empty() ? 1.0
+                                     : static_cast<double>(images[static_cast<std::size_t>(row)]),
+               concentration = std::max(all / each - 1.0, kLeastConcentration);
     dynamics::Random random(dynamics::Purpose::resampling,
                             {seed, static_cast<std::uint64_t>(first), replicate});
-    const std::int64_t others =
-        small_rows ? 0 : binomial(trials, 1.0 / static_cast<double>(trials + 1), random);
-    multinomial(trials - others, weights, of_entries, random);
-    auto n = of_entries.begin();
-    for (Entry entry(counts, row); entry; ++entry, ++n)
-      if (*n > 0) drawn.emplace_back(row, entry.col(), *n);
-    for (std::int64_t i = 0; i < others; ++i) {
-      const auto at = std::upper_bound(upto.begin(), upto.end(), random.below(upto.back()));
-      drawn.emplace_back(row, at - upto.begin(), 1);
+    weights.clear();
+    double sum = 0.0;
+    for (Entry entry(counts, row); entry; ++entry) {
+      weights.push_back(gamma(concentration * static_cast<double>(entry.value()) / all, random));
+      sum += weights.back();
     }
+    auto w = weights.begin();
+    for (Entry entry(counts, row); entry; ++entry, ++w)
+      drawn.emplace_back(row, entry.col(),
+                         std::max<std::int64_t>(1, std::llround(*w / sum * kSteps)));
   }
   markov::Counts result(counts.rows(), counts.cols());
   result.setFromTriplets(drawn.begin(), drawn.end());
@@ -104,7 +98,10 @@ LeftOut& LeftOut::operator+=(const LeftOut& other) {
 
 Replicates replicate_predictions(const CountedField& gates, const markov::Field& field,
                                  const std::vector<markov::Start>& starts, int max_cells,
-                                 std::uint64_t seed, std::int64_t first, std::int64_t count) {
+                                 std::uint64_t seed, std::int64_t first, std::int64_t count,
+                                 const std::vector<FinalDistribution>& own) {
+  const bool directly = std::any_of(own.begin(), own.end(),
+                                    [](const FinalDistribution& f) { return f.operations > 0.0; });
   std::vector<std::vector<FinalDistribution>> found(static_cast<std::size_t>(count));
   std::vector<std::string> why(found.size());
   tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t k) {
@@ -120,12 +117,18 @@ Replicates replicate_predictions(const CountedField& gates, const markov::Field&
     }
     const markov::Predictor predictor(gates.chains.with(std::move(chains)));
     const auto i = static_cast<std::size_t>(k);
-    markov::PredictOptions how{.max_cells = max_cells};
-    if (gates.small_rows && predictor.can_go_by_rows()) how.max_steps = kMostMovesInSmallRows;
+    markov::PredictOptions how{.max_cells = max_cells, .max_steps = kMostSums};
+    if (directly) how.solver = markov::PredictOptions::Solver::direct;
     try {
       found[i] = predictor.predict_all(field, starts, how);
+      for (std::size_t s = 0; s < starts.size(); ++s)
+        if (found[i][s].remainder > kHardlyAny &&
+            !(s < own.size() && own[s].remainder > kHardlyAny))
+          throw std::runtime_error(
+              "walks circle (almost) for ever, in too many states to be solved");
     } catch (const std::runtime_error& e) {
       why[i] = e.what();
+      found[i].clear();
     }
   });
   Replicates all{std::vector<std::vector<FinalDistribution>>(starts.size()), {0, count}};
@@ -177,7 +180,7 @@ std::array<double, 2> MatrixNoise::interval_95(markov::Ending e) const {
   const auto at = static_cast<std::size_t>(e);
   std::vector<double> shares;
   for (const auto& endings : endings_) shares.push_back(endings[at]);
-  return middle_95(std::move(shares), prediction_.endings[at]);
+  return resampled_95(std::move(shares), prediction_.endings[at], from_);
 }
 
 double MatrixNoise::mean_total_variation() const {

@@ -16,32 +16,33 @@ namespace gatewalk::lattice {
 struct CountedField {
   markov::FieldChain chains;
   std::vector<markov::Counts> counts;  // one per type, as chains.chains()
-  bool small_rows = false;             // rows of a few runs each, as those of trees
+  bool small_rows = false;  // as those of trees: neighbours that are equal are the same runs
   /// By matrix and row: how many counts a run makes in it, 2 with its mirror image; empty: 1.
   std::vector<std::vector<std::int64_t>> images{};
   bool exact = false;  // probabilities were given, not counted: nothing is known of their sampling
 
   /// Runs of the row that a walk begins in, mirror images not counted twice.
   [[nodiscard]] std::int64_t runs_at(const markov::Start& start) const;
-  /// These, and where rows are small (else 0) those of all rows.
+  /// These, and those of all rows.
   [[nodiscard]] Evidence evidence_at(const markov::Start& start) const;
 };
 
-/// The counts that another set of runs might have given: every row's trials drawn anew from its own
-/// counts, as one binomial per entry, and of one run more that may end as any of all rows: what a
-/// row never saw may yet happen in it. (Not in small rows, of which one run is a large part; there,
-/// predictions average over many rows. Neighbouring small rows that are equal are the same runs,
-/// and stay equal.) `images`, as CountedField's of this matrix: of a row in which a run makes two
-/// counts half as many are drawn: that is right for starts in the middle; for others, which see one
-/// row of a mirrored pair more than the other, the spread is up to sqrt(2) too large. Chains of
-/// such counts, which matter by their ratios alone, show what the sampling of the matrix alone does
-/// to a prediction.
+/// A matrix that another set of runs might have given: each row a draw from a Dirichlet
+/// distribution around its own shares (a Bayesian bootstrap), in whole steps of 2^-52, which matter
+/// by their ratios alone. Its concentration is n - 1 for n runs, so that shares p vary by p (1 - p)
+/// / n, as in n other runs. Predictions average to the prediction itself where walks pass a row but
+/// once, and every way that was seen stays possible, so that no walk circles that did not before.
+/// What a row never saw does not happen in it: resampled_95() leaves that open. `small_rows`, as
+/// CountedField's: neighbouring rows that are equal are the same runs, and stay equal. `images`, as
+/// CountedField's of this matrix: a row in which a run makes two counts has half as many runs: that
+/// is right for starts in the middle; for others, which see one row of a mirrored pair more than
+/// the other, the spread is up to sqrt(2) too large.
 [[nodiscard]] markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed,
                                        std::uint64_t replicate, bool small_rows = false,
                                        const std::vector<std::int64_t>& images = {});
 
-/// Resampled matrices that cannot be predicted from: in a leaf of which all ways out were drawn
-/// away bodies circle for ever.
+/// Resampled matrices that cannot be predicted from: bodies circle (almost) for ever in more states
+/// than can be solved.
 struct LeftOut {
   std::int64_t matrices = 0, of = 0;
   std::string why{};  // of the last one
@@ -58,12 +59,13 @@ struct Replicates {
 
 /// Predictions from replicates first, ... first + count - 1: each matrix resampled() on its own.
 /// By Predictor::predict, on all threads of the current TBB arena; the same bits for any number of
-/// them. Throws std::invalid_argument as Predictor::predict does.
-[[nodiscard]] Replicates replicate_predictions(const CountedField& gates,
-                                               const markov::Field& field,
-                                               const std::vector<markov::Start>& starts,
-                                               int max_cells, std::uint64_t seed,
-                                               std::int64_t first, std::int64_t count);
+/// them. `own`, if given, by start: the predictions of the matrix itself, which say whether sums
+/// take too long, and whether walks circle for ever in it too: only then are replicates in which
+/// they do not left out. Throws std::invalid_argument as Predictor::predict does.
+[[nodiscard]] Replicates replicate_predictions(
+    const CountedField& gates, const markov::Field& field, const std::vector<markov::Start>& starts,
+    int max_cells, std::uint64_t seed, std::int64_t first, std::int64_t count,
+    const std::vector<markov::FinalDistribution>& own = {});
 
 /// Fewer replicates than this are not made.
 inline constexpr std::int64_t kLeastReplicates = 50;
@@ -90,9 +92,7 @@ class MatrixNoise {
     return static_cast<std::int64_t>(distances_.size());
   }
   [[nodiscard]] const Evidence& from() const { return from_; }
-  /// Between what lie the shares of this ending in the middle 95 % of the replicates, and the
-  /// prediction's own. Needs a replicate at least. No spread at all says only that no run of the
-  /// matrix shows any.
+  /// By resampled_95(), of the shares of this ending. Needs a replicate at least.
   [[nodiscard]] std::array<double, 2> interval_95(markov::Ending e) const;
   /// Total variation of the final cells between replicates and the prediction (NaN without
   /// replicates).

@@ -24,14 +24,20 @@ struct Evidence {
 [[nodiscard]] std::array<double, 2> share_95(double whole, const std::vector<double>& groups,
                                              const Evidence& from, double besides = 0.0);
 
-/// 95 % interval of a share that a matrix predicts, `own`, from the middle 95 % of what resampled
-/// ones do (MatrixNoise). Where these show no spread, it is what the trials `from` the row that all
-/// walks begin in leave open; of small rows, which hold nothing that no run showed, it is no
-/// narrower than if each of their gate runs were a trial (0: rows are not small).
-[[nodiscard]] std::array<double, 2> resampled_95(const std::array<double, 2>& middle, double own,
+/// 95 % interval of a share that a matrix predicts, `own`, from what resampled ones predict (one at
+/// least; MatrixNoise): their middle 95 %. Where `own` does not lie within these, as their
+/// distribution is skewed, it is Jeffreys' interval of as many independent trials as would vary
+/// like them. Where they show no spread, it is what the trials `from` the row that all walks begin
+/// in leave open. As resampled rows hold nothing that no run showed, it is no narrower than if each
+/// gate run were a trial (gate_runs 0: may be narrower).
+[[nodiscard]] std::array<double, 2> resampled_95(std::vector<double> drawn, double own,
                                                  const Evidence& from);
 
-/// Between what lie the middle 95 % of what was drawn (one at least), and `own`.
-[[nodiscard]] std::array<double, 2> middle_95(std::vector<double> drawn, double own);
+/// Walks that were not followed to their end, `unfinished` of all, may add to a share, and
+/// `rounding` takes from it or adds: the interval with both. Without an interval (NaN): what the
+/// share may be. As it is where both are less than any digit that is shown.
+[[nodiscard]] std::array<double, 2> with_unfinished(const std::array<double, 2>& interval,
+                                                    double share, double unfinished,
+                                                    double rounding);
 
 }  // namespace gatewalk::lattice

@@ -12,21 +12,45 @@ struct Resampled {
   std::vector<ExitShares> exits{};
 };
 
+/// 200 of them; as many as 999 where these are made in a fraction of a second, so that the ends of
+/// intervals hardly depend on the seed.
+std::int64_t replicates_for(const CountedField& gates, const markov::Field& field,
+                            const std::vector<markov::FinalDistribution>& own, int max_cells) {
+  constexpr std::int64_t kUsual = 200, kMost = 999, kQuick = 16;
+  constexpr double kOperations = 2e10, kQuickly = 3e8;  // of direct solves, some 3 ns each
+  double operations = 0.0;
+  int steps = max_cells;
+  for (const markov::FinalDistribution& f : own) {
+    operations += f.operations;
+    steps = std::max(steps, f.steps);
+  }
+  std::int64_t usual = affordable_replicates(gates, field, max_cells, kUsual),
+               most = affordable_replicates(gates, field, steps, kQuick * kMost * std::ssize(own)) /
+                      (kQuick * std::ssize(own));
+  if (operations > 0.0) {
+    usual = std::min(usual, static_cast<std::int64_t>(kOperations / operations));
+    most = std::min(most, static_cast<std::int64_t>(kQuickly / operations));
+  }
+  const std::int64_t replicates = std::max(usual, most);
+  return replicates < kLeastReplicates ? 0 : replicates;
+}
+
 /// Replicates' spread around the predictions, one per start; none where too few can be predicted
 /// from.
 std::vector<Resampled> resampled_predictions(const CountedField& gates, const markov::Field& field,
                                              const std::vector<markov::Start>& starts,
                                              Prediction& prediction, int max_cells,
                                              std::uint64_t seed, const dynamics::Work& work) {
-  constexpr std::int64_t kMost = 200, kTogether = 8;
+  constexpr std::int64_t kTogether = 8;
   std::vector<Resampled> all;
   for (std::size_t k = 0; k < starts.size(); ++k)
     all.push_back({MatrixNoise(prediction.starts[k].final, gates.evidence_at(starts[k]))});
-  const std::int64_t replicates =
-      gates.exact ? 0 : affordable_replicates(gates, field, max_cells, kMost);
+  std::vector<markov::FinalDistribution> own;
+  for (const StartPrediction& s : prediction.starts) own.push_back(s.final);
+  const std::int64_t replicates = gates.exact ? 0 : replicates_for(gates, field, own, max_cells);
   const auto add = [&](std::int64_t begin) {
     const Replicates some = replicate_predictions(gates, field, starts, max_cells, seed, begin,
-                                                  std::min(kTogether, replicates - begin));
+                                                  std::min(kTogether, replicates - begin), own);
     prediction.left_out += some.left_out;
     for (std::size_t k = 0; k < starts.size(); ++k)
       for (const markov::FinalDistribution& f : some.predictions[k]) {
@@ -69,7 +93,8 @@ Prediction predict(const CountedField& gates, const FieldParams& field_params,
     const Resampled& of_start = resampled.empty() ? none : resampled[k];
     const MatrixNoise& spread = of_start.noise;
     s.shares = EndingShares(s.final, spread, how.max_cells);
-    s.exits = exits_of(exit_shares(s.final), of_start.exits, spread.from());
+    s.exits =
+        with_unfinished(exits_of(exit_shares(s.final), of_start.exits, spread.from()), s.final);
     s.replicates = spread.replicates();
     s.mean_total_variation = spread.mean_total_variation();
     s.total_variation_95 = spread.total_variation_95();

@@ -30,9 +30,9 @@ struct Prediction {
   LeftOut left_out{};
 };
 
-/// One prediction per start. `how.max_cells` is the field's max_gates. Replicates are 200 in small
-/// fields, none where kLeastReplicates would take too long or too many are left out. Throws
-/// as markov::predict.
+/// One prediction per start. `how.max_cells` is the field's max_gates. Replicates are 200, up to
+/// 999 where they take a fraction of a second, none where kLeastReplicates would take too long or
+/// too many are left out. Throws as markov::predict.
 [[nodiscard]] Prediction predict(const CountedField& gates, const FieldParams& field,
                                  const std::vector<ChainStart>& starts, markov::PredictOptions how,
                                  std::uint64_t seed, const dynamics::Work& work = {});

@@ -224,9 +224,7 @@ StartValidation validate_start(const Setup& setup, const dynamics::Entry& start,
   const TimedWalks walked = walk(setup, chain_start.start);
   const TimedTrials seen = run_trials(setup, start, chain_start.start, exact, remembered);
 
-  const std::int64_t runs = setup.gates.runs_at(chain_start.start);
-  // Resampled bins have one run more in each row; trees' rows, of which a run is a large part, not.
-  const std::int64_t may_miss = setup.space.has_trees() ? runs : 0;
+  const std::int64_t may_miss = setup.gates.runs_at(chain_start.start);
   MatrixNoise noise(exact, setup.gates.evidence_at(chain_start.start));
   std::vector<ExitShares> resampled_exits;
   for (const markov::FinalDistribution& other : resampled) {

@@ -30,9 +30,10 @@ constexpr double kRoundingOnly = 1e-14;  // a residual that refinement makes no 
 class PredictionRows {
  public:
   PredictionRows(const PredictionPlan& plan, const Field& field, const std::vector<Start>& starts,
-                 const PredictOptions& options)
+                 const PredictOptions& options, bool may_stop)
       : plan_(plan),
         field_(field),
+        may_stop_(may_stop),
         tolerance_(options.tolerance_of(PredictOptions::Solver::rows) / (field.rows + 1)),
         most_sums_(options.max_steps),
         layout_(field.columns, 1, sideways_only(plan.moves), 1,
@@ -213,12 +214,19 @@ class PredictionRows {
   void sum(std::int64_t row) {
     std::swap(now_, within_);
     std::vector<char> done(starts_.size());
+    for (StartTally& w : starts_) w.pace = {};
     for (int sums = 0;; ++sums) {
       const std::vector<double> walking = totals(plan_.staying, now_);
       bool any = false;
       for (std::size_t j = 0; j < starts_.size(); ++j) {
         if (done[j]) continue;
-        done[j] = walking[j] <= std::max(tolerance_ * entered_[j], kNothing);
+        const double enough = std::max(tolerance_ * entered_[j], kNothing);
+        done[j] = walking[j] <= enough;
+        if (!done[j] && may_stop_ &&
+            starts_[j].pace.is_too_slow(sums, walking[j], enough, kMostSums)) {
+          done[j] = 1;
+          stop(j);
+        }
         if (done[j]) {
           most_sums_taken_[j] = std::max(most_sums_taken_[j], sums);
           starts_[j].remainder += walking[j];
@@ -281,9 +289,19 @@ class PredictionRows {
       if (!any) break;
     }
     for (std::size_t j = 0; j < starts_.size(); ++j) {
-      if (!(missing[j] <= kFewDigits * entered_[j])) refuse();
+      if (!(missing[j] <= kFewDigits * entered_[j])) {
+        if (!may_stop_) refuse();
+        stop(j);
+        continue;
+      }
       starts_[j].remainder += missing[j];
     }
+  }
+  /// Nothing more is found out from this start.
+  void stop(std::size_t j) {
+    starts_[j].stopped = starts_[j].over = true;
+    erase(j, visits_);
+    for (Planes mass : entering_) erase(j, mass);
   }
 
   void count(std::int64_t row) {
@@ -320,6 +338,7 @@ class PredictionRows {
 
   const PredictionPlan& plan_;
   Field field_;
+  bool may_stop_;
   double tolerance_;  // left walking at most: in a row, of what entered it; of all walks, in all
                       // rows not yet entered
   int most_sums_;
@@ -356,18 +375,22 @@ double LazyStay::per_move(const Stencil& sideways, int inputs) {
   });
 }
 
-std::vector<FinalDistribution> predict_by_rows(const PredictionPlan& plan, const Field& field,
-                                               const std::vector<Start>& starts,
-                                               const PredictOptions& options) {
-  PredictionRows rows(plan, field, starts, options);
+MaybePredicted predict_by_rows(const PredictionPlan& plan, const Field& field,
+                               const std::vector<Start>& starts, const PredictOptions& options,
+                               bool may_stop) {
+  PredictionRows rows(plan, field, starts, options, may_stop);
   const std::vector<StartTally> tallies = rows.run();
-  std::vector<FinalDistribution> results;
+  MaybePredicted results;
   // A move is rounded twice: into a row's equations, and in what they still miss.
   for (std::size_t j = 0; j < tallies.size(); ++j) {
-    results.push_back(tallies[j].result(
+    std::optional<FinalDistribution>& result = results.emplace_back();
+    if (tallies[j].stopped) continue;
+    result = tallies[j].result(
         2.0 * (plan.most_terms + 4),
-        (rows.most_sums_taken(j) + 1) * rows.passed(j) + plan.inputs + plan.outputs + 8));
-    if (!(results.back().rounding >= 0.0 && results.back().rounding <= kFewDigits)) refuse();
+        (rows.most_sums_taken(j) + 1) * rows.passed(j) + plan.inputs + plan.outputs + 8);
+    if (result->rounding >= 0.0 && result->rounding <= kFewDigits) continue;
+    if (!may_stop) refuse();
+    result.reset();
   }
   return results;
 }

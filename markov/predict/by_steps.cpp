@@ -49,8 +49,9 @@ class Steps {
     colour_ = place(0, starts.front().column, starts.front().row).colour;
   }
 
-  std::vector<StartTally> run(const PredictOptions& options) {
+  std::vector<StartTally> run(const PredictOptions& options, bool may_stop) {
     const int max_cells = options.max_cells, max_steps = options.max_steps;
+    may_stop_ = may_stop;
     const double tolerance = options.tolerance_of(PredictOptions::Solver::steps);
     if (layout_->colours() == 2) colour_ = 1 - colour_;
     std::vector<std::ptrdiff_t> first_draws;  // where they put mass
@@ -70,7 +71,7 @@ class Steps {
       w.steps = w.draws.value() > 0.0 ? 1 : 0;
     }
     grow();
-    for (int steps = 1; any_left(max_cells, tolerance, steps == max_steps); ++steps) {
+    for (int steps = 1; any_left(max_cells, tolerance, steps, steps == max_steps); ++steps) {
       for (StartTally& w : starts_) w.steps += w.over ? 0 : 1;
       if (steps + 1 == max_cells) {
         count(now_.data(), true);
@@ -177,7 +178,7 @@ class Steps {
   }
 
   /// Whether anybody walks on; starts from which nobody does are closed.
-  bool any_left(int max_cells, double tolerance, bool stop) {
+  bool any_left(int max_cells, double tolerance, int steps, bool stop) {
     bool any = false;
     if (max_cells == 0) tally(&PreparedChain::walking, now_.data());
     for (std::size_t j = 0; j < starts_.size(); ++j) {
@@ -190,7 +191,11 @@ class Steps {
         each_cell(j, [&](std::int64_t, std::int64_t, std::ptrdiff_t at) {
           left += tally_.data()[kTallyTotal * stride_ + at];
         });
-        w.over = stop || left.value() <= std::max(tolerance, kNothing);
+        const double enough = std::max(tolerance, kNothing);
+        w.over = stop || left.value() <= enough;
+        w.stopped =
+            may_stop_ && !w.over && w.pace.is_too_slow(steps, left.value(), enough, kMostSums);
+        w.over = w.over || w.stopped;
       }
       if (w.over) close(j);
       any = any || !w.over;
@@ -244,6 +249,7 @@ class Steps {
   const PredictionPlan& plan_;
   Field field_;
   std::vector<StartTally> starts_;
+  bool may_stop_ = false;
   Window box_{}, window_{};  // cells that can be reached at all, until now
   std::optional<Layout> layout_;
   int colour_ = 0;  // of the cells with mass
@@ -259,14 +265,17 @@ class Steps {
 
 }  // namespace
 
-std::vector<FinalDistribution> predict_by_steps(const PredictionPlan& plan, const Field& field,
-                                                const std::vector<Start>& starts,
-                                                const PredictOptions& options) {
+MaybePredicted predict_by_steps(const PredictionPlan& plan, const Field& field,
+                                const std::vector<Start>& starts, const PredictOptions& options,
+                                bool may_stop) {
   const int most_moves = options.max_cells > 0 ? options.max_cells - 1 : options.max_steps;
   Steps steps(plan, field, starts, most_moves);
-  std::vector<FinalDistribution> results;
-  for (const StartTally& w : steps.run(options))
-    results.push_back(w.result(plan.most_terms + 3, w.steps + plan.inputs + plan.outputs + 8));
+  MaybePredicted results;
+  for (const StartTally& w : steps.run(options, may_stop && options.max_cells == 0)) {
+    results.emplace_back();
+    if (!w.stopped)
+      results.back() = w.result(plan.most_terms + 3, w.steps + plan.inputs + plan.outputs + 8);
+  }
   return results;
 }
 

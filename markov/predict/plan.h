@@ -3,8 +3,10 @@
 /// What the solvers by steps (by_steps.cpp) and by rows (by_rows.cpp) share: prepared chains, and
 /// what has ended of the walks from one start.
 
+#include <cmath>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -70,13 +72,33 @@ struct PredictionPlan {
   }
 };
 
+/// Foresees how many steps a sum takes, from what is left after 512, 1024, 2048, ... of them.
+class Pace {
+ public:
+  /// Whether more than `most`, until no more than `enough` is left. (Of a sum of which nothing has
+  /// ended yet nothing is foreseen.)
+  [[nodiscard]] bool is_too_slow(int steps, double left, double enough, int most) {
+    constexpr int kFirst = 512;
+    if (steps >= most) return true;
+    if (steps < kFirst || (steps & (steps - 1)) != 0) return false;
+    const double before = std::exchange(before_, left);
+    if (steps == kFirst || !(left < before)) return false;
+    return steps + 0.5 * steps * std::log(left / enough) / std::log(before / left) > most;
+  }
+
+ private:
+  double before_ = 0.0;
+};
+
 /// What has ended of the walks from a start, and what is left.
 struct StartTally {
   Start start;
   Ends ends;
+  Pace pace;
   CompensatedSum draws, remainder;
   int steps = 0;
   bool over = false;
+  bool stopped = false;  // before it was done
 
   StartTally(const Field& field, const Start& from) : start(from), ends(field) {}
 
@@ -141,14 +163,18 @@ struct StartTally {
   }
 };
 
-/// Predictor::predict_all by Solver::steps and Solver::rows, arguments checked.
-[[nodiscard]] std::vector<FinalDistribution> predict_by_steps(const PredictionPlan& plan,
-                                                              const Field& field,
-                                                              const std::vector<Start>& starts,
-                                                              const PredictOptions& options);
-[[nodiscard]] std::vector<FinalDistribution> predict_by_rows(const PredictionPlan& plan,
-                                                             const Field& field,
-                                                             const std::vector<Start>& starts,
-                                                             const PredictOptions& options);
+/// Of a sum: no more than a direct solve may take the place of.
+inline constexpr int kMostSums = 10'000;
+
+/// Predictor::predict_all by Solver::steps and Solver::rows, arguments checked. With `may_stop`,
+/// without limit of cells: none for starts of which it would take more than kMostSums sums, or keep
+/// fewer than 6 digits.
+using MaybePredicted = std::vector<std::optional<FinalDistribution>>;
+[[nodiscard]] MaybePredicted predict_by_steps(const PredictionPlan& plan, const Field& field,
+                                              const std::vector<Start>& starts,
+                                              const PredictOptions& options, bool may_stop);
+[[nodiscard]] MaybePredicted predict_by_rows(const PredictionPlan& plan, const Field& field,
+                                             const std::vector<Start>& starts,
+                                             const PredictOptions& options, bool may_stop);
 
 }  // namespace gatewalk::markov

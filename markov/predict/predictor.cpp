@@ -126,8 +126,10 @@ std::unique_ptr<const PredictionPlan> plan_of(FieldChain field_chain) {
   return plan;
 }
 
-/// Whether it is a plain reference, for which nothing is prepared.
-bool is_reference(Solver solver) { return solver == Solver::klu || solver == Solver::plain; }
+/// Whether nothing is prepared for it.
+bool is_plain(Solver solver) {
+  return solver == Solver::klu || solver == Solver::plain || solver == Solver::direct;
+}
 
 void require_no_limit(const std::string& solver, const PredictOptions& options) {
   if (options.max_cells != 0)
@@ -138,9 +140,8 @@ void require_no_limit(const std::string& solver, const PredictOptions& options) 
 
 /// Starts side by side in groups of `size`, groups on all threads.
 template <class Run>
-std::vector<FinalDistribution> in_groups(const std::vector<Start>& starts, std::int64_t size,
-                                         Run run) {
-  std::vector<FinalDistribution> all(starts.size());
+MaybePredicted in_groups(const std::vector<Start>& starts, std::int64_t size, Run run) {
+  MaybePredicted all(starts.size());
   const auto count = std::ssize(starts);
   tbb::parallel_for(std::int64_t{0}, (count + size - 1) / size, [&](std::int64_t g) {
     const auto first = starts.begin() + g * size;
@@ -161,8 +162,7 @@ bool Predictor::can_go_by_rows() const { return plan_->lowest >= 0; }
 std::vector<FinalDistribution> Predictor::predict_all(const Field& field,
                                                       const std::vector<Start>& starts,
                                                       const PredictOptions& options) const {
-  if (is_reference(options.solver))
-    return markov::predict(plan_->field_chain, field, starts, options);
+  if (is_plain(options.solver)) return markov::predict(plan_->field_chain, field, starts, options);
   for (const Start& s : starts) validate(plan_->field_chain, field, s, options.max_cells);
   const bool by_rows =
       options.solver == Solver::rows ||
@@ -174,15 +174,25 @@ std::vector<FinalDistribution> Predictor::predict_all(const Field& field,
     require_no_limit("rows", options);
     if (!can_go_by_rows())
       throw std::invalid_argument("predict: solver rows: an exit leads to a row below");
-    return in_groups(starts, std::clamp(40 / field.columns, 1, 4), [&](const auto& group) {
-      return predict_by_rows(*plan_, field, group, options);
-    });
   }
   // Measured: a few small fields together leave fewer lanes empty, more of them leave the cache.
-  const std::int64_t cells = std::int64_t{field.columns} * field.rows;
-  return in_groups(starts, std::clamp<std::int64_t>(400 / cells, 1, 4), [&](const auto& group) {
-    return predict_by_steps(*plan_, field, group, options);
+  const std::int64_t cells = std::int64_t{field.columns} * field.rows,
+                     together =
+                         std::clamp<std::int64_t>(by_rows ? 40 / field.columns : 400 / cells, 1, 4);
+  const auto run = [&](const std::vector<Start>& some, bool may_stop) {
+    return in_groups(some, together, [&](const auto& group) {
+      return by_rows ? predict_by_rows(*plan_, field, group, options, may_stop)
+                     : predict_by_steps(*plan_, field, group, options, may_stop);
+    });
+  };
+  MaybePredicted found = run(starts, options.solver == Solver::automatic && options.max_cells == 0);
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) {
+    if (!found[k]) found[k] = solve_directly(plan_->field_chain, field, starts[k]);
+    if (!found[k]) found[k] = std::move(run({starts[k]}, false).front());
   });
+  std::vector<FinalDistribution> all;
+  for (auto& one : found) all.push_back(*std::move(one));
+  return all;
 }
 
 FinalDistribution Predictor::predict(const Field& field, const Start& start,
@@ -193,12 +203,21 @@ FinalDistribution Predictor::predict(const Field& field, const Start& start,
 std::vector<FinalDistribution> predict(const FieldChain& chain, const Field& field,
                                        const std::vector<Start>& starts,
                                        const PredictOptions& options) {
-  if (!is_reference(options.solver)) return Predictor(chain).predict_all(field, starts, options);
-  const bool by_klu = options.solver == Solver::klu;
-  if (by_klu) require_no_limit("klu", options);
+  if (!is_plain(options.solver)) return Predictor(chain).predict_all(field, starts, options);
+  if (options.solver != Solver::plain)
+    require_no_limit(options.solver == Solver::klu ? "klu" : "direct", options);
   std::vector<FinalDistribution> all;
-  for (const Start& s : starts)
-    all.push_back(by_klu ? solve_absorption(chain, field, s) : propagate(chain, field, s, options));
+  for (const Start& s : starts) {
+    if (options.solver == Solver::klu) {
+      all.push_back(solve_absorption(chain, field, s));
+    } else if (options.solver == Solver::plain) {
+      all.push_back(propagate(chain, field, s, options));
+    } else {
+      auto one = solve_directly(chain, field, s);
+      if (!one) throw std::runtime_error("predict: the field is too large for solver direct");
+      all.push_back(*std::move(one));
+    }
+  }
   return all;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "markov/predict/ends.h"
+#include "markov/predict/transient.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -79,60 +80,6 @@ class Mass {
   std::vector<char> is_active_;
   std::vector<std::int64_t> active_;
 };
-
-// I - Q, transposed, in compressed columns: column s holds what state s passes on.
-struct Transient {
-  std::vector<std::int64_t> states;  // cell * n_in + input, in the order they are reached
-  std::vector<std::int64_t> begin{0};
-  std::vector<std::int64_t> index;
-  std::vector<double> value;
-};
-
-Transient reachable(const FieldChain& field_chain, const Field& field, const Start& start) {
-  const std::int64_t n_in = field_chain.inputs();
-  const std::int64_t cells = std::int64_t{field.columns} * field.rows;
-  constexpr std::int64_t kUnknown = -1;
-  std::vector<std::int64_t> number(static_cast<std::size_t>(cells * n_in), kUnknown);
-  // Where state t stands in the column under construction, if it stands there.
-  std::vector<std::int64_t> place;
-  Transient t;
-  const auto visit = [&](std::int64_t state) {
-    std::int64_t& known = number[static_cast<std::size_t>(state)];
-    if (known == kUnknown) {
-      known = static_cast<std::int64_t>(t.states.size());
-      t.states.push_back(state);
-      place.push_back(-1);
-    }
-    return known;
-  };
-  const auto add = [&](std::int64_t row, double value) {
-    std::int64_t& at = place[static_cast<std::size_t>(row)];
-    if (at < t.begin.back()) {
-      at = static_cast<std::int64_t>(t.index.size());
-      t.index.push_back(row);
-      t.value.push_back(0.0);
-    }
-    t.value[static_cast<std::size_t>(at)] += value;
-  };
-
-  visit((std::int64_t{start.row} * field.columns + start.column) * n_in + start.input);
-  for (std::size_t s = 0; s < t.states.size(); ++s) {
-    const std::int64_t cell = t.states[s] / n_in;
-    add(static_cast<std::int64_t>(s), 1.0);
-    const Chain& chain = field_chain.at(cell % field.columns, cell / field.columns);
-    for (Probabilities::InnerIterator it(chain.matrix(), t.states[s] % n_in); it; ++it) {
-      const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
-      if (exit.next_input == Exit::kTrapped) continue;
-      const std::int64_t next =
-          neighbour_cell(field, cell % field.columns, cell / field.columns, exit.di_x, exit.di_y);
-      if (next >= 0 &&
-          field_chain.at(next % field.columns, next / field.columns).is_sampled(exit.next_input))
-        add(visit(next * n_in + exit.next_input), -it.value());
-    }
-    t.begin.push_back(static_cast<std::int64_t>(t.index.size()));
-  }
-  return t;
-}
 
 static_assert(sizeof(SuiteSparse_long) == sizeof(std::int64_t));
 
@@ -330,44 +277,20 @@ FinalDistribution propagate(const FieldChain& field_chain, const Field& field, c
 FinalDistribution solve_absorption(const FieldChain& field_chain, const Field& field,
                                    const Start& start) {
   validate(field_chain, field, start, 0);
-  Ends ends(field);
-  const std::int64_t n_in = field_chain.inputs();
   if (!field_chain.at(start.column, start.row).is_sampled(start.input)) {
+    Ends ends(field);
     ends.add(Ending::unsampled, std::int64_t{start.row} * field.columns + start.column, 1.0);
     return ends.result();
   }
-  Transient t = reachable(field_chain, field, start);
+  Transient t(field_chain, field, start);
   const std::vector<double> draws = visits(t);
 
-  CompensatedSum mean_steps;
-  int n_out = 0;
-  for (std::size_t s = 0; s < draws.size(); ++s) {
-    mean_steps += draws[s];
-    const std::int64_t cell = t.states[s] / n_in;
-    const Chain& chain = field_chain.at(cell % field.columns, cell / field.columns);
-    n_out = std::max(n_out, chain.outputs());
-    for (Probabilities::InnerIterator it(chain.matrix(), t.states[s] % n_in); it; ++it) {
-      const Exit& exit = chain.exits()[static_cast<std::size_t>(it.col())];
-      const double mass = draws[s] * it.value();
-      if (exit.next_input == Exit::kTrapped) {
-        ends.add(Ending::trapped, cell, mass);
-        continue;
-      }
-      const std::int64_t next =
-          neighbour_cell(field, cell % field.columns, cell / field.columns, exit.di_x, exit.di_y);
-      if (next < 0) {
-        ends.depart(cell, cell % field.columns + exit.di_x, cell / field.columns + exit.di_y, mass);
-      } else if (!field_chain.at(next % field.columns, next / field.columns)
-                      .is_sampled(exit.next_input)) {
-        ends.add(Ending::unsampled, next, mass);
-      }
-    }
-  }
-  FinalDistribution result = ends.result();
+  FinalDistribution result = t.ended(draws, field_chain, field);
   result.remainder = missing(t, draws);
-  result.mean_steps = mean_steps.value();
-  result.rounding =
-      rounding_bound(result.mean_steps, 2.0 * static_cast<double>(n_in + n_out + 4), n_out + 8);
+  int n_out = 0;
+  for (const Chain& chain : field_chain.chains()) n_out = std::max(n_out, chain.outputs());
+  result.rounding = rounding_bound(
+      result.mean_steps, 2.0 * static_cast<double>(field_chain.inputs() + n_out + 4), n_out + 8);
   // A condition estimate does not see a closed loop of one state.
   const double total = result.trapped + result.left_field + result.unsampled + result.remainder;
   if (!(std::abs(total - 1.0) <= 1e-6) || !(result.rounding >= 0.0))

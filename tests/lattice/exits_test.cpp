@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -130,11 +131,34 @@ TEST(Exits, IntervalsOfGroupsAndOfResampledMatrices) {
   EXPECT_TRUE(std::isnan(exits_of(own, {}, {1000, 0})[0].interval[0][0]));
 }
 
-TEST(Exits, Middle95LeavesOutTheOutermost) {
+TEST(Resampled95, LeavesOutTheOutermost) {
   std::vector<double> drawn(199);
-  std::iota(drawn.rbegin(), drawn.rend(), 1.0);
-  EXPECT_EQ(middle_95(drawn, 100.0), (std::array{5.0, 195.0}));
-  EXPECT_EQ(middle_95(drawn, 250.0), (std::array{5.0, 250.0}));
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+    drawn[i] = static_cast<double>(drawn.size() - i) / 1000.0;
+  EXPECT_EQ(resampled_95(drawn, 0.1, {}), (std::array{0.005, 0.195}));
+}
+
+// A share that lies beyond the middle 95 % of what was drawn gets Jeffreys' interval of as many
+// trials as vary so: p (1 - p) over the mean square of
+// what was drawn less the share.
+TEST(Resampled95, ContainsTheShareByConstruction) {
+  const std::vector<double> drawn{0.08, 0.08, 0.08, 0.079};
+  const auto skewed = resampled_95(drawn, 0.1, {});
+  double squares = 0.0;
+  for (const double d : drawn) squares += (d - 0.1) * (d - 0.1) / 4.0;
+  const auto expected = dynamics::interval_of_share(0.1, 0.09 / squares);
+  for (const std::size_t end : {0, 1}) EXPECT_NEAR(skewed[end], expected[end], 1e-9);
+  for (const double share : {1e-6, 0.01, 0.5, 0.99, 1.0 - 1e-6})
+    for (const double off : {-0.5, 0.0, 0.5, 3.0}) {
+      std::vector<double> others;
+      for (int k = 0; k < 99; ++k)
+        others.push_back(std::clamp(share * (1.0 + off) + share * 0.001 * k, 0.0, 1.0));
+      for (const Evidence from : {Evidence{100.0, 0.0}, Evidence{100.0, 1e5}}) {
+        const auto [low, high] = resampled_95(others, share, from);
+        EXPECT_LT(low, share) << share << " " << off;
+        EXPECT_GT(high, share) << share << " " << off;
+      }
+    }
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ done
 holds '.exits | .left_side[1].from_m == 60 and .left_side[8].to_m == 540 and .crossed[0].from_m == -225 and .crossed[4].to_m == 25' ends-predict.json
 grep -q '^left side  y 60 to 120 m  *[0-9.]* \[' trees.txt || fail "predict: no place on the left side"
 "$gatewalk" lattice "$scenes/field.toml" --trials 150 --quiet | grep -q '^left side  y 60 to 120 m' || fail "lattice: no place on the left side"
-holds '.matrix_sampling | .replicates == 200 and 0 < .total_variation_mean and .total_variation_mean < .total_variation_95 and .total_variation_95 < 1' ends-predict.json
+holds '.matrix_sampling | .replicates == 999 and 0 < .total_variation_mean and .total_variation_mean < .total_variation_95 and .total_variation_95 < 1' ends-predict.json
 "$gatewalk" predict m.nc --threads 1 --json ends-again.json --quiet
 jq -s '.[0].endings_95 == .[1].endings_95' ends-predict.json ends-again.json | grep -q true || fail "predict: intervals depend on the threads"
 "$gatewalk" predict m.nc --seed 2 --json ends-again.json --quiet
