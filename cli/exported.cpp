@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/exported.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 
@@ -37,6 +38,18 @@ void write_table(const Options& options, ExportForm form, const SparseTable& tab
     options.write(output, csv_of(table, rows, columns, table.whole ? "count" : "probability"));
   else
     options.write(output, npz_of(table));
+}
+
+/// Of these rows of a file, which may be those of a type of gate. Empty: a run is a count.
+std::vector<std::int64_t> counts_per_run_of(const Options& options, const lattice::MatrixFile& file,
+                                            const dynamics::Transitions& rows) {
+  if (!rows.space.has_trees()) return counts_per_run(file);
+  const Subject s = open_subject(options, "matrix");
+  const std::vector<dynamics::Transitions> matrices = s.matrices();
+  const auto at = std::find_if(matrices.begin(), matrices.end(),
+                               [&](const auto& m) { return m.rows == rows.rows; });
+  const lattice::CountedField counted = s.counted();
+  return counted.images.at(static_cast<std::size_t>(at - matrices.begin()));
 }
 
 }  // namespace
@@ -126,11 +139,17 @@ std::string export_gate(const Options& options, ExportForm form, Json& json) {
   const SparseTable table =
       options.has("counts") ? table_of(t.counts()) : table_of(lattice::make_chain(t).matrix());
   const std::vector<std::string> names = lattice::state_names(file);
-  write_table(options, form, table, names, names, states_csv(file));
+  const std::vector<std::int64_t> per_run =
+      options.has("counts") ? counts_per_run_of(options, file, t) : std::vector<std::int64_t>();
+  write_table(options, form, table, names, names, states_csv(file, per_run));
   json = {{"states", t.space.size()}, {"transitions", table.entries.size()}};
   json["made_by"] = to_json(options.provenance());
-  return std::to_string(t.space.size()) + " states of one gate, " +
-         numbers(table.entries.size(), "entries; the last column is trapped\n");
+  std::string text = std::to_string(t.space.size()) + " states of one gate, " +
+                     numbers(table.entries.size(), "entries; the last column is trapped\n");
+  if (std::count(per_run.begin(), per_run.end(), 2) > 0)
+    text += "runs are counted twice, as they were and as their mirror images: counts_per_run in " +
+            stem_of(options.text("output")) + ".states.csv says in which rows\n";
+  return text;
 }
 
 std::string export_trials(const Options& options, Json& json) {

@@ -383,6 +383,11 @@ lattice::CountedField Subject::counted() const {
   lattice::CountedField field = lattice::counted_field(problem.map(), matrices());
   const Json states = recorded(*file, path, "state_space");
   field.exact = states.is_object() && states.value("probabilities", Json()) == true;
+  if (auto per_run = foreign ? counts_per_run(*file) : std::vector<std::int64_t>();
+      !per_run.empty()) {
+    field.small_rows = true;
+    field.images = {std::move(per_run)};
+  }
   return field;
 }
 

@@ -35,7 +35,9 @@ int run_import(const Arguments& arguments) {
       "state may be the number of states: trapped. Whole numbers are counts, from which error "
       "bars\n"
       "follow. STATES.csv says by which move from cell to cell each state is entered:\n"
-      "state,move_x,move_y (columns to the right, rows ahead; and if wanted name, face).",
+      "state,move_x,move_y (columns to the right, rows ahead; and if wanted name, face;\n"
+      "counts_per_run: 2 where a run is counted with its mirror image, as in counts of trees that\n"
+      "export wrote: error bars then count it once).",
       "gatewalk import counts.mtx --states states.csv --start 0 --set field.rows=5 -o chain.nc");
   options.positional("file", "the matrix or the trajectories", true);
   options.input_file("states", "the table of states");
@@ -47,9 +49,12 @@ int run_import(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   if (!options.has("states"))
     throw UsageError("missing --states STATES.csv: which move enters each state");
-  const auto states = read_file([&] { return read_states(options.text("states")); });
+  auto states = read_file([&] { return read_states(options.text("states")); });
   const std::string path = options.text("file");
   const ForeignMatrix matrix = read_file([&] { return read_foreign(path, states); });
+  // Of trajectories each run is counted once, and nothing else than a count has runs.
+  if (matrix.trajectories || matrix.probabilities)
+    for (ForeignState& s : states) s.counts_per_run = 0;
   lattice::CellFile cells =
       lattice::parse_cell_file(cell_text(states, number_within(options, "width", 1.0, 1e-9, 1e9),
                                          number_within(options, "length", 1.0, 1e-9, 1e9)),
@@ -80,7 +85,13 @@ int run_import(const Arguments& arguments) {
   Json json = to_json(file, output);
   json["matrix"] = output;
   json["made_by"] = made_by;
-  options.give_out(json, summary_table(file, output));
+  const std::vector<std::int64_t> per_run = counts_per_run(file);
+  const bool mirrored = std::count(per_run.begin(), per_run.end(), 2) > 0;
+  options.give_out(json,
+                   summary_table(file, output) +
+                       (mirrored ? "runs are counted with their mirror images (counts_per_run): "
+                                   "intervals count each run once\n"
+                                 : ""));
   const std::vector<int> places = places_of(states, file.transitions.space);
   if (!std::is_sorted(places.begin(), places.end()))
     options.warn("states of one face stand together in " + output + ", in another order than in " +

@@ -20,6 +20,8 @@ namespace {
 
 using lattice::shortest;
 
+constexpr const char* kCountsPerRun = "counts_per_run";
+
 /// "ahead", "right": what a move is called where nobody names the face.
 std::string name_of_move(int x, int y) {
   if (x == 0 && y == 1) return "ahead";
@@ -141,6 +143,13 @@ std::vector<ForeignState> read_states(const std::string& path) {
       refuse("state must be " + std::to_string(states.size()) +
              ": they are numbered from 0, in order");
     ForeignState s{field("name"), field("face"), whole("move_x"), whole("move_y")};
+    if (std::count(columns.begin(), columns.end(), kCountsPerRun) == 1) {
+      s.counts_per_run = whole(kCountsPerRun);
+      if (s.counts_per_run != 1 && s.counts_per_run != 2)
+        refuse(std::string(kCountsPerRun) +
+               " must be 1, or 2 where a run is counted with its mirror "
+               "image");
+    }
     if (s.move_x == 0 && s.move_y == 0) refuse("the move must lead to another cell");
     constexpr int kFarthest = 1000;  // as in a cell file
     if (std::abs(s.move_x) > kFarthest || std::abs(s.move_y) > kFarthest)
@@ -166,12 +175,14 @@ std::vector<ForeignState> read_states(const std::string& path) {
   return states;
 }
 
-std::string states_csv(const lattice::MatrixFile& file) {
+std::string states_csv(const lattice::MatrixFile& file,
+                       const std::vector<std::int64_t>& counts_per_run) {
   const dynamics::StateSpace& space = file.transitions.space;
   const dynamics::Section& section = space.section();
   std::string text = "state,name,face,move_x,move_y";
   for (const dynamics::Coordinate& c : section.coordinates)
     text += "," + c.key + "_low," + c.key + "_high";
+  if (!counts_per_run.empty()) text += std::string(",") + kCountsPerRun;
   const std::vector<std::string> names = lattice::state_names(file);
   for (int s = 0; s < space.size(); ++s) {
     const dynamics::Face& face = section.faces[static_cast<std::size_t>(space.face(s))];
@@ -180,6 +191,8 @@ std::string states_csv(const lattice::MatrixFile& file) {
     const dynamics::StateRange range = space.range(s);
     for (std::size_t c = 0; c < section.coordinates.size(); ++c)
       text += "," + shortest(range.at[c][0]) + "," + shortest(range.at[c][1]);
+    if (!counts_per_run.empty())
+      text += "," + std::to_string(counts_per_run[static_cast<std::size_t>(s)]);
   }
   return text + "\n";
 }
@@ -196,6 +209,7 @@ ForeignMatrix read_foreign(const std::string& path, const std::vector<ForeignSta
   if (path.ends_with(".dtrajs") || (npz && hold_trajectories(arrays))) {
     matrix.table = counts_of(
         path, npz ? trajectories_of(path, std::move(arrays)) : read_trajectories(path), n);
+    matrix.trajectories = true;
     return matrix;
   }
   if (path.ends_with(".mtx"))
@@ -299,20 +313,34 @@ dynamics::Transitions transitions_of(const ForeignMatrix& matrix,
 
 lattice::MatrixFile matrix_file(dynamics::Transitions t, const std::vector<ForeignState>& states,
                                 std::map<std::string, std::string> text) {
-  std::vector<double> number(static_cast<std::size_t>(t.space.size()));
+  std::vector<double> number(static_cast<std::size_t>(t.space.size())), per_run(number.size());
   std::vector<std::string> names(number.size());
   const std::vector<int> place = places_of(states, t.space);
   for (std::size_t s = 0; s < states.size(); ++s) {
     const auto at = static_cast<std::size_t>(place[s]);
     number[at] = static_cast<double>(s);
+    per_run[at] = states[s].counts_per_run;
     names[at] = states[s].name;
   }
   names.emplace_back("trapped");
   lattice::MatrixFile file{std::move(t), std::move(text)};
   file.arrays.push_back({kForeignNumber, "1", "number of each state in the table it was made of",
                          std::move(number), "input_state", true});
+  if (per_run.front() > 0.0)
+    file.arrays.push_back({kCountsPerRun, "1",
+                           "counts that a run makes in the row of each state; 2: its own and its "
+                           "mirror image's; neighbouring rows that are equal are the same runs",
+                           std::move(per_run), "input_state", true});
   file.state_names = std::move(names);
   return file;
+}
+
+std::vector<std::int64_t> counts_per_run(const lattice::MatrixFile& file) {
+  std::vector<std::int64_t> all;
+  for (const markov::NamedArray& array : file.arrays)
+    if (array.name == kCountsPerRun && std::ssize(array.values) == file.transitions.space.size())
+      for (const double n : array.values) all.push_back(n > 1.0 ? 2 : 1);
+  return all;
 }
 
 std::optional<dynamics::Entry> foreign_start(const lattice::MatrixFile& file,

@@ -19,19 +19,23 @@ struct ForeignState {
   std::string name;            // in tables; its number unless given
   std::string face;            // states of one face make the same move
   int move_x = 0, move_y = 0;  // columns to the right, rows ahead
+  int counts_per_run = 0;      // of a matrix of counts, in its row; 0: not said, 1
 };
 
-/// A table of states, CSV: state (0, 1, ... in order), move_x, move_y, and if wanted name and face;
-/// other columns are left alone. Without faces states with one move are of one. Throws
-/// std::runtime_error naming file and line.
+/// A table of states, CSV: state (0, 1, ... in order), move_x, move_y, and if wanted name, face and
+/// counts_per_run (2 where a run is counted with its mirror image); other columns are left alone.
+/// Without faces states with one move are of one. Throws std::runtime_error naming file and line.
 [[nodiscard]] std::vector<ForeignState> read_states(const std::string& path);
 /// The other way round: of a matrix file, with the low and high of each coordinate.
-[[nodiscard]] std::string states_csv(const lattice::MatrixFile& file);
+/// `counts_per_run`: by state; none: the column is left out.
+[[nodiscard]] std::string states_csv(const lattice::MatrixFile& file,
+                                     const std::vector<std::int64_t>& counts_per_run);
 
 /// (states x states + 1), the last column: trapped.
 struct ForeignMatrix {
   SparseTable table;  // whole numbers: of runs, or probabilities times a power of 2
   bool probabilities = false;
+  bool trajectories = false;  // counted here, each run once
 };
 /// Reads .mtx, .csv, .npz (a matrix, or trajectories) or .dtrajs. A matrix without a column of
 /// "trapped" has nobody trapped. Whole numbers are counts, others probabilities whose rows sum to 1
@@ -53,11 +57,15 @@ struct ForeignMatrix {
 [[nodiscard]] dynamics::Transitions transitions_of(const ForeignMatrix& matrix,
                                                    const std::vector<ForeignState>& states,
                                                    const lattice::CellFile& cells);
-/// A file of it, in which states keep their names and numbers.
+/// A file of it, in which states keep their names and numbers, and their counts per run.
 [[nodiscard]] lattice::MatrixFile matrix_file(dynamics::Transitions t,
                                               const std::vector<ForeignState>& states,
                                               std::map<std::string, std::string> text);
 inline constexpr const char* kForeignNumber = "number_of_state";
+/// By state, how many counts a run of such a file makes in its row; empty where nothing says so.
+/// Then neighbouring rows that are equal are the same runs, as in the matrices of trees that say
+/// it.
+[[nodiscard]] std::vector<std::int64_t> counts_per_run(const lattice::MatrixFile& file);
 /// The state of such a file by its name or number; none where there is none.
 [[nodiscard]] std::optional<dynamics::Entry> foreign_start(const lattice::MatrixFile& file,
                                                            const std::string& text);

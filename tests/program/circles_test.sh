@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Walks that circle long or for ever, and the intervals of imported chains: no share without an answer or a bound, no
+# interval without its share.   circles_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+cat >states.csv <<'END'
+state,name,move_x,move_y
+0,ahead,0,1
+1,right,1,0
+2,left,-1,0
+3,back,0,-1
+END
+# import FILE OUTPUT ROWS
+import() { "$gatewalk" import "$1" --states states.csv --start 0 --set field.rows="$3" --set field.columns=3 --set field.max_gates=0 -o "$2" --force --quiet >/dev/null || fail "import $1"; }
+# Every share strictly between 0 and 1 lies strictly within its interval.
+within='def inside: .[0] as $s | .[1] as $i | $s <= 0 or $s >= 1 or ($i[0] < $s and $s < $i[1]);
+  . as $all | [(.endings | keys[]) as $k | [$all.endings[$k], $all.endings_95[$k]] | inside] | all'
+
+# 3 of 4 go right, and come out ahead after some 10^3 to 10^9 rounds; by hand they all cross in the end.
+for others in 999 999999 999999999; do
+  printf 'from,to,count\nahead,right,75\nahead,back,25\nright,left,1000\nleft,right,%d\nleft,ahead,1\nback,ahead,10\n' "$others" >long.csv
+  import long.csv long.nc 3
+  for solver in auto klu; do
+    [ "$solver $others" = "klu 999999999" ] && continue # too few digits, and refused
+    "$gatewalk" predict long.nc --solver $solver --json long.json --quiet || fail "predict by $solver, $others"
+    holds '(.endings.crossed - 0.75 | fabs) < 1e-6 and (.endings.went_back - 0.25 | fabs) < 1e-6 and .still_walking < 1e-6' long.json
+    holds "$within" long.json
+    holds '.endings_95.crossed | .[0] > 0.6 and .[0] < 0.7 and .[1] > 0.8 and .[1] < 0.88' long.json
+    holds '.left_out_matrices == 0' long.json
+  done
+done
+# A sum that was asked for by name, and stopped early, says so: each interval holds what is left.
+printf 'from,to,count\nahead,right,75\nahead,back,25\nright,left,1000\nleft,right,999999\nleft,ahead,1\nback,ahead,10\n' >long.csv
+import long.csv long.nc 3
+expect 0 'were not followed to an end' "$gatewalk" predict long.nc --solver propagate --json long.json
+holds '.still_walking as $left | .endings_95.crossed[0] <= 0.75 and .endings_95.crossed[1] >= 0.75 and $left > 0.5' long.json
+
+# Half of them get into two states that lead to nowhere else.
+printf 'from,to,count\nahead,right,50\nahead,trapped,50\nright,left,1\nleft,right,1\n' >never.csv
+import never.csv never.nc 2
+expect 0 'never end, as they circle' "$gatewalk" predict never.nc --json never.json
+grep -q 'were not followed to an end' out.txt || fail "no warning of walks that never end"
+holds '.endings.trapped == 0.5 and .still_walking == 0.5 and .endings_95.trapped[0] > 0.38 and .endings_95.trapped[1] == 1 and .endings_95.crossed[1] >= 0.5' never.json
+"$gatewalk" walk never.nc --walks 20 --json walked.json --quiet 2>/dev/null || fail "walk"
+holds '.endings.cut_off > 0 and .endings.cut_off / 20 > .endings_95.cut_off[0] and .endings.cut_off / 20 < .endings_95.cut_off[1]' walked.json
+
+# Counts of trees: a run is counted with its mirror image, and import knows it. Of trajectories each run once.
+"$gatewalk" build "$scenes/field.toml" --accuracy 0.05 -o tree.nc --quiet >/dev/null 2>&1
+"$gatewalk" predict tree.nc --first-runs 0 --json own.json --quiet
+start=$(jq '.start_state.input - 1' own.json)
+expect 0 'runs are counted twice' "$gatewalk" export tree.nc --gate --counts -o g.mtx
+[ "$(head -n 1 g.states.csv | grep -c ',counts_per_run$')" = 1 ] || fail "no counts_per_run in g.states.csv"
+"$gatewalk" export tree.nc -o runs.dtrajs --quiet >/dev/null
+for file in g.mtx runs.dtrajs; do
+  "$gatewalk" import $file --states g.states.csv --start "$start" --set field.rows=9 --set field.columns=9 --set field.max_gates=13 -o back.nc --force >back.txt 2>&1 || fail "import $file"
+  "$gatewalk" predict back.nc --json $file.json --quiet
+  holds "$within" $file.json
+done
+expect 0 'intervals count each run once' "$gatewalk" import g.mtx --states g.states.csv --start "$start" -o back.nc --force
+# (States stand in another order: intervals are of other draws.)
+jq -s '[.[] | .endings.trapped, (.endings_95.trapped | .[1] - .[0]), .endings.cut_off] as [$a, $wa, $ca, $b, $wb, $cb] | (($a - $b) | fabs) < 1e-12 and (($ca - $cb) | fabs) < 1e-12 and (($wb / $wa - 1) | fabs) < 0.15' own.json g.mtx.json | grep -q true || fail "counts come back with other shares or intervals: $(jq -c '[.endings.trapped, .endings_95.trapped]' own.json g.mtx.json)"
+# The runs without their mirror images: the same within their error, with intervals about as wide.
+jq -s '[.[] | .endings.trapped, (.endings_95.trapped | .[1] - .[0])] as [$a, $wa, $b, $wb] | (($a - $b) | fabs) < $wa / 2 and $wb < 1.7 * $wa and $wb > 0.7 * $wa' own.json runs.dtrajs.json | grep -q true || fail "trajectories: $(jq -c '[.endings.trapped, .endings_95.trapped]' own.json runs.dtrajs.json)"
+"$gatewalk" export back.nc --gate --counts -o again.mtx --quiet >/dev/null
+cmp -s g.states.csv again.states.csv || [ "$(head -n 1 again.states.csv | grep -c ',counts_per_run$')" = 1 ] || fail "counts_per_run is lost"
+sed 's/,2$/,3/' g.states.csv >bad.states.csv
+expect 2 'bad.states.csv:[0-9]*: counts_per_run must be 1, or 2' "$gatewalk" import g.mtx --states bad.states.csv --start "$start" -o bad.nc
+finish
