@@ -73,7 +73,7 @@ Json to_json(const FoundStart& f) {
                  {"crossed", found.crossings_of_own.share()},
                  {"interval_95", found.crossings_of_own.interval_95()}};
   json["gain"] = found.gain.difference;
-  json["gain_95"] = found.gain.interval_95;
+  json["gain_95"] = gain_95(found.gain);
   for (const lattice::CoordinateRange& range : f.ranges)
     json["ranges"][section.coordinates[range.coordinate].key] = {range.low, range.high};
   for (const int column : f.columns) {

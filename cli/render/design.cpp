@@ -99,7 +99,7 @@ Json to_json(const DesignedScene& d) {
   json["before"] = {{"crossed", design.before.share()},
                     {"interval_95", design.before.interval_95()}};
   json["gain"] = design.gain.difference;
-  json["gain_95"] = design.gain.interval_95;
+  json["gain_95"] = gain_95(design.gain);
   json["trials"] = design.crossings.trials;
   json["start"] = to_json(d.section, d.start);
   json["least"] = d.options.least;

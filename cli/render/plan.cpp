@@ -87,7 +87,7 @@ Json by_gate_of(const PlannedField& p) {
   Json json{{"crossed", crossings.share()},
             {"interval_95", crossings.interval_95()},
             {"gain", worth.difference},
-            {"gain_95", worth.interval_95},
+            {"gain_95", gain_95(worth)},
             {"searched", searched}};
   const markov::Decisions& d = policy.decisions;
   for (int r = 0; r < d.field.rows; ++r) {
@@ -158,8 +158,13 @@ const lattice::Policy& chosen_policy(const PlannedField& p) {
   return best ? p.plan.front[*best].policy : p.plan.policy;
 }
 
+Json gain_95(const lattice::Gain& gain) {
+  return std::isnan(gain.interval_95[0]) ? Json() : Json(gain.interval_95);
+}
+
 std::string gain_text(const lattice::Gain& gain) {
   const auto points = [](double x) { return fixed(100.0 * x, 2); };
+  if (std::isnan(gain.interval_95[0])) return points(gain.difference);
   return (gain.difference > 0.0 ? "+" : "") + points(gain.difference) + " [" +
          points(gain.interval_95[0]) + ", " + points(gain.interval_95[1]) + "]";
 }
@@ -220,7 +225,7 @@ Json to_json(const PlannedField& p) {
                 {"crossed", plan.alone[a].share()},
                 {"interval_95", plan.alone[a].interval_95()},
                 {"gain", plan.gains[a].difference},
-                {"gain_95", plan.gains[a].interval_95},
+                {"gain_95", gain_95(plan.gains[a])},
                 {"taken", grid(usage_of(p, a))}};
     if (p.methods[a]) action["method"] = to_json(*p.methods[a]);
     json["actions"].push_back(std::move(action));

@@ -31,6 +31,8 @@ struct PlannedField {
 
 /// "+2.7 [1.4, 3.9]", in percentage points.
 [[nodiscard]] std::string gain_text(const lattice::Gain& gain);
+/// Its interval; null for what is compared with itself.
+[[nodiscard]] Json gain_95(const lattice::Gain& gain);
 
 /// That so few trials crossed that they say little; empty where they are not few.
 [[nodiscard]] std::string few_crossings(const lattice::Crossings& c);

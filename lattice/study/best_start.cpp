@@ -177,7 +177,7 @@ class Starter {
                     .own = own,
                     .crossings = crossings_of(with),
                     .crossings_of_own = crossings_of(without),
-                    .gain = gain_over(with, without),
+                    .gain = own ? Gain::over_itself() : gain_over(with, without),
                     .space = std::move(values.space),
                     .chances = std::move(values.chances),
                     .rounds = rounds,

@@ -3,6 +3,7 @@
 /// How many trials crossed the field, and how many more than others under the same noise.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -23,7 +24,10 @@ struct Crossings {
 /// By how much one chance is above another, of the same trials in both.
 struct Gain {
   double difference = 0.0;
-  std::array<double, 2> interval_95{};  // Bonett and Price 2012
+  std::array<double, 2> interval_95{};  // Bonett and Price 2012; NaN: none
+
+  /// What is compared with itself gains nothing, and that is no estimate.
+  [[nodiscard]] static Gain over_itself() { return {0.0, {std::nan(""), std::nan("")}}; }
 };
 [[nodiscard]] Gain gain_over(const FieldTrials& with, const FieldTrials& without);
 

@@ -175,7 +175,7 @@ class FieldDesigner {
     const FieldTrials without = run(own_, count_);
     best.crossings = crossings_of(with);
     best.before = crossings_of(without);
-    best.gain = gain_over(with, without);
+    best.gain = best.type_of_cell == own_ ? Gain::over_itself() : gain_over(with, without);
     best.by_chain.solves = solves_;
     best.rounds = rounds_;
     best.gate_runs = trials_.gate_runs();

@@ -448,6 +448,21 @@ class Planner {
             .chain_says = std::nan("")};
   }
 
+  /// Whether the policy takes `action_in(column, row)` in every cell, however a body enters.
+  template <class ActionIn>
+  [[nodiscard]] static bool always_takes(const Policy& policy, ActionIn action_in) {
+    const markov::Decisions& d = policy.decisions;
+    for (int row = 0; row < d.field.rows; ++row)
+      for (int column = 0; column < d.field.columns; ++column) {
+        const int wanted = action_in(column, row);
+        if (policy.always && *policy.always != wanted) return false;
+        for (int draws = 0; !policy.always && draws < std::max(1, d.max_cells); ++draws)
+          for (int input = 0; input < d.inputs; ++input)
+            if (d.action[d.at(column, row, input, draws)] != wanted) return false;
+      }
+    return true;
+  }
+
   /// By trials that nothing was chosen by.
   void judge(Plan& plan, std::vector<Tried> front) {
     const std::int64_t first = trials_.next();
@@ -458,13 +473,18 @@ class Planner {
       trials_.go_back_to(first);
       const FieldTrials by_cell = run(choice_of(plan.by_cell->policy), count_);
       plan.by_cell->crossings = crossings_of(by_cell);
-      plan.by_cell->worth = gain_over(own, by_cell);
+      const markov::Decisions& d = plan.by_cell->policy.decisions;
+      const bool same = always_takes(plan.policy, [&](int column, int row) {
+        return static_cast<int>(d.action[d.at(column, row, 0)]);
+      });
+      plan.by_cell->worth = same ? Gain::over_itself() : gain_over(own, by_cell);
     }
     for (int a = 0; a < actions(); ++a) {
       trials_.go_back_to(first);
       const FieldTrials alone = run([a](const Place&, const Entry&) { return a; }, count_);
       plan.alone.push_back(crossings_of(alone));
-      plan.gains.push_back(gain_over(own, alone));
+      const bool same = always_takes(plan.policy, [a](int, int) { return a; });
+      plan.gains.push_back(same ? Gain::over_itself() : gain_over(own, alone));
     }
     for (Tried& point : front) {
       trials_.go_back_to(first);

@@ -10,8 +10,11 @@ holds '.crossed > 0 and .interval_95[0] < .crossed and .crossed < .interval_95[1
 # At the start each trial takes one action.
 holds '[.actions[].taken[0][4]] | add | . > 0.999999 and . < 1.000001' plan.json
 grep -q 'most frequent action' plan.svg || fail "no map of actions"
-# An action all the time is the field with its keys.
-holds '[.actions[] | .crossed - .interval_95[0] > 0 and .gain_95[0] < .gain and .gain < .gain_95[1]] | all' plan.json
+# An action all the time is the field with its keys. Over itself a plan gains nothing, which is no estimate.
+holds '[.actions[] | .crossed - .interval_95[0] > 0 and (.gain_95 == null or .gain_95[0] < .gain and .gain < .gain_95[1])] | all' plan.json
+grep -q '^the best that was found is to take fast all the time$' out.txt || fail "this plan is to be one action: $(head -n 2 out.txt)"
+holds '.actions[0].gain == 0 and .actions[0].gain_95 == null and .actions[1].gain_95 != null and .by_gate.gain == 0 and .by_gate.gain_95 == null' plan.json
+[ "$(grep -c ' 0.00  *100.0 %$\| 0.00$' out.txt)" = 2 ] || fail "the gain of a plan over itself: $(grep -e fast -e 'gate alone' out.txt)"
 # The same bits on one thread, and from a scene's own tables; what is kept is taken up again.
 { cat "$scenes/field.toml"; printf '[actions.slow]\nforces.propulsion_N = 6\n[actions.fast]\nforces.propulsion_N = 9\n'; } >own.toml
 "$gatewalk" plan own.toml --set run.method=moreau --set field.rows=3 --accuracy 0.1 --threads 1 --checkpoint kept --quiet --json own.json
