@@ -81,7 +81,7 @@ int run_design(const Arguments& arguments) {
   json["made_by"] = s.made_by(options);
   options.give_out(json, table_of(designed));
   if (options.has("output"))
-    options.write(options.text("output"), lattice::to_toml(designed.after));
+    options.write(options.text("output"), lattice::scene_file(designed.after));
   const lattice::Crossings &with = designed.design.crossings, &without = designed.design.before;
   options.warn(few_crossings(with.crossed > without.crossed ? with : without));
   if (!designed.design.settled)

@@ -90,11 +90,12 @@ int run_fit(const Arguments& arguments) {
   if (options.has("inference-data"))
     options.write(options.text("inference-data"), inference_data(fitted, made_by));
   if (const std::string path = options.text("output"); !path.empty()) {
-    options.write(path, lattice::to_toml(scene_at(*ranged, s, point_of(fit.draws, fit.best))));
+    options.write(path, lattice::scene_file(scene_at(*ranged, s, point_of(fit.draws, fit.best))));
     for (std::size_t i = 0; i < scenes.size(); ++i) {
       const auto draw =
           (2 * static_cast<Eigen::Index>(i) + 1) * fit.draws.rows() / (2 * std::ssize(scenes));
-      options.write(scenes[i], lattice::to_toml(scene_at(*ranged, s, point_of(fit.draws, draw))));
+      options.write(scenes[i],
+                    lattice::scene_file(scene_at(*ranged, s, point_of(fit.draws, draw))));
     }
   }
   for (const std::string& warning : warnings_of(fitted)) options.warn(warning);

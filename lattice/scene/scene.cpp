@@ -588,7 +588,11 @@ std::string value_text(const SceneKey& key, Scene& scene) {
 
 }  // namespace
 
-std::string to_toml(const Scene& scene) {
+namespace {
+
+/// The scene's keys of which `is_written(key)` says so.
+template <class IsWritten>
+std::string toml_of(const Scene& scene, IsWritten is_written) {
   Scene copy = scene;  // slots point into a mutable scene
   std::string text;
   std::string_view table;
@@ -597,11 +601,30 @@ std::string to_toml(const Scene& scene) {
       table = table_of(key.key);
       text += (text.empty() ? "[" : "\n[") + std::string(table) + "]\n";
     }
-    text += std::string(leaf_of(key.key)) + " = " + value_text(key, copy) + "\n";
+    if (is_written(key.key))
+      text += std::string(leaf_of(key.key)) + " = " + value_text(key, copy) + "\n";
   }
   if (scene.bins) text += "\n" + bins_toml(*scene.bins);
   if (scene.terrain) text += "\n" + terrain_toml(*scene.terrain, scene.field);
   return text + gates_toml(kActionsTable, scene.actions);
+}
+
+}  // namespace
+
+std::string to_toml(const Scene& scene) {
+  return toml_of(scene, [](std::string_view) { return true; });
+}
+
+bool has_effect(const Scene& scene, std::string_view key) {
+  const std::string& method = scene.gate.run.method;
+  if (key == "run.step_s") return method != "auto" && method != "event";
+  return key != "run.event_tolerance_m" || method == "event";
+}
+
+std::string scene_file(const Scene& scene) {
+  return toml_of(scene, [&](std::string_view key) {
+    return has_effect(scene, key) || scene.named.contains(key);
+  });
 }
 
 std::vector<KeyInfo> describe(const Scene& scene) {

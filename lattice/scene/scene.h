@@ -81,6 +81,11 @@ void require_key(const std::string& key, const std::string& origin);
 /// The complete scene, every key in a fixed order, but no sweep; numbers with the digits that read
 /// back the same.
 [[nodiscard]] std::string to_toml(const Scene& scene);
+/// Whether the scene's method looks at the key: "auto" chooses a step, "event" has none.
+[[nodiscard]] bool has_effect(const Scene& scene, std::string_view key);
+/// to_toml without keys that have no effect and that nobody gave: a file to go on with, whose
+/// reader need not warn of what no user wrote.
+[[nodiscard]] std::string scene_file(const Scene& scene);
 
 /// What differs between two scenes among the keys that shape a transition matrix (all of
 /// GateParams, [bins] and the types of [terrain]; neither field nor map nor start):

@@ -42,14 +42,14 @@ std::vector<std::string> keys_without_effect(const Scene& scene, RunsFrom from) 
     told.push_back("the table [sweep] of " + scene.source +
                    " has no effect here: gatewalk sweep runs it");
   if (scene.terrain && from == RunsFrom::start) told.push_back(terrain_without_effect(scene));
-  const auto unused = [&](const char* key, bool used, const std::string& why) {
-    if (!used && scene.named.contains(key))
+  const auto unused = [&](const char* key, const std::string& why) {
+    if (!has_effect(scene, key) && scene.named.contains(key))
       told.push_back(std::string(key) + " has no effect: " + why);
   };
   const std::string says = "run.method = \"" + method + "\" ";
-  const bool chosen = method == "auto", event = method == "event";
-  unused("run.step_s", !chosen && !event, says + (chosen ? "chooses it" : "has no step"));
-  unused("run.event_tolerance_m", event, says + (chosen ? "chooses it" : "does not use it"));
+  const bool chosen = method == "auto";
+  unused("run.step_s", says + (chosen ? "chooses it" : "has no step"));
+  unused("run.event_tolerance_m", says + (chosen ? "chooses it" : "does not use it"));
   return told;
 }
 

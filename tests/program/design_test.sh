@@ -8,7 +8,11 @@ expect 0 '^chance to cross: [0-9.]* \[[0-9., ]*\] %, [0-9.]* \[[0-9., ]*\] % as 
 holds '.gain_95[0] > 0 and .gain - (.crossed - .before.crossed) < 1e-12 and .gain - (.crossed - .before.crossed) > -1e-12 and .trials == 385 and .become == ["s", "."] and (.changes | length) == 2 and .changes[0].gate_x == 0 and ([.changes[].to] | unique) == ["s"]' design.json
 holds '(.map | length) == 3 and .by_chain.optima[0].crossed >= .by_chain.optima[-1].crossed and ([.by_chain.optima[].searches] | add) == 9 and (.by_chain.best_change | length) == 3 and .by_chain.best_change[0][4] > 0' design.json
 grep -q 'best change of a gate' design.svg || fail "no map of changes"
-# What is written is the changed scene, which crosses as often in full.
+# What is written is the changed scene, which crosses as often in full. It has no key that is warned of and that nobody gave.
+expect 0 '^crossed' "$gatewalk" lattice changed.toml --trials 10
+! grep 'has no effect' out.txt || fail "design writes what its own reader warns of"
+expect 0 'run.event_tolerance_m has no effect' "$gatewalk" design "${small[@]}" --set run.event_tolerance_m=0.02 --accuracy 0.2 -o given.toml
+grep -q '^event_tolerance_m = 0.02$' given.toml || fail "design leaves out what was given"
 "$gatewalk" scene changed.toml --quiet --json scene.json
 "$gatewalk" lattice changed.toml --trials 4000 --quiet --json full.json
 jq -s '.[0] as $d | (.[1].endings.crossed / .[1].trials) as $full | $full > $d.interval_95[0] - 0.03 and $full < $d.interval_95[1] + 0.03' design.json full.json | grep -q true || fail "the changed scene crosses otherwise"
