@@ -9,6 +9,13 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cmake --install "$build" --prefix "$work/prefix" >/dev/null
 mkdir "$work/project"
+# pkg-config says where they are, not where they were configured to be.
+if command -v pkg-config >/dev/null; then
+  pc=$(find "$work/prefix" -name gatewalk.pc)
+  export PKG_CONFIG_PATH=${pc%/*}
+  [ -f "$(pkg-config --variable=includedir gatewalk)/lattice/problem.h" ] || { cat "$pc"; exit 1; }
+  [ -f "$(pkg-config --variable=libdir gatewalk)/libgatewalk_lattice.a" ] || { cat "$pc"; exit 1; }
+fi
 
 # An example's includes stay in front, its statements become main(), which returns 0 where CHECK holds.
 program() {  # README CHECK

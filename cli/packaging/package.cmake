@@ -47,10 +47,24 @@ set(libpng "")
 if(GATEWALK_VIDEO)
   set(libpng "libpng >= 1.6, ")
 endif()
+# Its prefix is where the file itself lies, so that it stays true for cmake --install --prefix DIR and for a folder that
+# is moved; an absolute CMAKE_INSTALL_LIBDIR or CMAKE_INSTALL_INCLUDEDIR stands where it is.
+set(pc_prefix "${CMAKE_INSTALL_PREFIX}")
+if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+  file(RELATIVE_PATH pc_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
+  string(PREPEND pc_prefix "\${pcfiledir}/")
+  string(REGEX REPLACE "/$" "" pc_prefix "${pc_prefix}")
+endif()
+foreach(dir INCLUDEDIR LIBDIR)
+  set(pc_${dir} "${CMAKE_INSTALL_${dir}}")
+  if(NOT IS_ABSOLUTE "${pc_${dir}}")
+    string(PREPEND pc_${dir} "\${prefix}/")
+  endif()
+endforeach()
 file(CONFIGURE OUTPUT gatewalk.pc CONTENT [[
-prefix=@CMAKE_INSTALL_PREFIX@
-includedir=${prefix}/@CMAKE_INSTALL_INCLUDEDIR@/gatewalk
-libdir=${prefix}/@CMAKE_INSTALL_LIBDIR@
+prefix=@pc_prefix@
+includedir=@pc_INCLUDEDIR@/gatewalk
+libdir=@pc_LIBDIR@
 
 Name: gatewalk
 Description: @PROJECT_DESCRIPTION@
