@@ -269,6 +269,8 @@ Subject open_recorded(const Options& options, const std::string& path) {
     if (!states.is_object() || states.value("bins", Json()) != "imported")
       throw markov::BadFile(path + ": its runs are missing");
     s.foreign = true;
+    s.cells->map.section.named = s.problem.cells.map.section.named =
+        s.file->transitions.space.section().named;
     put_foreign_starts(s, options);
     return s;
   }

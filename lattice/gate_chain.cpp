@@ -331,6 +331,24 @@ std::string comment_on_counts(const CellMap& map, const StateSpace& space) {
          "once.";
 }
 
+namespace {
+
+/// States go by these names from now on.
+void put_names(MatrixFile& file, const std::vector<std::string>& names) {
+  file.state_names = names;
+  const StateSpace& space = file.transitions.space;
+  Section section = space.section();
+  if (space.has_trees() || section.coordinates.size() > 1) return;
+  for (int s = 0; s < space.size(); ++s) {
+    const dynamics::StateRange range = space.range(s);
+    const auto& [from, to] = range.at[0];
+    section.named.push_back({range.face, from, to, names[static_cast<std::size_t>(s)]});
+  }
+  file.transitions.space = {std::move(section), space.bins(), space.open(), space.points()};
+}
+
+}  // namespace
+
 void write_matrix(const std::string& path, const MatrixFile& file) {
   const Transitions& t = file.transitions;
   markov::CountsFile out;
@@ -394,7 +412,7 @@ MatrixFile read_matrix(const std::string& path, const SectionOf& section_of) {
     if (in.exits != exits_of(space))
       throw markov::BadFile(path + ": exits are not those of its states");
     MatrixFile file{transitions_of(space, in), in.text, others_in(in.arrays, section)};
-    if (in.state_names != state_names(space)) file.state_names = in.state_names;
+    if (in.state_names != state_names(space)) put_names(file, in.state_names);
     read_costs(in, "", path, file.transitions);
     for (const auto& [name, of_type] : in.types) {
       const auto at = file.types.emplace(name, transitions_of(space, of_type)).first;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/matrix.h"
 
+#include <algorithm>
 #include <array>
 
 #include "cli/render/choice.h"
@@ -44,7 +45,9 @@ std::vector<double> outcome_shares(const Transitions& t, int row) {
 std::string row_table(const Transitions& t) {
   lattice::TextStream out;
   const Section& section = t.space.section();
-  out << "\n  in  from";
+  std::size_t width = 0;  // of names, if states have some
+  for (const NamedEntries& named : section.named) width = std::max(width, named.name.size() + 2);
+  out << "\n  in  " << padded(width > 0 ? "name" : "", -static_cast<int>(width)) << "from";
   for (const Coordinate& c : section.coordinates) {
     const std::string unit = behind_number(c.unit);
     const std::string head = c.name + (unit.empty() ? "" : " (" + unit.substr(1) + ")");
@@ -56,7 +59,9 @@ std::string row_table(const Transitions& t) {
   for (int row = 0; row < t.space.size(); ++row) {
     const StateRange range = t.space.range(row);
     const auto share = outcome_shares(t, row);
-    out << padded(std::to_string(row + 1), 4) << "  " << section.faces[range.face].name << " ";
+    out << padded(std::to_string(row + 1), 4) << "  "
+        << padded(name_of(section, range.middle()), -static_cast<int>(width))
+        << section.faces[range.face].name << " ";
     for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
       out << padded(dynamics::text_of(range.at[axis]) + " ", -12);
     out << padded(std::to_string(t.trials[row]), 7) << padded(std::to_string(t.clamped[row]), 8)
@@ -229,6 +234,8 @@ Json to_json(const lattice::MatrixFile& file, const std::string& path) {
       outputs.push_back({{"output", column + 1}, {"count", count}});
     const Section& section = t.space.section();
     Json shown = {{"input", row + 1}, {"boundary", section.faces[range.face].name}};
+    if (const std::string name = name_of(section, range.middle()); !name.empty())
+      shown["name"] = name;
     for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
       shown[section.coordinates[axis].key] = range.at[axis];
     shown["trials"] = t.trials[row];

@@ -11,10 +11,11 @@ namespace gatewalk::cli {
 
 namespace {
 
-/// Names of faces but the first go without saying.
-Json with_face(const dynamics::Section& section, int face) {
+/// The name that an entry goes by; its face, but the first goes without saying.
+Json with_face(const dynamics::Section& section, const dynamics::Entry& entry) {
   Json json = Json::object();
-  if (face != 0) json["face"] = section.faces[static_cast<std::size_t>(face)].name;
+  if (const std::string name = name_of(section, entry); !name.empty()) json["name"] = name;
+  if (entry.face != 0) json["face"] = section.faces[static_cast<std::size_t>(entry.face)].name;
   return json;
 }
 
@@ -22,14 +23,14 @@ Json with_face(const dynamics::Section& section, int face) {
 
 Json to_json(const dynamics::Section& section, const Start& start) {
   if (!start) return "as seen";
-  Json json = with_face(section, start->face);
+  Json json = with_face(section, *start);
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
     json[section.coordinates[axis].key] = start->at[axis];
   return json;
 }
 
 Json to_json(const dynamics::Section& section, const dynamics::StateRange& range) {
-  Json json = with_face(section, range.face);
+  Json json = with_face(section, range.middle());
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
     json[section.coordinates[axis].key] = range.at[axis];
   return json;
@@ -37,6 +38,7 @@ Json to_json(const dynamics::Section& section, const dynamics::StateRange& range
 
 std::string title_of(const dynamics::Section& section, const Start& start) {
   if (!start) return "start: all entries that were seen first";
+  if (const std::string name = name_of(section, *start); !name.empty()) return "start " + name;
   std::string title = "start";
   if (start->face != 0) title += " " + section.faces[static_cast<std::size_t>(start->face)].name;
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "dynamics/cells/section.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
+#include <utility>
 
 namespace gatewalk::dynamics {
 
@@ -45,6 +48,16 @@ void Section::validate() const {
   for (const Coordinate& c : coordinates)
     if (!(std::isfinite(c.scale) && c.scale > 0.0))
       refuse("the scale of coordinate " + c.name + " must be finite and > 0");
+}
+
+std::string name_of(const Section& section, const Entry& entry) {
+  const auto behind = std::upper_bound(
+      section.named.begin(), section.named.end(), entry, [](const Entry& e, const NamedEntries& n) {
+        return std::pair(e.face, e.at[0]) < std::pair(n.face, n.from);
+      });
+  if (behind == section.named.begin()) return "";
+  const NamedEntries& named = *std::prev(behind);
+  return named.face == entry.face && entry.at[0] <= named.to ? named.name : "";
 }
 
 const std::array<std::array<double, 2>, kMostCoordinates>& usual_at(const Section& section,

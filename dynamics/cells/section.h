@@ -58,19 +58,33 @@ struct Face {
   }
 };
 
+/// Entries at a face that go by a name, from and to a place there: those of one state, where states
+/// are kinds of things rather than places and speeds.
+struct NamedEntries {
+  int face = 0;
+  double from = 0.0, to = 0.0;
+  std::string name;
+};
+
 /// The surface of section that all cells of a field share: entries are points on it.
 struct Section {
   std::vector<Face> faces;              // 1 to kMostFaces
   std::vector<Coordinate> coordinates;  // 1 to kMostCoordinates
   std::vector<CostInfo> costs;          // up to kMostCosts
+  std::vector<NamedEntries> named{};    // by face and place, no two overlap; mostly none
 
   /// Throws std::invalid_argument unless there are as many as that, all of a kind have different
   /// names (costs: keys), faces lead somewhere and are the mirror images of their mirror images (or
   /// have none),
   /// and scales are finite and > 0.
   void validate() const;
-  friend bool operator==(const Section&, const Section&) = default;
+  /// The same one, whatever names its entries go by.
+  friend bool operator==(const Section& a, const Section& b) {
+    return a.faces == b.faces && a.coordinates == b.coordinates && a.costs == b.costs;
+  }
 };
+/// The name that an entry goes by; empty where it has none.
+[[nodiscard]] std::string name_of(const Section& section, const Entry& entry);
 
 /// The names of faces or coordinates: "EN, RD, LD".
 template <class Named>

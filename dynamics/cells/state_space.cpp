@@ -281,6 +281,7 @@ StateRange mirrored(const Section& section, const StateRange& range) {
 }
 
 std::string text_of(const Section& section, const StateRange& range) {
+  if (std::string name = name_of(section, range.middle()); !name.empty()) return name;
   std::string text = section.faces[range.face].name;
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
     const Coordinate& c = section.coordinates[axis];
