@@ -63,6 +63,21 @@ FieldExits exits_of(const ExitCounts& c) {
   return exits;
 }
 
+FieldExits within_sides(FieldExits exits, const EndingShares& endings) {
+  for (std::size_t side = 0; side < kSides.size(); ++side) {
+    const auto& of_side = endings.interval[static_cast<std::size_t>(kSides[side])];
+    if (std::isnan(of_side[0])) continue;
+    for (std::size_t i = 0; i < exits[side].share.size(); ++i) {
+      auto& [low, high] = exits[side].interval[i];
+      low = std::min(low, of_side[0]);
+      high = std::min(high, of_side[1]);
+      // Where nobody leaves, trials alone set the bound: what tells of the side tells of it too.
+      if (exits[side].share[i] <= kShareRounding) high = std::min(high, of_side[1] - of_side[0]);
+    }
+  }
+  return exits;
+}
+
 ExitShares exit_shares(const markov::FinalDistribution& d) {
   const Eigen::Index columns = d.final_cells.cols();
   ExitShares shares;

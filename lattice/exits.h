@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lattice/reference.h"
+#include "lattice/statistics/ending_shares.h"
 #include "lattice/statistics/share_95.h"
 #include "markov/predict.h"
 
@@ -42,6 +43,10 @@ using FieldExits = std::array<SideExits, kSides.size()>;  // by kSides
 
 /// With Jeffreys' intervals.
 [[nodiscard]] FieldExits exits_of(const ExitCounts& counts);
+
+/// A part of a side is never more than the side: no place's interval reaches beyond that of its
+/// ending. Alone it may: where few tell of a place, or nothing but the number of trials does.
+[[nodiscard]] FieldExits within_sides(FieldExits exits, const EndingShares& endings);
 
 using ExitShares = std::array<std::vector<double>, kSides.size()>;  // by kSides (places)
 [[nodiscard]] ExitShares exit_shares(const markov::FinalDistribution& prediction);

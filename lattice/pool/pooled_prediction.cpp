@@ -73,6 +73,7 @@ StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, std:
   a.endings = a.endings.with_limit(field.max_gates);
   for (SideExits& side : a.exits)
     for (auto& interval : side.interval) widen(interval, unseen);
+  a.exits = within_sides(std::move(a.exits), a.endings);
   a.gates_95[0] = (a.gates_95[0] - unseen).max(0.0);
   a.gates_95[1] = (a.gates_95[1] + unseen).min(1.0);
   a.final = std::move(whole);

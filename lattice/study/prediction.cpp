@@ -93,8 +93,9 @@ Prediction predict(const CountedField& gates, const FieldParams& field_params,
     const Resampled& of_start = resampled.empty() ? none : resampled[k];
     const MatrixNoise& spread = of_start.noise;
     s.shares = EndingShares(s.final, spread, how.max_cells);
-    s.exits =
-        with_unfinished(exits_of(exit_shares(s.final), of_start.exits, spread.from()), s.final);
+    s.exits = within_sides(
+        with_unfinished(exits_of(exit_shares(s.final), of_start.exits, spread.from()), s.final),
+        s.shares);
     s.replicates = spread.replicates();
     s.mean_total_variation = spread.mean_total_variation();
     s.total_variation_95 = spread.total_variation_95();

@@ -231,6 +231,7 @@ StartValidation validate_start(const Setup& setup, const dynamics::Entry& start,
     noise.add(other);
     resampled_exits.push_back(exit_shares(other));
   }
+  const EndingShares exact_endings(exact, noise, max_gates);
   const FieldTally& tally = seen.trials.tally;
   const markov::CellCounts& final_gates = tally.final_gates;
   const std::int64_t draws = null_draws_for(setup);
@@ -253,9 +254,10 @@ StartValidation validate_start(const Setup& setup, const dynamics::Entry& start,
       .matrix_noise_sd = noise.sd_total_variation(),
       .dynamics_endings = EndingShares(tally.endings, tally.trials).with_limit(max_gates),
       .walks_endings = EndingShares(walked.tally.endings, walked.tally.walks).with_limit(max_gates),
-      .exact_endings = EndingShares(exact, noise, max_gates),
+      .exact_endings = exact_endings,
       .dynamics_exits = exits_of(seen.exits),
-      .exact_exits = exits_of(exit_shares(exact), resampled_exits, noise.from()),
+      .exact_exits =
+          within_sides(exits_of(exit_shares(exact), resampled_exits, noise.from()), exact_endings),
       .dynamics_seconds = seen.seconds,
       .walks_seconds = walked.seconds,
       .exact_seconds = exact_seconds,

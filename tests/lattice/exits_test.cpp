@@ -56,6 +56,22 @@ TEST(Exits, PlacesAreTheGatesInMetres) {
             exit_bounds(p.gate_width(), p.gate_length(), field, 1));
 }
 
+// Two places of one side: the first is less certain alone than the side is, the second more.
+TEST(Exits, APartOfASideIsNoMoreThanTheSide) {
+  std::array<double, markov::kEndings> shares{};
+  shares[static_cast<std::size_t>(Ending::left_edge)] = 0.3;
+  EndingShares endings(shares);
+  endings.interval[static_cast<std::size_t>(Ending::left_edge)] = {0.2, 0.4};
+  FieldExits exits;
+  exits[1] = {{0.25, 0.05, 0.0}, {{{0.22, 0.45}, {0.01, 0.1}, {0.0, 0.5}}}};
+  exits[2] = {{0.0}, {{{0.0, 0.7}}}};  // of a side without interval nothing follows
+  const FieldExits within = within_sides(exits, endings);
+  EXPECT_EQ(within[1].interval,
+            (std::vector<std::array<double, 2>>{{0.2, 0.4}, {0.01, 0.1}, {0.0, 0.2}}));
+  EXPECT_EQ(within[1].share, exits[1].share);
+  EXPECT_EQ(within[2].interval, exits[2].interval);
+}
+
 TEST(Exits, OfTrialsAreThoseOfTheirLastGates) {
   const Scene scene = leaving_scene();
   FieldTrials each;
