@@ -22,6 +22,7 @@ AnalysedSubject chain_of_runs(const Options& options, Subject& s) {
   AnalysedSubject c{.chain = lattice::analysed_chain(
                         s.problem, *s.pool, s.pool->begin(s.starts.front()), s.how.per_leaf),
                     .endings = answer.endings,
+                    .rest = rest_of(answer.final),
                     .status = cli::to_json(prediction.health),
                     .method = s.settled ? cli::to_json(*s.settled) : Json(),
                     .clean = status_of(options, prediction.health) == kFine,
@@ -45,6 +46,7 @@ AnalysedSubject chain_of_bins(const Options& options, const Subject& s) {
   const Json status = recorded_status(*s.file);
   AnalysedSubject c{.chain = lattice::analysed_chain(s.problem, matrices, start.start),
                     .endings = prediction.starts.front().shares,
+                    .rest = rest_of(prediction.starts.front().final),
                     .status = status,
                     .method = recorded(*s.file, s.path, "method"),
                     .clean = faults_recorded(status).empty(),

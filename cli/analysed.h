@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/ranged.h"
+#include "cli/render/final_gates.h"
 #include "cli/render/json.h"
 #include "cli/render/variance_shares.h"
 #include "cli/subject.h"
@@ -23,6 +24,7 @@ struct AnalysedSubject {
   std::optional<lattice::PooledPrediction> of_runs{};  // one of these two says where bodies end
   std::optional<lattice::Prediction> of_bins{};
   lattice::EndingShares endings;
+  Rest rest{};  // what these leave out
   Json status, method;
   bool clean = true, from_trials = false, reached = true;
   std::int64_t gate_runs = 0;

@@ -222,7 +222,8 @@ void write_page(const Options& options, const Subject& s,
   const Json made_by = s.made_by(options);
   const std::string words =
       endings_text(shown_endings(starts.front().endings, starts.front().final),
-                   "of bodies from " + title_of(shown.map.section, starts.front().start));
+                   "of bodies from " + title_of(shown.map.section, starts.front().start)) +
+      rest_text(rest_of(starts.front().final));
   const auto text_of_page = [&](bool gates_95) {
     const Json json = to_json(page, gates_95);
     return filled(

@@ -67,6 +67,8 @@ int predict_from_runs(const Options& options, Subject& s) {
   json["made_by"] = s.made_by(options);
   options.give_out(json, table);
   options.warn(too_few_gates(shown));
+  for (std::size_t k = 0; k < prediction.starts.size(); ++k)
+    options.warn(rest_warning(rest_of(prediction.starts[k].final), s.where(k)));
   const int exit = status_of(options, prediction.health);
   write_page(options, s, of_file, page_starts(prediction));
   show(options, s, prediction.starts, &lattice::StartAnswer::endings,
@@ -90,7 +92,6 @@ int predict_from_matrix(const Options& options, const Subject& s,
   const auto prediction = lattice::predict(gates, field, starts, {.solver = solver_of(options)},
                                            options.seed(), options.work());
   options.warn(text_of(prediction.left_out));
-  options.warn(unfinished_text(prediction));
   const ShownField field_shown = s.shown();
   const PredictedField shown{*s.file, field_shown, s.given ? s.starts : std::vector<Start>(),
                              others, gates.exact};
@@ -99,6 +100,8 @@ int predict_from_matrix(const Options& options, const Subject& s,
   json["made_by"] = s.made_by(options);
   options.give_out(json, table_of(prediction, shown));
   options.warn(too_few_gates(field_shown));
+  for (std::size_t k = 0; k < prediction.starts.size(); ++k)
+    options.warn(rest_warning(rest_of(prediction.starts[k].final), s.where(k)));
   options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
   const int exit = exit_status(options, faults_recorded(recorded_status(*s.file)).empty());
   write_page(options, s, s.pool, page_starts(prediction, s));

@@ -397,6 +397,10 @@ std::string Subject::name_of(std::size_t start) const {
   return given ? title_of(problem.map().section, starts[start]) : "the start";
 }
 
+std::string Subject::where(std::size_t start) const {
+  return starts.size() > 1 ? name_of(start) + ": " : "";
+}
+
 double Subject::bin_of_durations(const Options& options) const {
   if (scene) return lattice::bin_of_durations(scene->gate);
   if (cells->trapped_after) return *cells->trapped_after / 1000.0;

@@ -40,6 +40,8 @@ struct Subject {
   [[nodiscard]] std::vector<dynamics::Entry> entries() const;
   /// "start d 4 m, ..." of a start that was given, else "the start".
   [[nodiscard]] std::string name_of(std::size_t start) const;
+  /// Of what a warning is, where several starts are given: "start d 0 m: "; else nothing.
+  [[nodiscard]] std::string where(std::size_t start) const;
   /// Of a matrix of a scene.
   [[nodiscard]] lattice::SceneMatrix matrix() const { return {file, *scene}; }
   /// Of a matrix: one for each type of cell.

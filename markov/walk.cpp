@@ -272,8 +272,6 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 
-constexpr int kCellsWithoutLimit = 1'000'000;
-
 }  // namespace
 
 WalkTally& WalkTally::operator+=(const WalkTally& other) {
@@ -295,6 +293,7 @@ WalkTally& WalkTally::operator+=(const WalkTally& other) {
   left_field += other.left_field;
   cut_off += other.cut_off;
   unsampled += other.unsampled;
+  still_walking += other.still_walking;
   for (std::size_t e = 0; e < kEndings; ++e) endings[e] += other.endings[e];
   steps += other.steps;
   return *this;
@@ -572,7 +571,7 @@ WalkTally Walker::run(bool in_lanes, const Field& field, const Start& start, int
                                 std::to_string(range.first) + " on is not a range from 0 up");
   }
   if (final_cell_of_walk) final_cell_of_walk->resize(static_cast<std::size_t>(range.count));
-  const Job job{field, start, max_cells == 0 ? kCellsWithoutLimit : max_cells,
+  const Job job{field, start, max_cells == 0 ? kMostCells : max_cells,
                 seed,  range, final_cell_of_walk ? final_cell_of_walk->data() : nullptr};
 
   tbb::enumerable_thread_specific<Counters> counters(job.cells());
@@ -591,6 +590,9 @@ WalkTally Walker::run(bool in_lanes, const Field& field, const Start& start, int
   for (CellCounts* cells : {&total.final_cells, &total.trapped_cells, &total.departed_cells})
     *cells = CellCounts::Zero(field.rows, field.columns);
   for (const Counters& of_thread : counters) of_thread.add_to(total);
+  // Cells or lanes count them alike; but the field cuts nobody off that has no limit.
+  if (max_cells == 0)
+    std::swap(total.still_walking, total.endings[static_cast<std::size_t>(Ending::cut_off)]);
   const auto ended = [&](Ending e) { return total.endings[static_cast<std::size_t>(e)]; };
   total.walks = range.count;
   total.trapped = ended(Ending::trapped);

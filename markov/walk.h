@@ -21,15 +21,17 @@ struct WalkRange {
 
 using CellCounts = Eigen::Array<std::int64_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// trapped + left_field + cut_off + unsampled == walks == final_cells.sum().
+/// trapped + left_field + cut_off + unsampled + still_walking == walks == final_cells.sum().
 struct WalkTally {
   CellCounts final_cells;  // (rows x columns), last cell inside the field
   std::int64_t walks = 0;
-  std::int64_t trapped = 0;                      // ended by a trapped output
-  std::int64_t left_field = 0;                   // moved out of the field
-  std::int64_t cut_off = 0;                      // max_cells cells visited, would have gone on
-  std::int64_t unsampled = 0;                    // entered a state whose row was never sampled
-  std::array<std::int64_t, kEndings> endings{};  // the same by Ending; the four edges: left_field
+  std::int64_t trapped = 0;        // ended by a trapped output
+  std::int64_t left_field = 0;     // moved out of the field
+  std::int64_t cut_off = 0;        // max_cells cells visited, would have gone on
+  std::int64_t unsampled = 0;      // entered a state whose row was never sampled
+  std::int64_t still_walking = 0;  // without max_cells: followed for kMostCells cells, not ended
+  /// The same by Ending; the four edges: left_field. Those still walking have none.
+  std::array<std::int64_t, kEndings> endings{};
   CellCounts trapped_cells,
       departed_cells;      // of final_cells: trapped there; left the field from there
   std::int64_t steps = 0;  // draws over all walks
@@ -47,6 +49,9 @@ inline constexpr std::uint64_t kWalkStream = 0x77616c6b'00000001;  // "walk", ve
 /// from 1 (rounding, at most 1e-12) goes to its largest entry.
 class Walker {
  public:
+  /// Where the field has no limit, a walk is followed through no more cells than this.
+  static constexpr int kMostCells = 1'000'000;
+
   explicit Walker(const FieldChain& chain);
 
   /// An output of `row` for a uniform 64-bit word; never one of probability zero. Rows and outputs
@@ -54,11 +59,11 @@ class Walker {
   [[nodiscard]] int draw(int row, std::uint64_t word) const;
 
   /// Runs `range` (from 0 up) on all threads of the current TBB arena, many walks at once in vector
-  /// registers (Google Highway). At most `max_cells` cells are visited (0: no limit; then a walk is
-  /// still cut off after 10^6 cells, and counted so). Same walks for any number of threads and any
-  /// instruction set. `final_cell_of_walk`, if given, gets row * columns + column per walk. Chains
-  /// with an exit of 512 cells or more, or with 2^21 nonzeros or more, and fields with cells of
-  /// several types are walked plainly.
+  /// registers (Google Highway). At most `max_cells` cells are visited (0: no limit of the field;
+  /// then a walk is followed through kMostCells, and is `still_walking`). Same walks for any number
+  /// of threads and any instruction set. `final_cell_of_walk`, if given, gets row * columns +
+  /// column per walk. Chains with an exit of 512 cells or more, or with 2^21 nonzeros or more, and
+  /// fields with cells of several types are walked plainly.
   [[nodiscard]] WalkTally walk(const Field& field, const Start& start, int max_cells,
                                std::uint64_t seed, WalkRange range,
                                std::vector<std::int32_t>* final_cell_of_walk = nullptr) const;

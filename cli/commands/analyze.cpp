@@ -89,7 +89,8 @@ int run_analyze(const Arguments& arguments) {
   const ShownField field = s.shown();
   AnalysedField shown{field,       s.starts.front(), c.endings,     analysis,
                       effects,     direct,           c.from_trials, c.reached,
-                      c.gate_runs, c.states,         c.seconds,     parameters.relative_step};
+                      c.gate_runs, c.states,         c.seconds,     parameters.relative_step,
+                      c.rest};
   Json json = to_json(shown);
   json["status"] = c.status;
   json["sensitivities"]["status"] = to_json(effects.health);
@@ -99,6 +100,7 @@ int run_analyze(const Arguments& arguments) {
   json["variance_shares"] = shares.json;
   json["made_by"] = s.made_by(options);
   options.give_out(json, table_of(shown) + shares.table);
+  options.warn(rest_warning(c.rest));
   const bool clean_effects =
       status_of(options, effects.health, "in gates with changed numbers ") == kFine;
   const bool clean =

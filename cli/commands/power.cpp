@@ -3,6 +3,7 @@
 #include "cli/arguments.h"
 #include "cli/parsers.h"
 #include "cli/render/choice.h"
+#include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
@@ -76,6 +77,8 @@ int run_power(const Arguments& arguments) {
   json["made_by"] = s.made_by(options);
   options.give_out(json, table_of(planned) + method_line(s.settled));
   options.warn(too_few_gates(s.shown()));
+  options.warn(rest_warning(rest_of(answer.final)));
+  if (planned.other) options.warn(rest_warning(rest_of(planned.other->final), "with --versus "));
   return status_of(options, health);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/arguments.h"
 #include "cli/commands/recorded.h"
+#include "cli/render/final_gates.h"
 #include "cli/render/json.h"
 #include "cli/render/observed.h"
 #include "cli/render/prediction.h"
@@ -102,6 +103,8 @@ int run_validate(const Arguments& arguments) {
   json["made_by"] = subject.made_by;
   options.give_out(json, table);
   options.warn(text_of(result.left_out));
+  for (const lattice::StartValidation& start : result.starts)
+    options.warn(rest_warning(rest_of(start.exact), "by the chain "));
   if (subject.observed) options.warn(endings_not_listed(*subject.observed, result.starts.front()));
   const int exit = status_of(options, result.health);
   options.draw([&] { return figure_of(result, *subject.shown); });

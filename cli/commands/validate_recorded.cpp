@@ -34,6 +34,7 @@ int validate_recorded(const Options& options) {
   json["made_by"] = s.made_by(options);
   options.give_out(
       json, table_of(halves) + "Memory: " + verdict(memory, section) + ".\n" + table_of(*s.pool));
+  for (const std::string& rest : rest_warnings(halves)) options.warn(rest);
   options.draw([&] { return figure_of(halves, shown); });
   return kFine;
 }

@@ -48,6 +48,7 @@ int run_walk(const Arguments& arguments) {
                                                     s.problem.map().section, json["made_by"]));
   options.give_out(json, table_of(told, shown));
   options.warn(too_few_gates(shown));
+  options.warn(rest_warning(rest_of(tally)));
   options.remark(fixed(seconds, 3) + " s, " + fixed(static_cast<double>(walks) / seconds / 1e6, 2) +
                  " million walks a second");
   const int exit = exit_status(options, faults_recorded(status).empty() && walked.clean);

@@ -274,7 +274,8 @@ Json to_json(const AnalysedField& f) {
     for (std::size_t c = 0; c < a.costs.size(); ++c) expected(costs_of(f.shown)[c].key, c);
   }
   json["expected_visits"] = grid(a.totals.visits);
-  json["still_walking"] = a.totals.remainder;
+  json["never_sampled"] = f.rest.never_sampled;
+  json["still_walking"] = std::max(f.rest.still_walking, a.totals.remainder);
   json["drawn_walks"] = a.totals.drawn_walks;
   const auto add = [&](const char* key, std::optional<markov::Ending> ending) {
     const Spent s = spent(a, ending);
@@ -396,7 +397,7 @@ std::string table_of(const AnalysedField& f) {
                    : std::isnan(f.endings.interval.front().front())
                        ? "of all bodies; no intervals"
                        : "of all bodies; 95 % intervals that count the sampling of the matrix") +
-      limits_text(f.shown) + "\ngates visited  " + with_interval(a.gates, 3) +
+      limits_text(f.shown) + rest_text(f.rest) + "\ngates visited  " + with_interval(a.gates, 3) +
       (a.by_groups && std::isnan(a.gates.interval[0])
            ? " (no interval: it is the same in all eight groups of trials)"
            : "") +
@@ -442,7 +443,8 @@ std::string table_of(const AnalysedField& f) {
   if (f.from_trials)
     table +=
         "\nthe endings above are the trials' own shares, which are more certain here; the chain's "
-        "are behind all else\n";
+        "are behind all else (" +
+        target + ": " + percents(a.target_chance) + " %)\n";
   table += "\nmost frequent ways to " + target +
            ", by the columns i_x of their gates (>: in the same row)\n";
   for (const markov::CellPath& path : a.paths.paths) {
@@ -464,8 +466,16 @@ std::string table_of(const AnalysedField& f) {
              " ends so in these runs: they cannot tell what a little more or less of a number "
              "changes; --set KEY=VALUE tries more\n";
   if (!f.parameters.effects.empty()) {
-    table += "\nper cent that the chance of " + target + " (" + percents(f.parameters.chance) +
-             " %) grows for 1 % more of each number, 95 %\n";
+    // The chain behind these has more runs than that behind the endings above.
+    const std::string chance = percents(f.parameters.chance),
+                      answer = percents(f.endings.share[static_cast<std::size_t>(a.target)]);
+    table +=
+        "\nper cent that the chance of " + target + " (" + chance + " %" +
+        (chance == answer || f.parameters.pool_runs == 0
+             ? ""
+             : " by the chain of " + std::to_string(f.parameters.pool_runs) +
+                   " gate runs behind these numbers; the answer is the " + answer + " % above") +
+        ") grows for 1 % more of each number, 95 %\n";
     const bool of_bins = !a.by_groups;
     for (const lattice::ParameterEffect& e : sorted_effects(f))
       table +=

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/render/figure.h"
+#include "cli/render/final_gates.h"
 #include "cli/render/json_fwd.h"
 #include "cli/render/shown_field.h"
 #include "cli/render/variance_shares.h"
@@ -35,6 +36,7 @@ struct AnalysedField {
   int states = 0;
   double seconds = 0.0;                  // of the prediction behind the endings
   double step = 0.0;                     // of the parameters
+  Rest rest{};                           // what the endings leave out
   const RangedShares* shares = nullptr;  // of --over, for the picture
 };
 

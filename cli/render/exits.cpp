@@ -49,6 +49,16 @@ double largest_share(const SideExits& side) {
 
 }  // namespace
 
+FieldExits shown_exits(FieldExits exits, const markov::FinalDistribution& f) {
+  for (SideExits& side : exits)
+    for (std::size_t i = 0; i < side.share.size(); ++i) {
+      if (side.share[i] > f.rounding + f.remainder) continue;
+      side.share[i] = 0.0;
+      if (!std::isnan(side.interval[i][0])) side.interval[i][0] = 0.0;
+    }
+  return exits;
+}
+
 Json to_json(const FieldExits& exits, const ShownField& shown) {
   return json_by_place(shown, [&](Json& place, std::size_t side, std::size_t i) {
     place["share"] = exits[side].share[i];

@@ -11,6 +11,9 @@
 
 namespace gatewalk::cli {
 
+/// A prediction's places as they are shown: 0 as in shown_endings.
+[[nodiscard]] lattice::FieldExits shown_exits(lattice::FieldExits exits,
+                                              const markov::FinalDistribution& f);
 /// By side, with the names of endings: the places with their bounds (m), shares and intervals.
 [[nodiscard]] Json to_json(const lattice::FieldExits& exits, const ShownField& shown);
 /// The same of the dynamics beside a chain.

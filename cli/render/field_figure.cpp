@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "cli/render/exits.h"
@@ -154,8 +155,11 @@ std::string small_map(const std::string& title, const FieldMap& map, const Box& 
          "\nunset label\n";
 }
 
-/// The endings with their intervals; who went back where cells let bodies go there.
-std::vector<ShareBar> bars_of(const lattice::EndingShares& endings, const ShownField& shown) {
+/// The endings with their intervals, and what they leave out; who went back where cells let bodies
+/// go there.
+std::vector<ShareBar> bars_of(const lattice::EndingShares& all, const ShownField& shown) {
+  const lattice::EndingShares endings =
+      std::isnan(all.interval.front().front()) ? all : all.with_limit(shown.field.max_gates);
   const auto& faces = shown.map.section.faces;
   const bool back = std::any_of(faces.begin(), faces.end(),
                                 [](const dynamics::Face& face) { return face.di_y < 0; });
@@ -165,6 +169,12 @@ std::vector<ShareBar> bars_of(const lattice::EndingShares& endings, const ShownF
     const auto at = static_cast<std::size_t>(e.ending);
     bars.push_back({e.name, endings.share[at], endings.interval[at]});
   }
+  constexpr double kCounts = 1e-6;
+  constexpr auto kUnsampled = static_cast<std::size_t>(markov::Ending::unsampled);
+  if (endings.share[kUnsampled] > kCounts)
+    bars.push_back({"never sampled", endings.share[kUnsampled], endings.interval[kUnsampled]});
+  const double rest = 1.0 - std::accumulate(endings.share.begin(), endings.share.end(), 0.0);
+  if (rest > kCounts) bars.push_back({"not known", rest, {std::nan(""), std::nan("")}});
   return bars;
 }
 

@@ -14,12 +14,24 @@ namespace gatewalk::cli {
 
 using dynamics::share_interval;
 
+namespace {
+
+/// A limit of gates ends every walk.
+std::array<double, 2> still_walking_95(const markov::WalkTally& tally,
+                                       const lattice::FieldParams& field) {
+  if (field.max_gates > 0) return {0.0, 0.0};
+  return share_interval(tally.still_walking, tally.walks);
+}
+
+}  // namespace
+
 Json to_json(const lattice::FieldTally& tally, const ShownField& shown,
              const std::optional<RunScene>& run) {
+  const auto shares =
+      lattice::EndingShares(tally.endings, tally.trials).with_limit(shown.field.max_gates);
   Json json;
   json["endings"] = endings(tally.endings);
-  json["endings_95"] = endings_95(
-      lattice::EndingShares(tally.endings, tally.trials).with_limit(shown.field.max_gates));
+  json["endings_95"] = endings_95(shares);
   json["final_gates"] = small_grid(tally.final_gates);
   json["trapped_gates"] = small_grid(tally.trapped_gates);
   json["departed_gates"] = small_grid(tally.departed_gates);
@@ -29,9 +41,10 @@ Json to_json(const lattice::FieldTally& tally, const ShownField& shown,
   json["departed"] = tally.left_field;
   json["cut_off"] = tally.cut_off;
   json["not_finite"] = tally.broken;
-  json["intervals_95"] = {{"trapped", share_interval(tally.trapped, tally.trials)},
-                          {"departed", share_interval(tally.left_field, tally.trials)},
-                          {"cut_off", share_interval(tally.cut_off, tally.trials)}};
+  json["intervals_95"] = {
+      {"trapped", share_interval(tally.trapped, tally.trials)},
+      {"departed", share_interval(tally.left_field, tally.trials)},
+      {"cut_off", shares.interval[static_cast<std::size_t>(markov::Ending::cut_off)]}};
   Json entries;
   const auto& faces = shown.map.section.faces;
   for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -62,6 +75,13 @@ std::string table_of(const lattice::FieldTally& tally, const ShownField& shown,
   return table + (run ? method_line(run->settled) : "");
 }
 
+Rest rest_of(const markov::WalkTally& tally) {
+  const auto n = static_cast<double>(tally.walks);
+  return {static_cast<double>(tally.unsampled) / n, static_cast<double>(tally.still_walking) / n,
+          "after " + std::to_string(markov::Walker::kMostCells) +
+              " gates, the most that a walk is followed where field.max_gates = 0 sets no limit"};
+}
+
 Json to_json(const ShownWalks& walks, const ShownField& shown) {
   const markov::WalkTally& tally = walks.tally;
   Json json;
@@ -78,6 +98,8 @@ Json to_json(const ShownWalks& walks, const ShownField& shown) {
   json["departed"] = tally.left_field;
   json["cut_off"] = tally.cut_off;
   json["never_sampled"] = tally.unsampled;
+  json["still_walking"] = tally.still_walking;
+  json["still_walking_95"] = still_walking_95(tally, shown.field);
   json["gates_visited"] = tally.steps;
   json["start_state"] = walks.start_state;
   return json;
@@ -98,6 +120,12 @@ std::string table_of(const ShownWalks& walks, const ShownField& shown) {
   if (tally.unsampled > 0)
     table += "reach a state never sampled: " + percent(static_cast<double>(tally.unsampled), n, 4) +
              "\n";
+  if (tally.still_walking > 0)
+    table += "still walking after " + std::to_string(markov::Walker::kMostCells) +
+             " gates, where walks are stopped: " +
+             with_interval(static_cast<double>(tally.still_walking) / n,
+                           still_walking_95(tally, shown.field)) +
+             " %\n";
   return table;
 }
 

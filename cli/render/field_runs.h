@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/render/final_gates.h"
 #include "cli/render/json.h"
 #include "cli/render/shown_field.h"
 #include "lattice/gate_chain.h"
@@ -31,6 +32,7 @@ struct ShownWalks {
   Json start_state;
   std::string start;
 };
+[[nodiscard]] Rest rest_of(const markov::WalkTally& tally);
 /// Without "matrix_status", "made_by".
 [[nodiscard]] Json to_json(const ShownWalks& walks, const ShownField& shown);
 [[nodiscard]] std::string table_of(const ShownWalks& walks, const ShownField& shown);

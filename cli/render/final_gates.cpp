@@ -210,6 +210,35 @@ lattice::EndingShares shown_endings(lattice::EndingShares shares,
   return shares;
 }
 
+Rest rest_of(const markov::FinalDistribution& f) {
+  Rest rest{f.unsampled, f.remainder};
+  if (f.endless > 0.0) rest.stopped = "in states without a way out";
+  return rest;
+}
+
+std::string rest_text(const Rest& rest) {
+  std::string text;
+  if (rest.never_sampled > 0.0)
+    text += "reach a state never sampled: " + percent(rest.never_sampled, 1.0, 4) + "\n";
+  if (rest.still_walking > 1e-8)
+    text += "still walking " + rest.stopped + ": " + percent(rest.still_walking, 1.0, 6) + "\n";
+  return text;
+}
+
+std::string rest_warning(const Rest& rest, const std::string& where) {
+  constexpr double kCounts = 1e-6;
+  const double all = rest.never_sampled + rest.still_walking;
+  if (!(all > kCounts)) return "";
+  std::string what;
+  const auto add = [&](double share, const std::string& words) {
+    if (share > 0.0) what += (what.empty() ? "" : ", ") + percents(share) + " % " + words;
+  };
+  add(rest.never_sampled, "reach a state that was never sampled");
+  add(rest.still_walking, "were still walking " + rest.stopped);
+  return where + "the endings add up to " + percents(1.0 - all) + " %: " + what +
+         "; how these end is not known, each share may be larger by as much";
+}
+
 std::string with_interval(double share, const std::array<double, 2>& interval) {
   if (std::isnan(interval[0])) return percents(share);
   return percents(share) + " [" + percents(interval[0]) + ", " + percents(interval[1]) + "]";

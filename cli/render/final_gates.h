@@ -83,6 +83,19 @@ using lattice::kEndingNames;
 /// not finished may make.
 [[nodiscard]] lattice::EndingShares shown_endings(lattice::EndingShares shares,
                                                   const markov::FinalDistribution& f);
+/// Shares of all bodies that the endings leave out: what becomes of these is not known.
+struct Rest {
+  double never_sampled = 0.0;  // reach a state whose row was never sampled
+  double still_walking = 0.0;  // under way when the sum or the walks were stopped
+  std::string stopped = "when the sum was stopped";
+};
+[[nodiscard]] Rest rest_of(const markov::FinalDistribution& f);
+/// A line for each of them; empty where nothing is left out.
+[[nodiscard]] std::string rest_text(const Rest& rest);
+/// A warning of a rest that counts, `where` first: "the endings add up to 25.00 %: ..."; else
+/// empty.
+[[nodiscard]] std::string rest_warning(const Rest& rest, const std::string& where = "");
+
 /// A share in % with two decimals, or two digits if that would be 0.
 [[nodiscard]] std::string percents(double share);
 /// A line each: "crossed      0.02 %  [0.00, 0.05]"; `of` ends the first one.

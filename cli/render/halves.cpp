@@ -55,6 +55,7 @@ Json to_json(const HalfAgainstHalf& way) {
            {{"endings", cli::endings(way.chain_endings.share)},
             {"endings_95", endings_95(way.chain_endings)},
             {"never_sampled", way.chain.unsampled},
+            {"still_walking", way.chain.remainder},
             {"error_95", way.chain_error.total_variation},
             {"final_gates", grid(way.chain.final_cells)}}},
           {"final_gates",
@@ -197,6 +198,16 @@ Json to_json(const lattice::BodyMemory& m, const dynamics::Section& section) {
   return json;
 }
 
+std::vector<std::string> rest_warnings(const HalvesValidation& v) {
+  std::vector<std::string> all;
+  for (std::size_t w = 0; w < 2; ++w)
+    if (std::string rest =
+            rest_warning(rest_of(v.ways[w].chain), "by the chain of " + chain_name(w) + " ");
+        !rest.empty())
+      all.push_back(std::move(rest));
+  return all;
+}
+
 std::string table_of(const HalvesValidation& v) {
   std::string text =
       "Does one half of the bodies predict the other? Endings in % with 95 % intervals: chance in "
@@ -207,6 +218,7 @@ std::string table_of(const HalvesValidation& v) {
       "% of the\n"
       "differences that chance in the bodies of both halves makes; *: this ending differs.\n\n" +
       endings_table(v) + "\n";
+  for (const std::string& rest : rest_warnings(v)) text += rest + "\n";
   for (std::size_t w = 2; w-- > 0;) text += seen_text(v.ways[w], seen_name(w));
   text +=
       "\nFinal gates, as seen against the chain; in brackets what chance makes on average (of the "

@@ -21,7 +21,8 @@ void add_to(Json& json, const lattice::StartAnswer& a, const ShownField& shown) 
   json["endings"] = endings(told.share);
   json["endings_95"] = endings_95(told);
   add_final_gates(json, f);
-  json["exits"] = cli::to_json(a.exits, shown);
+  json["still_walking"] = f.remainder;
+  json["exits"] = cli::to_json(shown_exits(a.exits, f), shown);
   json["final_gates_95"] = {{"low", small_grid(a.gates_95[0])},
                             {"high", small_grid(a.gates_95[1])}};
   json["answer_from"] = a.from_trials ? "trials" : "chain";
@@ -43,7 +44,8 @@ std::string table_of(const lattice::StartAnswer& a, const ShownField& shown) {
                                          : "of all bodies, without intervals") +
                       limits_text(shown) + map_of(f.final_cells) +
                       map_of_trapped(markov::trapped_cells(f)) + "departed " +
-                      percent(f.left_field, 1.0, 2) + "\n" + cli::table_of(a.exits, shown);
+                      percent(f.left_field, 1.0, 2) + "\n" +
+                      cli::table_of(shown_exits(a.exits, f), shown);
   if (known)
     table += "error: at most " + fixed(a.error.total_variation, 4) +
              " in total variation of the final gates, corrcoef at least " +
@@ -53,9 +55,7 @@ std::string table_of(const lattice::StartAnswer& a, const ShownField& shown) {
   if (!a.from_trials && a.unseen > 0.0)
     table += "the error counts " + percent(a.unseen, 1.0, 2) +
              " that enter the second gate where no gate run did: what becomes of them is a guess\n";
-  if (f.unsampled > 0.0)
-    table += "reach a state never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
-  return table;
+  return table + rest_text(rest_of(f));
 }
 
 Start start_of(const lattice::StartAnswer& a) { return a.as_seen ? Start() : Start(a.start); }

@@ -22,6 +22,8 @@ Json to_json(const lattice::StartAnswer& a) {
   const lattice::EndingShares shown = shown_endings(a.endings, a.final);
   json["endings"] = endings(shown.share);
   json["endings_95"] = endings_95(shown);
+  json["never_sampled"] = a.final.unsampled;
+  json["still_walking"] = a.final.remainder;
   json["final_gates"] = grid(a.final.final_cells);
   json["answer_from"] = a.from_trials ? "trials" : "chain";
   json["error_95"] = a.error.total_variation;
@@ -309,7 +311,8 @@ std::string table_of(const PlannedExperiment& p) {
   std::string text = sentences[0] + "\n" + sentences[1] + "\n\n" +
                      endings_text(shown_endings(p.prediction.endings, p.prediction.final),
                                   "of all bodies as predicted, 95 % intervals") +
-                     "error: at most " + fixed(p.prediction.error.total_variation, 4) +
+                     rest_text(rest_of(p.prediction.final)) + "error: at most " +
+                     fixed(p.prediction.error.total_variation, 4) +
                      " in total variation of the final gates, 95 times in 100\n" + needed_table(p);
   if (p.options.trials) text += power_table(p);
   if (p.apart) text += versus_table(p);

@@ -25,7 +25,7 @@ void add_to(Json& json, const lattice::StartPrediction& s, const ShownField& sho
                              {"total_variation_mean", s.mean_total_variation},
                              {"total_variation_95", s.total_variation_95}};
   add_final_gates(json, f);
-  json["exits"] = cli::to_json(s.exits, shown_field);
+  json["exits"] = cli::to_json(shown_exits(s.exits, f), shown_field);
   json["still_walking"] = f.remainder;
   json["rounding_at_most"] = f.rounding;
   json["error_at_most"] = f.remainder + f.rounding;
@@ -48,19 +48,10 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
                          "rows have few runs each, "
                          "or resampled matrices fail") +
       limits_text(of.shown) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) +
-      "departed " + percent(f.left_field, 1.0, 2) + "\n" + cli::table_of(s.exits, of.shown) +
-      "start: " +
-      (of.matrix.state_names.empty()
-           ? text_of(space.section(), space.range(s.start.start.input))
-           : of.matrix.state_names[static_cast<std::size_t>(s.start.start.input)]) +
-      "\n";
-  if (f.unsampled > 0.0)
-    table += "reach a state never sampled: " + percent(f.unsampled, 1.0, 4) + "\n";
-  if (f.remainder > 1e-8)
-    table += (f.endless > 0.0 ? "never end, as they circle in states without a way out: "
-                              : "still walking when the sum was stopped: ") +
-             percent(f.remainder, 1.0, 6) + "\n";
-  return table +
+      "departed " + percent(f.left_field, 1.0, 2) + "\n" +
+      cli::table_of(shown_exits(s.exits, f), of.shown) +
+      "start: " + text_of(space.section(), space.range(s.start.start.input)) + "\n";
+  return table + rest_text(rest_of(f)) +
          "The chain's own error (bins, memory, and with bins from a pilot where its rows start) "
          "is not in the intervals:\n"
          "gatewalk validate measures it.\n"
@@ -105,20 +96,6 @@ std::string table_of(const lattice::Prediction& prediction, const PredictedField
     table += "rows " + std::to_string(o.first) + " to " + std::to_string(o.last) + ": gates of " +
              o.path + "\n";
   return table;
-}
-
-std::string unfinished_text(const lattice::Prediction& prediction) {
-  double most = 0.0;
-  for (const lattice::StartPrediction& s : prediction.starts)
-    most = std::max(most, s.final.remainder + s.final.rounding);
-  if (!(most > 1e-6)) return "";
-  lattice::TextStream text;
-  text.precision(2);
-  text << "walks, " << 100.0 * most
-       << " % of all, were not followed to an end (or rounding hides them): each share may be "
-          "larger by "
-          "so much, which its interval counts";
-  return text.str();
 }
 
 std::string text_of(const lattice::LeftOut& left_out) {

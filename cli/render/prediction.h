@@ -30,7 +30,5 @@ struct PredictedField {
 
 /// Empty if none is.
 [[nodiscard]] std::string text_of(const lattice::LeftOut& left_out);
-/// A warning of walks that were not followed to their end, and rounding; empty where they are few.
-[[nodiscard]] std::string unfinished_text(const lattice::Prediction& prediction);
 
 }  // namespace gatewalk::cli

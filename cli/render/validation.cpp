@@ -108,6 +108,7 @@ Json to_json(const lattice::StartValidation& r, const lattice::PaperStart* paper
                          {"exact", grid(markov::departed_cells(r.exact))}};
   j["exits"] = cli::to_json(r.dynamics_exits, r.exact_exits, shown);
   j["never_sampled"] = r.exact.unsampled;
+  j["still_walking"] = r.exact.remainder;
   if (r.force) j["force_memory"] = cli::to_json(*r.force);
   return j;
 }
@@ -161,6 +162,10 @@ std::string endings_table(const lattice::Validation& v, const StartTexts& labels
   out << "\n";
   for (std::size_t k = 0; k < v.starts.size(); ++k)
     out << labels.texts[k] << "  | " << cli::verdict(v.starts[k]) << "\n";
+  for (std::size_t k = 0; k < v.starts.size(); ++k)
+    if (const std::string rest = rest_warning(rest_of(v.starts[k].exact), "by the chain ");
+        !rest.empty())
+      out << labels.texts[k] << "  | " << rest << "\n";
   return out.str();
 }
 

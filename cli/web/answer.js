@@ -466,6 +466,7 @@ class Answer {
     this.updateState(answer);
     fillShares(this.shareRows, this.data.endings.map((_, e) =>
         (answer.place < 0 ? null : within(this.endings, e, answer.place))));
+    this.updateRest(answer);
     this.updateMap(answer);
     this.updateCell(answer);
     this.drawing?.update(answer);
@@ -475,6 +476,15 @@ class Answer {
       $('said').textContent = this.data.endings.map((e, i) =>
           `${e.name} ${within(this.endings, i, answer.place).text} per cent`).join(', ');
     }, 600);
+  }
+
+  /** What the endings leave out, beyond what their rounding makes. */
+  updateRest({place}) {
+    const rest = place < 0 ? 0
+        : this.data.endings.reduce((left, _, e) => left - within(this.endings, e, place).percent, 100);
+    $('rest').hidden = rest < 0.1;
+    $('rest').textContent = `The other ${rest.toFixed(1)} % reach a state that was never sampled, or were still under way when ` +
+      'the sum was stopped: how these end is not known.';
   }
 
   updateFields() {

@@ -54,20 +54,24 @@ std::int64_t kernel_runs(const RunPool& pool) {
 FinalDistribution shares_of(const markov::WalkTally& tally) {
   const auto n = static_cast<double>(tally.walks);
   FinalDistribution d;
-  d.final_cells = tally.final_cells.cast<double>() / n;
+  // Where the field has no limit, walks that were stopped have no final cell.
+  const markov::CellCounts final_cells =
+      tally.still_walking > 0 ? tally.trapped_cells + tally.departed_cells : tally.final_cells;
+  d.final_cells = final_cells.cast<double>() / n;
   for (std::size_t e = 0; e < markov::kEndings; ++e)
     d.endings[e] = static_cast<double>(tally.endings[e]) / n;
   d.trapped = static_cast<double>(tally.trapped) / n;
   d.left_field = static_cast<double>(tally.left_field) / n;
   d.cut_off = static_cast<double>(tally.cut_off) / n;
   d.unsampled = static_cast<double>(tally.unsampled) / n;
+  d.remainder = static_cast<double>(tally.still_walking) / n;
   d.mean_steps = static_cast<double>(tally.steps) / n;
   const Eigen::Index columns = tally.final_cells.cols(), rows = tally.final_cells.rows();
   std::array<std::int64_t, markov::kEndings> over_sides = tally.endings;
   for (Eigen::Index i = 0; i < tally.final_cells.size(); ++i) {
     const auto share = [&](std::int64_t count) { return static_cast<double>(count) / n; };
     const std::int64_t trapped = tally.trapped_cells.data()[i],
-                       departed = tally.departed_cells.data()[i], all = tally.final_cells.data()[i];
+                       departed = tally.departed_cells.data()[i], all = final_cells.data()[i];
     if (trapped == all) continue;
     const std::size_t side = static_cast<std::size_t>(
         i % columns == 0 ? markov::Ending::left_edge : markov::Ending::right_edge);

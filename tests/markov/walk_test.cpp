@@ -468,12 +468,18 @@ TEST(Walk, GoldenTally) {
   EXPECT_EQ(hash, 10841551127325524228U);
 }
 
-TEST(Walk, WithoutLimitIsCutOffAfterAMillionCells) {
+TEST(Walk, WithoutLimitIsFollowedThroughAMillionCells) {
   const Walker loop(Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{0, 0, 0}}));
-  const WalkTally tally = loop.walk({1, 1}, {0, 0, 0}, 0, 1, {0, 3});
-  EXPECT_EQ(tally.cut_off, 3);
+  WalkTally tally = loop.walk({1, 1}, {0, 0, 0}, 0, 1, {0, 3});
+  EXPECT_EQ(tally.still_walking, 3);
+  EXPECT_EQ(tally.cut_off, 0);  // the field has no limit
+  EXPECT_EQ(tally.endings, decltype(tally.endings){});
+  EXPECT_EQ(loop.walk({1, 1}, {0, 0, 0}, 1000, 1, {0, 3}).cut_off, 3);
+  EXPECT_EQ(loop.walk_plainly({1, 1}, {0, 0, 0}, 0, 1, {0, 1}).still_walking, 1);
   EXPECT_EQ(tally.steps, 3'000'000);
   EXPECT_EQ(tally.final_cells(0, 0), 3);
+  tally += WalkTally(tally);
+  EXPECT_EQ(tally.still_walking, 6);
 }
 
 TEST(Walk, AMoveFarBeyondTheFieldLeavesIt) {

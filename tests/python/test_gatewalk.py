@@ -375,6 +375,25 @@ class Elsewhere(unittest.TestCase):
             with self.assertRaisesRegex(gw.UsageError, "the table: the count of crossed must be a whole number"):
                 gw.validate(FIELD, observed={"crossed": count, "trapped": 17})
 
+    def test_what_the_endings_leave_out_has_a_name(self):
+        # Nobody was seen to leave "right", which 1/2 enter in the first cell and 1/4 in the second; 1/4 cross.
+        states = {"state": [0, 1], "move_x": [0, 1], "move_y": [1, 0], "name": ["up", "right"]}
+        half = gw.from_counts(np.array([[5, 5, 0], [0, 0, 0]]), states, start=0,
+                              set={"field.rows": 2, "field.columns": 3, "field.max_gates": 20})
+        with self.assertWarnsRegex(gw.GatewalkWarning, "add up to 25.00 %: 75.00 % reach a state that was never sampled"):
+            p = half.predict()
+        self.assertEqual((p.endings["crossed"], p.never_sampled, p.still_walking), (0.25, 0.75, 0.0))
+        frame = p.to_frame()
+        self.assertEqual((frame.value["never_sampled"], frame.value.sum()), (0.75, 1.0))
+        self.assertNotIn("still_walking", frame.index)
+        self.assertEqual(float(p.to_xarray().endings.sum()), 1.0)
+        self.assertIn("never sampled 0.75", repr(p))
+        with self.assertWarnsRegex(gw.GatewalkWarning, "never sampled"):
+            self.assertEqual(half.analyze().never_sampled, 0.75)
+        with self.assertWarnsRegex(gw.GatewalkWarning, "never sampled"):
+            walked = gw.walk(half, walks=100)
+        self.assertEqual(sum(walked.endings.values()) + walked.never_sampled, walked.walks)
+
     def test_limits_of_counts_are_counts(self):
         seen = gw.lattice(FIELD, trials=50)
         frame = seen.to_frame()

@@ -625,7 +625,8 @@ def walk(matrix: _t.Any, *, seed: int | None = None, progress: bool | None = Non
     Returns
     -------
     Result
-        `endings`, and `final_gates` of shape (rows, columns), in shares of all walks.
+        `endings`, and `final_gates` of shape (rows, columns), in numbers of walks; `never_sampled` and `still_walking`, which the
+        endings leave out.
 
     Raises
     ------

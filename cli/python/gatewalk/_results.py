@@ -87,6 +87,9 @@ class Prediction(Result):
     final_gates, trapped_gates, departed_gates : array, shape (rows, columns)
         Shares (lattice: numbers) by the gate bodies end in, row 0 the one they enter by; of those trapped there, and of those
         that left the field from there.
+    never_sampled, still_walking : float
+        Shares that the endings leave out: of bodies that reach a state whose row was never sampled, and of those that were
+        under way when the sum or the walks were stopped. Where they count, tables and pictures have them too.
     error_95 : float or None
         The bar: total variation of all shares, 95 %; none where nothing could be told.
     """
@@ -110,12 +113,19 @@ class Prediction(Result):
             raise ValueError("the field has too many gates for tables: netcdf=FILE writes them")
         return self.starts[0]._data
 
+    @staticmethod
+    def _all(first: dict[str, t.Any]) -> dict[str, float]:
+        """The endings, and what they leave out where that counts: together all bodies."""
+        rest = {k: first.get(k) or 0.0 for k in ("never_sampled", "still_walking")}
+        return {**first["endings"], **{k: v for k, v in rest.items() if v > 1e-6}}
+
     def _limits(self, first: dict[str, t.Any]) -> dict[str, tuple[float, float]]:
-        """95 % intervals of `endings`: of lattice's numbers of bodies those of their shares, times the trials."""
+        """95 % intervals of all of these, NaN: none; of lattice's numbers those of their shares, times the trials."""
         trials = self._data.get("trials", 1)
         none = float("nan")
-        return {k: (none, none) if low is None or high is None else (trials * low, trials * high)
+        bars = {k: (none, none) if low is None or high is None else (trials * low, trials * high)
                 for k, (low, high) in first.get("endings_95", {}).items()}
+        return {k: bars.get(k, (none, none)) for k in self._all(first)}
 
     def _gates(self) -> tuple[Array, tuple[Array, Array] | None]:
         first = self._only()
@@ -136,12 +146,13 @@ class Prediction(Result):
         _, bars = self._gates()
         if bars:
             data["final_gates_95"] = (("bound", *place), np.stack(bars), unit)
-        data["endings"] = (("ending",), np.array(list(first["endings"].values()), dtype=float), unit)
+        ends = self._all(first)
+        data["endings"] = (("ending",), np.array(list(ends.values()), dtype=float), unit)
         if "endings_95" in first:
             data["endings_95"] = (("ending", "bound"), np.array(list(self._limits(first).values()), dtype=float), unit)
         coordinates = {"i_y": ("i_y", np.arange(rows), {"long_name": "row of gates, from the start's side"}),
                        "i_x": ("i_x", np.arange(columns) - (columns - 1) // 2, {"long_name": "column of gates"}),
-                       "ending": list(first["endings"])}
+                       "ending": list(ends)}
         if bars or "endings_95" in first:
             coordinates["bound"] = ["low", "high"]
         return xarray.Dataset(data, coordinates, {"title": "gatewalk", "scene": self._data.get("made_by", {}).get("scene", "")})
@@ -151,9 +162,10 @@ class Prediction(Result):
         import pandas
 
         first = self._only()
-        low_high = np.array([self._limits(first).get(k, (np.nan, np.nan)) for k in first["endings"]], dtype=float)
-        return pandas.DataFrame({"value": list(first["endings"].values()), "low_95": low_high[:, 0], "high_95": low_high[:, 1]},
-                                index=pandas.Index(list(first["endings"]), name="ending"))
+        ends = self._all(first)
+        low_high = np.array(list(self._limits(first).values()), dtype=float)
+        return pandas.DataFrame({"value": list(ends.values()), "low_95": low_high[:, 0], "high_95": low_high[:, 1]},
+                                index=pandas.Index(list(ends), name="ending"))
 
     def plot(self, axes: t.Any = None) -> t.Any:
         """Final gates as a map and endings as bars, by matplotlib; returns both axes."""
@@ -171,12 +183,13 @@ class Prediction(Result):
         axes[0].set_xlabel("$i_x$")
         axes[0].set_ylabel("$i_y$")
         axes[0].figure.colorbar(image, ax=axes[0], label="final gate, % of bodies")
-        table = np.array(list(first["endings"].values()), dtype=float) / total
-        names = [name.replace("_", " ") for name in first["endings"]]
+        ends = self._all(first)
+        table = np.array(list(ends.values()), dtype=float) / total
+        names = [name.replace("_", " ") for name in ends]
         bars = first.get("endings_95")
         errors = None
         if bars:
-            limits = np.array(list(bars.values()), dtype=float)
+            limits = np.array(list(self._limits(first).values()), dtype=float) / total
             errors = 100 * np.clip(np.stack([table - limits[:, 0], limits[:, 1] - table]), 0.0, None)
         axes[1].barh(names, 100 * table, xerr=errors, color="0.6", ecolor="black", capsize=2)
         axes[1].invert_yaxis()
@@ -188,8 +201,9 @@ class Prediction(Result):
             return [("starts", str(len(self.starts)))]
         first = self.starts[0]._data
         bars = self._limits(first)
-        lines = [(k.replace("_", " "), f"{v:.4g}" + (f" [{bars[k][0]:.3g}, {bars[k][1]:.3g}]" if k in bars else ""))
-                 for k, v in first["endings"].items()]
+        given = first.get("endings_95", {})
+        lines = [(k.replace("_", " "), f"{v:.4g}" + (f" [{bars[k][0]:.3g}, {bars[k][1]:.3g}]" if k in given else ""))
+                 for k, v in self._all(first).items()]
         if first.get("error_95") is not None:
             lines.append(("error_95", f"{first['error_95']:.3g}"))
         return lines
@@ -202,6 +216,8 @@ class Analysis(Result):
     ----------
     endings : dict
         ``probability`` and ``interval_95`` of each.
+    never_sampled, still_walking : float
+        Shares that these leave out, see `Prediction`.
     expected_gates, expected_seconds, expected_work_J : float
         Means over all bodies; with ``_95`` their intervals.
     expected_visits : array, shape (rows, columns)
