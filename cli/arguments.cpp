@@ -20,6 +20,7 @@
 #include "cli/subject.h"
 #include "dynamics/base/work.h"
 #include "lattice/pool/pool_runner.h"
+#include "lattice/scene/units.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
@@ -265,11 +266,28 @@ bool is_matrix(const std::string& path) {
   return std::string_view(begin.data(), begin.size()) == "\x89HDF\r\n\x1a\n";
 }
 
+namespace {
+
+/// Whether the scene is given a push, or compared with others of another push.
+bool is_about_push(const Options& options, const lattice::Scene& scene) {
+  const std::string push = "forces.propulsion_N";
+  if (scene.named.contains(push)) return true;
+  for (const char* option : {"free", "over", "versus"})
+    if (options.has(option))
+      for (const std::string& text : options.texts(option))
+        if (lattice::known_key(text.substr(0, text.find('=')), "--" + std::string(option)) == push)
+          return true;
+  return false;
+}
+
+}  // namespace
+
 std::optional<lattice::Settled> settle_method(const Options& options, lattice::Scene& scene,
                                               lattice::RunsFrom from) {
   for (const std::string& text : lattice::keys_without_effect(scene, from)) options.warn(text);
   if (options.talk()) {
     options.warn(lattice::derived_keys(scene));
+    if (is_about_push(options, scene)) options.warn(lattice::push_is_followed(scene));
     options.warn(far_from_walkers_line(scene));
   }
   auto settled = lattice::settle_method(scene, from, options.seed(), options.work());

@@ -53,10 +53,11 @@ int run_scene(const Arguments& arguments) {
   }
   const std::vector<lattice::KeyInfo> keys = lattice::describe(scene);
   const dynamics::Meaning meaning = dynamics::meaning_of(scene.gate, scene.start);
+  const auto deciding = dynamics::deciding_numbers(scene.gate, scene.start);
   Json json;
   json["keys"] = to_json(keys);
   json["meaning"] = to_json(meaning, scene);
-  json["remarks"] = remarks(meaning, scene);
+  json["remarks"] = remarks(meaning, deciding, scene);
   json["scene"] = lattice::to_toml(scene);
   std::string map;
   if (scene.terrain) {
@@ -72,7 +73,7 @@ int run_scene(const Arguments& arguments) {
                (action.keys.empty() ? " (the scene as it is)" : "");
   }
   if (!actions.empty()) actions += "\n";
-  options.give_out(json, table_of(keys) + meaning_text(meaning, scene) + map + actions);
+  options.give_out(json, table_of(keys) + meaning_text(meaning, deciding, scene) + map + actions);
   options.draw([&] { return figure_of(scene); });
   return kFine;
 }

@@ -32,6 +32,8 @@ std::vector<std::string> remarks_on(const std::vector<lattice::SweepPoint>& poin
     for (const std::string& text : lattice::keys_without_effect(p.scene, lattice::RunsFrom::start))
       texts.insert(text);
     if (talk) texts.insert(lattice::derived_keys(p.scene));
+    if (talk && p.scene.named.contains("forces.propulsion_N"))
+      texts.insert(lattice::push_is_followed(p.scene));
   }
   texts.erase("");
   return {texts.begin(), texts.end()};

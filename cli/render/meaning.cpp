@@ -43,6 +43,36 @@ std::string ringing(const dynamics::RingDown& r) {
                                : "does not come back";
 }
 
+std::string_view words_of(dynamics::GateFate fate) {
+  switch (fate) {
+    case dynamics::GateFate::crosses:
+      return "crosses";
+    case dynamics::GateFate::leaves:
+      return "leaves by a side";
+    case dynamics::GateFate::trapped:
+      break;
+  }
+  return "is trapped";
+}
+
+/// Numbers that decide alike in a line.
+std::string steps_text(std::vector<dynamics::Deciding> left) {
+  std::string text;
+  while (!left.empty()) {
+    const dynamics::Deciding first = left.front();
+    std::string names;
+    std::erase_if(left, [&](const dynamics::Deciding& d) {
+      const bool alike = d.less == first.less && d.more == first.more;
+      if (alike) names += (names.empty() ? "" : ", or ") + std::string(d.words);
+      return alike;
+    });
+    text += (text.empty() ? "  on a step 1 % of " : "            1 % of ") + names +
+            ", decides: with 1 % less the body " + std::string(words_of(first.less)) +
+            ", with 1 % more it " + std::string(words_of(first.more)) + "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::vector<FarFromWalkers> far_from_walkers(const Meaning& m, const lattice::Scene& scene) {
@@ -118,7 +148,8 @@ Json to_json(const Meaning& m, const lattice::Scene& scene) {
   return json;
 }
 
-std::string meaning_text(const Meaning& m, const lattice::Scene& scene) {
+std::string meaning_text(const Meaning& m, const std::vector<dynamics::Deciding>& deciding,
+                         const lattice::Scene& scene) {
   const auto& gate = scene.gate;
   const double body_length = 2.0 * gate.body.radius;
   const bool passes = std::isfinite(m.passage);
@@ -166,16 +197,18 @@ std::string meaning_text(const Meaning& m, const lattice::Scene& scene) {
   text += "  trapped   is who is still in a gate after " + quantity(gate.run.time_limit, "s", 3);
   if (passes) text += ", " + times_as(m.passages_waited) + " what a gate without beams takes";
   text += "\n";
+  text += steps_text(deciding);
   const auto all = far_from_walkers(m, scene);
   if (!all.empty()) text += "far from any animal or robot that walks:\n";
   for (const FarFromWalkers& far : all) text += "  " + far.what + ": " + far.reason + "\n";
   return text;
 }
 
-std::vector<std::string> remarks(const Meaning& m, const lattice::Scene& scene) {
+std::vector<std::string> remarks(const Meaning& m, const std::vector<dynamics::Deciding>& deciding,
+                                 const lattice::Scene& scene) {
   constexpr std::size_t kText = 12;  // where sentences begin
   std::vector<std::string> all;
-  std::istringstream lines(meaning_text(m, scene));
+  std::istringstream lines(meaning_text(m, deciding, scene));
   lines.exceptions(std::ios_base::badbit);
   std::string about;
   std::getline(lines, about);  // an empty line, and the heading

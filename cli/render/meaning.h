@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/render/json_fwd.h"
+#include "dynamics/disc/study/deciding.h"
 #include "dynamics/disc/study/meaning.h"
 #include "lattice/scene/scene.h"
 
@@ -26,9 +27,11 @@ struct FarFromWalkers {
 [[nodiscard]] Json to_json(const dynamics::Meaning& meaning, const lattice::Scene& scene);
 /// A paragraph below the table of keys.
 [[nodiscard]] std::string meaning_text(const dynamics::Meaning& meaning,
+                                       const std::vector<dynamics::Deciding>& deciding,
                                        const lattice::Scene& scene);
 /// Its sentences, each behind what it is about: "sideways: noise shakes the body by ...".
 [[nodiscard]] std::vector<std::string> remarks(const dynamics::Meaning& meaning,
+                                               const std::vector<dynamics::Deciding>& deciding,
                                                const lattice::Scene& scene);
 
 }  // namespace gatewalk::cli

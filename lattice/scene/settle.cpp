@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -59,20 +60,84 @@ std::string terrain_without_effect(const Scene& scene) {
                        : "";
 }
 
+namespace {
+
+bool of_the_method(std::string_view key) {
+  return key == "run.step_s" || key == "run.event_tolerance_m" ||
+         key == "contact.impulse_threshold_Ns";
+}
+
+/// "forces.random_N = 0.08", six digits: gatewalk scene shows more.
+std::string with_value(const KeyInfo& k) {
+  return k.key + fmt::format(" = {:.6g}", number_of(k.value));
+}
+
+}  // namespace
+
 std::string derived_keys(const Scene& scene) {
   if (scene.named.empty() && !scene.terrain)
     return scene.source + " names no key: this is the paper's scene, 1 kg and 10 m in radius";
   std::string all;
   for (const KeyInfo& k : describe(scene)) {
-    const bool methods_own = k.key == "run.step_s" || k.key == "run.event_tolerance_m" ||
-                             k.key == "contact.impulse_threshold_Ns";
-    if (k.source != "derived" || methods_own) continue;
-    // Six digits will do; gatewalk scene shows more.
-    all += (all.empty() ? "" : ", ") + k.key + fmt::format(" = {:.6g}", number_of(k.value));
+    if (k.source != "derived" || of_the_method(k.key)) continue;
+    all += (all.empty() ? "" : ", ") + with_value(k);
   }
   if (all.empty()) return all;
   return scene.source +
          " leaves out keys, which follow from the others by the paper's proportions: " + all;
+}
+
+std::vector<std::string> keys_that_follow_the_push(const Scene& scene) {
+  constexpr std::string_view kPush = "forces.propulsion_N";
+  const auto filled = [&](double push) {
+    std::pair<dynamics::GateParams, dynamics::BodyState> all{scene.gate, Scene{}.start};
+    all.first.forces.propulsion = push;
+    dynamics::fill_in(all.first, all.second, [&](std::string_view key) {
+      return key == kPush || scene.named.contains(key) || of_the_method(key);
+    });
+    return all;
+  };
+  std::vector<std::string> keys;
+  if (!(scene.gate.forces.propulsion > 0.0)) return keys;
+  const auto [here, start] = filled(scene.gate.forces.propulsion);
+  const auto [there, other_start] = filled(2.0 * scene.gate.forces.propulsion);
+  for (const dynamics::ParamInfo& info : dynamics::gate_param_table())
+    if (scene.derived.contains(info.key) && info.key != kPush && info.get(here) != info.get(there))
+      keys.emplace_back(info.key);
+  if (scene.derived.contains("start.vy_m_per_s") && start.vy != other_start.vy)
+    keys.emplace_back("start.vy_m_per_s");
+  return keys;
+}
+
+std::string push_is_followed(const Scene& scene) {
+  struct Part {
+    std::string_view words, begin;
+    bool several;
+  };
+  constexpr Part kParts[] = {{"the beams", "beams.", true},
+                             {"the random force", "forces.random_", false},
+                             {"the drag", "forces.drag_", false}};
+  const std::vector<std::string> keys = keys_that_follow_the_push(scene);
+  std::string who, values;
+  bool several = false;
+  for (const Part& part : kParts) {
+    if (std::none_of(keys.begin(), keys.end(),
+                     [&](const std::string& key) { return key.starts_with(part.begin); }))
+      continue;
+    several = part.several || !who.empty();
+    who += (who.empty() ? "" : ", ") + std::string(part.words);
+  }
+  if (who.empty()) return who;
+  for (const KeyInfo& k : describe(scene))
+    if (std::find(keys.begin(), keys.end(), k.key) != keys.end())
+      values += (values.empty() ? "" : ", ") + with_value(k);
+  if (const std::size_t comma = who.rfind(", "); comma != who.npos) who.replace(comma, 1, " and");
+  return scene.source + ": " + who + (several ? " follow" : " follows") + " the push: fix " +
+         (several ? "them" : "it") +
+         " in the file before you compare pushes, since they change with a push that the file "
+         "gives, "
+         "but not by --set, --vary, --free, --over or --versus: " +
+         values;
 }
 
 namespace {

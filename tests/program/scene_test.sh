@@ -45,5 +45,32 @@ holds '.meaning | .far_from_walkers == [] and .top_speed_m_per_s > 0.29 and .top
 holds '[.meaning.far_from_walkers[].name] == ["froude", "push_per_weight", "random_per_weight", "draws_per_length", "passages_waited"]' small.json
 expect 0 'far from any animal or robot that walks: .*a random force of 1.63 times the body.s weight' "$gatewalk" gate mine.toml --trials 10
 expect 2 'figure has no meaning beside --new' "$gatewalk" scene mine.toml --new --figure three.svg
+# A push in the file changes what is left out, by an option it does not: said where pushes are given, with the numbers to
+# write; not where the file has these numbers, nor where no push is given.
+printf 'body.mass_kg = 0.25\nbody.radius_m = 0.08\n' >bare.toml
+follows='the beams, the random force and the drag follow the push: fix them .*beams.stiffness_left_Nm_per_rad = 0.0064,'
+expect 0 "$follows" "$gatewalk" gate bare.toml --set forces.propulsion_N=0.03 --trials 10
+expect 0 "$follows" "$gatewalk" sweep bare.toml --vary forces.propulsion_N=0.01,0.03 --trials 10
+[ "$(grep -c 'before you compare pushes' out.txt)" = 1 ] || fail "sweep: says more than once what follows the push"
+expect 0 "$follows" "$gatewalk" power bare.toml --versus forces.propulsion_mN=30 --trials 20 --accuracy 0.5
+expect 0 'before you compare pushes, .*stiffness_left_Nm_per_rad = 0.32,' "$gatewalk" gate mine.toml --trials 10
+{ cat bare.toml; printf 'beams.stiffness_left_Nm_per_rad = 0.0064\nbeams.damping_Nms_per_rad = 0.0008\n'; } >fixed.toml
+expect 0 'fixed.toml: the random force and the drag follow the push' "$gatewalk" gate fixed.toml --set forces.propulsion_N=0.03 --trials 10
+grep -q 'before you compare pushes: .*beams.stiffness' out.txt && fail "gate: a stiffness of the file follows the push"
+printf 'forces = { random_N = 0.08, random_rate_Hz = 50, drag_Ns_per_m = 0.015 }\n' >>fixed.toml
+for line in "bare.toml" "fixed.toml --set forces.propulsion_N=0.03" "$scenes/robot.toml --set forces.propulsion_N=0.9" "$scenes/field.toml --set forces.propulsion_N=8"; do
+  # shellcheck disable=SC2086
+  "$gatewalk" gate $line --trials 10 2>&1 | grep 'before you compare pushes' && fail "gate $line: nothing follows the push, or none is given"
+done
+# The step where a body creeps over what its beams resist with: at 1 % of the stiffness, not at 25 %.
+creep='--set forces.random_N=0 --set forces.drag_Ns_per_m=7 --set beams.damping_Nms_per_rad=1 --set run.time_limit_s=1000 --set start.vy_m_per_s=1'
+"$gatewalk" scene "$scenes/field.toml" $creep --json creep.json --quiet
+at=$(jq '400 * 7 / .meaning.resistance_N' creep.json)
+for share in 1 1.25; do
+  k=$(jq -n "$at * $share")
+  "$gatewalk" scene "$scenes/field.toml" $creep --set beams.stiffness_left_Nm_per_rad="$k" --set beams.stiffness_right_Nm_per_rad="$k" --json step-$share.json --quiet
+done
+holds '[.remarks[] | select(test("^on a step: 1 % of the stiffness.* decides: with 1 % less the body crosses, with 1 % more it is trapped$"))] | length == 1' step-1.json
+holds '[.remarks[] | select(startswith("on a step"))] == []' step-1.25.json
 
 finish
