@@ -5,6 +5,8 @@
 /// every row, from one start.
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "markov/chain.h"
@@ -26,10 +28,14 @@ inline constexpr double kRowTolerance = 1e-12;
 
 /// Row by row from the far edge; within a row by sweeps to both sides until no value changes by
 /// more than `tolerance` of it (in a row of cells of one type that walks soon leave in registers,
-/// to that tolerance of each value). Relative accuracy is that of sums of
-/// positive numbers, however small the values: nothing is subtracted. A row never sampled ends as
-/// `unsampled`. Throws std::invalid_argument for moves to a row below and fields of another size
-/// than the chain's, std::runtime_error when 10^5 sweeps do not do.
+/// to that tolerance of each value). Where moves lead to a row below: by elimination of all states
+/// (absorbing.h) if they are few, else by sweeps over all rows until, besides, no more than
+/// `tolerance` of the walks from any state are still on their way. Relative accuracy is that of
+/// sums of positive numbers, however small the values: nothing is subtracted. A row never sampled
+/// ends as `unsampled`. Walks that can never end have no ending: the chance is 0. Throws
+/// std::invalid_argument for fields of another size than the chain's, std::runtime_error where
+/// walks circle so long that 10^5 sweeps do not do, and kMostDenseStates (field_states.h) are too
+/// few for all states.
 [[nodiscard]] Committor committor(const FieldChain& chain, const Field& field,
                                   Ending ending = Ending::far_edge,
                                   double tolerance = kRowTolerance);
@@ -38,17 +44,20 @@ inline constexpr double kRowTolerance = 1e-12;
 class EndingChance {
  public:
   /// max_cells 0: no limit, as committor(), to `tolerance`. Memory: max_cells x rows x columns x
-  /// inputs numbers; throws std::invalid_argument above 4 GiB. On all threads of the current TBB
-  /// arena.
+  /// inputs numbers; throws std::invalid_argument above 4 GiB. `from`: with a limit only of cells
+  /// and draws that walks from its cell can come to, in less time and memory; elsewhere the chance
+  /// is not a number. On all threads of the current TBB arena.
   EndingChance(const FieldChain& chain, const Field& field, Ending ending, int max_cells,
-               double tolerance = kRowTolerance);
+               double tolerance = kRowTolerance, const std::optional<Start>& from = {});
 
   /// From a cell (row * columns + column) in which the walk is to make its `draw`-th draw, counted
   /// from 1; behind the last one it is cut off. Without limit the number says nothing.
   [[nodiscard]] double operator()(int draw, std::int64_t cell, std::int64_t input) const {
     const std::int64_t layer = max_cells_ == 0 ? 0 : draw - 1;
     if (layer >= layers_) return ending_ == Ending::cut_off ? 1.0 : 0.0;
-    return values_[static_cast<std::size_t>((layer * cells_ + cell) * inputs_ + input)];
+    const std::int64_t begin = begin_[static_cast<std::size_t>(layer * cells_ + cell)];
+    return begin < 0 ? std::numeric_limits<double>::quiet_NaN()
+                     : values_[static_cast<std::size_t>(begin + input)];
   }
   [[nodiscard]] Ending ending() const { return ending_; }
 
@@ -56,7 +65,8 @@ class EndingChance {
   Ending ending_;
   int max_cells_;
   std::int64_t cells_, inputs_, layers_;
-  std::vector<double> values_;  // (layers x cells x inputs)
+  std::vector<std::int64_t> begin_;  // (layers x cells) of `values_`; -1: nobody comes there
+  std::vector<double> values_;       // by input
 };
 
 /// Chance that a walk without limit of cells from there enters rows start.row + 1, ..., field.rows;

@@ -5,12 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "markov/absorbing.h"
+#include "markov/field_states.h"
 #include "markov/predict/moves.h"
 #include "markov/predict/row_sum.h"
 
@@ -18,21 +22,39 @@ namespace gatewalk::markov {
 namespace {
 
 constexpr int kMostSweeps = 100'000;
+constexpr double kMostRounding = 1e-9;  // of the walks that end
 
 std::vector<Moves> moves_by_type(const FieldChain& chain, Ending ending) {
   std::vector<Moves> moves;
-  for (const Chain& c : chain.chains()) {
-    for (const Exit& exit : c.exits())
-      if (exit.di_y < 0) throw std::invalid_argument("committor: a move leads to a row below");
-    moves.emplace_back(c, ending);
-  }
+  for (const Chain& c : chain.chains()) moves.emplace_back(c, ending);
   return moves;
 }
 
-[[noreturn]] void refuse_circles(int row) {
-  throw std::runtime_error("committor: row " + std::to_string(row) +
-                           " of the field does not settle in " + std::to_string(kMostSweeps) +
-                           " sweeps: walks circle in it");
+bool goes_below(const FieldChain& chain) {
+  for (const Chain& c : chain.chains())
+    for (const Exit& exit : c.exits())
+      if (exit.next_input != Exit::kTrapped && exit.di_y < 0) return true;
+  return false;
+}
+
+[[noreturn]] void refuse_circles(const std::string& where) {
+  throw std::runtime_error("committor: " + where + " does not settle in " +
+                           std::to_string(kMostSweeps) + " sweeps: walks circle in it");
+}
+std::string name_of_row(int row) { return "row " + std::to_string(row) + " of the field"; }
+
+/// By type of cell, an exit for each move that there is.
+std::vector<std::vector<Exit>> exits_by_move(const FieldChain& chain) {
+  std::vector<std::vector<Exit>> moves;
+  for (const Chain& c : chain.chains()) {
+    auto& own = moves.emplace_back();
+    for (const Exit& exit : c.exits())
+      if (exit.next_input != Exit::kTrapped &&
+          std::none_of(own.begin(), own.end(),
+                       [&](const Exit& e) { return e.di_x == exit.di_x && e.di_y == exit.di_y; }))
+        own.push_back(exit);
+  }
+  return moves;
 }
 
 class CommittorRows {
@@ -52,13 +74,14 @@ class CommittorRows {
         sums_.emplace_back(m.within_row(), RowSum::Sums::led_to, field.columns, chain.inputs());
   }
 
-  Committor solve() && {
+  /// None where walks circle in a row.
+  std::optional<Committor> solve() && {
     for (int row = field_.rows - 1; row >= 0; --row) {
       look_up(row);
       if (!sums_.empty() && sums_[type_of(0, row)].suits())
         sum(row);
-      else
-        sweep(row);
+      else if (!sweep(row))
+        return {};
     }
     return std::move(all_);
   }
@@ -135,14 +158,15 @@ class CommittorRows {
     return !within(column - m.widest) || !within(column + m.widest);
   }
 
-  void sweep(int row) {
+  /// Whether it settles.
+  bool sweep(int row) {
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
       double change = 0.0;
       for (int i = 0; i < field_.columns; ++i)
         change = std::max(change, renew(sweep % 2 == 0 ? i : field_.columns - 1 - i, row));
-      if (change <= tolerance_) return;
+      if (change <= tolerance_) return true;
     }
-    refuse_circles(row);
+    return false;
   }
 
   const FieldChain& chain_;
@@ -155,57 +179,216 @@ class CommittorRows {
   std::vector<double> from_above_;  // (columns x inputs)
 };
 
+/// The states of all cells at once, whatever their moves.
+class CommittorOfAll {
+ public:
+  CommittorOfAll(const FieldChain& chain, const Field& field, Ending ending)
+      : chain_(chain),
+        field_(field),
+        ending_(ending),
+        inputs_(chain.inputs()),
+        states_(static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows) *
+                static_cast<std::size_t>(inputs_)),
+        can_end_(states_, 0) {
+    bool found = true;  // a state that can end, by what it leads to
+    while (found) {
+      found = false;
+      for (std::size_t state = states_; state-- > 0;) {
+        if (can_end_[state]) continue;
+        each_draw(state, [&](double p, std::size_t to, bool ends, bool) {
+          if (p > 0.0 && (ends || can_end_[to])) can_end_[state] = 1;
+        });
+        found = found || can_end_[state];
+      }
+    }
+  }
+  [[nodiscard]] std::size_t states() const { return states_; }
+
+  /// To some roundings of each value.
+  [[nodiscard]] Committor by_elimination() const {
+    std::vector<std::ptrdiff_t> number(states_, -1);
+    std::vector<std::size_t> ending;  // states that can end
+    for (std::size_t state = 0; state < states_; ++state) {
+      if (!can_end_[state]) continue;
+      number[state] = std::ssize(ending);
+      ending.push_back(state);
+    }
+    Committor all{field_.columns, field_.rows, inputs_, std::vector<double>(states_, 0.0)};
+    if (ending.empty()) return all;
+    AbsorbingChain<double> absorbing(std::ssize(ending), 2);  // so, and otherwise or never
+    for (std::ptrdiff_t k = 0; k < std::ssize(ending); ++k) {
+      const std::size_t state = ending[static_cast<std::size_t>(k)];
+      double all_draws = 0.0;  // 1 but for the digits that probabilities were given to
+      each_draw(state, [&](double p, std::size_t, bool, bool) { all_draws += p; });
+      each_draw(state, [&](double p, std::size_t to, bool ends, bool so) {
+        if (ends || number[to] < 0)
+          absorbing.ends(k, so ? 0 : 1) += p / all_draws;
+        else
+          absorbing.moves(k, number[to]) += p / all_draws;
+      });
+    }
+    const Dense<double> chances = end_chances(absorbing, std::ssize(ending));
+    for (std::ptrdiff_t k = 0; k < std::ssize(ending); ++k)
+      all.values[ending[static_cast<std::size_t>(k)]] = chances(k, 0);
+    return all;
+  }
+
+  /// None where walks circle for too long.
+  [[nodiscard]] std::optional<Committor> by_sweeps(double tolerance) const {
+    struct Value {
+      double so = 0.0, ended = 0.0;  // ended in this way; in any, or never
+    };
+    std::vector<Value> values(states_);
+    for (std::size_t state = 0; state < states_; ++state)
+      if (!can_end_[state]) values[state].ended = 1.0;
+    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+      double change = 0.0, walking = 0.0, ended = 0.0;
+      for (std::size_t i = 0; i < states_; ++i) {
+        const std::size_t state = sweep % 2 == 0 ? states_ - 1 - i : i;
+        if (!can_end_[state]) continue;
+        Value sum;
+        each_draw(state, [&](double p, std::size_t to, bool ends, bool so) {
+          sum.so += p * (ends ? (so ? 1.0 : 0.0) : values[to].so);
+          sum.ended += p * (ends ? 1.0 : values[to].ended);
+        });
+        if (sum.so > 0.0) change = std::max(change, std::abs(sum.so - values[state].so) / sum.so);
+        walking = std::max(walking, 1.0 - sum.ended);
+        ended = std::max(ended, sum.ended - values[state].ended);
+        values[state] = sum;
+      }
+      // Of long walks rounding may leave more than the tolerance, which then gets no less.
+      const bool rounded =
+          ended <= std::numeric_limits<double>::epsilon() && walking <= kMostRounding;
+      if (change > tolerance || (walking > tolerance && !rounded)) continue;
+      Committor all{field_.columns, field_.rows, inputs_, {}};
+      for (const Value& v : values) all.values.push_back(v.so);
+      return all;
+    }
+    return {};
+  }
+
+ private:
+  /// Calls use(p, to, whether the walk ends, whether in this way) for each draw of a state.
+  template <class Use>
+  void each_draw(std::size_t state, Use use) const {
+    const auto at = static_cast<std::int64_t>(state);
+    const std::int64_t cell = at / inputs_, column = cell % field_.columns,
+                       row = cell / field_.columns;
+    const auto input = static_cast<int>(at % inputs_);
+    const Chain& here = chain_.at(column, row);
+    if (!here.is_sampled(input)) {
+      use(1.0, state, true, ending_ == Ending::unsampled);
+      return;
+    }
+    for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it) {
+      const Exit& exit = here.exits()[static_cast<std::size_t>(it.col())];
+      std::int64_t to_column = column, to_row = row;
+      if (const auto ends = follow(field_, exit, false, to_column, to_row))
+        use(it.value(), state, true, *ends == ending_);
+      else
+        use(it.value(),
+            static_cast<std::size_t>((to_row * field_.columns + to_column) * inputs_ +
+                                     exit.next_input),
+            false, false);
+    }
+  }
+
+  const FieldChain& chain_;
+  const Field field_;
+  const Ending ending_;
+  const int inputs_;
+  const std::size_t states_;  // (rows x columns x inputs)
+  std::vector<char> can_end_;
+};
+
 }  // namespace
 
 Committor committor(const FieldChain& chain, const Field& field, Ending ending, double tolerance) {
   validate(chain, field, {}, 0);
-  return CommittorRows(chain, field, ending, tolerance).solve();
+  const bool below = goes_below(chain);
+  if (!below)
+    if (auto rows = CommittorRows(chain, field, ending, tolerance).solve()) return *std::move(rows);
+  constexpr std::size_t kSoonEliminated = 1000;
+  const CommittorOfAll all(chain, field, ending);
+  if (below && all.states() > kSoonEliminated)
+    if (auto swept = all.by_sweeps(tolerance)) return *std::move(swept);
+  if (all.states() > static_cast<std::size_t>(kMostDenseStates)) refuse_circles("the field");
+  return all.by_elimination();
 }
 
 EndingChance::EndingChance(const FieldChain& chain, const Field& field, Ending ending,
-                           int max_cells, double tolerance)
+                           int max_cells, double tolerance, const std::optional<Start>& from)
     : ending_(ending),
       max_cells_(max_cells),
       cells_(std::int64_t{field.columns} * field.rows),
       inputs_(chain.inputs()),
-      layers_(max_cells == 0 ? 1 : max_cells) {
-  validate(chain, field, {}, max_cells);
+      layers_(max_cells == 0 ? 1 : max_cells),
+      begin_(static_cast<std::size_t>(layers_ * cells_), -1) {
+  validate(chain, field, from.value_or(Start{}), max_cells);
   if (max_cells == 0) {
+    for (std::int64_t cell = 0; cell < cells_; ++cell)
+      begin_[static_cast<std::size_t>(cell)] = cell * inputs_;
     values_ = committor(chain, field, ending, tolerance).values;
     return;
   }
+  std::vector<std::vector<std::int64_t>> reached(static_cast<std::size_t>(layers_));  // by layer
+  std::int64_t count = 0;
+  const auto reach = [&](std::int64_t layer, std::int64_t cell) {
+    std::int64_t& begin = begin_[static_cast<std::size_t>(layer * cells_ + cell)];
+    if (begin >= 0) return;
+    begin = count++ * inputs_;
+    reached[static_cast<std::size_t>(layer)].push_back(cell);
+  };
+  if (from) reach(0, std::int64_t{from->row} * field.columns + from->column);
+  const std::vector<std::vector<Exit>> moves = exits_by_move(chain);
+  for (std::int64_t layer = 0; layer < layers_; ++layer) {
+    for (std::int64_t cell = 0; cell < cells_ && !from; ++cell) reach(layer, cell);
+    if (!from || layer + 1 == layers_) continue;
+    for (const std::int64_t cell : reached[static_cast<std::size_t>(layer)])
+      for (const Exit& move : moves[static_cast<std::size_t>(
+               chain.type_of(cell % field.columns, cell / field.columns))]) {
+        std::int64_t column = cell % field.columns, row = cell / field.columns;
+        if (!follow(field, move, false, column, row))
+          reach(layer + 1, row * field.columns + column);
+      }
+  }
   constexpr double kMostNumbers = 4.0 * (1 << 30) / sizeof(double);
-  const double numbers =
-      static_cast<double>(layers_) * static_cast<double>(cells_) * static_cast<double>(inputs_);
+  const double numbers = static_cast<double>(count) * static_cast<double>(inputs_);
   if (numbers > kMostNumbers)
     throw std::invalid_argument("the chance of an ending from every state of " +
                                 std::to_string(cells_) + " cells, " + std::to_string(layers_) +
                                 " draws each, takes more than 4 GiB");
   values_.resize(static_cast<std::size_t>(numbers));
-  for (std::int64_t layer = layers_ - 1; layer >= 0; --layer)
-    tbb::parallel_for(std::int64_t{0}, cells_, [&](std::int64_t cell) {
-      const std::int64_t column = cell % field.columns, row = cell / field.columns;
-      const Chain& here = chain.at(column, row);
-      double* const out = values_.data() + (layer * cells_ + cell) * inputs_;
-      const double* const next = values_.data() + (layer + 1) * cells_ * inputs_;
-      for (int input = 0; input < here.inputs(); ++input) {
-        double sum = !here.is_sampled(input) && ending == Ending::unsampled ? 1.0 : 0.0;
-        for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it) {
-          const Exit& exit = here.exits()[static_cast<std::size_t>(it.col())];
-          std::int64_t to_column = column, to_row = row;
-          const auto ends = follow(field, exit, layer + 1 == layers_, to_column, to_row);
-          const double value =
-              ends ? (*ends == ending ? 1.0 : 0.0)
-                   : next[(to_row * field.columns + to_column) * inputs_ + exit.next_input];
-          sum += it.value() * value;
-        }
+  for (std::int64_t layer = layers_ - 1; layer >= 0; --layer) {
+    const std::vector<std::int64_t>& here = reached[static_cast<std::size_t>(layer)];
+    tbb::parallel_for(std::size_t{0}, here.size(), [&](std::size_t k) {
+      const std::int64_t cell = here[k];
+      const Chain& c = chain.at(cell % field.columns, cell / field.columns);
+      std::vector<double> follows;  // by output
+      follows.reserve(c.exits().size());
+      for (const Exit& exit : c.exits()) {
+        std::int64_t column = cell % field.columns, row = cell / field.columns;
+        const auto ends = follow(field, exit, layer + 1 == layers_, column, row);
+        follows.push_back(ends ? (*ends == ending ? 1.0 : 0.0)
+                               : values_[static_cast<std::size_t>(
+                                     begin_[static_cast<std::size_t>(
+                                         (layer + 1) * cells_ + row * field.columns + column)] +
+                                     exit.next_input)]);
+      }
+      double* const out = values_.data() + begin_[static_cast<std::size_t>(layer * cells_ + cell)];
+      for (int input = 0; input < c.inputs(); ++input) {
+        double sum = !c.is_sampled(input) && ending == Ending::unsampled ? 1.0 : 0.0;
+        for (Probabilities::InnerIterator it(c.matrix(), input); it; ++it)
+          sum += it.value() * follows[static_cast<std::size_t>(it.col())];
         out[input] = sum;
       }
     });
+  }
 }
 
 std::vector<double> row_chances(const FieldChain& chain, const Field& field, const Start& start) {
   validate(chain, field, start, 0);
+  if (goes_below(chain)) throw std::invalid_argument("committor: a move leads to a row below");
   const std::vector<Moves> moves = moves_by_type(chain, Ending::far_edge);
   for (const Moves& m : moves)
     for (const Moves::Entry& e : m.entries)
@@ -239,7 +422,7 @@ std::vector<double> row_chances(const FieldChain& chain, const Field& field, con
     };
     double left = 1.0;
     for (int sweep = 0; left > kRowTolerance * up; ++sweep) {
-      if (sweep == kMostSweeps) refuse_circles(row);
+      if (sweep == kMostSweeps) refuse_circles(name_of_row(row));
       for (int i = 0; i < field.columns; ++i) pass_on(sweep % 2 == 0 ? i : field.columns - 1 - i);
       left = std::accumulate(waiting.begin(), waiting.end(), 0.0);
     }

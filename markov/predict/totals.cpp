@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "markov/absorbing.h"
+#include "markov/field_states.h"
 #include "markov/predict/large_totals.h"
 #include "markov/walk.h"
 
@@ -25,34 +27,36 @@ namespace {
 class Wave {
  public:
   Wave(std::int64_t cells, int inputs, std::size_t quantities)
-      : inputs_(inputs),
-        stride_(1 + 2 * quantities),
-        numbers_(static_cast<std::size_t>(cells) * static_cast<std::size_t>(inputs) * stride_),
+      : stride_(1 + 2 * quantities),
+        numbers_of_cell_(static_cast<std::size_t>(inputs) * stride_),
+        numbers_(static_cast<std::size_t>(cells)),
         reached_(static_cast<std::size_t>(cells), false) {}
 
+  /// Of a cell that is reached.
   [[nodiscard]] double* at(std::int64_t cell, int input) {
-    return numbers_.data() + static_cast<std::size_t>(cell * inputs_ + input) * stride_;
+    return numbers_[static_cast<std::size_t>(cell)].data() +
+           static_cast<std::size_t>(input) * stride_;
   }
   double* reach(std::int64_t cell, int input) {
     reached_[static_cast<std::size_t>(cell)] = true;
+    if (auto& numbers = numbers_[static_cast<std::size_t>(cell)]; numbers.empty())
+      numbers.resize(numbers_of_cell_, 0.0);
     return at(cell, input);
   }
   [[nodiscard]] bool reached(std::int64_t cell) const {
     return reached_[static_cast<std::size_t>(cell)];
   }
   void clear() {
-    for (std::int64_t cell = 0; cell < std::ssize(reached_); ++cell) {
-      if (!reached(cell)) continue;
-      double* const begin = at(cell, 0);
-      std::fill(begin, begin + static_cast<std::size_t>(inputs_) * stride_, 0.0);
-      reached_[static_cast<std::size_t>(cell)] = false;
+    for (std::size_t cell = 0; cell < reached_.size(); ++cell) {
+      if (!reached_[cell]) continue;
+      std::fill(numbers_[cell].begin(), numbers_[cell].end(), 0.0);
+      reached_[cell] = false;
     }
   }
 
  private:
-  int inputs_;
-  std::size_t stride_;
-  std::vector<double> numbers_;
+  std::size_t stride_, numbers_of_cell_;
+  std::vector<std::vector<double>> numbers_;  // by cell; of those ever reached
   std::vector<bool> reached_;
 };
 
@@ -323,6 +327,82 @@ bool is_large(const FieldChain& chain, const Field& field, double large) {
   return static_cast<double>(field.columns) * field.rows * nonzeros > large;
 }
 
+/// Without limit, of few states, exactly, however long walks circle. None where some never end.
+std::optional<WalkTotals> totals_by_elimination(const FieldChain& chain, const Field& field,
+                                                const Start& start, const Rewards& rewards,
+                                                const EachState& each) {
+  const FieldStates f = field_states(chain, field, {start});
+  std::optional<Absorption<double>> solved;
+  try {
+    solved = absorption(absorbing_chain<double>(f));
+  } catch (const std::exception&) {  // a walk that never ends, or too little leaves a state
+    return {};
+  }
+  const std::ptrdiff_t n = std::ssize(f.states);
+  std::array<std::vector<double>, kEndings> chance;  // of an ending, by state
+  chance.fill(std::vector<double>(static_cast<std::size_t>(n), 0.0));
+  for (std::ptrdiff_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < f.ends.size(); ++k)
+      chance[static_cast<std::size_t>(f.ends[k].why)][static_cast<std::size_t>(i)] +=
+          solved->ends(i, static_cast<std::ptrdiff_t>(k));
+
+  WalkTotals out;
+  out.visits = CellProbabilities::Zero(field.rows, field.columns);
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    const Start& at = f.states[static_cast<std::size_t>(i)];
+    if (!chain.at(at.column, at.row).is_sampled(at.input)) continue;
+    out.visits(at.row, at.column) += solved->visits(0, i);
+    if (each)
+      each(1, std::int64_t{at.row} * field.columns + at.column, at.input, solved->visits(0, i));
+  }
+  for (std::size_t e = 0; e < kEndings; ++e) out.endings[e] = chance[e].front();
+
+  // What a draw takes: of draws (no quantity) one.
+  const auto taken = [&](std::optional<std::size_t> quantity, const FieldStates::Draw& draw) {
+    if (draw.output == FieldStates::Draw::kNone) return std::array{0.0, 0.0};
+    if (!quantity) return std::array{1.0, 1.0};
+    const Start& at = f.states[static_cast<std::size_t>(draw.from)];
+    const auto type = static_cast<std::size_t>(chain.type_of(at.column, at.row));
+    const Probabilities& p = chain.chains()[type].matrix();
+    const auto *const begin = p.innerIndexPtr() + p.outerIndexPtr()[at.input],
+                      *const end = p.innerIndexPtr() + p.outerIndexPtr()[at.input + 1];
+    const auto nonzero =
+        static_cast<std::size_t>(std::lower_bound(begin, end, draw.output) - p.innerIndexPtr());
+    const Reward& r = rewards[type][*quantity];
+    return std::array{r.mean[nonzero], r.square[nonzero]};
+  };
+  const auto moments = [&](std::optional<std::size_t> quantity, std::size_t e) {
+    const auto ends_so = [&](const FieldStates::Draw& draw) {
+      const auto to = static_cast<std::size_t>(draw.to);
+      if (!draw.is_end) return chance[e][to];
+      return static_cast<std::size_t>(f.ends[to].why) == e ? 1.0 : 0.0;
+    };
+    std::vector<double> next(static_cast<std::size_t>(n), 0.0), sum(next);  // by state
+    for (const FieldStates::Draw& draw : f.draws)
+      next[static_cast<std::size_t>(draw.from)] +=
+          draw.p * taken(quantity, draw)[0] * ends_so(draw);
+    for (std::ptrdiff_t i = 0; i < n; ++i)
+      for (std::ptrdiff_t j = 0; j < n; ++j)
+        sum[static_cast<std::size_t>(i)] +=
+            solved->visits(i, j) * next[static_cast<std::size_t>(j)];
+    double square = 0.0;
+    for (const FieldStates::Draw& draw : f.draws) {
+      const auto [mean, mean_square] = taken(quantity, draw);
+      const double later = draw.is_end ? 0.0 : sum[static_cast<std::size_t>(draw.to)];
+      square += solved->visits(0, draw.from) * draw.p *
+                (mean_square * ends_so(draw) + 2.0 * mean * later);
+    }
+    return Moments{out.endings[e], sum.front(), square};
+  };
+  out.totals.resize(quantities_of(chain, rewards));
+  for (std::size_t e = 0; e < kEndings; ++e) {
+    if (out.endings[e] == 0.0) continue;
+    out.draws[e] = moments({}, e);
+    for (std::size_t q = 0; q < out.totals.size(); ++q) out.totals[q][e] = moments(q, e);
+  }
+  return out;
+}
+
 bool goes_down(const FieldChain& chain) {
   for (const Chain& c : chain.chains())
     for (const Exit& exit : c.exits())
@@ -348,13 +428,31 @@ WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start&
                        int max_cells, const Rewards& rewards, const EachState& each,
                        const WalkTolerance& tolerance, std::uint64_t seed) {
   validate(chain, field, start, max_cells);
-  if (max_cells == 0 && !goes_down(chain)) {
-    if (is_large(chain, field, tolerance.large))
-      if (auto large = totals_of_large(chain, field, start, rewards, each, tolerance, seed))
-        return *std::move(large);
-    return TotalsByRows(chain, field, start, rewards, each, tolerance).run();
-  }
-  return totals_by_steps(chain, field, start, max_cells, rewards, each, tolerance.all);
+  if (max_cells > 0)
+    return totals_by_steps(chain, field, start, max_cells, rewards, each, tolerance.all);
+  const bool down = goes_down(chain);
+  if (!down && is_large(chain, field, tolerance.large))
+    if (auto large = totals_of_large(chain, field, start, rewards, each, tolerance, seed))
+      return *std::move(large);
+  const auto summed = [&](const EachState& use) {
+    return down ? totals_by_steps(chain, field, start, 0, rewards, use, tolerance.all)
+                : TotalsByRows(chain, field, start, rewards, use, tolerance).run();
+  };
+  constexpr std::int64_t kSoonEliminated = 1000;
+  const std::int64_t inputs = chain.inputs(),
+                     states = std::int64_t{field.columns} * field.rows * inputs;
+  if (states > kSoonEliminated) return summed(each);
+  std::vector<double> passed(static_cast<std::size_t>(states), 0.0);  // told when all is known
+  WalkTotals out = summed([&](int, std::int64_t cell, int input, double share) {
+    passed[static_cast<std::size_t>(cell * inputs + input)] += share;
+  });
+  if (out.remainder > tolerance.all)
+    if (auto exact = totals_by_elimination(chain, field, start, rewards, each))
+      return *std::move(exact);
+  for (std::int64_t state = 0; each && state < states; ++state)
+    if (const double share = passed[static_cast<std::size_t>(state)]; share > 0.0)
+      each(1, state / inputs, static_cast<int>(state % inputs), share);
+  return out;
 }
 
 namespace {

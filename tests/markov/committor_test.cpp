@@ -104,10 +104,68 @@ TEST(Committor, KnowsSmallChancesAsWellAsLargeOnes) {
   }
 }
 
-TEST(Committor, RefusesMovesDown) {
+// A gambler who wins a game with chance p: by hand (r^n - 1) / (r^N - 1) with r = (1 - p) / p, of
+// few states (eliminated), of many (swept), and of a fair game, where r is 1: n / N.
+TEST(Committor, OfMovesBackIsTheGamblersRuin) {
+  for (const int rows : {9, 1500})
+    for (const double p : {0.4, 0.5, 0.6}) {
+      if (p == 0.5 && rows > 9) continue;  // circles for too long
+      const Chain chain = Chain::from_probabilities(matrix(1, 2, {{0, 0, p}, {0, 1, 1 - p}}),
+                                                    {{0, 0, 1}, {0, 0, -1}});
+      const Committor won = committor(chain, {1, rows}),
+                      lost = committor(chain, {1, rows}, Ending::near_edge);
+      const double r = (1 - p) / p;
+      for (int row = 0; row < rows; row += rows / 9) {
+        const double n = row + 1.0, all = rows + 1.0;
+        const double exact =
+            p == 0.5  ? n / all
+            : p < 0.5 ? std::pow(r, n - all) * (1.0 - std::pow(r, -n)) / (1.0 - std::pow(r, -all))
+                      : (1.0 - std::pow(r, n)) / (1.0 - std::pow(r, all));
+        EXPECT_NEAR(won(0, row, 0) / exact, 1.0, 1e-9) << p << " " << row << " of " << rows;
+        EXPECT_NEAR(won(0, row, 0) + lost(0, row, 0), 1.0, 1e-11) << p << " " << row;
+      }
+    }
+}
+
+// Who circles between two rows for ever has no ending.
+TEST(Committor, LeavesOutWalksThatNeverEnd) {
+  // State 0: on with 1/2, into the circle with 1/4, else trapped; 1 and 2: up and down.
+  const Chain chain = Chain::from_probabilities(
+      matrix(3, 4, {{0, 0, 0.5}, {0, 1, 0.25}, {0, 3, 0.25}, {1, 2, 1.0}, {2, 1, 1.0}}),
+      {{0, 0, 1}, {1, 0, 1}, {2, 0, -1}, {}});
+  const Committor far = committor(chain, {1, 2}),
+                  trapped = committor(chain, {1, 2}, Ending::trapped);
+  // In the second row both ways on lead over the edge: 1/2 * 3/4, and 1/4 + 1/2 * 1/4.
+  EXPECT_DOUBLE_EQ(far(0, 0, 0), 0.375);
+  EXPECT_DOUBLE_EQ(trapped(0, 0, 0), 0.375);
+  EXPECT_EQ(far(0, 1, 1), 0.0);
+}
+
+// Of moves to all sides, what a prediction without limit says, by a direct solve.
+TEST(Committor, OfMovesToAllSidesIsWhatAPredictionSays) {
   const Chain chain = Chain::from_counts(lattice_counts(3), lattice_exits());
-  EXPECT_THROW((void)committor(chain, {5, 6}), std::invalid_argument);
+  for (const Field& field : {Field{3, 3}, Field{5, 6}})  // eliminated, swept
+    for (const Ending ending : {Ending::far_edge, Ending::near_edge, Ending::trapped}) {
+      const Committor c = committor(chain, field, ending);
+      for (const int row : {0, field.rows - 1})
+        for (int input = 0; input < 87; input += 29) {
+          const auto p = solve_absorption(chain, field, {1, row, input});
+          EXPECT_NEAR(c(1, row, input), p.endings[static_cast<std::size_t>(ending)], 1e-11)
+              << field.rows << " " << row << " " << input;
+        }
+    }
   EXPECT_THROW((void)row_chances(chain, {5, 6}, {}), std::invalid_argument);
+}
+
+// From left to right and back, and out of it once in a million: sweeps do not get there.
+TEST(Committor, KnowsWhereWalksCircleForLong) {
+  const double out = 1e-6;
+  // left (state 0): to the right, up, trapped; right (state 1): to the left.
+  const Chain chain = Chain::from_probabilities(
+      matrix(2, 4, {{0, 1, 1.0 - 4 * out}, {0, 2, out}, {0, 3, 3 * out}, {1, 0, 1.0}}),
+      {{0, -1, 0}, {1, 1, 0}, {0, 0, 1}, {}});
+  EXPECT_NEAR(committor(chain, {2, 1})(0, 0, 0), 0.25, 1e-12);
+  EXPECT_NEAR(committor(chain, {2, 1}, Ending::trapped)(1, 0, 1), 0.75, 1e-12);
 }
 
 // To enter row r is to leave a field of r rows: two routes, from the far edge and from the start.

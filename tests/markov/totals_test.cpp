@@ -236,6 +236,35 @@ TEST(WalkTotals, RefuseRewardsOfAnotherChain) {
                std::invalid_argument);
 }
 
+// From left (state 0) to right (1) and back, and up once in a million: G draws on the left, G
+// geometric, and G - 1 on the right. Sums stop long before.
+TEST(WalkTotals, AreExactWhereWalksCircleForLong) {
+  const double out = 1e-6;
+  for (const int back : {1, -1}) {  // with a state that may lead back, which nobody enters
+    const Chain chain = Chain::from_probabilities(
+        matrix(3, 4, {{0, 1, 1.0 - out}, {0, 2, out}, {1, 0, 1.0}, {2, 3, 1.0}}),
+        {{0, -1, 0}, {1, 1, 0}, {2, 0, 1}, {2, 0, back}});
+    const Rewards rewards{{Reward{{2.0, 2.0, 3.0, 1.0}, {4.0, 4.0, 9.0, 1.0}}}};
+    const Field field{2, 1};
+    const EndingChance chance(chain, field, Ending::far_edge, 0);
+    double told = 0.0;
+    const WalkTotals t = walk_totals(chain, field, {}, 0, rewards,
+                                     [&](int, std::int64_t, int, double share) { told += share; },
+                                     {.chance = &chance});
+    const double g = 1.0 / out, gg = (2.0 - out) / (out * out);      // E G, E G^2
+    const auto expect = [&](const Moments& m, double a, double b) {  // of a G - b
+      EXPECT_NEAR(m.mean() / (a * g - b), 1.0, 1e-9);
+      EXPECT_NEAR(m.square / (a * a * gg - 2 * a * b * g + b * b), 1.0, 1e-9);
+    };
+    EXPECT_NEAR(t.endings[at(Ending::far_edge)], 1.0, 1e-9);
+    EXPECT_EQ(t.remainder, 0.0);
+    EXPECT_NEAR(t.visits(0, 0) * out, 1.0, 1e-9);
+    EXPECT_NEAR(told / (2.0 * g - 1.0), 1.0, 1e-9);
+    expect(t.draws[at(Ending::far_edge)], 2.0, 1.0);
+    expect(t.totals[0][at(Ending::far_edge)], 5.0, 3.0);
+  }
+}
+
 // ---- The chance of an ending ----
 
 TEST(EndingChance, IsThatOfPropagationFromEverywhere) {
@@ -263,6 +292,31 @@ TEST(EndingChance, FewerDrawsAreLeftLater) {
   for (const int input : {0, 40, 86}) EXPECT_EQ(seven(3, 12, input), five(1, 12, input));
   EXPECT_EQ(seven(8, 12, 0), 0.0);
   EXPECT_EQ(EndingChance(chain, {5, 6}, Ending::cut_off, 7)(8, 12, 0), 1.0);
+}
+
+// Where walks from a start can come, the same bits as from everywhere; elsewhere nothing is known.
+TEST(EndingChance, FromAStartIsTheSameWhereItLeads) {
+  Counts counts = lattice_counts(7);
+  empty_row(counts, 30);
+  const FieldChain chain(Chain::from_counts(counts, lattice_exits()));
+  const Field field{5, 6};
+  const Start start{2, 1, 12};
+  for (const Ending e : {Ending::far_edge, Ending::trapped, Ending::unsampled}) {
+    const EndingChance all(chain, field, e, 6), from(chain, field, e, 6, kRowTolerance, start);
+    std::size_t known = 0;
+    for (int draw = 1; draw <= 7; ++draw)
+      for (std::int64_t cell = 0; cell < 30; ++cell) {
+        const std::int64_t way = std::abs(cell % 5 - 2) + std::abs(cell / 5 - 1);
+        if (draw <= 6 && (way >= draw || (way - draw) % 2 == 0)) {
+          EXPECT_TRUE(std::isnan(from(draw, cell, 40))) << draw << " " << cell;
+          continue;
+        }
+        ++known;
+        for (int input = 0; input < 87; ++input)
+          EXPECT_EQ(from(draw, cell, input), all(draw, cell, input)) << draw << " " << cell;
+      }
+    EXPECT_GT(known, 40U);
+  }
 }
 
 // ---- Paths ----
