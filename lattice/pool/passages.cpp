@@ -13,13 +13,24 @@ namespace gatewalk::lattice {
 
 Passages::Passages(const CostedChain& c, const FieldParams& field, markov::Ending target,
                    const Parts& parts)
-    : chance_(c.chain, {field.columns, field.rows}, target, field.max_gates, parts.tolerance),
+    : chance_(c.chain, {field.columns, field.rows}, target, field.max_gates, parts.tolerance,
+              c.start),
       at_start_(
           chance_(1, std::int64_t{c.start.row} * field.columns + c.start.column, c.start.input)),
       limited_(field.max_gates > 0),
       inputs_(c.chain.inputs()),
       cells_(std::int64_t{field.columns} * field.rows),
       state_visits_(static_cast<std::size_t>(c.chain.inputs()), 0.0) {
+  constexpr double kOfChance = 0.25;  // of the time, about
+  double told = 0.0;
+  const auto tell = [&](double part) {
+    if (!parts.told || part <= told) return;
+    parts.told(part - told);
+    told = part;
+  };
+  tell(kOfChance);
+  if (parts.places)
+    shares_.resize(static_cast<std::size_t>((limited_ ? field.max_gates : 1) * cells_));
   totals_ = markov::walk_totals(
       c.chain, {field.columns, field.rows}, c.start, field.max_gates,
       parts.costs ? c.rewards : markov::Rewards{},
@@ -27,34 +38,40 @@ Passages::Passages(const CostedChain& c, const FieldParams& field, markov::Endin
         to_target_ += share * chance_(draw, cell, input);
         state_visits_[static_cast<std::size_t>(input)] += share;
         if (!parts.places) return;
-        const std::size_t at = index(draw, cell, input);
-        if (at >= shares_.size())
-          shares_.resize(index(draw, cells_ - 1, 0) + static_cast<std::size_t>(inputs_), 0.0);
-        shares_[at] += share;
+        auto& here = shares_[static_cast<std::size_t>((limited_ ? draw - 1 : 0) * cells_ + cell)];
+        if (here.empty()) {
+          here.resize(static_cast<std::size_t>(inputs_), 0.0);
+          tell(kOfChance + (1.0 - kOfChance) * static_cast<double>(limited_ ? draw - 1 : cell) /
+                               static_cast<double>(limited_ ? field.max_gates : cells_));
+        }
+        here[static_cast<std::size_t>(input)] += share;
       },
       {.chance = &chance_, .of_row = parts.tolerance});
+  tell(1.0);
 }
 
 Passages::Draws::Draws(const Passages& passages) : passages_(passages) {
   double all = 0.0, to_target = 0.0;
-  for (std::size_t i = 0; i < passages.shares_.size(); ++i) {
-    all_.push_back(all += passages.shares_[i]);
-    to_target_.push_back(to_target += passages.shares_[i] * passages.chance(passages.place(i)));
+  for (std::size_t layer = 0; layer < passages.shares_.size(); ++layer) {
+    if (passages.shares_[layer].empty()) continue;
+    passed_.push_back(layer);
+    Place at = passages.place_of(layer);
+    for (const double share : passages.shares_[layer]) {
+      all_.push_back(all += share);
+      to_target_.push_back(to_target += share * passages.chance(at));
+      ++at.input;
+    }
   }
 }
 
 Passages::Place Passages::Draws::place(double uniform) const {
   const auto& sums = uniform < 0.5 ? all_ : to_target_;
   const double part = (uniform < 0.5 ? uniform : uniform - 0.5) * 2.0 * sums.back();
-  const auto at = std::upper_bound(sums.begin(), sums.end(), part) - sums.begin();
-  return passages_.place(
-      static_cast<std::size_t>(std::min<std::ptrdiff_t>(at, std::ssize(sums) - 1)));
-}
-
-Passages::Place Passages::place(std::size_t i) const {
-  const auto at = static_cast<std::int64_t>(i);
-  return {static_cast<int>(at / inputs_ / cells_) + 1, at / inputs_ % cells_,
-          static_cast<int>(at % inputs_)};
+  const auto at = std::min<std::ptrdiff_t>(
+      std::upper_bound(sums.begin(), sums.end(), part) - sums.begin(), std::ssize(sums) - 1);
+  Place place = passages_.place_of(passed_[static_cast<std::size_t>(at / passages_.inputs_)]);
+  place.input = static_cast<int>(at % passages_.inputs_);
+  return place;
 }
 
 AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,

@@ -2,7 +2,9 @@
 #pragma once
 /// Where walks pass that end in one way, and how likely that is from everywhere.
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +24,7 @@ class Passages {
     bool costs = true;   // else totals() has no quantities, which are most of the time
     bool places = true;  // else each() and Draws have none
     double tolerance = markov::kRowTolerance;  // of the rows of a field without limit
+    std::function<void(double part)> told{};   // of parts of the work that are done: 1 in all
   };
   /// Without limit of gates walks are followed until those left are few beside the ones that end in
   /// the target. Throws as markov::EndingChance and walk_totals.
@@ -47,11 +50,13 @@ class Passages {
   /// Calls use(place, share of the walks there) for all places that are passed.
   template <class Use>
   void each(Use use) const {
-    auto share = shares_.begin();
-    for (Place at; share != shares_.end(); ++at.draw)
-      for (at.cell = 0; at.cell < cells_; ++at.cell)
-        for (at.input = 0; at.input < inputs_; ++at.input, ++share)
-          if (*share > 0.0) use(at, *share);
+    for (std::size_t layer = 0; layer < shares_.size(); ++layer) {
+      Place at = place_of(layer);
+      for (const double share : shares_[layer]) {
+        if (share > 0.0) use(at, share);
+        ++at.input;
+      }
+    }
   }
 
   /// Places drawn in proportion to how often they are passed, by all walks and by those that end in
@@ -68,22 +73,23 @@ class Passages {
 
    private:
     const Passages& passages_;
-    std::vector<double> all_, to_target_;  // sums of shares up to each place
+    std::vector<std::size_t> passed_;      // of shares_, those with places
+    std::vector<double> all_, to_target_;  // sums of shares up to each place of these
   };
 
  private:
-  [[nodiscard]] std::size_t index(int draw, std::int64_t cell, int input) const {
-    const std::int64_t layer = limited_ ? draw - 1 : 0;
-    return static_cast<std::size_t>((layer * cells_ + cell) * inputs_ + input);
+  /// The first place of shares_[layer].
+  [[nodiscard]] Place place_of(std::size_t layer) const {
+    const auto at = static_cast<std::int64_t>(layer);
+    return {static_cast<int>(at / cells_) + 1, at % cells_, 0};
   }
-  [[nodiscard]] Place place(std::size_t i) const;
 
   markov::EndingChance chance_;
   double at_start_, to_target_ = 0.0;
   bool limited_;
   std::int64_t inputs_, cells_;
   std::vector<double> state_visits_;
-  std::vector<double> shares_;  // (draws x cells x inputs)
+  std::vector<std::vector<double>> shares_;  // (draws x cells), by input; empty: nobody passes
   markov::WalkTotals totals_;
 };
 
