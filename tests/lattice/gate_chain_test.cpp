@@ -125,8 +125,8 @@ TEST(Resampled, HasItsOwnSharesForMeanAndVariesAsSoManyRuns) {
       EXPECT_NEAR(sum[row][column] / kReplicates, mean,
                   5 * std::sqrt(variance / kReplicates) + 1e-12);
       const double m = sum[row][column] / kReplicates;
-      if (variance > 0.0 && n > 1)
-        EXPECT_NEAR((squares[row][column] / kReplicates - m * m) / variance, 1.0, 0.15);
+      if (variance == 0.0 || n == 1) continue;  // of a single run fourth moments are large
+      EXPECT_NEAR((squares[row][column] / kReplicates - m * m) / variance, 1.0, 0.15);
     }
   }
 }
