@@ -87,6 +87,10 @@ std::string derived_keys(const Scene& scene) {
          " leaves out keys, which follow from the others by the paper's proportions: " + all;
 }
 
+namespace {
+
+/// Keys that the scene leaves out and that would be others in a file with another
+/// forces.propulsion_N. An override leaves them as they are. Not those of the method.
 std::vector<std::string> keys_that_follow_the_push(const Scene& scene) {
   constexpr std::string_view kPush = "forces.propulsion_N";
   const auto filled = [&](double push) {
@@ -108,6 +112,8 @@ std::vector<std::string> keys_that_follow_the_push(const Scene& scene) {
     keys.emplace_back("start.vy_m_per_s");
   return keys;
 }
+
+}  // namespace
 
 std::string push_is_followed(const Scene& scene) {
   struct Part {

@@ -35,12 +35,9 @@ struct Settled {
 [[nodiscard]] std::string terrain_without_effect(const Scene& scene);
 /// What the scene leaves out and has been given by its own proportions; empty if nothing.
 [[nodiscard]] std::string derived_keys(const Scene& scene);
-/// Keys that the scene leaves out and that would be others in a file with another
-/// forces.propulsion_N: an override, or a number that is varied, leaves them as they are. Not those
-/// of the method.
-[[nodiscard]] std::vector<std::string> keys_that_follow_the_push(const Scene& scene);
-/// To be said where pushes are compared, or the file gives one: which these are, and what to write
-/// to fix them. Empty where beams, random force and drag follow something else.
+/// To be said where pushes are compared, or the file gives one: which of the beams, the random
+/// force and the drag the scene leaves out so that they follow forces.propulsion_N, and what to
+/// write to fix them. Empty where none does.
 [[nodiscard]] std::string push_is_followed(const Scene& scene);
 
 /// Runs a sample of `trials` again by a better method, and puts into `health` what that changes:
