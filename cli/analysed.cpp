@@ -15,12 +15,27 @@
 namespace gatewalk::cli {
 namespace {
 
+/// Throws UsageError, before any work, where even so few states take too much memory.
+void require_room(const Subject& s, int states) {
+  if (states <= lattice::most_analysed_states(s.problem)) return;
+  const lattice::FieldParams& field = s.problem.field;
+  throw UsageError("the analysis of " + std::to_string(field.columns) + " x " +
+                   std::to_string(field.rows) + " cells would take more than 8 GiB with " +
+                   std::to_string(states) +
+                   " states: ask for fewer cells (--set field.columns=N, --set field.rows=N" +
+                   (field.max_gates > 0 ? ", --set field.max_gates=N)" : ")"));
+}
+
 /// From gate runs, to which more are added until the error bar says enough.
 AnalysedSubject chain_of_runs(const Options& options, Subject& s) {
+  constexpr int kFewestStates = 100;
+  require_room(s, kFewestStates);
   auto prediction = predict(options, s);
   const lattice::StartAnswer& answer = prediction.starts.front();
-  AnalysedSubject c{.chain = lattice::analysed_chain(
-                        s.problem, *s.pool, s.pool->begin(s.starts.front()), s.how.per_leaf),
+  const int per_leaf =
+      lattice::leaf_of_analysis(s.problem, *s.pool, s.how.per_leaf, prediction.states);
+  AnalysedSubject c{.chain = lattice::analysed_chain(s.problem, *s.pool,
+                                                     s.pool->begin(s.starts.front()), per_leaf),
                     .endings = answer.endings,
                     .rest = rest_of(answer.final),
                     .status = cli::to_json(prediction.health),
@@ -31,6 +46,12 @@ AnalysedSubject chain_of_runs(const Options& options, Subject& s) {
                     .gate_runs = prediction.gate_runs,
                     .states = prediction.states,
                     .seconds = prediction.seconds};
+  if (per_leaf != s.how.per_leaf)
+    options.warn(
+        "the analysis has " + std::to_string(c.chain->space.size()) + " states, not " +
+        std::to_string(prediction.states) +
+        ", so that it takes no more than 8 GiB: what it says beside the endings is coarser "
+        "than they are");
   c.of_runs = std::move(prediction);
   return c;
 }
@@ -39,6 +60,7 @@ AnalysedSubject chain_of_runs(const Options& options, Subject& s) {
 AnalysedSubject chain_of_bins(const Options& options, const Subject& s) {
   refuse(options, {"accuracy", "gate-runs"},
          "for " + s.path + ": it has bins, and keeps no gate runs that could be added to");
+  require_room(s, s.file->transitions.space.size());
   const std::vector<dynamics::Transitions> matrices = s.matrices();
   const auto start = ready_start(options, matrices, s.problem, *s.starts.front(), s.name_of(0));
   auto prediction =

@@ -113,8 +113,8 @@ Json analysis_of(const Options& options, const Subject& s, const lattice::Analys
 Json shown_of(const Json& analysis) {
   Json json;
   for (const auto& [key, value] : analysis.items())
-    if (key.starts_with("expected_") || key == "by_ending" || key == "target" || key == "paths" ||
-        key == "paths_complete" || key == "types")
+    if (key.starts_with("expected_") || key == "why_no_interval" || key == "by_ending" ||
+        key == "target" || key == "paths" || key == "paths_complete" || key == "types")
       json[key] = value;
   for (const Json& effect : analysis["sensitivities"]["parameters"])
     json["parameters"].push_back({{"key", effect["key"]},

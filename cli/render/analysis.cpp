@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
@@ -157,6 +158,19 @@ std::string by_type(const std::vector<std::string>& names, Number number) {
   return text;
 }
 
+/// Endings whose mean time has no interval, and why: such a mean is to be read with care.
+std::string few_runs_text(const lattice::Analysis& a) {
+  std::string text;
+  for (const EndingName& e : kAllEndingNames) {
+    const auto& costs = a.costs_of[static_cast<std::size_t>(e.ending)];
+    if (costs.empty() || costs.front().why_none.empty() || !std::isfinite(costs.front().mean))
+      continue;
+    text += (text.empty() ? "(means without an interval: " : "; ") + std::string(e.name) + ", " +
+            costs.front().why_none;
+  }
+  return text.empty() ? "" : text + ")\n";
+}
+
 /// {"i_x": ..., "i_y": ...}
 Json gate_json(std::int64_t cell, const lattice::FieldParams& field) {
   return {{"i_x", cell % field.columns - field.start_column()}, {"i_y", cell / field.columns}};
@@ -257,12 +271,15 @@ Json to_json(const AnalysedField& f) {
     json["endings"][e.key] = {{"probability", f.endings.share[at]},
                               {"interval_95", interval(f.endings.interval[at])}};
   }
+  const auto add_interval = [](Json& to, const std::string& key, const lattice::Mean95OfRuns& m) {
+    to[key + "_95"] = interval(m.interval);
+    if (!m.why_none.empty()) to["why_no_interval"][key] = m.why_none;
+  };
   json["expected_gates"] = a.gates.mean;
-  json["expected_gates_95"] = interval(a.gates.interval);
+  add_interval(json, "expected_gates", a.gates);
   const auto expected = [&](const std::string& key, std::size_t cost) {
-    const Mean95& m = a.costs[cost];
-    json["expected_" + key] = or_null(m.mean);
-    json["expected_" + key + "_95"] = interval(m.interval);
+    json["expected_" + key] = or_null(a.costs[cost].mean);
+    add_interval(json, "expected_" + key, a.costs[cost]);
   };
   if (f.shown.mass) {
     expected("seconds", static_cast<std::size_t>(Cost::seconds));
@@ -285,8 +302,8 @@ Json to_json(const AnalysedField& f) {
         spent_json(s, f.shown, [&](double level) { return quantile(walks, level); });
     json["by_ending"][key]["probability"] = s.share;
     for (std::size_t c = 0; c < costs_of(f.shown).size() && ending; ++c)
-      json["by_ending"][key]["mean_" + costs_of(f.shown)[c].key + "_95"] =
-          interval(a.costs_of[static_cast<std::size_t>(*ending)][c].interval);
+      add_interval(json["by_ending"][key], "mean_" + costs_of(f.shown)[c].key,
+                   a.costs_of[static_cast<std::size_t>(*ending)][c]);
     if (!f.direct) return;
     const KolmogorovDistance d = duration_distance(a, f.direct->costs, ending);
     json["by_ending"][key]["kolmogorov_distance"] = or_null(d.distance);
@@ -323,10 +340,13 @@ Json to_json(const AnalysedField& f) {
   json["target"] = key_of(a.target);
   json["target_probability"] = a.target_chance;
   json["starts"] = Json::array();
-  for (const lattice::StartChance& s : a.starts) {
+  json["starts_in_all"] = a.starts.size();
+  for (const lattice::StartChance& s :
+       std::span(a.starts).first(static_cast<std::size_t>(a.told_starts()))) {
     Json one = to_json(a.space.section(), s.range);
     one["probability"] = or_null(s.chance.mean);
     one["interval_95"] = interval(s.chance.interval);
+    one["runs"] = s.runs;
     json["starts"].push_back(std::move(one));
   }
   json["paths"] = Json::array();
@@ -398,9 +418,7 @@ std::string table_of(const AnalysedField& f) {
                        ? "of all bodies; no intervals"
                        : "of all bodies; 95 % intervals that count the sampling of the matrix") +
       limits_text(f.shown) + rest_text(f.rest) + "\ngates visited  " + with_interval(a.gates, 3) +
-      (a.by_groups && std::isnan(a.gates.interval[0])
-           ? " (no interval: it is the same in all eight groups of trials)"
-           : "") +
+      (a.gates.why_none.empty() ? "" : " (no interval: " + a.gates.why_none + ")") +
       "\n\nby the chain\n" + header_of(f.shown);
   const auto add = [&](const char* name, std::optional<markov::Ending> ending) {
     const Spent s = spent(a, ending);
@@ -410,6 +428,7 @@ std::string table_of(const AnalysedField& f) {
   };
   add("all", {});
   for (const EndingName& e : kAllEndingNames) add(e.name, e.ending);
+  table += few_runs_text(a);
   if (!std::isfinite(a.costs.front().mean))
     table += f.shown.mass
                  ? "(the file is of an older version, which kept no durations: build it again)\n"
@@ -461,6 +480,10 @@ std::string table_of(const AnalysedField& f) {
     table += "  (the search for more was given up: there are very many ways)\n";
   else if (a.paths.paths.empty())
     table += "  (none)\n";
+  if (std::ssize(a.starts) > a.told_starts())
+    table += "other starts: --json has the " + std::to_string(a.told_starts()) + " of " +
+             std::to_string(a.starts.size()) +
+             " ways to enter that were entered most; --figure draws all\n";
   if (a.is_certain() && f.parameters.effects.empty())
     table += std::string(a.target_chance > 0.5 ? "everybody" : "nobody") +
              " ends so in these runs: they cannot tell what a little more or less of a number "

@@ -106,14 +106,15 @@ Json front_of(const PlannedField& p) {
   const std::optional<std::size_t> chosen = cheapest(p);
   for (std::size_t i = 0; i < p.plan.front.size(); ++i) {
     const lattice::FrontPoint& point = p.plan.front[i];
-    json.push_back({{"price", point.price},
-                    {"crossed", point.crossings.share()},
-                    {"interval_95", point.crossings.interval_95()},
-                    {"mean", point.spent.mean},
-                    {"mean_95", point.spent.mean_95},
-                    {"per_crossing", or_null(point.spent.per_crossing)},
-                    {"per_crossing_95", interval_of(point.spent.per_crossing_95)},
-                    {"chosen", chosen == i}});
+    json.push_back(
+        {{"price", point.price},
+         {"crossed", point.crossings.share()},
+         {"interval_95", point.crossings.interval_95()},
+         {"mean", point.spent.mean},
+         {"mean_95", std::isfinite(point.spent.mean_95[0]) ? Json(point.spent.mean_95) : Json()},
+         {"per_crossing", or_null(point.spent.per_crossing)},
+         {"per_crossing_95", interval_of(point.spent.per_crossing_95)},
+         {"chosen", chosen == i}});
   }
   return json;
 }
@@ -124,6 +125,7 @@ std::string front_text(const PlannedField& p) {
     return std::isinf(x) ? std::string("no end") : quantity(x, cost.unit, 3);
   };
   const auto between = [&](double mean, const std::array<double, 2>& interval) {
+    if (std::isnan(interval[0]) && std::isfinite(mean)) return amount(mean) + " (few trials)";
     return amount(mean) + " [" + amount(interval[0]) + ", " + amount(interval[1]) + "]";
   };
   if (p.plan.front.size() < 2)

@@ -47,11 +47,13 @@ std::string colours_of(const PlannedField& p, const Sheet& sheet, const Box& box
 /// Chance to cross against what a trial takes, of the policies that take less.
 std::string front_panel(const PlannedField& p, const Sheet& sheet, const Box& box) {
   const dynamics::CostInfo& cost = p.shown.map.section.costs[p.thrift->cost];
-  double low = p.plan.front[0].spent.mean_95[0], high = p.plan.front[0].spent.mean_95[1];
+  double low = p.plan.front[0].spent.mean, high = low;
   double lowest = 1.0, highest = 0.0;
   std::string rows;
   for (const lattice::FrontPoint& point : p.plan.front) {
-    const auto [from, to] = point.spent.mean_95;
+    const double mean = point.spent.mean;  // of few trials without an interval
+    const bool few = std::isnan(point.spent.mean_95[0]);
+    const auto [from, to] = few ? std::array<double, 2>{mean, mean} : point.spent.mean_95;
     const auto [least, most] = point.crossings.interval_95();
     low = std::min(low, from);
     high = std::max(high, to);

@@ -400,8 +400,11 @@ class Answer {
     const name = (key) => this.data.endings.find((e) => e.key === key)?.name ?? 'all';
     const rows = Object.keys(by).map((key) => {
       const interval = (c) => {
-        const known = key === 'all' ? a[`expected_${c === 'time_s' && a.expected_seconds !== undefined ? 'seconds' : c}_95`] : by[key][`mean_${c}_95`];
-        return known ? element('small', {}, `[${plain(known[0])}, ${plain(known[1])}]`) : '';
+        const all = key === 'all', of = all ? a : by[key];
+        const mean = all ? `expected_${c === 'time_s' && a.expected_seconds !== undefined ? 'seconds' : c}` : `mean_${c}`;
+        const known = of[`${mean}_95`], why = of.why_no_interval?.[mean];
+        if (known) return element('small', {}, `[${plain(known[0])}, ${plain(known[1])}]`);
+        return why ? element('small', {title: why}, 'no interval') : '';
       };
       const q = by[key].quantiles_time_s;
       return element('tr', {'data-ending': key}, element('th', {scope: 'row'}, name(key)),

@@ -122,6 +122,7 @@ AnalysedChain analysed_chain(const Problem& problem, const RunPool& pool, const 
     parts[static_cast<std::size_t>(g)] = chain_of_group({g, kTrialGroups});
   });
   for (auto& part : parts) whole.groups.push_back(std::move(*part));
+  whole.bodies = pool.bodies();
   return whole;
 }
 
@@ -145,7 +146,8 @@ AnalysedChain analysed_chain(const Problem& problem, const std::vector<Transitio
   const StateSpace& space = matrices.front().space;
   return {.chain = {make_chain(problem.map(), matrices), std::move(rewards), start},
           .space = space,
-          .entry = [space](int state, Random& random) { return space.sample(state, random); }};
+          .entry = [space](int state, Random& random) { return space.sample(state, random); },
+          .runs = matrices[static_cast<std::size_t>(problem.start_type())].trials};
 }
 
 }  // namespace gatewalk::lattice

@@ -35,7 +35,8 @@ struct AnalysedChain {
   /// bins anywhere in the bin.
   std::function<dynamics::Entry(int state, dynamics::Random& random)> entry;
   std::vector<AnalysedChain> groups{};  // kTrialGroups, of groups of the trials; or none
-  std::vector<std::int64_t> runs{};     // of trees: by state, in gates of the start's type
+  std::vector<std::int64_t> runs{};     // by state, in gates of the start's type
+  std::int64_t bodies = 0;              // behind it, of trees with groups; each group has its part
 };
 /// Of trees, from the pool's runs; with error bars, but for recorded runs of fewer than
 /// kLeastBodies bodies. Throws std::invalid_argument when there are no

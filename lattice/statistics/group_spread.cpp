@@ -6,6 +6,8 @@
 #include <functional>
 #include <limits>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "dynamics/base/random.h"
 #include "dynamics/base/share.h"
@@ -160,6 +162,11 @@ std::vector<double> drawn_weights(const IndependentErrors& independent, std::siz
   return weights;
 }
 
+Mean95 without_interval(double whole) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  return {whole, {kUnknown, kUnknown}};
+}
+
 }  // namespace
 
 Mean95 mean_95(double whole, const std::vector<double>& groups) {
@@ -168,8 +175,25 @@ Mean95 mean_95(double whole, const std::vector<double>& groups) {
         half_width_95(groups) + kBiasLeft * std::abs(spread_of(groups).mean - whole);
     if (half > kShareRounding * std::abs(whole)) return {whole, {whole - half, whole + half}};
   }
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  return {whole, {kUnknown, kUnknown}};
+  return without_interval(whole);
+}
+
+Mean95OfRuns mean_95(double whole, const std::vector<double>& groups, const RunsBehind& runs) {
+  if (groups.empty()) return {without_interval(whole)};
+  const auto few = [&](double n, const char* where, double least) {
+    const auto whole_number = [](double x) { return std::to_string(static_cast<long>(x)); };
+    return Mean95OfRuns{without_interval(whole), whole_number(n) +
+                                                     (n >= 1.0 && n < 2.0 ? " run" : " runs") +
+                                                     where + ", fewer than " + whole_number(least)};
+  };
+  const double in_group = *std::min_element(runs.groups.begin(), runs.groups.end());
+  if (runs.all < kLeastRunsOfMean) return few(runs.all, "", kLeastRunsOfMean);
+  if (in_group < kLeastRunsOfGroup)
+    return few(in_group, " in a group of the trials", kLeastRunsOfGroup);
+  Mean95OfRuns mean{mean_95(whole, groups)};
+  if (std::isnan(mean.interval[0]) && !std::isnan(whole))
+    mean.why_none = "it is the same in all eight groups of trials";
+  return mean;
 }
 
 double half_width_95(const std::vector<double>& groups) {

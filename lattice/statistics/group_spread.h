@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "lattice/statistics/compare.h"
@@ -36,6 +37,20 @@ struct Mean95 {
   std::array<double, 2> interval{};
 };
 [[nodiscard]] Mean95 mean_95(double whole, const std::vector<double>& groups);
+
+/// A mean of fewer runs, or of fewer in some group, has no interval: a few long ones in a hundred
+/// make much of a mean, and groups in which none of these happened to be are alike.
+inline constexpr double kLeastRunsOfMean = 100.0, kLeastRunsOfGroup = 8.0;
+/// Runs behind a mean: in all, and by group. Those of an ending are as many as the chain expects.
+struct RunsBehind {
+  double all = 0.0;
+  std::vector<double> groups;
+};
+struct Mean95OfRuns : Mean95 {
+  std::string why_none{};  // why there is no interval though there are groups, in words
+};
+[[nodiscard]] Mean95OfRuns mean_95(double whole, const std::vector<double>& groups,
+                                   const RunsBehind& runs);
 /// Half of the 95 % interval of the mean of kTrialGroups numbers that do not depend on each other:
 /// Student's t.
 [[nodiscard]] double half_width_95(const std::vector<double>& groups);

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -21,18 +23,31 @@ namespace {
 
 using namespace dynamics;
 
-/// Throws where the states of all cells take too much memory: chances and passages, with a limit by
-/// draw and beside some waves of shares and totals; as much again for all groups.
-void require_memory(const CostedChain& c, const FieldParams& field, bool with_groups) {
-  constexpr double kMostBytes = 8.0 * (1 << 30);
-  const auto costs = static_cast<double>(c.rewards.front().size());
-  const double states = static_cast<double>(field.columns) * field.rows * c.chain.inputs();
-  const double numbers =
-      field.max_gates > 0 ? 2.0 * (1.0 + 2.0 * costs) + 4.0 * field.max_gates : 4.0;
-  if (states * numbers * sizeof(double) * (with_groups ? 2.0 : 1.0) > kMostBytes)
+/// Pairs of a draw and a cell that walks from the first row can come to, at most; by how far a move
+/// leads.
+double places_reached(const Section& section, const FieldParams& field) {
+  std::int64_t side = 0, up = 0;
+  bool chequered = true;
+  for (const Face& f : section.faces) {
+    side = std::max<std::int64_t>(side, std::abs(f.di_x));
+    up = std::max<std::int64_t>(up, f.di_y);
+    chequered = chequered && (f.di_x + f.di_y) % 2 != 0;
+  }
+  double places = 0.0;
+  for (std::int64_t moves = 0; moves < field.max_gates; ++moves)
+    places +=
+        std::ceil(static_cast<double>(std::min<std::int64_t>(field.columns, 1 + 2 * side * moves)) *
+                  static_cast<double>(std::min<std::int64_t>(field.rows, 1 + up * moves)) /
+                  (chequered ? 2.0 : 1.0));
+  return places;
+}
+
+/// Throws where the states of all cells take too much memory.
+void require_memory(const Problem& problem, int states) {
+  if (states > most_analysed_states(problem))
     throw std::invalid_argument(
-        "analysis: the states of " + std::to_string(field.columns) + " x " +
-        std::to_string(field.rows) +
+        "analysis: the states of " + std::to_string(problem.field.columns) + " x " +
+        std::to_string(problem.field.rows) +
         " gates take more than 8 GiB; ask for fewer states (--accuracy, build --states) or gates");
 }
 
@@ -63,6 +78,69 @@ std::optional<StateRange> common_part(const StateRange& a, const StateRange& b,
   return both;
 }
 
+/// Finds the states of one face that have something of a range inside.
+class StatesMeeting {
+ public:
+  StatesMeeting(const StateSpace& space, int face) : space_(space), face_(face) {
+    if (!space.has_trees()) return;
+    above_.resize(nodes().size());
+    (void)read(0);
+  }
+
+  /// Ascending. In a time that grows with the states found, not with all.
+  [[nodiscard]] std::vector<int> operator()(const StateRange& range) const {
+    std::vector<int> states;
+    if (space_.has_trees())
+      add_leaves(0, range, states);
+    else
+      add_bins(0, 0, range, states);
+    return states;
+  }
+
+ private:
+  [[nodiscard]] const std::vector<Tree::Node>& nodes() const {
+    return space_.trees()[static_cast<std::size_t>(face_)].nodes;
+  }
+  /// Reads the part of a tree that begins with this node; where the next part begins.
+  std::size_t read(std::size_t at) {
+    if (nodes()[at].axis == Tree::kLeaf) {
+      above_[at] = static_cast<std::size_t>(space_.first(face_) + leaves_++);
+      return at + 1;
+    }
+    above_[at] = read(at + 1);
+    return read(above_[at]);
+  }
+  void add_leaves(std::size_t at, const StateRange& range, std::vector<int>& states) const {
+    const auto& [axis, cut] = nodes()[at];
+    if (axis == Tree::kLeaf) {
+      states.push_back(static_cast<int>(above_[at]));
+      return;
+    }
+    const auto& [low, high] = range.at[static_cast<std::size_t>(axis)];
+    if (low < cut) add_leaves(at + 1, range, states);
+    if (high > cut) add_leaves(above_[at], range, states);
+  }
+  /// States by the first coordinate, then the next: `before` counts those of the coordinates so
+  /// far.
+  void add_bins(std::size_t axis, int before, const StateRange& range,
+                std::vector<int>& states) const {
+    if (axis == space_.section().coordinates.size()) {
+      states.push_back(space_.first(face_) + before);
+      return;
+    }
+    const auto& edges = space_.bins()[static_cast<std::size_t>(face_)].edges[axis];
+    const auto bins = static_cast<int>(edges.size()) - 1;
+    for (int bin = 0; bin < bins; ++bin)
+      if (edges[static_cast<std::size_t>(bin)] < range.at[axis][1] &&
+          edges[static_cast<std::size_t>(bin) + 1] > range.at[axis][0])
+        add_bins(axis + 1, before * bins + bin, range, states);
+  }
+
+  const StateSpace& space_;
+  int face_, leaves_ = 0;
+  std::vector<std::size_t> above_;  // by node: where the part above its cut begins; a leaf's state
+};
+
 /// The chance of the target by start. In a field that is its own mirror image, a start is as likely
 /// to end so as its image to end so in the mirror: the mean of both, where their states overlap.
 std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const CellMap& map,
@@ -86,52 +164,91 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Cel
   for (std::size_t g = 0; g < groups.size(); ++g)
     all.push_back({chain.groups[g].space, groups[g].chance()});
   if (in_mirror && image != target)
-    for (std::size_t k = 0; k < all.size(); ++k)
-      all[k].of_image.emplace(k == 0 ? c.chain : chain.groups[k - 1].chain.chain, cells, image,
-                              field.max_gates);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const CostedChain& one = k == 0 ? c : chain.groups[k - 1].chain;
+      all[k].of_image.emplace(one.chain, cells, image, field.max_gates, markov::kRowTolerance,
+                              one.start);
+    }
   const auto mean_of = [&](const Chances& s, const Entry& start) {
     const double own = s.of_target(1, first_cell, s.space.index_of(start).state);
     if (!in_mirror) return own;
     const int there = s.space.index_of(dynamics::mirrored(s.space.section(), start)).state;
     return std::midpoint(own, (s.of_image ? *s.of_image : s.of_target)(1, first_cell, there));
   };
-  const auto runs_of = [&](int state) {
-    return static_cast<double>(chain.runs[static_cast<std::size_t>(state)]);
-  };
+  const auto runs_at = [&](int state) { return chain.runs[static_cast<std::size_t>(state)]; };
   const auto gate_runs =
       static_cast<double>(std::accumulate(chain.runs.begin(), chain.runs.end(), std::int64_t{0}));
   std::vector<StartChance> starts;
-  const auto add = [&](const StateRange& range, bool sampled) {
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    StartChance start{range, {kUnknown, {kUnknown, kUnknown}}};
-    if (sampled) {
-      std::vector<double> parts;
-      for (std::size_t k = 1; k < all.size(); ++k) parts.push_back(mean_of(all[k], range.middle()));
-      start.chance.mean = mean_of(all.front(), range.middle());
-      if (!parts.empty())
-        start.chance.interval = share_95(
-            start.chance.mean, parts, {runs_of(space.index_of(range.middle()).state), gate_runs});
-    }
-    starts.push_back(start);
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const auto add = [&](const StateRange& range, bool sampled, std::int64_t runs) {
+    const double mean = sampled ? mean_of(all.front(), range.middle()) : kUnknown;
+    starts.push_back({range, {mean, {kUnknown, kUnknown}}, runs});
   };
-  std::vector<int> entries;
-  for (int state = 0; state < space.size(); ++state)
-    if (space.face(state) == start_face) entries.push_back(state);
-  for (const int state : entries) {
+  const StatesMeeting meeting(space, start_face);
+  for (int state = 0; state < space.size(); ++state) {
+    if (space.face(state) != start_face) continue;
+    const StateRange range = space.range(state);
     if (!in_mirror) {
-      add(space.range(state), first.is_sampled(state));
+      add(range, first.is_sampled(state), runs_at(state));
       continue;
     }
-    for (const int other : entries)
-      if (const auto both = common_part(space.range(state),
-                                        dynamics::mirrored(space.section(), space.range(other)),
-                                        space.section().coordinates.size()))
-        add(*both, first.is_sampled(state) && first.is_sampled(other));
+    for (const int other : meeting(dynamics::mirrored(space.section(), range)))
+      if (const auto both =
+              common_part(range, dynamics::mirrored(space.section(), space.range(other)),
+                          space.section().coordinates.size()))
+        add(*both, first.is_sampled(state) && first.is_sampled(other),
+            runs_at(state) + runs_at(other));
   }
+  const auto told = std::min(std::ssize(starts), kToldStarts);
+  if (told < std::ssize(starts)) {
+    std::vector<std::size_t> order(starts.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return starts[a].runs > starts[b].runs; });
+    std::sort(order.begin(), order.begin() + told);
+    std::vector<StartChance> told_first;
+    for (const std::size_t i : order) told_first.push_back(starts[i]);
+    starts = std::move(told_first);
+  }
+  tbb::parallel_for(std::ptrdiff_t{0}, all.size() > 1 ? told : 0, [&](std::ptrdiff_t i) {
+    StartChance& start = starts[static_cast<std::size_t>(i)];
+    if (std::isnan(start.chance.mean)) return;
+    const Entry middle = start.range.middle();
+    std::vector<double> parts;
+    for (std::size_t k = 1; k < all.size(); ++k) parts.push_back(mean_of(all[k], middle));
+    start.chance.interval =
+        share_95(start.chance.mean, parts,
+                 {static_cast<double>(runs_at(space.index_of(middle).state)), gate_runs});
+  });
   return starts;
 }
 
 }  // namespace
+
+double most_analysed_states(const Problem& problem) {
+  constexpr double kMostBytes = 8.0 * (1 << 30);
+  const Section& section = problem.map().section;
+  const FieldParams& field = problem.field;
+  const double cells = static_cast<double>(field.columns) * field.rows;
+  // Walks about to draw, before and behind a draw, with what they took and its squares.
+  const double walks = 2.0 * cells * (1.0 + 2.0 * static_cast<double>(section.costs.size()));
+  const bool by_steps =
+      field.max_gates > 0 || std::any_of(section.faces.begin(), section.faces.end(),
+                                         [](const Face& f) { return f.di_y < 0; });
+  // Chances and passages, and the chances of all groups, which have as many states together.
+  const double numbers =
+      (field.max_gates > 0 ? 3.0 * places_reached(section, field) : 4.0 * cells) +
+      (by_steps ? 2.0 * walks : 0.0);
+  return kMostBytes / (sizeof(double) * numbers);
+}
+
+int leaf_of_analysis(const Problem& problem, const RunPool& pool, int per_leaf, int states) {
+  constexpr double kOthers = 100.0;  // the start's, and faces where little was seen
+  const double most = most_analysed_states(problem) - kOthers;
+  if (states <= most) return per_leaf;
+  const double runs = 2.0 * static_cast<double>(pool.gate_runs());  // with mirror images
+  return std::max(per_leaf, static_cast<int>(std::ceil(runs / most)));
+}
 
 Analysis analyze(const Problem& problem, const AnalysedChain& chain, const AnalysisOptions& options,
                  const Work& work) {
@@ -142,9 +259,22 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
   const StateSpace& space = chain.space;
   const markov::Field cells{field.columns, field.rows};
 
-  require_memory(c, field, !chain.groups.empty());
-  const auto all = all_passages(chain, field, options.target, {},
-                                {.places = false, .tolerance = kGroupTolerance}, "analysis", work);
+  require_memory(problem, c.chain.inputs());
+  // The groups together take as long as the whole.
+  constexpr std::int64_t kParts = 1000;
+  std::mutex telling;
+  double done = 0.0;
+  const auto tell = [&](double weight) {
+    return [&, weight](double part) {
+      const std::lock_guard lock(telling);
+      done += weight * part / static_cast<double>(kTrialGroups + std::ssize(chain.groups));
+      work.tell("analysis", std::llround(kParts * done), kParts);
+    };
+  };
+  work.tell("analysis", 0, kParts);
+  const auto all = all_passages(chain, field, options.target, {.told = tell(kTrialGroups)},
+                                {.places = false, .tolerance = kGroupTolerance, .told = tell(1.0)},
+                                "analysis", {});
   const Passages& passages = all.whole;
   const auto& groups = all.groups;
   markov::FrequentPaths paths;
@@ -178,18 +308,28 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
                .lumping = options.lumping,
                .lumped = lumped};
 
-  const auto of_totals = [&](const auto& value) {
+  // Of the bodies that end so, or however they end.
+  const auto of_totals = [&](std::optional<std::size_t> ending, const auto& value) {
+    const auto share = [&](const markov::WalkTotals& t) {
+      return ending ? t.endings[*ending] : 1.0;
+    };
+    const auto bodies = static_cast<double>(chain.bodies);
     std::vector<double> parts;
-    for (const Passages& g : groups) parts.push_back(value(g.totals()));
-    return mean_95(value(out.totals), parts);
+    RunsBehind runs{bodies * share(out.totals), {}};
+    for (const Passages& g : groups) {
+      parts.push_back(value(g.totals()));
+      runs.groups.push_back(bodies / kTrialGroups * share(g.totals()));
+    }
+    return mean_95(value(out.totals), parts, runs);
   };
-  out.gates = of_totals([](const markov::WalkTotals& t) { return t.visits.sum(); });
+  out.gates = of_totals({}, [](const markov::WalkTotals& t) { return t.visits.sum(); });
   for (std::size_t k = 0; k < map.section.costs.size(); ++k) {
-    out.costs.push_back(of_totals(
-        [k](const markov::WalkTotals& t) { return markov::WalkTotals::all(t.totals[k]).mean(); }));
+    out.costs.push_back(of_totals({}, [k](const markov::WalkTotals& t) {
+      return markov::WalkTotals::all(t.totals[k]).mean();
+    }));
     for (std::size_t e = 0; e < markov::kEndings; ++e)
       out.costs_of[e].push_back(
-          of_totals([k, e](const markov::WalkTotals& t) { return t.totals[k][e].mean(); }));
+          of_totals(e, [k, e](const markov::WalkTotals& t) { return t.totals[k][e].mean(); }));
   }
   if (!out.costs.empty() && std::isfinite(out.costs[0].mean))
     out.walks = markov::timed_walks(c.chain, cells, c.start, field.max_gates, c.rewards,

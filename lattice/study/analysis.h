@@ -3,6 +3,7 @@
 /// What a chain says beyond the final gates: how long bodies take and what work, how likely each
 /// start is to end in one way, which ways there lead, and what would change that most.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -35,7 +36,10 @@ struct AnalysisOptions {
 struct StartChance {
   dynamics::StateRange range;
   Mean95 chance;
+  std::int64_t runs = 0;  // of its state, and of the image's
 };
+/// So many starts have intervals, those entered most; more of them nobody reads.
+inline constexpr std::ptrdiff_t kToldStarts = 300;
 
 struct Analysis {
   markov::Ending target{};
@@ -49,15 +53,19 @@ struct Analysis {
   bool by_groups = false;     // of trials, which make the intervals; none of bins
   markov::WalkTotals totals;  // quantities by Section::costs
   /// Gates visited, and what bodies took, of all of them. Intervals: sampling, and what smaller
-  /// states would change; none without groups.
-  Mean95 gates;
-  std::vector<Mean95> costs;                                   // by Section::costs
-  std::array<std::vector<Mean95>, markov::kEndings> costs_of;  // by ending
-  std::vector<markov::TimedWalk> walks;                        // seconds
-  std::optional<markov::QuasiStationary> endless;              // none: see below
+  /// states would change; none without groups, nor from few runs that end so (mean_95).
+  Mean95OfRuns gates;
+  std::vector<Mean95OfRuns> costs;                                   // by Section::costs
+  std::array<std::vector<Mean95OfRuns>, markov::kEndings> costs_of;  // by ending
+  std::vector<markov::TimedWalk> walks;                              // seconds
+  std::optional<markov::QuasiStationary> endless;                    // none: see below
   std::string why_not_endless;
   std::vector<double> endless_boundaries;  // its states by face
+  /// All of them; if they are more than kToldStarts, those that have intervals come first.
   std::vector<StartChance> starts;
+  [[nodiscard]] std::ptrdiff_t told_starts() const {
+    return std::min(std::ssize(starts), kToldStarts);
+  }
   markov::FrequentPaths paths;
   /// (rows x columns) visits of bodies that end in the target, per body of these; and per cent that
   /// the chance of the target would grow were one per cent fewer trapped in the gate (d ln P / d
@@ -76,7 +84,13 @@ struct Analysis {
   double seconds = 0.0;
 };
 
-/// Throws std::invalid_argument for fields whose states would take more than some 8 GiB.
+/// Of how many states an analysis of this field, with groups, takes some 8 GiB.
+[[nodiscard]] double most_analysed_states(const Problem& problem);
+/// Entries of a leaf for a chain that can be analysed: `per_leaf`, which makes so many states of
+/// the pool's runs, or more where these are too many.
+[[nodiscard]] int leaf_of_analysis(const Problem& problem, const RunPool& pool, int per_leaf,
+                                   int states);
+/// Throws std::invalid_argument for more states than most_analysed_states.
 [[nodiscard]] Analysis analyze(const Problem& problem, const AnalysedChain& chain,
                                const AnalysisOptions& options, const dynamics::Work& work = {});
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "dynamics/base/share.h"
+#include "lattice/statistics/group_spread.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -54,8 +55,9 @@ Spent spent_by(const FieldTrials& trials, std::size_t cost) {
   }
   const double z = dynamics::kNormal95, pp = share * (1.0 - share) * n / (n - 1.0);
   const double half = z * std::sqrt(cc / n);
-  Spent spent{.mean = mean, .mean_95 = {mean - half, mean + half}};
   const double never = std::numeric_limits<double>::infinity(), unknown = std::nan("");
+  Spent spent{.mean = mean, .mean_95 = {mean - half, mean + half}};
+  if (n < kLeastRunsOfMean) spent.mean_95 = {unknown, unknown};
   spent.per_crossing = share > 0.0 ? mean / share : unknown;
   // All r for which mean - r share may be 0: a r^2 - 2 b r + c <= 0.
   const double a = share * share - z * z * pp / n, b = mean * share - z * z * cp / n,

@@ -31,7 +31,8 @@ struct Gain {
 };
 [[nodiscard]] Gain gain_over(const FieldTrials& with, const FieldTrials& without);
 
-/// What trials take of one cost, with 95 % intervals: a trial's mean, however it ends; and that of
+/// What trials take of one cost, with 95 % intervals: a trial's mean, however it ends (NaN: of
+/// fewer than kLeastRunsOfMean); and that of
 /// all trials for each that crossed, which is what it takes to try until a body crosses (Fieller's
 /// interval, whose end is infinite where too few crossed; NaN where none did).
 struct Spent {

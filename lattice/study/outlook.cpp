@@ -138,14 +138,15 @@ StartStates start_states(const Problem& problem, const RunPool& pool, const Anal
                                runs, outcomes.groups[g].by_output));
   const auto bodies = static_cast<double>(pool.bodies()),
              gate_runs = static_cast<double>(pool.gate_runs());
-  const auto interval = [&](Eigen::Index state, Eigen::Index end, double n,
+  const Eigen::Array<double, 1, Eigen::Dynamic> most_of_end = follows.colwise().maxCoeff();
+  const double no_body = interval_of_share(0.0, bodies)[1];
+  const auto interval = [&](Eigen::Index state, Eigen::Index end, double n, double no_run,
                             const MeanOfRuns& first) -> std::array<double, 2> {
     if (kernels.empty()) return {kUnknown, kUnknown};
     const double share = means(state, end);
     // A run more may go another way, and then end so: of less than one run's worth nothing is seen.
-    const double more = interval_of_share(0.0, n)[1] * follows.col(end).maxCoeff();
-    if (share <= kShareRounding)
-      return {0.0, std::min(1.0, more + interval_of_share(0.0, bodies)[1])};
+    const double more = no_run * most_of_end(end);
+    if (share <= kShareRounding) return {0.0, std::min(1.0, more + no_body)};
     std::vector<double> groups;
     for (const EndTable& k : kernels) groups.push_back(k(state, end));
     auto [low, high] =
@@ -163,17 +164,18 @@ StartStates start_states(const Problem& problem, const RunPool& pool, const Anal
     state.runs = runs[s];
     if (runs[s] == 0) return;
     const double n = static_cast<double>(runs[s]) / (with_images[s] ? 2.0 : 1.0);
+    const double no_run = interval_of_share(0.0, n)[1];
     const MeanOfRuns first(n);
     for (Eigen::Index e = 0; e < kEndCount; ++e) {
       state.endings.share[static_cast<std::size_t>(e)] = means(row, e);
-      state.endings.interval[static_cast<std::size_t>(e)] = interval(row, e, n, first);
+      state.endings.interval[static_cast<std::size_t>(e)] = interval(row, e, n, no_run, first);
     }
     state.endings = state.endings.with_limit(field.max_gates);
     state.gates = markov::CellProbabilities::Zero(field.rows, field.columns);
     state.gates_95 = {state.gates, state.gates};
     for (Eigen::Index cell = 0; cell < cells; ++cell) {
       state.gates.data()[cell] = means(row, kEndCount + cell);
-      const auto [low, high] = interval(row, kEndCount + cell, n, first);
+      const auto [low, high] = interval(row, kEndCount + cell, n, no_run, first);
       state.gates_95[0].data()[cell] = low;
       state.gates_95[1].data()[cell] = high;
     }
@@ -192,7 +194,8 @@ std::vector<CellAhead> cells_ahead(const ChainOutcomes& outcomes, const FieldPar
     std::vector<double> of_groups;
     for (const auto& g : outcomes.groups) of_groups.push_back(visits_of(g));
     CellAhead& a = ahead.emplace_back();
-    a.visits = mean_95(visits, of_groups);
+    const auto n = static_cast<double>(bodies);
+    a.visits = mean_95(visits, of_groups, {n, std::vector(of_groups.size(), n / kTrialGroups)});
     if (visits < kNextToNone) continue;
     if (a.visits.interval[0] < 0.0) a.visits.interval[0] = 0.0;  // else it may be NaN
     const bool known =

@@ -185,6 +185,7 @@ TEST(Plan, WhatTrialsTakeIsHeldByItsIntervals) {
   none.endings.assign(2, markov::Ending::trapped);
   none.costs.assign(2, {1.0});
   EXPECT_TRUE(std::isnan(spent_by(none, 0).per_crossing));
+  EXPECT_TRUE(std::isnan(spent_by(none, 0).mean_95[0]));  // of fewer than 100 trials
   none.endings[0] = markov::Ending::far_edge;
   EXPECT_TRUE(std::isinf(spent_by(none, 0).per_crossing_95[1]));
   EXPECT_GT(spent_by(none, 0).per_crossing_95[0], 0.0);

@@ -371,6 +371,23 @@ TEST(GroupSpread, AMeanOfWhatIsAlwaysAlikeHasNoInterval) {
   EXPECT_NEAR(m.interval[1] - 5.0, 2.3646 / std::sqrt(7.0), 1e-9);
 }
 
+// A mean of few runs has no interval: groups that have none of the rare long ones are alike.
+TEST(Means, OfFewRunsHaveNoInterval) {
+  const std::vector<double> groups{4, 6, 4, 6, 4, 6, 4, 6};
+  const std::vector<double> some(8, 12.5);
+  EXPECT_EQ(mean_95(5.0, groups, {100.0, some}).interval, mean_95(5.0, groups).interval);
+  EXPECT_TRUE(mean_95(5.0, groups, {100.0, some}).why_none.empty());
+  const Mean95OfRuns few = mean_95(5.0, groups, {99.9, some});
+  EXPECT_TRUE(std::isnan(few.interval[0]) && std::isnan(few.interval[1]));
+  EXPECT_EQ(few.mean, 5.0);
+  EXPECT_EQ(few.why_none, "99 runs, fewer than 100");
+  std::vector<double> uneven = some;
+  uneven[3] = 7.9;
+  const Mean95OfRuns group = mean_95(5.0, groups, {100.0, uneven});
+  EXPECT_TRUE(std::isnan(group.interval[0]));
+  EXPECT_EQ(group.why_none, "7 runs in a group of the trials, fewer than 8");
+}
+
 TEST(GroupSpread, OfSharesIsBinomialNoise) {
   CellCounts counts(1, 2);
   counts << 5000, 5000;

@@ -41,6 +41,57 @@ expect 2 'keeps no gate runs' "$gatewalk" analyze bins.nc --accuracy 0.1
 holds '.costs.all | .trials == 500 and .mean_time_s > 0 and .quantiles_time_s[0] < .quantiles_time_s[4]' lattice_costs.json
 holds '([.costs | to_entries[] | select(.key != "all") | .value.trials] | add) == 500' lattice_costs.json
 
+# Starts: at most 300 of them, those entered most.
+holds '(.starts | length) == 300 and .starts_in_all > 300 and ([.starts[].runs] | min) > 0' analysis.json
+expect 0 "the 300 of $(jq .starts_in_all analysis.json) ways to enter" "$gatewalk" analyze fast.nc --runs 0
+holds '(.starts | length) == .starts_in_all' bins.json
+
+# A face that leads back, without limit of gates. A gambler who wins with 0.4, and has 1 of 5: (r - 1) / (r^5 - 1) with
+# r = 1.5 is 16/211, and games are n / 0.2 - 5 / 0.2 of it.
+printf 'state,name,move_x,move_y\n0,won,0,1\n1,lost,0,-1\n' >games.csv
+printf 'from,to,count\nwon,won,2\nwon,lost,3\nlost,won,2\nlost,lost,3\n' >ruin.csv
+"$gatewalk" import ruin.csv --states games.csv --start 0 --set field.rows=4 --set field.columns=1 --set field.max_gates=0 -o ruin.nc --quiet
+"$gatewalk" analyze ruin.nc --json ruin.json --quiet || fail "analyze of a face that leads back"
+holds '(.target_probability - 16 / 211 | fabs) < 1e-12 and (.expected_gates - (5 - 25 * 16 / 211) | fabs) < 1e-10' ruin.json
+
+# The mean time of few bodies has no interval, and says why: no group may have seen those that take long.
+cat >short.toml <<'END'
+[body]
+mass_kg = 2.427
+radius_m = 85.23
+[beams]
+length_m = 213.1
+mass_kg = 0.2427
+stiffness_left_Nm_per_rad = 3.09e6
+stiffness_right_Nm_per_rad = 3.369e6
+damping_Nms_per_rad = 0.0
+joint_x_m = 213.1
+joint_y_m = 255.7
+[forces]
+propulsion_N = 2099.0
+random_N = 5636.0
+random_rate_Hz = 200.8
+drag_Ns_per_m = 0.254
+[contact]
+restitution = 0
+tip_restitution = 1
+[run]
+time_limit_s = 2.989
+traverse_y_m = 511.4
+[field]
+columns = 4
+rows = 6
+max_gates = 5
+[start]
+x_m = 134.8
+vx_m_per_s = 405.0
+vy_m_per_s = 698.9
+END
+"$gatewalk" analyze short.toml --runs 0 --seed 100 --json short.json >short.txt 2>/dev/null
+holds '.by_ending.trapped | .probability < 0.5 and .mean_time_s > 3 and .mean_time_s_95 == null and (.why_no_interval.mean_time_s | test("runs, fewer than 100$"))' short.json
+holds '.by_ending.right_side | .probability > 0.7 and .mean_time_s_95[0] < .mean_time_s and .mean_time_s < .mean_time_s_95[1]' short.json
+grep -q 'means without an interval: .*trapped, [0-9]* runs, fewer than 100' short.txt || fail "analyze: no word of a mean of few runs"
+
 # How much of the variance each number makes over its range.
 over=(analyze "$scenes/field.toml" --set run.method=moreau --set field.rows=2 --accuracy 0.2 --runs 0 --quiet)
 ranges=(--over forces.propulsion_N=4:9 --over beams.mass_kg=0.1:0.11)

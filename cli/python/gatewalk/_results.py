@@ -219,15 +219,17 @@ class Analysis(Result):
     never_sampled, still_walking : float
         Shares that these leave out, see `Prediction`.
     expected_gates, expected_seconds, expected_work_J : float
-        Means over all bodies; with ``_95`` their intervals.
+        Means over all bodies; with ``_95`` their intervals, None of fewer than 100 bodies: ``why_no_interval``.
     expected_visits : array, shape (rows, columns)
         Of each gate.
     by_ending : dict
-        Of ``all`` and of each ending: means, standard deviations and quantiles of times and works.
+        Of ``all`` and of each ending: means, standard deviations and quantiles of times and works. A mean of fewer
+        than 100 bodies has no interval: ``why_no_interval``, by mean.
     quasi_stationary : dict or None
         What becomes of those who go on for ever: ``survival_per_gate``, ``kept_per_gate``, ...
     starts, paths : list of dict
-        Chances of the target from other ways in; the most frequent ways to it.
+        Chances of the target from other ways in, those 300 that were entered most of ``starts_in_all``; the most
+        frequent ways to it.
     sensitivities : dict
         What would change the chance of the target most.
     """
