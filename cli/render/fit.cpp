@@ -130,9 +130,11 @@ Json to_json(const FittedScene& f) {
   json["misfit_nats"] = fit.misfit;
   json["mixing"] = fit.mixing;
   json["near_bounds"] = fit.near_bounds;
+  json["outside"] = fit.outside;
   json["never"] = fit.never;
   json["rounds"] = fit.rounds;
   json["degree"] = fit.degree;
+  json["parts"] = fit.parts;
   json["points"] = fit.points;
   json["volume"] = fit.volume;
   json["trials"] = fit.trials;
@@ -189,7 +191,9 @@ std::string table_of(const FittedScene& f) {
          std::to_string(fit.points) + " points of " +
          percent(fit.volume, 1.0, fit.volume < 0.01 ? 3 : 1) +
          " of the ranges; chances between them by polynomials of degree " +
-         std::to_string(fit.degree) + ", " + fixed(fit.seconds, 1) + " s\n";
+         std::to_string(fit.degree) +
+         (fit.parts > 1 ? " in " + std::to_string(fit.parts) + " parts of these" : "") + ", " +
+         fixed(fit.seconds, 1) + " s\n";
 }
 
 bool is_clean(const FittedScene& f) {
@@ -226,8 +230,8 @@ std::vector<std::string> warnings_of(const FittedScene& f) {
   warn("the posterior is rough: chances between the points change the log likelihood by " +
        fixed(fit.misfit, 2) + ", trials make " + percent(by_trials, 1.0, 0) +
        " of a variance (which is counted), R of the walks is " + fixed(fit.mixing, 2) + ", " +
-       percent(fit.near_bounds, 1.0) +
-       " of the draws lie at the edge of the points; more --trials" +
+       percent(fit.near_bounds, 1.0) + " of the draws lie at the edge of the points, " +
+       percent(fit.outside, 1.0) + " of the posterior may lie where there are none; more --trials" +
        (goes_on ? " help" : ", or narrower ranges, help"));
   return all;
 }

@@ -72,11 +72,20 @@ Index OutcomeModel::terms(Index numbers, int degree) {
   return all;
 }
 
-OutcomeModel::OutcomeModel(const OutcomeCounts& seen, int degree) : degree_(degree) {
+double lack_of_fit(double chi_squared, double degrees_of_freedom, double trials) {
+  const double by_chance = degrees_of_freedom + 2.0 * std::sqrt(2.0 * degrees_of_freedom);
+  return std::max(0.0, chi_squared - by_chance) / (2.0 * trials);
+}
+
+OutcomeModel::OutcomeModel(const OutcomeCounts& seen, int degree)
+    : OutcomeModel(seen, degree,
+                   seen.counts.colwise().sum().transpose() / std::max(1.0, seen.counts.sum())) {}
+
+OutcomeModel::OutcomeModel(const OutcomeCounts& seen, int degree, const VectorXd& shares)
+    : degree_(degree) {
   const Index points = seen.points.rows(), numbers = seen.points.cols(),
               outcomes = seen.counts.cols(), terms_of_each = terms(numbers, degree);
-  const VectorXd all = seen.counts.colwise().sum();
-  if (outcomes < 2 || all.minCoeff() <= 0.0)
+  if (outcomes < 2 || shares.minCoeff() <= 0.0)
     throw std::invalid_argument("OutcomeModel: two outcomes or more, each of which was seen");
   if (points <= terms_of_each)
     throw std::invalid_argument("OutcomeModel: " + std::to_string(terms_of_each) +
@@ -97,8 +106,8 @@ OutcomeModel::OutcomeModel(const OutcomeCounts& seen, int degree) : degree_(degr
     of_points.row(i) = row.transpose();
   }
   const double more = static_cast<double>(terms_of_each) / static_cast<double>(points);
-  const MatrixXd counts = seen.counts.rowwise() + more * (all / all.sum()).transpose();
-  const VectorXd trials = counts.rowwise().sum();
+  const MatrixXd counts = seen.counts.rowwise() + more * shares.transpose();
+  const VectorXd trials = counts.rowwise().sum(), all = counts.colwise().sum();
 
   best_ = MatrixXd::Zero(terms_of_each, outcomes - 1);
   for (Index k = 0; k + 1 < outcomes; ++k) best_(0, k) = std::log(all[k] / all[outcomes - 1]);
@@ -135,10 +144,9 @@ OutcomeModel::OutcomeModel(const OutcomeCounts& seen, int degree) : degree_(degr
   const VectorXd seen_trials = seen.counts.rowwise().sum();
   const MatrixXd expected = (seen_trials.asDiagonal() * logs.array().exp().matrix())
                                 .cwiseMax(std::numeric_limits<double>::min());
-  const double chi_squared = (seen.counts - expected).cwiseAbs2().cwiseQuotient(expected).sum();
-  const double degrees_of_freedom = static_cast<double>(points * (outcomes - 1)) - count;
-  const double by_chance = degrees_of_freedom + 2.0 * std::sqrt(2.0 * degrees_of_freedom);
-  lack_of_fit_ = std::max(0.0, chi_squared - by_chance) / (2.0 * all.sum());
+  chi_squared_ = (seen.counts - expected).cwiseAbs2().cwiseQuotient(expected).sum();
+  degrees_of_freedom_ = static_cast<double>(points * (outcomes - 1)) - count;
+  trials_ = seen_trials.sum();
 }
 
 OutcomeModel::Coefficients OutcomeModel::drawn(dynamics::Random& random) const {

@@ -23,6 +23,10 @@ struct OutcomeCounts {
   Eigen::MatrixXd counts;  // (points x outcomes)
 };
 
+/// Relative entropy (nats a trial) of the chances at some points from a model's: Pearson's
+/// chi-squared by 2 trials, less what chance makes in 97 of 100 models that are right.
+[[nodiscard]] double lack_of_fit(double chi_squared, double degrees_of_freedom, double trials);
+
 class OutcomeModel {
  public:
   /// (terms x outcomes - 1): the log of each chance over that of the last outcome.
@@ -33,6 +37,8 @@ class OutcomeModel {
   /// std::invalid_argument for fewer points than terms, and for fewer than two outcomes or one that
   /// nobody had; std::runtime_error where none is found.
   OutcomeModel(const OutcomeCounts& seen, int degree);
+  /// The same, where these points are a part of all: added trials end by these shares.
+  OutcomeModel(const OutcomeCounts& seen, int degree, const Eigen::VectorXd& shares);
 
   /// Terms of a polynomial of so many numbers.
   [[nodiscard]] static Eigen::Index terms(Eigen::Index numbers, int degree);
@@ -40,9 +46,11 @@ class OutcomeModel {
   [[nodiscard]] Eigen::Index parameters() const { return best_.size(); }
   /// Akaike's, of which the least is best: -2 log likelihood + 2 parameters.
   [[nodiscard]] double criterion() const { return criterion_; }
-  /// Relative entropy (nats a trial) of the chances at the points from the model's: Pearson's
-  /// chi-squared by 2 trials, less what chance makes in 97 of 100 models that are right.
-  [[nodiscard]] double lack_of_fit() const { return lack_of_fit_; }
+  [[nodiscard]] double lack_of_fit() const {
+    return lattice::lack_of_fit(chi_squared_, degrees_of_freedom_, trials_);
+  }
+  [[nodiscard]] double chi_squared() const { return chi_squared_; }
+  [[nodiscard]] double degrees_of_freedom() const { return degrees_of_freedom_; }
   [[nodiscard]] const Coefficients& best() const { return best_; }
   /// As uncertain as the counts leave them: normal, with the likelihood's curvature.
   [[nodiscard]] Coefficients drawn(dynamics::Random& random) const;
@@ -59,7 +67,7 @@ class OutcomeModel {
   Eigen::MatrixXd to_even_;               // (numbers x numbers): makes them uncorrelated
   Coefficients best_;
   Eigen::MatrixXd root_;  // lower; root root' is the curvature
-  double criterion_ = 0.0, lack_of_fit_ = 0.0;
+  double criterion_ = 0.0, chi_squared_ = 0.0, degrees_of_freedom_ = 0.0, trials_ = 0.0;
 };
 
 }  // namespace gatewalk::lattice

@@ -19,7 +19,7 @@
 #include "dynamics/base/points.h"
 #include "lattice/statistics/draws.h"
 #include "lattice/statistics/ensemble.h"
-#include "lattice/statistics/outcome_model.h"
+#include "lattice/statistics/outcome_tree.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -29,16 +29,19 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kPoints = 128;               // of a round; of the last one twice as many
-constexpr int kRounds = 10;                  // at most, before the last
-constexpr int kParts = 12;                   // of the trials: one a round, what is left in the last
-constexpr std::int64_t kLeastEach = 8;       // trials of a point, for each number
-constexpr std::int64_t kOfEachObserved = 4;  // trials of a round, for each observed one
+constexpr Index kPoints = 128;  // of a round; twice as many anywhere, of several parts, and last
+constexpr int kRounds = 13;     // at most, before the last
+constexpr int kParts = 16;      // of the trials: one a round, what is left in the last
+constexpr int kLooks = 3;       // rounds at most of a look at what was cut off
+constexpr std::int64_t kLeastTrials = 12'288;  // for each number
+constexpr std::int64_t kOfEachObserved = 3;    // trials of a round, for each observed one
 constexpr std::int64_t kFirstTrial = std::int64_t{1} << 51;  // numbers that no other trials have
 constexpr std::int64_t kFewestAlone = 50;  // trials of a group that is an ending's last
 constexpr int kMostDegree = 4;
-constexpr Index kWalkers = 32;  // of a walk
-constexpr Index kWalks = 16;    // each with coefficients of its own
+constexpr Index kWalkers = 32;   // of a walk
+constexpr Index kWalks = 16;     // each with coefficients of its own
+constexpr Index kCloud = 2048;   // pairs of points without trials, for a single number
+constexpr int kCloudSteps = 20;  // that spread those that stand for others
 constexpr int kSteps = 400, kFirstSteps = 200, kEvery = 50;
 constexpr int kBoundsOfEach = 8;    // coefficients of a bound beside the best
 constexpr Index kMostNarrowed = 8;  // a round leaves one point in so many at least
@@ -66,16 +69,17 @@ class Fitter {
 
   [[nodiscard]] Fit carry_out() {
     const Stopwatch watch;
-    const std::int64_t each = options_.trials / kParts / kPoints;
-    run(first_points(), each);
+    run(even_points(4 * kPoints), 1);
+    cloud_ = even_points(2 * (kCloud / numbers_)).transpose();
     for (fit_.rounds = 1;; ++fit_.rounds) {
       learn();
       // Where half of the points stay another round would be hardly nearer.
       const bool is_near = narrow() > 0.5 && fit_.misfit <= Fit::kPermittedMisfit;
-      if (is_near || fit_.rounds == kRounds) break;
-      run(new_points(kPoints), each);
+      if ((is_near || fit_.rounds + kLooks >= kRounds) && look_outside()) break;
+      if (fit_.rounds >= kRounds) break;
+      run(new_points(fit_.parts > 1 ? 2 * kPoints : kPoints), 1);
     }
-    run(new_points(2 * kPoints), (options_.trials - fit_.trials) / (2 * kPoints));
+    run(new_points(2 * kPoints), 0);
     learn();
     draw();
     summarise();
@@ -94,14 +98,17 @@ class Fitter {
   };
   /// The log of it, of a model and what was observed.
   struct Likelihood {
-    std::shared_ptr<const OutcomeModel> model;
+    std::shared_ptr<const OutcomeTree> model;
     std::vector<Given> given;
     VectorXd observed;  // (groups)
 
-    [[nodiscard]] double operator()(const OutcomeModel::Coefficients& coefficients,
+    [[nodiscard]] double operator()(const OutcomeTree::Coefficients& coefficients,
                                     const VectorXd& point) const {
       VectorXd logs;
       model->log_chances(coefficients, point, logs);
+      return of(logs);
+    }
+    [[nodiscard]] double of(const VectorXd& logs) const {
       double sum = observed.dot(logs);
       if (given.size() > 1)
         for (const Given& g : given) {
@@ -116,55 +123,82 @@ class Fitter {
   /// Where the likelihood of a round's model is not small, whichever of these coefficients it has.
   struct Bound {
     Likelihood likelihood;
-    std::vector<std::pair<OutcomeModel::Coefficients, double>> least;
-  };
-  /// How far the log likelihood may fall before the point is outside.
-  [[nodiscard]] static double margin(const Bound& b, const VectorXd& point) {
-    double most = -HUGE_VAL;
-    for (const auto& [coefficients, least] : b.least)
-      most = std::max(most, b.likelihood(coefficients, point) - least);
-    return most;
-  }
-  [[nodiscard]] bool inside(const VectorXd& point) const {
-    if ((point.array() < 0.0).any() || (point.array() > 1.0).any()) return false;
-    return std::all_of(bounds_.begin(), bounds_.end(), [&](const Bound& b) {
-      return std::any_of(b.least.begin(), b.least.end(), [&](const auto& of) {
-        return b.likelihood(of.first, point) >= of.second;
+    std::vector<std::pair<OutcomeTree::Coefficients, double>> greatest;  // log likelihood of each
+    double below = HUGE_VAL;  // so far it may fall before the point is outside
+
+    /// How far it may still fall.
+    [[nodiscard]] double margin(const VectorXd& point) const {
+      double most = -HUGE_VAL;
+      for (const auto& [coefficients, top] : greatest)
+        most = std::max(most, likelihood(coefficients, point) - top + below);
+      return most;
+    }
+    [[nodiscard]] bool holds(const VectorXd& point) const {
+      return std::any_of(greatest.begin(), greatest.end(), [&](const auto& of) {
+        return likelihood(of.first, point) >= of.second - below;
       });
-    });
+    }
+  };
+  [[nodiscard]] bool inside(const VectorXd& point) const { return is_inside(bounds_, point); }
+  [[nodiscard]] static bool is_inside(const std::vector<Bound>& bounds, const VectorXd& point) {
+    if ((point.array() < 0.0).any() || (point.array() > 1.0).any()) return false;
+    return std::all_of(bounds.begin(), bounds.end(),
+                       [&](const Bound& b) { return b.holds(point); });
   }
   [[nodiscard]] Random random(std::uint64_t what) const {
     return {Purpose::fit, {options_.seed, what, static_cast<std::uint64_t>(fit_.rounds)}};
   }
 
-  [[nodiscard]] MatrixXd first_points() const {
+  /// So many points, even in the whole ranges.
+  [[nodiscard]] MatrixXd even_points(Index count) const {
     Random chance = random(0);
     const ScrambledPoints points(chance);
-    MatrixXd all(kPoints, numbers_);
-    for (Index i = 0; i < kPoints; ++i) {
+    MatrixXd all(count, numbers_);
+    for (Index i = 0; i < count; ++i) {
       const Point at = points(static_cast<std::uint32_t>(i));
       for (Index k = 0; k < numbers_; ++k) all(i, k) = at[static_cast<std::size_t>(k)];
     }
     return all;
   }
-
-  /// Uniform where all bounds hold, from points and draws that are there.
-  [[nodiscard]] MatrixXd new_points(Index count) {
-    Random chance = random(1);
-    MatrixXd from(numbers_, count);
-    const MatrixXd& more = draws_.cols() > 0 ? draws_ : inside_;
-    for (Index i = 0; i < count; ++i)
-      from.col(i) =
-          i < inside_.cols() ? VectorXd(inside_.col(i)) : VectorXd(more.col(i % more.cols()));
-    Ensemble walk([this](const VectorXd& at) { return inside(at) ? 0.0 : -HUGE_VAL; },
-                  std::move(from));
-    for (int step = 0; step < kFirstSteps; ++step) walk.step(chance);
-    return walk.walkers().transpose();
+  /// Of even points outside of the bounds those where trials of the nearest points, taken together,
+  /// explain best what was observed: hills that lie between points have such neighbours.
+  [[nodiscard]] MatrixXd points_outside() const {
+    std::vector<Index> all(static_cast<std::size_t>(points_.rows()));
+    std::iota(all.begin(), all.end(), Index{0});
+    const MatrixXd counts = counts_of(all);
+    const VectorXd shares = counts.colwise().sum().transpose() / counts.sum();
+    const MatrixXd even = even_points(kMostNarrowed * 2 * kPoints);
+    std::vector<std::pair<double, Index>> found;
+    const auto nearest = static_cast<std::size_t>(numbers_ + 2);
+    std::vector<std::pair<double, Index>> near(static_cast<std::size_t>(points_.rows()));
+    for (Index i = 0; i < even.rows(); ++i) {
+      if (inside(even.row(i).transpose())) continue;
+      for (Index p = 0; p < points_.rows(); ++p)
+        near[static_cast<std::size_t>(p)] = {(points_.row(p) - even.row(i)).squaredNorm(), p};
+      std::partial_sort(near.begin(), near.begin() + nearest, near.end());
+      VectorXd together = shares;
+      for (std::size_t n = 0; n < nearest; ++n) together += counts.row(near[n].second).transpose();
+      found.emplace_back(-likelihood_.of((together / together.sum()).array().log()), i);
+    }
+    std::sort(found.begin(), found.end());
+    MatrixXd best(std::min<Index>(2 * kPoints, std::ssize(found)), numbers_);
+    for (Index i = 0; i < best.rows(); ++i)
+      best.row(i) = even.row(found[static_cast<std::size_t>(i)].second);
+    return best;
+  }
+  /// Uniform where all bounds hold. The first of the cloud, as few of Sobol's points are even only
+  /// if they follow each other.
+  [[nodiscard]] MatrixXd new_points(Index count) const {
+    return cloud_.leftCols(count).transpose();
   }
 
-  void run(const MatrixXd& points, std::int64_t each) {
-    const std::string name = "points of round " + std::to_string(fit_.rounds + 1) +
-                             (points.rows() > kPoints ? ", the last" : "");
+  /// With this many parts of the trials; 0: with what is left.
+  void run(const MatrixXd& points, int parts) {
+    const std::int64_t each =
+        (parts > 0 ? parts * options_.trials / kParts : options_.trials - fit_.trials) /
+        std::max(points.rows(), kPoints);
+    const std::string name =
+        "points of round " + std::to_string(fit_.rounds + 1) + (parts > 0 ? "" : ", the last");
     const Index before = points_.rows();
     points_.conservativeResize(before + points.rows(), numbers_);
     points_.bottomRows(points.rows()) = points;
@@ -236,35 +270,34 @@ class Fitter {
     for (const Index point : at) each_outcome(point, [&](std::size_t outcome) { ++all[outcome]; });
     group(all);
     const Index groups = std::ssize(fit_.groups);
-    std::vector<Index> group_of(data_.order.size(), 0);
+    group_of_.assign(data_.order.size(), 0);
     observed_ = VectorXd::Zero(groups);
     for (Index g = 0; g < groups; ++g) {
       const OutcomeGroup& group = fit_.groups[static_cast<std::size_t>(g)];
       observed_[g] = static_cast<double>(group.observed);
-      for (const std::size_t outcome : group.outcomes) group_of[outcome] = g;
+      for (const std::size_t outcome : group.outcomes) group_of_[outcome] = g;
     }
-    OutcomeCounts seen{used_, MatrixXd::Zero(used_.rows(), groups)};
-    for (Index i = 0; i < used_.rows(); ++i)
-      each_outcome(at[static_cast<std::size_t>(i)],
-                   [&](std::size_t outcome) { seen.counts(i, group_of[outcome]) += 1.0; });
-    model_.reset();
-    for (int degree = 1; degree <= kMostDegree; ++degree) {
-      const auto terms = OutcomeModel::terms(numbers_, degree);
-      if (degree > 1 && (2 * terms > used_.rows() ||
-                         static_cast<double>(terms * (groups - 1)) > 2.0 * kMostParameters))
-        break;
-      try {
-        auto next = std::make_shared<const OutcomeModel>(seen, degree);
-        if (!model_ || next->criterion() < model_->criterion()) model_ = std::move(next);
-      } catch (const std::runtime_error&) {
-        if (degree == 1) throw;
-        break;
-      }
-    }
+    const OutcomeCounts seen{used_, counts_of(at)};
+    const double observed = static_cast<double>(fit_.observed);
+    model_ = std::make_shared<const OutcomeTree>(
+        seen, OutcomeTreeOptions{
+                  .most_degree = kMostDegree,
+                  .most_parameters = 2.0 * kMostParameters,
+                  .lack_of_fit = Fit::kPermittedMisfit * Fit::kPermittedMisfit / (2.0 * observed)});
     likelihood_ = {model_, given_groups(), observed_};
     fit_.degree = model_->degree();
     fit_.points = used_.rows();
-    fit_.misfit = std::sqrt(2.0 * static_cast<double>(fit_.observed) * model_->lack_of_fit());
+    fit_.misfit = std::sqrt(2.0 * observed * model_->lack_of_fit());
+    fit_.parts = model_->leaves();
+  }
+
+  /// (points x groups), of some points.
+  [[nodiscard]] MatrixXd counts_of(const std::vector<Index>& points) const {
+    MatrixXd counts = MatrixXd::Zero(std::ssize(points), observed_.size());
+    for (Index i = 0; i < counts.rows(); ++i)
+      each_outcome(points[static_cast<std::size_t>(i)],
+                   [&](std::size_t outcome) { counts(i, group_of_[outcome]) += 1.0; });
+    return counts;
   }
 
   /// Neighbours go together until they are enough; trials of different endings only where so few
@@ -323,17 +356,29 @@ class Fitter {
     return given;
   }
 
-  [[nodiscard]] Ensemble walk_of(const OutcomeModel::Coefficients& coefficients,
-                                 const Likelihood& likelihood) const {
-    std::vector<std::pair<double, Index>> best;
-    for (Index i = 0; i < used_.rows(); ++i)
-      best.emplace_back(-likelihood(coefficients, used_.row(i).transpose()), i);
-    std::sort(best.begin(), best.end());
+  /// From walkers that stand where the cloud has them by this likelihood: as often on each hill as
+  /// is right, though none walks from one to the other.
+  [[nodiscard]] Ensemble walk_of(const OutcomeTree::Coefficients& coefficients,
+                                 Random& chance) const {
+    const Index cloud = cloud_.cols();
+    VectorXd sums(cloud);
+    for (Index i = 0; i < cloud; ++i) sums[i] = likelihood_(coefficients, cloud_.col(i));
+    sums = (sums.array() - sums.maxCoeff()).exp();
+    std::partial_sum(sums.begin(), sums.end(), sums.begin());
     MatrixXd from(numbers_, kWalkers);
-    for (Index i = 0; i < kWalkers; ++i)
-      from.col(i) = used_.row(best[static_cast<std::size_t>(i)].second).transpose();
-    return {[this, coefficients, likelihood](const VectorXd& at) {
-              return inside(at) ? likelihood(coefficients, at) : -HUGE_VAL;
+    const double first = chance.uniform();
+    std::vector<Index> order(kWalkers);
+    std::iota(order.begin(), order.end(), Index{0});
+    for (Index i = kWalkers; i > 1; --i)
+      std::swap(order[static_cast<std::size_t>(i - 1)],
+                order[chance.below(static_cast<std::uint64_t>(i))]);
+    for (Index i = 0; i < kWalkers; ++i) {
+      const double at = (static_cast<double>(i) + first) / kWalkers * sums[cloud - 1];
+      const Index place = std::lower_bound(sums.begin(), sums.end(), at) - sums.begin();
+      from.col(order[static_cast<std::size_t>(i)]) = cloud_.col(std::min(place, cloud - 1));
+    }
+    return {[this, coefficients](const VectorXd& at) {
+              return inside(at) ? likelihood_(coefficients, at) : -HUGE_VAL;
             },
             std::move(from)};
   }
@@ -341,51 +386,96 @@ class Fitter {
   /// A bound more. How many of the points keep it.
   [[nodiscard]] double narrow() {
     Random chance = random(2);
-    Ensemble walk = walk_of(model_->best(), likelihood_);
-    double most = -HUGE_VAL;
-    draws_.resize(numbers_, 0);
-    for (int step = 0; step < kFirstSteps + kSteps; ++step) {
-      walk.step(chance);
-      most = std::max(most, walk.log_densities().maxCoeff());
-      if (step < kFirstSteps || step % kEvery != 0) continue;
-      draws_.conservativeResize(numbers_, draws_.cols() + walk.walkers().cols());
-      draws_.rightCols(walk.walkers().cols()) = walk.walkers();
-    }
+    Bound bound{likelihood_, {{model_->best(), -HUGE_VAL}}};
+    for (int k = 0; k < kBoundsOfEach; ++k)
+      bound.greatest.emplace_back(model_->drawn(chance), -HUGE_VAL);
+    std::vector<double> falls;  // by the best coefficients
+    for (auto& [coefficients, top] : bound.greatest)
+      for (Index i = 0; i < used_.rows(); ++i) {
+        const double log = likelihood_(coefficients, used_.row(i).transpose());
+        top = std::max(top, log);
+        if (&top == &bound.greatest.front().second) falls.push_back(-log);
+      }
     const boost::math::chi_squared squares(numbers_);
-    const double below =
+    double below =
         2.0 * fit_.misfit + 0.5 * boost::math::quantile(boost::math::complement(squares, kOutside));
     // But no fewer points than these are kept: what is wrong far from the best is seen later.
-    std::vector<double> likelihoods;
-    for (Index i = 0; i < used_.rows(); ++i)
-      likelihoods.push_back(likelihood_(model_->best(), used_.row(i).transpose()));
-    std::sort(likelihoods.begin(), likelihoods.end(), std::greater<>());
-    const double least =
-        std::min(most - below, likelihoods[static_cast<std::size_t>(used_.rows() / kMostNarrowed)]);
-    Bound bound{likelihood_, {{model_->best(), least}}};
-    for (int k = 0; k < kBoundsOfEach; ++k) {
-      auto coefficients = model_->drawn(chance);
-      double greatest = -HUGE_VAL;
-      const auto look = [&](const VectorXd& at) {
-        greatest = std::max(greatest, likelihood_(coefficients, at));
-      };
-      for (Index i = 0; i < used_.rows(); ++i) look(used_.row(i).transpose());
-      for (Index i = 0; i < draws_.cols(); ++i) look(draws_.col(i));
-      bound.least.emplace_back(std::move(coefficients), greatest - (most - least));
-    }
+    std::sort(falls.begin(), falls.end());
+    below = std::max(below, bound.greatest.front().second +
+                                falls[static_cast<std::size_t>(used_.rows() / kMostNarrowed)]);
     bounds_.push_back(std::move(bound));
-    std::vector<Index> in;
-    for (Index i = 0; i < draws_.cols(); ++i)
-      if (inside(draws_.col(i))) in.push_back(i);
-    draws_ = MatrixXd(draws_(Eigen::all, in));
-    inside_.resize(numbers_, 0);
-    for (Index i = 0; i < used_.rows(); ++i)
-      if (inside(used_.row(i).transpose())) {
-        inside_.conservativeResize(numbers_, inside_.cols() + 1);
-        inside_.rightCols(1) = used_.row(i).transpose();
+    shrink(bounds_.back(), below, chance);
+    Index in = 0;
+    for (Index i = 0; i < used_.rows(); ++i) in += inside(used_.row(i).transpose());
+    return static_cast<double>(in) / static_cast<double>(used_.rows());
+  }
+  /// The cloud to where the last bound holds, in steps that leave enough of it.
+  void shrink(Bound& bound, double below, Random& chance) {
+    const Index cloud = cloud_.cols();
+    VectorXd falls(cloud);
+    while (bound.below > below) {
+      MatrixXd logs(cloud, std::ssize(bound.greatest));
+      for (Index c = 0; c < logs.cols(); ++c) {
+        auto& [coefficients, top] = bound.greatest[static_cast<std::size_t>(c)];
+        for (Index i = 0; i < cloud; ++i)
+          logs(i, c) = bound.likelihood(coefficients, cloud_.col(i));
+        top = std::max(top, logs.col(c).maxCoeff());
+        logs.col(c).array() -= top;
       }
-    const double share = static_cast<double>(inside_.cols()) / static_cast<double>(used_.rows());
-    fit_.volume *= share;
-    return share;
+      falls = -logs.rowwise().maxCoeff();
+      std::vector<double> sorted(falls.begin(), falls.end());
+      std::nth_element(sorted.begin(), sorted.begin() + cloud / kMostNarrowed, sorted.end());
+      bound.below = std::max(below, sorted[cloud / kMostNarrowed]);
+      std::vector<Index> in;
+      for (Index i = 0; i < cloud; ++i)
+        if (falls[i] <= bound.below) in.push_back(i);
+      fit_.volume *= static_cast<double>(in.size()) / static_cast<double>(cloud);
+      if (std::ssize(in) == cloud) continue;
+      for (Index i = 0; std::ssize(in) < cloud; ++i) in.push_back(in[static_cast<std::size_t>(i)]);
+      Ensemble walk([this](const VectorXd& at) { return inside(at) ? 0.0 : -HUGE_VAL; },
+                    MatrixXd(cloud_(Eigen::all, in)));
+      for (int step = 0; step < kCloudSteps; ++step) walk.step(chance);
+      cloud_ = walk.walkers();
+    }
+  }
+
+  /// What earlier rounds cut off: whether the posterior, by all points, lies there too, of which
+  /// some are new, anywhere at first, then where it seems to lie. If it does the bounds are made
+  /// anew.
+  [[nodiscard]] bool look_outside() {
+    const std::vector<Bound> bounds = bounds_;
+    const MatrixXd within = cloud_;
+    const double volume = fit_.volume;
+    MatrixXd outside = points_outside();
+    for (int look = 0; look < kLooks && fit_.rounds < kRounds; ++look) {
+      if (outside.rows() > 0) run(outside, 1);
+      ++fit_.rounds;
+      bounds_.clear();
+      cloud_ = even_points(2 * (kCloud / numbers_)).transpose();
+      fit_.volume = 1.0;
+      learn();
+      (void)narrow();
+      const Index cloud = cloud_.cols();
+      VectorXd weights(cloud), out(cloud);
+      std::vector<Index> these;
+      for (Index i = 0; i < cloud; ++i) {
+        weights[i] = likelihood_(model_->best(), cloud_.col(i));
+        out[i] = is_inside(bounds, cloud_.col(i)) ? 0.0 : 1.0;
+        if (out[i] > 0.0) these.push_back(i);
+      }
+      weights = (weights.array() - weights.maxCoeff()).exp();
+      fit_.outside = weights.dot(out) / weights.sum();
+      if (fit_.outside <= Fit::kPermittedOutside) {
+        bounds_ = bounds;
+        cloud_ = within;
+        fit_.volume = volume;
+        return true;
+      }
+      outside.resize(std::min<Index>(2 * kPoints, std::ssize(these)), numbers_);
+      for (Index i = 0; i < outside.rows(); ++i)
+        outside.row(i) = cloud_.col(these[static_cast<std::size_t>(i)]).transpose();
+    }
+    return false;
   }
 
   /// From the posterior, each walk with coefficients that are drawn.
@@ -395,7 +485,7 @@ class Fitter {
     tbb::parallel_for(std::size_t{0}, walked.size(), [&](std::size_t w) {
       Random chance = random(3 + w);
       coefficients_[w] = model_->drawn(chance);
-      Ensemble walk = walk_of(coefficients_[w], likelihood_);
+      Ensemble walk = walk_of(coefficients_[w], chance);
       const Index walkers = walk.walkers().cols();
       MatrixXd& all = walked[w];
       all.resize(numbers_, walkers * (kSteps / kEvery));
@@ -430,7 +520,7 @@ class Fitter {
     Index near = 0;
     for (Index i = 0; i < draws; ++i)
       near += std::any_of(bounds_.begin(), bounds_.end(), [&](const Bound& b) {
-        return margin(b, fit_.draws.row(i).transpose()) < 1.0;
+        return b.margin(fit_.draws.row(i).transpose()) < 1.0;
       });
     fit_.near_bounds = static_cast<double>(near) / static_cast<double>(draws);
     for (Index k = 0; k < numbers_; ++k) {
@@ -536,23 +626,23 @@ class Fitter {
   std::vector<std::int32_t> ended_;  // outcomes of their trials, one point behind the other
   std::vector<std::size_t> ends_;    // of each point's among these
   std::vector<Bound> bounds_;
-  MatrixXd used_;          // points of the model
-  VectorXd observed_;      // (groups)
-  Likelihood likelihood_;  // of these
-  std::shared_ptr<const OutcomeModel> model_;
-  MatrixXd draws_;   // (numbers x draws), of a round
-  MatrixXd inside_;  // (numbers x points), those of the model that its bound leaves
-  std::vector<OutcomeModel::Coefficients> coefficients_;  // by walk
+  MatrixXd used_;                // points of the model
+  VectorXd observed_;            // (groups)
+  std::vector<Index> group_of_;  // by outcome
+  Likelihood likelihood_;        // of these
+  std::shared_ptr<const OutcomeTree> model_;
+  MatrixXd cloud_;  // (numbers x points), even where all bounds hold
+  std::vector<OutcomeTree::Coefficients> coefficients_;  // by walk
   Fit fit_;
 };
 
 }  // namespace
 
-std::int64_t least_trials_of_fit(int numbers) { return kLeastEach * kParts * kPoints * numbers; }
+std::int64_t least_trials_of_fit(int numbers) { return kLeastTrials * numbers; }
 
 bool Fit::settled() const {
   constexpr double kPermittedMixing = 1.05, kPermittedByRuns = 0.2, kPermittedNear = 0.01;
-  return misfit <= kPermittedMisfit && mixing <= kPermittedMixing &&
+  return misfit <= kPermittedMisfit && outside <= kPermittedOutside && mixing <= kPermittedMixing &&
          near_bounds <= kPermittedNear &&
          std::all_of(numbers.begin(), numbers.end(),
                      [](const FittedNumber& n) { return n.by_runs <= kPermittedByRuns; });

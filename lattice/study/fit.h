@@ -56,13 +56,15 @@ struct Fit {
   double misfit = 0.0;        // by how much a log likelihood may be off between the points
   int rounds = 0, degree = 0;
   std::int64_t points = 0, trials = 0, observed = 0;
+  std::int64_t parts = 1;    // of the ranges, each with polynomials of its own
   double volume = 1.0;       // of the ranges, where the last round's points lie
   double mixing = 1.0;       // Gelman and Rubin's R of the worst number
   double near_bounds = 0.0;  // share of the draws at the edge of where the points lie
+  double outside = 0.0;      // of the posterior where earlier rounds cut off, by points there
   std::int64_t never = 0;    // observed trials that ended as none at these points did
   dynamics::Health health;
   double seconds = 0.0;
-  static constexpr double kPermittedMisfit = 0.5;
+  static constexpr double kPermittedMisfit = 0.5, kPermittedOutside = 0.01;
   [[nodiscard]] bool settled() const;
 };
 

@@ -7,11 +7,14 @@
 #include <array>
 #include <boost/math/distributions/beta.hpp>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "lattice/reference.h"
+#include "lattice/scene/ranges.h"
+#include "lattice/scene/scene_problem.h"
 #include "tests/support/lane.h"
 #include "tests/support/threads.h"
 
@@ -385,6 +388,108 @@ TEST(Fit, RanksOfTheTruthAreUniform) {  // simulation-based calibration (Talts e
     for (const int n : of_number)
       chi_squared += std::pow(n - kExperiments / kBins, 2.0) / (double(kExperiments) / kBins);
     EXPECT_LT(chi_squared, 18.5);  // p = 0.001 of four degrees of freedom
+  }
+}
+
+/// Shares of a posterior of one number among parts of its range, by Simpson's rule.
+template <class LogLikelihood>
+std::vector<double> shares_of(const LogLikelihood& log_likelihood, int parts) {
+  constexpr int kSteps = 2000;  // of a part
+  std::vector<double> shares(static_cast<std::size_t>(parts));
+  const double most = log_likelihood(0.8);
+  for (int i = 0; i < parts; ++i)
+    for (int step = 0; step <= kSteps; ++step) {
+      const double x = (i + static_cast<double>(step) / kSteps) / parts,
+                   weight = step == 0 || step == kSteps ? 1.0
+                            : step % 2 == 1             ? 4.0
+                                                        : 2.0;
+      shares[static_cast<std::size_t>(i)] += weight * std::exp(log_likelihood(x) - most);
+    }
+  const double all = std::accumulate(shares.begin(), shares.end(), 0.0);
+  for (double& share : shares) share /= all;
+  return shares;
+}
+
+// The chance goes up and down over the range, so that five values explain the counts alike; where
+// it is steeper the hill is narrower.
+TEST(Fit, KeepsEachHillOfOneNumber) {
+  const auto chance = [](double x) { return 0.72 + 0.2 * std::sin(20.0 * x * x - 1.0); };
+  const auto problem_at = [&](const std::vector<double>& x) {
+    return two_lane(chance(x[0]), chance(x[0]));
+  };
+  const Observed o = experiment(two_lane(0.75, 0.75), 100, 21);
+  const auto even = passes(o, 0), odd = passes(o, 1);
+  const double on = static_cast<double>(even[1] + odd[1]),
+               off = static_cast<double>(even[0] + odd[0]) - on;
+  constexpr int kTenths = 10;
+  const std::vector<double> exact = shares_of(
+      [&](double x) { return on * std::log(chance(x)) + off * std::log(1.0 - chance(x)); },
+      kTenths);
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Fit f = fit_trials(1, problem_at, o, {.trials = 100'000, .seed = seed});
+    EXPECT_LE(f.outside, Fit::kPermittedOutside) << seed;
+    for (int tenth = 0; tenth < kTenths; ++tenth) {
+      const auto place = (kTenths * f.draws.array()).floor();
+      const double share = (place == tenth).cast<double>().mean();
+      EXPECT_NEAR(share, exact[static_cast<std::size_t>(tenth)], 0.1) << tenth;
+    }
+  }
+}
+
+// A field that is its own mirror image, and as many left as right: soft beams on the left explain
+// that as well as soft ones on the right do. On a grid of 4 Nm/rad with 4000 trials at each point
+// 95 % of either number lie in [298, 406]; the hills are at (306, 399) and (399, 306).
+TEST(Fit, AFieldThatIsItsMirrorImageHasBothHills) {
+  const RangedScene scene(
+      "forces = { propulsion_N = 7.0, random_N = 4.0 }\n"
+      "run = { method = \"moreau\" }\n"
+      "field = { columns = 1, rows = 2, max_gates = 0 }\n"
+      "start = { x_m = 0.0, vy_m_per_s = 14.0 }\n",
+      "mirrored.toml", {},
+      {"beams.stiffness_left_Nm_per_rad=50:900", "beams.stiffness_right_Nm_per_rad=50:900"},
+      "free");
+  Observed o;
+  o.seen.endings[static_cast<std::size_t>(markov::Ending::far_edge)] = 30;
+  o.seen.endings[static_cast<std::size_t>(markov::Ending::left_edge)] = 20;
+  o.seen.endings[static_cast<std::size_t>(markov::Ending::right_edge)] = 20;
+  o.seen.endings[static_cast<std::size_t>(markov::Ending::trapped)] = 10;
+  int same = 0;
+  constexpr int kSeeds = 20;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const Fit f =
+        fit_trials(2, [&](const std::vector<double>& x) { return problem_of(scene.at(x)); }, o,
+                   {.trials = 40'000, .seed = seed});
+    double apart = 0.0;
+    for (const std::size_t end : {0U, 1U}) {
+      const std::array<double, 2> ends{scene.ranges()[0].at(f.numbers[0].interval[end]),
+                                       scene.ranges()[1].at(f.numbers[1].interval[end])};
+      apart = std::max(apart, std::abs(ends[0] - ends[1]));
+    }
+    for (const std::size_t k : {0U, 1U}) {
+      EXPECT_LT(scene.ranges()[k].at(f.numbers[k].interval[0]), 306.0) << seed << " " << k;
+      EXPECT_GT(scene.ranges()[k].at(f.numbers[k].interval[1]), 399.0) << seed << " " << k;
+    }
+    same += apart < 20.0;
+  }
+  EXPECT_GE(same, 8);  // with so few trials others are wider on one side
+}
+
+// What numbers of two lanes tell may be exchanged: both have the same posterior. A narrow hill for
+// each order of them.
+TEST(Fit, NumbersThatMayBeExchangedHaveTheSameIntervals) {
+  const auto chance = [](double x) { return 0.3 + 0.65 * x; };
+  const auto problem_at = [&](const std::vector<double>& x) {
+    const double low = chance(std::min(x[0], x[1])), high = chance(std::max(x[0], x[1]));
+    return two_lane(low, high);
+  };
+  const Observed o = experiment(two_lane(0.72, 0.9), 300, 22);
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Fit f = fit_trials(2, problem_at, o, {.trials = 40'000, .seed = seed});
+    EXPECT_LE(f.outside, Fit::kPermittedOutside) << seed;
+    for (const std::size_t end : {0U, 1U})
+      EXPECT_NEAR(f.numbers[0].interval[end], f.numbers[1].interval[end], 0.06) << seed;
+    const double order = (f.draws.col(0).array() < f.draws.col(1).array()).cast<double>().mean();
+    EXPECT_NEAR(order, 0.5, 0.4) << seed;  // by the trials, which know either hill so well
   }
 }
 
