@@ -162,7 +162,7 @@ class Fitter {
   }
   /// Of even points outside of the bounds those where trials of the nearest points, taken together,
   /// explain best what was observed: hills that lie between points have such neighbours.
-  [[nodiscard]] MatrixXd points_outside() const {
+  [[nodiscard]] MatrixXd points_outside(const std::vector<Bound>& bounds) const {
     std::vector<Index> all(static_cast<std::size_t>(points_.rows()));
     std::iota(all.begin(), all.end(), Index{0});
     const MatrixXd counts = counts_of(all);
@@ -172,7 +172,7 @@ class Fitter {
     const auto nearest = static_cast<std::size_t>(numbers_ + 2);
     std::vector<std::pair<double, Index>> near(static_cast<std::size_t>(points_.rows()));
     for (Index i = 0; i < even.rows(); ++i) {
-      if (inside(even.row(i).transpose())) continue;
+      if (is_inside(bounds, even.row(i).transpose())) continue;
       for (Index p = 0; p < points_.rows(); ++p)
         near[static_cast<std::size_t>(p)] = {(points_.row(p) - even.row(i)).squaredNorm(), p};
       std::partial_sort(near.begin(), near.begin() + nearest, near.end());
@@ -446,7 +446,7 @@ class Fitter {
     const std::vector<Bound> bounds = bounds_;
     const MatrixXd within = cloud_;
     const double volume = fit_.volume;
-    MatrixXd outside = points_outside();
+    MatrixXd outside = points_outside(bounds);
     for (int look = 0; look < kLooks && fit_.rounds < kRounds; ++look) {
       if (outside.rows() > 0) run(outside, 1);
       ++fit_.rounds;
@@ -465,6 +465,10 @@ class Fitter {
       }
       weights = (weights.array() - weights.maxCoeff()).exp();
       fit_.outside = weights.dot(out) / weights.sum();
+      if (fit_.outside <= Fit::kPermittedOutside && look == 0 && outside.rows() > 0) {
+        outside = points_outside(bounds);  // the first may have missed a narrow hill: once more
+        continue;
+      }
       if (fit_.outside <= Fit::kPermittedOutside) {
         bounds_ = bounds;
         cloud_ = within;

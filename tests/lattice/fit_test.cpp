@@ -454,7 +454,7 @@ TEST(Fit, AFieldThatIsItsMirrorImageHasBothHills) {
   o.seen.endings[static_cast<std::size_t>(markov::Ending::right_edge)] = 20;
   o.seen.endings[static_cast<std::size_t>(markov::Ending::trapped)] = 10;
   int same = 0;
-  constexpr int kSeeds = 20;
+  constexpr int kSeeds = 12;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const Fit f =
         fit_trials(2, [&](const std::vector<double>& x) { return problem_of(scene.at(x)); }, o,
@@ -471,7 +471,7 @@ TEST(Fit, AFieldThatIsItsMirrorImageHasBothHills) {
     }
     same += apart < 20.0;
   }
-  EXPECT_GE(same, 8);  // with so few trials others are wider on one side
+  EXPECT_GE(same, 4);  // with so few trials others are wider on one side
 }
 
 // What numbers of two lanes tell may be exchanged: both have the same posterior. A narrow hill for
