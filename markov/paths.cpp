@@ -9,10 +9,26 @@
 namespace gatewalk::markov {
 namespace {
 
+/// A cell of a path. Paths share their first steps, however long they are.
+struct Step {
+  std::int64_t cell;
+  std::int64_t before;  // the step before, as its place in a list; -1: none
+};
+
+/// The cells of a path from the start to its last step.
+std::vector<std::int64_t> cells_of(const std::vector<Step>& steps, std::int64_t last) {
+  std::vector<std::int64_t> cells;
+  for (; last >= 0; last = steps[static_cast<std::size_t>(last)].before)
+    cells.push_back(steps[static_cast<std::size_t>(last)].cell);
+  std::reverse(cells.begin(), cells.end());
+  return cells;
+}
+
 /// A path, or its beginning: then the walks that pass it are in these states of its last cell.
 struct Beginning {
-  double at_most = 0.0;  // of the share that any path has which begins so; of a path its share
-  std::vector<std::int64_t> cells;
+  double at_most = 0.0;   // of the share that any path has which begins so; of a path its share
+  std::int64_t last = 0;  // step
+  int length = 1;         // cells
   std::vector<std::pair<int, double>> states;  // input, share; none: the path is complete
   friend bool operator<(const Beginning& a, const Beginning& b) { return a.at_most < b.at_most; }
 };
@@ -25,7 +41,8 @@ FrequentPaths most_frequent_paths(const FieldChain& chain, const Field& field, c
   validate(chain, field, start, max_cells);
   const std::int64_t first = std::int64_t{start.row} * field.columns + start.column;
   std::priority_queue<Beginning> open;
-  open.push({chance(1, first, start.input), {first}, {{start.input, 1.0}}});
+  std::vector<Step> steps{{first, -1}};
+  open.push({chance(1, first, start.input), 0, 1, {{start.input, 1.0}}});
   FrequentPaths found;
   for (std::int64_t draws = 0; !open.empty() && found.paths.size() < count;) {
     if (draws > most_draws) {
@@ -36,12 +53,12 @@ FrequentPaths most_frequent_paths(const FieldChain& chain, const Field& field, c
     open.pop();
     if (!(b.at_most > 0.0)) break;
     if (b.states.empty()) {
-      found.paths.push_back({b.cells, b.at_most});
+      found.paths.push_back({cells_of(steps, b.last), b.at_most});
       continue;
     }
-    const std::int64_t cell = b.cells.back(), column = cell % field.columns,
-                       row = cell / field.columns;
-    const int draw = static_cast<int>(b.cells.size());
+    const std::int64_t cell = steps[static_cast<std::size_t>(b.last)].cell,
+                       column = cell % field.columns, row = cell / field.columns;
+    const int draw = b.length;
     const Chain& here = chain.at(column, row);
     double ends = 0.0;
     std::map<std::int64_t, std::map<int, double>> onward;  // by cell and input
@@ -57,10 +74,10 @@ FrequentPaths most_frequent_paths(const FieldChain& chain, const Field& field, c
           onward[to_row * field.columns + to_column][exit.next_input] += p;
       }
     }
-    if (ends > 0.0) open.push({ends, b.cells, {}});
+    if (ends > 0.0) open.push({ends, b.last, draw, {}});
     for (const auto& [to, states] : onward) {
-      Beginning next{0.0, b.cells, {states.begin(), states.end()}};
-      next.cells.push_back(to);
+      Beginning next{0.0, std::ssize(steps), draw + 1, {states.begin(), states.end()}};
+      steps.push_back({to, b.last});
       for (const auto& [input, share] : next.states)
         next.at_most += share * chance(draw + 1, to, input);
       if (next.at_most > 0.0) open.push(std::move(next));

@@ -370,6 +370,25 @@ TEST(Paths, AreTheMostFrequentOfAll) {
   EXPECT_NEAR(sum, chance(1, 1, start.input), 1e-14);
 }
 
+// From left to right and back, and up once in 10^4: k rounds are made with chance (1 - out)^k out.
+// The first of these paths are known to be the most frequent only when some 10^5 rounds have been
+// looked at.
+TEST(Paths, ShareTheirBeginningsWhereWalksCircleForLong) {
+  const double out = 1e-4;
+  const Chain chain =
+      Chain::from_probabilities(matrix(2, 3, {{0, 1, 1.0 - out}, {0, 2, out}, {1, 0, 1.0}}),
+                                {{0, -1, 0}, {1, 1, 0}, {0, 0, 1}});
+  const Field field{2, 1};
+  const EndingChance chance(chain, field, Ending::far_edge, 0);
+  const auto found = most_frequent_paths(chain, field, {}, 0, chance, 3);
+  EXPECT_FALSE(found.gave_up);
+  ASSERT_EQ(found.paths.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(found.paths[k].cells.size(), 2 * k + 1);
+    EXPECT_NEAR(found.paths[k].share, out * std::pow(1.0 - out, static_cast<double>(k)), 1e-15);
+  }
+}
+
 // ---- Quasi-stationary distribution ----
 
 TEST(QuasiStationary, IsTheFirstEigenvectorOfTheMatrix) {
