@@ -101,6 +101,8 @@ int run_analyze(const Arguments& arguments) {
   json["made_by"] = s.made_by(options);
   options.give_out(json, table_of(shown) + shares.table);
   options.warn(rest_warning(c.rest));
+  if (const std::string why = analysis.why_unfinished(); !why.empty())
+    options.warn("gates visited, visits, times and costs are not known: " + why);
   const bool clean_effects =
       status_of(options, effects.health, "in gates with changed numbers ") == kFine;
   const bool clean =

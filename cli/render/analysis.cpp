@@ -292,8 +292,9 @@ Json to_json(const AnalysedField& f) {
   }
   json["expected_visits"] = grid(a.totals.visits);
   json["never_sampled"] = f.rest.never_sampled;
-  json["still_walking"] = std::max(f.rest.still_walking, a.totals.remainder);
+  json["still_walking"] = f.rest.still_walking;
   json["drawn_walks"] = a.totals.drawn_walks;
+  json["by_ending"] = Json::object();
   const auto add = [&](const char* key, std::optional<markov::Ending> ending) {
     const Spent s = spent(a, ending);
     if (!(s.share > 0.0)) return;
@@ -417,8 +418,11 @@ std::string table_of(const AnalysedField& f) {
                    : std::isnan(f.endings.interval.front().front())
                        ? "of all bodies; no intervals"
                        : "of all bodies; 95 % intervals that count the sampling of the matrix") +
-      limits_text(f.shown) + rest_text(f.rest) + "\ngates visited  " + with_interval(a.gates, 3) +
-      (a.gates.why_none.empty() ? "" : " (no interval: " + a.gates.why_none + ")") +
+      limits_text(f.shown) + rest_text(f.rest) + "\ngates visited  " +
+      (std::isnan(a.gates.mean) ? "-" : with_interval(a.gates, 3)) +
+      (a.gates.why_none.empty()   ? ""
+       : std::isnan(a.gates.mean) ? " (nor visits, times and costs: " + a.gates.why_none + ")"
+                                  : " (no interval: " + a.gates.why_none + ")") +
       "\n\nby the chain\n" + header_of(f.shown);
   const auto add = [&](const char* name, std::optional<markov::Ending> ending) {
     const Spent s = spent(a, ending);
@@ -429,7 +433,7 @@ std::string table_of(const AnalysedField& f) {
   add("all", {});
   for (const EndingName& e : kAllEndingNames) add(e.name, e.ending);
   table += few_runs_text(a);
-  if (!std::isfinite(a.costs.front().mean))
+  if (!std::isfinite(a.costs.front().mean) && !std::isnan(a.gates.mean))
     table += f.shown.mass
                  ? "(the file is of an older version, which kept no durations: build it again)\n"
                  : "(the durations of some passages are not known)\n";
@@ -450,7 +454,8 @@ std::string table_of(const AnalysedField& f) {
         "left "
         "in the beams;\nJ/(kg m): cost of transport, work of both forces per mass and way "
         "forward\n";
-  table += "\n" + map_of(a.totals.visits, "visits of each gate", "per 100 bodies");
+  if (!std::isnan(a.gates.mean))
+    table += "\n" + map_of(a.totals.visits, "visits of each gate", "per 100 bodies");
   if (a.endless)
     table += "\nbodies that go on for ever: " + percent(a.endless->survival, 1.0) +
              " of them get through or out of each further gate; " +
@@ -523,7 +528,7 @@ std::string table_of(const AnalysedField& f) {
       table += "the chance changes by " + percent(largest, 1.0, 0) + " in a step of " +
                percent(f.step, 1.0) + ", so the first are rough: a smaller --step is more exact\n";
   }
-  if (!types.empty()) {
+  if (!types.empty() && !std::isnan(a.gates.mean)) {
     table += "\nby type of the gate: visits per body " +
              by_type(types, [&](std::size_t t) { return a.types[t].visits; }) +
              "; trapped there, % of these visits " + by_type(types, [&](std::size_t t) {

@@ -22,8 +22,9 @@ std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole) {
 }
 
 std::array<double, 2> interval_of_share(double share, double equivalent_trials) {
-  const auto [low, high] =
-      jeffreys(equivalent_trials * share, equivalent_trials * std::max(0.0, 1.0 - share));
+  constexpr double kMostTrials = 1e9;  // of more the quantiles need not converge
+  const double trials = std::min(equivalent_trials, kMostTrials);
+  const auto [low, high] = jeffreys(trials * share, trials * std::max(0.0, 1.0 - share));
   return {std::min(low, share), std::max(high, share)};
 }
 

@@ -215,8 +215,10 @@ std::array<double, 2> share_95(double whole, const std::vector<double>& groups,
   return dynamics::interval_of_share(whole, std::min(like, from.gate_runs));
 }
 
-std::array<double, 2> resampled_95(std::vector<double> drawn, double own, const Evidence& from) {
-  const double share = std::clamp(own, 0.0, 1.0);
+namespace {
+
+std::array<double, 2> interval_of_drawn(std::vector<double> drawn, double share,
+                                        const Evidence& from) {
   std::sort(drawn.begin(), drawn.end());
   const std::size_t beyond = (drawn.size() + 1) / 40;  // 2.5 % on either side
   const std::size_t at = beyond > 0 ? beyond - 1 : 0;
@@ -233,6 +235,15 @@ std::array<double, 2> resampled_95(std::vector<double> drawn, double own, const 
   if (!(from.gate_runs > 0.0) || !possible) return middle;
   const auto [low, high] = dynamics::interval_of_share(share, from.gate_runs);
   return {std::min(middle[0], low), std::max(middle[1], high)};
+}
+
+}  // namespace
+
+std::array<double, 2> resampled_95(std::vector<double> drawn, double own, const Evidence& from) {
+  const double share = std::clamp(own, 0.0, 1.0);
+  const auto [low, high] = interval_of_drawn(std::move(drawn), share, from);
+  return {std::max(0.0, std::min(low, share - from.hidden)),
+          std::min(1.0, std::max(high, share + from.hidden))};
 }
 
 std::array<double, 2> with_unfinished(const std::array<double, 2>& interval, double share,

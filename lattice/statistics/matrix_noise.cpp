@@ -6,14 +6,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "dynamics/base/random.h"
+#include "dynamics/base/share.h"
 #include "lattice/statistics/draws.h"
 #include "lattice/statistics/share_95.h"
 #include "markov/predict.h"
+#include "markov/totals.h"
 
 namespace gatewalk::lattice {
 
@@ -46,10 +50,54 @@ bool equals_row_before(const markov::Counts& counts, int row) {
   return row > 0 && same(counts.innerIndexPtr()) && same(counts.valuePtr());
 }
 
+/// Of each row whose runs all had one outcome: the walks that draw from it, times the chance of
+/// another outcome that as many runs miss (Jeffreys). The largest of these. Many such rows miss
+/// about as much as others show too often, which resampling counts; of one row that most walks pass
+/// nothing makes up for it. A walk that returns to a cell and state counts once.
+double hidden_share(const CountedField& gates, const markov::Start& start,
+                    const markov::Field& field, int max_cells) {
+  const auto& chains = gates.chains.chains();
+  std::vector<std::vector<double>> missed(chains.size());  // by matrix and row; 0: others were seen
+  bool any = false, leads_back = false;
+  for (std::size_t m = 0; m < chains.size(); ++m) {
+    missed[m].assign(static_cast<std::size_t>(gates.counts[m].rows()), 0.0);
+    for (int row = 0; row < gates.counts[m].rows(); ++row) {
+      const auto at = static_cast<std::size_t>(row);
+      if (gates.counts[m].row(row).nonZeros() != 1) continue;
+      const std::int64_t each = gates.images.empty() ? 1 : gates.images[m][at];
+      const std::int64_t runs = gates.counts[m].row(row).sum() / each;
+      missed[m][at] = dynamics::interval_of_share(0.0, static_cast<double>(runs))[1];
+      any = true;
+    }
+    for (const markov::Exit& exit : chains[m].exits()) leads_back |= exit.di_y < 0;
+  }
+  if (!any) return 0.0;
+  constexpr int kMoves = 1000;  // later ones are returns, or of hardly any walk
+  if (max_cells == 0 && leads_back) max_cells = kMoves;
+  std::map<std::tuple<std::size_t, int, std::int64_t>, double> draws;  // matrix, row, cell
+  markov::walk_totals(gates.chains, field, start, max_cells, {},
+                      [&](int, std::int64_t cell, int input, double share) {
+                        const auto m = static_cast<std::size_t>(
+                            gates.chains.type_of(cell % field.columns, cell / field.columns));
+                        if (missed[m][static_cast<std::size_t>(input)] > 0.0)
+                          draws[{m, input, cell}] += share;
+                      },
+                      {.all = 1e-6});
+  std::map<std::pair<std::size_t, int>, double> walks;
+  for (const auto& [at, share] : draws)
+    walks[{std::get<0>(at), std::get<1>(at)}] += std::min(1.0, share);
+  double most = 0.0;
+  for (const auto& [row, share] : walks)
+    most = std::max(most, share * missed[row.first][static_cast<std::size_t>(row.second)]);
+  return std::min(1.0, most);
+}
+
 }  // namespace
 
-Evidence CountedField::evidence_at(const markov::Start& start) const {
-  Evidence from{static_cast<double>(runs_at(start)), 0.0};
+Evidence CountedField::evidence_at(const markov::Start& start, const markov::Field& field,
+                                   int max_cells) const {
+  Evidence from{static_cast<double>(runs_at(start)), 0.0,
+                hidden_share(*this, start, field, max_cells)};
   for (std::size_t type = 0; type < counts.size(); ++type)
     for (int row = 0; row < counts[type].rows(); ++row) {
       if (small_rows && equals_row_before(counts[type], row)) continue;

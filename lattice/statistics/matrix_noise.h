@@ -23,8 +23,10 @@ struct CountedField {
 
   /// Runs of the row that a walk begins in, mirror images not counted twice.
   [[nodiscard]] std::int64_t runs_at(const markov::Start& start) const;
-  /// These, and those of all rows.
-  [[nodiscard]] Evidence evidence_at(const markov::Start& start) const;
+  /// These, those of all rows, and what rows of one outcome may hide from walks without a limit of
+  /// cells (`max_cells` 0) or with it.
+  [[nodiscard]] Evidence evidence_at(const markov::Start& start, const markov::Field& field,
+                                     int max_cells) const;
 };
 
 /// A matrix that another set of runs might have given: each row a draw from a Dirichlet

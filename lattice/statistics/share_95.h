@@ -14,6 +14,9 @@ inline constexpr double kShareRounding = 1e-12;
 /// What a share was predicted from: independent trials, and all their gate runs.
 struct Evidence {
   double trials = 0.0, gate_runs = 0.0;
+  /// The largest share of all walks that one row of a matrix may send elsewhere, as all its runs had
+  /// one outcome and were too few to exclude another.
+  double hidden = 0.0;
 };
 
 /// 95 % interval of a share that is predicted from all trials, `whole`, and from each of
@@ -28,8 +31,9 @@ struct Evidence {
 /// least; MatrixNoise): their middle 95 %. Where `own` does not lie within these, as their
 /// distribution is skewed, it is Jeffreys' interval of as many independent trials as would vary
 /// like them. Where they show no spread, it is what the trials `from` the row that all walks begin
-/// in leave open. As resampled rows hold nothing that no run showed, it is no narrower than if each
-/// gate run were a trial (gate_runs 0: may be narrower).
+/// in leave open. Resampled rows hold nothing that no run showed. So the interval is no narrower
+/// than if each gate run were a trial (gate_runs 0: may be narrower), nor than what a row of one
+/// outcome hides.
 [[nodiscard]] std::array<double, 2> resampled_95(std::vector<double> drawn, double own,
                                                  const Evidence& from);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/study/analysis.h"
 
+#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
@@ -179,10 +180,10 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Cel
   const auto gate_runs =
       static_cast<double>(std::accumulate(chain.runs.begin(), chain.runs.end(), std::int64_t{0}));
   std::vector<StartChance> starts;
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
   const auto add = [&](const StateRange& range, bool sampled, std::int64_t runs) {
-    const double mean = sampled ? mean_of(all.front(), range.middle()) : kUnknown;
-    starts.push_back({range, {mean, {kUnknown, kUnknown}}, runs});
+    const double mean = sampled ? mean_of(all.front(), range.middle()) : kNotKnown;
+    starts.push_back({range, {mean, {kNotKnown, kNotKnown}}, runs});
   };
   const StatesMeeting meeting(space, start_face);
   for (int state = 0; state < space.size(); ++state) {
@@ -249,6 +250,28 @@ int leaf_of_analysis(const Problem& problem, const RunPool& pool, int per_leaf, 
   const double runs = 2.0 * static_cast<double>(pool.gate_runs());  // with mirror images
   return std::max(per_leaf, static_cast<int>(std::ceil(runs / most)));
 }
+
+std::string Analysis::why_unfinished() const {
+  constexpr double kHardlyAny = 1e-6;
+  if (!(totals.remainder > kHardlyAny)) return "";
+  return fmt::format("{:.2g} % of the walks are under way after all moves that are added up",
+                     100.0 * totals.remainder);
+}
+
+namespace {
+
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
+/// Of sums that were stopped: what the walks left would add may be any number.
+markov::WalkTotals not_known(markov::WalkTotals t) {
+  t.endings.fill(kNotKnown);
+  t.visits.setConstant(kNotKnown);
+  t.draws.fill({kNotKnown, kNotKnown, kNotKnown});
+  for (auto& by_ending : t.totals) by_ending.fill({kNotKnown, kNotKnown, kNotKnown});
+  return t;
+}
+
+}  // namespace
 
 Analysis analyze(const Problem& problem, const AnalysedChain& chain, const AnalysisOptions& options,
                  const Work& work) {
@@ -322,6 +345,8 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
     }
     return mean_95(value(out.totals), parts, runs);
   };
+  const std::string unfinished = out.why_unfinished();
+  if (!unfinished.empty()) out.totals = not_known(std::move(out.totals));
   out.gates = of_totals({}, [](const markov::WalkTotals& t) { return t.visits.sum(); });
   for (std::size_t k = 0; k < map.section.costs.size(); ++k) {
     out.costs.push_back(of_totals({}, [k](const markov::WalkTotals& t) {
@@ -331,6 +356,7 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
       out.costs_of[e].push_back(
           of_totals(e, [k, e](const markov::WalkTotals& t) { return t.totals[k][e].mean(); }));
   }
+  if (!unfinished.empty()) out.gates.why_none = unfinished;
   if (!out.costs.empty() && std::isfinite(out.costs[0].mean))
     out.walks = markov::timed_walks(c.chain, cells, c.start, field.max_gates, c.rewards,
                                     options.timed_walks, options.seed);
@@ -378,6 +404,13 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
     if (place.input < space.size())
       out.state_trapping[static_cast<std::size_t>(place.input)] += effect;
   });
+  if (!unfinished.empty()) {
+    out.passed.setConstant(kNotKnown);
+    out.trapping.setConstant(kNotKnown);
+    std::fill(out.state_trapping.begin(), out.state_trapping.end(), kNotKnown);
+    std::fill(out.type_trapping.begin(), out.type_trapping.end(), kNotKnown);
+    for (auto& type : out.types) type.visits = type.trapped = kNotKnown;
+  }
   out.seconds = watch.seconds();
   return out;
 }

@@ -54,6 +54,9 @@ struct Analysis {
   markov::WalkTotals totals;  // quantities by Section::costs
   /// Gates visited, and what bodies took, of all of them. Intervals: sampling, and what smaller
   /// states would change; none without groups, nor from few runs that end so (mean_95).
+  /// Why visits, gates, times and costs are no numbers: the sums were stopped with walks under way.
+  /// Empty where they are.
+  [[nodiscard]] std::string why_unfinished() const;
   Mean95OfRuns gates;
   std::vector<Mean95OfRuns> costs;                                   // by Section::costs
   std::array<std::vector<Mean95OfRuns>, markov::kEndings> costs_of;  // by ending

@@ -44,7 +44,8 @@ std::vector<Resampled> resampled_predictions(const CountedField& gates, const ma
   constexpr std::int64_t kTogether = 8;
   std::vector<Resampled> all;
   for (std::size_t k = 0; k < starts.size(); ++k)
-    all.push_back({MatrixNoise(prediction.starts[k].final, gates.evidence_at(starts[k]))});
+    all.push_back(
+        {MatrixNoise(prediction.starts[k].final, gates.evidence_at(starts[k], field, max_cells))});
   std::vector<markov::FinalDistribution> own;
   for (const StartPrediction& s : prediction.starts) own.push_back(s.final);
   const std::int64_t replicates = gates.exact ? 0 : replicates_for(gates, field, own, max_cells);

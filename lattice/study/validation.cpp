@@ -225,7 +225,7 @@ StartValidation validate_start(const Setup& setup, const dynamics::Entry& start,
   const TimedTrials seen = run_trials(setup, start, chain_start.start, exact, remembered);
 
   const std::int64_t may_miss = setup.gates.runs_at(chain_start.start);
-  MatrixNoise noise(exact, setup.gates.evidence_at(chain_start.start));
+  MatrixNoise noise(exact, setup.gates.evidence_at(chain_start.start, setup.field(), max_gates));
   std::vector<ExitShares> resampled_exits;
   for (const markov::FinalDistribution& other : resampled) {
     noise.add(other);

@@ -123,8 +123,33 @@ TEST(MatrixNoise, RowsLeaveOpenWhatTheirRunsMayHaveMissed) {
   EXPECT_EQ(of_trees.interval[crossed], dynamics::interval_of_share(1e-6, 10'000));
 
   const CountedField field = counted_field(truth());
-  EXPECT_EQ(field.evidence_at(kStart).trials, 1000);
-  EXPECT_EQ(field.evidence_at(kStart).gate_runs, 5000);  // 1000 a row
+  const Evidence from = field.evidence_at(kStart, kField, kMaxGates);
+  EXPECT_EQ(from.trials, 1000);
+  EXPECT_EQ(from.gate_runs, 5000);  // 1000 a row
+  EXPECT_EQ(from.hidden, 0.0);      // each row has several outcomes
+}
+
+// Half of the walks pass a row of few runs, which all had one outcome: none of these runs excludes
+// another, however many runs other rows have. Its interval is that of `runs` trials without a
+// success.
+TEST(MatrixNoise, KnowsWhatARowOfOneOutcomeHides) {
+  for (const std::int64_t runs : {1, 5, 1'000'000}) {
+    markov::Counts counts(3, 4);
+    const std::vector<Eigen::Triplet<std::int64_t>> entries{
+        {0, 1, 50'000}, {0, 3, 50'000}, {1, 0, runs}, {2, 0, 1'000'000}};  // nobody enters row 2
+    counts.setFromTriplets(entries.begin(), entries.end());
+    const std::vector<markov::Exit> exits{{0, 0, 1}, {1, 1, 0}, {2, -1, 0}, {}};
+    const CountedField field{markov::Chain::from_counts(counts, exits), {counts}};
+    const markov::Start start{1, 0, 0};
+    const double missed = dynamics::interval_of_share(0.0, static_cast<double>(runs))[1];
+    for (const int limit : {0, 5})
+      EXPECT_NEAR(field.evidence_at(start, {3, 1}, limit).hidden, 0.5 * missed, 1e-12);
+    const auto [low, high] =
+        resampled_95({0.499, 0.5, 0.501}, 0.5, field.evidence_at(start, {3, 1}, 0));
+    EXPECT_LE(low, 0.5 - 0.5 * missed);
+    EXPECT_GE(high, 0.5 + 0.5 * missed);
+    EXPECT_LT(high - low, missed + 0.01);
+  }
 }
 
 // The spread is that of matrices really drawn anew.
@@ -263,7 +288,7 @@ TEST(Replicates, OfFewRunsARowHoldTheirCoverage) {
     const auto all = replicate_predictions(field, kField, {kStart}, kMaxGates,
                                            static_cast<std::uint64_t>(i), 0, kReplicates)
                          .predictions.front();
-    MatrixNoise noise(own, field.evidence_at(kStart));
+    MatrixNoise noise(own, field.evidence_at(kStart, kField, kMaxGates));
     for (const FinalDistribution& f : all) noise.add(f);
     for (std::size_t k = 0; k < kAll.size(); ++k) {
       const auto [low, high] = noise.interval_95(kAll[k]);
