@@ -438,14 +438,13 @@ HWY_NOINLINE WideMask resolve_hits(const StableRules& r, WideMask lanes, WideSta
   constexpr int kRounds = 8;
   const LaneGate& g = r.gate;
   const Wide zero = all(0.0), touching = all(r.limits.touching), rest = all(r.limits.rest);
-  const Wide threshold = all(r.limits.threshold);
   WideTouch touch[2];
   for (const Side side : {kLeft, kRight})
     nearest(g, mirror_of(side), s.x, s.y, towards(s.theta[side]), touch[side]);
   const WideCoupling<2> w = coupling(g, touch);
   for (int round = 0; round < kRounds; ++round) {
     const Each<2> u = gap_rates(s, touch);
-    Each<2> b, rebound;
+    Each<2> b, rebound, threshold;
     WideMask active[2], closing = nowhere();
     for (const Side side : {kLeft, kRight}) {
       const WideTouch& t = touch[side];
@@ -453,17 +452,19 @@ HWY_NOINLINE WideMask resolve_hits(const StableRules& r, WideMask lanes, WideSta
       const Wide e = choose(t.tip, all(r.tip_restitution), all(r.restitution));
       rebound.of[side] = choose(s.held[side], zero, -e * u.of[side]);
       b.of[side] = u.of[side] - rebound.of[side];
+      threshold.of[side] = choose(t.tip, all(r.limits.tip_threshold), all(r.limits.threshold));
       closing = closing | (active[side] & ~(u.of[side] >= -rest));
     }
     lanes = lanes & closing;
     if (!any(lanes)) return lanes;
 
-    const auto ends_bouncing = [&](Wide impulse, Wide speed)
-                                   HWY_ATTR { return (impulse < threshold) | (speed <= rest); };
+    const auto ends_bouncing = [&](Side side, Wide impulse, Wide speed) HWY_ATTR {
+      return (impulse < threshold.of[side]) | (speed <= rest);
+    };
     Each<2> impulse = unilateral_impulses(w, b, active);
     for (const Side side : {kLeft, kRight}) {
-      const WideMask ends =
-          active[side] & ~s.held[side] & lanes & ends_bouncing(impulse.of[side], rebound.of[side]);
+      const WideMask ends = active[side] & ~s.held[side] & lanes &
+                            ends_bouncing(side, impulse.of[side], rebound.of[side]);
       s.held[side] = s.held[side] | ends;
       b.of[side] = choose(ends, u.of[side], b.of[side]);
     }
@@ -473,7 +474,7 @@ HWY_NOINLINE WideMask resolve_hits(const StableRules& r, WideMask lanes, WideSta
       const WideMask thrown =
           lanes & active[side] & s.held[side] & ~(impulse.of[side] > zero) & ~(opens <= zero);
       if (!any(thrown)) continue;
-      const WideMask back = thrown & ends_bouncing(opens / w.own[side], opens);
+      const WideMask back = thrown & ends_bouncing(side, opens / w.own[side], opens);
       const Each<2> shut = bilateral_impulses(w, b, active);
       for (const Side either : {kLeft, kRight})
         impulse.of[either] = choose(back, shut.of[either], impulse.of[either]);

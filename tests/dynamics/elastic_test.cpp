@@ -93,28 +93,60 @@ TEST_P(Elastic, NearlyElasticHitsTakeNoMoreThanTheirRestitution) {
     }
 }
 
+// Law: a hit takes what the surface that is hit takes, whatever the restitution of the other one.
+TEST_P(Elastic, AHitOfTheElasticSurfaceKeepsTheEnergy) {
+  for (const bool tip : {false, true})
+    for (const double other : {0.0, 0.5, 0.94})
+      for (const double speed : kSpeeds) {
+        SCOPED_TRACE(testing::Message()
+                     << (tip ? "tip" : "side") << ", the other " << other << ", " << speed);
+        Draw draw(13);
+        GateParams p = free_gate(GetParam(), draw, 1.0);
+        (tip ? p.contact.restitution : p.contact.tip_restitution) = other;
+        p.beams.length = 0.6 * p.beams.joint_x;
+        // Straight up: at the middle of the right beam, or past its tip by half a radius.
+        const double tip_x = p.beams.joint_x - p.beams.length;
+        const double x = tip ? tip_x - 0.5 * p.body.radius : tip_x + 0.5 * p.beams.length;
+        Ride ride(p, test::at_rest(x, p.beams.joint_y - 2.0 * p.body.radius, 0.0, speed));
+        const double before = energy(p, ride.s);
+        for (int i = 0; i < 100'000 && ride.watch.impacts == 0; ++i) ride.go(0.02);
+        ASSERT_EQ(ride.watch.impacts, 1);
+        EXPECT_EQ(ride.touch(kRight).kind == ContactKind::tip, tip);
+        EXPECT_NEAR(energy(p, ride.s) / before, 1.0,
+                    20 * kEps * static_cast<double>(ride.watch.steps + 1));
+      }
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, Elastic, testing::Values("stable", "event"),
                          [](const auto& method) { return std::string(method.param); });
 
 // Hits of usual scenes end as they always did.
 TEST(WeakHits, EndTheBouncingUpToARestitutionOfNineteenTwentieths) {
-  const auto factor = [](double side, double tip, double propulsion, double random) {
+  const auto factor = [](double side, double tip, double propulsion, double random,
+                         ContactKind kind = ContactKind::interior) {
     GateParams p;
     p.contact.restitution = side;
     p.contact.tip_restitution = tip;
     p.forces.propulsion = propulsion;
     p.forces.random = random;
-    return weak_hits(p);
+    return weak_hits(p, kind);
   };
   for (const double e : {0.0, 0.8, 0.95}) {
     EXPECT_EQ(factor(e, 1.0, 7.0, 50.0), 1.0);
     EXPECT_EQ(factor(1.0, e, 7.0, 50.0), 1.0);
     EXPECT_EQ(factor(e, 1.0, 0.0, 0.0), 1.0);
+    EXPECT_EQ(factor(e, 1.0, 0.0, 0.0, ContactKind::pin), 1.0);
+    EXPECT_EQ(factor(1.0, e, 0.0, 0.0, ContactKind::tip), 1.0);
+    // That of the surface that is hit, where nothing presses bodies onto the other one.
+    EXPECT_EQ(factor(1.0, e, 0.0, 0.0), 0.0);
+    EXPECT_EQ(factor(1.0, e, 0.0, 0.0, ContactKind::pin), 0.0);
+    EXPECT_EQ(factor(e, 1.0, 0.0, 0.0, ContactKind::tip), 0.0);
+    EXPECT_EQ(factor(e, 1.0, 7.0, 50.0, ContactKind::tip), 1.0);
   }
   EXPECT_NEAR(factor(0.975, 1.0, 7.0, 0.0), 0.5, 1e-12);
   EXPECT_NEAR(factor(0.99, 1.0, 0.0, 50.0), 0.2, 1e-12);
   EXPECT_EQ(factor(1.0, 1.0, 7.0, 50.0), 0.0);
-  EXPECT_EQ(factor(0.96, 1.0, 0.0, 0.0), 0.0);
+  EXPECT_EQ(factor(0.96, 0.96, 0.0, 0.0), 0.0);
 }
 
 }  // namespace

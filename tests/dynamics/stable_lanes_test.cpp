@@ -127,6 +127,15 @@ std::vector<Scene> scenes() {
   p.beams.stiffness_left = p.beams.stiffness_right = p.beams.damping = 0.0;
   p.body.mass = 1e-3;
   add("beams that go round and round", p);
+  for (const bool elastic_tips : {false, true}) {
+    p = test::free_rods();  // weak hits of tips and sides end otherwise
+    p.beams.stiffness_left = p.beams.stiffness_right = 100.0;
+    p.contact.restitution = elastic_tips ? 0.5 : 1.0;
+    p.contact.tip_restitution = elastic_tips ? 1.0 : 0.5;
+    p.run.time_limit = 20.0;
+    add(elastic_tips ? "elastic tips, no forces" : "elastic sides, no forces", p,
+        {4.0, 0.0, 0.5, 3.0});
+  }
   return all;
 }
 

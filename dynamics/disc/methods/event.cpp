@@ -158,7 +158,6 @@ EventMethod::EventMethod(const GateParams& p)
       tolerance_(p.run.event_tolerance),
       time_(scale_of(p).time),
       rest_(rest_speed(p)),
-      weak_(weak_hits(p)),
       loose_(tolerance_ > 1e-5 * scale_of(p).length),
       hold_(1.0 / p.forces.random_rate),
       law_(p),
@@ -321,16 +320,16 @@ double EventMethod::leave(const GateState& start, GateState& s, double force_x, 
 }
 
 void EventMethod::resolve(GateState& s, double force_x, Watch& watch) const {
-  resolve_hits(p_, s, touching_, rest_, watch, [&](Side side, double, double rebound) {
-    const Touch t = nearest(p_, side, s.body, s.beams[side].theta);
-    // What drives it back: all forces, the other contact's too if that one is held.
-    double back = free_gap_acceleration(p_, side, t, s, force_x);
-    if (s.beams[1 - side].held) {
-      const Motion m(p_, s, force_x);
-      if (m.force[1 - side] > 0.0) back += t.nx * m.push.ax + t.ny * m.push.ay;
-    }
-    return back < 0.0 && rebound * rebound <= 2.0 * -back * rise_ * weak_;
-  });
+  resolve_hits(
+      p_, s, touching_, rest_, watch, [&](Side side, const Touch& t, double, double rebound) {
+        // What drives it back: all forces, the other contact's too if that one is held.
+        double back = free_gap_acceleration(p_, side, t, s, force_x);
+        if (s.beams[1 - side].held) {
+          const Motion m(p_, s, force_x);
+          if (m.force[1 - side] > 0.0) back += t.nx * m.push.ax + t.ny * m.push.ay;
+        }
+        return back < 0.0 && rebound * rebound <= 2.0 * -back * rise_ * weak_hits(p_, t.kind);
+      });
 }
 
 double EventMethod::fly_on(GateState& s, double force_x, double duration, Watch& watch) const {

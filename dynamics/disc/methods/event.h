@@ -59,7 +59,6 @@ class EventMethod final : public Method {
   double tolerance_;  // m, error per Runge-Kutta step
   double time_;       // s, what makes an error in m/s one in m: the scene's unit
   double rest_;       // m/s, contacts this slow do not close
-  double weak_;       // of rise_, rebounds that end the bouncing
   bool loose_;        // the tolerance suits an integrator of low order
   double hold_;       // s, between two changes of the random force
   GateLaw law_;

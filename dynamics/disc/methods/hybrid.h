@@ -11,16 +11,22 @@ namespace gatewalk::dynamics {
 /// A contact this slow (m/s) does not close.
 [[nodiscard]] inline double rest_speed(const GateParams& p) { return 1e-12 * scale_of(p).speed(); }
 
+/// Restitution of the surface that a contact of this kind hits.
+[[nodiscard]] inline double restitution_of(const GateParams& p, ContactKind kind) {
+  return kind == ContactKind::tip ? p.contact.tip_restitution : p.contact.restitution;
+}
+
 /// Factor of the threshold below which a weak hit ends the bouncing. Up to a restitution e of 0.95
 /// it is 1. The bounces left after a hit take a time in proportion to its speed / (1 - e), so
-/// beyond 0.95 the factor is as small as keeps that time: 0 for e = 1, whose bounces never end.
-/// Without propulsion and random force nothing presses bodies together for long: there it is 0
-/// beyond 0.95.
-[[nodiscard]] inline double weak_hits(const GateParams& p) {
+/// beyond 0.95 the factor is as small as keeps that time: 0 for e = 1, whose bounces never end. A
+/// body that forces press onto a gate reaches all of its surfaces: e is the least of them. Without
+/// propulsion and random force nothing presses bodies together for long: there e is that of the
+/// surface that is hit, and the factor 0 beyond 0.95.
+[[nodiscard]] inline double weak_hits(const GateParams& p, ContactKind kind) {
   constexpr double kElastic = 0.95;
-  const double e = std::min(p.contact.restitution, p.contact.tip_restitution);
   const bool pressed = p.forces.propulsion != 0.0 || p.forces.random != 0.0;
-  if (e > kElastic && !pressed) return 0.0;
+  if (!pressed) return restitution_of(p, kind) > kElastic ? 0.0 : 1.0;
+  const double e = std::min(p.contact.restitution, p.contact.tip_restitution);
   return std::min(1.0, (1.0 - e) / (1.0 - kElastic));
 }
 
@@ -55,9 +61,9 @@ std::array<Touch, 2> put_back(const GateParams& p, GateState& s, std::array<bool
                               std::array<Touch, 2> touch);
 
 /// Impact law at every contact that closes (gap up to `touching`, m, faster than `rest`, m/s), both
-/// beams together, until none does. `ends_bouncing(side, impulse, rebound)` says whether a hit of
-/// that impulse (N s), which leaves with the gap rate `rebound` (m/s), is so weak that the contact
-/// is a constraint instead.
+/// beams together, until none does. `ends_bouncing(side, touch, impulse, rebound)` says whether a
+/// hit of that impulse (N s), which leaves with the gap rate `rebound` (m/s), is so weak that the
+/// contact is a constraint instead.
 template <class EndsBouncing>
 void resolve_hits(const GateParams& p, GateState& s, double touching, double rest, Watch& watch,
                   EndsBouncing ends_bouncing) {
@@ -74,8 +80,7 @@ void resolve_hits(const GateParams& p, GateState& s, double touching, double res
       // Only contacts that close take part. A contact that opens must not be pushed by the other's
       // restitution, that could create energy; if it closes after this round, it takes the next.
       active[side] = held || (touch[side].gap <= touching && u[side] < -rest);
-      const double e =
-          touch[side].kind == ContactKind::tip ? p.contact.tip_restitution : p.contact.restitution;
+      const double e = restitution_of(p, touch[side].kind);
       const bool elastic = !held && round < kRounds - 1;
       rebound[side] = elastic ? -e * u[side] : 0.0;
       b[side] = u[side] - rebound[side];
@@ -88,8 +93,8 @@ void resolve_hits(const GateParams& p, GateState& s, double touching, double res
     // either is held: the answer may look at the other beam, and a mirror image must not change it.
     std::array<bool, 2> ends{};
     for (const Side side : {kLeft, kRight})
-      ends[side] =
-          active[side] && !s.beams[side].held && ends_bouncing(side, impulse[side], rebound[side]);
+      ends[side] = active[side] && !s.beams[side].held &&
+                   ends_bouncing(side, touch[side], impulse[side], rebound[side]);
     for (const Side side : {kLeft, kRight}) {
       if (!ends[side]) continue;
       s.beams[side].held = true;
@@ -103,7 +108,7 @@ void resolve_hits(const GateParams& p, GateState& s, double touching, double res
       const double opens = b[side] + w.cross * impulse[1 - side];
       if (opens <= 0.0) continue;
       const double stop = opens / (side == kLeft ? w.left : w.right);
-      if (ends_bouncing(side, stop, opens))
+      if (ends_bouncing(side, touch[side], stop, opens))
         impulse = bilateral_impulses(w, b, active);
       else
         s.beams[side].held = false;

@@ -71,9 +71,14 @@ double crossing(double dt, double start, double end, bool from_zero, double tole
 
 }  // namespace
 
+double StableMethod::Limits::threshold_of(const GateParams& p, ContactKind kind) {
+  return p.contact.impulse_threshold * p.run.step / (kPaperStep * scale_of(p).time) *
+         weak_hits(p, kind);
+}
+
 StableMethod::Limits::Limits(const GateParams& p)
-    : threshold(p.contact.impulse_threshold * p.run.step / (kPaperStep * scale_of(p).time) *
-                weak_hits(p)),
+    : threshold(threshold_of(p, ContactKind::interior)),
+      tip_threshold(threshold_of(p, ContactKind::tip)),
       touching(1e-10 * p.body.radius),
       rest(rest_speed(p)) {
   const double inertia = p.beams.inertia();
@@ -279,11 +284,13 @@ double StableMethod::substep(GateState& s, double force_x, const Piece& piece, M
     }
     const double when = first_hit(s, force_x, end, span, hit, watch);
     if (outside(p_, s.body)) return start + when;
-    resolve_hits(
-        p_, s, limits_.touching, limits_.rest, watch, [&](Side, double impulse, double rebound) {
-          // What does not bounce is in contact from now on.
-          return impulse < limits_.threshold || rebound <= limits_.rest || hits >= kMaxHits;
-        });
+    resolve_hits(p_, s, limits_.touching, limits_.rest, watch,
+                 [&](Side, const Touch& touch, double impulse, double rebound) {
+                   const double threshold =
+                       touch.kind == ContactKind::tip ? limits_.tip_threshold : limits_.threshold;
+                   // What does not bounce is in contact from now on.
+                   return impulse < threshold || rebound <= limits_.rest || hits >= kMaxHits;
+                 });
     left -= when;
     if (left <= 1e-15 * piece.dt) return piece.dt;
     if (may_halve.travel && too_far(s, left)) {

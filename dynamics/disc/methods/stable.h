@@ -59,13 +59,14 @@ class StableMethod final : public Method {
 
   /// What decides, with units; the lanes (stable_lanes.cpp) decide alike.
   struct Limits {
-    double threshold;                    // N s, weaker hits end in constraints
+    double threshold, tip_threshold;     // N s, weaker hits of beam or tip end in constraints
     double touching;                     // m, gaps up to this count as contact when bodies hit
     double rest;                         // m/s, contacts this slow do not close
     std::array<double, 2> swing{};       // 1/s^2, k/I
     std::array<double, 2> swing_root{};  // 1/s
     std::array<int, 2> halvings{};       // of a step that each beam needs, 0 unless very stiff
     explicit Limits(const GateParams& p);
+    [[nodiscard]] static double threshold_of(const GateParams& p, ContactKind kind);
   };
   static constexpr double kMaxTurn = 0.05;  // rad that a held beam may turn in a piece
   static constexpr double kGuess = 1e3;     // touching gaps, of the interpolated motion
