@@ -190,16 +190,20 @@ class CommittorOfAll {
         states_(static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows) *
                 static_cast<std::size_t>(inputs_)),
         can_end_(states_, 0) {
-    bool found = true;  // a state that can end, by what it leads to
-    while (found) {
-      found = false;
-      for (std::size_t state = states_; state-- > 0;) {
-        if (can_end_[state]) continue;
-        each_draw(state, [&](double p, std::size_t to, bool ends, bool) {
-          if (p > 0.0 && (ends || can_end_[to])) can_end_[state] = 1;
-        });
-        found = found || can_end_[state];
-      }
+    std::vector<std::size_t> found;  // states that can end; then those that lead to one of them
+    for (std::size_t state = 0; state < states_; ++state) {
+      each_draw(state, [&](double p, std::size_t, bool ends, bool) {
+        if (p > 0.0 && ends) can_end_[state] = 1;
+      });
+      if (can_end_[state]) found.push_back(state);
+    }
+    const std::vector<std::vector<Way>> ways = ways_into();
+    while (!found.empty()) {
+      const std::size_t state = found.back();
+      found.pop_back();
+      each_before(state, ways, [&](std::size_t from) {
+        if (!std::exchange(can_end_[from], 1)) found.push_back(from);
+      });
     }
   }
   [[nodiscard]] std::size_t states() const { return states_; }
@@ -268,6 +272,39 @@ class CommittorOfAll {
   }
 
  private:
+  /// A draw of `input` in a cell of a type, which goes on.
+  struct Way {
+    int type, input, di_x, di_y;
+  };
+  /// By the state they lead to.
+  [[nodiscard]] std::vector<std::vector<Way>> ways_into() const {
+    std::vector<std::vector<Way>> ways(static_cast<std::size_t>(inputs_));
+    for (int type = 0; type < std::ssize(chain_.chains()); ++type) {
+      const Chain& c = chain_.chains()[static_cast<std::size_t>(type)];
+      for (int input = 0; input < inputs_; ++input)
+        for (Probabilities::InnerIterator it(c.matrix(), input); it; ++it) {
+          const Exit& exit = c.exits()[static_cast<std::size_t>(it.col())];
+          if (it.value() > 0.0 && exit.next_input != Exit::kTrapped)
+            ways[static_cast<std::size_t>(exit.next_input)].push_back(
+                {type, input, exit.di_x, exit.di_y});
+        }
+    }
+    return ways;
+  }
+  /// Calls use(from) for each state that has a draw which leads to this one.
+  template <class Use>
+  void each_before(std::size_t state, const std::vector<std::vector<Way>>& ways, Use use) const {
+    const auto at = static_cast<std::int64_t>(state);
+    const std::int64_t cell = at / inputs_, column = cell % field_.columns,
+                       row = cell / field_.columns;
+    for (const Way& way : ways[static_cast<std::size_t>(at % inputs_)]) {
+      const std::int64_t from_column = column - way.di_x, from_row = row - way.di_y;
+      if (from_column >= 0 && from_column < field_.columns && from_row >= 0 &&
+          from_row < field_.rows && chain_.type_of(from_column, from_row) == way.type)
+        use(static_cast<std::size_t>((from_row * field_.columns + from_column) * inputs_ +
+                                     way.input));
+    }
+  }
   /// Calls use(p, to, whether the walk ends, whether in this way) for each draw of a state.
   template <class Use>
   void each_draw(std::size_t state, Use use) const {

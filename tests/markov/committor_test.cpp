@@ -141,6 +141,26 @@ TEST(Committor, LeavesOutWalksThatNeverEnd) {
   EXPECT_EQ(far(0, 1, 1), 0.0);
 }
 
+// Of two types of rows: from the first up into the second, and back again.
+TEST(Committor, LeavesOutWalksThatCircleThroughCellsOfSeveralTypes) {
+  const auto all_go = [](int rows) {
+    return Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{0, 0, rows}});
+  };
+  const Committor far = committor(FieldChain::by_row({all_go(1), all_go(-1)}, {0, 1, 0}), {1, 3});
+  EXPECT_EQ(far.values, (std::vector<double>{0.0, 0.0, 1.0}));
+}
+
+// All go back, row by row, to the near edge: who can end is found in one go, not row after row
+// through all rows, which would take hours.
+TEST(Committor, OfManyRowsTakesNoLongerThanTheyAreMany) {
+  constexpr int kRows = 1'000'000;
+  const Chain back =
+      Chain::from_probabilities(matrix(2, 1, {{0, 0, 1.0}, {1, 0, 1.0}}), {{1, 0, -1}});
+  const Committor near = committor(back, {1, kRows}, Ending::near_edge);
+  for (const int row : {0, kRows / 2, kRows - 1})
+    for (const int input : {0, 1}) EXPECT_EQ(near(0, row, input), 1.0);
+}
+
 // Of moves to all sides, what a prediction without limit says, by a direct solve.
 TEST(Committor, OfMovesToAllSidesIsWhatAPredictionSays) {
   const Chain chain = Chain::from_counts(lattice_counts(3), lattice_exits());
