@@ -418,6 +418,7 @@ struct Walker::Job {
   Field field;
   Start start;
   int limit;
+  bool limit_ends;  // of the field: it cuts walks off; else they are still walking there
   Word seed;
   WalkRange range;
   std::int32_t* final_cell_of_walk;  // may be null
@@ -428,7 +429,8 @@ struct Walker::Job {
 /// What one thread has counted.
 struct Walker::Counters {
   static constexpr std::int64_t kTrappedThere = 0, kDepartedThere = 1, kOthers = 2, kKinds = 3;
-  std::vector<std::int64_t> by_cell;  // (kKinds x cells)
+  static constexpr std::int64_t kStopped = kKinds;  // still walking: counts in no cell
+  std::vector<std::int64_t> by_cell;                // (kKinds x cells)
   std::array<std::int64_t, kEndings> endings{};
   std::int64_t steps = 0;
 
@@ -437,7 +439,7 @@ struct Walker::Counters {
   void count(const Job& job, std::int64_t kind, std::int64_t column, std::int64_t row,
              std::int64_t number) {
     const std::int64_t cell = row * job.field.columns + column;
-    ++by_cell[static_cast<std::size_t>(kind * job.cells() + cell)];
+    if (kind != kStopped) ++by_cell[static_cast<std::size_t>(kind * job.cells() + cell)];
     if (job.final_cell_of_walk)
       job.final_cell_of_walk[number - job.range.first] = static_cast<std::int32_t>(cell);
   }
@@ -496,6 +498,7 @@ void Walker::walk_plainly(const Job& job, std::int64_t first, std::int64_t last,
       }
       if (drawn + 1 == static_cast<Word>(job.limit)) {
         ++counters.at(Ending::cut_off);
+        if (!job.limit_ends) kind = Counters::kStopped;
         break;
       }
       column = next_column;
@@ -540,9 +543,10 @@ void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last
                     Counters::kOthers == 2);
       const auto kind = static_cast<std::int64_t>(move != kEndTrapped)
                         << (move >> 63);  // without a jump
-      counters.count(job, kind, static_cast<std::int64_t>(cell & 0xffffffff),
-                     static_cast<std::int64_t>(cell >> 32),
-                     static_cast<std::int64_t>(pool.ended.number[i]));
+      const bool stopped = !job.limit_ends && move == kEndCutOff;
+      counters.count(
+          job, stopped ? Counters::kStopped : kind, static_cast<std::int64_t>(cell & 0xffffffff),
+          static_cast<std::int64_t>(cell >> 32), static_cast<std::int64_t>(pool.ended.number[i]));
     }
     PoolEndings ended;
     HWY_DYNAMIC_DISPATCH(count_endings)(rules, pool, ended);
@@ -571,8 +575,14 @@ WalkTally Walker::run(bool in_lanes, const Field& field, const Start& start, int
                                 std::to_string(range.first) + " on is not a range from 0 up");
   }
   if (final_cell_of_walk) final_cell_of_walk->resize(static_cast<std::size_t>(range.count));
-  const Job job{field, start, max_cells == 0 ? kMostCells : max_cells,
-                seed,  range, final_cell_of_walk ? final_cell_of_walk->data() : nullptr};
+  const bool limited = max_cells > 0;
+  const Job job{field,
+                start,
+                limited ? max_cells : kMostCells,
+                limited,
+                seed,
+                range,
+                final_cell_of_walk ? final_cell_of_walk->data() : nullptr};
 
   tbb::enumerable_thread_specific<Counters> counters(job.cells());
   const std::int64_t pools = range.count / kPool + (range.count % kPool > 0);
@@ -591,7 +601,7 @@ WalkTally Walker::run(bool in_lanes, const Field& field, const Start& start, int
     *cells = CellCounts::Zero(field.rows, field.columns);
   for (const Counters& of_thread : counters) of_thread.add_to(total);
   // Cells or lanes count them alike; but the field cuts nobody off that has no limit.
-  if (max_cells == 0)
+  if (!limited)
     std::swap(total.still_walking, total.endings[static_cast<std::size_t>(Ending::cut_off)]);
   const auto ended = [&](Ending e) { return total.endings[static_cast<std::size_t>(e)]; };
   total.walks = range.count;

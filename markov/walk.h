@@ -21,9 +21,10 @@ struct WalkRange {
 
 using CellCounts = Eigen::Array<std::int64_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// trapped + left_field + cut_off + unsampled + still_walking == walks == final_cells.sum().
+/// trapped + left_field + cut_off + unsampled + still_walking == walks; of those that ended, all
+/// but still_walking, final_cells.sum().
 struct WalkTally {
-  CellCounts final_cells;  // (rows x columns), last cell inside the field
+  CellCounts final_cells;  // (rows x columns), last cell inside the field of those that ended
   std::int64_t walks = 0;
   std::int64_t trapped = 0;        // ended by a trapped output
   std::int64_t left_field = 0;     // moved out of the field
@@ -62,8 +63,9 @@ class Walker {
   /// registers (Google Highway). At most `max_cells` cells are visited (0: no limit of the field;
   /// then a walk is followed through kMostCells, and is `still_walking`). Same walks for any number
   /// of threads and any instruction set. `final_cell_of_walk`, if given, gets row * columns +
-  /// column per walk. Chains with an exit of 512 cells or more, or with 2^21 nonzeros or more, and
-  /// fields with cells of several types are walked plainly.
+  /// column per walk, also of those still walking: where they were stopped. Chains with an exit of
+  /// 512 cells or more, or with 2^21 nonzeros or more, and fields with cells of several types are
+  /// walked plainly.
   [[nodiscard]] WalkTally walk(const Field& field, const Start& start, int max_cells,
                                std::uint64_t seed, WalkRange range,
                                std::vector<std::int32_t>* final_cell_of_walk = nullptr) const;

@@ -35,7 +35,7 @@ FieldPicture::FieldPicture(std::string name, const lattice::FieldTally& tally,
 
 FieldPicture::FieldPicture(std::string name, const markov::WalkTally& tally)
     : title(std::move(name)),
-      final_gates(lattice::shares(tally.final_cells)),
+      final_gates(tally.final_cells.cast<double>() / static_cast<double>(tally.walks)),
       trapped(tally.trapped_cells.cast<double>() / static_cast<double>(tally.walks)),
       departed(tally.departed_cells.cast<double>() / static_cast<double>(tally.walks)),
       endings(tally.endings, tally.walks) {}

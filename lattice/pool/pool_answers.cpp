@@ -54,10 +54,7 @@ std::int64_t kernel_runs(const RunPool& pool) {
 FinalDistribution shares_of(const markov::WalkTally& tally) {
   const auto n = static_cast<double>(tally.walks);
   FinalDistribution d;
-  // Where the field has no limit, walks that were stopped have no final cell.
-  const markov::CellCounts final_cells =
-      tally.still_walking > 0 ? tally.trapped_cells + tally.departed_cells : tally.final_cells;
-  d.final_cells = final_cells.cast<double>() / n;
+  d.final_cells = tally.final_cells.cast<double>() / n;
   for (std::size_t e = 0; e < markov::kEndings; ++e)
     d.endings[e] = static_cast<double>(tally.endings[e]) / n;
   d.trapped = static_cast<double>(tally.trapped) / n;
@@ -71,7 +68,7 @@ FinalDistribution shares_of(const markov::WalkTally& tally) {
   for (Eigen::Index i = 0; i < tally.final_cells.size(); ++i) {
     const auto share = [&](std::int64_t count) { return static_cast<double>(count) / n; };
     const std::int64_t trapped = tally.trapped_cells.data()[i],
-                       departed = tally.departed_cells.data()[i], all = final_cells.data()[i];
+                       departed = tally.departed_cells.data()[i], all = tally.final_cells.data()[i];
     if (trapped == all) continue;
     const std::size_t side = static_cast<std::size_t>(
         i % columns == 0 ? markov::Ending::left_edge : markov::Ending::right_edge);

@@ -477,9 +477,28 @@ TEST(Walk, WithoutLimitIsFollowedThroughAMillionCells) {
   EXPECT_EQ(loop.walk({1, 1}, {0, 0, 0}, 1000, 1, {0, 3}).cut_off, 3);
   EXPECT_EQ(loop.walk_plainly({1, 1}, {0, 0, 0}, 0, 1, {0, 1}).still_walking, 1);
   EXPECT_EQ(tally.steps, 3'000'000);
-  EXPECT_EQ(tally.final_cells(0, 0), 3);
+  EXPECT_EQ(tally.final_cells(0, 0), 0);  // they have not ended
+  EXPECT_EQ(loop.walk({1, 1}, {0, 0, 0}, 1000, 1, {0, 3}).final_cells(0, 0), 3);
   tally += WalkTally(tally);
   EXPECT_EQ(tally.still_walking, 6);
+}
+
+// In the first cell a quarter each: trapped, over the edge, into a state never sampled, and into
+// one that stays. Who stays has no final cell; all others have theirs, in lanes and plainly.
+TEST(Walk, FinalCellsAreThoseOfWalksThatEnded) {
+  const Walker walker(Chain::from_probabilities(
+      matrix(3, 4, {{0, 0, 0.25}, {0, 1, 0.25}, {0, 2, 0.25}, {0, 3, 0.25}, {1, 3, 1.0}}),
+      {{}, {0, 1, 0}, {2, 0, 0}, {1, 0, 0}}));
+  ASSERT_TRUE(walker.walks_in_lanes());
+  const Walked walked = in_lanes(walker, {1, 1}, {0, 0, 0}, 0, {0, 40});
+  EXPECT_EQ(walked, plainly(walker, {1, 1}, {0, 0, 0}, 0, {0, 40}));
+  const WalkTally& tally = walked.tally;
+  for (const std::int64_t some :
+       {tally.trapped, tally.left_field, tally.unsampled, tally.still_walking})
+    EXPECT_GT(some, 0);
+  EXPECT_EQ(tally.final_cells.sum(), 40 - tally.still_walking);
+  EXPECT_EQ(tally.trapped_cells.sum() + tally.departed_cells.sum(),
+            tally.trapped + tally.left_field);
 }
 
 TEST(Walk, AMoveFarBeyondTheFieldLeavesIt) {

@@ -42,7 +42,8 @@ expect 0 'still walking in states without a way out: 50' "$gatewalk" predict nev
 grep -q 'warning: .*were still walking in states without a way out' out.txt || fail "no warning of walks that never end"
 holds '.endings.trapped == 0.5 and .still_walking == 0.5 and .endings_95.trapped[0] > 0.38 and .endings_95.trapped[1] == 1 and .endings_95.crossed[1] >= 0.5' never.json
 "$gatewalk" walk never.nc --walks 20 --json walked.json --quiet 2>/dev/null || fail "walk"
-holds '.endings.cut_off > 0 and .endings.cut_off / 20 > .endings_95.cut_off[0] and .endings.cut_off / 20 < .endings_95.cut_off[1]' walked.json
+holds '.still_walking as $left | .endings.cut_off == 0 and $left > 0 and .still_walking_95[0] < $left / 20 and $left / 20 < .still_walking_95[1]' walked.json
+holds '([.final_gates[][]] | add) == 20 - .still_walking and .final_gates == .trapped_gates' walked.json
 
 # Sums that would stop with walks under way are no answer. Half of the walks circle for ever; a walk to and fro in
 # 501 columns leaves after 251^2 gates, which are more than are added up.

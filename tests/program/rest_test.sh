@@ -39,6 +39,7 @@ expect 0 '^still walking after 1000000 gates, where walks are stopped: [0-9.]* \
 expect 0 '% were still walking after 1000000 gates, the most that a walk is followed where field.max_gates = 0' "$gatewalk" walk circles.nc --walks 20
 expect 0 '^cut off       0.00 %  \[0.00, 0.00\]$' "$gatewalk" walk circles.nc --walks 20
 holds '.endings.cut_off == 0 and .cut_off == 0 and .still_walking > 0 and .still_walking + .endings.trapped == 20 and .still_walking_95[0] < .still_walking / 20 and .still_walking / 20 < .still_walking_95[1]' circles.json
+holds '([.final_gates[][]] | add) == .endings.trapped' circles.json
 # With a limit it is the field's.
 "$gatewalk" walk circles.nc --walks 20 --set field.max_gates=100 --quiet --json limit.json
 jq -s '.[0].still_walking == .[1].cut_off and .[1].still_walking == 0' circles.json limit.json | grep -q true || fail "a limit of the field is none: $(jq -c .endings limit.json)"

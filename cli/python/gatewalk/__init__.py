@@ -626,7 +626,7 @@ def walk(matrix: _t.Any, *, seed: int | None = None, progress: bool | None = Non
     -------
     Result
         `endings`, and `final_gates` of shape (rows, columns), in numbers of walks; `never_sampled` and `still_walking`, which the
-        endings leave out.
+        endings leave out. Walks that are still walking have no final gate.
 
     Raises
     ------
