@@ -156,15 +156,18 @@ std::string map_of(const markov::CellProbabilities& shares, const std::string& w
             std::to_string(map.rows.block) + " gates: i_x in their middle, i_y at their lower end";
   text += ")\n";
   const markov::CellProbabilities blocks = map.blocks_of(shares);
+  int width = 7;  // shares take six places at most, and a blank; visits may take more
+  for (const double share : blocks.reshaped())
+    width = std::max(width, static_cast<int>(fixed(100.0 * share, 2).size()) + 1);
   for (Eigen::Index r = blocks.rows() - 1; r >= 0; --r) {
     text += padded(std::to_string(map.rows.first + r * map.rows.block), 4) + " |";
     for (const double share : blocks.row(r))
-      text += share == 0.0 ? padded(".", 7) : padded(fixed(100.0 * share, 2), 7);
+      text += padded(share == 0.0 ? "." : fixed(100.0 * share, 2), width);
     text += "\n";
   }
   text += "  i_x ";
   for (Eigen::Index c = 0; c < blocks.cols(); ++c)
-    text += padded(std::to_string(map.columns.middle(c) - map.middle_column), 7);
+    text += padded(std::to_string(map.columns.middle(c) - map.middle_column), width);
   text += "\n";
   if (const std::string rest = elsewhere_text(map, shares); !rest.empty()) text += rest + "\n";
   return text;

@@ -173,7 +173,9 @@ std::vector<FinalDistribution> Predictor::predict_all(const Field& field,
   if (by_rows) {
     require_no_limit("rows", options);
     if (!can_go_by_rows())
-      throw std::invalid_argument("predict: solver rows: an exit leads to a row below");
+      throw std::invalid_argument(
+          "predict: solver march goes from row to row upwards, and this chain has moves to a row "
+          "below: solvers auto and klu take them");
   }
   // Measured: a few small fields together leave fewer lanes empty, more of them leave the cache.
   const std::int64_t cells = std::int64_t{field.columns} * field.rows,

@@ -99,6 +99,19 @@ TEST(MapOf, SmallFieldsAreShownWhole) {
             "  i_x      -1      0      1\n");
 }
 
+// Visits of walks that circle for long, for each 100 bodies: a blank before each number.
+TEST(MapOf, LargeNumbersStandApart) {
+  CellProbabilities visits = CellProbabilities::Zero(2, 3);
+  visits(0, 1) = 25000.5;
+  visits(0, 2) = 123456.25;
+  visits(1, 0) = 0.25;
+  EXPECT_EQ(map_of(visits, "visits of each gate", "per 100 bodies"),
+            "visits of each gate, per 100 bodies (i_y upwards, i_x to the right)\n"
+            "   1 |       25.00           .           .\n"
+            "   0 |           .  2500050.00 12345625.00\n"
+            "  i_x           -1           0           1\n");
+}
+
 TEST(MapOf, LargeFieldsAreShownWhereTheSharesLie) {
   CellProbabilities shares = CellProbabilities::Zero(500, 301);
   shares(123, 140) = 0.5;
