@@ -39,8 +39,9 @@ holds '.still_walking as $left | .endings_95.crossed[0] <= 0.75 and .endings_95.
 printf 'from,to,count\nahead,right,50\nahead,trapped,50\nright,left,1\nleft,right,1\n' >never.csv
 import never.csv never.nc 2
 expect 0 'still walking in states without a way out: 50' "$gatewalk" predict never.nc --json never.json
-grep -q 'warning: .*were still walking in states without a way out' out.txt || fail "no warning of walks that never end"
+grep -q '^gatewalk: .*50.00 % were still walking in states without a way out' out.txt || fail "no warning of walks that never end"
 holds '.endings.trapped == 0.5 and .still_walking == 0.5 and .endings_95.trapped[0] > 0.38 and .endings_95.trapped[1] == 1 and .endings_95.crossed[1] >= 0.5' never.json
+expect 2 "solver march .*solvers auto and klu" "$gatewalk" predict long.nc --solver march
 "$gatewalk" walk never.nc --walks 20 --json walked.json --quiet 2>/dev/null || fail "walk"
 holds '.still_walking as $left | .endings.cut_off == 0 and $left > 0 and .still_walking_95[0] < $left / 20 and $left / 20 < .still_walking_95[1]' walked.json
 holds '([.final_gates[][]] | add) == 20 - .still_walking and .final_gates == .trapped_gates' walked.json
