@@ -69,16 +69,17 @@ double crossing(double dt, double start, double end, bool from_zero, double tole
   return b;
 }
 
-}  // namespace
-
-double StableMethod::Limits::threshold_of(const GateParams& p, ContactKind kind) {
+/// N s, of hits of that part of a beam.
+double weak_impulse(const GateParams& p, ContactKind kind) {
   return p.contact.impulse_threshold * p.run.step / (kPaperStep * scale_of(p).time) *
          weak_hits(p, kind);
 }
 
+}  // namespace
+
 StableMethod::Limits::Limits(const GateParams& p)
-    : threshold(threshold_of(p, ContactKind::interior)),
-      tip_threshold(threshold_of(p, ContactKind::tip)),
+    : threshold(weak_impulse(p, ContactKind::interior)),
+      tip_threshold(weak_impulse(p, ContactKind::tip)),
       touching(1e-10 * p.body.radius),
       rest(rest_speed(p)) {
   const double inertia = p.beams.inertia();

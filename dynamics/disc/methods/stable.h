@@ -66,7 +66,6 @@ class StableMethod final : public Method {
     std::array<double, 2> swing_root{};  // 1/s
     std::array<int, 2> halvings{};       // of a step that each beam needs, 0 unless very stiff
     explicit Limits(const GateParams& p);
-    [[nodiscard]] static double threshold_of(const GateParams& p, ContactKind kind);
   };
   static constexpr double kMaxTurn = 0.05;  // rad that a held beam may turn in a piece
   static constexpr double kGuess = 1e3;     // touching gaps, of the interpolated motion
