@@ -18,7 +18,7 @@ struct UnitWords {
   TrackUnit unit;
   std::array<std::string_view, 9> words;
 };
-constexpr std::array<UnitWords, 15> kUnits{{
+constexpr std::array<UnitWords, 18> kUnits{{
     {{UnitKind::time, 1.0, 1.0}, {"s", "sec", "secs", "second", "seconds"}},
     {{UnitKind::time, 1.0, 1e3}, {"ms", "msec", "msecs", "millis", "millisecond", "milliseconds"}},
     {{UnitKind::time, 1.0, 1e6},
@@ -37,9 +37,95 @@ constexpr std::array<UnitWords, 15> kUnits{{
      {"um", "µm", "μm", "micron", "microns", "micrometre", "micrometres", "micrometer",
       "micrometers"}},
     {{UnitKind::length, 1.0, 1e9}, {"nm", "nanometre", "nanometres", "nanometer", "nanometers"}},
-    {{UnitKind::length, 0.0254, 1.0}, {"inch", "inches"}},
+    {{UnitKind::length, 1e3, 1.0}, {"km", "kilometre", "kilometres", "kilometer", "kilometers"}},
+    {{UnitKind::length, 1.0, 10.0}, {"dm", "decimetre", "decimetres", "decimeter", "decimeters"}},
+    {{UnitKind::length, 0.3048, 1.0}, {"ft", "foot", "feet"}},
+    {{UnitKind::length, 0.0254, 1.0}, {"in", "inch", "inches"}},
     {{UnitKind::pixel}, {"px", "pix", "pixel", "pixels"}},
 }};
+
+// Also in the middle of a name, "time_ms_rel": these are nothing else.
+constexpr std::array<std::string_view, 24> kUnmistakable{
+    "ms",          "msec",        "msecs",        "millis",  "millisecond", "milliseconds",
+    "us",          "µs",          "μs",           "usec",    "µsec",        "μsec",
+    "micros",      "microsecond", "microseconds", "ns",      "nsec",        "nanosecond",
+    "nanoseconds", "sec",         "secs",         "seconds", "minutes",     "hours"};
+
+std::string in_lower_case(std::string_view text) {
+  std::string word(text);
+  for (char& c : word)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return word;
+}
+
+struct Word {
+  std::string_view text, gap;  // gap: what stands between it and the word before
+  std::size_t begin;
+};
+
+/// "timeMs_rel": time, Ms, rel. Letters beyond ASCII (µ) are letters.
+std::vector<Word> words_in(std::string_view text) {
+  const auto is_lower = [](char c) { return c >= 'a' && c <= 'z'; };
+  const auto is_upper = [](char c) { return c >= 'A' && c <= 'Z'; };
+  const auto is_part = [&](char c) {
+    return is_lower(c) || is_upper(c) || (c >= '0' && c <= '9') ||
+           static_cast<unsigned char>(c) >= 0x80;
+  };
+  std::vector<Word> words;
+  for (std::size_t at = 0;;) {
+    std::size_t begin = at;
+    while (begin < text.size() && !is_part(text[begin])) ++begin;
+    if (begin == text.size()) return words;
+    std::size_t end = begin + 1;
+    while (end < text.size() && is_part(text[end]) &&
+           !(is_lower(text[end - 1]) && is_upper(text[end])))
+      ++end;
+    words.push_back({text.substr(begin, end - begin), text.substr(at, begin - at), begin});
+    at = end;
+  }
+}
+
+bool is_time(const std::optional<TrackUnit>& unit) {
+  return unit && (unit->kind == UnitKind::time || unit->kind == UnitKind::frame);
+}
+
+/// Where "mm/s", "mm per s" or "mm s-1" begins; npos: nothing is per time. A name says so only
+/// behind a length; between brackets "(1/s)" does too.
+std::size_t begin_of_speed(std::string_view text, bool is_name) {
+  const std::vector<Word> words = words_in(text);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i].text.find("⁻¹") != text.npos) return words[i].begin;
+    if (!is_time(unit_called(words[i].text))) continue;
+    const bool is_per = i > 0 && in_lower_case(words[i - 1].text) == "per";
+    const bool is_inverse =
+        i + 1 < words.size() && words[i + 1].text == "1" && words[i + 1].gap.find('-') != text.npos;
+    if (!is_per && !is_inverse && words[i].gap.find('/') == text.npos) continue;
+    const std::size_t behind = i < 1U + is_per ? text.npos : i - 1 - is_per;
+    const auto unit = behind == text.npos ? std::nullopt : unit_called(words[behind].text);
+    if (!is_name || (unit && !is_time(unit))) return words[behind == text.npos ? i : behind].begin;
+  }
+  return text.npos;
+}
+
+/// Whether numbers of frames are meant: "FrameNumber", but neither "frame_time" nor "time of
+/// frame".
+const Word* frames_in(const std::vector<Word>& words) {
+  const Word* found = nullptr;
+  bool has_time = false;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string word = in_lower_case(words[i].text);
+    const bool is_of = has_time && (in_lower_case(words[i - 1].text) == "of" ||
+                                    in_lower_case(words[i - 1].text) == "per");
+    if (word.find("time") != word.npos || word == "t" || word == "clock" || word == "elapsed" ||
+        word == "stamp") {
+      has_time = true;
+      found = nullptr;
+    } else if (word.find("frame") != word.npos && !is_of) {
+      found = &words[i];
+    }
+  }
+  return found;
+}
 
 [[noreturn]] void refuse_unit(const std::string& what) { throw std::invalid_argument(what); }
 
@@ -61,31 +147,50 @@ std::optional<TrackUnit> unit_called(std::string_view text) {
   constexpr std::string_view kAround = " \t()[]{}";
   const std::size_t first = text.find_first_not_of(kAround);
   if (first == text.npos) return {};
-  std::string word(text.substr(first, text.find_last_not_of(kAround) - first + 1));
-  for (char& c : word)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string word =
+      in_lower_case(text.substr(first, text.find_last_not_of(kAround) - first + 1));
   for (const UnitWords& unit : kUnits)
     if (std::find(unit.words.begin(), unit.words.end(), word) != unit.words.end()) return unit.unit;
   return {};
 }
 
 StatedUnit unit_in_name(const std::string& name) {
-  const std::size_t end = name.find_last_not_of(" \t");
-  if (end == name.npos) return {};
   const std::string where = "by its name";
-  if (name[end] == ')' || name[end] == ']') {
-    const std::size_t begin = name.find_last_of("([", end);
-    if (begin == name.npos) return {};
-    const std::string text = name.substr(begin, end - begin + 1);
-    return {text, where, unit_called(text), true};
+  if (const std::size_t close = name.find_last_of(")]}"); close != name.npos) {
+    const std::size_t begin = name.find_last_of("([{", close);
+    const bool is_end = name.find_last_not_of(" \t") == close;
+    if (begin == name.npos && is_end) return {};
+    if (begin != name.npos) {
+      const std::string text = name.substr(begin, close - begin + 1);
+      const auto unit = unit_called(text);
+      if (is_end || unit || begin_of_speed(text, false) != text.npos)
+        return {text, where, unit, true};
+    }
   }
-  const std::size_t before = name.find_last_of("_ .-/", end);
-  const std::string text = name.substr(before + 1, end - before);
-  const auto unit = unit_called(text);
-  const bool is_whole = before == name.npos;
-  if (!unit || (is_whole && unit->kind != UnitKind::time && unit->kind != UnitKind::frame))
-    return {};
-  return {text, where, unit, false};
+  const std::vector<Word> words = words_in(name);
+  if (words.empty()) return {};
+  if (const std::size_t begin = begin_of_speed(name, true); begin != name.npos)
+    return {name.substr(begin), where, {}, true};
+  const auto stated = [&](const Word& word, const std::optional<TrackUnit>& unit) {
+    return StatedUnit{std::string(word.text), where, unit, false};
+  };
+  const Word* const frames = frames_in(words);
+  for (std::size_t i = words.size(); i-- > 0;) {
+    const Word& word = words[i];
+    const auto unit = unit_called(word.text);
+    if (!unit || unit->kind == UnitKind::frame) {
+      if (&word == frames && i + 1 == words.size()) break;
+      continue;
+    }
+    const bool is_last = i + 1 == words.size();
+    const bool is_letter = word.text.size() == 1 && i > 0 && word.gap.empty();  // xM
+    const bool is_known = is_last ? !is_letter && in_lower_case(word.text) != "in" &&
+                                        (words.size() > 1 || unit->kind == UnitKind::time)
+                                  : std::find(kUnmistakable.begin(), kUnmistakable.end(),
+                                              in_lower_case(word.text)) != kUnmistakable.end();
+    if (is_known) return stated(word, unit);
+  }
+  return frames ? stated(*frames, TrackUnit{UnitKind::frame}) : StatedUnit{};
 }
 
 std::optional<TrackUnit> time_unit_of(const std::vector<StatedUnit>& stated,
@@ -103,31 +208,45 @@ std::optional<TrackUnit> time_unit_of(const std::vector<StatedUnit>& stated,
 double metres_per_unit_of(const std::vector<StatedUnit>& of_x, const std::vector<StatedUnit>& of_y,
                           const std::string& x_name, const std::string& y_name, TrackFile& file,
                           const TrackOptions& options) {
-  const auto stated = [&](const std::vector<StatedUnit>& all, const std::string& name) {
+  const auto given = options.metres_per_unit;
+  // The end of a name that would be a time is something else: x_s is smoothed.
+  const auto of_length = [](std::vector<StatedUnit> all) {
+    std::erase_if(all, [](const StatedUnit& s) { return !s.is_sure && is_time(s.unit); });
+    return all;
+  };
+  const std::vector<StatedUnit> all_of_x = of_length(of_x), all_of_y = of_length(of_y);
+  const auto stated = [&](const std::vector<StatedUnit>& all,
+                          const std::string& name) -> const StatedUnit* {
     const std::string what = file.source + ": " + name;
     const StatedUnit* const said = agreed(all, what);
-    const bool is_other = said && said->unit && said->unit->kind != UnitKind::length &&
-                          said->unit->kind != UnitKind::pixel;
-    if (is_other && said->is_sure)
+    if (!said) return nullptr;
+    if (is_time(said->unit) || (!said->unit && begin_of_speed(said->text, false) != name.npos))
       refuse_unit(what + " is " + said->words() + ", which is no length");
-    return said && said->unit && !is_other ? said : nullptr;
+    if (said->unit) return said;
+    if (given) {
+      const std::string words = name + " is " + said->words() +
+                                ", which is no length that is known; --metres-per-unit " +
+                                shortest(*given) + " is used";
+      if (std::find(file.remarks.begin(), file.remarks.end(), words) == file.remarks.end()) {
+        file.remarks.push_back(words);
+        file.warnings.push_back(file.source + ": " + words);
+      }
+    }
+    return nullptr;
   };
-  const StatedUnit *const x = stated(of_x, x_name), *const y = stated(of_y, y_name);
+  const StatedUnit *const x = stated(all_of_x, x_name), *const y = stated(all_of_y, y_name);
   if (x && y && !x->unit->same_as(*y->unit))
     refuse_unit(file.source + ": " + x_name + " is " + x->words() + ", " + y_name + " " +
                 y->words() + ": both must be in the same unit");
   const StatedUnit* const said = x ? x : y;
-  const auto given = options.metres_per_unit;
   if (!said || said->unit->kind != UnitKind::length || (!(x && y) && !given)) {
     Lacking lacking(file.source);
     if (!given && said && said->unit->kind == UnitKind::pixel)
       lacking.add("what a unit of places is, which are " + said->words(), "--metres-per-unit X");
     else if (!given)
-      lacking.add("what " +
-                      (x   ? y_name
-                       : y ? x_name
-                           : std::string("x and y")) +
-                      " are in",
+      lacking.add("what " + (x   ? y_name + " is in"
+                             : y ? x_name + " is in"
+                                 : std::string("x and y are in")),
                   "--metres-per-unit X (1: metres)");
     lacking.refuse();
     if (!said || said->unit->kind != UnitKind::length) return *given;
@@ -135,12 +254,13 @@ double metres_per_unit_of(const std::vector<StatedUnit>& of_x, const std::vector
   const double metres = said->unit->in_si(1.0);
   if (given && std::abs(*given - metres) > 1e-9 * metres) {
     const std::string words = (x ? x_name : y_name) + " is " + said->words() + ", which is " +
-                              shortest(metres) + " m; --metres-per-unit says " + shortest(*given);
+                              shortest(metres) + " m; --metres-per-unit ";
     if (!said->gives_way)
-      refuse_unit(file.source + ": " + words + ": leave it out, or mend what the file says");
-    file.remarks.push_back(words + ", which is taken");
+      refuse_unit(file.source + ": " + words + "says " + shortest(*given) +
+                  ": leave it out, or mend what the file says");
+    file.remarks.push_back(words + shortest(*given) + " is used");
     file.warnings.push_back(file.source + ": " + file.remarks.back() +
-                            "; without the option the file's unit is");
+                            ". Leave the option out to use the file's unit.");
     return *given;
   }
   file.remarks.push_back("places are " + said->words());

@@ -39,8 +39,9 @@ struct StatedUnit {
   [[nodiscard]] std::string words() const { return "in " + text + ", " + where; }
 };
 
-/// What the name of a column says: "Time [ms]", "t_ms", "x (cm)". Of a name without any of it, what
-/// the whole of it says: "frame".
+/// What the name of a column says: "Time [ms]", "t_ms", "x (cm)", "timeMs"; "mm/s" of "x_mm/s",
+/// which is no unit. Units of time that cannot be anything else count anywhere in it
+/// ("time_ms_rel"), and so do frames ("frame_idx", but not "frame_time").
 [[nodiscard]] StatedUnit unit_in_name(const std::string& name);
 
 /// The unit of times; none: nothing is stated. Throws std::invalid_argument, beginning with `what`,
@@ -50,8 +51,8 @@ struct StatedUnit {
                                                     const std::string& instead_of_frames);
 
 /// Metres of a unit of places, as the file states it of x and of y, or as the user does. Throws
-/// std::invalid_argument where both do and differ, and where nobody does; a unit that gives way is
-/// a warning then.
+/// std::invalid_argument where both do and differ, where nobody does, and for what is no length. A
+/// unit that gives way, or that nobody knows, is a warning then.
 [[nodiscard]] double metres_per_unit_of(const std::vector<StatedUnit>& of_x,
                                         const std::vector<StatedUnit>& of_y,
                                         const std::string& x_name, const std::string& y_name,

@@ -215,7 +215,22 @@ TEST_F(TracksFile, UnitsInNamesAreBelieved) {
       {"time (µs)", "x [µm]", "y [um]", "20000,5000,5000"},
       {"time_milliseconds", "x.mm", "y mm", "20,5,5"},
       {"T/ns", "x_nm", "y_nm", "2e7,5e6,5e6"},
-      {"TIME_MS", "POSITION_MM", "y_millimeters", "20,5,5"}};
+      {"TIME_MS", "POSITION_MM", "y_millimeters", "20,5,5"},
+      {"time{ms}", "x{mm}", "y {mm}", "20,5,5"},
+      {"time:ms", "x:mm", "y#mm", "20,5,5"},
+      {"timeMs", "xMm", "yMm", "20,5,5"},
+      {"time_ms_", "x_mm_", "y_mm_", "20,5,5"},
+      {"time_ms_rel", "x (mm) raw", "y (mm) raw", "20,5,5"},
+      {"ms since start", "x [km]", "y [km]", "20,5e-6,5e-6"},
+      {"milliseconds_elapsed", "x_dm", "y_dm", "20,0.05,0.05"},
+      {"frame_time_s", "x (in)", "y (inch)", "0.02,0.19685039370078738,0.19685039370078738"},
+      {"frame_ms", "x (ft)", "y_ft", "20,0.016404199475065617,0.016404199475065617"},
+      {"frame_time", "x_m", "y_m", "0.02,0.005,0.005"},
+      {"FrameTimestamp", "x_m", "y_m", "0.02,0.005,0.005"},
+      {"time of frame", "x_m", "y_m", "0.02,0.005,0.005"},
+      {"min_time", "x_m", "y_m", "0.02,0.005,0.005"},
+      {"h_time", "x_m", "y_m", "0.02,0.005,0.005"},
+      {"timeH", "x_m", "y_m", "0.02,0.005,0.005"}};
   for (const auto& [time, x, y, values] : all) {
     const TrackFile t = read_as(time, x, y, values);
     EXPECT_DOUBLE_EQ(t.tracks.at(0).time.at(1), 0.02) << time;
@@ -246,18 +261,27 @@ TEST_F(TracksFile, UnitsThatDoNotFitAreRefused) {
           "in place of time=, and frames per second, --fps N",
           1.0);
   refused("t_frames", "x", "y", "give frame=t_frames", 1.0);
+  for (const char* name :
+       {"frame_idx", "frame_number", "FrameNumber", "frameNo", "frame_id", "Frame #", "framecount",
+        "nframes", "time_frame_idx", "index of frame", "frame_min_id", "{frame}"})
+    refused(name, "x", "y",
+            std::string("give frame=") + name + " of --columns in place of time=", 1.0);
   refused("t_mm", "x", "y", "column t_mm is in mm, by its name, which is no unit of time", 1.0);
   refused("t (a.u.)", "x", "y", "column t (a.u.) is in (a.u.), by its name, which is no unit of",
           1.0);
   refused("t_s", "x_mm", "y_cm", "column x_mm is in mm, by its name, column y_cm in cm");
   refused("t_s", "x_mm", "y_px", "both must be in the same unit");
   refused("t_s", "x [s]", "y", "column x [s] is in [s], by its name, which is no length", 1.0);
+  for (const char* speed : {"x (mm/s)", "x (m/s)", "x (mm s-1)", "x [mm·s⁻¹]", "x (px per frame)",
+                            "x (1/s)", "x_mm/s", "x_mm_per_s"})
+    for (const std::optional<double> scale : {std::optional<double>(), std::optional(0.001)})
+      refused("t_s", speed, "y", ", by its name, which is no length", scale);
   refused("t_s", "x_mm", "y_mm",
           "column x_mm is in mm, by its name, which is 0.001 m; "
           "--metres-per-unit says 1",
           1.0);
   refused("t_s", "x_mm", "y", "column x_mm is in mm, by its name, which is 0.001 m", 1.0);
-  refused("t_s", "x_mm", "y", "what column y are in: --metres-per-unit X");
+  refused("t_s", "x_mm", "y", "what column y is in: --metres-per-unit X");
   refused("t_s", "x_px", "y_px", "are in px, by its name: --metres-per-unit X");
   refused("t_s", "x", "y", "what x and y are in: --metres-per-unit X");
   // Steps of 20 ms are 50 frames a second; of 20 s, which the file does not say, every 1000th.
@@ -277,6 +301,20 @@ TEST_F(TracksFile, UnitsThatDoNotFitAreRefused) {
   EXPECT_EQ(read("id,t,x_s,y_s\na,0,1,1\na,1,1,1\n", options).places, 2);
   options.columns = "body=id,time=t,x=x_px,y=y_px";
   EXPECT_EQ(read("id,t,x_px,y_px\na,0,1,1\na,1,1,1\n", options).places, 2);
+  options.columns = "body=id,time=t,x=xM,y=frame_y";
+  EXPECT_TRUE(read("id,t,xM,frame_y\na,0,1,1\na,1,1,1\n", options).warnings.empty());
+}
+
+TEST_F(TracksFile, UnitsOfPlacesThatNobodyKnowsAreSaid) {
+  TrackOptions options = table_options("body=id,time=t,x=x (furlong),y=y");
+  options.fps = {};
+  const TrackFile t = read("id,t,x (furlong),y\na,0,1,1\na,1,1,1\n", options);
+  ASSERT_EQ(t.warnings.size(), 1U);
+  EXPECT_NE(t.warnings[0].find("t.csv: column x (furlong) is in (furlong), by its name, which is "
+                               "no length that is known; --metres-per-unit 0.001 is used"),
+            std::string::npos)
+      << t.warnings[0];
+  EXPECT_DOUBLE_EQ(t.tracks[0].x[1], 0.001);
 }
 
 TEST_F(TracksFile, TrackMatesUnitsAreBelieved) {
@@ -306,9 +344,18 @@ TEST_F(TracksFile, TrackMatesUnitsAreBelieved) {
   ASSERT_EQ(other.warnings.size(), 1U);
   EXPECT_NE(other.warnings[0].find(
                 "column POSITION_X is in (micron), in the row of units, which is 1e-06 "
-                "m; --metres-per-unit says 0.001, which is taken"),
+                "m; --metres-per-unit 0.001 is used. Leave the option out to use the file's unit."),
             std::string::npos)
       << other.warnings[0];
+  const TrackFile unknown = read(text("(furlong)", "(ms)", ""), options);
+  ASSERT_EQ(unknown.warnings.size(), 2U);
+  EXPECT_NE(
+      unknown.warnings[0].find("column POSITION_X is in (furlong), in the row of units, which "
+                               "is no length that is known; --metres-per-unit 0.001 is used"),
+      std::string::npos)
+      << unknown.warnings[0];
+  expect_refused(text("(mm/s)", "(ms)", ""), options,
+                 "column POSITION_X is in (mm/s), in the row of units, which is no length");
   options.metres_per_unit = 1e-6;
   EXPECT_TRUE(read(text("(micron)", "(ms)", ""), options).warnings.empty());
   options.columns = "body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y";

@@ -147,7 +147,7 @@ for lattice in 0,3 2.5,3 x 3; do expect 2 'lattice .*: must be two' "$gatewalk" 
 expect 2 'window 4: must be an odd number' "$gatewalk" passages "${table[@]}" -o x.csv --window 4
 expect 2 'fastest -1: must be above 0' "$gatewalk" passages "${table[@]}" -o x.csv --fastest -1
 expect 2 'no body is seen to enter a cell.*are --metres-per-unit, --origin, --fps and --fastest right' "$gatewalk" passages "${own[@]}" -o x.csv --origin 5000,0
-expect 0 'spots.csv: column POSITION_X is in (mm), in the row of units, which is 0.001 m; --metres-per-unit says 0.002, which is taken' "$gatewalk" passages "${table[@]}" -o x.csv --force --fastest 5 --metres-per-unit 0.002
+expect 0 'spots.csv: column POSITION_X is in (mm), in the row of units, which is 0.001 m; --metres-per-unit 0.002 is used. Leave the option out to use' "$gatewalk" passages "${table[@]}" -o x.csv --force --fastest 5 --metres-per-unit 0.002
 expect 2 'column x_cm is in cm, by its name, which is 0.01 m; --metres-per-unit says 0.001: leave it out' "$gatewalk" passages law.csv --cell law.toml -o x.csv --force --fastest 1 --columns body=body,time=t_ms,x=x_cm,y=y_cm --metres-per-unit 0.001
 sed 's/^,,,(mm)/,,(frame),(mm)/' spots.csv >frames.csv
 expect 2 'column FRAME is in (frame), in the row of units: give frame=FRAME of --columns in place of time=' "$gatewalk" passages frames.csv "${table[@]:1}" -o x.csv --columns body=TRACK_ID,time=FRAME,x=POSITION_X,y=POSITION_Y,confidence=QUALITY
