@@ -127,6 +127,12 @@ const Word* frames_in(const std::vector<Word>& words) {
   return found;
 }
 
+/// Of words that are units between brackets: as the end of a name they are more often another
+/// thing.
+bool is_ambiguous(std::string_view word) {
+  return word == "in" || word == "foot" || word == "feet";
+}
+
 [[noreturn]] void refuse_unit(const std::string& what) { throw std::invalid_argument(what); }
 
 /// The one that is stated surely, else the first; they agree.
@@ -184,7 +190,7 @@ StatedUnit unit_in_name(const std::string& name) {
     }
     const bool is_last = i + 1 == words.size();
     const bool is_letter = word.text.size() == 1 && i > 0 && word.gap.empty();  // xM
-    const bool is_known = is_last ? !is_letter && in_lower_case(word.text) != "in" &&
+    const bool is_known = is_last ? !is_letter && !is_ambiguous(in_lower_case(word.text)) &&
                                         (words.size() > 1 || unit->kind == UnitKind::time)
                                   : std::find(kUnmistakable.begin(), kUnmistakable.end(),
                                               in_lower_case(word.text)) != kUnmistakable.end();

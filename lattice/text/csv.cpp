@@ -60,8 +60,8 @@ std::optional<std::vector<std::string>> csv_fields(std::string_view line) {
 }
 
 bool says_nothing(std::string_view field) {
-  constexpr std::array<std::string_view, 12> kWords{"",     "na",  "n/a",  "nan",  "-nan", "none",
-                                                    "null", "nil", "<na>", "#n/a", "#na",  "nat"};
+  constexpr std::array<std::string_view, 11> kWords{"",     "na",   "n/a",  "nan", "-nan", "none",
+                                                    "null", "<na>", "#n/a", "#na", "-"};
   std::string word(field);
   for (char& c : word)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');

@@ -17,8 +17,9 @@ namespace gatewalk::lattice {
 /// None when a quotation mark is not closed, or closed within a field.
 [[nodiscard]] std::optional<std::vector<std::string>> csv_fields(std::string_view line);
 
-/// Whether a field says that there is nothing: empty, or a word that programs write for it, NA,
-/// N/A, NaN, None, null, <NA>.
+/// Whether a field says that there is nothing: empty, or what programs write for it, NA, #NA, N/A,
+/// #N/A, <NA>, NaN, -NaN, None, null or "-", in capitals or not. An animal may be called Nat or
+/// Nil.
 [[nodiscard]] bool says_nothing(std::string_view field);
 
 /// Whether a line has no fields: it is blank, or a comment, which begins with # but for #N/A.

@@ -301,6 +301,8 @@ TEST_F(TracksFile, UnitsThatDoNotFitAreRefused) {
   EXPECT_EQ(read("id,t,x_s,y_s\na,0,1,1\na,1,1,1\n", options).places, 2);
   options.columns = "body=id,time=t,x=x_px,y=y_px";
   EXPECT_EQ(read("id,t,x_px,y_px\na,0,1,1\na,1,1,1\n", options).places, 2);
+  options.columns = "body=id,time=t,x=x_foot,y=y_in";
+  EXPECT_DOUBLE_EQ(read("id,t,x_foot,y_in\na,0,1,1\na,1,1,1\n", options).metres_per_unit, 0.001);
   options.columns = "body=id,time=t,x=xM,y=frame_y";
   EXPECT_TRUE(read("id,t,xM,frame_y\na,0,1,1\na,1,1,1\n", options).warnings.empty());
 }
@@ -365,8 +367,8 @@ TEST_F(TracksFile, TrackMatesUnitsAreBelieved) {
 }
 
 TEST_F(TracksFile, WordsForNobody) {
-  for (const char* word :
-       {"NA", "None", "null", "<NA>", "N/A", "#N/A", "NaN", "nan", "NULL", "", "-1"}) {
+  for (const char* word : {"NA", "None", "null", "<NA>", "N/A", "#N/A", "#NA", "NaN", "nan", "-nan",
+                           "NULL", "", "-", "-1"}) {
     const TrackFile t = read(std::string("id,f,x,y\n0,0,1,1\n") + word + ",0,5,5\n1,0,2,2\n" +
                                  word + ",1,5,5\n1,1,2,3\n",
                              table_options());
@@ -375,6 +377,14 @@ TEST_F(TracksFile, WordsForNobody) {
     EXPECT_EQ(t.tracks[1].y, (std::vector{0.002, 0.003})) << word;
     EXPECT_EQ(t.no_body, 2) << word;
     EXPECT_EQ(t.places, 3) << word;
+  }
+  // Animals may be called so.
+  for (const char* name : {"Nat", "NIL", "nat"}) {
+    const TrackFile t =
+        read(std::string("id,f,x,y\nBo,0,1,1\n") + name + ",0,5,5\n", table_options());
+    ASSERT_EQ(t.tracks.size(), 2U) << name;
+    EXPECT_EQ(t.tracks[1].body, name);
+    EXPECT_EQ(t.no_body, 0) << name;
   }
   // Names, not numbers from 0: -1 may be one of them.
   for (const char* other : {"a", "-2", "0.5"})
