@@ -24,6 +24,10 @@ using namespace dynamics;
 constexpr std::size_t kMostInFlight = 4096;
 constexpr std::size_t kMostOut = std::size_t{1} << 16;  // bytes that wait to be read
 constexpr std::string_view kNoMemory = "-";
+// With few outcomes one passage has the same by chance: but for the first, a new process answers at
+// least kEnough.
+constexpr int kMostStarts = 4;
+constexpr std::int64_t kEnough = 4;
 
 template <class Number>
 void append(std::string& line, Number x) {
@@ -81,7 +85,8 @@ struct ProgramCell::Program {
   ProgramOptions options;
   Hello hello;
   std::string first_line;
-  mutable std::atomic<int> starts_again{3};  // new processes that are to answer for others, yet
+  // New processes that are to answer for others, yet.
+  mutable std::atomic<int> starts_again{kMostStarts};
 };
 
 struct ProgramCell::Running {
@@ -199,7 +204,8 @@ void ProgramCell::carry_out(const NextPassage& next, Health& health, std::int64_
 
 void ProgramCell::carry_out_once_more(const NextPassage& next, Health& health,
                                       std::int64_t at_once) const {
-  if (program_->starts_again <= 0 || program_->starts_again-- <= 0)
+  const bool is_wasted = at_once < kEnough && program_->starts_again < kMostStarts;
+  if (is_wasted || program_->starts_again <= 0 || program_->starts_again-- <= 0)
     return carry_out(next, health, at_once);
   take().reset();  // there are never more of them than threads
   carry_out_by(started(), next, health, at_once);

@@ -72,10 +72,11 @@ class TrialsOfCell {
 
  private:
   /// Of a new cell's passages the first few, and later one of so many, are seen once more: at most
-  /// so many at a time, when the cell has had so many passages, and each time that they doubled.
-  /// A run of fewer than `kFew` sees all of its own at its end.
+  /// so many at a time, when the cell has had so many passages, and each time that they doubled,
+  /// but not before there are `kEnough` of them. A run of fewer than `kFew` sees all of its own at
+  /// its end.
   static constexpr std::int64_t kFirstOnes = 4, kOneOf = 20, kMostKept = 64, kFirstTime = 128,
-                                kFew = 2 * kMostKept * kOneOf;
+                                kEnough = 8, kFew = 2 * kMostKept * kOneOf;
 
   /// The passages of one thread.
   class Share {
@@ -125,7 +126,8 @@ class TrialsOfCell {
     /// False: the body waits until what was kept has been seen once more.
     bool begin(const Body& body) {
       if (!all_.once_more_) return true;
-      if (passed() >= next_time_ && !(watched_.empty() && seen_.empty())) is_time_ = true;
+      if (passed() >= next_time_ && std::ssize(watched_) + std::ssize(seen_) >= kEnough)
+        is_time_ = true;
       if (is_time_) {
         waiting_.push_back(body);
         return false;
@@ -166,7 +168,7 @@ class TrialsOfCell {
             body = (next_one++)->before;
             return true;
           },
-          uncounted, at_once);
+          uncounted, std::min(at_once, std::ssize(seen)));
     }
     void compare(const std::vector<Seen>& seen, const Body& body, const Passage& passage) const {
       const auto was = std::find_if(seen.begin(), seen.end(),

@@ -88,7 +88,8 @@ class Cell {
   /// Whether carry_out_trials() carries out some passages once more, to see whether they are the
   /// same: not of a cell whose own tests show it.
   [[nodiscard]] virtual bool has_to_show_itself() const { return true; }
-  /// carry_out() of those passages: where a cell has processes, by another one.
+  /// carry_out() of those passages, of which there are at least `at_once`: where a cell has
+  /// processes, by another one.
   virtual void carry_out_once_more(const NextPassage& next, Health& health,
                                    std::int64_t at_once) const {
     carry_out(next, health, at_once);
