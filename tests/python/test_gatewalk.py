@@ -358,10 +358,19 @@ class Elsewhere(unittest.TestCase):
                              (np.array([0, 1j]), "step 0 .* is no whole number"),
                              (pandas.Series([0, None, 1], dtype="Int64"), "step 1 .*: <NA> is no whole number"),
                              (np.ma.masked_array([0, 1, 1], [False, False, True]), "step 2 .*: masked; cut"),
+                             ([0, True, 1, 0], "step 1 .*: True is no whole number"),
+                             ((0, 1, np.bool_(False), 0), "step 2 .*False.* is no whole number"),
+                             (np.array([0, 1], dtype="timedelta64[s]"), "step 0 .*timedelta64.* is no whole number"),
+                             ([0, np.timedelta64(1, "s"), 0, 0], "step 1 .*timedelta64.* is no whole number"),
+                             ([0, np.ma.masked, 1, 0], "step 1 .*: masked; cut the trajectory there"),
                              (np.array([0, -1, 1]), "step 1 .*: -1 is no state"),
                              (np.zeros((2, 2)), "is no sequence of states")):
-            with self.assertRaisesRegex(gw.UsageError, "the chain: trajectory 1[, ].*" + words):
+            with self.assertRaisesRegex(gw.UsageError, "the chain: trajectory 1[, ].*" + words), warnings.catch_warnings():
+                warnings.simplefilter("error")
                 gw.from_counts([good, wrong], states, **field)
+        for none in ([], (), [np.array([0])], [[0], [1], []]):
+            with self.assertRaisesRegex(gw.UsageError, "the chain: no trajectory has a step"):
+                gw.from_counts(none, states, **field)
         with self.assertRaisesRegex(gw.UsageError, "row 1, column 0 .* is masked"):
             gw.from_counts(np.ma.masked_array([[1, 2], [3, 4]], [[False, False], [True, False]]), states, **field)
         for wrong, words in ((np.array([[True, False], [False, True]]), "a matrix of bool"), (np.array([[1j, 0], [0, 1]]), "a matrix of complex"),
@@ -664,6 +673,32 @@ class Cells(unittest.TestCase):
                 gw.check_cell(Pillars(), bad)
         with self.assertRaisesRegex(gw.UsageError, "derived from gatewalk.Cell"):
             gw.check_cell(Pillars)
+        for value, words in (("0.1", "must be a number, not '0.1'"), (True, "must be a number, not True"), (None, "must be a number, not None"),
+                             (float("nan"), "must be finite, not nan"), (np.inf, "must be finite, not inf")):
+            with self.assertRaisesRegex(gw.UsageError, "check_cell: s of start 1 " + words):
+                gw.check_cell(Pillars(), [{"face": "S", "s": 0.0}, {"face": "S", "s": value}])
+        for starts in ({"face": "S", "s": 0.0}, pandas.DataFrame({"face": ["S"], "s": [0.0]}), [("S", 0.0)], [], "S"):
+            with self.assertRaisesRegex(gw.UsageError, "starts must be a list of dicts, at least one, not " + type(starts).__name__):
+                gw.check_cell(Pillars(), starts)
+        for name, most, wrong in (("trials", 2**63 - 1, (0, 2.5, "5", True, 2**63)), ("cells", 2**31 - 1, (0, 2.0, 2**31)),
+                                  ("seed", 2**64 - 1, (-1, 1.5, None, 2**64))):
+            for value in wrong:
+                with self.assertRaisesRegex(gw.UsageError, f"check_cell: {name} must be a whole number from [01] to {most}, not {value!r}"):
+                    gw.check_cell(Pillars(), **{name: value})
+        self.assertEqual(gw.check_cell(Pillars(), ({"face": "S", "s": np.float32(0.5)},), trials=np.int64(20), cells=np.uint8(3), seed=2**64 - 1), [])
+
+        class Nameless(Pillars):
+            faces = [{"move": [0, 1]}]
+
+        with self.assertRaisesRegex(gw.UsageError, r"cell: faces\[0\] must be a dict with a name, not {'move': \[0, 1\]}"):
+            gw.check_cell(Nameless())
+
+        class OfNumpy(Pillars):  # whose numbers JSON does not know
+            faces = [{**face, "move": np.array(face["move"])} for face in Pillars.faces]
+            coordinates = [{**c, "scale": np.float32(0.5)} for c in Pillars.coordinates]
+            uniforms, normals, symmetric = np.int64(Pillars.uniforms), np.int64(Pillars.normals), np.bool_(Pillars.symmetric)
+
+        self.assertEqual(gw.check_cell(OfNumpy(), trials=20), [])
 
 
 class Recorded(unittest.TestCase):

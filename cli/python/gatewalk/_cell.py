@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import copy
 import json
+import math
+import operator
 import types
 import typing as t
 
@@ -27,6 +29,37 @@ def _numbers(value: t.Any, what: str, kinds: str = "iuf") -> Array:
     if array.dtype.kind not in kinds:
         raise ValueError(f"cell: pass_ must give numbers as {what}, it gave {array.dtype}")
     return array
+
+
+def _number(value: t.Any, what: str) -> float:
+    no_numbers = (bool, np.bool_, str, bytes, complex, np.complexfloating, np.timedelta64, np.datetime64)
+    if isinstance(value, no_numbers) or not np.isscalar(value):
+        raise _core.UsageError(f"{what} must be a number, not {value!r}")
+    return float(value)  # type: ignore[arg-type]
+
+
+def _whole(value: t.Any, what: str, least: int, most: int) -> int:
+    try:
+        whole = None if isinstance(value, bool) else operator.index(value)
+    except TypeError:
+        whole = None
+    if whole is None or not least <= whole <= most:
+        raise _core.UsageError(f"check_cell: {what} must be a whole number from {least} to {most}, not {value!r}")
+    return whole
+
+
+def _plain(value: t.Any) -> t.Any:
+    """Of numpy, what JSON knows."""
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    raise ValueError(f"cell: {value!r} is neither a number nor a word, nor a list or dict of them")
+
+
+def _names(items: t.Any, what: str) -> list[str]:
+    for k, item in enumerate(items):
+        if not isinstance(item, t.Mapping) or not isinstance(item.get("name"), str):
+            raise _core.UsageError(f"cell: {what}[{k}] must be a dict with a name, not {item!r}")
+    return [item["name"] for item in items]
 
 
 class Cell:
@@ -83,16 +116,11 @@ class Cell:
         raise NotImplementedError("derive from gatewalk.Cell and write pass_(entries, random)")
 
     def _hello(self) -> str:
-        def number(value: t.Any, what: str) -> float:
-            if isinstance(value, (bool, np.bool_, str, bytes)) or not np.isscalar(value):
-                raise ValueError(f"cell: {what} must be a number, not {value!r}")
-            return float(value)  # type: ignore[arg-type]
-
-        parameters = {key: [number(x, f"{key} of parameters and limits") for x in (value, *self.limits[key])] if key in self.limits
-                      else number(value, f"{key} of parameters") for key, value in self.parameters.items()}
+        parameters = {key: [_number(x, f"cell: {key} of parameters and limits") for x in (value, *self.limits[key])] if key in self.limits
+                      else _number(value, f"cell: {key} of parameters") for key, value in self.parameters.items()}
         return json.dumps({"gatewalk": 1, "faces": self.faces, "coordinates": self.coordinates, "costs": self.costs,
                            "symmetric": self.symmetric, "normals": self.normals, "uniforms": self.uniforms,
-                           "parameters": parameters})
+                           "parameters": parameters}, default=_plain)
 
     def _with(self, key: str, value: float) -> Cell:
         other = copy.copy(self)
@@ -163,7 +191,7 @@ def check_cell(cell: Cell, starts: t.Sequence[t.Mapping[str, t.Any]] | None = No
     Raises
     ------
     ValueError
-        Where `cell` is no cell, or a start none of its entries.
+        Where `cell` is no cell, or a start none of its entries; where a number is none, or out of range.
 
     Examples
     --------
@@ -184,12 +212,18 @@ def check_cell(cell: Cell, starts: t.Sequence[t.Mapping[str, t.Any]] | None = No
     """
     if not isinstance(cell, Cell):
         raise _core.UsageError("cell: must be an object of a class derived from gatewalk.Cell")
-    if trials < 1 or cells < 1:
-        raise _core.UsageError("check_cell: trials and cells must be 1 or more")
-    faces, names = [f["name"] for f in cell.faces], [c["name"] for c in cell.coordinates]
+    trials, cells = _whole(trials, "trials", 1, 2**63 - 1), _whole(cells, "cells", 1, 2**31 - 1)
+    seed = _whole(seed, "seed", 0, 2**64 - 1)
+    faces, names = _names(cell.faces, "faces"), _names(cell.coordinates, "coordinates")
     entries = [(k, [0.0] * len(names)) for k in range(len(faces))] if starts is None else []
+    if starts is not None and not (isinstance(starts, (list, tuple)) and starts and all(isinstance(start, t.Mapping) for start in starts)):
+        raise _core.UsageError(f"check_cell: starts must be a list of dicts, at least one, not {type(starts).__name__}: {starts!r}")
     for k, start in enumerate(starts or []):
         if set(start) != {"face", *names} or start["face"] not in faces:
             raise _core.UsageError(f"check_cell: start {k} must have a face, one of {', '.join(faces)}, and {', '.join(names)}; it is {dict(start)}")
-        entries.append((faces.index(start["face"]), [float(start[name]) for name in names]))
+        at = [_number(start[name], f"check_cell: {name} of start {k}") for name in names]
+        for name, number in zip(names, at):
+            if not math.isfinite(number):
+                raise _core.UsageError(f"check_cell: {name} of start {k} must be finite, not {number}")
+        entries.append((faces.index(start["face"]), at))
     return _core.check_cell(cell, entries, trials, cells, seed)

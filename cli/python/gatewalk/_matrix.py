@@ -347,6 +347,13 @@ def _states_of(one: t.Any, which: int) -> list[int]:
     def refuse(step: int, what: str) -> t.NoReturn:
         raise _core.UsageError(f"the chain: trajectory {which}, step {step} (counted from 0): {what}")
 
+    no_states = (bool, np.bool_, np.timedelta64)  # though Python counts them as whole numbers
+    if isinstance(one, (list, tuple)):  # of which numpy would make numbers
+        for step, state in enumerate(one):
+            if state is np.ma.masked:
+                refuse(step, "masked; cut the trajectory there")
+            if isinstance(state, no_states):
+                refuse(step, f"{state!r} is no whole number")
     dimensions = 0 if isinstance(one, (str, bytes)) else np.asarray(one, dtype=object).ndim
     if dimensions != 1:
         raise _core.UsageError(f"the chain: trajectory {which} is no sequence of states, but {type(one).__name__}"
@@ -356,7 +363,7 @@ def _states_of(one: t.Any, which: int) -> list[int]:
     states = np.asarray(one)
     if states.dtype.kind not in "iuf":
         for step, state in enumerate(one):
-            whole = isinstance(state, numbers.Real) and not isinstance(state, (bool, np.bool_)) and state == state and state == state // 1
+            whole = isinstance(state, numbers.Real) and not isinstance(state, no_states) and state == state and state == state // 1
             if not whole:
                 refuse(step, f"{state!r} is no whole number")
         states = np.array([int(state) for state in one], dtype=object)
@@ -411,9 +418,12 @@ def _chain_file(chain: t.Any) -> t.Iterator[str]:
             if n and nested and len(lengths) == 1 and lengths <= {n, n + 1}:
                 raise _core.UsageError(f"the chain: {n} lists of {lengths.pop()} numbers may be a matrix or trajectories: "
                                        "numpy.array(chain) is a matrix, [numpy.array(one) for one in chain] are trajectories")
+            trajectories = [_states_of(one, k) for k, one in enumerate(chain)]
+            if all(len(one) < 2 for one in trajectories):
+                raise _core.UsageError("the chain: no trajectory has a step, which needs two states")
             name = os.path.join(folder, "chain.dtrajs")
             with open(name, "w", encoding="utf-8") as file:
-                file.writelines(" ".join(map(str, _states_of(one, k))) + "\n" for k, one in enumerate(chain))
+                file.writelines(" ".join(map(str, one)) + "\n" for one in trajectories)
         with called(name, "the chain"):
             yield name
 
@@ -442,7 +452,7 @@ def from_counts(chain: t.Any, states: t.Any, *, start: int | None = None, **more
     ------
     UsageError
         What is wrong in the chain or the states, and where: states that are no whole numbers, NaN and masked entries too, by
-        trajectory and step.
+        trajectory and step; trajectories without a single step.
 
     Examples
     --------
