@@ -66,9 +66,9 @@ std::string steps_text(std::vector<dynamics::Deciding> left) {
       if (alike) names += (names.empty() ? "" : ", or ") + std::string(d.words);
       return alike;
     });
-    text += (text.empty() ? "  on a step 1 % of " : "            1 % of ") + names +
-            ", decides: with 1 % less the body " + std::string(words_of(first.less)) +
-            ", with 1 % more it " + std::string(words_of(first.more)) + "\n";
+    text += (text.empty() ? "  on a step 1 % less of " : "            1 % less of ") + names +
+            ": the body " + std::string(words_of(first.less)) + "; 1 % more: it " +
+            std::string(words_of(first.more)) + "\n";
   }
   return text;
 }

@@ -2,12 +2,12 @@
 #include "lattice/cells/cut_tracks.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 
+#include "lattice/text/digits.h"
 #include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
@@ -35,14 +35,6 @@ const Measured& measured(const dynamics::Coordinate& coordinate) {
   throw std::invalid_argument("coordinate " + printable(coordinate.name) +
                               " cannot be measured of tracks: these can, s (m, along the face from "
                               "its middle), vx, vy, speed (m/s), heading (rad)");
-}
-
-/// Six digits, for messages.
-std::string rounded(double x) {
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), x,
-                                       std::chars_format::general, 6)
-                             .ptr};
 }
 
 /// A border crossed at a time, on the smooth path.
@@ -144,7 +136,7 @@ class Cutter {
       cut_.noise = noise_of(cut_.pieces, file_.interval, window());
     } catch (const std::invalid_argument& e) {
       throw std::invalid_argument(file_.source + ": " + e.what() + " (--fastest " +
-                                  rounded(options_.fastest) + " m/s)");
+                                  rounded(options_.fastest) + " m/s)" + words_of_stride());
     }
     for (const TrackPiece& piece : cut_.pieces) require_near(piece);
     // Five standard deviations of a place of the path: seldom passed by noise alone.
@@ -165,6 +157,21 @@ class Cutter {
   }
 
  private:
+  /// That places stand several frames apart, if most do: then there is a gap behind each.
+  [[nodiscard]] std::string words_of_stride() const {
+    std::vector<double> steps;
+    for (const Track& track : file_.tracks)
+      for (std::size_t i = 1; i < track.time.size(); ++i)
+        steps.push_back((track.time[i] - track.time[i - 1]) / file_.interval);
+    if (steps.empty()) return {};
+    const auto middle = steps.begin() + std::ssize(steps) / 2;
+    std::nth_element(steps.begin(), middle, steps.end());
+    const double frames = std::round(*middle);
+    if (frames < 2.0) return {};
+    return "; from one place of a body to its next one are " + rounded(frames) + " frames of " +
+           rounded(file_.interval) + " s (median): is --fps right?";
+  }
+
   void set_lattice() {
     const auto& map = cell_.map;
     const bool is_given = options_.columns > 0 || options_.endless;

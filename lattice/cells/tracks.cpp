@@ -116,7 +116,7 @@ double median_step(TrackFile& file) {
   if (steps.empty())
     throw std::invalid_argument(file.source + ": no body was seen twice, so there are no tracks");
   const double step = middle_of(std::move(steps));
-  file.remarks.push_back("a frame every " + shortest(step) +
+  file.remarks.push_back("a frame every " + rounded(step) +
                          " s, the median step (--fps says otherwise)");
   return step;
 }
@@ -128,8 +128,8 @@ void require_steps(std::vector<double> steps, const std::string& source, double 
   const double step = middle_of(std::move(steps)), frames = step * fps;
   if (std::round(frames) >= 1.0 && std::abs(frames - std::round(frames)) <= kOff) return;
   throw std::invalid_argument(source + ": " + fps_words + " is a frame every " +
-                              shortest(1.0 / fps) + " s, but " + time_words + " has steps of " +
-                              shortest(step) + " s: one of both is wrong");
+                              rounded(1.0 / fps) + " s, but " + time_words + " has steps of " +
+                              rounded(step) + " s: one of both is wrong");
 }
 
 namespace {

@@ -20,7 +20,15 @@ namespace gatewalk::lattice {
   return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), x).ptr};
 }
 
-/// The same, but never to be taken for a whole number: "7.0", "-0.0".
+/// Six digits at most, for people: "0.02", "0.333333".
+[[nodiscard]] inline std::string rounded(double x) {
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), x,
+                                       std::chars_format::general, 6)
+                             .ptr};
+}
+
+/// As shortest(), but never to be taken for a whole number: "7.0", "-0.0".
 [[nodiscard]] inline std::string toml_float(double x) {
   const std::string digits = shortest(x);
   return digits.find_first_of(".en") == digits.npos ? digits + ".0" : digits;  // n: nan, inf

@@ -536,6 +536,13 @@ TEST(CutTracks, TracksThatMakeNoSense) {
   EXPECT_REFUSED(
       "no body was seen in 5 frames in a row, without a gap or a jump (--fastest 0.1 m/s)", up,
       squares(), fast(0.1));
+  // Tracks of 120 frames per second, where 240 were said.
+  TrackFile every_second = up;
+  every_second.interval = 1.0 / 240.0;
+  EXPECT_REFUSED(
+      "from one place of a body to its next one are 2 frames of 0.00416667 s (median): is --fps "
+      "right?",
+      every_second, squares(), fast());
   CutOptions options = fast();
   options.bridge = -1;
   EXPECT_REFUSED("--bridge: must be 0 or more", up, squares(), options);

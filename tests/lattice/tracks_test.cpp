@@ -286,7 +286,7 @@ TEST_F(TracksFile, UnitsThatDoNotFitAreRefused) {
   refused("t_s", "x", "y", "what x and y are in: --metres-per-unit X");
   // Steps of 20 ms are 50 frames a second; of 20 s, which the file does not say, every 1000th.
   refused("t_ms", "x", "y",
-          "--fps 30 is a frame every 0.03333333333333333 s, but column t_ms has "
+          "--fps 30 is a frame every 0.0333333 s, but column t_ms has "
           "steps of 0.02 s",
           1.0, 30.0);
   refused("t_s", "x", "y", "--fps 0.01 is a frame every 100 s, but column t_s has steps of 20 s",
