@@ -465,8 +465,8 @@ class Fitter {
       }
       weights = (weights.array() - weights.maxCoeff()).exp();
       fit_.outside = weights.dot(out) / weights.sum();
-      if (fit_.outside <= Fit::kPermittedOutside && look == 0 && outside.rows() > 0) {
-        outside = points_outside(bounds);  // the first may have missed a narrow hill: once more
+      if (fit_.outside <= Fit::kPermittedOutside && look == 0 && fit_.parts > 1) {
+        outside = points_outside(bounds);  // among parts a narrow hill may lie: once more
         continue;
       }
       if (fit_.outside <= Fit::kPermittedOutside) {
