@@ -54,8 +54,14 @@ MatrixXd curvature(const MatrixXd& terms, const VectorXd& trials, const MatrixXd
     for (Index b = 0; b <= a; ++b) {
       VectorXd weights = -chances.col(a).cwiseProduct(chances.col(b));
       if (a == b) weights += chances.col(a);
-      all.block(a * of_each, b * of_each, of_each, of_each).noalias() =
-          over_rows(terms, weights.cwiseProduct(trials).asDiagonal() * terms);
+      const MatrixXd weighted = weights.cwiseProduct(trials).asDiagonal() * terms;
+      auto block = all.block(a * of_each, b * of_each, of_each, of_each);
+      for (Index t = 0; t < of_each; ++t) {  // each block is symmetric; sums as over_rows has them
+        const Index below = of_each - t;
+        block.col(t).tail(below).noalias() =
+            terms.rightCols(below).transpose().lazyProduct(weighted.col(t));
+        block.row(t).tail(below) = block.col(t).tail(below).transpose();
+      }
     }
   return all;
 }

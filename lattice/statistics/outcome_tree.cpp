@@ -77,6 +77,7 @@ std::size_t OutcomeTree::grow(const OutcomeCounts& seen, const Model& model, con
     std::array<Model, 2> models;
   } best{model->criterion(), {}, {}, {}};
   const bool may_divide = seen.points.rows() >= 4 * OutcomeModel::terms(numbers, 1) &&
+                          model->parameters() <= options.most_divided &&
                           model->lack_of_fit() > options.lack_of_fit;
   for (Index number = 0; may_divide && number < numbers; ++number) try {
       Division next;

@@ -15,6 +15,7 @@ namespace gatewalk::lattice {
 struct OutcomeTreeOptions {
   int most_degree = 4;
   double most_parameters = 1200.0;  // of a leaf; degree 1 may have more
+  Eigen::Index most_divided = 150;  // parameters of a model that is: more take too long
   double lack_of_fit = 0.0;         // nats a trial: a model that lacks no more is not divided
 };
 
