@@ -189,7 +189,7 @@ class SameAsTheProgram(unittest.TestCase):
             of_table = gw.validate(FIELD, observed=table, **how)["observed"]
             self.assertEqual(of_table["files"], ["a table"])
             self.assertEqual(plain({**of_table, "files": 0}), plain({**of_file, "files": 0}))
-        for wrong, text in (({"crosed": 1}, '^the table:2: column ending: "crosed" is not permitted'), ({"crossed": 1.5}, "^the table:2: ")):
+        for wrong, text in (({"crosed": 1}, '^the table:2: column ending: "crosed" is not permitted'), ({"crossed": 1.5}, "^the table: the count of crossed must be a whole number, it is 1.5")):
             with self.assertRaisesRegex(ValueError, text):
                 gw.validate(FIELD, observed=wrong, **how)
 
