@@ -14,8 +14,8 @@ inline constexpr double kShareRounding = 1e-12;
 /// What a share was predicted from: independent trials, and all their gate runs.
 struct Evidence {
   double trials = 0.0, gate_runs = 0.0;
-  /// The largest share of all walks that one row of a matrix may send elsewhere, as all its runs had
-  /// one outcome and were too few to exclude another.
+  /// The largest share of all walks that one row of a matrix may send elsewhere, as all its runs
+  /// had one outcome and were too few to exclude another.
   double hidden = 0.0;
 };
 

@@ -301,8 +301,8 @@ struct Bouncing {
   }
   [[nodiscard]] double t0() const { return std::sqrt(2 * height / force); }
   [[nodiscard]] double zeno_time() const { return t0() * (1 + e) / (1 - e); }
-  /// Rebounds below the tolerance, or below 1e-11 R whatever the tolerance, are not flown; of nearly
-  /// elastic hits the limit is lower (methods/hybrid.h).
+  /// Rebounds below the tolerance, or below 1e-11 R whatever the tolerance, are not flown; of
+  /// nearly elastic hits the limit is lower (methods/hybrid.h).
   [[nodiscard]] double rise() const {
     return std::max(tolerance, 1e-10) * std::min(1.0, (1.0 - e) / 0.05);
   }
