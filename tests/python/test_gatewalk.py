@@ -392,6 +392,9 @@ class Elsewhere(unittest.TestCase):
         with self.assertWarnsRegex(gw.GatewalkWarning, "add up to 25.00 %: 75.00 % reach a state that was never sampled"):
             p = half.predict()
         self.assertEqual((p.endings["crossed"], p.never_sampled, p.still_walking), (0.25, 0.75, 0.0))
+        for start in (1, np.int64(1), "right"):
+            with self.assertWarnsRegex(gw.GatewalkWarning, "never sampled"):
+                self.assertEqual(half.predict(start=start).never_sampled, 1.0)
         frame = p.to_frame()
         self.assertEqual((frame.value["never_sampled"], frame.value.sum()), (0.75, 1.0))
         self.assertNotIn("still_walking", frame.index)

@@ -74,6 +74,8 @@ def _words_of(given: dict[str, _t.Any]) -> list[str]:
             value = [f"{k}={low}:{high}" for k, (low, high) in value.items()]
         if name == "start":
             value = value.tolist() if hasattr(value, "tolist") else value
+            if isinstance(value, int) and not isinstance(value, bool):
+                value = str(value)  # the number of a state
             if not isinstance(value, str) and not len(value):
                 raise UsageError("start: is empty; a start is (d, vx, vy), several are a list of them")
             one = isinstance(value, str) or not isinstance(value[0], (tuple, list, str))
