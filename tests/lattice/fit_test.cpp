@@ -474,25 +474,6 @@ TEST(Fit, AFieldThatIsItsMirrorImageHasBothHills) {
   EXPECT_GE(same, 4);  // with so few trials others are wider on one side
 }
 
-// What numbers of two lanes tell may be exchanged: both have the same posterior. A narrow hill for
-// each order of them.
-TEST(Fit, NumbersThatMayBeExchangedHaveTheSameIntervals) {
-  const auto chance = [](double x) { return 0.3 + 0.65 * x; };
-  const auto problem_at = [&](const std::vector<double>& x) {
-    const double low = chance(std::min(x[0], x[1])), high = chance(std::max(x[0], x[1]));
-    return two_lane(low, high);
-  };
-  const Observed o = experiment(two_lane(0.72, 0.9), 300, 22);
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const Fit f = fit_trials(2, problem_at, o, {.trials = 40'000, .seed = seed});
-    EXPECT_LE(f.outside, Fit::kPermittedOutside) << seed;
-    for (const std::size_t end : {0U, 1U})
-      EXPECT_NEAR(f.numbers[0].interval[end], f.numbers[1].interval[end], 0.06) << seed;
-    const double order = (f.draws.col(0).array() < f.draws.col(1).array()).cast<double>().mean();
-    EXPECT_NEAR(order, 0.5, 0.4) << seed;  // by the trials, which know either hill so well
-  }
-}
-
 TEST(Fit, IsTheSameOnOneThread) {
   const Observed o = experiment(two_lane(0.7, 0.8), 100, 12);
   const auto one_fit = [&] {
