@@ -50,10 +50,11 @@ bool equals_row_before(const markov::Counts& counts, int row) {
   return row > 0 && same(counts.innerIndexPtr()) && same(counts.valuePtr());
 }
 
-/// Of each row whose runs all had one outcome: the walks that draw from it, times the chance of
-/// another outcome that as many runs miss (Jeffreys). The largest of these. Many such rows miss
-/// about as much as others show too often, which resampling counts; of one row that most walks pass
-/// nothing makes up for it. A walk that returns to a cell and state counts once.
+/// The largest share of walks that one row may send elsewhere whose runs all had one outcome: the
+/// walks that pass it, times the chance of another outcome that as many runs miss (Jeffreys) at
+/// each cell in which they draw from it; a return to a cell and state is no other draw. Many such
+/// rows miss about as much as others show too often, which resampling counts; nothing makes up for
+/// one row that most walks pass.
 double hidden_share(const CountedField& gates, const markov::Start& start,
                     const markov::Field& field, int max_cells) {
   const auto& chains = gates.chains.chains();
@@ -83,13 +84,21 @@ double hidden_share(const CountedField& gates, const markov::Start& start,
                           draws[{m, input, cell}] += share;
                       },
                       {.all = 1e-6});
-  std::map<std::pair<std::size_t, int>, double> walks;
-  for (const auto& [at, share] : draws)
-    walks[{std::get<0>(at), std::get<1>(at)}] += std::min(1.0, share);
+  struct Walks {
+    double pass = 0.0, draws = 0.0;  // the share in the cell that most draw in; summed over cells
+  };
+  std::map<std::pair<std::size_t, int>, Walks> walks;
+  for (const auto& [at, share] : draws) {
+    Walks& w = walks[{std::get<0>(at), std::get<1>(at)}];
+    w.pass = std::max(w.pass, std::min(1.0, share));
+    w.draws += std::min(1.0, share);
+  }
   double most = 0.0;
-  for (const auto& [row, share] : walks)
-    most = std::max(most, share * missed[row.first][static_cast<std::size_t>(row.second)]);
-  return std::min(1.0, most);
+  for (const auto& [row, w] : walks) {
+    const double kept = 1.0 - missed[row.first][static_cast<std::size_t>(row.second)];
+    most = std::max(most, w.pass * (1.0 - std::pow(kept, w.draws / w.pass)));
+  }
+  return most;
 }
 
 }  // namespace

@@ -189,10 +189,12 @@ struct Bouncing {
     return p;
   }
   [[nodiscard]] double zeno_time() const { return t0 * (1 + e) / (1 - e); }
-  /// The first hit, counted from 0, whose impulse (1 + e) M v0 e^n is below the threshold.
+  /// The first hit, counted from 0, whose impulse (1 + e) M v0 e^n is below the threshold, which is
+  /// lower for nearly elastic hits (methods/hybrid.h).
   [[nodiscard]] int last_hit() const {
+    const double least = threshold * step / 0.004 * std::min(1.0, (1.0 - e) / 0.05);
     int n = 0;
-    while ((1 + e) * v0 * std::pow(e, n) >= threshold * step / 0.004) ++n;
+    while ((1 + e) * v0 * std::pow(e, n) >= least) ++n;
     return n;
   }
   [[nodiscard]] double time_of(int hit) const {

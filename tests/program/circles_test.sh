@@ -36,7 +36,7 @@ expect 0 'were still walking when the sum was stopped' "$gatewalk" predict long.
 holds '.still_walking as $left | .endings_95.crossed[0] <= 0.75 and .endings_95.crossed[1] >= 0.75 and $left > 0.5' long.json
 
 # Half of them get into two states that lead to nowhere else.
-printf 'from,to,count\nahead,right,50\nahead,trapped,50\nright,left,1\nleft,right,1\n' >never.csv
+printf 'from,to,count\nahead,right,50\nahead,trapped,50\nright,left,1000\nleft,right,1000\n' >never.csv
 import never.csv never.nc 2
 expect 0 'still walking in states without a way out: 50' "$gatewalk" predict never.nc --json never.json
 grep -q '^gatewalk: .*50.00 % were still walking in states without a way out' out.txt || fail "no warning of walks that never end"
