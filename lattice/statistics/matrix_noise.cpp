@@ -76,14 +76,14 @@ double hidden_share(const CountedField& gates, const markov::Start& start,
   constexpr int kMoves = 1000;  // later ones are returns, or of hardly any walk
   if (max_cells == 0 && leads_back) max_cells = kMoves;
   std::map<std::tuple<std::size_t, int, std::int64_t>, double> draws;  // matrix, row, cell
-  markov::walk_totals(gates.chains, field, start, max_cells, {},
-                      [&](int, std::int64_t cell, int input, double share) {
-                        const auto m = static_cast<std::size_t>(
-                            gates.chains.type_of(cell % field.columns, cell / field.columns));
-                        if (missed[m][static_cast<std::size_t>(input)] > 0.0)
-                          draws[{m, input, cell}] += share;
-                      },
-                      {.all = 1e-6});
+  (void)markov::walk_totals(gates.chains, field, start, max_cells, {},
+                            [&](int, std::int64_t cell, int input, double share) {
+                              const auto m = static_cast<std::size_t>(
+                                  gates.chains.type_of(cell % field.columns, cell / field.columns));
+                              if (missed[m][static_cast<std::size_t>(input)] > 0.0)
+                                draws[{m, input, cell}] += share;
+                            },
+                            {.all = 1e-6});
   struct Walks {
     double pass = 0.0, draws = 0.0;  // the share in the cell that most draw in; summed over cells
   };

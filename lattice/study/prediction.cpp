@@ -13,23 +13,24 @@ struct Resampled {
 };
 
 /// 200 of them; as many as 999 where these are made in a fraction of a second, so that the ends of
-/// intervals hardly depend on the seed.
+/// intervals hardly depend on the seed. That is asked of one start, so that the intervals of a
+/// start are the same beside others.
 std::int64_t replicates_for(const CountedField& gates, const markov::Field& field,
                             const std::vector<markov::FinalDistribution>& own, int max_cells) {
   constexpr std::int64_t kUsual = 200, kMost = 999, kQuick = 16;
   constexpr double kOperations = 2e10, kQuickly = 3e8;  // of direct solves, some 3 ns each
-  double operations = 0.0;
+  double operations = 0.0, most_of_one = 0.0;
   int steps = max_cells;
   for (const markov::FinalDistribution& f : own) {
     operations += f.operations;
+    most_of_one = std::max(most_of_one, f.operations);
     steps = std::max(steps, f.steps);
   }
   std::int64_t usual = affordable_replicates(gates, field, max_cells, kUsual),
-               most = affordable_replicates(gates, field, steps, kQuick * kMost * std::ssize(own)) /
-                      (kQuick * std::ssize(own));
+               most = affordable_replicates(gates, field, steps, kQuick * kMost) / kQuick;
   if (operations > 0.0) {
     usual = std::min(usual, static_cast<std::int64_t>(kOperations / operations));
-    most = std::min(most, static_cast<std::int64_t>(kQuickly / operations));
+    most = std::min(most, static_cast<std::int64_t>(kQuickly / most_of_one));
   }
   const std::int64_t replicates = std::max(usual, most);
   return replicates < kLeastReplicates ? 0 : replicates;

@@ -328,7 +328,10 @@ void EventMethod::resolve(GateState& s, double force_x, Watch& watch) const {
           const Motion m(p_, s, force_x);
           if (m.force[1 - side] > 0.0) back += t.nx * m.push.ax + t.ny * m.push.ay;
         }
-        return back < 0.0 && rebound * rebound <= 2.0 * -back * rise_ * weak_hits(p_, t.kind);
+        // Of nearly elastic hits less is weak, but for what numbers cannot tell from contact.
+        const double part = weak_hits(p_, t.kind);
+        const double rise = part > 0.0 ? std::fmax(part * tolerance_, 1e3 * touching_) : 0.0;
+        return back < 0.0 && rebound * rebound <= 2.0 * -back * rise;
       });
 }
 
