@@ -40,7 +40,7 @@ void write_table(const Options& options, ExportForm form, const SparseTable& tab
     options.write(output, npz_of(table));
 }
 
-/// Of these rows of a file, which may be those of a type of gate. Empty: a run is a count.
+/// Counts per run of each row; `rows` may be those of one type of gate. Empty: a run is one count.
 std::vector<std::int64_t> counts_per_run_of(const Options& options, const lattice::MatrixFile& file,
                                             const dynamics::Transitions& rows) {
   if (!rows.space.has_trees()) return counts_per_run(file);

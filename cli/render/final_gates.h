@@ -83,7 +83,7 @@ using lattice::kEndingNames;
 /// not finished may make.
 [[nodiscard]] lattice::EndingShares shown_endings(lattice::EndingShares shares,
                                                   const markov::FinalDistribution& f);
-/// Shares of all bodies that the endings leave out: what becomes of these is not known.
+/// Shares of all bodies whose ending is not known, which the endings leave out.
 struct Rest {
   double never_sampled = 0.0;  // reach a state whose row was never sampled
   double still_walking = 0.0;  // under way when the sum or the walks were stopped

@@ -41,8 +41,8 @@ CellField CellField::uniform(std::shared_ptr<const Cell> cell) {
   return {std::move(map), {std::move(cell)}};
 }
 
-/// Trials that several threads share out: whoever is free takes the next one, nobody waits for the
-/// end of a block.
+/// Trials that several threads share: a free thread takes the next trial, and no thread waits for
+/// the end of a block.
 class TrialsOfCell {
  public:
   TrialsOfCell(const Cell& cell, std::int64_t count, const BeginBody& begin,
@@ -71,10 +71,10 @@ class TrialsOfCell {
   }
 
  private:
-  /// Of a new cell's passages the first few, and later one of so many, are seen once more: at most
-  /// so many at a time, when the cell has had so many passages, and each time that they doubled,
-  /// but not before there are `kEnough` of them. A run of fewer than `kFew` sees all of its own at
-  /// its end.
+  /// Which passages are carried out once more: the first `kFirstOnes` of a new cell, then one of
+  /// `kOneOf`. At most `kMostKept` wait at a time. The cell repeats them after `kFirstTime`
+  /// passages and whenever that number has doubled, but not before `kEnough` wait. A run of fewer
+  /// than `kFew` passages repeats all of its own at its end.
   static constexpr std::int64_t kFirstOnes = 4, kOneOf = 20, kMostKept = 64, kFirstTime = 128,
                                 kEnough = 8, kFew = 2 * kMostKept * kOneOf;
 

@@ -31,7 +31,7 @@ std::int64_t CountedField::runs_at(const markov::Start& start) const {
 
 namespace {
 
-/// Walks that never end, so many of all, are none.
+/// A share of walks without an end that is negligible.
 constexpr double kHardlyAny = 1e-6;
 
 /// A resampled row is one of as many steps, but for rounding.
