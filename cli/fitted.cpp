@@ -52,6 +52,7 @@ lattice::FitData of_passages(const Options& options, const Subject& s, const Ran
   if (s.scene) cells.trapped_after = s.scene->gate.run.time_limit;
   const lattice::RecordedRuns runs =
       lattice::read_runs(path, cells, lattice::CostColumns::as_there_are);
+  for (const std::string& text : runs.remarks) options.warn(path + ": " + text);
   const auto of_all = [&](std::int64_t some) {
     return std::to_string(some) + " of " + std::to_string(runs.passages.size()) + " passages ";
   };
@@ -71,6 +72,7 @@ lattice::FitData of_passages(const Options& options, const Subject& s, const Ran
 lattice::FitData of_trials(const Options& options, const lattice::Problem& problem,
                            const std::string& path) {
   const lattice::Observed observed = lattice::read_observed({path}, problem.field);
+  for (const std::string& text : observed.remarks) options.warn(text);
   options.warn(who_went_back(observed));
   options.warn(not_listed(observed, problem.field));
   lattice::FitData data = lattice::trials_to_fit(observed, problem);

@@ -47,6 +47,7 @@ std::vector<lattice::PaperStart> starts_for(const Options& options, const lattic
 /// Before any run: what so many trials cannot show, and who is left out.
 void warn_of_trials(const Options& options, const lattice::Observed& observed) {
   const std::int64_t n = observed.seen.trials();
+  for (const std::string& text : observed.remarks) options.warn(text);
   options.warn(who_went_back(observed));
   options.warn(too_few_observed(observed));
   if (!observed.timed.empty())

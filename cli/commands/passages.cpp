@@ -11,15 +11,18 @@ namespace gatewalk::cli {
 namespace {
 
 void declare_all(Options& options) {
-  options.positional(
-      "tracks", "a table with a line a place (CSV), DeepLabCut's CSV, or movement's NetCDF", true);
+  options.positional_list(
+      "tracks",
+      "tables with a line a place (CSV), DeepLabCut's CSV, or movement's NetCDF; "
+      "several recordings make one RUNS.csv");
   options.input_file("cell", "the cells and what is measured of an entry (cell.toml)");
   options.main_output_file("RUNS.csv", "the passages, a line each", Options::Content::binary);
   options.add_number(
       "fastest", "M/S",
       "what is faster from frame to frame, noise included, is a jump (must be given)");
   options.add_text("columns", "MEANING=NAME,...",
-                   "of a table: body=..., frame=... or time=..., x=..., y=..., confidence=...");
+                   "of a table: body=..., frame=... or time=..., x=..., y=..., confidence=...; "
+                   "x=x*,y=y* where columns are of a body each");
   options.add_number("fps", "N", "frames per second");
   options.add_number("metres-per-unit", "X", "of the file's x and y, unless it says so; 1: metres");
   options.add_text("key-point", "NAME", "the key point that is the body's place");
@@ -84,7 +87,7 @@ lattice::CutOptions cut_options(const Options& options) {
 }  // namespace
 
 int run_passages(const Arguments& arguments) {
-  Options options("passages TRACKS --cell CELL.toml -o RUNS.csv [options]",
+  Options options("passages TRACKS... --cell CELL.toml -o RUNS.csv [options]",
                   "Cuts tracks from a lab at the borders of cells into passages, which gatewalk "
                   "build makes a chain of.\nWhat the file does not say has to be given. Gaps and "
                   "jumps are no passages: who is in a cell then is lost.",
@@ -97,9 +100,10 @@ int run_passages(const Arguments& arguments) {
   const auto cutting = cut_options(options);
   const auto cell = lattice::read_cell_file(options.text("cell"), options.overrides());
   lattice::require_measurable(cell);
-  const auto file = lattice::read_tracks(options.text("tracks"), track_options(options));
+  const auto file = lattice::read_tracks(options.texts("tracks"), track_options(options));
   for (const std::string& text : file.warnings) options.warn(text);
   const auto cut = lattice::cut_tracks(file, cell, cutting);
+  for (const std::string& text : cut.doubts) options.warn(text);
 
   Json json = to_json(cut, file, cell);
   Provenance made_by = options.provenance();

@@ -59,6 +59,7 @@ int build_recorded(const Options& options) {
          "for recorded runs");
   lattice::CellFile cells = lattice::read_cell_file(options.text("cell"), options.overrides());
   const lattice::RecordedRuns runs = lattice::read_runs(options.text("scene"), cells);
+  for (const std::string& text : runs.remarks) options.warn(options.text("scene") + ": " + text);
   const lattice::RunPool pool = lattice::pool_of(runs);
   const lattice::Problem problem = lattice::problem_of(cells, pool);
   for (const std::string& text : doubts(pool, problem)) options.warn(text);

@@ -13,6 +13,7 @@
 #include "cli/render/csv.h"
 #include "lattice/text/csv.h"
 #include "lattice/text/digits.h"
+#include "lattice/text/lines.h"
 #include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
@@ -100,14 +101,13 @@ SparseTable counts_of(const std::string& path, const Trajectories& all, std::int
 }  // namespace
 
 std::vector<ForeignState> read_states(const std::string& path) {
-  const auto lines = lattice::lines_of(path);
-  if (!lines) throw std::runtime_error(path + ": cannot be read: " + std::strerror(errno));
+  const std::vector<std::string> lines = lattice::lines_of(path);
   std::vector<ForeignState> states;
   std::vector<std::string> columns;
   std::set<std::string> names;
   std::map<std::string, std::pair<int, int>> moves;  // by face
-  for (std::size_t k = 0; k < lines->size(); ++k) {
-    const std::string& line = (*lines)[k];
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const std::string& line = lines[k];
     const auto refuse = [&](const std::string& what) {
       throw std::runtime_error(path + ":" + std::to_string(k + 1) + ": " + what);
     };

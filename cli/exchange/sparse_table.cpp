@@ -2,10 +2,8 @@
 #include "cli/exchange/sparse_table.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -14,6 +12,7 @@
 #include "cli/render/csv.h"
 #include "lattice/text/csv.h"
 #include "lattice/text/digits.h"
+#include "lattice/text/lines.h"
 #include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
@@ -27,9 +26,11 @@ using lattice::shortest;
 }
 
 std::vector<std::string> lines_of_file(const std::string& path) {
-  auto lines = lattice::lines_of(path);
-  if (!lines) throw std::runtime_error(path + ": cannot be read: " + std::strerror(errno));
-  return *std::move(lines);
+  try {
+    return lattice::lines_of(path);
+  } catch (const std::invalid_argument& e) {
+    throw std::runtime_error(e.what());
+  }
 }
 
 /// The whole text as a number.

@@ -47,9 +47,12 @@ std::string lines_of_file(const lattice::TrackFile& file) {
   const auto add = [&](std::int64_t n, const std::string& what) {
     if (n > 0) text += "  " + std::to_string(n) + " " + what + "\n";
   };
-  add(file.no_place, "places without a number");
-  add(file.unsure, "places with less confidence than asked for");
-  add(file.no_body, "lines of no body, left out");
+  const auto places = [](std::int64_t n) { return std::string(n == 1 ? "place" : "places"); };
+  add(file.no_place, places(file.no_place) + " without a number");
+  add(file.unsure, places(file.unsure) + " with less confidence than asked for");
+  add(file.repeated, places(file.repeated) + " written again and again, taken as not seen");
+  add(file.at_zero, places(file.at_zero) + " at (0, 0), taken as not seen");
+  add(file.no_body, std::string(file.no_body == 1 ? "line" : "lines") + " of no body, left out");
   add(never_seen(file), "of the bodies never seen");
   for (const std::string& remark : file.remarks) text += "  " + remark + "\n";
   return text;
@@ -61,7 +64,7 @@ std::string table_of(const CutTracks& cut, const lattice::TrackFile& file,
                      const lattice::CellFile& cell) {
   const lattice::TrackNoise& noise = cut.noise;
   std::string text = lines_of_file(file);
-  text += std::to_string(cut.pieces.size()) + " pieces between " +
+  text += counted(std::ssize(cut.pieces), "piece", "pieces") + " between " +
           counted(cut.gaps, "gap and ", "gaps and ") + counted(cut.jumps, "jump", "jumps") +
           "; fastest step " + quantity(cut.fastest_step, "m/s") + "\n";
   if (cut.short_pieces > 0)
@@ -129,6 +132,8 @@ Json to_json(const CutTracks& cut, const lattice::TrackFile& file, const lattice
                     {"places", file.places},
                     {"places_without_number", file.no_place},
                     {"places_unsure", file.unsure},
+                    {"places_repeated", file.repeated},
+                    {"places_at_zero", file.at_zero},
                     {"lines_of_no_body", file.no_body},
                     {"unit_rows_left_out", file.unit_rows},
                     {"remarks", file.remarks}};

@@ -135,8 +135,9 @@ class Cutter {
     try {
       cut_.noise = noise_of(cut_.pieces, file_.interval, window());
     } catch (const std::invalid_argument& e) {
-      throw std::invalid_argument(file_.source + ": " + e.what() + " (--fastest " +
-                                  rounded(options_.fastest) + " m/s)" + words_of_stride());
+      const std::string words = words_of_steps();
+      throw std::invalid_argument(file_.source + ": " + e.what() +
+                                  (words.empty() ? "" : ": " + words));
     }
     for (const TrackPiece& piece : cut_.pieces) require_near(piece);
     // Five standard deviations of a place of the path: seldom passed by noise alone.
@@ -153,23 +154,75 @@ class Cutter {
     if (cut_.crossings == 0) refuse_nothing();
     cut_.crossing_velocity_noise =
         cut_.noise.place * std::sqrt(gains_ / static_cast<double>(cut_.crossings));
+    add_doubts();
     return std::move(cut_);
   }
 
  private:
-  /// That places stand several frames apart, if most do: then there is a gap behind each.
-  [[nodiscard]] std::string words_of_stride() const {
-    std::vector<double> steps;
-    for (const Track& track : file_.tracks)
-      for (std::size_t i = 1; i < track.time.size(); ++i)
-        steps.push_back((track.time[i] - track.time[i - 1]) / file_.interval);
-    if (steps.empty()) return {};
-    const auto middle = steps.begin() + std::ssize(steps) / 2;
-    std::nth_element(steps.begin(), middle, steps.end());
-    const double frames = std::round(*middle);
-    if (frames < 2.0) return {};
-    return "; from one place of a body to its next one are " + rounded(frames) + " frames of " +
-           rounded(file_.interval) + " s (median): is --fps right?";
+  /// Why pieces are short, in words: most steps between places of a body are longer than a frame,
+  /// or some are, or too fast. Empty: none of it.
+  [[nodiscard]] std::string words_of_steps() const {
+    std::vector<double> frames, speeds;
+    for (const Track& t : file_.tracks)
+      for (std::size_t i = 1; i < t.time.size(); ++i) {
+        const double step = t.time[i] - t.time[i - 1];
+        frames.push_back(std::round(step / file_.interval));
+        speeds.push_back(std::hypot(t.x[i] - t.x[i - 1], t.y[i] - t.y[i - 1]) / step);
+      }
+    if (frames.empty()) return "no body was seen twice";
+    std::sort(frames.begin(), frames.end());
+    std::sort(speeds.begin(), speeds.end());
+    const double usual = frames[frames.size() / 2];
+    const auto gaps = std::upper_bound(frames.begin(), frames.end(), options_.bridge + 1.0);
+    std::string words;
+    const auto add = [&](const std::string& text) { words += (words.empty() ? "" : "; ") + text; };
+    const auto bridge = [](double n) { return "--bridge " + rounded(n - 1.0); };
+    if (usual >= 2.0 && usual > options_.bridge + 1.0) {
+      add("frames go up by " + rounded(usual) +
+          " from one place of a body to its next (a frame is " + rounded(file_.interval) +
+          " s): " + bridge(usual) + " bridges them, unless --fps is wrong");
+    } else if (gaps != frames.end()) {
+      double missing = 0.0, all = 0.0;
+      for (const double n : frames) {
+        all += n;
+        missing += n - 1.0;
+      }
+      const auto most = gaps + (frames.end() - gaps) * 9 / 10;  // of ten gaps nine are no longer
+      add(rounded(std::round(1000.0 * missing / all) / 10.0) + " % of the frames are missing, " +
+          (*gaps == *most ? rounded(*most - 1.0)
+                          : rounded(*gaps - 1.0) + " to " + rounded(*most - 1.0)) +
+          " at a time: " + bridge(*most) + " bridges " +
+          (*most == frames.back() ? "them" : "most of them"));
+    }
+    if (const double middle = speeds[speeds.size() / 2]; middle > options_.fastest)
+      add("most steps are faster than --fastest " + rounded(options_.fastest) + " m/s (median " +
+          rounded(middle) + " m/s): are --fps and --metres-per-unit right?");
+    return words;
+  }
+
+  [[nodiscard]] std::string and_words_of_steps() const {
+    const std::string words = words_of_steps();
+    return words.empty() ? words : "; " + words;
+  }
+
+  void add_doubts() {
+    const auto all = std::ssize(cut_.passages);
+    if (const auto lost = cut_.lost(LostBy::gap) + cut_.lost(LostBy::jump); 2 * lost > all)
+      if (const std::string words = words_of_steps(); !words.empty())
+        cut_.doubts.push_back(std::to_string(lost) + " of " + std::to_string(all) +
+                              " passages are lost in gaps and jumps: " + words);
+    std::int64_t ahead = 0, back = 0;
+    for (const CutPassage& p : cut_.passages) {
+      const int way = cell_.map.section.faces[static_cast<std::size_t>(p.in.face)].di_y;
+      ahead += way > 0;
+      back += way < 0;
+    }
+    if (back > 0 && ahead == 0)
+      cut_.doubts.push_back(
+          "all bodies move backwards, down the rows: " +
+          std::string(file_.y_down ? "leave --y-down out if y grows upwards in the file"
+                                   : "give --y-down if y grows downwards in the file, as in "
+                                     "pictures"));
   }
 
   void set_lattice() {
@@ -389,8 +442,15 @@ class Cutter {
         (cut_.columns > 0 ? ", " + std::to_string(cut_.columns) + " x " +
                                 std::to_string(cut_.rows) + " of them from (0, 0) on"
                           : "") +
+        (ends[3] < 0.0 ? std::string(": all lie below the first row: ") +
+                             (file_.y_down ? "is --origin the lower left corner?"
+                                           : "is y measured downwards (--y-down)?")
+                       : std::string()) +
         " (are --metres-per-unit, --origin, --fps and --fastest right? " +
-        std::to_string(cut_.jumps) + " steps were faster than --fastest)");
+        std::to_string(cut_.jumps) + " steps were faster than --fastest, " +
+        std::to_string(cut_.gaps) + " went over a gap)" +
+        (2 * (cut_.jumps + cut_.gaps) > std::ssize(cut_.pieces) ? and_words_of_steps()
+                                                                : std::string()));
   }
 
   const TrackFile& file_;

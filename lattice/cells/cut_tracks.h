@@ -58,6 +58,7 @@ struct CutTracks {
   std::int64_t came_back = 0;   // trials that begin where a body comes into the lattice again
   std::int64_t moved_ends = 0;  // places beyond their face's end, by no more than the hysteresis
   double fastest_step = 0.0;    // m/s, of those that are no jumps
+  std::vector<std::string> doubts;  // what is likely to be wrong with the options, in words
 
   [[nodiscard]] std::int64_t count(CutEnd end) const;
   [[nodiscard]] std::int64_t lost(LostBy by) const;

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/cells/recorded.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
@@ -23,6 +17,7 @@
 #include "lattice/text/csv.h"
 #include "lattice/text/digits.h"
 #include "lattice/text/edit_distance.h"
+#include "lattice/text/table.h"
 #include "lattice/text/toml_text.h"
 #include "markov/formats/file.h"
 
@@ -34,7 +29,7 @@ using dynamics::Entry;
 using dynamics::Fate;
 using dynamics::Section;
 
-constexpr std::size_t kBlock = 1 << 20;  // bytes read and written at once
+constexpr std::size_t kBlock = 1 << 20;  // bytes written at once
 constexpr double kSameClock = 1e-9;      // relative: how far a time may be off trapped_after_s
 constexpr const char* kNumber = "a number, such as 0.25 or -2.5e-1";
 
@@ -63,86 +58,10 @@ constexpr std::size_t kMostColumns = 5 + 2 * dynamics::kMostCoordinates + dynami
 
 /// Where in a line what stands.
 struct Columns {
-  std::size_t count = 0, body = 0, trial = 0, in = 0, out = 0;
+  std::size_t body = 0, trial = 0, in = 0, out = 0;
   std::size_t type = kMostColumns;  // none
   std::array<std::size_t, dynamics::kMostCoordinates> in_at{}, out_at{};
   std::array<std::size_t, dynamics::kMostCosts> costs{};
-  std::vector<std::string> names;
-};
-
-// ---- Lines
-
-/// Hands out the lines of a file, in blocks, without their ends.
-class Lines {
- public:
-  explicit Lines(const std::string& path) : name_(path == "-" ? "standard input" : path) {
-    errno = 0;
-    file_ = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    struct stat found = {};
-    if (file_ < 0 || ::fstat(file_, &found) != 0) fail();
-    if (S_ISREG(found.st_mode)) bytes_ = found.st_size;
-  }
-  ~Lines() {
-    if (file_ > STDIN_FILENO) ::close(file_);
-  }
-  Lines(const Lines&) = delete;
-  Lines& operator=(const Lines&) = delete;
-
-  /// Valid until the next one. False: there is none.
-  [[nodiscard]] bool next(std::string_view& line) {
-    const char* end = nullptr;
-    while (!(end = static_cast<const char*>(std::memchr(at(), '\n', rest()))))
-      if (!fill()) {
-        if (rest() == 0) return false;
-        end = at() + rest();
-        break;
-      }
-    ++number_;
-    line = {at(), static_cast<std::size_t>(end - at())};
-    begin_ = std::min(end_, begin_ + line.size() + 1);
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    if (number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-    return true;
-  }
-  [[nodiscard]] std::int64_t number() const { return number_; }  // of the line, from 1
-  [[nodiscard]] const std::string& name() const { return name_; }
-  /// Of a regular file; else 0.
-  [[nodiscard]] std::int64_t bytes() const { return bytes_; }
-  /// Of the lines handed out so far.
-  [[nodiscard]] std::int64_t bytes_read() const {
-    return read_ - static_cast<std::int64_t>(rest());
-  }
-  [[noreturn]] void refuse(const std::string& what) const { refuse(number_, what); }
-  [[noreturn]] void refuse(std::int64_t number, const std::string& what) const {
-    throw std::invalid_argument(name_ + ":" + std::to_string(number) + ": " + what);
-  }
-
- private:
-  [[nodiscard]] const char* at() const { return buffer_.data() + begin_; }
-  [[nodiscard]] std::size_t rest() const { return end_ - begin_; }
-  [[noreturn]] void fail() const {
-    throw std::invalid_argument(name_ + ": cannot be read: " + std::strerror(errno));
-  }
-  /// Reads on behind what is left. False at the end.
-  bool fill() {
-    std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_),
-              buffer_.begin() + static_cast<std::ptrdiff_t>(end_), buffer_.begin());
-    end_ -= std::exchange(begin_, 0);
-    if (end_ == buffer_.size())
-      refuse(number_ + 1, "is longer than " + std::to_string(kBlock) + " bytes");
-    ssize_t got = 0;
-    while ((got = ::read(file_, buffer_.data() + end_, buffer_.size() - end_)) < 0)
-      if (errno != EINTR) fail();
-    end_ += static_cast<std::size_t>(got);
-    read_ += got;
-    return got > 0;
-  }
-
-  std::string name_;
-  int file_ = -1;
-  std::int64_t bytes_ = 0, read_ = 0, number_ = 0;
-  std::vector<char> buffer_ = std::vector<char>(kBlock);
-  std::size_t begin_ = 0, end_ = 0;  // of what is left in it
 };
 
 /// Names in the order in which they first come.
@@ -167,88 +86,65 @@ class NameTable {
 
 // ---- Reading
 
+bool is_header_of_runs(const Table::Names& names) {
+  constexpr std::array<const char*, 4> kAlways{"body", "trial", "in", "out"};
+  return std::all_of(kAlways.begin(), kAlways.end(),
+                     [&](const char* name) { return Table::column_in(names, name).has_value(); });
+}
+
 class RunsReader {
  public:
   RunsReader(const std::string& path, const CellFile& cells, CostColumns costs)
-      : lines_(path), cells_(cells), section_(cells.map.section), cost_columns_(costs) {
+      : table_(path, &is_header_of_runs),
+        cells_(cells),
+        section_(cells.map.section),
+        cost_columns_(costs) {
     runs_.passages.begin(section_);
   }
 
   [[nodiscard]] RecordedRuns read() {
-    while (next_line())
-      if (columns_.count == 0)
-        read_columns();
-      else
-        add_passage();
-    if (columns_.count == 0)
-      throw std::invalid_argument(lines_.name() +
-                                  ": is empty: the first line must name the columns, " +
-                                  with_commas(column_names(cells_, cells_.types.size() > 1)));
+    if (table_.columns().empty())
+      throw std::invalid_argument(table_.lines().name() + ": is empty: the columns must be " +
+                                  with_commas(needed()));
+    read_columns();
+    while (table_.next()) add_passage();
     if (runs_.passages.empty())
-      throw std::invalid_argument(lines_.name() + ": has no passage below the line of its columns");
+      throw std::invalid_argument(table_.lines().name() +
+                                  ": has no passage below the line of its columns");
+    for (std::string& text : table_.remarks()) runs_.remarks.push_back(std::move(text));
     require_each_trial_once();
     return std::move(runs_);
   }
 
  private:
-  /// The next line that is neither blank nor a comment, as fields.
-  bool next_line() {
-    std::string_view line;
-    while (lines_.next(line)) {
-      if (has_no_fields(line)) continue;
-      split(line);
-      return true;
-    }
-    return false;
-  }
-
-  void split(std::string_view line) {
-    fields_.clear();
-    if (line.find('\r') != line.npos)
-      lines_.refuse("a carriage return within a line: lines must end in \\n or \\r\\n");
-    if (std::memchr(line.data(), '"', line.size())) {
-      auto fields = csv_fields(line);
-      if (!fields) lines_.refuse("a quotation mark is not closed, or not at a field's end");
-      unquoted_ = std::move(*fields);
-      fields_.assign(unquoted_.begin(), unquoted_.end());
-      return;
-    }
-    const char *at = line.data(), *const end = at + line.size();
-    for (;;) {
-      const char* comma = at;
-      while (comma < end && *comma != ',') ++comma;
-      const char *from = at, *to = comma;
-      while (from < to && is_blank(*from)) ++from;
-      while (from < to && is_blank(to[-1])) --to;
-      fields_.emplace_back(from, static_cast<std::size_t>(to - from));
-      if (comma == end) return;
-      at = comma + 1;
-    }
-  }
-  static bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
   void read_columns() {
+    const std::vector<std::string>& given = table_.columns();
     const std::vector<std::string> known = column_names(cells_, true);
-    std::vector<std::string> given;
-    for (const std::string_view field : fields_) {
-      const std::string name(field);
-      if (std::find(known.begin(), known.end(), name) == known.end()) {
-        const std::string meant = meant_name(name, known);
-        lines_.refuse("unknown column \"" + printable(name) + "\"" +
-                      (meant.empty() ? "" : " (did you mean " + meant + "?)") +
-                      ": the columns must be " + with_commas(known) + ", as " + cells_.source +
-                      " has faces, coordinates and costs");
+    std::vector<bool> is_known(given.size());
+    for (const std::string& name : known)
+      if (const auto at = table_.column(name)) is_known[*at] = true;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      if (is_known[i] || std::find(given.begin(), given.end(), given[i]) !=
+                             given.begin() + static_cast<std::ptrdiff_t>(i))
+        continue;
+      if (Table::is_index(given[i])) {
+        runs_.remarks.push_back("column " + std::to_string(i + 1) + " has no name: left out");
+        continue;
       }
-      if (std::find(given.begin(), given.end(), name) != given.end())
-        lines_.refuse("column " + name + " is there twice");
-      given.push_back(name);
+      const std::string meant = meant_name(given[i], known);
+      table_.refuse(table_.header_line(),
+                    "unknown column \"" + printable(given[i]) + "\"" +
+                        (meant.empty() ? "" : " (did you mean " + meant + "?)") +
+                        ": the columns must be " + with_commas(known) + ", as " + cells_.source +
+                        " has faces, coordinates and costs");
     }
     const auto place = [&](const std::string& name) {
-      const auto found = std::find(given.begin(), given.end(), name);
-      if (found == given.end())
-        lines_.refuse("column " + name + " is missing: the columns must be " +
-                      with_commas(needed()));
-      return static_cast<std::size_t>(found - given.begin());
+      const auto found = table_.column(name);
+      if (!found)
+        table_.refuse(table_.header_line(), "column " + name + " is missing: the columns must be " +
+                                                with_commas(needed()) + "; there are " +
+                                                table_.column_words());
+      return *found;
     };
     columns_.body = place("body");
     columns_.trial = place("trial");
@@ -260,14 +156,10 @@ class RunsReader {
     }
     for (std::size_t c = 0; c < section_.costs.size(); ++c) {
       const std::string& key = section_.costs[c].key;
-      const bool is_there = std::find(given.begin(), given.end(), key) != given.end();
       const bool must = c == 0 || cost_columns_ == CostColumns::all;
-      columns_.costs[c] = must || is_there ? place(key) : kMostColumns;
+      columns_.costs[c] = must || table_.column(key) ? place(key) : kMostColumns;
     }
-    if (cells_.types.size() > 1 || std::find(given.begin(), given.end(), "type") != given.end())
-      columns_.type = place("type");
-    columns_.names = given;
-    columns_.count = given.size();
+    if (cells_.types.size() > 1 || table_.column("type")) columns_.type = place("type");
   }
 
   [[nodiscard]] std::vector<std::string> needed() const {
@@ -278,21 +170,18 @@ class RunsReader {
   }
 
   [[noreturn]] void refuse(std::size_t column, const std::string& what) const {
-    lines_.refuse("column " + columns_.names[column] + ": " + what);
+    table_.refuse("column " + table_.columns()[column] + ": " + what);
   }
   [[noreturn]] void refuse_value(std::size_t column, const std::string& allowed) const {
-    const std::string_view given = fields_[column];
+    const std::string_view given = table_[column];
     refuse(column, (given.empty() ? "nothing" : "\"" + printable(given) + "\"") +
                        " is not permitted: must be " + allowed);
   }
 
-  [[nodiscard]] double number(std::size_t column, const char* allowed = kNumber) const {
-    const std::string_view text = fields_[column];
-    double value = 0.0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value))
-      refuse_value(column, allowed);
-    return value;
+  [[nodiscard]] double number(std::size_t column, const char* allowed = kNumber) {
+    const auto value = table_.number(table_[column]);
+    if (!value || std::isnan(*value)) refuse_value(column, allowed);
+    return *value;
   }
   /// Place of the face; their number for a word that is none.
   [[nodiscard]] std::size_t face_named(std::string_view name) const {
@@ -302,10 +191,6 @@ class RunsReader {
   }
 
   void add_passage() {
-    if (fields_.size() != columns_.count)
-      lines_.refuse("has " + std::to_string(fields_.size()) +
-                    (fields_.size() == 1 ? " field" : " fields") +
-                    ", the line of the columns has " + std::to_string(columns_.count));
     const Entry entry = entry_in();
     if (begins_trial())
       begin_trial(entry);
@@ -317,16 +202,17 @@ class RunsReader {
     runs_.passages.push_back(passage);
     ++runs_.trials.back().count;
     last_ = passage;
-    last_line_ = lines_.number();
-    if (constexpr std::size_t kFirst = 1000; runs_.passages.size() == kFirst && lines_.bytes() > 0)
+    last_line_ = table_.line();
+    if (constexpr std::size_t kFirst = 1000;
+        runs_.passages.size() == kFirst && table_.lines().bytes() > 0)
       runs_.passages.reserve(
-          static_cast<std::size_t>(1.01 * kFirst * static_cast<double>(lines_.bytes()) /
-                                   static_cast<double>(lines_.bytes_read())));
+          static_cast<std::size_t>(1.01 * kFirst * static_cast<double>(table_.lines().bytes()) /
+                                   static_cast<double>(table_.lines().bytes_read())));
   }
 
-  Entry entry_in() const {
+  Entry entry_in() {
     Entry entry;
-    const std::size_t face = face_named(fields_[columns_.in]);
+    const std::size_t face = face_named(table_[columns_.in]);
     if (face == section_.faces.size())
       refuse_value(columns_.in,
                    "a face of " + cells_.source + ", one of " + dynamics::names_of(section_.faces));
@@ -337,18 +223,18 @@ class RunsReader {
   }
 
   [[nodiscard]] bool begins_trial() const {
-    return runs_.trials.empty() || fields_[columns_.body] != body_ ||
-           fields_[columns_.trial] != trial_;
+    return runs_.trials.empty() || table_[columns_.body] != body_ ||
+           table_[columns_.trial] != trial_;
   }
   void begin_trial(const Entry& entry) {
     for (const std::size_t column : {columns_.body, columns_.trial})
-      if (says_nothing(fields_[column])) refuse_value(column, "a name or a number");
-    body_ = fields_[columns_.body];
-    trial_ = fields_[columns_.trial];
+      if (says_nothing(table_[column])) refuse_value(column, "a name or a number");
+    body_ = table_[columns_.body];
+    trial_ = table_[columns_.trial];
     const std::size_t body = bodies_.place_of(body_);
     if (body == runs_.bodies.size()) runs_.bodies.push_back(body_);
     runs_.trials.push_back({entry, static_cast<std::int32_t>(body), std::ssize(runs_.passages), 0});
-    seen_.push_back({body, trial_number(), lines_.number()});
+    seen_.push_back({body, trial_number(), table_.line()});
   }
   /// Different texts, different numbers; those of whole numbers are their own.
   std::uint64_t trial_number() {
@@ -365,7 +251,7 @@ class RunsReader {
   void require_goes_on(const Entry& entry) const {
     const auto line = [&] { return " (line " + std::to_string(last_line_) + ")"; };
     if (last_.fate != Fate::left)
-      lines_.refuse("trial " + printable(trial_) + " of body " + printable(body_) + " was " +
+      table_.refuse("trial " + printable(trial_) + " of body " + printable(body_) + " was " +
                     (last_.fate == Fate::trapped ? "trapped" : "lost") + " in the passage before" +
                     line() + ": none can follow; a body that is seen again begins another trial");
     if (entry.face != last_.entry.face)
@@ -380,14 +266,14 @@ class RunsReader {
 
   CellPassage passage_in() {
     CellPassage passage{.fate = Fate::broken};
-    if (columns_.type < columns_.count) {
-      const auto type = std::find(cells_.types.begin(), cells_.types.end(), fields_[columns_.type]);
+    if (columns_.type < kMostColumns) {
+      const auto type = std::find(cells_.types.begin(), cells_.types.end(), table_[columns_.type]);
       if (type == cells_.types.end())
         refuse_value(columns_.type, "a type of cell of " + cells_.source + ", one of " +
                                         with_commas(cells_.types));
       passage.type = static_cast<std::uint8_t>(type - cells_.types.begin());
     }
-    const std::string_view out = fields_[columns_.out];
+    const std::string_view out = table_[columns_.out];
     const std::size_t face = face_named(out);
     if (face < section_.faces.size()) {
       passage.fate = Fate::left;
@@ -402,7 +288,7 @@ class RunsReader {
                          dynamics::names_of(section_.faces));
       passage.fate = out == "trapped" ? Fate::trapped : Fate::broken;
       for (std::size_t c = 0; c < section_.coordinates.size(); ++c)
-        if (!fields_[columns_.out_at[c]].empty())
+        if (!says_nothing(table_[columns_.out_at[c]]))
           refuse_value(columns_.out_at[c],
                        "blank, as a body that is " + std::string(out) + " enters no cell");
     }
@@ -415,7 +301,7 @@ class RunsReader {
   double cost_in(std::size_t cost, const CellPassage& passage) {
     const std::size_t column = columns_.costs[cost];
     const bool lost = passage.fate == Fate::broken;
-    if (column == kMostColumns || (fields_[column].empty() && (cost > 0 || lost))) {
+    if (column == kMostColumns || (says_nothing(table_[column]) && (cost > 0 || lost))) {
       runs_.unknown[cost] += !lost;
       return std::numeric_limits<double>::quiet_NaN();
     }
@@ -452,7 +338,7 @@ class RunsReader {
           return a.body == b.body && a.trial == b.trial;
         });
     if (twice != seen_.end())
-      lines_.refuse(twice[1].line,
+      table_.refuse(twice[1].line,
                     "this trial of body " + printable(runs_.bodies[twice->body]) +
                         " began in line " + std::to_string(twice->line) +
                         " already: the passages of a trial must stand one behind the other");
@@ -464,13 +350,11 @@ class RunsReader {
     std::int64_t line;
   };
 
-  Lines lines_;
+  Table table_;
   const CellFile& cells_;
   const Section& section_;
   CostColumns cost_columns_;
   Columns columns_;
-  std::vector<std::string_view> fields_;
-  std::vector<std::string> unquoted_;
   RecordedRuns runs_;
   NameTable bodies_, texts_;
   std::vector<SeenTrial> seen_;
@@ -617,15 +501,16 @@ std::vector<EnteredPassage> entered_passages(const RecordedRuns& runs) {
 bool has_columns(const std::string& path, std::initializer_list<std::string_view> columns) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe is read only once
-  Lines lines(path);
-  for (std::string_view line; lines.next(line);) {
-    if (has_no_fields(line)) continue;
-    const auto fields = csv_fields(line);
-    return fields && std::all_of(columns.begin(), columns.end(), [&](std::string_view column) {
-             return std::find(fields->begin(), fields->end(), column) != fields->end();
-           });
+  const auto has_all = [&](const Table::Names& names) {
+    return std::all_of(columns.begin(), columns.end(), [&](std::string_view column) {
+      return Table::column_in(names, column).has_value();
+    });
+  };
+  try {
+    return Table(path, has_all).has_header();
+  } catch (const std::invalid_argument&) {  // who reads it says why it is no table
+    return false;
   }
-  return false;
 }
 
 RecordedRuns read_runs(const std::string& path, CellFile& cells, CostColumns costs) {

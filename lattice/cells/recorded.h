@@ -29,6 +29,7 @@ struct RecordedRuns {
   std::int64_t trapped = 0, lost = 0;  // passages that ended so; all others left their cell
   /// By Section::costs: passages that were not lost and of which it is not known (NaN).
   std::array<std::int64_t, dynamics::kMostCosts> unknown{};
+  std::vector<std::string> remarks{};  // what was understood of a file that is not plain CSV
 
   [[nodiscard]] PassageTable::Rows of_trial(const RecordedTrial& trial) const {
     return passages.rows(static_cast<std::size_t>(trial.first),
@@ -39,7 +40,7 @@ struct RecordedRuns {
 /// All passages, each with the entry by which it began.
 [[nodiscard]] std::vector<EnteredPassage> entered_passages(const RecordedRuns& runs);
 
-/// Whether the first line of a table names all these columns; false for what is no regular file.
+/// Whether a table has all these columns; false for what is no regular file.
 [[nodiscard]] bool has_columns(const std::string& path,
                                std::initializer_list<std::string_view> columns);
 
@@ -47,9 +48,9 @@ struct RecordedRuns {
 /// they are not known.
 enum class CostColumns : std::uint8_t { all, as_there_are };
 
-/// Reads `path` (-: standard input). Coordinates of `cells` without a scale get the standard
-/// deviation of all entries (1 where all are the same). Throws std::invalid_argument naming file,
-/// line, column and what is allowed.
+/// Reads a table (lattice/text/table.h) at `path` (-: standard input). Coordinates of `cells`
+/// without a scale get the standard deviation of all entries (1 where all are the same). Throws
+/// std::invalid_argument naming file, line, column and what is allowed.
 [[nodiscard]] RecordedRuns read_runs(const std::string& path, CellFile& cells,
                                      CostColumns costs = CostColumns::all);
 

@@ -2,26 +2,21 @@
 #pragma once
 /// What the readers of tracks share. Not part of the installed headers.
 
-#include <istream>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "lattice/cells/tracks.h"
+#include "lattice/text/table.h"
 
 namespace gatewalk::lattice {
-
-/// A number; NaN for a field that says nothing, or infinity; none for anything else.
-[[nodiscard]] std::optional<double> coordinate_in(std::string_view text);
 
 /// Whether it can be the number of a frame: a whole one, up to 1e12.
 [[nodiscard]] bool is_frame(double number);
 
 /// `"text"`, fit for a message.
 [[nodiscard]] std::string in_quotes(const std::string& text);
-
-/// The next line; false at the end. Throws std::invalid_argument where the file cannot be read on.
-[[nodiscard]] bool next_line_of(std::istream& in, const std::string& path, std::string& text);
 
 /// Refuses what the file does not say and the user did not: names all options that are missing.
 class Lacking {
@@ -59,6 +54,8 @@ class TrackMaker {
   const TrackOptions& options_;
 };
 
+/// Of all tracks, from a frame in which a body was seen to its next one, s.
+[[nodiscard]] std::vector<double> steps_of(const TrackFile& file);
 /// Where frames have times of their own: the interval that most steps of all tracks have (their
 /// median), which is said.
 [[nodiscard]] double median_step(TrackFile& file);
@@ -67,7 +64,16 @@ class TrackMaker {
 void require_steps(std::vector<double> steps, const std::string& source, double fps,
                    const std::string& fps_words, const std::string& time_words);
 
-[[nodiscard]] TrackFile read_deeplabcut(const std::string& path, const TrackOptions& options);
+/// A table of the columns that the options name, or one of DeepLabCut.
+[[nodiscard]] TrackFile read_track_table(const std::string& path, const TrackOptions& options);
+/// Whether a line is the first of a table of DeepLabCut, or of what writes like it.
+[[nodiscard]] bool is_of_deeplabcut(const Table::Names& line);
+/// Leaves out places that a tracker wrote in frames in which it had lost its body: the same one
+/// again, for more frames than the noise of places allows, but for the first of them; and (0, 0) of
+/// the file, for as many or far from those before and behind. Counts them, with a warning.
+void leave_out_lost(TrackFile& file, const TrackOptions& options);
+
+[[nodiscard]] TrackFile read_deeplabcut(Table& table, const TrackOptions& options);
 [[nodiscard]] TrackFile read_movement(const std::string& path, const TrackOptions& options);
 
 }  // namespace gatewalk::lattice

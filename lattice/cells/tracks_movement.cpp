@@ -3,6 +3,7 @@
 // any order and, since its version 0.17, without the s; of boxes without key points.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -54,7 +55,7 @@ class MovementFile {
     position_ = required("position");
     individual_ = position_.has("individual") ? "individual" : "individuals";
     key_point_ = position_.has("keypoint") ? "keypoint" : "keypoints";
-    for (const std::string& name : {std::string("time"), std::string("space"), individual_})
+    for (const std::string name : {"time", "space"})
       if (!position_.has(name)) throw std::runtime_error("position has no dimension " + name);
     for (const std::string& name : position_.dimensions)
       if (name != "time" && name != "space" && name != individual_ && name != key_point_)
@@ -95,7 +96,8 @@ class MovementFile {
     auto found = find(name);
     if (!found)
       throw std::runtime_error("there is no variable " + name +
-                               ": movement writes position, time, space, keypoint and individual");
+                               ": movement writes position, time, space, keypoint and individual; "
+                               "movement reads SLEAP's and DeepLabCut's .h5 and writes such files");
     return *found;
   }
 
@@ -182,7 +184,7 @@ class MovementFile {
   std::vector<double> confidences() {
     const auto v = find("confidence");
     if (!v) return {};
-    if (!v->has("time") || !v->has(individual_) ||
+    if (!v->has("time") || v->has(individual_) != position_.has(individual_) ||
         v->has(key_point_) != position_.has(key_point_) ||
         v->dimensions.size() != position_.dimensions.size() - 1)
       throw std::runtime_error("confidence must have the dimensions of position but space");
@@ -277,6 +279,26 @@ class MovementFile {
     return times;
   }
 
+  /// One, where the file is of one individual that was chosen before it was saved.
+  std::vector<std::string> names_of_bodies() {
+    if (position_.has(individual_)) return words(individual_);
+    std::string name;
+    for (const char* label : {"individuals", "individual"})
+      if (const auto v = find(label); v && v->dimensions.empty()) {
+        nc_type type = NC_NAT;
+        char* raw = nullptr;
+        check(nc_inq_vartype(image_, v->id, &type), label);
+        if (type != NC_STRING) continue;
+        check(nc_get_var_string(image_, v->id, &raw), label);
+        name = raw ? raw : "";
+        check(nc_free_string(1, &raw), label);
+      }
+    if (name.empty()) name = std::filesystem::path(file_.source).stem().string();
+    file_.remarks.push_back("position has no dimension of individuals: one body, " +
+                            printable(name));
+    return {name};
+  }
+
   void add_tracks(const std::vector<double>& times, const std::vector<double>& places,
                   const std::vector<double>& sure) {
     const auto space = words("space");
@@ -287,7 +309,7 @@ class MovementFile {
     };
     const std::size_t x = at("x"), y = at("y");
     if (space.size() > 2) file_.remarks.push_back("places in space: only x and y are used");
-    const auto names = words(individual_);
+    const auto names = names_of_bodies();
     TrackMaker maker(file_, options_);
     for (std::size_t body = 0; body < names.size(); ++body) {
       file_.tracks.push_back({names[body], {}, {}, {}});

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "dynamics/disc/row_trials.h"
+#include "lattice/scene/scene_problem.h"
 #include "lattice/scene/settle.h"
 #include "markov/formats/counts.h"
 

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <vector>
@@ -14,6 +12,7 @@
 #include "lattice/scene/scene.h"
 #include "lattice/scene/units.h"
 #include "lattice/text/csv.h"
+#include "lattice/text/lines.h"
 #include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
@@ -68,25 +67,29 @@ std::vector<MapRow> rows_of_file(const TerrainSetting& given, const std::string&
   if (std::filesystem::is_character_file(path, none) || std::filesystem::is_block_file(path, none))
     throw SceneError(given.where() + ": terrain.map_file: " + path +
                      " is a device: must be a file, whose end can be read");
-  const auto lines = lines_of(path);
-  if (!lines)
-    throw SceneError(given.where() + ": terrain.map_file: " + path +
-                     " cannot be read: " + std::strerror(errno));
   std::vector<MapRow> rows;
-  for (const std::string& text : *lines)
-    rows.push_back({text, path + ":" + std::to_string(rows.size() + 1)});
-  while (!rows.empty() && rows.back().text.empty()) rows.pop_back();
+  try {
+    for (const std::string& text : lines_of(path))
+      rows.push_back({text, path + ":" + std::to_string(rows.size() + 1)});
+  } catch (const std::invalid_argument& e) {
+    throw SceneError(given.where() + ": terrain.map_file: " + e.what());
+  }
+  const auto is_blank = [](const MapRow& row) {
+    return row.text.find_first_not_of(" ,;\t") == row.text.npos;
+  };
+  while (!rows.empty() && is_blank(rows.back())) rows.pop_back();
   return rows;
 }
 
-/// The names in a row: separated by commas, or a letter each.
+/// The names in a row: separated by commas, semicolons or tabs, or a letter each.
 std::vector<std::string> names_in(const std::string& row, int columns) {
-  if (columns > 1 && row.find(',') == row.npos) {
+  const char separator = separator_in(row);
+  if (columns > 1 && row.find(separator) == row.npos) {
     std::vector<std::string> names;
     for (const char c : row) names.emplace_back(1, c);
     return names;
   }
-  return csv_fields(row).value_or(std::vector{row});
+  return csv_fields(row, separator).value_or(std::vector{row});
 }
 
 std::string all_names(const Terrain& terrain) {
@@ -114,10 +117,8 @@ std::vector<int> cells_of(const std::vector<MapRow>& rows, const std::string& wh
     const std::string begin = row.where + ": row " + std::to_string(r + 1) + " of the map";
     const std::vector<std::string> names = names_in(row.text, field.columns);
     if (std::ssize(names) != field.columns)
-      throw SceneError(
-          begin + " has " + std::to_string(names.size()) +
-          " gates, field.columns = " + std::to_string(field.columns) +
-          (row.text.find(';') == row.text.npos ? "" : "; names are set apart by commas"));
+      throw SceneError(begin + " has " + std::to_string(names.size()) +
+                       " gates, field.columns = " + std::to_string(field.columns));
     for (int c = 0; c < field.columns; ++c) {
       const std::string& name = names[static_cast<std::size_t>(c)];
       const int type = type_named(terrain, name);

@@ -7,6 +7,7 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/cells/state_space.h"
+#include "dynamics/cells/tree_space.h"
 #include "lattice/problem.h"
 #include "lattice/reference.h"
 #include "lattice/study/crossings.h"

@@ -2,16 +2,14 @@
 #include "lattice/study/observed.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <stdexcept>
 #include <string_view>
 
 #include "lattice/text/csv.h"
+#include "lattice/text/table.h"
 #include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
@@ -38,8 +36,9 @@ std::string lower_case(std::string text) {
 /// A table as its file has it, with the names of its columns in small letters.
 struct CountTable {
   struct Row {
-    std::size_t line;
+    std::int64_t line;
     Fields fields;
+    std::optional<double> time{};  // where it is a number; NaN: nothing
   };
   std::string path;
   Fields columns;
@@ -48,7 +47,7 @@ struct CountTable {
   [[nodiscard]] bool has(std::string_view column) const {
     return std::find(columns.begin(), columns.end(), column) != columns.end();
   }
-  [[noreturn]] void refuse(std::size_t line, const std::string& what) const {
+  [[noreturn]] void refuse(std::int64_t line, const std::string& what) const {
     throw std::invalid_argument(path + ":" + std::to_string(line) + ": " + what);
   }
   [[nodiscard]] const std::string& at(const Row& row, std::string_view column) const {
@@ -59,20 +58,17 @@ struct CountTable {
   [[nodiscard]] std::int64_t whole(const Row& row, std::string_view column, std::int64_t low,
                                    std::int64_t high, const std::string& because) const {
     const std::string& text = at(row, column);
-    std::int64_t value = 0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (read.ec != std::errc() || read.ptr != text.data() + text.size() || value < low ||
-        value > high)
+    const auto value = Table::whole(text);
+    if (!value || *value < low || *value > high)
       refuse(row.line, "column " + std::string(column) + ": " +
                            (text.empty() ? "nothing" : quoted(text)) +
                            " is not permitted: must be a whole number from " + std::to_string(low) +
                            " to " + std::to_string(high) + because);
-    return value;
+    return *value;
   }
 };
 
-/// `given`: the columns as they are written.
-void require_columns(const CountTable& table, const Fields& given, std::size_t line) {
+void require_columns(const CountTable& table, const Table& file) {
   static const std::array<Fields, 7> kPermitted{
       {{"count", "gate_x", "gate_y"},
        {"count", "ending"},
@@ -84,43 +80,48 @@ void require_columns(const CountTable& table, const Fields& given, std::size_t l
   Fields sorted = table.columns;
   std::sort(sorted.begin(), sorted.end());
   if (std::find(kPermitted.begin(), kPermitted.end(), sorted) != kPermitted.end()) return;
-  for (std::size_t i = 0; i < given.size(); ++i)
-    if (const std::string& column = table.columns[i]; column != "count" && column != "trial" &&
-                                                      column != "ending" && column != "gate_x" &&
-                                                      column != "gate_y" && column != "time_s")
-      table.refuse(line, "unknown column " + quoted(given[i]) + ": the first line must be " +
-                             kTables + ", with commas between");
-  table.refuse(line, std::string("the columns must be ") + kTables + ", each once");
+  std::string unknown;
+  for (const std::string& column : table.columns)
+    if (column != "count" && column != "trial" && column != "ending" && column != "gate_x" &&
+        column != "gate_y" && column != "time_s")
+      unknown = "unknown column " + quoted(column) + ": ";
+  table.refuse(file.header_line(), unknown + "the columns must be " + kTables +
+                                       ", each once; there are " + file.column_words());
 }
 
-CountTable read_table(const std::string& path) {
+CountTable read_table(const std::string& path, std::vector<std::string>& remarks) {
   constexpr std::uintmax_t kMostBytes = 100'000'000;
   std::error_code none;  // of pipes and the like
   if (const auto size = std::filesystem::file_size(path, none); !none && size > kMostBytes)
     throw std::invalid_argument(path + ": has " + std::to_string(size) +
                                 " bytes, more than a table of counts");
-  const auto lines = lines_of(path);
-  if (!lines) throw std::invalid_argument(path + ": cannot be read: " + std::strerror(errno));
+  Table file(path, [](const Table::Names& names) {
+    const auto has = [&](const char* name) { return Table::column_in(names, name).has_value(); };
+    return (has("count") || has("trial")) && (has("ending") || has("gate_x"));
+  });
+  if (file.columns().empty())
+    throw std::invalid_argument(path + ": is empty: the columns must be " + kTables);
   CountTable table{path, {}, {}};
-  for (std::size_t i = 0; i < lines->size(); ++i) {
-    const std::string& text = (*lines)[i];
-    const std::size_t line = i + 1;
-    if (has_no_fields(text)) continue;
-    auto fields = csv_fields(text);
-    if (!fields) table.refuse(line, "a quotation mark is not closed, or not at a field's end");
-    if (table.columns.empty()) {
-      for (const std::string& name : *fields) table.columns.push_back(lower_case(name));
-      require_columns(table, *fields, line);
-      continue;
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < file.columns().size(); ++i) {
+    const std::string& name = file.columns()[i];
+    if (Table::is_index(name)) {
+      remarks.push_back(path + ": column " + std::to_string(i + 1) + " has no name: left out");
+    } else if (file.column(name) == i) {
+      kept.push_back(i);
+      table.columns.push_back(lower_case(name));
     }
-    if (fields->size() != table.columns.size())
-      table.refuse(line, "has " + std::to_string(fields->size()) +
-                             (fields->size() == 1 ? " field" : " fields") + ", the first line " +
-                             std::to_string(table.columns.size()));
-    table.rows.push_back({line, std::move(*fields)});
   }
-  if (table.columns.empty())
-    throw std::invalid_argument(path + ": is empty: the first line must be " + kTables);
+  require_columns(table, file);
+  while (file.next()) {
+    CountTable::Row row{file.line(), {}};
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      row.fields.emplace_back(file[kept[i]]);
+      if (table.columns[i] == "time_s") row.time = file.number(file[kept[i]]);
+    }
+    table.rows.push_back(std::move(row));
+  }
+  for (const std::string& text : file.remarks()) remarks.push_back(path + ": " + text);
   return table;
 }
 
@@ -156,7 +157,7 @@ void add_gates(Observed& observed, const CountTable& table, const FieldParams& f
       table.refuse(row.line, "gate_x = " + table.at(row, "gate_x") +
                                  ", gate_y = " + table.at(row, "gate_y") + " was given in line " +
                                  std::to_string(given(y, column)) + " already");
-    given(y, column) = static_cast<std::int64_t>(row.line);
+    given(y, column) = row.line;
     gates(y, column) = count_of(table, row);
   }
   require_trials(table, gates.sum(), 0);
@@ -227,15 +228,14 @@ void require_at_side(const CountTable& table, const CountTable::Row& row, std::s
 double time_of(const CountTable& table, const CountTable::Row& row, std::size_t ending) {
   const auto e = static_cast<markov::Ending>(ending);
   const bool stayed = e == markov::Ending::trapped || e == markov::Ending::cut_off;
-  const std::string& text = table.at(row, "time_s");
-  if (stayed && text.empty()) return 0.0;
-  double value = 0.0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value) ||
-      value <= 0.0)
+  if (stayed && says_nothing(table.at(row, "time_s"))) return 0.0;
+  const double value = row.time.value_or(0.0);
+  if (!(value > 0.0)) {
+    const std::string& text = table.at(row, "time_s");
     table.refuse(row.line, "column time_s: " + (text.empty() ? "nothing" : quoted(text)) +
                                " is not permitted: must be the seconds until the body left the "
                                "field, above 0, such as 12.5");
+  }
   return stayed ? 0.0 : value;
 }
 
@@ -248,7 +248,7 @@ void add_lines(Observed& observed, const CountTable& table, const FieldParams& f
   if (has_endings)  // those that nobody had were not had, but cutting off must be looked for
     for (const EndingName& e : kEndingNames)
       observed.listed[static_cast<std::size_t>(e.ending)] = e.ending != markov::Ending::cut_off;
-  std::map<std::string, std::size_t, std::less<>> lines;
+  std::map<std::string, std::int64_t, std::less<>> lines;
   for (const CountTable::Row& row : table.rows) {
     const std::string& trial = table.at(row, "trial");
     if (says_nothing(trial)) table.refuse(row.line, "column trial: has no name or number");
@@ -284,7 +284,7 @@ Observed read_observed(const std::vector<std::string>& paths, const FieldParams&
   Observed observed;
   std::string of_gates, of_endings;
   for (const std::string& path : paths) {
-    const CountTable table = read_table(path);
+    const CountTable table = read_table(path, observed.remarks);
     const auto take = [&](std::string& other, const char* what) {
       if (!other.empty())
         throw std::invalid_argument(path + ": " + other + " has " + what +

@@ -31,15 +31,16 @@ struct Observed {
   std::array<CellCounts, markov::kEndings> gates_by_ending{};
   std::int64_t went_back =
       0;  // of these trials, which `seen` leaves out: the model has no such end
+  std::vector<std::string> remarks{};  // what was understood of files that are not plain CSV
 };
 
-/// Reads what an experiment saw, in CSV whose first line names the columns: a line per trial (trial
-/// and ending, gate_x and gate_y, or all four; i_x and i_y of the final gate as everywhere; with
-/// endings also time_s, which may be empty for who did not leave the field), or counts of final
-/// gates (gate_x, gate_y, count; gates without a row have none), or of endings (ending, count), or
-/// a file of each of the counts. Endings are named as in kEndingNames, in either way, or "went
-/// back". Throws std::invalid_argument naming file, line and column for anything else, for no trial
-/// at all, and for two tables of different totals.
+/// Reads what an experiment saw, in tables (lattice/text/table.h) with the columns: a line per
+/// trial (trial and ending, gate_x and gate_y, or all four; i_x and i_y of the final gate as
+/// everywhere; with endings also time_s, which may be empty for who did not leave the field), or
+/// counts of final gates (gate_x, gate_y, count; gates without a row have none), or of endings
+/// (ending, count), or a file of each of the counts. Endings are named as in kEndingNames, in
+/// either way, or "went back". Throws std::invalid_argument naming file, line and column for
+/// anything else, for no trial at all, and for two tables of different totals.
 [[nodiscard]] Observed read_observed(const std::vector<std::string>& paths,
                                      const FieldParams& field);
 

@@ -3,65 +3,67 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <filesystem>
-#include <fstream>
 
 namespace gatewalk::lattice {
 
-std::optional<std::vector<std::string>> lines_of(const std::string& path) {
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return {};
-  if (std::filesystem::is_directory(path)) {
-    errno = EISDIR;
-    return {};
-  }
-  file.exceptions(std::ios_base::badbit);  // else what cannot be read looks like the end
-  std::vector<std::string> lines;
-  try {
-    for (std::string text; std::getline(file, text);) {
-      if (lines.empty() && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-      if (text.ends_with('\r')) text.pop_back();
-      lines.push_back(text);
+namespace {
+
+bool is_space(char c, char separator) { return c == ' ' || (c == '\t' && separator != '\t'); }
+
+}  // namespace
+
+LineState split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields,
+                       std::string& unquoted) {
+  fields.clear();
+  unquoted.clear();
+  unquoted.reserve(line.size());  // so that what lies in it stays where it is
+  const char *at = line.data(), *const end = at + line.size();
+  const auto skip_spaces = [&] {
+    while (at < end && is_space(*at, separator)) ++at;
+  };
+  for (;; ++at) {
+    skip_spaces();
+    if (at < end && *at == '"') {
+      const std::size_t begin = unquoted.size();
+      for (++at;; ++at) {
+        if (at == end) return LineState::open;
+        if (*at == '"' && (at + 1 == end || at[1] != '"')) break;
+        if (*at == '"') ++at;  // two stand for one
+        unquoted += *at;
+      }
+      ++at;
+      skip_spaces();
+      if (at < end && *at != separator) return LineState::wrong;
+      fields.push_back(std::string_view(unquoted).substr(begin));
+    } else {
+      const char* const from = at;
+      while (at < end && *at != separator) ++at;
+      const char* to = at;
+      while (to > from && is_space(to[-1], separator)) --to;
+      fields.emplace_back(from, static_cast<std::size_t>(to - from));
     }
-  } catch (const std::ios_base::failure&) {
-    errno = EIO;
-    return {};
+    if (at == end) return LineState::fields;
   }
-  return lines;
 }
 
-std::optional<std::vector<std::string>> csv_fields(std::string_view line) {
-  constexpr const char* kSpace = " \t";
-  std::vector<std::string> fields;
-  for (std::size_t at = 0;;) {
-    const std::size_t first = std::min(line.find_first_not_of(kSpace, at), line.size());
-    std::string field;
-    if (first < line.size() && line[first] == '"') {
-      at = first + 1;
-      for (;; ++at) {
-        if (at >= line.size()) return {};
-        if (line[at] == '"' && line.substr(at + 1, 1) != "\"") break;
-        if (line[at] == '"') ++at;  // two stand for one
-        field += line[at];
-      }
-      at = std::min(line.find_first_not_of(kSpace, at + 1), line.size());
-      if (at < line.size() && line[at] != ',') return {};
-    } else {
-      at = std::min(line.find(',', first), line.size());
-      field = line.substr(first, at - first);
-      field.erase(field.find_last_not_of(kSpace) + 1);
-    }
-    fields.push_back(std::move(field));
-    if (at == line.size()) return fields;
-    ++at;  // the comma
-  }
+std::optional<std::vector<std::string>> csv_fields(std::string_view line, char separator) {
+  std::vector<std::string_view> fields;
+  std::string unquoted;
+  if (split_fields(line, separator, fields, unquoted) != LineState::fields) return {};
+  return std::vector<std::string>(fields.begin(), fields.end());
+}
+
+char separator_in(std::string_view line) {
+  return *std::max_element(kSeparators.begin(), kSeparators.end(), [&](char a, char b) {
+    return std::count(line.begin(), line.end(), a) < std::count(line.begin(), line.end(), b);
+  });
 }
 
 bool says_nothing(std::string_view field) {
-  constexpr std::array<std::string_view, 11> kWords{"",     "na",   "n/a",  "nan", "-nan", "none",
-                                                    "null", "<na>", "#n/a", "#na", "-"};
+  constexpr std::array<std::string_view, 23> kWords{
+      "",      "na",      "n/a",     "nan",    "-nan",    "nan(ind)", "-nan(ind)", "none",
+      "null",  "missing", "-",       "<na>",   "#n/a",    "#na",      "#n/a n/a",  "#num!",
+      "#ref!", "#value!", "#div/0!", "1.#ind", "-1.#ind", "1.#qnan",  "-1.#qnan"};
   std::string word(field);
   for (char& c : word)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
@@ -71,7 +73,8 @@ bool says_nothing(std::string_view field) {
 bool has_no_fields(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t");
   if (first == line.npos) return true;
-  return line[first] == '#' && !says_nothing(line.substr(first, line.find(',', first) - first));
+  return line[first] == '#' &&
+         !says_nothing(line.substr(first, line.find_first_of(",;\t", first) - first));
 }
 
 }  // namespace gatewalk::lattice

@@ -530,18 +530,43 @@ TEST(CutTracks, CellsThatTracksDoNotHave) {
   EXPECT_EQ(refusal([&] { require_measurable(lopsided); }), "nothing refused");
 }
 
+TEST(CutTracks, SaysWhatIsLikelyToBeWrong) {
+  const Way up = straight({0.05, 0.05}, 0.0, 0.4), down = straight({0.05, 5.0}, 0.0, -0.4);
+  EXPECT_TRUE(cut_tracks(file_of({up}, 600), squares(), fast()).doubts.empty());
+  EXPECT_TRUE(cut_tracks(file_of({up, down}, 600), squares(), fast()).doubts.empty());
+  TrackFile back = file_of({down}, 600);
+  EXPECT_NE(cut_tracks(back, squares(), fast()).doubts.at(0).find("give --y-down"),
+            std::string::npos);
+  back.y_down = true;
+  EXPECT_NE(cut_tracks(back, squares(), fast()).doubts.at(0).find("leave --y-down out"),
+            std::string::npos);
+  TrackFile lossy = file_of({up}, 600);  // one frame in ten is lost
+  for (int f = 589; f > 0; f -= 10) hide(lossy, f, f + 1);
+  const std::string words = cut_tracks(lossy, squares(), fast()).doubts.at(0);
+  EXPECT_NE(words.find("9.8 % of the frames are missing, 1 at a time: --bridge 1 bridges them"),
+            std::string::npos)
+      << words;
+  CutOptions bridged = fast();
+  bridged.bridge = 1;
+  EXPECT_TRUE(cut_tracks(lossy, squares(), bridged).doubts.empty());
+  EXPECT_REFUSED("all lie below the first row: is y measured downwards (--y-down)?",
+                 file_of({straight({0.05, -5.03}, 0.0, 0.001)}, 100), squares(), fast());
+}
+
 TEST(CutTracks, TracksThatMakeNoSense) {
   const TrackFile up = file_of({straight({0.05, 0.05}, 0.0, 0.4)}, 121);
   EXPECT_REFUSED("--fastest 0: must be above 0", up, squares(), fast(0.0));
   EXPECT_REFUSED(
-      "no body was seen in 5 frames in a row, without a gap or a jump (--fastest 0.1 m/s)", up,
-      squares(), fast(0.1));
+      "no body was seen in 5 frames in a row, without a gap or a jump: most steps are faster than "
+      "--fastest 0.1 m/s (median 0.4 m/s)",
+      up, squares(), fast(0.1));
   // Tracks of 120 frames per second, where 240 were said.
   TrackFile every_second = up;
   every_second.interval = 1.0 / 240.0;
   EXPECT_REFUSED(
-      "from one place of a body to its next one are 2 frames of 0.00416667 s (median): is --fps "
-      "right?",
+      "frames go up by 2 from one place of a body to its next (a frame is 0.00416667 s): --bridge "
+      "1 "
+      "bridges them, unless --fps is wrong",
       every_second, squares(), fast());
   CutOptions options = fast();
   options.bridge = -1;

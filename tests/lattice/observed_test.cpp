@@ -15,6 +15,7 @@
 
 #include "lattice/study/validation.h"
 #include "lattice/text/csv.h"
+#include "lattice/text/lines.h"
 #include "lattice/text/text_stream.h"
 #include "tests/support/disc_fields.h"
 
@@ -24,9 +25,13 @@ namespace {
 using Fields = std::vector<std::string>;
 
 // A file whose reading fails is not one that ends there.
-TEST(Csv, WhatCannotBeReadIsNoEnd) {
-  EXPECT_FALSE(lines_of("/proc/self/mem"));  // its first byte is nobody's
-  EXPECT_EQ(errno, EIO);
+TEST(Lines, WhatCannotBeReadIsNoEnd) {
+  try {
+    (void)lines_of("/proc/self/mem");  // its first byte is nobody's
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(e.what(), "/proc/self/mem: cannot be read: Input/output error");
+  }
 }
 
 TEST(Csv, ATextThatIsCutIsAnError) {
@@ -215,14 +220,14 @@ TEST_F(CountsFile, RefusalsNameFileLineColumnAndWhatIsAllowed) {
       "gate_x,gate_y,count, or "
       "ending,count";
   EXPECT_EQ(refusal("gatex,gate_y,count\n"),
-            "x.csv:1: unknown column \"gatex\": the first line must be " + kTables +
-                ", with commas between");
-  EXPECT_EQ(refusal("Gate_X,Gate-Y,Count\n").substr(0, 32), "x.csv:1: unknown column \"Gate-Y\"");
-  EXPECT_EQ(refusal("# x\nending;count\ncrossed;3\n").substr(0, 40),
-            "x.csv:2: unknown column \"ending;count\": ");
-  for (const char* columns :
-       {"gate_x,count\n", "ending,gate_x,count", "ending,count,count", "count", "trial,gate_x"})
-    EXPECT_EQ(refusal(columns), "x.csv:1: the columns must be " + kTables + ", each once");
+            "x.csv:1: unknown column \"gatex\": the columns must be " + kTables +
+                ", each once; there are gatex, gate_y, count");
+  EXPECT_EQ(refusal("Gate_X,Gate-Y,Count\n").substr(0, 32), "x.csv:1: unknown column \"gate-y\"");
+  EXPECT_EQ(refusal("# x\nending count\ncrossed 3\n").substr(0, 40),
+            "x.csv:2: unknown column \"ending count\": ");
+  for (const char* columns : {"gate_x, count", "ending, gate_x, count", "count", "trial, gate_x"})
+    EXPECT_EQ(refusal(columns),
+              "x.csv:1: the columns must be " + kTables + ", each once; there are " + columns);
   EXPECT_EQ(refusal(header + "0,0,3\n2,0,1\n"),
             "x.csv:3: column gate_x: \"2\" is not permitted: must be a whole number from -2 to 1 "
             "(field.columns = 4)");
@@ -236,10 +241,11 @@ TEST_F(CountsFile, RefusalsNameFileLineColumnAndWhatIsAllowed) {
   EXPECT_EQ(refusal(header + "0,0,\n"),
             "x.csv:2: column count: nothing is not permitted: must be a whole number from 0 to "
             "1000000000");
-  EXPECT_EQ(refusal(header + "0,0\n"), "x.csv:2: has 2 fields, the first line 3");
-  EXPECT_EQ(refusal(header + "0\n"), "x.csv:2: has 1 field, the first line 3");
-  EXPECT_EQ(refusal(header + "0,0,\"3\n"),
-            "x.csv:2: a quotation mark is not closed, or not at a field's end");
+  EXPECT_EQ(refusal(header + "0,0\n"),
+            "x.csv:2: has 2 fields, the line of the columns (line 1) has 3");
+  EXPECT_EQ(refusal(header + "0\n"),
+            "x.csv:2: has 1 field, the line of the columns (line 1) has 3");
+  EXPECT_EQ(refusal(header + "0,0,\"3\n"), "x.csv:2: a quotation mark is not closed");
   EXPECT_EQ(refusal(header + "0,0,3\n1,0,2\n0,0,3\n"),
             "x.csv:4: gate_x = 0, gate_y = 0 was given in line 2 already");
   EXPECT_EQ(refusal("ending,count\nturned back,3\n"),
@@ -250,7 +256,7 @@ TEST_F(CountsFile, RefusalsNameFileLineColumnAndWhatIsAllowed) {
   for (const std::string& none : {header, header + "0,0,0\n", std::string("ending,count\n")})
     EXPECT_EQ(refusal(none), "x.csv: has no trial: its counts add up to 0");
   for (const char* empty : {"", "\n\n", "# nothing\n"})
-    EXPECT_EQ(refusal(empty), "x.csv: is empty: the first line must be " + kTables);
+    EXPECT_EQ(refusal(empty), "x.csv: is empty: the columns must be " + kTables);
   EXPECT_EQ(message({"none.csv"}), "none.csv: cannot be read: No such file or directory");
   EXPECT_EQ(message({folder_.string()}), folder_.string() + ": cannot be read: Is a directory");
 }

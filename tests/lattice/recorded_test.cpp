@@ -171,7 +171,8 @@ TEST_F(Recorded, TypesAreThoseOfTheFileOfCells) {
             "one of a,b");
   EXPECT_EQ(refused_as(kHeader + line, typed),
             "x.csv:1: column type is missing: the columns must be "
-            "body,trial,type,in,s,vx,vy,out,out_s,out_vx,out_vy,time_s,work_J");
+            "body,trial,type,in,s,vx,vy,out,out_s,out_vx,out_vy,time_s,work_J; there are body, "
+            "trial, in, s, vx, vy, out, out_s, out_vx, out_vy, time_s, work_J");
   EXPECT_EQ(read(header + ".," + line).passages[0].type, 0);  // the only one's name
 }
 
@@ -197,14 +198,17 @@ TEST_F(Recorded, RefusesByFileLineAndColumn) {
       {"time_s", "times",
        "x.csv:1: unknown column \"times\" (did you mean time_s?): the columns must be " + known +
            ", as cell.toml has faces, coordinates and costs"},
-      {"work_J", "body", "x.csv:1: column body is there twice"},
+      {"work_J", "body",
+       "x.csv:1: column work_J is missing: the columns must be " + columns +
+           "; there are body, trial, in, s, vx, vy, out, out_s, out_vx, out_vy, time_s, body"},
       {",time_s,work_J\n# two bodies\nb7,1,S,0.012,-0.05,0.21,W,0.031,-0.18,0.02,0.63,1.5",
        ",work_J\n# two bodies\nb7,1,S,0.012,-0.05,0.21,W,0.031,-0.18,0.02,0.63",
-       "x.csv:1: column time_s is missing: the columns must be " + columns},
-      {",1.5\n", "\n", "x.csv:3: has 11 fields, the line of the columns has 12"},
-      {",1.5\n", ",1.5,\n", "x.csv:3: has 13 fields, the line of the columns has 12"},
-      {"b7,1,S", "b7", "x.csv:3: has 10 fields, the line of the columns has 12"},
-      {"b7,1,S", "\"b7,1,S", "x.csv:3: a quotation mark is not closed, or not at a field's end"},
+       "x.csv:1: column time_s is missing: the columns must be " + columns +
+           "; there are body, trial, in, s, vx, vy, out, out_s, out_vx, out_vy, work_J"},
+      {",1.5\n", "\n", "x.csv:3: has 11 fields, the line of the columns (line 1) has 12"},
+      {",1.5\n", ",1.5,2\n", "x.csv:3: has 13 fields, the line of the columns (line 1) has 12"},
+      {"b7,1,S", "b7", "x.csv:3: has 10 fields, the line of the columns (line 1) has 12"},
+      {"b7,1,S", "\"b7,1,S", "x.csv:3: a quotation mark is not closed"},
       {"b7,1,S", ",1,S",
        "x.csv:3: column body: nothing is not permitted: must be a name or a number"},
       {"b7,1,S", "NA,1,S",
@@ -276,14 +280,14 @@ TEST_F(Recorded, RefusesByFileLineAndColumn) {
        "-2.5e-1"}};
   for (const Wrong& wrong : all)
     EXPECT_EQ(refused_as(instead(kRuns, wrong.from, wrong.to)), wrong.message) << wrong.to;
-  EXPECT_EQ(refused_as(""), "x.csv: is empty: the first line must name the columns, " + columns);
-  EXPECT_EQ(refused_as("# nothing\n\n"),
-            "x.csv: is empty: the first line must name the columns, " + columns);
+  EXPECT_EQ(refused_as(""), "x.csv: is empty: the columns must be " + columns);
+  EXPECT_EQ(refused_as("# nothing\n\n"), "x.csv: is empty: the columns must be " + columns);
   EXPECT_EQ(refused_as(kHeader), "x.csv: has no passage below the line of its columns");
   EXPECT_EQ(refused_as(kHeader + std::string(2 << 20, 'x')),
             "x.csv:2: is longer than 1048576 bytes");
-  EXPECT_EQ(refused_as(instead(kRuns, "lost,,,,,", "lost,,,\r,,")),
-            "x.csv:7: a carriage return within a line: lines must end in \\n or \\r\\n");
+  EXPECT_EQ(
+      refused_as(instead(kRuns, "lost,,,,,", "lost,,,\r,,")),
+      "x.csv:7: a carriage return within a line: lines must end in \\n or \\r\\n, or all in \\r");
   CellFile of = cells;
   try {
     (void)read_runs(path("none.csv"), of);

@@ -113,7 +113,7 @@ TEST(Terrain, AMapMayBeAFileBesideTheScene) {
       << message("bad.csv");
   const std::string none = message("none.csv");
   EXPECT_TRUE(contains(none, "scene.toml:4: terrain.map_file: ") &&
-              contains(none, "none.csv cannot be read: No such file or directory"))
+              contains(none, "none.csv: cannot be read: No such file or directory"))
       << none;
   EXPECT_TRUE(contains(message("/dev/zero"), "terrain.map_file: /dev/zero is a device"))
       << message("/dev/zero");  // which has no end

@@ -7,8 +7,10 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -137,7 +139,7 @@ TEST_F(TracksFile, TrackMateHasThreeRowsOfUnits) {
   // Two such rows are no TrackMate's: the line that is no number is named.
   EXPECT_EQ(refusal("id,f,x,y\nid,f,x,y\nid,f,x,y\na,0,1,1\n", table_options()),
             "t.csv:3: column x: \"x\" is no number, nor are there three rows of descriptions and "
-            "units behind the header, as TrackMate writes");
+            "units behind the header, as TrackMate writes, or one of units");
 }
 
 TEST_F(TracksFile, TablesAreRefusedByLineAndColumn) {
@@ -145,19 +147,156 @@ TEST_F(TracksFile, TablesAreRefusedByLineAndColumn) {
   const std::string head = "id,f,x,y\n";
   expect_refused("", good, "t.csv: is empty");
   expect_refused(head, good, "has no line of any body");
-  expect_refused(head + "a,0,1\n", good, "t.csv:2: has 3 fields, the first line 4");
+  expect_refused(head + "a,0,1\n", good,
+                 "t.csv:2: has 3 fields, the line of the columns (line 1) has 4");
   expect_refused(head + "a,0,1,1\na,1,one,1\n", good, "t.csv:3: column x: \"one\" is no number");
   expect_refused(head + "a,0.5,1,1\n", good, "t.csv:2: column f: \"0.5\" is no whole number");
   expect_refused(head + "a,,1,1\n", good, "t.csv:2: column f: \"\" is no whole number");
   expect_refused(head + "a,7,1,1\nb,7,1,1\na,7,2,2\n", good,
                  "t.csv:4: body \"a\" has a place in frame 7 already (line 2)");
   expect_refused(head + "\"a,0,1,1\n", good, "t.csv:2: a quotation mark is not closed");
-  expect_refused("id;f;x;y\na;0;1;1\n", good,
-                 "t.csv:1: there is no column \"id\" (body= of --columns): there are id;f;x;y");
-  expect_refused("id,f,x,x,y\na,0,1,1,1\n", good, "t.csv:1: there are two columns \"x\"");
+  expect_refused("who;f;x;y\na;0;1;1\n", good,
+                 "t.csv:1: there is no column \"id\" (body= of --columns): there are who, f, x, y");
+  expect_refused("id,f,x,x,y\na,0,1,2,1\n", good,
+                 "t.csv:2: columns 3 and 4 are both named \"x\" and differ: \"1\", \"2\"");
   EXPECT_NE(refusal_of(path("none.csv"), good).find("cannot be read: No such file"),
             std::string::npos);
   EXPECT_NE(refusal_of(folder_.string(), good).find("cannot be read"), std::string::npos);
+}
+
+TEST_F(TracksFile, ATableMayHaveColumnsForEachBody) {
+  TrackOptions options = table_options("time=seconds,x=x*,y=y*");
+  options.fps = {};
+  const TrackFile t =
+      read("seconds,x1,y1,x2,y2\n0,1,2,3,4\n0.5,NaN,NaN,5,6\n1,7,8,9,10\n", options);
+  ASSERT_EQ(t.tracks.size(), 2U);
+  EXPECT_EQ(t.tracks[0].body, "1");
+  EXPECT_EQ(t.tracks[0].time, (std::vector<double>{0.0, 1.0}));
+  ASSERT_EQ(t.tracks[1].x.size(), 3U);
+  EXPECT_DOUBLE_EQ(t.tracks[1].x[2], 0.009);
+  EXPECT_DOUBLE_EQ(t.tracks[1].y[2], 0.010);
+  EXPECT_EQ(t.no_place, 1);
+  // AnimalTA's names; and a confidence of each.
+  options = table_options("frame=F,x=X_Arena0_Ind*,y=Y_Arena0_Ind*,confidence=p*");
+  options.confidence = 0.5;
+  const TrackFile other =
+      read("F;X_Arena0_Ind7;Y_Arena0_Ind7;p7\n0;1,5;2;0,9\n1;1,5;2;0,1\n", options);
+  EXPECT_EQ(other.tracks.at(0).body, "7");
+  EXPECT_EQ(other.tracks[0].x, std::vector<double>{0.0015});
+  EXPECT_EQ(other.unsure, 1);
+  expect_refused("F,x1,y1,x2\n0,1,1,1\n", table_options("frame=F,x=x*,y=y*"),
+                 "t.csv:1: there is no column \"y2\" (y= of --columns)");
+  expect_refused("F,x1,y1,x2,y2\n0,1,1,1,1\n", table_options(),
+                 "(if these are places of a body each, give x=x*,y=y* and no body=)");
+}
+
+TEST_F(TracksFile, WithoutAColumnOfBodiesThereIsOne) {
+  const TrackOptions options = table_options("frame=f,x=x,y=y");
+  const TrackFile t = read("f,x,y\n0,1,1\n1,2,1\n", options);
+  ASSERT_EQ(t.tracks.size(), 1U);
+  EXPECT_EQ(t.tracks[0].body, "t");  // the file's name
+  EXPECT_EQ(t.remarks.at(0), "no column is body=: one body, t");
+  expect_refused("id,f,x,y\na,0,1,1\nb,0,2,1\n", options,
+                 "does a column tell bodies apart (body=)?");
+  expect_refused("id,f,x,y\n,0,1,1\nNA,1,2,1\n", table_options(),
+                 "column id names no body in any of 2 lines: leave body= out");
+}
+
+TEST_F(TracksFile, EthoVisionHasOneRowOfUnitsBelowItsSettings) {
+  TrackOptions options = table_options("time=Trial time,x=X center,y=Y center");
+  options.fps = options.metres_per_unit = {};
+  const TrackFile t = read(
+      "\"Number of header lines:\";\"5\"\n\"Experiment\";\"maze\"\n\n"
+      "\"Trial time\";\"X center\";\"Y center\"\n\"s\";\"cm\";\"cm\"\n"
+      "\"0,00\";\"1,5\";\"2\"\n\"0,04\";\"-\";\"-\"\n\"0,08\";\"2,5\";\"3\"\n",
+      options);
+  ASSERT_EQ(t.tracks.at(0).x.size(), 2U);
+  EXPECT_DOUBLE_EQ(t.tracks[0].x[1], 0.025);
+  EXPECT_EQ(t.no_place, 1);
+  EXPECT_EQ(t.unit_rows, 1);
+}
+
+TEST_F(TracksFile, RecordingsOfOneExperimentAreToldApart) {
+  const std::string one = file("id,f,x,y\n1,0,1,1\n1,1,2,1\n", "one.csv"),
+                    two = file("id,f,x,y\n1,0,5,1\n2,0,6,1\n", "two.csv");
+  const TrackFile t = read_tracks({one, two}, table_options());
+  ASSERT_EQ(t.tracks.size(), 3U);
+  EXPECT_EQ(t.tracks[0].body, "one/1");
+  EXPECT_EQ(t.tracks[1].body, "two/1");
+  EXPECT_EQ(t.tracks[2].body, "two/2");
+  EXPECT_EQ(t.places, 4);
+  EXPECT_EQ(t.source, one + ", " + two);
+  EXPECT_THROW((void)read_tracks({one, one}, table_options()), std::invalid_argument);
+  TrackOptions by_time = table_options("body=id,time=f,x=x,y=y");
+  by_time.fps = {};
+  const std::string slow = file("id,f,x,y\n1,0,1,1\n1,2,2,1\n", "slow.csv");
+  EXPECT_THROW((void)read_tracks({one, slow}, by_time), std::invalid_argument);  // 1 s and 2 s
+}
+
+TEST_F(TracksFile, TimesBesideFramesMayContradictTheFrameRate) {
+  const std::string text = "id,f,x,y,t_ms\na,0,1,1,0\na,1,2,1,10\na,2,3,1,20\n";
+  EXPECT_TRUE(read(text, table_options()).warnings.empty());  // 100 frames per second
+  TrackOptions other = table_options();
+  other.fps = 50.0;
+  EXPECT_EQ(read(text, other).warnings.at(0).substr(folder_.string().size() + 1),
+            "t.csv: --fps 50 is a frame every 0.02 s, but by its times a frame takes 0.01 s "
+            "(median): one of both is wrong, and velocities with it");
+}
+
+// Places of a body that goes on, with a noise of 0.1 mm; what the tracker held is written over
+// them.
+class LostFrames : public TracksFile {
+ protected:
+  TrackFile with(const std::function<void(std::size_t, double&, double&)>& change,
+                 double grain = 0.0) {
+    std::string text = "id,f,x,y\n";
+    std::uint64_t state = 1;
+    const auto uniform = [&] {
+      state = state * 6364136223846793005U + 1442695040888963407U;
+      return static_cast<double>(state >> 11) * 0x1p-53 - 0.5;
+    };
+    for (std::size_t f = 0; f < 400; ++f) {
+      double x = 100.0 + 0.35 * uniform(),
+             y = 100.0 + 0.5 * static_cast<double>(f) + 0.35 * uniform();
+      if (f >= 100 && f < 200) y = 150.0 + 0.35 * uniform();  // at rest
+      if (f >= 200) y -= 50.0;
+      if (grain > 0.0) {
+        x = grain * std::round(x / grain);
+        y = grain * std::round(y / grain);
+      }
+      change(f, x, y);
+      text += "a," + std::to_string(f) + "," + std::to_string(x) + "," + std::to_string(y) + "\n";
+    }
+    return read(text, table_options());
+  }
+};
+
+TEST_F(LostFrames, PlacesThatStandStillForLongAreLeftOut) {
+  const TrackFile none = with([](std::size_t, double&, double&) {});
+  EXPECT_EQ(none.repeated + none.at_zero, 0);
+  double held_x = 0.0, held_y = 0.0;
+  const TrackFile t = with([&](std::size_t f, double& x, double& y) {
+    if (f == 300) held_x = x, held_y = y;
+    if (f >= 300 && f < 330) x = held_x, y = held_y;
+  });
+  EXPECT_EQ(t.repeated, 29);  // the first was seen
+  EXPECT_EQ(t.tracks[0].time.size(), 371U);
+  EXPECT_NE(t.warnings.at(0).find("29 places stand still exactly"), std::string::npos);
+}
+
+// Where places are as coarse as they scatter, a body at rest stands still exactly.
+TEST_F(LostFrames, CoarsePlacesMayStandStill) {
+  EXPECT_EQ(with([](std::size_t, double&, double&) {}, 1.0).repeated, 0);
+}
+
+TEST_F(LostFrames, PlacesAtZeroAreLeftOut) {
+  const TrackFile t = with([](std::size_t f, double& x, double& y) {
+    if (f == 50 || (f >= 120 && f < 140) || f > 395) x = y = 0.0;
+  });
+  EXPECT_EQ(t.at_zero, 1 + 20 + 4);
+  EXPECT_EQ(t.repeated, 0);
+  // One that begins there is at home there.
+  EXPECT_EQ(read("id,f,x,y\na,0,0,0\na,1,0.5,0.1\na,2,1.1,0\n", table_options()).at_zero, 0);
 }
 
 TEST_F(TracksFile, WhatATableLacksIsAskedFor) {
@@ -190,7 +329,9 @@ TEST_F(TracksFile, ColumnsThatMakeNoSense) {
     expect_refused("id,f,x,y\na,0,1,1\n", table_options(columns), words);
   };
   refused("body=id,frame=f,x=x", "y= is missing");
-  refused("frame=f,x=x,y=y", "body= is missing");
+  refused("body=id,frame=f,x=x*,y=y*", "body= has no meaning beside x=x*");
+  refused("frame=f,x=x*,y=y", "must have a * all");
+  refused("frame=f,x=x*,y=y**", "more than one *");
   refused("body=id,x=x,y=y", "one of frame= and time= is needed");
   refused("body=id,frame=f,time=f,x=x,y=y", "and only one");
   refused("body=id,frame=f,x=x,y=y,z=z", "\"z\" is none of body, frame, time, x, y, confidence");
@@ -453,19 +594,21 @@ TEST_F(TracksFile, DeepLabCutIsRefused) {
   expect_refused(text + "3,1,1,1,1,1,1\n", options, "t.csv:8: frame 3 comes behind frame 3");
   expect_refused(text + "4,a,1,1,1,1,1\n", options,
                  "t.csv:8: column 2 (nose x): \"a\" is no number");
-  expect_refused(text + "4,1,1\n", options, "t.csv:8: has 3 fields, the first line 7");
+  expect_refused(text + "4,1,1\n", options,
+                 "t.csv:8: has 3 fields, the line of the columns (line 1) has 7");
   expect_refused(text + "img4.png,1,1,1,1,1,1\n", options, "the frame \"img4.png\" is no whole");
   expect_refused("scorer,n,n\ncoords,x,y\n", options, "t.csv:2: the row bodyparts is missing");
   expect_refused("scorer,n,n\nbodyparts,nose,nose\n0,1,2\n", options, "the row coords is missing");
   expect_refused("scorer,n,n\nbodyparts,nose,nose\ncoords,x,z\n0,1,2\n", options,
-                 "coords \"z\" is none of x, y, likelihood");
+                 "of nose of t there is no y");
   expect_refused("scorer,n,n\nbodyparts,nose,nose\ncoords,x,x\n0,1,2\n", options, "twice");
   expect_refused("scorer,n\nbodyparts,nose\ncoords,x\n0,1\n", options, "there is no y");
   options.confidence = {};
   EXPECT_EQ(read("scorer,n,n\nbodyparts,nose,nose\ncoords,x,y\n0,1,2\n", options).places, 1);
   options.confidence = 0.5;
-  expect_refused("scorer,n,n\nbodyparts,nose,nose\ncoords,x,y\n0,1,2\n", options,
-                 "--confidence has no effect");
+  const TrackFile unsure = read("scorer,n,n\nbodyparts,nose,nose\ncoords,x,y\n0,1,2\n", options);
+  EXPECT_EQ(unsure.places, 1);
+  EXPECT_NE(unsure.warnings.at(0).find("no likelihood"), std::string::npos);
   options.confidence = {};
   expect_refused("scorer,n,n\nbodyparts,nose,nose\ncoords,x,y\n", options, "has no frame");
 }
@@ -715,7 +858,7 @@ TEST_F(MovementTracks, AreRefused) {
   expect_refused(w, o, "space has no y");
   w = {};
   w.individual = "views";
-  expect_refused(w, o, "position has no dimension individuals");
+  expect_refused(w, o, "position has a dimension views");
   const std::string damaged = file("\x89HDF\r\n\x1a\nnothing behind", "d.nc");
   EXPECT_NE(refusal_of(damaged, o).find("cut short or damaged"), std::string::npos);
 }

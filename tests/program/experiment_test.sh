@@ -63,7 +63,7 @@ timeout 10 "$gatewalk" validate "$scenes/field.toml" --matrix-trials 1e12 --obse
 grep -q '^gatewalk: 2 trials show little: ' err.txt || fail "validate --observed: two trials: $(cat err.txt)"
 grep -q 'trials 30 for 2 observed: .* take 40 or more' err.txt || fail "validate --observed: --trials 30 for 2: $(cat err.txt)"
 # Refused before any work, naming file, line, column and what is allowed.
-refused 'bad.csv:1: unknown column "gatex": the first line must be trial,ending' 'gatex,gate_y,count\n'
+refused 'bad.csv:1: unknown column "gatex": the columns must be trial,ending' 'gatex,gate_y,count\n'
 refused 'bad.csv:1: the columns must be' 'gate_x,count\n0,1\n'
 refused 'bad.csv:2: column gate_x: "5" is not permitted: must be a whole number from -4 to 4 (field.columns = 9)' 'gate_x,gate_y,count\n5,0,1\n'
 refused 'bad.csv:2: column gate_y: "9" is not permitted: must be a whole number from 0 to 8 (field.rows = 9)' 'gate_x,gate_y,count\n4,9,1\n'

@@ -71,7 +71,7 @@ sed -n '2,$p' bare.csv | sed 's/^/x/' | cat lost.csv - >also.csv
 expect 0 '^gatewalk: 1 of [0-9]* passages were lost' "$gatewalk" fit "${small[@]}" also.csv "${free[@]}" --trials 100000
 expect 2 'bare.csv:[0-9]*: column time_s: .* must be at most cell.trapped_after_s = 3' "$gatewalk" fit "${small[@]}" --set run.time_limit_s=3 bare.csv "${free[@]}"
 cut -d, -f1-10 bare.csv >timeless.csv
-expect 2 'column time_s is missing: the columns must be body,trial,in,d,vx,vy,out,out_d,out_vx,out_vy,time_s$' "$gatewalk" fit "${small[@]}" timeless.csv "${free[@]}"
+expect 2 'column time_s is missing: the columns must be body,trial,in,d,vx,vy,out,out_d,out_vx,out_vy,time_s; there are' "$gatewalk" fit "${small[@]}" timeless.csv "${free[@]}"
 expect 2 'says nothing of passages' "$gatewalk" fit "${small[@]}" bare.csv --free start.vy_m_per_s=10:20
 expect 2 'observed ones need [0-9]* trials or more' "$gatewalk" fit "${small[@]}" bare.csv "${free[@]}" --trials 16384
 # Whatever the order of the lines.

@@ -132,7 +132,7 @@ holds '(.endings.crossed - 0.4096 | fabs) < 1e-12' law.json
 
 # What a file does not say, and what makes no sense.
 lacks() { expect 2 "$1" "$gatewalk" passages "${@:2}" -o x.csv --cell cell.toml; }
-lacks 'which column is what: --columns.*frames per second: --fps N.*--metres-per-unit' spots.csv --fastest 1
+lacks 'which column is what (there are LABEL, TRACK_ID, .*): --columns.*frames per second: --fps N.*--metres-per-unit' spots.csv --fastest 1
 lacks '--confidence X' spots.csv --fastest 1 --fps 100 "${scale[@]}" --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y,confidence=QUALITY
 lacks 'how fast bodies can be is not said: --fastest' spots.csv
 lacks 'frames per second: --fps N' dlc.csv --fastest 1
