@@ -61,6 +61,7 @@ foreach(dir INCLUDEDIR LIBDIR)
     string(PREPEND pc_${dir} "\${prefix}/")
   endif()
 endforeach()
+string(REGEX REPLACE ".*/lib([^.]*)[.].*" "\\1" hdf5 "${HDF5_LIBRARY}")
 file(CONFIGURE OUTPUT gatewalk.pc CONTENT [[
 prefix=@pc_prefix@
 includedir=@pc_INCLUDEDIR@/gatewalk
@@ -71,7 +72,7 @@ Description: @PROJECT_DESCRIPTION@
 Version: @PROJECT_VERSION@
 Requires: eigen3 >= 3.4, fmt >= 9, tbb, libhwy, netcdf, @libpng@tomlplusplus
 Cflags: -I${includedir} -std=c++20
-Libs: -L${libdir} -lgatewalk_lattice -lgatewalk_markov -lgatewalk_dynamics -lklu
+Libs: -L${libdir} -lgatewalk_lattice -lgatewalk_markov -lgatewalk_dynamics -l@hdf5@ -lklu
 ]] @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/gatewalk.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 if(GATEWALK_PYTHON)
@@ -114,7 +115,7 @@ set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Multi-scale Markov chain analysis of lo
  Runs a body through single gates of a cluttered field, chains the outcomes
  over the whole field, and compares the final gates with the full dynamics.")
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libtbb-dev, libhwy-dev, librandom123-dev, libnetcdf-dev, libtomlplusplus-dev, libsuitesparse-dev, libpng-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libtbb-dev, libhwy-dev, librandom123-dev, libnetcdf-dev, libhdf5-dev, libtomlplusplus-dev, libsuitesparse-dev, libpng-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "Libraries of gatewalk: dynamics, chains, fields
  Static libraries with their headers, for CMake and pkg-config.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

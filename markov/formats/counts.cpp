@@ -678,6 +678,7 @@ std::optional<std::string> text_of_counts(const std::string& path, const std::st
   } catch (const std::runtime_error&) {
     return {};
   }
+  silence_hdf5();
   int nc = -1;
   if (nc_open(path.c_str(), NC_NOWRITE, &nc) != NC_NOERR) return {};
   std::optional<std::string> found;

@@ -28,9 +28,14 @@ inline void check(int rc, const std::string& what) {
 
 inline constexpr const char* kCannotOpen = "cannot open: cut short or damaged, or not NetCDF-4";
 
+/// From here on HDF5 prints no errors in this thread: a question that has no for an answer is one
+/// to it. NetCDF does this itself, but only in the thread that calls it first. Call it before
+/// NetCDF.
+void silence_hdf5();
+
 class Image {
  public:
-  Image() = default;
+  Image() { silence_hdf5(); }
   ~Image() {
     if (is_open_) nc_abort(id_);
   }

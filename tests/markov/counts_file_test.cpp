@@ -221,6 +221,16 @@ TEST_F(ChainIo, RoundTrip) {
   EXPECT_FALSE(same(read_counts(path()), file));
 }
 
+// HDF5 has its switch for printing in every thread, and NetCDF asks it for much that is not there.
+TEST_F(ChainIo, NothingIsPrintedInAnyThread) {
+  write_counts(path(), example());  // NetCDF begins in this thread
+  testing::internal::CaptureStderr();
+  std::thread([&] { EXPECT_EQ(text_of_counts(path(), "seed"), "1"); }).join();
+  std::thread([&] { EXPECT_TRUE(same(read_counts(path()), example())); }).join();
+  std::thread([&] { write_counts(path(), example()); }).join();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 TEST_F(ChainIo, RoundTripOfSeveralTypesOfCells) {
   CountsFile file = example();
   for (const std::string name : {"s", "stiff_2"}) {

@@ -22,6 +22,7 @@ class Gatewalk(CMakePackage):
     depends_on("suite-sparse")
     depends_on("boost@1.74:+program_options+math")
     depends_on("netcdf-c build_system=cmake")
+    depends_on("hdf5")
     depends_on("fmt@9:")
     depends_on("tbb")
     depends_on("highway")
