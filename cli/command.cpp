@@ -14,6 +14,7 @@
 #include <iostream>
 #include <map>
 #include <optional>
+#include <typeinfo>
 
 #include "cli/arguments.h"
 #include "cli/kept/kept_options.h"
@@ -225,6 +226,20 @@ void validate(boost::any& v, const std::vector<std::string>& values, Seed*, int)
                                      "' is not a seed: a whole number from 0 to 2^64 - 1");
   v = seed;
 }
+
+namespace {
+
+std::string kind_of(const po::value_semantic& value) {
+  if (value.max_tokens() == 0) return "flag";
+  const auto* typed = dynamic_cast<const po::typed_value_base*>(&value);
+  const auto is = [&](const std::type_info& type) { return typed && typed->value_type() == type; };
+  return is(typeid(Count))                                       ? "count"
+         : is(typeid(Seed))                                      ? "seed"
+         : is(typeid(Number)) || is(typeid(std::vector<Number>)) ? "number"
+                                                                 : "text";
+}
+
+}  // namespace
 
 struct Options::State {
   std::string synopsis, about, example;
@@ -575,7 +590,8 @@ CommandHelp Options::help() const {
                       [&](const auto& r) { return r.first == name && name != "set"; }) ||
           name == "output" || name == "figure";
       help.options.push_back({name, value, option->description(),
-                              letters.size() == 2 ? letters[1] : char{0}, is_file});
+                              letters.size() == 2 ? letters[1] : char{0}, is_file,
+                              kind_of(*option->semantic()), option->semantic()->is_composing()});
     }
   return help;
 }

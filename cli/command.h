@@ -38,6 +38,8 @@ struct CommandHelp {
     std::string name, value, text;  // value: as shown, empty of a flag
     char letter = 0;                // -o
     bool is_file = false;
+    std::string kind = "text";  // or flag, count, seed, number
+    bool is_repeated = false;
   };
   std::vector<Option> options;
 };

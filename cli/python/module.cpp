@@ -14,6 +14,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 
 #include "cli/commands.h"
 #include "cli/loaded_matrix.h"
@@ -213,11 +214,28 @@ class Matrix {
   std::map<std::string, Type> types_;  // "": the first, or only one
 };
 
+const cli::Command& command_of(const std::string& name) {
+  const cli::Command* const command = cli::command_named(name);
+  if (!command) throw cli::UsageError("there is no command '" + name + "'");
+  return *command;
+}
+
+/// (name, value as shown, kind, is a file, may be repeated) of each.
+py::list options(const std::string& name) {
+  py::list all;
+  cli::Arguments arguments{};
+  arguments.helped = [&](const cli::CommandHelp& help) {
+    for (const cli::CommandHelp::Option& o : help.options)
+      all.append(py::make_tuple(o.name, o.value, o.kind, o.is_file, o.is_repeated));
+  };
+  (void)command_of(name).run(arguments);
+  return all;
+}
+
 py::tuple run(const std::string& name, std::vector<std::string> words, const py::object& told,
               const py::object& warned, const py::object& cell,
               const std::vector<const Matrix*>& matrices) {
-  const cli::Command* const command = cli::command_named(name);
-  if (!command) throw cli::UsageError("there is no command '" + name + "'");
+  const cli::Command& command = command_of(name);
   Json result;
   cli::Arguments arguments(std::move(words));
   arguments.work =
@@ -238,7 +256,7 @@ py::tuple run(const std::string& name, std::vector<std::string> words, const py:
   {
     const Turn turn;
     const py::gil_scoped_release no_gil;
-    status = command->run(arguments);
+    status = command.run(arguments);
   }
   return py::make_tuple(status, to_python(result));
 }
@@ -269,17 +287,28 @@ PYBIND11_MODULE(_core, m) {
   m.attr("version") = cli::kVersion;
   m.attr("commit") = cli::kCommit;
   const auto error = [&](auto tag, const char* name, PyObject* base) {
-    pybind11::register_exception<typename decltype(tag)::type>(m, name, base);
+    return pybind11::register_exception<typename decltype(tag)::type>(m, name, base);
   };
   error(std::common_type<lattice::SceneError>(), "SceneError", PyExc_ValueError);
-  error(std::common_type<cli::UsageError>(), "UsageError", PyExc_ValueError);
   error(std::common_type<markov::BadFile>(), "BadFile", PyExc_ValueError);
+  static PyObject* const usage_error =
+      error(std::common_type<cli::UsageError>(), "UsageError", PyExc_ValueError).release().ptr();
+  // As main() has it: wrong use.
+  pybind11::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      std::rethrow_exception(thrown);
+    } catch (const std::invalid_argument& e) {
+      PyErr_SetString(usage_error, e.what());
+    }
+  });
   m.def("run", &python::run, pybind11::arg("command"), pybind11::arg("words"), pybind11::kw_only(),
         pybind11::arg("told"), pybind11::arg("warned"), pybind11::arg("cell"),
         pybind11::arg("matrices"),
         "Runs a command with these words: (exit status, its result as JSON says it). told(what, "
         "done, total) hears how far it is, warned(text) what it warns of. Files of `matrices` are "
         "not read again.");
+  m.def("options", &python::options, pybind11::arg("command"),
+        "(name, value as shown, kind, is a file, may be repeated) of each option of a command.");
   m.def("check_cell", &python::check_cell, pybind11::arg("cell"), pybind11::arg("starts"),
         pybind11::arg("trials"), pybind11::arg("cells"), pybind11::arg("seed"),
         "What is wrong with a cell, in words, of trials from starts (face, coordinates).");

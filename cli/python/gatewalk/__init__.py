@@ -3,7 +3,10 @@
 
 Commands of the program ``gatewalk`` as functions, with the same numbers to the last bit and the same errors. Options of a
 command are keyword arguments (``--gate-runs 1e5`` is ``gate_runs=1e5``); ``help(gatewalk.predict)`` names the usual
-ones, ``gatewalk.options("predict")`` all of them.
+ones, ``gatewalk.options("predict")`` all of them. Numbers and booleans may be numpy's, lists may be arrays, paths pathlib's.
+
+Errors: `UsageError` for an argument, `SceneError` for a scene or a cell file, `BadFile` for a matrix file, all of them
+ValueErrors; RuntimeError where something could not be finished; OSError by `Matrix.save`.
 
 >>> import gatewalk as gw
 >>> scene = gw.Scene({"body": {"radius_cm": 4.0, "mass_g": 250.0}, "forces": {"propulsion_N": 1.2}})
@@ -27,66 +30,20 @@ import warnings as _warnings
 
 from . import _core
 from ._cell import BROKEN, TRAPPED, Cell, check_cell
-from ._core import BadFile, SceneError, UsageError, threads
+from ._core import BadFile, SceneError, UsageError
 from ._results import Analysis, Landscape, Prediction, Result, Sweep, Trace
-from ._scene import Scene, file_of as _file_of, is_of_text as _is_of_text
+from ._scene import Scene, called as _called, file_of as _file_of, is_of_text as _is_of_text, renamed as _renamed
+from ._words import in_python as _in_python, options_of as _options_of, path_of as _path_of, plain as _plain, refuse as _refuse
+from ._words import whole as _whole, words_of as _words_of
 
 __version__: str = _core.version
 __all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "GatewalkWarning", "Landscape", "Matrix", "Prediction", "Result", "Scene", "SceneError", "Sweep",
            "TRAPPED", "Trace", "UsageError", "analyze", "build", "check_cell", "design", "fit", "from_counts", "from_passages", "gate", "landscape", "lattice",
-           "load", "merge", "options", "passages", "plan", "power", "predict", "rare", "sample", "sweep", "threads", "trace", "validate", "walk"]
+           "load", "merge", "options", "passages", "plan", "power", "predict", "rare", "sample", "simulate", "sweep", "threads", "trace", "validate", "walk"]
 
 
 class GatewalkWarning(UserWarning):
     """What a result must not be taken at face value for; the program's own words."""
-
-
-def _word(value: _t.Any) -> str:
-    """A value as the command line has it."""
-    if hasattr(value, "tolist"):  # of numpy
-        value = value.tolist()
-    if isinstance(value, float):
-        return repr(float(value))
-    if isinstance(value, (tuple, list)):
-        return ",".join(_word(x) for x in value)
-    return str(getattr(value, "_path", None) or value)
-
-
-#: Options that a process has no use for, and those that the module itself gives.
-_NOT_HERE = {"quiet", "json", "checkpoint", "resume", "max-time", "shard", "part", "output"}
-#: Options that may be given several times.
-_REPEATED = {"set", "versus", "vary", "start", "row", "bins", "observed", "over", "free"}
-
-
-def _words_of(given: dict[str, _t.Any]) -> list[str]:
-    words: list[str] = []
-    for key, value in given.items():
-        if value is None or value is False:
-            continue
-        name = key.replace("_", "-")
-        if name in _NOT_HERE:
-            raise UsageError(f"{key}: has no meaning in Python; the program has --{name}")
-        if name == "threads":
-            raise UsageError("threads: gatewalk.threads(n) sets them, for all that follows")
-        if name in ("set", "versus", "vary") and isinstance(value, dict):
-            value = [f"{k}={_word(v)}" for k, v in value.items()]
-        if name in ("over", "free") and isinstance(value, dict):
-            value = [f"{k}={low}:{high}" for k, (low, high) in value.items()]
-        if name == "start":
-            value = value.tolist() if hasattr(value, "tolist") else value
-            if isinstance(value, int) and not isinstance(value, bool):
-                value = str(value)  # the number of a state
-            if not isinstance(value, str) and not len(value):
-                raise UsageError("start: is empty; a start is (d, vx, vy), several are a list of them")
-            one = isinstance(value, str) or not isinstance(value[0], (tuple, list, str))
-            value = [_word(value)] if one else [_word(row) for row in value]
-        if isinstance(value, list) and name not in _REPEATED:
-            raise UsageError(f"{key}: takes one value, not a list")
-        if type(value).__name__ == "DataFrame":
-            raise UsageError(f"{key}: takes the path of a file, not a DataFrame")
-        many = value if isinstance(value, list) else [value]
-        words += [f"--{name}"] if value is True else [f"--{name}={_word(v)}" for v in many]
-    return words
 
 
 def _without_folder(value: _t.Any, name: str) -> _t.Any:
@@ -124,6 +81,9 @@ class _Bars:
 
 def _bars(wanted: bool | None) -> _Bars | None:
     """tqdm's, where it is installed and somebody looks (or progress=True)."""
+    wanted = _plain(wanted)
+    if wanted is not None and not isinstance(wanted, bool):
+        _refuse("progress", "True or False", wanted)
     if wanted is False or (wanted is None and not _sys.stderr.isatty()):
         return None
     try:
@@ -142,11 +102,11 @@ def _outside() -> int:
     return level
 
 
-def _run(command: str, subjects: list[_t.Any], given: dict[str, _t.Any], extra: list[str] | None = None,
+def _run(command: str, subjects: dict[str, _t.Any], given: dict[str, _t.Any], extra: list[str] | None = None,
          gives_json: bool = True) -> dict[str, _t.Any]:
-    """Runs a command about these subjects; raises what the program would say."""
+    """Runs a command about these subjects, by the names of their parameters; raises what the program would say, in Python's words."""
     cell = given.pop("cell", None)
-    progress = given.pop("progress", None)
+    bars = _bars(given.pop("progress", None))
     if cell is not None and command in ("gate", "sweep", "trace", "walk", "export", "passages"):
         raise UsageError(f"cell: gatewalk.{command} is of gates")
     if cell is not None and not isinstance(cell, Cell):
@@ -154,31 +114,50 @@ def _run(command: str, subjects: list[_t.Any], given: dict[str, _t.Any], extra: 
                          + (", not the class itself" if isinstance(cell, type) else ""))
     words: list[str] = []
     with _contextlib.ExitStack() as stack:
-        for subject in subjects:
-            if isinstance(subject, Matrix):
-                words.append(subject._path)
-                continue
-            path, overrides = stack.enter_context(_file_of(subject))
+        for name, subject in subjects.items():
+            path, overrides = stack.enter_context(_file_of(subject, name))
             words.append(path)
-            words += [f"--set={k}={_word(v)}" for k, v in overrides.items()]
-        words += _words_of(given) + (extra or []) + ["--quiet"]
+            words += _words_of(command, {"set": overrides})
+        words += _words_of(command, given) + (extra or []) + ["--quiet"]
         if gives_json:
             words.append("--json=-")
-        loaded = [m._core for m in (*subjects, *given.values()) if isinstance(m, Matrix)]
-        bars = _bars(progress)
+        matrices = [m for m in (*subjects.values(), *given.values()) if isinstance(m, Matrix)]
+        for matrix in matrices:
+            stack.enter_context(_called(matrix._file, matrix._name))
         warned: list[str] = []
         try:
-            status, result = _core.run(command, words, told=bars, warned=warned.append, cell=cell, matrices=loaded)
+            status, result = _core.run(command, words, told=bars, warned=warned.append, cell=cell, matrices=[m._core for m in matrices])
+        except (SceneError, UsageError, BadFile, RuntimeError) as error:
+            said = _in_python(_renamed(str(error)), command, words)
+            if said == str(error):
+                raise
+            raise type(error)(said) from error.__cause__
         finally:
             if bars is not None:
                 bars.close()
             for text in warned:
-                _warnings.warn(text, GatewalkWarning, stacklevel=_outside())
-    if subjects and not isinstance(subjects[0], Matrix):
+                _warnings.warn(_in_python(_renamed(text), command, words), GatewalkWarning, stacklevel=_outside())
+    if subjects and not matrices:
         result = _without_folder(result, words[0])
     if status != 0 and given.get("strict"):
-        raise RuntimeError(f"gatewalk {command}: the result's status is not clean")
+        raise RuntimeError(f"gatewalk.{command}: the result's status is not clean")
     return _t.cast("dict[str, _t.Any]", result) if result is not None else {}
+
+
+def threads(n: int) -> None:
+    """How many threads to use from now on.
+
+    Parameters
+    ----------
+    n : int
+        0: all.
+
+    Raises
+    ------
+    UsageError
+        Where it is no whole number from 0 to 1024.
+    """
+    _core.threads(_whole(n, "threads: n", 0, 1024))
 
 
 def options(command: str) -> str:
@@ -200,11 +179,12 @@ def options(command: str) -> str:
     """
     import subprocess
 
+    if not isinstance(command, str):
+        _refuse("command", 'the name of a command, such as "predict"', command)
+    _options_of(command)
     code = "import sys; from gatewalk import _core; _core.run(sys.argv[1], ['--help'], told=None, warned=print, cell=None, matrices=[])"
-    done = subprocess.run([_sys.executable, "-c", code, command], capture_output=True, text=True, check=False,
+    done = subprocess.run([_sys.executable, "-c", code, command], capture_output=True, text=True, check=True,
                           env={**_os.environ, "PYTHONPATH": _os.pathsep.join(p for p in _sys.path if p)})
-    if done.returncode != 0:
-        raise UsageError(done.stderr.strip().splitlines()[-1])
     return done.stdout
 
 
@@ -240,7 +220,7 @@ def predict(subject: _t.Any, scene: _t.Any = None, *, accuracy: float | None = N
     SceneError, UsageError, BadFile
         All of them ValueErrors: the key, and what is allowed.
     """
-    return Prediction(_run("predict", [subject] if scene is None else [subject, scene], dict(accuracy=accuracy, start=start, seed=seed, cell=cell, progress=progress, **more)))
+    return Prediction(_run("predict", {"subject": subject} if scene is None else {"subject": subject, "scene": scene}, dict(accuracy=accuracy, start=start, seed=seed, cell=cell, progress=progress, **more)))
 
 
 def lattice(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
@@ -266,7 +246,10 @@ def lattice(subject: _t.Any, *, trials: int | None = None, seed: int | None = No
     SceneError, UsageError, BadFile
         See `predict`.
     """
-    return Prediction(_run("lattice", [subject], dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
+    return Prediction(_run("lattice", {"subject": subject}, dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
+
+
+simulate = lattice  #: what it does, by its plain name
 
 
 def gate(scene: _t.Any, *, trials: int | None = None, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Result:
@@ -290,7 +273,7 @@ def gate(scene: _t.Any, *, trials: int | None = None, seed: int | None = None, p
     SceneError, UsageError
         See `predict`.
     """
-    return Result(_run("gate", [scene], dict(trials=trials, seed=seed, progress=progress, **more)))
+    return Result(_run("gate", {"scene": scene}, dict(trials=trials, seed=seed, progress=progress, **more)))
 
 
 def sweep(scene: _t.Any, vary: dict[str, _t.Any], *, trials: int | None = None, seed: int | None = None, progress: bool | None = None,
@@ -316,7 +299,7 @@ def sweep(scene: _t.Any, vary: dict[str, _t.Any], *, trials: int | None = None, 
     SceneError, UsageError
         See `predict`.
     """
-    return Sweep(_run("sweep", [scene], dict(vary=vary, trials=trials, seed=seed, progress=progress, **more)))
+    return Sweep(_run("sweep", {"scene": scene}, dict(vary=vary, trials=trials, seed=seed, progress=progress, **more)))
 
 
 def trace(scene: _t.Any, *, trials: int | None = None, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Trace:
@@ -340,7 +323,7 @@ def trace(scene: _t.Any, *, trials: int | None = None, seed: int | None = None, 
     SceneError, UsageError
         See `predict`.
     """
-    return Trace(_run("trace", [scene], dict(trials=trials, seed=seed, progress=progress, **more)))
+    return Trace(_run("trace", {"scene": scene}, dict(trials=trials, seed=seed, progress=progress, **more)))
 
 
 def validate(subject: _t.Any, *, observed: _t.Any = None, trials: int | None = None, seed: int | None = None, cell: Cell | None = None,
@@ -370,10 +353,10 @@ def validate(subject: _t.Any, *, observed: _t.Any = None, trials: int | None = N
         See `predict`.
     """
     with _contextlib.ExitStack() as stack:
-        tables = observed if isinstance(observed, (list, tuple)) else [] if observed is None else [observed]
-        paths = [stack.enter_context(_table_file(table)) for table in tables]
-        data = _run("validate", [subject], dict(observed=paths, trials=trials, seed=seed, cell=cell, progress=progress, **more))
-    if tables:
+        paths = None if observed is None else list(_table_files(stack, observed, "observed").values())
+        data = _run("validate", {"subject": subject}, dict(observed=paths, trials=trials, seed=seed, cell=cell, progress=progress, **more))
+    if paths:
+        tables = observed if isinstance(observed, (list, tuple)) else [observed]
         data["observed"]["files"] = [path if isinstance(table, (str, _os.PathLike)) else "a table" for table, path in zip(tables, paths)]
     return Result(data)
 
@@ -401,7 +384,7 @@ def analyze(subject: _t.Any, *, accuracy: float | None = None, seed: int | None 
     SceneError, UsageError, BadFile
         See `predict`.
     """
-    return Analysis(_run("analyze", [subject], dict(accuracy=accuracy, seed=seed, cell=cell, progress=progress, **more)))
+    return Analysis(_run("analyze", {"subject": subject}, dict(accuracy=accuracy, seed=seed, cell=cell, progress=progress, **more)))
 
 
 def rare(subject: _t.Any, *, row: int | None = None, accuracy: float | None = None, seed: int | None = None, cell: Cell | None = None,
@@ -427,7 +410,7 @@ def rare(subject: _t.Any, *, row: int | None = None, accuracy: float | None = No
     SceneError, UsageError
         See `predict`.
     """
-    return Result(_run("rare", [subject], dict(row=row, accuracy=accuracy, seed=seed, cell=cell, progress=progress, **more)))
+    return Result(_run("rare", {"subject": subject}, dict(row=row, accuracy=accuracy, seed=seed, cell=cell, progress=progress, **more)))
 
 
 def plan(subject: _t.Any, *, accuracy: float | None = None, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Result:
@@ -454,7 +437,7 @@ def plan(subject: _t.Any, *, accuracy: float | None = None, seed: int | None = N
     SceneError, UsageError
         See `predict`.
     """
-    return Result(_run("plan", [subject], dict(accuracy=accuracy, seed=seed, progress=progress, **more)))
+    return Result(_run("plan", {"subject": subject}, dict(accuracy=accuracy, seed=seed, progress=progress, **more)))
 
 
 def design(subject: _t.Any, *, changes: int | None = None, types: _t.Any = None, accuracy: float | None = None, seed: int | None = None,
@@ -484,7 +467,7 @@ def design(subject: _t.Any, *, changes: int | None = None, types: _t.Any = None,
     SceneError, UsageError
         See `predict`.
     """
-    return Result(_run("design", [subject], dict(changes=changes, types=types, accuracy=accuracy, seed=seed, progress=progress, **more)))
+    return Result(_run("design", {"subject": subject}, dict(changes=changes, types=types, accuracy=accuracy, seed=seed, progress=progress, **more)))
 
 
 def fit(subject: _t.Any, observed: _t.Any, *, free: _t.Any, trials: int | None = None, seed: int | None = None,
@@ -514,8 +497,9 @@ def fit(subject: _t.Any, observed: _t.Any, *, free: _t.Any, trials: int | None =
     SceneError, UsageError
         See `predict`.
     """
-    with _table_file(observed) as path:
-        return Result(_run("fit", [subject, path], dict(free=free, trials=trials, seed=seed, progress=progress, **more)))
+    with _contextlib.ExitStack() as stack:
+        data = _run("fit", {"subject": subject, **_table_files(stack, observed, "observed")}, dict(free=free, trials=trials, seed=seed, progress=progress, **more))
+    return Result(data)
 
 
 def power(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
@@ -541,7 +525,7 @@ def power(subject: _t.Any, *, trials: int | None = None, seed: int | None = None
     SceneError, UsageError, BadFile
         See `predict`.
     """
-    return Result(_run("power", [subject], dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
+    return Result(_run("power", {"subject": subject}, dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
 
 
 def landscape(scene: _t.Any, *, spacing: float | None = None, beam: str | None = None, trials: int | None = None, seed: int | None = None,
@@ -564,7 +548,7 @@ def landscape(scene: _t.Any, *, spacing: float | None = None, beam: str | None =
 
     with tempfile.TemporaryDirectory() as folder:
         given = dict(spacing=spacing, beam=beam, trials=trials, seed=seed, progress=progress, **more)
-        data = _run("landscape", [scene], given, [f"--output={folder}"])
+        data = _run("landscape", {"scene": scene}, given, [f"--output={folder}"])
         with open(_os.path.join(folder, "landscape.csv"), encoding="utf-8") as file:
             names, *rows = [row for row in csv.reader(file) if not row[0].startswith("#")]
     table = np.array(rows, dtype=float)
@@ -584,11 +568,11 @@ def merge(parts: _t.Sequence[_t.Any], *, progress: bool | None = None) -> Result
     Result
         What its command gives; of ``build`` a Matrix.
     """
-    if isinstance(parts, (str, _os.PathLike)) or not parts:
-        raise UsageError("merge: takes a list of parts")
-    paths = [_os.fspath(part) for part in parts]
+    if not isinstance(parts, (list, tuple)) or not parts:
+        _refuse("parts", "a list of paths: merge takes a list of all parts", parts)
+    paths = {f"parts[{k}]": _path_of(part, f"parts[{k}]") for k, part in enumerate(parts)}
     command = ""
-    with _contextlib.suppress(OSError, ValueError, IndexError, KeyError), open(paths[0], "rb") as file:
+    with _contextlib.suppress(OSError, ValueError, IndexError, KeyError), open(paths["parts[0]"], "rb") as file:
         command = _json.loads(file.read(100_000).split(b"\n")[1])["command"]
     if command == "build":
         return _made("merge", paths, dict(progress=progress))
@@ -611,8 +595,10 @@ def sample(name: str | None = None) -> str:
     0.09
     """
     if name is None:
-        return "\n".join(f"{s['name']}: {s['about']}" for s in _run("sample", [], {})["samples"])
-    return _t.cast(str, _run("sample", [name], {})["text"])
+        return "\n".join(f"{s['name']}: {s['about']}" for s in _run("sample", {}, {})["samples"])
+    if not isinstance(name, str):
+        _refuse("name", "the name of a sample", name)
+    return _t.cast(str, _run("sample", {}, {}, [name])["text"])
 
 
 def walk(matrix: _t.Any, *, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Result:
@@ -635,7 +621,7 @@ def walk(matrix: _t.Any, *, seed: int | None = None, progress: bool | None = Non
     UsageError, BadFile
         See `predict`.
     """
-    return Result(_run("walk", [matrix], dict(seed=seed, progress=progress, **more)))
+    return Result(_run("walk", {"matrix": matrix}, dict(seed=seed, progress=progress, **more)))
 
 
-from ._matrix import Matrix, _made, _table_file, build, from_counts, from_passages, load, passages  # noqa: E402  (they use _run)
+from ._matrix import Matrix, _made, _table_files, build, from_counts, from_passages, load, passages  # noqa: E402  (they use _run)

@@ -6,13 +6,13 @@ from __future__ import annotations
 import copy
 import json
 import math
-import operator
 import types
 import typing as t
 
 import numpy as np
 
 from . import _core
+from ._words import refuse, whole
 
 if t.TYPE_CHECKING:
     Array = np.ndarray[t.Any, t.Any]
@@ -24,10 +24,10 @@ TRAPPED, BROKEN = -1, -2
 def _numbers(value: t.Any, what: str, kinds: str = "iuf") -> Array:
     """An array of numbers as they are: what would have to be cast, or is masked, is none."""
     if np.ma.is_masked(value):  # type: ignore[no-untyped-call]
-        raise ValueError(f"cell: pass_ gave {what} with masked entries; of a body of which nothing is known the face is BROKEN")
+        raise _core.UsageError(f"cell: pass_ gave {what} with masked entries; of a body of which nothing is known the face is BROKEN")
     array = np.asarray(value)
     if array.dtype.kind not in kinds:
-        raise ValueError(f"cell: pass_ must give numbers as {what}, it gave {array.dtype}")
+        raise _core.UsageError(f"cell: pass_ must give numbers as {what}, it gave {array.dtype}")
     return array
 
 
@@ -38,28 +38,20 @@ def _number(value: t.Any, what: str) -> float:
     return float(value)  # type: ignore[arg-type]
 
 
-def _whole(value: t.Any, what: str, least: int, most: int) -> int:
-    try:
-        whole = None if isinstance(value, bool) else operator.index(value)
-    except TypeError:
-        whole = None
-    if whole is None or not least <= whole <= most:
-        raise _core.UsageError(f"check_cell: {what} must be a whole number from {least} to {most}, not {value!r}")
-    return whole
-
-
 def _plain(value: t.Any) -> t.Any:
     """Of numpy, what JSON knows."""
     if isinstance(value, (np.generic, np.ndarray)):
         return value.tolist()
-    raise ValueError(f"cell: {value!r} is neither a number nor a word, nor a list or dict of them")
+    raise _core.UsageError(f"cell: {value!r} is neither a number nor a word, nor a list or dict of them")
 
 
-def _names(items: t.Any, what: str) -> list[str]:
+def _names(items: t.Any, what: str, name: str = "name") -> list[str]:
+    if not isinstance(items, (list, tuple)):
+        refuse(f"cell: {what}", "a list of dicts", items)
     for k, item in enumerate(items):
-        if not isinstance(item, t.Mapping) or not isinstance(item.get("name"), str):
-            raise _core.UsageError(f"cell: {what}[{k}] must be a dict with a name, not {item!r}")
-    return [item["name"] for item in items]
+        if not isinstance(item, t.Mapping) or not isinstance(item.get(name), str):
+            raise _core.UsageError(f"cell: {what}[{k}] must be a dict with a {name}, not {item!r}")
+    return [item[name] for item in items]
 
 
 class Cell:
@@ -116,6 +108,16 @@ class Cell:
         raise NotImplementedError("derive from gatewalk.Cell and write pass_(entries, random)")
 
     def _hello(self) -> str:
+        for what, name in (("faces", "name"), ("coordinates", "name"), ("costs", "key")):
+            _names(getattr(self, what), what, name)
+        for what in ("parameters", "limits"):
+            if not isinstance(getattr(self, what), t.Mapping):
+                refuse(f"cell: {what}", "a dict", getattr(self, what))
+        for what in ("normals", "uniforms", "memory"):
+            whole(getattr(self, what), f"cell: {what}", 0, 2**31 - 1)
+        for key, limits in self.limits.items():
+            if not isinstance(limits, (list, tuple, np.ndarray)) or len(limits) != 2:
+                refuse(f"cell: limits of {key}", "(least, most)", limits)
         parameters = {key: [_number(x, f"cell: {key} of parameters and limits") for x in (value, *self.limits[key])] if key in self.limits
                       else _number(value, f"cell: {key} of parameters") for key, value in self.parameters.items()}
         return json.dumps({"gatewalk": 1, "faces": self.faces, "coordinates": self.coordinates, "costs": self.costs,
@@ -134,33 +136,37 @@ class Cell:
         entries.update({name: at[:, k] for k, name in enumerate(names)})
         out = self.pass_(entries, types.SimpleNamespace(seed=seed, normals=noise[:, :self.normals], uniforms=noise[:, self.normals:]))
         if not isinstance(out, dict):
-            raise ValueError(f"cell: pass_ must give a dict of arrays, it gave {type(out).__name__}")
+            raise _core.UsageError(f"cell: pass_ must give a dict of arrays, it gave {type(out).__name__}")
         wanted = ["face", *names, *(c["key"] for c in self.costs)]
         missing = [key for key in wanted if key not in out]
         if missing:
-            raise ValueError(f"cell: pass_ gave no {', '.join(missing)}; it must give {', '.join(wanted)}")
+            raise _core.UsageError(f"cell: pass_ gave no {', '.join(missing)}; it must give {', '.join(wanted)}")
         unknown = set(out) - set(wanted) - {"memory"}
         if unknown:
-            raise ValueError(f"cell: pass_ gave {', '.join(sorted(unknown))}; it may give {', '.join(wanted)} and memory")
+            raise _core.UsageError(f"cell: pass_ gave {', '.join(sorted(unknown))}; it may give {', '.join(wanted)} and memory")
         n = len(face)
 
         def stacked(keys: list[str]) -> Array:
             if not keys:
                 return np.zeros((n, 0))
-            return np.stack([np.broadcast_to(_numbers(out[k], k).astype(float), (n,)) for k in keys], axis=1)
+            columns = [_numbers(out[k], k).astype(float) for k in keys]
+            for k, column in zip(keys, columns):
+                if column.shape not in ((), (1,), (n,)):
+                    raise _core.UsageError(f"cell: pass_ must give {n} numbers as {k}, it gave an array of shape {column.shape}")
+            return np.stack([np.broadcast_to(column, (n,)) for column in columns], axis=1)
 
         if np.ma.is_masked(out["face"]):  # type: ignore[no-untyped-call]
             _numbers(out["face"], "face")
         leaves = np.asarray(out["face"])
         if leaves.shape != (n,) or leaves.dtype.kind not in "iu":
-            raise ValueError(f"cell: pass_ must give {n} whole numbers as face, it gave {leaves.dtype} of shape {leaves.shape}")
+            raise _core.UsageError(f"cell: pass_ must give {n} whole numbers as face, it gave {leaves.dtype} of shape {leaves.shape}")
         if leaves.dtype == np.uint64 and (leaves > np.iinfo(np.int64).max).any():
-            raise ValueError(f"cell: pass_ gave the face {leaves.max()}; faces are 0 to {len(self.faces) - 1}, -1 is trapped, -2 broken")
+            raise _core.UsageError(f"cell: pass_ gave the face {leaves.max()}; faces are 0 to {len(self.faces) - 1}, -1 is trapped, -2 broken")
         kept = _numbers(out.get("memory", memory), "memory").astype(float)
         if kept.shape == (n,) and self.memory == 1:
             kept = kept[:, np.newaxis]
         if kept.shape != (n, self.memory):
-            raise ValueError(f"cell: pass_ must give memory of shape ({n}, {self.memory}), it gave {kept.shape}")
+            raise _core.UsageError(f"cell: pass_ must give memory of shape ({n}, {self.memory}), it gave {kept.shape}")
         return leaves.astype(np.int64), stacked(names), stacked(wanted[1 + len(names):]), kept
 
 
@@ -190,7 +196,7 @@ def check_cell(cell: Cell, starts: t.Sequence[t.Mapping[str, t.Any]] | None = No
 
     Raises
     ------
-    ValueError
+    UsageError
         Where `cell` is no cell, or a start none of its entries; where a number is none, or out of range.
 
     Examples
@@ -212,8 +218,8 @@ def check_cell(cell: Cell, starts: t.Sequence[t.Mapping[str, t.Any]] | None = No
     """
     if not isinstance(cell, Cell):
         raise _core.UsageError("cell: must be an object of a class derived from gatewalk.Cell")
-    trials, cells = _whole(trials, "trials", 1, 2**63 - 1), _whole(cells, "cells", 1, 2**31 - 1)
-    seed = _whole(seed, "seed", 0, 2**64 - 1)
+    trials, cells = whole(trials, "check_cell: trials", 1, 2**63 - 1), whole(cells, "check_cell: cells", 1, 2**31 - 1)
+    seed = whole(seed, "check_cell: seed", 0, 2**64 - 1)
     faces, names = _names(cell.faces, "faces"), _names(cell.coordinates, "coordinates")
     entries = [(k, [0.0] * len(names)) for k in range(len(faces))] if starts is None else []
     if starts is not None and not (isinstance(starts, (list, tuple)) and starts and all(isinstance(start, t.Mapping) for start in starts)):

@@ -4,8 +4,11 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import io
+import numbers
 import os
+import re
 import shutil
 import tempfile
 import typing as t
@@ -13,8 +16,9 @@ import weakref
 
 from . import _core, _run
 from ._cell import Cell
-from ._results import Analysis, Prediction, Result
-from ._scene import called, file_of
+from ._results import Analysis, Prediction, Result, require_axes
+from ._scene import OWN_ERRORS, called, file_of
+from ._words import in_python, path_of, plain, refuse
 
 
 def _unlink(path: str, owner: int | None = None) -> None:
@@ -31,9 +35,13 @@ class Matrix:
     """
 
     def __init__(self, path: t.Any, _owned: bool = False) -> None:
-        self._file: str = os.path.abspath(os.fspath(path))
+        self._file: str = os.path.abspath(path_of(path, "path"))
+        self._name = "the matrix" if _owned else self._file  # in messages
         before = self._stamp()
-        self._core = _core.Matrix(self._file)
+        try:
+            self._core = _core.Matrix(self._file)
+        except OWN_ERRORS as error:
+            raise type(error)(in_python(str(error), "walk")) from None
         self._loaded = before
         _ = self._path
         if _owned:
@@ -84,6 +92,8 @@ class Matrix:
     def _csr(self, type: str, probabilities: bool) -> t.Any:  # noqa: A002
         from scipy.sparse import csr_matrix
 
+        if not isinstance(type, str) or type not in self.types:
+            refuse("type", f"one of {', '.join(map(repr, self.types))}", type)
         data, indices, indptr, shape = self._core.csr(type, probabilities)
         return csr_matrix((data, indices, indptr), shape=shape, copy=False)
 
@@ -111,8 +121,11 @@ class Matrix:
 
     def save(self, path: t.Any) -> None:
         """Writes it to `path` as NetCDF-4, as a whole or not at all. Raises OSError where that fails."""
-        path = os.fspath(path)
-        handle, name = tempfile.mkstemp(dir=os.path.dirname(path) or ".", prefix=".gatewalk-")
+        path = path_of(path, "path")
+        try:
+            handle, name = tempfile.mkstemp(dir=os.path.dirname(path) or ".", prefix=".gatewalk-")
+        except OSError as error:  # which names the temporary file
+            raise type(error)(error.errno, error.strerror, path) from None
         try:
             with os.fdopen(handle, "wb") as out, open(self._path, "rb") as source:
                 shutil.copyfileobj(source, out)
@@ -144,7 +157,7 @@ class Matrix:
         Result
             states, transitions, and `endings`, the state of each.
         """
-        return Result(_run("export", [self], dict(more), [f"--output={os.fspath(path)}"]))
+        return Result(_run("export", {"self": self}, dict(more), [f"--output={path_of(path, 'path')}"]))
 
     def analyze(self, **more: t.Any) -> Analysis:
         """See `gatewalk.analyze`."""
@@ -173,6 +186,7 @@ class Matrix:
 
         if axes is None:
             _, axes = plt.subplots(figsize=(3.5, 3.2), constrained_layout=True)
+        axes = require_axes(axes)
         dense = self.matrix.toarray()
         dense = np.ma.masked_where(dense <= 0.0, dense)  # type: ignore[no-untyped-call]
         image = axes.imshow(dense, norm=LogNorm(), cmap="viridis", interpolation="nearest")
@@ -237,11 +251,12 @@ def load(path: t.Any) -> Matrix:
     return Matrix(path)
 
 
-def _made(command: str, subjects: list[t.Any], given: dict[str, t.Any], words: t.Sequence[str] = ()) -> Matrix:
+def _made(command: str, subjects: dict[str, t.Any], given: dict[str, t.Any], words: t.Sequence[str] = ()) -> Matrix:
     """What a command writes, as a matrix."""
     name = _temporary()
     try:
-        _run(command, subjects, given, [*words, f"--output={name}", "--force"], gives_json=False)
+        with called(name, "the matrix"):
+            _run(command, subjects, given, [*words, f"--output={name}", "--force"], gives_json=False)
         return Matrix(name, _owned=True)
     except BaseException:
         _unlink(name)
@@ -271,42 +286,102 @@ def build(subject: t.Any, *, accuracy: float | None = None, starts: t.Any = None
     SceneError, UsageError, BadFile
         See `predict`.
     """
-    return _made("build", [subject], dict(accuracy=accuracy, starts=starts, seed=seed, cell=cell, progress=progress, **more))
+    return _made("build", {"subject": subject}, dict(accuracy=accuracy, starts=starts, seed=seed, cell=cell, progress=progress, **more))
 
 
-def _csv_of(table: t.Any) -> str:
-    """A DataFrame as CSV, every digit; numbers that are none as nothing."""
+#: What `_table_file` takes.
+_TABLES = "a path, a DataFrame, or a dict of lists"
+
+
+def _is_column(value: t.Any) -> bool:
+    return isinstance(value, (list, tuple, range)) or (hasattr(value, "tolist") and getattr(value, "ndim", 1) == 1)
+
+
+def _csv_of_columns(columns: t.Mapping[t.Any, t.Any], parameter: str) -> str:
+    """A dict of lists or arrays as CSV, every digit; what is missing as nothing."""
+    for name, column in columns.items():
+        if not _is_column(column):
+            refuse(f"{parameter}: column {name!r}", "a list or an array, as the others are", column)
+    lengths = {str(name): len(column) for name, column in columns.items()}
+    if len(set(lengths.values())) > 1:
+        raise _core.UsageError(f"{parameter}: columns must be of one length; " + ", ".join(f"{name} has {n}" for name, n in lengths.items()))
+
+    def field(value: t.Any) -> str:
+        return "" if value is None or value != value else repr(value) if isinstance(value, float) else str(value)
+
     out = io.StringIO()
-    table.to_csv(out, index=False, float_format="%.17g")
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow([str(name) for name in columns])
+    writer.writerows(zip(*([field(value) for value in plain(column)] for column in columns.values())))
+    return out.getvalue()
+
+
+def _csv_of_frame(frame: t.Any, parameter: str) -> str:
+    """A DataFrame as CSV, every digit; numbers that are none as nothing. Levels of the index that have a name are columns."""
+    poses = {3: ["scorer", "bodyparts", "coords"], 4: ["scorer", "individuals", "bodyparts", "coords"]}  # DeepLabCut's
+    levels = frame.columns.nlevels
+    with_index = False
+    if levels > 1:
+        if levels not in poses:
+            raise _core.UsageError(f"{parameter}: its columns have {levels} levels; DeepLabCut's have 3 or 4 (scorer, individuals, bodyparts, "
+                                   "coords), other tables one: table.columns = [...] names them")
+        with_index = list(frame.columns[0]) != poses[levels]  # else the frames are its first column
+        if with_index:
+            frame = frame.rename_axis(index=None, columns=poses[levels])
+    elif named := [name for name in frame.index.names if name is not None and name not in frame.columns]:
+        frame = frame.reset_index(level=named)
+    out = io.StringIO()
+    frame.to_csv(out, index=with_index, float_format="%.17g")
     return out.getvalue()
 
 
 def _csv_of_counts(counts: t.Mapping[str, t.Any]) -> str:
-    import numbers
-
     for ending, n in counts.items():
         if isinstance(n, bool) or not isinstance(n, numbers.Real) or n != n // 1:  # NaN too
             raise _core.UsageError(f"the table: the count of {ending} must be a whole number, it is {n!r}")
-    return "ending,count\n" + "".join(f"{ending},{int(n)}\n" for ending, n in counts.items())
+    out = io.StringIO()
+    csv.writer(out, lineterminator="\n").writerows([("ending", "count"), *((ending, int(n)) for ending, n in counts.items())])
+    return out.getvalue()
+
+
+def _csv_of(table: t.Any, parameter: str) -> str:
+    counts = parameter == "observed"  # by ending, which other tables are not
+    if counts and getattr(table, "ndim", 2) == 1 and hasattr(table, "to_dict"):  # a Series
+        table = table.to_dict()
+    if getattr(getattr(table, "dtype", None), "names", None):  # an array of records
+        table = {name: table[name] for name in table.dtype.names}
+    if isinstance(table, t.Mapping):
+        return _csv_of_counts(table) if counts and not any(map(_is_column, table.values())) else _csv_of_columns(table, parameter)
+    if hasattr(table, "to_csv") and hasattr(table, "columns"):
+        return _csv_of_frame(table, parameter)
+    refuse(parameter, _TABLES + (", or a dict of counts by ending" if counts else ""), table)
 
 
 @contextlib.contextmanager
-def _table_file(table: t.Any) -> t.Iterator[str]:
-    """A file with the table, or with counts by ending; a path as it is."""
+def _table_file(table: t.Any, parameter: str, number: str = "") -> t.Iterator[str]:
+    """A file with the table, or with counts by ending; a path as it is. `number`: which one of several."""
     if isinstance(table, (str, os.PathLike)):
-        yield os.fspath(table)
+        yield path_of(table, parameter)
         return
     with tempfile.TemporaryDirectory() as folder:
         if hasattr(table, "to_netcdf") and not hasattr(table, "to_csv"):
-            name = os.path.join(folder, "tracks.nc")
+            name = os.path.join(folder, f"tracks{number}.nc")
             table.to_netcdf(name)
         else:
-            name = os.path.join(folder, "table.csv")
-            with open(name, "w", encoding="utf-8") as file:
-                counts = table.to_dict() if getattr(table, "ndim", 2) == 1 else table  # a Series
-                file.write(_csv_of_counts(counts) if isinstance(counts, t.Mapping) else _csv_of(counts))
-        with called(name, "the table"):
+            name = os.path.join(folder, f"table{number}.csv")
+            with open(name, "w", encoding="utf-8", newline="") as file:
+                file.write(_csv_of(table, parameter))
+        with called(name, "the states" if parameter == "states" else f"the table {number}" if number else "the table"):
             yield name
+
+
+def _table_files(stack: contextlib.ExitStack, tables: t.Any, parameter: str) -> dict[str, str]:
+    """The files of one table, or of a list of some."""
+    several = list(tables) if isinstance(tables, (list, tuple)) else [tables]
+    if not several:
+        raise _core.UsageError(f"{parameter}: is empty; must be {_TABLES}, or a list of these")
+    return {f"{parameter}[{k}]": stack.enter_context(_table_file(table, parameter, str(k) if len(several) > 1 else ""))
+            for k, table in enumerate(several)}
 
 
 def from_passages(table: t.Any, cell: t.Any, **more: t.Any) -> Matrix:
@@ -314,7 +389,7 @@ def from_passages(table: t.Any, cell: t.Any, **more: t.Any) -> Matrix:
 
     Parameters
     ----------
-    table : pandas.DataFrame or path
+    table : pandas.DataFrame, dict of lists, or path
         A line a passage: ``body``, ``trial``, ``in``, each coordinate, ``out``, each coordinate as ``out_...``, ``time_s``.
     cell : path, text or dict
         The cell file: faces, coordinates, field.
@@ -330,8 +405,8 @@ def from_passages(table: t.Any, cell: t.Any, **more: t.Any) -> Matrix:
     SceneError, UsageError, BadFile
         The line and column of a table that is wrong, and what is allowed.
     """
-    with _table_file(table) as name, file_of(cell) as (path, _):
-        return _made("build", [name], dict(more), [f"--cell={path}"])
+    with _table_file(table, "table") as name, file_of(cell, "cell") as (path, _):
+        return _made("build", {"table": name}, dict(more), [f"--cell={path}"])
 
 
 def _first(bad: t.Any) -> int:
@@ -340,40 +415,38 @@ def _first(bad: t.Any) -> int:
 
 def _states_of(one: t.Any, which: int) -> list[int]:
     """The states of a trajectory. Raises UsageError for what is no whole number from 0, naming the step."""
-    import numbers
-
     import numpy as np
 
-    def refuse(step: int, what: str) -> t.NoReturn:
+    def bad_step(step: int, what: str) -> t.NoReturn:
         raise _core.UsageError(f"the chain: trajectory {which}, step {step} (counted from 0): {what}")
 
     no_states = (bool, np.bool_, np.timedelta64)  # though Python counts them as whole numbers
     if isinstance(one, (list, tuple)):  # of which numpy would make numbers
         for step, state in enumerate(one):
             if state is np.ma.masked:
-                refuse(step, "masked; cut the trajectory there")
+                bad_step(step, "masked; cut the trajectory there")
             if isinstance(state, no_states):
-                refuse(step, f"{state!r} is no whole number")
+                bad_step(step, f"{state!r} is no whole number")
     dimensions = 0 if isinstance(one, (str, bytes)) else np.asarray(one, dtype=object).ndim
     if dimensions != 1:
         raise _core.UsageError(f"the chain: trajectory {which} is no sequence of states, but {type(one).__name__}"
                                + ("" if dimensions else "; one trajectory is a list of one array: [states]"))
     if np.ma.is_masked(one):  # type: ignore[no-untyped-call]
-        refuse(_first(np.ma.getmaskarray(one)), "masked; cut the trajectory there")  # type: ignore[no-untyped-call]
+        bad_step(_first(np.ma.getmaskarray(one)), "masked; cut the trajectory there")  # type: ignore[no-untyped-call]
     states = np.asarray(one)
     if states.dtype.kind not in "iuf":
         for step, state in enumerate(one):
             whole = isinstance(state, numbers.Real) and not isinstance(state, no_states) and state == state and state == state // 1
             if not whole:
-                refuse(step, f"{state!r} is no whole number")
+                bad_step(step, f"{state!r} is no whole number")
         states = np.array([int(state) for state in one], dtype=object)
     with np.errstate(invalid="ignore"):
         bad = ~(states == np.floor(states)) | ~(abs(states) < 2.0**53) if states.dtype.kind == "f" else np.zeros(len(states), bool)
     if bad.any():
-        refuse(_first(bad), f"{states[_first(bad)]} is no whole number" + ("; cut the trajectory there" if np.isnan(states[_first(bad)]) else ""))
+        bad_step(_first(bad), f"{states[_first(bad)]} is no whole number" + ("; cut the trajectory there" if np.isnan(states[_first(bad)]) else ""))
     if len(states) and (states < 0).any():
         step = _first(states < 0)
-        refuse(step, f"{states[step]} is no state, they count from 0; cut the trajectory where none is known")
+        bad_step(step, f"{states[step]} is no state, they count from 0; cut the trajectory where none is known")
     return [int(state) for state in states]
 
 
@@ -389,6 +462,11 @@ def _require_matrix(chain: t.Any) -> None:
     data = chain.data if hasattr(chain, "tocsr") else chain
     if chain.dtype.kind == "u" and data.size and int(data.max()) >= 2**63:
         raise _core.UsageError(f"the chain: has a count of {data.max()}, more than 2^63 - 1")
+
+
+def _from_zero(text: str) -> str:
+    """Trajectories and steps as Python counts them."""
+    return re.sub(r"trajectory (\d+), step (\d+)", lambda m: f"trajectory {int(m[1]) - 1}, step {int(m[2]) - 1} (counted from 0)", text)
 
 
 @contextlib.contextmanager
@@ -425,7 +503,10 @@ def _chain_file(chain: t.Any) -> t.Iterator[str]:
             with open(name, "w", encoding="utf-8") as file:
                 file.writelines(" ".join(map(str, one)) + "\n" for one in trajectories)
         with called(name, "the chain"):
-            yield name
+            try:
+                yield name
+            except _core.UsageError as error:
+                raise _core.UsageError(_from_zero(str(error))) from error.__cause__
 
 
 def from_counts(chain: t.Any, states: t.Any, *, start: int | None = None, **more: t.Any) -> Matrix:
@@ -461,11 +542,8 @@ def from_counts(chain: t.Any, states: t.Any, *, start: int | None = None, **more
     >>> round(up.predict().endings["crossed"], 12)
     0.36
     """
-    import pandas
-
-    table = states if isinstance(states, (str, os.PathLike)) or hasattr(states, "to_csv") else pandas.DataFrame(states)
-    with _chain_file(chain) as name, _table_file(table) as path:
-        return _made("import", [name], dict(more), [f"--states={path}", *([] if start is None else [f"--start={start}"])])
+    with _chain_file(chain) as name, _table_file(states, "states") as path:
+        return _made("import", {"chain": name}, dict(start=start, **more), [f"--states={path}"])
 
 
 def passages(tracks: t.Any, cell: t.Any, **more: t.Any) -> t.Any:
@@ -473,8 +551,8 @@ def passages(tracks: t.Any, cell: t.Any, **more: t.Any) -> t.Any:
 
     Parameters
     ----------
-    tracks : pandas.DataFrame, xarray.Dataset or path
-        Places by body and frame (columns={"x": "POSITION_X", ...}), or movement's poses.
+    tracks : pandas.DataFrame, dict of lists, xarray.Dataset or path
+        Places by body and frame (columns={"x": "POSITION_X", ...}), DeepLabCut's or movement's poses.
     cell : path, text or dict
         The cell file.
     **more
@@ -493,12 +571,11 @@ def passages(tracks: t.Any, cell: t.Any, **more: t.Any) -> t.Any:
     """
     import pandas
 
-    columns = more.pop("columns", None)
-    if isinstance(columns, dict):
-        columns = ",".join('"' + f"{k}={v}".replace('"', '""') + '"' for k, v in columns.items())
-    with _table_file(tracks) as name, file_of(cell) as (path, _), tempfile.TemporaryDirectory() as folder:
-        out = os.path.join(folder, "runs.csv")
-        said = _run("passages", [name], {**more, "columns": columns}, [f"--cell={path}", f"--output={out}"])
+    with contextlib.ExitStack() as stack:
+        path, _ = stack.enter_context(file_of(cell, "cell"))
+        names = _table_files(stack, tracks, "tracks")
+        out = os.path.join(stack.enter_context(tempfile.TemporaryDirectory()), "runs.csv")
+        said = _run("passages", names, dict(more), [f"--cell={path}", f"--output={out}"])
         table = pandas.read_csv(out, comment="#")
         table.attrs.update(said)
         return table

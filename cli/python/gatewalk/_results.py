@@ -11,7 +11,17 @@ import numpy as np
 if t.TYPE_CHECKING:
     Array = np.ndarray[t.Any, t.Any]
 
-from ._scene import _table_html
+from . import _core
+from ._scene import NoSuchKey, _table_html
+from ._words import refuse, whole
+
+
+def require_axes(axes: t.Any, number: int = 1) -> t.Any:
+    """The axes given to plot. Raises UsageError for anything else."""
+    given = [axes] if number == 1 else axes
+    if not hasattr(given, "__len__") or len(given) < number or not all(hasattr(one, "imshow") for one in given):
+        refuse("axes", "axes of matplotlib" if number == 1 else f"{number} axes of matplotlib, as plt.subplots(1, {number}) gives them", axes)
+    return axes
 
 
 def _same(a: t.Any, b: t.Any) -> bool:
@@ -34,7 +44,10 @@ class Result(collections.abc.Mapping):  # type: ignore[type-arg]
         self._data = data
 
     def __getitem__(self, key: str) -> t.Any:
-        return self._data[key]
+        try:
+            return self._data[key]
+        except (KeyError, TypeError):
+            raise NoSuchKey(f"{type(self).__name__} has no {key!r}; it has {', '.join(self._data)}") from None
 
     def __iter__(self) -> t.Iterator[str]:
         return iter(self._data)
@@ -108,9 +121,9 @@ class Prediction(Result):
 
     def _only(self) -> dict[str, t.Any]:
         if len(self.starts) > 1:
-            raise ValueError(f"there are {len(self.starts)} starts: starts[0], starts[1], ... have one each")
+            raise _core.UsageError(f"there are {len(self.starts)} starts: starts[0], starts[1], ... have one each")
         if self.starts[0]._data.get("final_gates") is None:
-            raise ValueError("the field has too many gates for tables: netcdf=FILE writes them")
+            raise _core.UsageError("the field has too many gates for tables: netcdf=FILE writes them")
         return self.starts[0]._data
 
     @staticmethod
@@ -173,6 +186,7 @@ class Prediction(Result):
 
         if axes is None:
             _, axes = plt.subplots(1, 2, figsize=(7.0, 3.0), constrained_layout=True)
+        axes = require_axes(axes, 2)
         first = self._only()
         total = float(self._data.get("trials", 1))
         gates = np.asarray(first["final_gates"], dtype=float) / total
@@ -267,6 +281,7 @@ class Landscape(Result):
 
         if axes is None:
             _, axes = plt.subplots(figsize=(4.0, 3.5), constrained_layout=True)
+        axes = require_axes(axes)
         table = self._data["table"]
         x, y = np.unique(table["x_m"]), np.unique(table["y_m"])
         energy = np.ma.masked_invalid(table["total_J"]).reshape(len(y), len(x))  # type: ignore[no-untyped-call]
@@ -295,7 +310,11 @@ class Trace(Result):
         """A pandas.DataFrame of one run, a line per step."""
         import pandas
 
-        return pandas.DataFrame({k: v for k, v in self._data["runs"][run].items() if isinstance(v, np.ndarray)})
+        runs = self._data["runs"]
+        if not runs:
+            raise _core.UsageError("there is no run")
+        run = whole(run, "run", 0, len(runs) - 1)
+        return pandas.DataFrame({k: v for k, v in runs[run].items() if isinstance(v, np.ndarray)})
 
     def plot(self, axes: t.Any = None) -> t.Any:
         """The ways of all runs, by matplotlib."""
@@ -303,6 +322,7 @@ class Trace(Result):
 
         if axes is None:
             _, axes = plt.subplots(figsize=(3.5, 4.0), constrained_layout=True)
+        axes = require_axes(axes)
         width, length = self._data["gate_m"]
         for run in self._data["runs"]:
             axes.plot(np.asarray(run["gx"]) * width + run["x"], np.asarray(run["gy"]) * length + run["y"], label=run["label"], lw=0.8)

@@ -5,39 +5,48 @@ from __future__ import annotations
 
 import atexit
 import contextlib
+import contextvars
+import difflib
 import hashlib
 import html
 import json
 import os
 import re
+import reprlib
 import shutil
 import tempfile
 import threading
 import typing as t
 
 from . import _core
-
+from ._words import path_of, plain, refuse
 
 #: What the program says; a cell's own errors come out as they are.
-OWN_ERRORS = (ValueError, _core.SceneError, _core.UsageError, _core.BadFile)
+OWN_ERRORS = (_core.SceneError, _core.UsageError, _core.BadFile)
 
 
-def _toml_value(value: t.Any) -> str:
+class NoSuchKey(_core.UsageError, KeyError):
+    """A UsageError where Python expects a KeyError too."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+def _toml_value(value: t.Any, key: str) -> str:
+    value = plain(value)
     if isinstance(value, bool):
         return "true" if value else "false"
-    if hasattr(value, "tolist"):
-        return _toml_value(value.tolist())
-    if isinstance(value, float):
-        return repr(float(value))
-    if isinstance(value, int):
-        return repr(int(value))
-    if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(_toml_value(v) for v in value) + "]"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, str):
+        return _quoted(value)
+    if isinstance(value, list):
+        return "[" + ", ".join(_toml_value(v, key) for v in value) + "]"
     if isinstance(value, t.Mapping):
-        return "{ " + ", ".join(f"{_toml_key(k)} = {_toml_value(v)}" for k, v in value.items()) + " }"
+        return "{ " + ", ".join(f"{_toml_key(k)} = {_toml_value(v, f'{key}.{k}')}" for k, v in value.items()) + " }"
     if value is None:
-        raise _core.SceneError("a key is None; leave it out")
-    return _quoted(str(value))
+        raise _core.SceneError(f"{key} is None; leave it out")
+    raise _core.SceneError(f"{key}: {reprlib.repr(value)} is not permitted: must be a number, a text, True or False, or a list or dict of these")
 
 
 def _quoted(text: str) -> str:
@@ -52,7 +61,7 @@ def _toml_key(key: str) -> str:
 
 def _toml(tables: t.Mapping[str, t.Any], name: str = "") -> str:
     """A dict of dicts as TOML."""
-    lines = [f"{_toml_key(key)} = {_toml_value(value)}" for key, value in tables.items() if not isinstance(value, t.Mapping)]
+    lines = [f"{_toml_key(key)} = {_toml_value(value, f'{name}.{key}' if name else str(key))}" for key, value in tables.items() if not isinstance(value, t.Mapping)]
     text = (f"[{name}]\n" if name else "") + "".join(line + "\n" for line in lines)
     for key, value in tables.items():
         if isinstance(value, t.Mapping):
@@ -84,8 +93,8 @@ class Scene:
 
     Raises
     ------
-    SceneError
-        A ValueError naming the key and what is allowed.
+    SceneError, UsageError
+        ValueErrors naming the key, or the parameter, and what is allowed. ``scene["no.key"]`` is a UsageError and a KeyError.
 
     Examples
     --------
@@ -104,17 +113,18 @@ class Scene:
     def __init__(self, source: t.Any, set: t.Mapping[str, t.Any] | None = None) -> None:  # noqa: A002
         self._path: str | None = None
         self._text: str | None = None
+        if isinstance(source, Scene):
+            source, set = source._path if source._text is None else source._text, {**source._set, **_keys_of(set)}
         if isinstance(source, t.Mapping):
             self._text = _toml(source)
         elif isinstance(source, str) and "\n" in source:
             self._text = source
         else:
-            path = os.fspath(source)
-            self._path = f"./{path}" if path.startswith("-") else path
-        self._set: dict[str, t.Any] = dict(set or {})
+            self._path = _path(source, "source", SUBJECTS)
+        self._set: dict[str, t.Any] = _keys_of(set)
         from . import _run
 
-        shown = _run("scene", [self], {})
+        shown = _run("scene", {"source": self}, {})
         self._keys: list[dict[str, t.Any]] = shown["keys"]
         self._toml: str = shown["scene"]
         #: What its numbers mean, and where they are far from what walks; sentences.
@@ -136,11 +146,18 @@ class Scene:
         return {"true": True, "false": False}.get(text, text) if isinstance(text, str) else text
 
     def __getitem__(self, key: str) -> t.Any:
-        return self.keys[key]
+        keys = self.keys
+        if not isinstance(key, str) or key not in keys:
+            meant = difflib.get_close_matches(str(key), keys, 1)
+            raise NoSuchKey(f"the scene has no key {key!r}" + (f"; the closest is {meant[0]}" if meant else ""))
+        return keys[key]
+
+    def __contains__(self, key: object) -> bool:
+        return key in self.keys
 
     def with_set(self, set: t.Mapping[str, t.Any]) -> Scene:  # noqa: A002
         """The scene with these keys too; this one stays as it is."""
-        return Scene(self._path if self._text is None else self._text, {**self._set, **set})
+        return Scene(self, set)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scene) and self._toml == other._toml
@@ -157,29 +174,59 @@ class Scene:
                            ("key", "value", "unit", "meaning", "from")) + _list_html(self.remarks)
 
 
+#: What is a scene, or a file of cells.
+SUBJECTS = "a Scene, a path, a text of several lines, or a dict of tables"
+
+
+def _keys_of(set: t.Any) -> dict[str, t.Any]:  # noqa: A002
+    if set is not None and not isinstance(set, t.Mapping):
+        refuse("set", 'a dict such as {"forces.random_N": 20}', set)
+    return dict(set or {})
+
+
+def _path(value: t.Any, parameter: str, allowed: str) -> str:
+    path = path_of(value, parameter, allowed)
+    return f"./{path}" if path.startswith("-") else path
+
+
+_names: contextvars.ContextVar[tuple[tuple[str, str], ...]] = contextvars.ContextVar("names", default=())
+
+
 @contextlib.contextmanager
 def called(name: str, words: str) -> t.Iterator[None]:
-    """Errors about a file that means nothing to anybody call it so."""
+    """Errors and warnings about a file that means nothing to anybody call it so."""
+    before = _names.set(((name, words), *_names.get()))
     try:
         yield
-    except ValueError as error:
-        if type(error) not in OWN_ERRORS:
-            raise
-        raise type(error)(str(error).replace(name, words)) from error.__cause__
+    finally:
+        _names.reset(before)
+
+
+def renamed(text: str) -> str:
+    """A text of the program with its files as they are called."""
+    for name, words in _names.get():
+        text = text.replace(name, words)
+    return text
 
 
 @contextlib.contextmanager
-def file_of(subject: t.Any) -> t.Iterator[tuple[str, dict[str, t.Any]]]:
-    """A file that a command can read, and the keys set on top of it; a text is written to a folder of its own."""
-    path = getattr(subject, "_path", None)
-    if path is not None:  # a scene of a file, a matrix
-        yield path, getattr(subject, "_set", {})
+def file_of(subject: t.Any, parameter: str) -> t.Iterator[tuple[str, dict[str, t.Any]]]:
+    """A file that a command can read, and the keys set on top of it; a text is written to a folder of its own. Raises UsageError for an
+    argument that is none of these."""
+    from ._matrix import Matrix
+
+    if isinstance(subject, Matrix):
+        yield subject._path, {}
         return
-    if isinstance(subject, (str, os.PathLike)) and not (isinstance(subject, str) and "\n" in subject):
-        yield os.fspath(subject), {}
+    if isinstance(subject, Scene) and subject._path is not None:
+        yield subject._path, subject._set
         return
-    text = subject._text if isinstance(subject, Scene) else _toml(subject) if isinstance(subject, t.Mapping) else str(subject)
-    name = _file_of_text(t.cast(str, text))
+    text = subject._text if isinstance(subject, Scene) else _toml(subject) if isinstance(subject, t.Mapping) else subject
+    if not isinstance(text, str) or "\n" not in text and text is subject:
+        allowed = "a Matrix or a path" if parameter == "matrix" else SUBJECTS + (", or a Matrix" if parameter == "subject" else "")
+        yield _path(subject, parameter, allowed), {}
+        return
+    name = _file_of_text(text)
     with called(name, "scene.toml"):
         yield name, getattr(subject, "_set", {})
 

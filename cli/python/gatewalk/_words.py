@@ -1,0 +1,295 @@
+# SPDX-License-Identifier: MIT
+"""Arguments of Python as the words of a command, and what a command says about its options in Python's words."""
+
+from __future__ import annotations
+
+import decimal
+import difflib
+import functools
+import numbers
+import operator
+import os
+import re
+import reprlib
+import typing as t
+
+from . import _core
+
+#: Options that a process has no use for, and those that the module itself gives.
+_NOT_HERE = {"quiet", "json", "checkpoint", "resume", "max-time", "shard", "part", "output", "help"}
+#: Commands by the function that runs them, where it has another name.
+_FUNCTIONS = {"import": "from_counts", "export": "Matrix.export", "scene": "Scene", **{name: name for name in (
+    "analyze", "build", "design", "fit", "gate", "landscape", "lattice", "merge", "passages", "plan", "power", "predict", "rare", "sample",
+    "simulate", "sweep", "trace", "validate", "walk")}}
+
+
+class Option(t.NamedTuple):
+    value: str  # as the help page shows it
+    kind: str  # flag, count, seed, number, text
+    is_file: bool
+    is_repeated: bool
+
+
+@functools.lru_cache(maxsize=None)
+def options_of(command: str) -> dict[str, Option]:
+    """Options of a command by name. Raises UsageError where there is no such command."""
+    return {option[0]: Option(*option[1:]) for option in _core.options(command)}
+
+
+def refuse(parameter: str, allowed: str, value: t.Any) -> t.NoReturn:
+    """Raises the UsageError of an argument of the wrong kind."""
+    raise _core.UsageError(f"{parameter}: must be {allowed}, not {reprlib.repr(value)}")
+
+
+def path_of(value: t.Any, parameter: str, allowed: str = "a path") -> str:
+    """A path as the program takes it. Raises UsageError for anything else."""
+    if not isinstance(value, (str, os.PathLike)):
+        refuse(parameter, allowed, value)
+    path = os.fsdecode(value)
+    if "\0" in path:
+        raise _core.UsageError(f"{parameter}: {path!r} holds a character that no path may hold")
+    return path
+
+
+def whole(value: t.Any, what: str, least: int, most: int) -> int:
+    """A whole number, of numpy too. Raises UsageError for anything else."""
+    try:
+        number = None if isinstance(value, bool) else operator.index(value)
+    except TypeError:
+        number = None
+    if number is None or not least <= number <= most:
+        raise _core.UsageError(f"{what} must be a whole number from {least} to {most}, not {value!r}")
+    return number
+
+
+def plain(value: t.Any) -> t.Any:
+    """A value without numpy and pandas: booleans, numbers, texts, lists and dicts of them; others as they are."""
+    if isinstance(value, os.PathLike):
+        return os.fsdecode(value)
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, (list, tuple, range)):
+        return [plain(x) for x in value]
+    if isinstance(value, t.Mapping):
+        return {k: plain(v) for k, v in value.items()}
+    if isinstance(value, numbers.Integral):
+        return value if isinstance(value, bool) else int(value)
+    return float(value) if isinstance(value, (numbers.Real, decimal.Decimal)) else value
+
+
+def _is_number(value: t.Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _word(value: t.Any) -> str:
+    """A plain value as the command line has it. Raises TypeError for what has no words."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, list):
+        return ",".join(map(_word, value))
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, str) and "\0" not in value:
+        return value
+    raise TypeError
+
+
+def _setting(value: t.Any) -> str:
+    """The value of a scene's key."""
+    return f"[{', '.join(map(_setting, value))}]" if isinstance(value, list) else _word(value)
+
+
+def _range(value: t.Any) -> str:
+    """(low, high)."""
+    if isinstance(value, str):
+        return value
+    if not isinstance(value, list) or len(value) != 2 or not all(map(_is_number, value)):
+        raise TypeError
+    return ":".join(map(_word, value))
+
+
+#: Options with a dict for a value: of an item the text behind "=", and an example.
+_DICTS: dict[str, tuple[t.Callable[[t.Any], str], str]] = {
+    "set": (_setting, '{"forces.random_N": 20}'),
+    "versus": (_setting, '{"forces.random_N": 20}'),
+    "vary": (_word, '{"forces.random_N": [10, 20, 30]} or {"forces.random_N": "10:5:30"}'),
+    "over": (_range, '{"forces.random_N": (10, 30)}'),
+    "free": (_range, '{"forces.random_N": (10, 30)}'),
+    "columns": (_word, '{"x": "POSITION_X", "y": "POSITION_Y"}'),
+}
+#: What others take, where the help page has no word for it.
+_OTHERS = {"matrix": "a Matrix or the path of one", "starts": "'all', or a (low, high) each of d, vx and vy"}
+
+
+def _allowed(name: str, option: Option) -> str:
+    if name in _DICTS or name in _OTHERS:
+        return _OTHERS.get(name) or f"a dict such as {_DICTS[name][1]}"
+    if option.is_file:
+        return f"the path of a file, {option.value}"
+    if option.kind != "text":
+        return {"flag": "True or False", "count": "a whole number", "seed": "a whole number from 0", "number": "a number"}[option.kind]
+    words = [repr(word) if word.islower() else f"({word.replace(',', ', ').lower()})" if re.fullmatch("[A-Z]+(,[A-Z]+)+", word) else word
+             for word in option.value.split("|")]
+    return " or ".join(words) + (", or a list of these" if option.is_repeated else "")
+
+
+def _of_dict(name: str, key: str, value: dict[t.Any, t.Any]) -> list[str]:
+    of_item, example = _DICTS[name]
+    items = []
+    for k, v in value.items():
+        try:
+            items.append(f"{k}={of_item(v)}" if isinstance(k, str) and k else _word(None))
+        except TypeError:
+            raise _core.UsageError(f"{key}: {reprlib.repr(k)}: {reprlib.repr(v)} is not permitted: must be as in {example}") from None
+    if name != "columns":
+        return items
+    return [",".join('"' + item.replace('"', '""') + '"' for item in items)]
+
+
+def _values_of(name: str, key: str, option: Option, given: t.Any) -> list[str]:
+    """What stands behind "=", each time that the option is given."""
+    from ._matrix import Matrix
+
+    value = given._path if isinstance(given, Matrix) and name == "matrix" else plain(given)
+    if isinstance(value, dict) and name in _DICTS:
+        return _of_dict(name, key, value)
+    is_list, is_file = isinstance(value, list), option.is_file and name not in _DICTS
+    is_single = (is_file or option.kind != "text") and not option.is_repeated
+    if isinstance(value, bool) or (is_list and is_single) or (_is_number(value) and (is_file or name in _DICTS)):
+        refuse(key, _allowed(name, option), given)
+    if is_list and not value:
+        raise _core.UsageError(f"{key}: is empty; must be {_allowed(name, option)}")
+    # Numbers belong together, (d, vx, vy); of a list of lists each is one.
+    several = is_list and option.is_repeated and not (option.kind == "text" and all(map(_is_number, value)))
+    try:
+        if is_list and not several and all(isinstance(one, list) for one in value):
+            return [",".join(map(_range, value))]
+        return [_word(one) for one in (value if several else [value])]
+    except TypeError:
+        refuse(key, _allowed(name, option), given)
+
+
+def words_of(command: str, given: dict[str, t.Any]) -> list[str]:
+    """Keyword arguments as options. Raises UsageError for one that there is not, and for a value of the wrong kind."""
+    offered = options_of(command)
+    words: list[str] = []
+    for key, value in given.items():
+        name = key.replace("_", "-")
+        if value is None:
+            continue
+        if name in _NOT_HERE:
+            raise _core.UsageError(f"{key}: has no meaning in Python, the program alone has such an option")
+        if name == "threads":
+            raise _core.UsageError("threads: gatewalk.threads(n) sets them, for all that follows")
+        option = offered.get(name)
+        if option is None and name != "set":
+            meant = difflib.get_close_matches(name, set(offered) - _NOT_HERE, 1)
+            raise _core.UsageError(f"there is no parameter {key}=" + (f" (did you mean {meant[0].replace('-', '_')}=?)" if meant else "")
+                                   + f"; gatewalk.options({command!r}) lists all")
+        option = option or Option("KEY=VALUE", "text", False, True)  # the command says why it takes none
+        if option.kind == "flag":
+            flag = plain(value)
+            if not isinstance(flag, bool):
+                refuse(key, _allowed(name, option), value)
+            words += [f"--{name}"] if flag else []
+        else:
+            words += [f"--{name}={text}" for text in _values_of(name, key, option, value)]
+    return words
+
+
+# ---- What a command says ----
+
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_PLACEHOLDER = r"[A-Z][A-Z0-9/|]*(?:\.[a-z|0-9]+)?"
+#: A word that is the value of the option in front of it, though nobody gave it.
+_VALUE = re.compile(rf"{_NUMBER}(?:[,:]{_NUMBER})*|[A-Z]+(?:,[A-Z]+)+|{_PLACEHOLDER}|[\w.]+=\S+|all|auto|seen")
+_NEXT = r"""(?:'[^']*'|"[^"]*"|[^\s'"]+)"""
+_OPTION = rf"(?<![\w./-])--(?P<name>[a-z][a-z0-9]*(?:-[a-z0-9]+)*)(?:(?P<mark>[ =])(?P<next>{_NEXT}))?"
+_CALL = re.compile(rf"\bgatewalk (?P<command>[a-z-]+)(?P<rest>(?: (?:[A-Z][A-Z|]*(?:\.\w+)?\b|-o \S+|--[a-z][a-z-]*(?:[ =](?:{_VALUE.pattern}))?))*)")
+
+
+def _literal(text: str) -> str:
+    """A value of the command line as one of Python."""
+    if re.fullmatch(rf"{_NUMBER}|{_PLACEHOLDER}|\.\.\.", text):
+        return text
+    if re.fullmatch(rf"{_NUMBER}(?:,{_NUMBER})+|[A-Z]+(?:,[A-Z]+)+", text):
+        return f"({text.replace(',', ', ')})"
+    return {"true": "True", "false": "False"}.get(text) or repr(text.strip("'\""))
+
+
+def _spelled(name: str, text: str) -> str:
+    """An option with its value as a keyword argument."""
+    key = name.replace("-", "_")
+    if name not in _DICTS or "=" not in text:
+        return f"{key}={_literal(text)}"
+    items = []
+    for item in text.split(",") if name == "columns" else [text]:
+        k, _, v = item.strip('"').partition("=")
+        low, _, high = v.partition(":")
+        value = f"({_literal(low)}, {_literal(high)})" if high and name in ("over", "free") else _literal(v)
+        items.append(f"{k if k == 'KEY' else repr(k)}: {value}")
+    return f"{key}={{{', '.join(items)}}}"
+
+
+def _known(command: str, name: str) -> Option:
+    for one in (command, *_FUNCTIONS):
+        try:
+            if name in options_of(one):
+                return options_of(one)[name]
+        except _core.UsageError:  # a command that is not there
+            continue
+    return Option("", "text", False, False)
+
+
+def _of_options(text: str, command: str) -> str:
+    def said(match: re.Match[str]) -> str:
+        name, mark, behind = match["name"], match["mark"] or "", match["next"] or ""
+        option = _known(command, name)
+        value = re.sub(r"[:;,.)?]+$", "", behind) if not behind.endswith("...") else behind
+        is_value = option.kind != "flag" and bool(value) and (
+            mark == "=" or bool(_VALUE.fullmatch(value)) or value in option.value.split("|") or value[0] in "'\"")
+        rest = behind[len(value):] if is_value else mark + behind
+        if name in _NOT_HERE:
+            return f"the program's option {name}" + rest
+        if name == "threads":
+            return "threads" + rest
+        if is_value:
+            return _spelled(name, value) + rest
+        is_subject = match.string[match.end("name"):match.end("name") + 1] == ":"
+        return name.replace("-", "_") + ("" if is_subject else "=True" if option.kind == "flag" else "=") + rest
+
+    # What follows an option may be another one.
+    before = None
+    while before != text:
+        before, text = text, re.sub(_OPTION, said, text)
+    return text
+
+
+def in_python(text: str, command: str, words: t.Sequence[str] = ()) -> str:
+    """What a command says, with options as keyword arguments and commands as functions. `words`: what it was given."""
+    for word in sorted((w for w in words if w.startswith("--") and "=" in w), key=len, reverse=True):
+        name, _, value = word[2:].partition("=")
+        if value and name not in _NOT_HERE:
+            said = re.escape(f"--{name}") + "[ =]" + re.escape(value) + r"(?![\w.])"
+            text = re.sub(said, lambda _, spelled=_spelled(name, value): spelled, text)  # type: ignore[misc]
+
+    def call(match: re.Match[str]) -> str:
+        command, rest = match["command"], match["rest"]
+        function = _FUNCTIONS.get(command)
+        if function is None:
+            return match[0]
+        if rest == " --help":
+            return f"gatewalk.options({command!r})"
+        if rest.startswith(" TABLE"):
+            function = "from_passages"
+        said, rest = [], re.sub(r" -o \S+", "", rest)
+        for part in re.findall(r"--[a-z][a-z-]*(?:[ =](?!--)[^ ]+)?|[^ ]+", rest):
+            keyword = _of_options(part, command)
+            said.append(keyword + ("..." if keyword.endswith("=") else "") if part.startswith("--") else part.split(".")[0].lower())
+        return f"gatewalk.{function}" + (f"({', '.join(said)})" if said else "")
+
+    text = re.sub(r"\bgatewalk ([a-z-]+) --help", lambda m: f"gatewalk.options({m[1]!r})", text)
+    text = _of_options(_CALL.sub(call, text), command)
+    text = re.sub(r"(?<=must be )all\b|(?<=, or )all\b|(?<=\()all(?=:)", "'all'", text)
+    output = "path" if command == "export" else "the program's option output"
+    return re.sub(r"(?<![\w-])-o(?=[ :,;.)]|$)", output, text)
