@@ -167,8 +167,8 @@ class Wrong(unittest.TestCase):
             self.refused(lambda v: gw.passages(v, CELL, **CUT, columns=NAMES), "tracks", value)
             self.refused(lambda v: gw.from_passages(v, CELL), "table", value)
             self.refused(lambda v: gw.from_counts(CHAIN, v), "states", value)
-        two_levels = pandas.DataFrame([[1, 2]], columns=pandas.MultiIndex.from_tuples([("a", "x"), ("a", "y")]))
-        self.refused(lambda v: gw.passages(v, CELL, **CUT), "tracks", two_levels)
+        five_levels = pandas.DataFrame([[1, 2]], columns=pandas.MultiIndex.from_tuples([tuple("abcdx"), tuple("abcdy")]))
+        self.refused(lambda v: gw.passages(v, CELL, **CUT), "tracks", five_levels)
         for value in (5, None, object(), [], {1}):
             self.refused(lambda v: gw.passages(tracks(9), v, **CUT, columns=NAMES), "cell", value)
             self.refused(lambda v: gw.from_passages({"body": [1]}, v), "cell", value)
@@ -236,13 +236,14 @@ class Wrong(unittest.TestCase):
 
         self.refused(lambda v: gw.lattice(UP, cell=v, trials=5), "time_s", Ragged())
 
-        class Own(Straight):
-            def pass_(self, entries, random):
-                raise ValueError("--mine stays as it is")
+        for kind in (ValueError, RuntimeError, KeyError):
+            class Own(Straight):
+                def pass_(self, entries, random, kind=kind):
+                    raise kind("--mine stays as it is")
 
-        with self.assertRaisesRegex(ValueError, "^--mine stays as it is$") as caught:
-            gw.lattice(UP, cell=Own(), trials=1)
-        self.assertIs(type(caught.exception), ValueError)
+            with self.assertRaisesRegex(kind, "^'?--mine stays as it is'?$") as caught:
+                gw.lattice(UP, cell=Own(), trials=1)
+            self.assertIs(type(caught.exception), kind)
 
     def test_no_option_is_named_as_on_the_command_line(self):
         """Whatever the sources say of an option."""
@@ -337,6 +338,9 @@ class Taken(unittest.TestCase):
         self.assertEqual(len(cut), 3)
         for pair in ([1, 2], (1, 2), np.array([1, 2])):
             pandas.testing.assert_frame_equal(gw.passages(frame, CELL, **CUT, columns=NAMES, lattice=pair, origin=[0, 0]), cut)
+        two = gw.from_counts(np.array([[6, 0, 4], [0, 3, 7]]), {"state": [0, 1], "move_x": [0, 0], "move_y": [1, 1]}, set=TWO_CELLS)
+        for starts in ([0, 1], np.array([0, 1]), (np.int64(0), "1"), ["0", 1]):  # by hand 0.6^2 and 0.3^2 cross
+            np.testing.assert_allclose([p.endings["crossed"] for p in two.predict(start=starts).starts], [0.36, 0.09], rtol=1e-12)
         outcome = gw.sweep(FIELD, {"forces.random_N": np.array([10, 20])}, trials=5, set=SMALL)
         self.assertEqual(outcome, gw.sweep(FIELD, {"forces.random_N": "10,20"}, trials=5, set=SMALL))
 
@@ -346,7 +350,7 @@ class Taken(unittest.TestCase):
         self.assertEqual((len(cut), set(cut["in"])), (6, {"S"}))  # rows of 1 m up to y = 2.4 m
         columns = frame.to_dict("list")
         # Integers, and what CSV must quote.
-        odd = {"body": 0, "frame": 'a "frame"', "x": "x, m", "y": "y; m"}
+        odd = {"body": 0, "frame": 'a "frame"', "x": "x, m", "y": " y;\n(m)"}
         renamed = frame.rename(columns=odd)
         for table, names in ((frame.set_index("frame"), NAMES), (frame.set_index(["body", "frame"]), NAMES), (columns, NAMES),
                              ({k: np.array(v) for k, v in columns.items()}, NAMES), ({k: frame[k] for k in frame}, NAMES),
@@ -388,6 +392,11 @@ class Taken(unittest.TestCase):
             self.assertEqual(len(cut), 2)
             for read in (dict(header=[0, 1, 2]), dict(header=[0, 1, 2], index_col=0)):
                 pandas.testing.assert_frame_equal(passages(pandas.read_csv(path, **read)), cut)
+            poses = pandas.read_csv(path, header=[0, 1, 2], index_col=0)
+            pandas.testing.assert_frame_equal(passages(poses.droplevel("scorer", axis=1)), cut)
+            several = pandas.concat({"mouse": poses.droplevel("scorer", axis=1)}, axis=1, names=["individuals"])
+            for table in (several, pandas.concat({"net": several}, axis=1, names=["scorer"])):
+                pandas.testing.assert_frame_equal(passages(table), cut)
             nameless = pandas.read_csv(path, header=[0, 1, 2], index_col=0)
             nameless.columns.names, nameless.index.name = [None] * 3, "frame"
             pandas.testing.assert_frame_equal(passages(nameless), cut)

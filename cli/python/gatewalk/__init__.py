@@ -118,6 +118,9 @@ def _run(command: str, subjects: dict[str, _t.Any], given: dict[str, _t.Any], ex
             path, overrides = stack.enter_context(_file_of(subject, name))
             words.append(path)
             words += _words_of(command, {"set": overrides})
+        start = _plain(given.get("start"))
+        if isinstance(start, list) and any(isinstance(subject, Matrix) and subject._is_of_states() for subject in subjects.values()):
+            given["start"] = [str(state) if isinstance(state, int) else state for state in start]  # several numbers, not one place
         words += _words_of(command, given) + (extra or []) + ["--quiet"]
         if gives_json:
             words.append("--json=-")
@@ -129,15 +132,16 @@ def _run(command: str, subjects: dict[str, _t.Any], given: dict[str, _t.Any], ex
             status, result = _core.run(command, words, told=bars, warned=warned.append, cell=cell, matrices=[m._core for m in matrices])
         except (SceneError, UsageError, BadFile, RuntimeError) as error:
             said = _in_python(_renamed(str(error)), command, words)
-            if said == str(error):
+            is_cells = error.__traceback__ is not None and error.__traceback__.tb_next is not None  # of code in Python
+            if is_cells or said == str(error):
                 raise
-            raise type(error)(said) from error.__cause__
+            raise type(error)(said) from None
         finally:
             if bars is not None:
                 bars.close()
             for text in warned:
                 _warnings.warn(_in_python(_renamed(text), command, words), GatewalkWarning, stacklevel=_outside())
-    if subjects and not matrices:
+    if subjects and not isinstance(next(iter(subjects.values())), Matrix):
         result = _without_folder(result, words[0])
     if status != 0 and given.get("strict"):
         raise RuntimeError(f"gatewalk.{command}: the result's status is not clean")
@@ -201,7 +205,8 @@ def predict(subject: _t.Any, scene: _t.Any = None, *, accuracy: float | None = N
     accuracy : float, optional
         Of all shares together (total variation, 95 %); 0.02 without it.
     start : tuple or list of tuples, optional
-        (d, vx, vy) in m and m/s, of each start: where and how fast a body enters the field.
+        (d, vx, vy) in m and m/s, of each start: where and how fast a body enters the field. Of a chain from elsewhere the number
+        or name of a state, or a list of these.
     seed : int, optional
         Of all trials; 1 without it.
     cell : Cell, optional

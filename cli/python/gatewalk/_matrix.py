@@ -61,6 +61,10 @@ class Matrix:
             raise _core.BadFile(f"{self._file}: was changed or removed since it was loaded; gatewalk.load(...) reads it again")
         return self._file
 
+    def _is_of_states(self) -> bool:
+        """Whether it is a chain from elsewhere, whose states have numbers and no places."""
+        return list(self._core.states()) == ["face", "state_low", "state_high"]
+
     @property
     def matrix(self) -> t.Any:
         """Probabilities, a scipy.sparse.csr_matrix of shape (states, states + 1): rows are ways in, columns ways into the
@@ -297,6 +301,11 @@ def _is_column(value: t.Any) -> bool:
     return isinstance(value, (list, tuple, range)) or (hasattr(value, "tolist") and getattr(value, "ndim", 1) == 1)
 
 
+def _heading(name: t.Any) -> str:
+    """A column's name on one line, without blanks at its ends."""
+    return " ".join(str(name).split())
+
+
 def _csv_of_columns(columns: t.Mapping[t.Any, t.Any], parameter: str) -> str:
     """A dict of lists or arrays as CSV, every digit; what is missing as nothing."""
     for name, column in columns.items():
@@ -311,26 +320,29 @@ def _csv_of_columns(columns: t.Mapping[t.Any, t.Any], parameter: str) -> str:
 
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow([str(name) for name in columns])
+    writer.writerow(map(_heading, columns))
     writer.writerows(zip(*([field(value) for value in plain(column)] for column in columns.values())))
     return out.getvalue()
 
 
 def _csv_of_frame(frame: t.Any, parameter: str) -> str:
     """A DataFrame as CSV, every digit; numbers that are none as nothing. Levels of the index that have a name are columns."""
-    poses = {3: ["scorer", "bodyparts", "coords"], 4: ["scorer", "individuals", "bodyparts", "coords"]}  # DeepLabCut's
     levels = frame.columns.nlevels
-    with_index = False
-    if levels > 1:
-        if levels not in poses:
-            raise _core.UsageError(f"{parameter}: its columns have {levels} levels; DeepLabCut's have 3 or 4 (scorer, individuals, bodyparts, "
-                                   "coords), other tables one: table.columns = [...] names them")
-        with_index = list(frame.columns[0]) != poses[levels]  # else the frames are its first column
-        if with_index:
-            frame = frame.rename_axis(index=None, columns=poses[levels])
-    elif named := [name for name in frame.index.names if name is not None and name not in frame.columns]:
-        frame = frame.reset_index(level=named)
+    poses = ["scorer", *(["individuals"] if levels == 4 or "individuals" in frame.columns.names else []), "bodyparts", "coords"]  # DeepLabCut's
     out = io.StringIO()
+    if levels == 1:
+        named = [name for name in frame.index.names if name is not None and name not in frame.columns]
+        frame = frame.reset_index(level=named) if named else frame
+        frame.to_csv(out, index=False, header=list(map(_heading, frame.columns)), float_format="%.17g")
+        return out.getvalue()
+    if levels == len(poses) - 1:  # without the scorer
+        frame = frame.set_axis(type(frame.columns).from_tuples([("scorer", *one) for one in frame.columns]), axis=1)
+    elif levels != len(poses):
+        raise _core.UsageError(f"{parameter}: its columns have {levels} levels; DeepLabCut's have {', '.join(poses)}, other tables one: "
+                               "table.columns = [...] names them")
+    with_index = list(frame.columns[0]) != poses  # else the frames are its first column
+    if with_index:
+        frame = frame.rename_axis(index=None, columns=poses)
     frame.to_csv(out, index=with_index, float_format="%.17g")
     return out.getvalue()
 
@@ -574,6 +586,9 @@ def passages(tracks: t.Any, cell: t.Any, **more: t.Any) -> t.Any:
     with contextlib.ExitStack() as stack:
         path, _ = stack.enter_context(file_of(cell, "cell"))
         names = _table_files(stack, tracks, "tracks")
+        columns = more.get("columns")
+        if isinstance(columns, t.Mapping) and not isinstance(tracks, (str, os.PathLike)):
+            more["columns"] = {k: v if v is None else _heading(v) for k, v in plain(columns).items()}
         out = os.path.join(stack.enter_context(tempfile.TemporaryDirectory()), "runs.csv")
         said = _run("passages", names, dict(more), [f"--cell={path}", f"--output={out}"])
         table = pandas.read_csv(out, comment="#")

@@ -186,6 +186,8 @@ def _keys_of(set: t.Any) -> dict[str, t.Any]:  # noqa: A002
 
 def _path(value: t.Any, parameter: str, allowed: str) -> str:
     path = path_of(value, parameter, allowed)
+    if isinstance(value, str) and re.search(r"[=\[{]", value) and not os.path.exists(value):
+        raise _core.SceneError(f"{parameter}: there is no file {value!r}, and a text has several lines (a line break at its end will do)")
     return f"./{path}" if path.startswith("-") else path
 
 

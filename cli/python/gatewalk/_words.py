@@ -46,8 +46,8 @@ def path_of(value: t.Any, parameter: str, allowed: str = "a path") -> str:
     if not isinstance(value, (str, os.PathLike)):
         refuse(parameter, allowed, value)
     path = os.fsdecode(value)
-    if "\0" in path:
-        raise _core.UsageError(f"{parameter}: {path!r} holds a character that no path may hold")
+    if not path or "\0" in path:
+        refuse(parameter, allowed, value)
     return path
 
 
@@ -118,7 +118,8 @@ _DICTS: dict[str, tuple[t.Callable[[t.Any], str], str]] = {
     "columns": (_word, '{"x": "POSITION_X", "y": "POSITION_Y"}'),
 }
 #: What others take, where the help page has no word for it.
-_OTHERS = {"matrix": "a Matrix or the path of one", "starts": "'all', or a (low, high) each of d, vx and vy"}
+_OTHERS = {"matrix": "a Matrix or the path of one", "start": "(d, vx, vy), the number or name of a state, or a list of these",
+           "starts": "'all', or a (low, high) each of d, vx and vy"}
 
 
 def _allowed(name: str, option: Option) -> str:
@@ -202,7 +203,7 @@ def words_of(command: str, given: dict[str, t.Any]) -> list[str]:
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _PLACEHOLDER = r"[A-Z][A-Z0-9/|]*(?:\.[a-z|0-9]+)?"
 #: A word that is the value of the option in front of it, though nobody gave it.
-_VALUE = re.compile(rf"{_NUMBER}(?:[,:]{_NUMBER})*|[A-Z]+(?:,[A-Z]+)+|{_PLACEHOLDER}|[\w.]+=\S+|all|auto|seen")
+_VALUE = re.compile(rf"{_NUMBER}(?:[,:]{_NUMBER})*|[A-Z]+(?:,[A-Z]+)+|{_PLACEHOLDER}|[\w.]+=\S+|all|auto|seen|[\w./~-]+\.(?:toml|nc|csv|json)")
 _NEXT = r"""(?:'[^']*'|"[^"]*"|[^\s'"]+)"""
 _OPTION = rf"(?<![\w./-])--(?P<name>[a-z][a-z0-9]*(?:-[a-z0-9]+)*)(?:(?P<mark>[ =])(?P<next>{_NEXT}))?"
 _CALL = re.compile(rf"\bgatewalk (?P<command>[a-z-]+)(?P<rest>(?: (?:[A-Z][A-Z|]*(?:\.\w+)?\b|-o \S+|--[a-z][a-z-]*(?:[ =](?:{_VALUE.pattern}))?))*)")
@@ -210,7 +211,7 @@ _CALL = re.compile(rf"\bgatewalk (?P<command>[a-z-]+)(?P<rest>(?: (?:[A-Z][A-Z|]
 
 def _literal(text: str) -> str:
     """A value of the command line as one of Python."""
-    if re.fullmatch(rf"{_NUMBER}|{_PLACEHOLDER}|\.\.\.", text):
+    if re.fullmatch(rf"{_NUMBER}|{_PLACEHOLDER}|\.\.\.|\[.*\]", text):
         return text
     if re.fullmatch(rf"{_NUMBER}(?:,{_NUMBER})+|[A-Z]+(?:,[A-Z]+)+", text):
         return f"({text.replace(',', ', ')})"
