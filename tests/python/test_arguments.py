@@ -177,6 +177,24 @@ class Wrong(unittest.TestCase):
         for value in (object(), {}, [], True, 7, "nobody", 1.5):
             self.refused(lambda v: gw.from_counts(CHAIN, STATES, start=v), "start", value)
 
+    def test_files_that_are_not_there(self):
+        chain, scene, seen = matrix(), gw.Scene(FIELD, SMALL), {"free": {"forces.random_N": (10, 40)}}
+        for name in ("predict", "lattice", "validate", "analyze", "rare", "plan", "design", "power", "build"):
+            self.refused(getattr(gw, name), "subject", "nonsense.toml")
+        for name in ("gate", "trace", "landscape"):
+            self.refused(getattr(gw, name), "scene", Path("nonsense.toml"))
+        for call, parameter in ((gw.load, "path"), (gw.walk, "matrix"), (gw.Scene, "source"), (lambda v: gw.merge([v]), "parts"),
+                                (lambda v: chain.predict(scene=v), "scene"), (lambda v: gw.from_passages(v, CELL), "table"),
+                                (lambda v: gw.from_passages({"body": [1]}, v), "cell"), (lambda v: gw.passages(v, CELL), "tracks"),
+                                (lambda v: gw.from_counts(v, STATES), "chain"), (lambda v: gw.from_counts(CHAIN, v), "states"),
+                                (lambda v: gw.fit(scene, v, **seen), "observed"), (lambda v: gw.validate(scene, observed=[v]), "observed")):
+            for value in ("nonsense", Path("nonsense") / "file.csv", ""):
+                self.refused(call, parameter, value)
+        with self.assertRaisesRegex(gw.SceneError, "a text has several lines"):
+            gw.Scene("[forces]")
+        with self.assertRaises(gw.BadFile):
+            gw.load("nonsense.nc")
+
     def test_others(self):
         chain, p, sweep, trace = matrix(), matrix().predict(), gw.sweep(FIELD, {"forces.random_N": [1]}, trials=1), gw.trace(FIELD)
         for value in (5, None, object(), [], {}, b"\xff\0", {1}):

@@ -33,7 +33,7 @@ from ._cell import BROKEN, TRAPPED, Cell, check_cell
 from ._core import BadFile, SceneError, UsageError
 from ._results import Analysis, Landscape, Prediction, Result, Sweep, Trace
 from ._scene import Scene, called as _called, file_of as _file_of, is_of_text as _is_of_text, renamed as _renamed
-from ._words import in_python as _in_python, options_of as _options_of, path_of as _path_of, plain as _plain, refuse as _refuse
+from ._words import in_python as _in_python, input_of as _input_of, options_of as _options_of, plain as _plain, refuse as _refuse
 from ._words import whole as _whole, words_of as _words_of
 
 __version__: str = _core.version
@@ -575,7 +575,7 @@ def merge(parts: _t.Sequence[_t.Any], *, progress: bool | None = None) -> Result
     """
     if not isinstance(parts, (list, tuple)) or not parts:
         _refuse("parts", "a list of paths: merge takes a list of all parts", parts)
-    paths = {f"parts[{k}]": _path_of(part, f"parts[{k}]") for k, part in enumerate(parts)}
+    paths = {f"parts[{k}]": _input_of(part, f"parts[{k}]", BadFile) for k, part in enumerate(parts)}
     command = ""
     with _contextlib.suppress(OSError, ValueError, IndexError, KeyError), open(paths["parts[0]"], "rb") as file:
         command = _json.loads(file.read(100_000).split(b"\n")[1])["command"]

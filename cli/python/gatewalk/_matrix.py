@@ -18,7 +18,7 @@ from . import _core, _run
 from ._cell import Cell
 from ._results import Analysis, Prediction, Result, require_axes
 from ._scene import OWN_ERRORS, called, file_of
-from ._words import in_python, path_of, plain, refuse
+from ._words import in_python, input_of, path_of, plain, refuse
 
 
 def _unlink(path: str, owner: int | None = None) -> None:
@@ -35,7 +35,7 @@ class Matrix:
     """
 
     def __init__(self, path: t.Any, _owned: bool = False) -> None:
-        self._file: str = os.path.abspath(path_of(path, "path"))
+        self._file: str = os.path.abspath(input_of(path, "path", _core.BadFile))
         self._name = "the matrix" if _owned else self._file  # in messages
         before = self._stamp()
         try:
@@ -373,7 +373,7 @@ def _csv_of(table: t.Any, parameter: str) -> str:
 def _table_file(table: t.Any, parameter: str, number: str = "") -> t.Iterator[str]:
     """A file with the table, or with counts by ending; a path as it is. `number`: which one of several."""
     if isinstance(table, (str, os.PathLike)):
-        yield path_of(table, parameter)
+        yield input_of(table, parameter)
         return
     with tempfile.TemporaryDirectory() as folder:
         if hasattr(table, "to_netcdf") and not hasattr(table, "to_csv"):
@@ -485,7 +485,7 @@ def _from_zero(text: str) -> str:
 def _chain_file(chain: t.Any) -> t.Iterator[str]:
     """A file with a sparse or dense matrix, or with trajectories; a path as it is."""
     if isinstance(chain, (str, os.PathLike)):
-        yield os.fspath(chain)
+        yield input_of(chain, "chain")
         return
     import numpy as np
     from scipy.sparse import csr_matrix, issparse, save_npz

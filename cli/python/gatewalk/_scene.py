@@ -19,7 +19,7 @@ import threading
 import typing as t
 
 from . import _core
-from ._words import path_of, plain, refuse
+from ._words import input_of, plain, refuse
 
 #: What the program says; a cell's own errors come out as they are.
 OWN_ERRORS = (_core.SceneError, _core.UsageError, _core.BadFile)
@@ -185,9 +185,7 @@ def _keys_of(set: t.Any) -> dict[str, t.Any]:  # noqa: A002
 
 
 def _path(value: t.Any, parameter: str, allowed: str) -> str:
-    path = path_of(value, parameter, allowed)
-    if isinstance(value, str) and re.search(r"[=\[{]", value) and not os.path.exists(value):
-        raise _core.SceneError(f"{parameter}: there is no file {value!r}, and a text has several lines (a line break at its end will do)")
+    path = input_of(value, parameter, _core.BadFile if parameter == "matrix" else _core.SceneError, allowed)
     return f"./{path}" if path.startswith("-") else path
 
 

@@ -51,6 +51,15 @@ def path_of(value: t.Any, parameter: str, allowed: str = "a path") -> str:
     return path
 
 
+def input_of(value: t.Any, parameter: str, error: type[ValueError] = _core.UsageError, allowed: str = "a path") -> str:
+    """The path of a file that is there. Raises UsageError for what is no path, `error` where there is nothing."""
+    path = path_of(value, parameter, allowed)
+    if not os.path.exists(path):
+        text = "; a text has several lines, a line break at its end will do" if isinstance(value, str) and re.search(r"[=\[{]", value) else ""
+        raise error(f"{parameter}: {path}: there is no such file{text}")
+    return path
+
+
 def whole(value: t.Any, what: str, least: int, most: int) -> int:
     """A whole number, of numpy too. Raises UsageError for anything else."""
     try:
