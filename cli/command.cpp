@@ -817,6 +817,10 @@ const LoadedMatrix* Options::loaded(const std::string& path) const {
   return nullptr;
 }
 
+bool Options::takes_json() const {
+  return has("json") || (state_->has_table && has("csv")) || state_->given_out;
+}
+
 void Options::give_out(const Json& json, const std::string& table, int indent) const {
   const std::string csv = state_->has_table ? text("csv") : "";
   if (!state_->given_out && is_first_rank()) {

@@ -43,7 +43,7 @@ void give_out(const Options& options, std::vector<dynamics::Transitions> matrice
       lattice::cell_matrix_file(std::move(matrices), cells, pool, std::move(text));
   options.keep_old(path);
   lattice::write_matrix(path, file);
-  Json json = to_json(file, path);
+  Json json = options.takes_json() ? to_json(file, path) : Json();  // of many states it is large
   json["matrix"] = path;
   json["recorded"] = to_json(pool);
   json["made_by"] = made_by;
@@ -58,16 +58,17 @@ int build_recorded(const Options& options) {
           "strict", "shard", "part", "checkpoint", "resume", "max-time"},
          "for recorded runs");
   lattice::CellFile cells = lattice::read_cell_file(options.text("cell"), options.overrides());
-  const lattice::RecordedRuns runs = lattice::read_runs(options.text("scene"), cells);
+  lattice::RecordedRuns runs = lattice::read_runs(options.text("scene"), cells);
   for (const std::string& text : runs.remarks) options.warn(options.text("scene") + ": " + text);
-  const lattice::RunPool pool = lattice::pool_of(runs);
+  const auto unknown = runs.unknown;
+  const lattice::RunPool pool = lattice::pool_of(std::move(runs));
   const lattice::Problem problem = lattice::problem_of(cells, pool);
   for (const std::string& text : doubts(pool, problem)) options.warn(text);
   if (const std::string text = far_from_faces(pool, problem); !text.empty()) options.warn(text);
   const auto& costs = problem.map().section.costs;
   for (std::size_t c = 0; c < costs.size(); ++c)
-    if (runs.unknown[c] > 0)
-      options.warn(costs[c].key + " is blank in " + std::to_string(runs.unknown[c]) +
+    if (unknown[c] > 0)
+      options.warn(costs[c].key + " is blank in " + std::to_string(unknown[c]) +
                    " passages: analyze gives none of it");
   auto matrices = lattice::cell_matrices(problem, pool, dynamics::kEntriesPerLeaf);
   const Json states = {{"bins", "tree"},

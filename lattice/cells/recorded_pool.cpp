@@ -10,10 +10,10 @@ namespace gatewalk::lattice {
 
 using namespace dynamics;
 
-RunPool pool_of(const RecordedRuns& runs) {
+RunPool pool_of(RecordedRuns runs) {
   RunPool pool;
   FieldTrials& each = pool.scattered.each;
-  each.passages = runs.passages;
+  each.passages = std::move(runs.passages);
   for (const RecordedTrial& trial : runs.trials) {
     pool.scattered.starts.push_back(trial.start);
     each.bodies.push_back(trial.body);

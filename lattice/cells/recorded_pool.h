@@ -14,7 +14,7 @@
 namespace gatewalk::lattice {
 
 /// All runs of all trials; those of one body go together when trials are taken in groups.
-[[nodiscard]] RunPool pool_of(const RecordedRuns& runs);
+[[nodiscard]] RunPool pool_of(RecordedRuns runs);
 
 /// The other way round: simulated trials from a start, each of a body of its own, added to `runs`;
 /// and the cells that they ran through, as a cell file. Who was trapped is so by the table: the
