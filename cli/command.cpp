@@ -14,6 +14,7 @@
 #include <iostream>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <typeinfo>
 
 #include "cli/arguments.h"
@@ -644,17 +645,17 @@ bool Options::parse(const Arguments& arguments) {
                      state_->synopsis.substr(0, state_->synopsis.find(' ')) + " --help");
   }
   if (has("help")) {
-    std::cout << "gatewalk " << state_->synopsis << "\n\n" << state_->about << "\n\n";
+    std::ostringstream page;
+    page << "gatewalk " << state_->synopsis << "\n\n" << state_->about << "\n\n";
     for (const auto& [name, help] : state_->positional_help) {
       const std::string argument = upper_case(name);
-      std::cout << "  " << argument
-                << std::string(24 - std::min<std::size_t>(22, argument.size()), ' ') << help
-                << "\n";
+      page << "  " << argument << std::string(24 - std::min<std::size_t>(22, argument.size()), ' ')
+           << help << "\n";
     }
-    std::cout << "\n"
-              << state_->own << "\n"
-              << state_->shared << "\nExample:\n  " << state_->example << "\n";
-    if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
+    page << "\n"
+         << state_->own << "\n"
+         << state_->shared << "\nExample:\n  " << state_->example << "\n";
+    write_text_atomically("-", page.str());
     return false;
   }
   if (!state_->no_scene.empty() && has("set"))

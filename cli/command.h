@@ -72,7 +72,14 @@ struct CommandWords {
 };
 
 /// Exit statuses, a contract for scripts.
-enum ExitCode : int { kFine = 0, kFailure = 1, kWrongUse = 2, kResumable = 75, kStopped = 130 };
+enum ExitCode : int {
+  kFine = 0,
+  kFailure = 1,
+  kWrongUse = 2,
+  kResumable = 75,
+  kStopped = 130,
+  kReaderWentAway = 141  // as a shell says it of a process that SIGPIPE ended
+};
 
 /// The command line itself is wrong.
 class UsageError : public std::runtime_error {

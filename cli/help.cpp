@@ -72,7 +72,8 @@ std::string exit_status() {
   return ".SH EXIT STATUS\n.TP\n0\nfine\n.TP\n1\nfailure; with \\-\\-strict also a result "
          "whose status is not clean\n.TP\n2\nwrong use or input\n.TP\n75\nstopped; the same "
          "command with "
-         "\\-\\-resume goes on\n.TP\n130\nstopped by a signal, nothing was kept\n";
+         "\\-\\-resume goes on\n.TP\n130\nstopped by a signal, nothing was kept\n.TP\n141\nthe "
+         "reader of a pipe went away, as in | head; all other files are written\n";
 }
 
 std::string manual_of(const Page& page) {

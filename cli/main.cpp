@@ -7,6 +7,7 @@
 #include <iostream>
 #include <iterator>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -16,9 +17,11 @@
 #include "cli/kept/ranks.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
+#include "cli/terminal/output.h"
 #include "lattice/scene/scene.h"
 #include "lattice/text/edit_distance.h"
 #include "markov/formats/counts.h"
+#include "markov/formats/file.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -40,7 +43,7 @@ void print_help(std::ostream& out) {
          "example.\ngatewalk --version --verbose says what it was built with.\n"
          "exit status: 0 fine, 1 failure (with --strict also a result whose status is not clean),\n"
          "2 wrong use or input, 130 stopped by ctrl-C, SIGTERM, SIGHUP or SIGUSR1, 75 stopped and\n"
-         "--resume goes on\n";
+         "--resume goes on, 141 the reader of a pipe went away (| head)\n";
 }
 
 /// The command of that name; without one says so, and which may be meant.
@@ -73,16 +76,17 @@ int run(const std::vector<std::string>& words) {
     return command ? command->run({"--help"}) : kWrongUse;
   }
   if (words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
-    print_help(std::cout);
-    return std::cout.flush() ? kFine : kFailure;
+    std::ostringstream text;
+    print_help(text);
+    write_text_atomically("-", text.str());
+    return kFine;
   }
   if (words[0] == "--version" || words[0] == "-V") {
-    std::cout << "gatewalk " << kVersion << " (" << kCommit << ")\n";
-    if (words.size() == 2 && words[1] == "--verbose")
-      std::cout << kBuiltWith;
-    else if (words.size() > 1)
-      throw UsageError("--version takes --verbose alone");
-    return std::cout.flush() ? kFine : kFailure;
+    const bool verbose = words.size() == 2 && words[1] == "--verbose";
+    if (words.size() > 1 && !verbose) throw UsageError("--version takes --verbose alone");
+    write_text_atomically("-", std::string("gatewalk ") + kVersion + " (" + kCommit + ")\n" +
+                                   (verbose ? kBuiltWith : ""));
+    return kFine;
   }
   const Command* const command = find_command(words[0]);
   return command ? command->run(std::vector(words.begin() + 1, words.end())) : kWrongUse;
@@ -128,7 +132,8 @@ int main(int argc, char** argv) {
     return static_cast<int>(code);
   };
   try {
-    return cli::run({argv + 1, argv + argc});
+    const int status = cli::run({argv + 1, argv + argc});
+    return status == cli::kFine && cli::reader_went_away() ? cli::kReaderWentAway : status;
   } catch (const cli::Interrupted&) {
     std::cerr << cli::stopped_text();
     return cli::stopped_status();
@@ -136,6 +141,8 @@ int main(int argc, char** argv) {
     std::cerr << "gatewalk: " << part.file
               << " is done; gatewalk merge makes one run of all parts\n";
     return cli::kFine;
+  } catch (const markov::BrokenPipe&) {
+    return cli::kReaderWentAway;
   } catch (const cli::UsageError& e) {
     return fail(cli::kWrongUse, e);
   } catch (const gatewalk::lattice::SceneError& e) {

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -18,13 +19,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::atomic<bool> has_lost_reader{false};
+
 void write_to_stdout(std::string_view text) {
   const markov::IgnoreBrokenPipe guard;
   errno = EIO;  // stands when std::cout had failed before
   // Flush first: what was printed before comes before.
-  if (!std::cout.flush() || std::fflush(stdout) != 0 || !markov::write_all(STDOUT_FILENO, text))
-    throw std::runtime_error(std::string("standard output: cannot be written: ") +
-                             std::strerror(errno));
+  if (std::cout.flush() && std::fflush(stdout) == 0 && markov::write_all(STDOUT_FILENO, text))
+    return;
+  const std::string reason =
+      std::string("standard output: cannot be written: ") + std::strerror(errno);
+  if (errno == EPIPE) throw markov::BrokenPipe(reason);
+  throw std::runtime_error(reason);
 }
 
 }  // namespace
@@ -33,10 +39,14 @@ void require_writable(const std::string& path) {
   if (path != "-") markov::require_replaceable(path);
 }
 
-void write_text_atomically(const std::string& path, std::string_view text) {
+void write_text_atomically(const std::string& path, std::string_view text) try {
   if (path == "-") return write_to_stdout(text);
   markov::replace_file(path, text);
+} catch (const markov::BrokenPipe&) {
+  has_lost_reader = true;
 }
+
+bool reader_went_away() { return has_lost_reader; }
 
 void require_possible_folder(const std::string& name) {
   fs::path folder = name;

@@ -8,9 +8,12 @@
 namespace gatewalk::cli {
 
 /// Replaces `path` with `text`, or leaves it as it was (markov/formats/file.h). "-" is standard
-/// output. Throws std::runtime_error naming the file and the reason; no temporary file stays
-/// behind.
+/// output. A pipe whose reader went away takes no more text, which is no error (`| head -1`).
+/// Throws std::runtime_error naming the file and the reason; no temporary file stays behind.
 void write_text_atomically(const std::string& path, std::string_view text);
+
+/// Whether the reader of a pipe went away while text was written to it.
+[[nodiscard]] bool reader_went_away();
 
 /// Throws std::runtime_error, as write_text_atomically would, when `path` cannot be written to: to
 /// be asked before long work, not after it.

@@ -20,7 +20,10 @@ namespace {
   throw std::runtime_error(name + ": cannot be written: " + reason);
 }
 
-[[noreturn]] void fail_with_errno(const std::string& name) { fail(name, std::strerror(errno)); }
+[[noreturn]] void fail_with_errno(const std::string& name) {
+  if (errno == EPIPE) throw BrokenPipe(name + ": cannot be written: " + std::strerror(errno));
+  fail(name, std::strerror(errno));
+}
 
 class FileDescriptor {
  public:

@@ -4,16 +4,24 @@
 
 #include <csignal>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
 namespace gatewalk::markov {
 
+/// The reader of a pipe went away before everything was written.
+class BrokenPipe : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Replaces `path` by `bytes`, or leaves it as it was: a temporary file beside it is written,
 /// synced and renamed, then the folder is synced. An existing file keeps its permissions, a new one
 /// follows the umask. A pipe or a character device (/dev/null, >(command)) cannot be replaced and
 /// is written into; links to anything else, folders, sockets and block devices are refused. Throws
-/// std::runtime_error naming the file and the reason; no temporary file stays behind.
+/// std::runtime_error naming the file and the reason, BrokenPipe where a pipe has no reader any
+/// more; no temporary file stays behind.
 void replace_file(const std::string& path, std::string_view bytes);
 
 /// Takes the next bytes of a file.
