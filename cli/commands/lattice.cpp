@@ -16,7 +16,8 @@ namespace gatewalk::cli {
 int run_lattice(const Arguments& arguments) {
   Options options(
       "lattice SCENE [options]",
-      "Runs the full dynamics through the field, gate by gate, and counts the final gates.",
+      "Simulates the field: the full dynamics, gate by gate. Counts the final gates. `gatewalk\n"
+      "simulate` is another name of this command.",
       "gatewalk lattice scenes/field.toml --trials 10000 --seed 1 --json lattice.json");
   options.scene();
   options.add_trials_and_seed("trials through the field");

@@ -43,6 +43,15 @@ expect 2 'did you mean predict?' "$gatewalk" help predictt
 expect 2 'did you mean chart-field?' "$gatewalk" chart_field
 "$gatewalk" fly 2>&1 | grep -q 'did you mean' && fail "fly is no misspelled command"
 
+# simulate is lattice under another name; what the result keeps of it is one name.
+for name in lattice simulate; do "$gatewalk" $name "$scenes/field.toml" --trials 20 --json $name.json --quiet || fail "$name"; done
+cmp lattice.json simulate.json || fail "simulate is not lattice"
+holds '.made_by.command | startswith("gatewalk lattice ")' simulate.json
+"$gatewalk" help simulate | cmp -s - <("$gatewalk" help lattice) || fail "help simulate is not help lattice"
+"$gatewalk" help --write share
+grep -q "'simulate:another name of lattice'" share/zsh/vendor-completions/_gatewalk || fail "zsh does not complete simulate"
+grep -q "^    simulate) options='.*--passages" share/bash-completion/completions/gatewalk || fail "bash does not complete simulate"
+
 # Of an option given twice the last one counts, and that is said; options that may be repeated are lists.
 "$gatewalk" gate "$scenes/field.toml" --trials 1 --seed 3 --trials 20 --seed 4 --set forces.random_N=3 --set forces.propulsion_N=4 --json twice.json >table.txt 2>err.txt
 "$gatewalk" gate "$scenes/field.toml" --trials 20 --seed 4 --set forces.random_N=3 --set forces.propulsion_N=4 --json once.json >/dev/null 2>&1
