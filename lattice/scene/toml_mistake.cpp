@@ -58,6 +58,28 @@ std::string given_twice(const Split& split) {
                   : "does not fit what the lines before it give";
 }
 
+/// Whether `text` ends inside an inline table { }: not in an array within one, where lines may
+/// break. Strings and comments may have any brackets.
+bool ends_in_inline_table(std::string_view text) {
+  std::string open;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '#') {
+      at = std::min(text.find('\n', at), text.size());
+    } else if (c == '"' || c == '\'') {
+      const std::string quotes(text.substr(at, 3) == std::string(3, c) ? 3 : 1, c);
+      for (at += quotes.size(); at < text.size() && !text.substr(at).starts_with(quotes); ++at)
+        if (c == '"' && text[at] == '\\') ++at;
+      at += quotes.size() - 1;
+    } else if (c == '{' || c == '[') {
+      open += c;
+    } else if ((c == '}' || c == ']') && !open.empty()) {
+      open.pop_back();
+    }
+  }
+  return open.ends_with('{');
+}
+
 std::string mistake_in_value(std::string_view value) {
   if (value.empty() || value[0] == '#') return "has no value";
   if (value[0] == '"' || value[0] == '\'')
@@ -92,6 +114,9 @@ std::string toml_mistake(std::string_view text, std::size_t line) {
   // A comment may have any text but such.
   if (!parsed("# " + std::string(row)))
     return "has letters that are not UTF-8, or control characters";
+  if (ends_in_inline_table(text.substr(0, split.before.size() + split.row.size())))
+    return "an inline table { } must stand on one line: close it here, or write it as a table "
+           "[NAME] with a line for each key";
   if (parsed(row)) return given_twice(split);
   if (row.starts_with('[')) return "a table must be its name in brackets, as in [body]";
   const std::size_t equals = row.find('=');

@@ -686,6 +686,18 @@ TEST(Scene, TextThatIsNoToml) {
                    "1: body.mass_kg = 0,25: a number has a decimal point, as "
                    "in 0.25"},
            {"body.mass_kg =", "1: body.mass_kg =: has no value"},
+           {"[terrain]\ntypes.a = { stiffness_left_Nm_per_rad = 1,\n  damping_Nms_per_rad = 2 }",
+            "2: types.a = { stiffness_left_Nm_per_rad = 1,: an inline table { } must stand on one "
+            "line: close it here, or write it as a table [NAME] with a line for each key"},
+           {"body = { mass_kg = 1.0 # a comment }\n}",
+            "1: body = { mass_kg = 1.0 # a comment }: an inline table { } must stand on one line: "
+            "close it here, or write it as a table [NAME] with a line for each key"},
+           {"cell = [\n  { name = \"{S\", move = [\n0, 1],\n    odd = [] } ]",
+            "3: 0, 1],: an inline table { } must stand on one line: close it here, or write it as "
+            "a table [NAME] with a line for each key"},
+           {"body = { mass_kg = [\n1, ,2] }",
+            "2: 1, ,2] }: must be KEY = VALUE, as in "
+            "body.mass_kg = 0.25"},
            {"\n[body\nmass_kg = 1", "2: [body: a table must be its name in brackets, as in [body]"},
            {"body.mass_kg = 1\nbody.radius_m = 2\nbody.mass_kg = 2",
             "3: body.mass_kg = 2: is given in line 1 already"},
