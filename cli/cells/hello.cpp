@@ -132,7 +132,8 @@ void read_coordinates(const Json& list, dynamics::Section& section) {
   }
 }
 
-void read_faces(const Json& list, dynamics::Section& section) {
+/// `symmetric`: so are the cells.
+void read_faces(const Json& list, dynamics::Section& section, bool symmetric) {
   std::vector<std::string> mirrors;
   for (const Json& one : list) {
     const std::string where = "face " + std::to_string(section.faces.size() + 1);
@@ -150,17 +151,22 @@ void read_faces(const Json& list, dynamics::Section& section) {
     if (table.find("odd") != nullptr)
       for (const Json& name : table.list("odd"))
         face.odd |= static_cast<std::uint8_t>(1U << coordinate_of(section, name, where));
-    mirrors.push_back(table.find("mirror") == nullptr ? face.name : table.word("mirror"));
+    mirrors.push_back(table.find("mirror") == nullptr ? "" : table.word("mirror"));
     section.faces.push_back(std::move(face));
   }
+  const std::string allowed = "'mirror' must name a face: " + dynamics::names_of(section.faces);
+  std::vector<int> images(section.faces.size(), dynamics::kNoMirror);
   for (std::size_t f = 0; f < section.faces.size(); ++f) {
+    if (mirrors[f].empty()) continue;
     const auto image = std::find_if(section.faces.begin(), section.faces.end(),
                                     [&](const dynamics::Face& o) { return o.name == mirrors[f]; });
-    if (image == section.faces.end())
-      refuse("face " + std::to_string(f + 1) +
-             ": 'mirror' must name a face: " + dynamics::names_of(section.faces));
-    section.faces[f].mirror = static_cast<int>(image - section.faces.begin());
+    if (image == section.faces.end()) refuse("face " + std::to_string(f + 1) + ": " + allowed);
+    images[f] = static_cast<int>(image - section.faces.begin());
   }
+  dynamics::set_mirrors(section.faces, images, symmetric);
+  for (const dynamics::Face& face : section.faces)
+    if (symmetric && face.mirror == dynamics::kNoMirror)
+      refuse("face " + face.name + " of symmetric cells needs 'mirror': " + allowed);
 }
 
 void read_costs(const Json& list, dynamics::Section& section) {
@@ -206,13 +212,13 @@ Hello read_hello(std::string_view line) {
   read_coordinates(table.list("coordinates"), hello.section);
   if (hello.section.coordinates.size() > dynamics::kMostCoordinates)
     refuse("'coordinates' must be at most " + std::to_string(dynamics::kMostCoordinates));
-  read_faces(table.list("faces"), hello.section);
-  read_costs(table.list("costs"), hello.section);
-  hello.section.validate();
   if (const Json* const symmetric = table.find("symmetric")) {
     if (!symmetric->is_boolean()) table.refuse_value("symmetric", "true or false");
     hello.symmetric = symmetric->get<bool>();
   }
+  read_faces(table.list("faces"), hello.section, hello.symmetric);
+  read_costs(table.list("costs"), hello.section);
+  hello.section.validate();
   hello.normals = table.whole("normals", 0, kMostNoise, 0);
   hello.uniforms = table.whole("uniforms", 0, kMostNoise, 0);
   if (hello.normals > 0 && hello.uniforms > 0) refuse("it has 'normals' and 'uniforms'; use one");

@@ -35,8 +35,17 @@ std::uint64_t Cell::stream_of(const Entry& start) const {
   return hash[0] >> 8;  // the top byte of a key is its purpose
 }
 
+void require_valid(const Cell& cell) {
+  const Section& section = cell.section();
+  section.validate();
+  for (const Face& face : section.faces)
+    if (cell.is_symmetric() && face.mirror == kNoMirror)
+      throw std::invalid_argument("section: face " + face.name +
+                                  " of a symmetric cell has no mirror image: set_mirrors gives it");
+}
+
 CellField CellField::uniform(std::shared_ptr<const Cell> cell) {
-  cell->section().validate();
+  require_valid(*cell);
   CellMap map{.section = cell->section(), .types = {{cell->is_symmetric()}}, .type_of_cell = {}};
   return {std::move(map), {std::move(cell)}};
 }

@@ -153,12 +153,16 @@ class FunctionCell : public Cell {
   bool symmetric_;
 };
 
+/// Throws std::invalid_argument for a section that is not valid, and for a face of a symmetric cell
+/// without a mirror image.
+void require_valid(const Cell& cell);
+
 /// What stands where, and the cells to run, by type; none where runs were recorded.
 struct CellField {
   CellMap map;
   std::vector<std::shared_ptr<const Cell>> cells;
 
-  /// The same cell everywhere. Throws std::invalid_argument for a section that is not valid.
+  /// The same cell everywhere. Throws std::invalid_argument as require_valid.
   [[nodiscard]] static CellField uniform(std::shared_ptr<const Cell> cell);
   [[nodiscard]] const Cell& at(int column, int row) const {
     return *cells[static_cast<std::size_t>(map.type_of(column, row))];

@@ -8,6 +8,16 @@
 #include <utility>
 
 namespace gatewalk::dynamics {
+namespace {
+
+/// Whether face f and the one that it has for a mirror image are images of each other.
+bool are_images(const std::vector<Face>& faces, std::size_t f) {
+  const Face &face = faces[f], &image = faces[static_cast<std::size_t>(face.mirror)];
+  return image.mirror == static_cast<int>(f) && image.odd == face.odd && image.di_x == -face.di_x &&
+         image.di_y == face.di_y;
+}
+
+}  // namespace
 
 void Section::validate() const {
   const auto refuse = [](const std::string& what) {
@@ -40,10 +50,8 @@ void Section::validate() const {
     if (face.mirror == kNoMirror) continue;
     if (face.mirror < 0 || face.mirror >= std::ssize(faces))
       refuse("face " + face.name + " has no mirror image");
-    const Face& image = faces[face.mirror];
-    if (image.mirror != f || image.odd != face.odd || image.di_x != -face.di_x ||
-        image.di_y != face.di_y)
-      refuse("face " + face.name + " is not the mirror image of " + image.name);
+    if (!are_images(faces, static_cast<std::size_t>(f)))
+      refuse("face " + face.name + " is not the mirror image of " + faces[face.mirror].name);
   }
   for (const Coordinate& c : coordinates)
     if (!(std::isfinite(c.scale) && c.scale > 0.0))
@@ -68,6 +76,23 @@ const std::array<std::array<double, 2>, kMostCoordinates>& usual_at(const Sectio
                                   ", and no usual range of " + section.coordinates[axis].name +
                                   " is given there");
   return face.usual;
+}
+
+void set_mirrors(std::vector<Face>& faces, const std::vector<int>& named, bool symmetric) {
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    std::vector<int> images;
+    for (std::size_t other = 0; other < faces.size(); ++other)
+      if (faces[other].di_x == -faces[f].di_x && faces[other].di_y == faces[f].di_y)
+        images.push_back(static_cast<int>(other));
+    faces[f].mirror = named[f] != kNoMirror ? named[f]
+                      : faces[f].di_x == 0  ? static_cast<int>(f)
+                      : images.size() == 1  ? images.front()
+                                            : kNoMirror;
+  }
+  if (symmetric) return;
+  const std::vector<Face> all = faces;
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    if (all[f].mirror != kNoMirror && !are_images(all, f)) faces[f].mirror = kNoMirror;
 }
 
 Entry mirrored(const Section& section, const Entry& entry) {

@@ -42,9 +42,9 @@ inline constexpr int kNoMirror = -1;
 struct Face {
   std::string name;        // "EN"
   int di_x = 0, di_y = 0;  // the move from cell to cell that enters through it
-  /// The face by which mirror images enter, itself in the middle; kNoMirror where no cell is
-  /// symmetric and nothing enters so.
-  int mirror = 0;
+  /// The face by which mirror images enter, itself in the middle (set_mirrors). Only symmetric
+  /// cells need one; kNoMirror: there is none.
+  int mirror = kNoMirror;
   std::uint8_t odd = 0;  // bit k: coordinate k changes its sign in the mirror
   std::string origin;    // where bodies come from: "from below"
   /// By coordinate, from and to: of its only state where no entry was seen.
@@ -107,6 +107,11 @@ template <class Named>
 /// naming the face where it has none.
 [[nodiscard]] const std::array<std::array<double, 2>, kMostCoordinates>& usual_at(
     const Section& section, const Face& face);
+
+/// Gives each face its mirror image: the one that is `named` (by face, else kNoMirror), else the
+/// face itself where its move does not go sideways, else the only face with the mirrored move. Of
+/// cells that are not `symmetric`, which need none, faces that do not fit have none.
+void set_mirrors(std::vector<Face>& faces, const std::vector<int>& named, bool symmetric);
 
 /// The mirror image, left for right; of face kNoMirror where there is none.
 [[nodiscard]] Entry mirrored(const Section& section, const Entry& entry);

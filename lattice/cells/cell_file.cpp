@@ -308,28 +308,20 @@ void read_usual(const GivenTable& given, const Names& coordinates, Face& face) {
   }
 }
 
-/// Without a word of it, the face by which the mirror image of a move enters.
-int mirror_in(const GivenTable& given, const std::vector<Face>& faces, std::size_t own,
-              bool symmetric) {
-  const Names names = all_names_of(faces);
-  const std::string allowed = "be the face by which mirror images enter, one of " + listed(names);
-  if (given.has("mirror")) {
-    const int mirror = place_in(names, given.text("mirror", ""));
-    if (mirror < 0) given.refuse("mirror", allowed);
-    return mirror;
-  }
-  if (faces[own].di_x == 0) return static_cast<int>(own);
-  std::vector<int> images;
-  for (std::size_t f = 0; f < faces.size(); ++f)
-    if (faces[f].di_x == -faces[own].di_x && faces[f].di_y == faces[own].di_y)
-      images.push_back(static_cast<int>(f));
-  if (images.size() == 1) return images[0];
-  if (symmetric) given.require("mirror", allowed);
-  return dynamics::kNoMirror;
+std::string mirror_allowed(const std::vector<Face>& faces) {
+  return "be the face by which mirror images enter, one of " + listed(all_names_of(faces));
 }
 
+/// The face named by `mirror`, if it is.
+int named_mirror(const GivenTable& given, const std::vector<Face>& faces) {
+  if (!given.has("mirror")) return dynamics::kNoMirror;
+  const int mirror = place_in(all_names_of(faces), given.text("mirror", ""));
+  if (mirror < 0) given.refuse("mirror", mirror_allowed(faces));
+  return mirror;
+}
+
+/// Of symmetric cells, whose faces have mirror images.
 void require_images(const GivenTable& given, const std::vector<Face>& faces, std::size_t own) {
-  if (faces[own].mirror == dynamics::kNoMirror) return;
   const Face &face = faces[own], &image = faces[static_cast<std::size_t>(face.mirror)];
   const auto refuse = [&](const std::string& why) {
     const toml::node* const key = given.table.get("mirror");
@@ -375,14 +367,12 @@ std::vector<Face> faces_in(const GivenTable& cell, const Names& coordinates, boo
     read_usual(given, coordinates, face);
     faces.push_back(std::move(face));
   }
+  std::vector<int> mirrors;
+  for (const GivenTable& given : tables) mirrors.push_back(named_mirror(given, faces));
+  dynamics::set_mirrors(faces, mirrors, symmetric);
+  if (!symmetric) return faces;
   for (std::size_t f = 0; f < faces.size(); ++f)
-    faces[f].mirror = mirror_in(tables[f], faces, f, symmetric);
-  if (!symmetric)  // nobody needs one that is not given, and not the other's too
-    for (std::size_t f = 0; f < faces.size(); ++f)
-      if (const int image = faces[f].mirror;
-          image != dynamics::kNoMirror && !tables[f].has("mirror") &&
-          faces[static_cast<std::size_t>(image)].mirror != static_cast<int>(f))
-        faces[f].mirror = dynamics::kNoMirror;
+    if (faces[f].mirror == dynamics::kNoMirror) tables[f].require("mirror", mirror_allowed(faces));
   for (std::size_t f = 0; f < faces.size(); ++f) require_images(tables[f], faces, f);
   return faces;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/cells/program.h"
+#include "cli/cells/hello.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -267,6 +268,28 @@ TEST(ProgramCell, ParametersAreSet) {
   EXPECT_NE(refused({"speed", std::nan("")}), "");
 }
 
+// The rule of cell files (lattice/cells/README.md#mirror-images).
+TEST(ProgramCell, MirrorsFollowFromMoves) {
+  const auto mirrors = [](const std::string& faces, const std::string& more = "") {
+    const Hello hello = read_hello(
+        R"({"gatewalk": 1, "coordinates": [{"name": "s", "scale": 1}], "costs": [{"key": "t"}], )"
+        R"("faces": [)" +
+        faces + "]" + more + "}");
+    std::vector<int> all;
+    for (const dynamics::Face& face : hello.section.faces) all.push_back(face.mirror);
+    return all;
+  };
+  constexpr int kNone = dynamics::kNoMirror;
+  const std::string s = R"({"name": "S", "move": [0, 1], "odd": ["s"]})",
+                    w = R"({"name": "W", "move": [1, 0])", e = R"({"name": "E", "move": [-1, 0]})",
+                    symmetric = R"(, "symmetric": true)";
+  EXPECT_EQ(mirrors(s + "," + w + "}," + e, symmetric), (std::vector<int>{0, 2, 1}));
+  EXPECT_EQ(mirrors(s + "," + w + "}," + e), (std::vector<int>{0, 2, 1}));
+  EXPECT_EQ(mirrors(s + "," + w + "}"), (std::vector<int>{0, kNone}));
+  EXPECT_EQ(mirrors(s + "," + w + R"(, "odd": ["s"]},)" + e), (std::vector<int>{0, kNone, kNone}));
+  EXPECT_EQ(mirrors(s + "," + w + R"(, "mirror": "S"},)" + e), (std::vector<int>{0, kNone, kNone}));
+}
+
 TEST(ProgramCell, FirstLinesThatSayNoCell) {
   const auto refused = [](const std::string& line, const std::string& why) {
     expect_error("echo '" + line + "'; cat",
@@ -300,7 +323,10 @@ TEST(ProgramCell, FirstLinesThatSayNoCell) {
           "face 1: 'mirror' must name a face: S");
   refused(hello(s, t, R"({"name": "S", "move": [0, 1], "odd": ["v"]})"),
           "face 1: 'odd' must name coordinates: s");
-  refused(hello(s, t, R"({"name": "W", "move": [1, 0]})"),
+  const std::string w = R"({"name": "W", "move": [1, 0])", symmetric = R"(, "symmetric": true)";
+  refused(hello(s, t, w + "}", symmetric),
+          "face W of symmetric cells needs 'mirror': 'mirror' must name a face: W");
+  refused(hello(s, t, w + R"(, "mirror": "W"})", symmetric),
           "section: face W is not the mirror image of W");
   refused(hello(s, t, up + "," + up), "section: two faces are named S");
   refused(hello(s, t, up, R"(, "symmetric": 1)"), "it: 'symmetric' must be true or false");

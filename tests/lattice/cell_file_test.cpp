@@ -321,6 +321,24 @@ TEST(CellFile, ACellThatIsNotSymmetricNeedsNoOddCoordinates) {
             "sign in the mirror, [] for none, as a type of cell is symmetric");
 }
 
+// `mirror` is a rule of symmetric cells: whatever others say of it, and of odd coordinates, fits.
+TEST(CellFile, ACellThatIsNotSymmetricNeedsNoMirror) {
+  const std::string text = with("symmetric = true", "symmetric = false");
+  const auto mirrors = [](const std::string& file) {
+    std::vector<int> all;
+    for (const dynamics::Face& face : parse(file).map.section.faces) all.push_back(face.mirror);
+    return all;
+  };
+  using dynamics::kNoMirror;
+  EXPECT_EQ(mirrors(text), (std::vector<int>{0, 2, 1}));
+  EXPECT_EQ(mirrors(with("mirror = \"E\"", "mirror = \"W\"", text)),
+            (std::vector<int>{0, kNoMirror, kNoMirror}));
+  EXPECT_EQ(mirrors(with("move = [-1, 0]", "move = [-2, 0]", text)),
+            (std::vector<int>{0, kNoMirror, kNoMirror}));
+  EXPECT_EQ(mirrors(with("odd = [\"vx\"]", "odd = [\"s\", \"vx\"]", text)),
+            (std::vector<int>{0, kNoMirror, kNoMirror}));
+}
+
 struct WrongFile {
   std::string from, to, message;
 };

@@ -60,8 +60,9 @@ class Cell:
     Attributes
     ----------
     faces : list of dict
-        Where bodies enter: ``{"name": "S", "move": [0, 1]}``, the move from cell to cell (columns, rows); ``"mirror"``, the
-        face that mirror images (left for right) enter by, and ``"odd"``, the coordinates that change their sign then.
+        Where bodies enter: ``{"name": "S", "move": [0, 1]}``, the move from cell to cell (columns, rows). Of symmetric
+        cells also ``"odd"``, the coordinates that change their sign in the mirror (left for right), and ``"mirror"``, the
+        face that images enter by, where several faces have the mirrored move.
     coordinates : list of dict
         What is told of every entry: ``{"name": "s", "unit": "m", "scale": 0.1}``.
     costs : list of dict
