@@ -99,6 +99,12 @@ int run_trace(const Arguments& arguments) {
       for (std::size_t i = 0; i < recordings.runs.size(); ++i)
         json["runs"][i].update(details_of(scene, recordings, recordings.runs[i]));
   }
+  std::string film_line;
+  if (options.has("video")) {
+    const double times_real = speed.value_or(dynamics::scale_of(scene.gate).time);
+    json["video_speed"] = times_real;
+    film_line = options.text("video") + ": plays " + speed_words(times_real) + "\n";
+  }
   json["recorded"] = recordings.runs.size();
   json["trials"] = recordings.trials;
   if (settled) json["method"] = to_json(*settled);
@@ -106,10 +112,11 @@ int run_trace(const Arguments& arguments) {
   json["status"] = to_json(recordings.health);
   json["made_by"] = made_by;
   const bool to_stdout = options.text("csv") == "-" || options.text("replay") == "-";
-  options.give_out(
-      json,
-      to_stdout ? "" : table_of(scene, recordings) + method_line(settled) + method_lines(may_do),
-      -1);
+  options.give_out(json,
+                   to_stdout ? ""
+                             : table_of(scene, recordings) + method_line(settled) +
+                                   method_lines(may_do) + film_line,
+                   -1);
   const int exit = status_of(options, recordings.health);
   options.draw([&] { return figure_of(scene, recordings); });
   return exit;

@@ -2,6 +2,7 @@
 #include "cli/film/film.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "cli/render/quantity.h"
@@ -53,6 +54,17 @@ FilmStep film_step(const lattice::Moment& m, const dynamics::Scale& scale) {
 }
 
 }  // namespace
+
+std::string speed_words(double times_real) {
+  constexpr double kEqual = 1e-6;
+  const auto is_whole = [](double x) { return std::abs(x - std::round(x)) < kEqual * x; };
+  if (std::abs(times_real - 1.0) < kEqual) return "in real time";
+  if (times_real > 1.0) return "at " + digits(times_real, 3) + " times real time";
+  return "at " +
+         (is_whole(1.0 / times_real) ? "1/" + digits(std::round(1.0 / times_real), 7)
+                                     : digits(times_real, 3)) +
+         " of real time";
+}
 
 Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings) {
   Film film;

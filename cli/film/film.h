@@ -56,6 +56,9 @@ struct Film {
   [[nodiscard]] bool is_field() const { return field.columns * field.rows > 1; }
 };
 
+/// How fast a film plays what took `times_real` seconds for each of its own: "at 1/4 of real time".
+[[nodiscard]] std::string speed_words(double times_real);
+
 /// All runs as a film, with seven digits in the scene's own units.
 [[nodiscard]] Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings);
 

@@ -64,7 +64,8 @@ std::string_view Picture::draw(double time) {
   const Scenery now = run_.scenery(time);
   painter_.fill({0, 0, kPictureWidth, kPictureHeight}, kPaper);
   text(32, 46, 24, film_.title, kText, true, kPictureWidth - 64);
-  text(32, 72, 16, about_.label, kMuted, false, kPictureWidth - 64);
+  text(32, 72, 16, about_.label + "; plays " + speed_words(pace_ * unit_.time), kMuted, false,
+       kPictureWidth - 64);
   const PictureBox all = bounds();
   constexpr PictureBox kArea{32, 92, 920, kPictureHeight - 28};
   if (film_.is_field()) {

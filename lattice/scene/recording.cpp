@@ -62,11 +62,19 @@ std::string named(std::int64_t first, std::int64_t last) {
   return "trials " + std::to_string(first) + " to " + std::to_string(last);
 }
 
-std::invalid_argument too_long(const std::string& what, bool across_field) {
+/// `fit`: so many trials can be recorded together; 0: the first one cannot.
+std::invalid_argument too_long(const std::string& what, const Scene& scene, bool across_field,
+                               std::int64_t fit) {
+  std::vector<std::string> ways;
+  if (fit > 0) ways = {"--trials " + std::to_string(fit), "--only ENDING"};
+  if (across_field) ways.emplace_back("a smaller field.max_gates");
+  if (scene.gate.run.method != "event") ways.emplace_back("a longer run.step_s");
+  ways.emplace_back("a shorter run.time_limit_s");
+  std::string all;
+  for (std::size_t i = 0; i < ways.size(); ++i)
+    all += (i == 0 ? "" : i + 1 == ways.size() ? " or " : ", ") + ways[i];
   return std::invalid_argument(what + " more than " + std::to_string(kMostMoments) +
-                               " steps, the most that are recorded; "
-                               "give a longer run.step_s or a shorter run.time_limit_s" +
-                               (across_field ? ", or fewer gates by field.max_gates" : ""));
+                               " steps, the most that are recorded: give " + all);
 }
 
 }  // namespace
@@ -176,7 +184,8 @@ Recordings record_trials(const Scene& scene, const RecordingOptions& options,
     try {
       r = record(scene, options.seed, trial, options.across_field, kMostMoments, chosen);
     } catch (const dynamics::TraceTooLong&) {
-      throw too_long("trial " + std::to_string(trial) + " alone has", options.across_field);
+      throw too_long("trial " + std::to_string(trial) + " alone has", scene, options.across_field,
+                     trial - options.first);
     }
     if (!options.only.empty() && !ends_so(r.ending, options.only)) return;
     if (static_cast<std::int64_t>(kept.runs.size()) == kMostRecordings)
@@ -184,7 +193,8 @@ Recordings record_trials(const Scene& scene, const RecordingOptions& options,
                                   " runs end so; ask for fewer --trials");
     moments += r.moments.size();
     if (moments > kMostMoments)
-      throw too_long(named(options.first, trial) + " have together", options.across_field);
+      throw too_long(named(options.first, trial) + " have together", scene, options.across_field,
+                     trial - options.first);
     kept.health += r.health;
     kept.runs.push_back(std::move(r));
   };

@@ -87,6 +87,21 @@ double number(const std::string& words, const std::string& name) {
   return at == words.npos ? -1.0 : std::strtod(words.c_str() + at + name.size() + 2, nullptr);
 }
 
+TEST(Film, SaysHowFastItPlays) {
+  EXPECT_EQ(speed_words(1.0), "in real time");
+  EXPECT_EQ(speed_words(0.25), "at 1/4 of real time");
+  EXPECT_EQ(speed_words(1.0 / 3.0), "at 1/3 of real time");
+  EXPECT_EQ(speed_words(0.0731), "at 0.0731 of real time");
+  EXPECT_EQ(speed_words(4.0), "at 4 times real time");
+  // Its first picture shows the same scene at any speed, under other words.
+  const Film film = small_film();
+  const auto first = [&](double speed, bool labels) {
+    return video_frame(film, 0.0, {.speed = speed, .labels = labels});
+  };
+  EXPECT_NE(first(1.0, true), first(0.25, true));
+  EXPECT_EQ(first(1.0, false), first(0.25, false));
+}
+
 TEST_F(Video, IsOneThatPlaysEverywhere) {
   write_video(path("a.mp4"), small_film());  // 1 s, then a second that stands
   const std::string words = probed(path("a.mp4"));

@@ -26,7 +26,7 @@ quick "trials: 'nan' is not a whole number" gate "$scenes/field.toml" --trials n
 quick "seed: '1e3' is not a seed" gate "$scenes/field.toml" --seed 1e3
 quick 'at most 10000000' chart "$scenes/field.toml" -o charts --trials 1e9
 quick 'visited 1000000000: .* at most 1000000' chart-chain "$scenes/field.toml" -o charts --visited 1e9
-quick 'trial 0 alone has more than .* run.step_s or a shorter run.time_limit_s' trace "$scenes/field.toml" --set run.step_s=1e-7 --csv x.csv
+quick 'trial 0 alone has more than .* a longer run.step_s or a shorter run.time_limit_s' trace "$scenes/field.toml" --set run.step_s=1e-7 --csv x.csv
 quick 'more than 100000 values' sweep "$scenes/field.toml" --vary forces.random_N=0:1e-6:10
 quick 'must lie in' landscape "$scenes/field.toml" -o land --set beams.joint_x_m=900 --spacing 0.1
 for set in 'forces.random_N=1' ' forces.random_N = 1' 'forces . random_N=1' 'forces."random_N"=1' '"forces".random_N=1'; do

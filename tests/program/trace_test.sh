@@ -37,6 +37,19 @@ expect 2 "'left field': a run ends as one of: crossed, left side, right side, tr
 expect 2 "'departed': a run ends as one of" "$gatewalk" trace "$scenes/soft_left.toml" --only departed
 "$gatewalk" trace "$scenes/soft_left.toml" --set run.time_limit_s=0.5 --video short.gif --quiet >/dev/null && [ "$(head -c 6 short.gif)" = GIF89a ] ||
   fail "trace: no GIF"
+# It says how fast it plays: on its pictures, in the table and in JSON; by default in the scene's own unit of time.
+"$gatewalk" trace "$scenes/soft_left.toml" --set run.time_limit_s=0.2 --video slow.gif --video-speed 0.25 --json slow.json >slow.txt
+grep -q '^slow.gif: plays at 1/4 of real time$' slow.txt || fail "a film does not say its speed: $(cat slow.txt)"
+holds '.video_speed == 0.25' slow.json
+expect 0 '^real.gif: plays in real time$' "$gatewalk" trace "$scenes/soft_left.toml" --set run.time_limit_s=0.2 --video real.gif
+# The way out of the limit of steps works, whatever it is.
+"$gatewalk" trace "$scenes/field.toml" --field --trials 900 --csv many.csv >out.txt 2>&1 && fail "more than 500 000 steps are recorded"
+fit=$(sed -n 's/.*: give --trials \([0-9]*\), --only ENDING, a smaller field.max_gates, a longer run.step_s or a shorter run.time_limit_s$/\1/p' out.txt)
+"$gatewalk" trace "$scenes/field.toml" --field --trials "$fit" --csv many.csv >/dev/null || fail "--trials '$fit' is no way out of $(cat out.txt)"
+"$gatewalk" trace "$scenes/field.toml" --field --trials $((fit + 1)) --csv many.csv >/dev/null 2>&1 && fail "--trials $fit is not the most that fit"
+rm many.csv
+expect 2 ', a smaller field.max_gates or a shorter run.time_limit_s$' "$gatewalk" trace "$scenes/field.toml" --field --trials 1000 \
+  --set run.method=event --csv many.csv  # which has no step
 expect 2 '^gatewalk: --video short.avi: a video is FILE.mp4 or FILE.gif$' "$gatewalk" trace "$scenes/soft_left.toml" --video short.avi
 expect 0 '^trial,' "$gatewalk" trace "$scenes/soft_left.toml" --csv -
 expect 2 'a run ends as one of' "$gatewalk" trace "$scenes/soft_left.toml" --only stuck
