@@ -96,6 +96,13 @@ std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const Sh
   if (thrift.cost == costs.size())
     throw UsageError("--least: '" + lattice::printable(options.text("least")) + "' is none of " +
                      known);
+  // Passages through gates may take 0 or less of anything but time and losses.
+  const std::string& key = costs[thrift.cost].key;
+  if (shown.mass && shown.field.max_gates == 0 && key != "time_s" && key != "lost_J")
+    throw UsageError("--least " + key +
+                     ": a passage may take 0 or less of it, and without a limit of gates a body "
+                     "would go on for ever: give --set field.max_gates=N, or --least time_s or "
+                     "lost_J");
   if (options.has("points")) thrift.points = static_cast<int>(options.count("points", 2, 100));
   if (options.has("chance")) thrift.chance = options.number("chance");
   if (options.has("chance") && !(thrift.chance > 0.0 && thrift.chance < 1.0))

@@ -59,6 +59,7 @@ int run_analyze(const Arguments& arguments) {
       .runs = options.count("runs", 0, 1'000'000),
       .relative_step = number_within(options, "step", 0.02, 1e-6, 0.5),
       .seed = options.seed()};
+  if (options.has("trials")) (void)options.trials();  // they are run last
   if (parameters.runs > 0 && parameters.runs < 100)
     throw UsageError("--runs: must be 0, or 100 or more");
   lattice::AnalysisOptions how{.target = target_of(options),

@@ -34,10 +34,10 @@ int run_chart_field(const Arguments& arguments) {
   const std::vector<lattice::PaperStart> starts = starts_of(options, scene);
   lattice::require_inside(starts, scene);
   const auto variants = lattice::fidelity_variants(scene);
+  const lattice::FidelityOptions how{starts, options.trials(), options.seed()};
   const ResultFolder folder(options, files);
 
-  const lattice::FidelityStudy study = lattice::compare_fidelities(
-      variants, {starts, options.trials(), options.seed()}, options.work());
+  const lattice::FidelityStudy study = lattice::compare_fidelities(variants, how, options.work());
   Json json = to_json(study);
   json["made_by"] = to_json(options.provenance(scene));
   folder.write("fidelity.csv", csv_of(study), "fidelity.json", json);

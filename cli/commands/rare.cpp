@@ -69,6 +69,7 @@ int run_rare(const Arguments& arguments) {
   lattice::SplittingOptions how{
       .accuracy = options.has("accuracy") ? options.number("accuracy") : 0.05,
       .seed = options.seed()};
+  if (options.has("trials")) (void)options.trials();  // they are run last
   if (options.has("split-trials")) how.trials = options.count("split-trials", 2);
   if (options.has("shard") && !how.trials)
     throw UsageError("--shard needs --split-trials N: a part must know how many there are in all");
