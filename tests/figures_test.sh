@@ -34,6 +34,10 @@ run lattice "$scenes/robot.toml" --trials 1000 --figure ../lattice_robot.svg
 "$gatewalk" show paper.nc --figure ../show_paper.svg >/dev/null
 "$gatewalk" show tree.nc --figure ../show_tree.svg >/dev/null
 run validate "$field" --bins paper --matrix-trials 20 --trials 200 --figure ../validate.svg
+"$gatewalk" sample observed -o observed.csv --quiet
+printf 'gate_x,gate_y,count\n0,0,20\n-1,1,25\n4,2,15\n' >gates.csv
+run validate "$field" --observed observed.csv --bins paper --matrix-trials 20 --figure ../validate_observed.svg
+run validate "$field" --observed gates.csv --bins paper --matrix-trials 20 --figure ../validate_gates.svg
 run analyze "$field" --set run.method=moreau --accuracy 0.05 --runs 300 --trials 2000 --target left_side --figure ../analyze.svg
 run analyze "$field" --set run.method=moreau --set field.columns=61 --set field.rows=40 --set field.max_gates=30 --accuracy 0.1 --runs 0 --figure ../analyze_large.svg
 # Which gate is of which type.

@@ -54,7 +54,9 @@ int run_validate(const Arguments& arguments) {
   add_starts(options);
   add_bins(options);
   add_cell_program(options);
-  options.add_figure("final gates of dynamics and chain, and their difference");
+  options.add_figure(
+      "final gates of dynamics and chain, and their difference; with --observed what was counted, "
+      "with intervals, beside both");
   if (!options.parse(arguments)) return kFine;
   if (!has_cell(options) && lattice::is_of_cells(options.text("scene")))
     return validate_recorded(options);
@@ -107,7 +109,11 @@ int run_validate(const Arguments& arguments) {
     options.warn(rest_warning(rest_of(start.exact), "by the chain "));
   if (subject.observed) options.warn(endings_not_listed(*subject.observed, result.starts.front()));
   const int exit = status_of(options, result.health);
-  options.draw([&] { return figure_of(result, *subject.shown); });
+  options.draw([&] {
+    const lattice::StartValidation& first = result.starts.front();
+    return first.observed ? figure_of(*first.observed, first, subject.shown->field)
+                          : figure_of(result, *subject.shown);
+  });
   return exit;
 }
 

@@ -22,7 +22,30 @@ struct Script {
   double top = 0.0;
 };
 
-/// How often gates are visited, and the most frequent ways.
+/// A ring around what a mark is at, in whatever colours it stands.
+std::string ringed(const std::string& data) {
+  return ", " + data + " with points pt 6 ps 1.3 lw 4 lc rgb '#ffffff', " + data +
+         " with points pt 6 ps 1.3 lw 1.5 lc rgb '#000000'";
+}
+
+/// Where the start enters its gate, on the map of gates; empty where bodies start as they were
+/// seen.
+std::string place_of_start(const AnalysedField& f, const FieldMap& map) {
+  if (!f.start) return "";
+  const dynamics::Face& face = f.shown.map.section.faces[static_cast<std::size_t>(f.start->face)];
+  // The first coordinate is the place on a face; in the middle where it is no length.
+  const bool is_place = f.shown.map.section.coordinates.front().unit == "m";
+  const double aside = is_place ? f.start->at[0] : 0.0;
+  const double x = f.shown.field.start_column() - 0.5 * face.di_x +
+                   (face.di_x == 0 ? aside / f.shown.width : 0.0),
+               y = -0.5 * face.di_y + (face.di_y == 0 ? aside / f.shown.length : 0.0);
+  const auto on = [](const FieldMap::Span& span, double gate) {
+    return (gate - static_cast<double>(span.first) + 0.5) / static_cast<double>(span.block) - 0.5;
+  };
+  return digits(on(map.columns, x)) + " " + digits(on(map.rows, y)) + "\n";
+}
+
+/// How often gates are visited, the most frequent ways, and where bodies start.
 void add_visits(Script& out, const AnalysedField& f) {
   const FieldMap map(f.analysis.totals.visits, 101, 101);
   const markov::CellProbabilities shown = map.blocks_of(f.analysis.totals.visits);
@@ -51,13 +74,15 @@ void add_visits(Script& out, const AnalysedField& f) {
     }
     paths += "\n";
   }
+  const std::string start = place_of_start(f, map);
   const TypeMarks types(f.shown);
   const TypeMarks::Drawn marks =
       types.on(map, (box.right - box.left) / columns, (box.bottom - box.top) / lines, "visits");
   out.text += types.legend(out.sheet, box.bottom + 52, marks.fits) + marks.data +
-              data_block("$visits", rows) + data_block("$paths", paths) + out.sheet.margins(box) +
-              kSequential + "set cbrange " + scale.range() + "\n" + kFrame + "set xrange " +
-              range_of(map.columns) + "\nset yrange " + range_of(map.rows) + "\nset xtics " +
+              data_block("$visits", rows) + data_block("$paths", paths) +
+              data_block("$begin", start) + out.sheet.margins(box) + kSequential + "set cbrange " +
+              scale.range() + "\n" + kFrame + "set xrange " + range_of(map.columns) +
+              "\nset yrange " + range_of(map.rows) + "\nset xtics " +
               tics_of(map.columns, map.middle_column, box.right - box.left, 30) + "\nset ytics " +
               tics_of(map.rows, 0, box.bottom - box.top, 22) + "\n" +
               Sheet::map_axes(map.rows.first + map.rows.count) +
@@ -67,11 +92,17 @@ void add_visits(Script& out, const AnalysedField& f) {
   if (!paths.empty())
     out.text +=
         ", $paths with lines lw 2 lc rgb '#ffffff', $paths with lines lw 1 lc rgb '#d55e00'";
-  out.text += marks.plot + "\nunset label\nunset colorbox\n";
+  out.text += marks.plot;
+  std::string legend;
+  if (!start.empty()) {
+    out.text += ringed("$begin");
+    legend = "ring: the start";
+  }
+  out.text += "\nunset label\nunset colorbox\n";
   if (!paths.empty())
-    out.text +=
-        out.sheet.text("lines: most frequent ways to \"" + std::string(target_name(f)) + "\"", 8,
-                       out.top + 36, kSmallFont);
+    legend += (legend.empty() ? "" : "; ") + std::string("lines: most frequent ways to \"") +
+              std::string(target_name(f)) + "\"";
+  if (!legend.empty()) out.text += out.sheet.text(legend, 8, out.top + 36, kSmallFont);
   out.top = box.bottom + 62 + types.legend_height();
 }
 
@@ -127,8 +158,14 @@ void add_starts(Script& out, const AnalysedField& f) {
   const double most = 100.0 * most_of_starts(f.analysis);
   if (!(seen[across][1] > seen[across][0] && seen[up][1] > seen[up][0] && most > 0.0)) return;
   std::string rows;
-  const auto within = [](const std::array<double, 2>& range, const std::array<double, 2>& frame) {
-    return std::array<double, 2>{std::max(range[0], frame[0]), std::min(range[1], frame[1])};
+  // The start may lie beyond all entries that were seen.
+  const auto frame = [&](std::size_t k) {
+    const double margin = 0.03 * (seen[k][1] - seen[k][0]), at = f.start->at[k];
+    return std::array<double, 2>{at < seen[k][0] ? at - margin : seen[k][0],
+                                 at > seen[k][1] ? at + margin : seen[k][1]};
+  };
+  const auto within = [](const std::array<double, 2>& range, const std::array<double, 2>& shown) {
+    return std::array<double, 2>{std::max(range[0], shown[0]), std::min(range[1], shown[1])};
   };
   const auto holds_the_others = [&](const dynamics::StateRange& range) {
     for (std::size_t k = across + 1; k < up; ++k)
@@ -137,7 +174,7 @@ void add_starts(Script& out, const AnalysedField& f) {
   };
   for (const lattice::StartChance& s : f.analysis.starts) {
     if (std::isnan(s.chance.mean) || !holds_the_others(s.range)) continue;
-    const auto x = within(s.range.at[across], seen[across]), y = within(s.range.at[up], seen[up]);
+    const auto x = within(s.range.at[across], frame(across)), y = within(s.range.at[up], frame(up));
     if (!(x[1] > x[0] && y[1] > y[0])) continue;
     rows += digits(0.5 * (x[0] + x[1])) + " " + digits(0.5 * (y[0] + y[1])) + " " +
             digits(0.5 * (x[1] - x[0])) + " " + digits(0.5 * (y[1] - y[0])) + " " +
@@ -157,15 +194,19 @@ void add_starts(Script& out, const AnalysedField& f) {
   for (std::size_t k = across + 1; k < up; ++k)
     title += "; " + coordinates[k].name + " " + digits(f.start->at[k]) +
              dynamics::behind_number(coordinates[k].unit);
-  out.text += data_block("$starts", rows) + kFrame + out.sheet.margins(box) + kSequential +
-              "set cbrange " + scale.range() + "\nset xrange " + range(seen[across]) +
-              "\nset yrange " + range(seen[up]) + "\nset xtics " +
-              digits(tic_step(seen[across][1] - seen[across][0], 5)) + "\nset ytics " +
-              digits(tic_step(seen[up][1] - seen[up][0], 5)) + "\n" +
-              Sheet::axes(axis(across), axis(up)) + out.sheet.text(title, 8, out.top + 18) +
-              scale.colours(out.sheet, {box.right + 12, box.right + 22, box.top, box.bottom}) +
-              "plot $starts using 1:2:3:4:5 with boxxyerror fillcolor palette fillstyle solid 1.0 "
-              "noborder\nunset label\nunset colorbox\n";
+  title += "; ring: the start";
+  out.text +=
+      data_block("$starts", rows) +
+      data_block("$start", digits(f.start->at[across]) + " " + digits(f.start->at[up]) + "\n") +
+      kFrame + out.sheet.margins(box) + kSequential + "set cbrange " + scale.range() +
+      "\nset xrange " + range(frame(across)) + "\nset yrange " + range(frame(up)) + "\nset xtics " +
+      digits(tic_step(frame(across)[1] - frame(across)[0], 5)) + "\nset ytics " +
+      digits(tic_step(frame(up)[1] - frame(up)[0], 5)) + "\n" +
+      Sheet::axes(axis(across), axis(up)) + out.sheet.text(title, 8, out.top + 18) +
+      scale.colours(out.sheet, {box.right + 12, box.right + 22, box.top, box.bottom}) +
+      "plot $starts using 1:2:3:4:5 with boxxyerror fillcolor palette fillstyle solid 1.0 "
+      "noborder" +
+      ringed("$start") + "\nunset label\nunset colorbox\n";
   out.top = box.bottom + 62;
 }
 

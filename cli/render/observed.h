@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
 #include "lattice/study/observed.h"
 #include "lattice/study/validation.h"
@@ -17,6 +18,12 @@ namespace gatewalk::cli {
                            const std::vector<std::string>& files);
 [[nodiscard]] std::string table_of(const lattice::ObservedComparison& c,
                                    const lattice::StartValidation& v);
+
+/// The endings and the gates in which most end, as they were observed, by the dynamics and by the
+/// chain, each with its 95 % interval (but the chain's gates, whose intervals are not known).
+[[nodiscard]] Figure figure_of(const lattice::ObservedComparison& c,
+                               const lattice::StartValidation& v,
+                               const lattice::FieldParams& field);
 
 /// Before any run: trials that `observed` leaves out; and that so few show little. Empty if it is
 /// not so.

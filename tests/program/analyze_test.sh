@@ -113,4 +113,15 @@ expect 2 'at most 4 numbers' "$gatewalk" "${over[@]}" "${ranges[@]}" --over a=1:
 expect 2 'must be at least 4096' "$gatewalk" "${over[@]}" "${ranges[@]}" --over-trials 4000
 expect 2 'is for --over' "$gatewalk" "${over[@]}" --over-trials 50000
 expect 2 'is for a scene, or a program.s cells, whose numbers vary' "$gatewalk" analyze fast.nc "${ranges[@]}"
+# The start is on the map of visits and on that of starts: a ring each, black on white (gnuplot's symbol gpPt5 in an SVG).
+rings() { grep -o "#gpPt5' transform='translate([0-9.,]*)[^/]*color='rgb(  0,   0,   0)'" "$1" | sed 's/.*translate(\([0-9.]*\),\([0-9.]*\)).*/\1 \2/'; }
+for start in -12,0,15 12,0,15 12,0,25; do
+  "$gatewalk" analyze "$scenes/field.toml" --set run.method=moreau --accuracy 0.1 --runs 0 --target left_side --start=$start --figure start.svg --quiet >/dev/null
+  rings start.svg >"rings_$start.txt"
+  [ "$(wc -l <"rings_$start.txt")" = 2 ] || fail "not two rings for the start $start: $(cat "rings_$start.txt")"
+done
+# Further to the right both are; faster only that on the map of starts, higher up.
+paste rings_-12,0,15.txt rings_12,0,15.txt rings_12,0,25.txt | awk '!($3 > $1) || NR == 1 && !($4 == $2 && $5 == $3 && $6 == $4) ||
+  NR == 2 && $6 >= $4 { exit 1 }' || fail "rings are not where bodies start: $(paste rings_*.txt)"
+
 finish

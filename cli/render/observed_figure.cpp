@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cli/render/figure.h"
+#include "cli/render/final_gates.h"
+#include "cli/render/observed.h"
+#include "cli/render/text.h"
+#include "dynamics/base/share.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// A share as it is drawn; without an interval low and high are the share.
+struct DrawnShare {
+  double share, low, high;
+};
+/// What is counted in one row, as it was observed, by the dynamics, by the chain.
+struct ComparedShare {
+  std::string name;
+  std::array<DrawnShare, 3> shares;
+};
+constexpr std::array<const char*, 3> kCompared{"observed", "dynamics", "chain"};
+constexpr std::array<const char*, 3> kInks{kSecondColour, kFirstColour, kThirdColour};
+constexpr std::array<int, 3> kSymbols{7, 6, 4};  // a dot, a ring, a square
+
+DrawnShare drawn_share(double share, const std::array<double, 2>& interval) {
+  if (std::isnan(interval[0])) return {share, share, share};
+  return {share, interval[0], interval[1]};
+}
+DrawnShare drawn_share(std::int64_t count, std::int64_t trials) {
+  return drawn_share(static_cast<double>(count) / static_cast<double>(trials),
+                     dynamics::share_interval(count, trials));
+}
+
+std::vector<ComparedShare> compared_endings(const lattice::ObservedComparison& c,
+                                            const lattice::StartValidation& v) {
+  std::vector<ComparedShare> rows;
+  for (const EndingName& e : kEndingNames) {
+    if (c.endings.rules_out(e.ending)) continue;
+    const auto of = [&](const lattice::EndingShares& all) {
+      const auto at = static_cast<std::size_t>(e.ending);
+      return drawn_share(all.share[at], all.interval[at]);
+    };
+    rows.push_back({e.name, {of(c.endings), of(v.dynamics_endings), of(v.exact_endings)}});
+  }
+  return rows;
+}
+
+/// The gates in which most end, by any of the three; the others together.
+std::vector<ComparedShare> compared_gates(const lattice::ObservedComparison& c,
+                                          const lattice::StartValidation& v,
+                                          const lattice::FieldParams& field) {
+  constexpr std::size_t kMostRows = 20;
+  const markov::CellCounts &seen = c.seen.final_gates, &trials = v.dynamics.final_gates;
+  const auto columns = static_cast<Eigen::Index>(field.columns);
+  const std::int64_t n = seen.sum(), m = trials.sum();
+  struct Gate {
+    Eigen::Index row, column;
+    double most;
+  };
+  std::vector<Gate> gates;
+  for (Eigen::Index row = 0; row < seen.rows(); ++row)
+    for (Eigen::Index column = 0; column < columns; ++column) {
+      const double most =
+          std::max({static_cast<double>(seen(row, column)) / static_cast<double>(n),
+                    static_cast<double>(trials(row, column)) / static_cast<double>(m),
+                    v.exact.final_cells(row, column)});
+      if (most > 0.0) gates.push_back({row, column, most});
+    }
+  std::stable_sort(gates.begin(), gates.end(),
+                   [](const Gate& a, const Gate& b) { return a.most > b.most; });
+  std::vector<ComparedShare> rows;
+  std::int64_t other_seen = n, other_trials = m;
+  double other_chain = v.exact.final_cells.sum();
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [row, column, most] : gates) {
+    if (rows.size() == kMostRows) break;
+    const double chain = v.exact.final_cells(row, column);
+    other_seen -= seen(row, column);
+    other_trials -= trials(row, column);
+    other_chain -= chain;
+    rows.push_back({std::to_string(column - field.start_column()) + ", " + std::to_string(row),
+                    {drawn_share(seen(row, column), n), drawn_share(trials(row, column), m),
+                     drawn_share(chain, {kNone, kNone})}});
+  }
+  if (rows.size() < gates.size())
+    rows.push_back({"others",
+                    {drawn_share(other_seen, n), drawn_share(other_trials, m),
+                     drawn_share(std::max(0.0, other_chain), {kNone, kNone})}});
+  return rows;
+}
+
+/// A panel with three marks in each row; where the next one begins.
+double add_compared(std::string& out, const Sheet& sheet, double top, const std::string& title,
+                    const std::string& kind, double row_height,
+                    const std::vector<ComparedShare>& rows) {
+  const auto count = static_cast<double>(rows.size());
+  const Box box{110, 372, top + 36, top + 36 + row_height * count};
+  std::string data, plot, tics;
+  std::vector<std::string> key;
+  double most = 0.0;
+  for (std::size_t k = 0; k < kCompared.size(); ++k) {
+    std::string lines;
+    bool has_intervals = false;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const DrawnShare& s = rows[i].shares[k];
+      most = std::max(most, 100.0 * s.high);
+      has_intervals = has_intervals || s.low < s.high;
+      // One below the other, so that they do not hide each other.
+      const double at = static_cast<double>(i) + 0.25 * (static_cast<double>(k) - 1.0);
+      lines += digits(100.0 * s.share) + " " + digits(at) + " " + digits(100.0 * s.low) + " " +
+               digits(100.0 * s.high) + "\n";
+    }
+    const std::string name = std::string("$") + kCompared[k] + "_" + kind,
+                      style = " pt " + std::to_string(kSymbols[k]) + " ps 0.6 lw 1.2 lc rgb '" +
+                              kInks[k] + "'";
+    data += data_block(name, lines);
+    plot += (plot.empty() ? "plot " : ", ") + name +
+            (has_intervals ? " using 1:2:3:4 with xerrorbars" : " using 1:2 with points") + style;
+    key.push_back("with points" + style + " title '" + kCompared[k] + "'");
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    tics += (i == 0 ? "'" : ", '") + rows[i].name + "' " + std::to_string(i);
+  most = most > 0.0 ? std::min(100.0, 1.05 * most) : 100.0;
+  out += data + kFrame + sheet.text(title, 8, top + 18) + sheet.margins(box) +
+         "set xrange [0:" + digits(most) + "]\nset yrange [" + digits(count - 0.5) +
+         ":-0.5]\nset xtics " + digits(tic_step(most, 5)) + "\nset ytics (" + tics +
+         ") scale 0 font '," + std::to_string(kSmallFont) + "'\n" +
+         Sheet::x_axis("'% of trials, 95 %'") + "unset ylabel\n" + plot + "\nunset label\n" +
+         sheet.key(388, box.top, key);
+  return box.bottom + 54;
+}
+
+}  // namespace
+
+Figure figure_of(const lattice::ObservedComparison& c, const lattice::StartValidation& v,
+                 const lattice::FieldParams& field) {
+  const auto drawn_on = [&](const Sheet& sheet, double& end) {
+    std::string out = "set multiplot\n" +
+                      sheet.text(std::to_string(c.seen.trials()) + " trials observed, " +
+                                     std::to_string(v.dynamics.trials) + " of the dynamics",
+                                 8, 16) +
+                      sheet.text("against the dynamics " + p_words(c.against_dynamics.p) +
+                                     ", against the chain " + p_words(c.against_chain.p),
+                                 8, 36, kSmallFont);
+    end = 46.0;
+    if (c.seen.has_endings())
+      end = add_compared(out, sheet, end, "endings", "endings", 28.0, compared_endings(c, v));
+    if (c.seen.has_gates())
+      end = add_compared(out, sheet, end, "final gates: column i_x, row i_y", "gates", 22.0,
+                         compared_gates(c, v, field));
+    return out + "unset multiplot\n";
+  };
+  double height = 0.0;  // places are parts of the sheet's height, which its panels make
+  (void)drawn_on(Sheet{1000}, height);
+  const Sheet sheet{static_cast<int>(std::ceil(height))};
+  return {Sheet::kWidth, sheet.height, drawn_on(sheet, height), kFont};
+}
+
+}  // namespace gatewalk::cli
