@@ -315,19 +315,38 @@ lattice::Scene read_other(const Options& options) {
   }
 }
 
-}  // namespace
-
-std::optional<Subject> versus(const Options& options, const Subject& s) {
-  if (!options.has("versus")) return {};
-  if (!s.scene || s.file) throw UsageError("--versus is of a scene, which " + s.path + " is not");
-  Subject other = s;
-  other.scene = read_other(options);
-  require_active(options, *other.scene);
-  const lattice::FieldParams &now = s.scene->field, then = other.scene->field;
+void require_same_size(const lattice::FieldParams& now, const lattice::FieldParams& then) {
   if (then.columns != now.columns || then.rows != now.rows)
     throw UsageError(
         "--versus: field.columns and field.rows must stay: final gates of fields of different "
         "sizes cannot be compared");
+}
+
+/// Recorded runs of another group of bodies.
+Subject other_group(const Options& options, const Subject& s, const std::string& path) {
+  if (!s.is_recorded() || s.foreign || !lattice::is_of_cells(path) || has_cell(options))
+    throw UsageError("--versus " + path +
+                     ": two matrices are compared where both are of recorded runs");
+  Subject other = open_recorded(options, path);
+  if (other.foreign) throw UsageError("--versus " + path + ": is a chain that was made elsewhere");
+  require_same_size(s.cells->field, other.cells->field);
+  return other;
+}
+
+}  // namespace
+
+std::optional<Subject> versus(const Options& options, const Subject& s) {
+  if (!options.has("versus")) return {};
+  if (const std::vector<std::string> given = options.texts("versus");
+      given.size() == 1 && is_matrix(given.front()))
+    return other_group(options, s, given.front());
+  if (!s.scene || s.file)
+    throw UsageError("--versus KEY=VALUE is of a scene, which " + s.path +
+                     " is not; of recorded runs give another group's matrix");
+  Subject other = s;
+  other.scene = read_other(options);
+  require_active(options, *other.scene);
+  require_same_size(s.scene->field, other.scene->field);
   other.problem = unsettled_problem(*other.scene);
   other.starts = {other.problem.start};
   return other;

@@ -12,6 +12,15 @@
 #include "lattice/scene/map_file.h"
 
 namespace gatewalk::cli {
+namespace {
+
+void require_error_bars(const Subject& s) {
+  if (!s.pool || (s.is_recorded() && s.pool->bodies() < lattice::kLeastBodies))
+    throw UsageError(s.path + ": has no error bars, which plans are made with: power needs a " +
+                     "chain of trees" + (s.pool ? ", of 16 bodies or more" : ""));
+}
+
+}  // namespace
 
 int run_power(const Arguments& arguments) {
   Options options(
@@ -20,13 +29,18 @@ int run_power(const Arguments& arguments) {
       "scene\n"
       "predicts (exact binomial test), or that the final gates differ by a total variation\n"
       "(simulated, by the test of gatewalk validate --observed); with --versus, to tell the scene\n"
-      "from another one, with so many trials of each. With --trials also what so many show.",
+      "from another one, or two groups of animals from each other, with so many trials of each. "
+      "With --trials also\n"
+      "what so many show.",
       "gatewalk power scenes/robot.toml --trials 60 --versus "
       "beams.stiffness_left_Nm_per_rad=0.3");
   options.scene();
   options.add_texts("versus", "KEY=VALUE",
-                    "the scene to tell this one from has this key otherwise (may be repeated)");
-  options.reads("versus", [](const std::string& given) { return lattice::map_file_in(given, ""); });
+                    "the scene to tell this one from has this key otherwise (may be repeated); or "
+                    "a matrix of another group's recorded runs");
+  options.reads("versus", [](const std::string& given) {
+    return is_matrix(given) ? given : lattice::map_file_in(given, "");
+  });
   options.add_count("trials", "N",
                     "also: what N trials show (with --versus, N of each scene), at most 100000");
   options.add_number("power", "P", "how often a difference is to be found (default: 0.8)");
@@ -44,12 +58,11 @@ int run_power(const Arguments& arguments) {
       .seed = options.seed()};
   if (options.has("trials")) how.trials = options.count("trials", 1, lattice::kMostPlanned);
   Subject s = open_subject(options, "scene");
-  if (!s.pool || (s.is_recorded() && s.pool->bodies() < lattice::kLeastBodies))
-    throw UsageError(s.path + ": has no error bars, which plans are made with: power needs a " +
-                     "chain of trees" + (s.pool ? ", of 16 bodies or more" : ""));
+  require_error_bars(s);
   auto other = versus(options, s);
+  if (other) require_error_bars(*other);
   s.settle(options);
-  if (other) {  // what is to be said of a scene's keys has been said
+  if (other && other->scene) {  // what is to be said of a scene's keys has been said
     other->settled = lattice::settle_method(*other->scene, lattice::RunsFrom::everywhere,
                                             options.seed(), options.work());
     other->problem = lattice::problem_of(*other->scene);

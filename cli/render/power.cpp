@@ -118,6 +118,29 @@ std::string needed_table(const PlannedExperiment& p) {
   return text + rows + "\n" + legend(rows, "");
 }
 
+std::string groups_table(const PlannedExperiment& p) {
+  std::string text =
+      "\nTwo groups, such as animals with and without a treatment, one of which ends as predicted: "
+      "trials of each group,\nfor " +
+      sureness(p.options) +
+      ", to see that an ending is so many points more or less often in the other\n(the worse of "
+      "both):\n\n" +
+      padded("", kName) + padded("predicted", kShare);
+  for (const double d : lattice::kGroupDifferences)
+    text += padded(digits(100.0 * d) + " points ", kCell);
+  std::string rows = "\n";
+  for (const std::size_t e : looked_at(p)) {
+    rows += padded(kAllEndingNames[e].name, kName) + share_text(p.prediction, e);
+    for (const Effect& effect : p.plan.endings[e].of_groups)
+      rows += padded(effect_text(effect), kCell);
+    rows += "\n";
+  }
+  return text + rows +
+         legend(rows, std::string(kBrackets) +
+                          ". Trials are those of different animals: m trials of one animal\ncount "
+                          "for m / (1 + (m - 1) r), where r is the correlation between them");
+}
+
 std::string power_table(const PlannedExperiment& p) {
   const std::string n = std::to_string(*p.options.trials),
                     often = digits(100.0 * p.options.goal.power) + " %";
@@ -153,8 +176,9 @@ std::string versus_table(const PlannedExperiment& p) {
   for (const std::string& key : p.versus) keys += (keys.empty() ? "" : ", ") + key;
   const std::string n = p.options.trials ? std::to_string(*p.options.trials) : "";
   std::string text = "\nEach of two experiments" + (n.empty() ? "" : " of " + n + " trials") +
-                     ", one of this scene, the other with\n" + keys +
-                     ":\ntrials of each that tell them apart, for " + sureness(p.options) +
+                     (p.other_scene ? ", one of this scene, the other with\n"
+                                    : ", one of this group, the other of that of\n") +
+                     keys + ":\ntrials of each that tell them apart, for " + sureness(p.options) +
                      ":\n\n" + padded("", kName) + padded("predicted", kShare) +
                      padded("versus", kShare) + padded("trials of each ", kCell);
   if (p.options.trials) text += padded("power of " + n + " each", 20);
@@ -227,10 +251,10 @@ std::string told_apart(const PlannedExperiment& p) {
   std::string keys;
   for (const std::string& key : p.versus) keys += (keys.empty() ? "" : ", ") + key;
   const Effect& gates = p.apart->final_gates;
-  std::string text = "To tell this scene from " + keys + " so often takes " +
-                     trials_text(gates.trials) + " trials of each by their final gates, " +
-                     trials_text(by_ending) + " by their endings" +
-                     (by_ending ? " (" + name + ")" : "");
+  std::string text = (p.other_scene ? "To tell this scene from " : "To tell this group from ") +
+                     keys + " so often takes " + trials_text(gates.trials) +
+                     " trials of each by their final gates, " + trials_text(by_ending) +
+                     " by their endings" + (by_ending ? " (" + name + ")" : "");
   if (p.options.trials && gates.power)
     text += "; " + std::to_string(*p.options.trials) + " of each do in " +
             fixed(100.0 * *gates.power, 0) + " of 100 experiments by their final gates";
@@ -284,6 +308,12 @@ Json to_json(const PlannedExperiment& p) {
       off["endings"][kAllEndingNames[e].key].push_back(to_json(effect, p.options, true));
   for (const Effect& effect : p.plan.final_gates)
     off["final_gates"].push_back(to_json(effect, p.options, false));
+  for (const std::size_t e : looked_at(p))
+    for (const Effect& effect : p.plan.endings[e].of_groups) {
+      Json of_groups = to_json(effect, p.options, true);
+      of_groups.erase("within_error_of_prediction");  // it is of the two groups alone
+      json["two_groups"]["endings"][kAllEndingNames[e].key].push_back(std::move(of_groups));
+    }
   if (p.options.trials) {
     Json& least = json["smallest_difference"];
     for (const std::size_t e : looked_at(p)) {
@@ -302,7 +332,7 @@ Json to_json(const PlannedExperiment& p) {
     versus["apart"]["endings"][kAllEndingNames[e].key] =
         to_json(p.apart->endings[e], p.options, true);
   versus["apart"]["final_gates"] = to_json(p.apart->final_gates, p.options, false);
-  versus["scene"] = lattice::to_toml(*p.other_scene);
+  if (p.other_scene) versus["scene"] = lattice::to_toml(*p.other_scene);
   return json;
 }
 
@@ -313,7 +343,8 @@ std::string table_of(const PlannedExperiment& p) {
                                   "of all bodies as predicted, 95 % intervals") +
                      rest_text(rest_of(p.prediction.final)) + "error: at most " +
                      fixed(p.prediction.error.total_variation, 4) +
-                     " in total variation of the final gates, 95 times in 100\n" + needed_table(p);
+                     " in total variation of the final gates, 95 times in 100\n" + needed_table(p) +
+                     groups_table(p);
   if (p.options.trials) text += power_table(p);
   if (p.apart) text += versus_table(p);
   return text;

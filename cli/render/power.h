@@ -26,7 +26,7 @@ struct PlannedExperiment {
   const lattice::ExperimentOptions& options;
   const lattice::StartAnswer& prediction;
   const lattice::ExperimentPlan& plan;
-  /// The other scene of --versus, if there is one.
+  /// The other scene of --versus, or another group's recorded runs, if there is one.
   std::vector<std::string> versus{};
   std::optional<lattice::Scene> other_scene{};
   std::optional<lattice::StartAnswer> other{};

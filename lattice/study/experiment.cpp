@@ -56,6 +56,22 @@ Effect effect_on(double share, double difference, double error, const PowerGoal&
   return effect;
 }
 
+Effect effect_on_groups(double share, double difference, const PowerGoal& all,
+                        const ExperimentOptions& options) {
+  Effect effect{.difference = difference};
+  const std::vector<double> others = shares_off_by(difference, share);
+  effect.trials = effect.trials_of_all = others.empty() ? Trials() : Trials(1);
+  for (const double other : others) {
+    effect.trials = larger(effect.trials, trials_for_two_shares(share, other, options.goal));
+    effect.trials_of_all = larger(effect.trials_of_all, trials_for_two_shares(share, other, all));
+    if (options.trials)
+      effect.power =
+          std::min(effect.power.value_or(1.0),
+                   power_of_two_shares(*options.trials, share, other, options.goal.level));
+  }
+  return effect;
+}
+
 }  // namespace
 
 std::vector<std::size_t> endings_to_look_at(const StartAnswer& a, const StartAnswer& b) {
@@ -76,6 +92,8 @@ ExperimentPlan plan_experiment(const StartAnswer& prediction, const ExperimentOp
     for (std::size_t k = 0; k < kShareDifferences.size(); ++k)
       of_ending.effects[k] = effect_on(share, kShareDifferences[k],
                                        error_of(prediction, kAllEndingNames[e]), all, options);
+    for (std::size_t k = 0; k < kGroupDifferences.size(); ++k)
+      of_ending.of_groups[k] = effect_on_groups(share, kGroupDifferences[k], all, options);
     if (!options.trials) return;
     of_ending.least = smallest_difference(*options.trials, share, options.goal);
     of_ending.least_of_all = smallest_difference(*options.trials, share, all);

@@ -32,10 +32,14 @@ struct Effect {
 
 inline constexpr std::array kShareDifferences{0.02, 0.05, 0.10, 0.20};
 inline constexpr std::array kTotalVariations{0.05, 0.10, 0.20};
+inline constexpr std::array kGroupDifferences{0.05, 0.10, 0.20};  // between two groups
 
 struct EndingPlan {
   std::array<Effect, kShareDifferences.size()> effects;
   SmallestDifference least{}, least_of_all{};  // that the options' trials show
+  /// Two groups, one of which ends as predicted, the other so many points more or less often:
+  /// trials of each (Fisher's exact test).
+  std::array<Effect, kGroupDifferences.size()> of_groups;
 };
 
 /// Places in kAllEndingNames of the endings that one of the two predictions does not rule out.

@@ -20,7 +20,7 @@ for line in 'One experiment against the model: trials needed, for 80 % power at 
   'Each of two experiments of 60 trials, one of this scene, the other with' 'beams.stiffness_left_Nm_per_rad=200, beams.stiffness_right_Nm_per_rad=200:'; do
   grep -q "^$line" power.txt || fail "power: no line '$line'"
 done
-[ "$(grep -c '^29 (41): 29 if this ending alone is looked at, 41 if all are' power.txt)" = 2 ] || fail "power: brackets are not explained"
+[ "$(grep -c '^29 (41): 29 if this ending alone is looked at, 41 if all are' power.txt)" = 3 ] || fail "power: brackets are not explained"
 grep -q '^crossed .*+[0-9.]* / none' power.txt && grep -q '^none: no difference is found so often' power.txt || fail "power: none is not explained"
 grep -q '[0-9])?' power.txt && grep -q '^?: the prediction may itself be as far off' power.txt || fail "power: ? is not explained"
 grep -q '^>100000' power.txt && fail "power: a mark is explained that does not stand there"
@@ -30,7 +30,7 @@ cmp -s 1.json 2.json || fail "power: another number of threads gave another file
 # Without a limit of gates nothing can be cut off: no trials are needed to see that.
 "$gatewalk" "${small[@]}" --set field.max_gates=0 --trials 20 --json free.json >free.txt 2>err.txt || fail "power: $(cat err.txt)"
 holds '.endings_95.cut_off == [0, 0] and (.from_prediction.endings | length == 4 and (has("cut_off") | not)) and (.smallest_difference.endings_percentage_points | has("cut_off") | not)' free.json
-[ "$(grep -c '^trapped' free.txt)" = 3 ] && [ "$(grep -c '^cut off' free.txt)" = 1 ] || fail "power: rows of who cannot be cut off"
+[ "$(grep -c '^trapped' free.txt)" = 4 ] && [ "$(grep -c '^cut off' free.txt)" = 1 ] || fail "power: rows of who cannot be cut off"
 # The same prediction as predict's.
 "$gatewalk" predict "$scenes/field.toml" --accuracy 0.05 --json predicted.json --quiet
 jq -s '.[0].endings == .[1].endings and .[0].final_gates == .[1].final_gates and .[0].error_95 == .[1].error_95' power.json predicted.json | grep -q true || fail "power: not the prediction of predict"
@@ -43,5 +43,36 @@ expect 2 'versus: field.columns and field.rows must stay' "$gatewalk" "${power[@
 expect 2 '^gatewalk: --versus forces.randm_N=20: unknown key forces.randm_N; the closest known key is forces.random_N' "$gatewalk" "${power[@]}" --versus forces.randm_N=20
 expect 2 'fidelity = "all" is not permitted for a chain' "$gatewalk" "${power[@]}" --set field.fidelity=all --set run.method=moreau
 expect 2 'start.y_m must be 0' "$gatewalk" "${power[@]}" --set start.y_m=1
+
+# Two groups, one of which ends as predicted. Fisher's test by its closed form: the normal approximation with the correction
+# for continuity of Casagrande, Pike and Smith (1978), which is within some per cent of the exact number.
+holds 'def trials($p; $q): (($p + $q) / 2) as $m | ($p - $q | fabs) as $d
+    | (1.959964 * (2 * $m * (1 - $m) | sqrt) + 0.841621 * ($p * (1 - $p) + $q * (1 - $q) | sqrt) | . * . / ($d * $d)) as $n
+    | ($n / 4) * (1 + (1 + 4 / ($n * $d) | sqrt) | . * .);
+  . as $all | [.two_groups.endings | to_entries[] | $all.endings[.key] as $p | select($p > 0.02) | .value[] | (.percentage_points / 100) as $d
+    | .trials / ([$p + $d, $p - $d | select(. >= 0 and . <= 1)] | map(trials($p; .)) | max)] | length == 12 and min > 0.94 and max < 1.06' power.json
+holds '[.two_groups.endings[] | length == 3 and (map(.trials) | . == (sort | reverse)) and (map(.trials_if_all_are_looked_at >= .trials) | all) and (map(.power) | . == sort)] | all' power.json
+grep -q '^Two groups, such as animals with and without a treatment, ' power.txt || fail "power: no table of two groups"
+
+# Two groups of animals whose passages were recorded.
+"$gatewalk" sample cell -o cell.toml --quiet
+"$gatewalk" sample tracks -o tracks.csv --quiet
+"$gatewalk" passages tracks.csv --cell cell.toml --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y --fps 10 --metres-per-unit 0.001 \
+  --fastest 0.4 -o runs.csv --quiet
+for group in 0 1; do
+  awk -F, -v group=$group '!/^[0-9]/ || $1 % 2 == group' runs.csv >$group.csv
+  "$gatewalk" build $group.csv --cell cell.toml -o $group.nc --quiet >/dev/null 2>&1 || fail "a matrix of group $group"
+done
+"$gatewalk" power 0.nc --versus 1.nc --trials 30 --json groups.json >groups.txt 2>err.txt || fail "power of two groups: $(cat err.txt)"
+"$gatewalk" predict 1.nc --json one.json --quiet 2>/dev/null
+"$gatewalk" predict 0.nc --json none.json --quiet 2>/dev/null
+jq -s '.[0].versus.set == ["1.nc"] and .[0].versus.endings == .[1].endings and .[0].endings == .[2].endings and (.[0].versus | has("scene") | not)
+  and (100 * (.[1].endings.crossed - .[2].endings.crossed) - .[0].versus.apart.endings.crossed.percentage_points | fabs) < 1e-9' groups.json one.json none.json |
+  grep -q true || fail "power of two groups: not the predictions of both"
+grep -q '^Each of two experiments of 30 trials, one of this group, the other of that of$' groups.txt || fail "power: the groups are not named"
+holds '[.versus.apart.endings[].power] | length == 5 and all(. >= 0 and . < 0.8)' groups.json
+expect 2 '^gatewalk: --versus 0.nc: two matrices are compared where both are of recorded runs$' "$gatewalk" power "$scenes/field.toml" --versus 0.nc
+expect 2 "of recorded runs give another group's matrix\$" "$gatewalk" power 0.nc --versus forces.random_N=2
+expect 2 'are the same file' "$gatewalk" power 0.nc --versus 1.nc --json 1.nc
 
 finish

@@ -523,7 +523,7 @@ def power(subject: _t.Any, *, trials: int | None = None, seed: int | None = None
     Returns
     -------
     Result
-        `summary` in words, `from_prediction` and `versus` by ending.
+        `summary` in words, `from_prediction`, `two_groups` and `versus` by ending.
 
     Raises
     ------
