@@ -95,6 +95,7 @@ std::vector<SweepAxis> sweep_axes(const std::vector<Variation>& own,
   std::size_t points = 1;
   for (const Variation& v : all) {
     axes.push_back(axis_of(v));
+    axes.back().origin = v.origin;
     points *= axes.back().values.size();
     if (points > kMostPoints)
       throw SceneError(v.origin + ": the grid has more than " + std::to_string(kMostPoints) +
@@ -118,7 +119,16 @@ std::vector<SweepPoint> sweep_points(const SweepPlan& plan) {
     std::vector<std::string> overrides = plan.overrides;
     for (std::size_t i = 0; i < plan.axes.size(); ++i)
       overrides.push_back(plan.axes[i].key + "=" + p.values[i]);
-    p.scene = parse_scene(plan.text, plan.source, overrides);
+    try {
+      p.scene = parse_scene(plan.text, plan.source, overrides);
+    } catch (const SceneError& e) {  // it names overrides as --set gives them
+      const std::string what = e.what();
+      for (std::size_t i = 0; i < plan.axes.size(); ++i)
+        if (const std::string set = "--set " + plan.axes[i].key + "=" + p.values[i] + ":";
+            what.starts_with(set))
+          throw SceneError(plan.axes[i].origin + what.substr(set.size() - 1));
+      throw;
+    }
     p.scene.sweep.clear();  // this is one of its points
   }
   return points;

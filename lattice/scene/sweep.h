@@ -18,6 +18,7 @@ namespace gatewalk::lattice {
 struct SweepAxis {
   std::string key;
   std::vector<std::string> values;
+  std::string origin{};  // how a message about it begins
 };
 
 /// The scene's own variations, completed and replaced by `given`, each "KEY=4:1:9" (4, 5, ... 9),

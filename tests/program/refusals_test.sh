@@ -69,4 +69,7 @@ before stability -o charts -- "${figures[@]}" '--methods nosuch'
 before reproduce -o report -- "${outputs[@]}"
 ls | grep -qx -e land -e charts -e report && fail "a refused command made its folder: $(ls)"
 
+# Values that --vary gives are named as the user gave them.
+expect 2 '^gatewalk: --vary forces.random_N=1,-1: forces.random_N = -1 is not permitted' "$gatewalk" sweep "$field" --vary forces.random_N=1,-1
+
 finish
