@@ -11,7 +11,8 @@
 ///              predict() by the solver asked for. Step by step: all planes of the field at a time; by
 ///              rows: the visits of a row by elimination or sums, then the next row. Plain references:
 ///              forward propagation (propagate) and one sparse solve (solve_absorption)
-///   Chain -> the chance of an ending from everywhere (committor.h), of all ends by first draw and by cell
+///   Chain -> the chance of an ending from everywhere (committor.h), of any cell, state or ending with the mean
+///              time till then (first_passage.h), of all ends by first draw and by cell
 ///              visited (outcomes.h), times and works of walks (totals.h),
 ///              the most frequent paths (paths.h), what survives for ever (quasi_stationary.h),
 ///              how walks spread over an endless lattice (diffusion.h)
@@ -31,6 +32,7 @@
 #include "markov/design.h"
 #include "markov/diffusion.h"
 #include "markov/field_states.h"
+#include "markov/first_passage.h"
 #include "markov/formats/counts.h"
 #include "markov/lumping.h"
 #include "markov/outcomes.h"

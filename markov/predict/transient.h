@@ -7,19 +7,15 @@
 #include <vector>
 
 #include "markov/predict.h"
+#include "markov/predict/block_elimination.h"
 
 namespace gatewalk::markov {
 
-struct Transient {
+struct Transient : PassedOn {
   /// The start's row must have been sampled.
   Transient(const FieldChain& chain, const Field& field, const Start& start);
 
   std::vector<std::int64_t> states;  // cell * n_in + input, in the order they are reached
-  // I - Q, transposed, in compressed columns: column s holds what state s passes on, after itself.
-  std::vector<std::int64_t> begin{0};
-  std::vector<std::int64_t> index;
-  std::vector<double> value;
-  std::vector<double> ends;  // chance that a draw of s ends the walk
 
   /// What ends of walks that make so many draws in each state; without remainder and rounding.
   [[nodiscard]] FinalDistribution ended(const std::vector<double>& draws, const FieldChain& chain,
