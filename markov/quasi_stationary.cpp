@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "markov/dense.h"
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr int kBlock = 8;  // vectors: the second eigenvalue settles as the ninth one lets it
 constexpr int kMostIterations = 20'000;
+constexpr Eigen::Index kDense = 300;        // states of which all eigenvalues are found at once
 constexpr double kEigenTolerance = 1e-12;   // of the first eigenvalue's change from step to step
 constexpr double kSecondTolerance = 1e-10;  // the same of the second
 
@@ -70,6 +72,29 @@ QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<doub
       break;
   }
   if (!(first > 0.0)) throw std::runtime_error("quasi-stationary: nobody gets into a second cell");
+  std::vector<double> told;
+  const auto tell = [&](const Eigen::VectorXd& moduli, std::ptrdiff_t most) {
+    told.assign(moduli.data(), moduli.data() + std::min<std::ptrdiff_t>(moduli.size(), most));
+  };
+  if (n <= kDense) {
+    tell(eigenvalue_moduli(kernel.toDense()), kToldEigenvalues);
+  } else {  // on with the block until these settle
+    constexpr int kMoreIterations = 2000, kApart = 10;
+    Eigen::VectorXd was = Eigen::VectorXd::Zero(block);
+    for (int iteration = 0; iteration < kMoreIterations; ++iteration) {
+      const Eigen::MatrixXd q = orthonormal(v);
+      v = kernel * q;
+      if (iteration % kApart != 0) continue;
+      const Eigen::VectorXd moduli = eigenvalue_moduli(product(q.transpose(), v));
+      std::ptrdiff_t settled = 0;
+      while (settled < kToldEigenvalues &&
+             std::abs(moduli[settled] - was[settled]) <= kSecondTolerance * first)
+        ++settled;
+      tell(moduli, settled);
+      if (settled == kToldEigenvalues) break;
+      was = moduli;
+    }
+  }
   // The first vector alone, from positive numbers: nothing is subtracted.
   Eigen::VectorXd states = Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n));
   for (int iteration = 0;; ++iteration) {
@@ -85,6 +110,7 @@ QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<doub
   out.states.assign(states.data(), states.data() + n);
   out.survival = (kernel * states).sum();
   out.second = second;
+  out.moduli = std::move(told);
   out.rows_per_cell = rows.dot(states) / out.survival;
   return out;
 }

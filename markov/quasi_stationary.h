@@ -2,11 +2,22 @@
 #pragma once
 /// What is left of walks that have been going on for long in an endless field.
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "markov/chain.h"
 
 namespace gatewalk::markov {
+
+inline constexpr std::ptrdiff_t kToldEigenvalues = 6;
+
+/// How long what goes with an eigenvalue of this modulus lasts: -1 / ln of it, in cells. Infinite
+/// at 1.
+[[nodiscard]] inline double implied_time_scale(double modulus) {
+  return modulus > 0.0 ? -1.0 / std::log(std::min(modulus, 1.0)) : 0.0;
+}
 
 /// Of the states that walks are in which have not been trapped yet, wherever they are.
 struct QuasiStationary {
@@ -14,6 +25,9 @@ struct QuasiStationary {
   double survival = 0.0;       // the largest eigenvalue: the chance to survive one more cell
   double second = 0.0;  // the modulus of the second one: what the start has left goes with it
   double rows_per_cell = 0.0;  // mean di_y of a move
+  /// Moduli of the largest eigenvalues, at most kToldEigenvalues; where there are many states
+  /// fewer, if the others lie too close to each other.
+  std::vector<double> moduli;
   [[nodiscard]] double spectral_gap() const { return survival - second; }
 };
 

@@ -124,6 +124,13 @@ Json by_ways(const MemoryStudy& study, const std::vector<Value>& values) {
   return j;
 }
 
+/// The longest first; those that are endless are null.
+Json scales(const std::vector<double>& gates) {
+  Json all = Json::array();
+  for (const double scale : gates) all.push_back(or_null(scale));
+  return all;
+}
+
 Json to_json(const MemoryStudy& study, const GatesAhead& ahead) {
   Json j;
   j["p"] = ahead.p;
@@ -138,7 +145,10 @@ Json to_json(const MemoryStudy& study, const GatesAhead& ahead) {
          {"total_variation_by_chance", {{"mean", s.chance}, {"at_95", s.chance_95}}},
          {"seen", by_ways(study, s.seen)},
          {"predicted", by_ways(study, s.predicted)},
-         {"excess_95", by_ways(study, s.excess_95)}});
+         {"excess_95", by_ways(study, s.excess_95)},
+         {"time_scales_gates", scales(s.seen_scales)},
+         {"predicted_time_scales_gates", scales(s.predicted_scales)},
+         {"predicted_time_scales_gates_95", s.scales_95}});
   j["sentence"] = sentence_ahead(study);
   return j;
 }

@@ -7,6 +7,7 @@
 
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
+#include "cli/render/memory.h"
 #include "cli/render/shown_field.h"
 #include "dynamics/cells/transitions.h"
 #include "lattice/scene/table4.h"
@@ -35,7 +36,8 @@ struct ValidatedMatrix {
 [[nodiscard]] std::string table_of(const lattice::Validation& v, const ShownField& shown,
                                    const ValidatedMatrix& matrix);
 
-/// Maps of the final gates: dynamics, chain, and their difference, a row per start. Throws
+/// Maps of the final gates: dynamics, chain, and their difference, a row per start; below them the
+/// Chapman-Kolmogorov test. Throws
 /// std::invalid_argument for more than kMostValidated.
 inline constexpr std::size_t kMostValidated = 8;
 [[nodiscard]] Figure figure_of(const lattice::Validation& v, const ShownField& shown);
@@ -45,8 +47,9 @@ struct ComparedGates {
   std::string summary;  // a line
   markov::CellProbabilities seen, chain;
 };
-/// The maps of both and their difference, a row each.
+/// The maps of both and their difference, a row each; `more` below them.
 [[nodiscard]] Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& title,
-                               const std::string& seen_head, const ShownField& shown);
+                               const std::string& seen_head, const ShownField& shown,
+                               const MorePanels& more = {});
 
 }  // namespace gatewalk::cli

@@ -47,11 +47,11 @@ Figure figure_of(const lattice::Validation& v, const ShownField& shown) {
     compared.push_back(
         {summary(s, shown), lattice::shares(s.dynamics.final_gates), s.exact.final_cells});
   return figure_of(compared, "final gates, " + std::to_string(v.trials) + " trials", "dynamics, %",
-                   shown);
+                   shown, panels_of(v.memory));
 }
 
 Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& title,
-                 const std::string& seen_head, const ShownField& shown) {
+                 const std::string& seen_head, const ShownField& shown, const MorePanels& more) {
   struct Row {
     FieldMap map;  // of what either of them reaches
     CellProbabilities seen, chain;
@@ -73,7 +73,8 @@ Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& 
   if (largest == 0.0) largest = 1e-4;
   end += 26;  // the name of the last row's axis
   const TypeMarks types(shown);
-  const Sheet sheet{static_cast<int>(end + 62 + types.legend_height())};
+  const double below = end + 62 + types.legend_height();
+  const Sheet sheet{static_cast<int>(below + more.height)};
   bool marked = false;
   const RootScale scale(100.0 * most);
   const auto left_of = [](int i) { return kLeft + i * (kMapWidth + kGap); };
@@ -122,6 +123,7 @@ Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& 
     }
     panel(2, "$difference", rows_of(row.seen - row.chain, false));
   }
+  if (more.draw) out += more.draw(sheet, below);
   return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
 }
 

@@ -9,6 +9,8 @@
 #include <stdexcept>
 
 #include "dynamics/base/random.h"
+#include "markov/dense.h"
+#include "markov/quasi_stationary.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -166,6 +168,24 @@ Counts dealt_excess(const StateWalks& w, const std::vector<Table>& ahead, Outcom
 /// Between two tables of one step.
 double half_sum(const Table& excess) { return 0.5 * excess.cwiseAbs().sum(); }
 
+/// Implied time scales of a table of shares, ways x ways + 1, the longest first.
+std::vector<double> time_scales(const Table& shares, int gates) {
+  Eigen::MatrixXd kernel = shares.leftCols(shares.rows());
+  for (Eigen::Index way = 0; way < shares.rows(); ++way)
+    if (const double all = shares.row(way).sum(); all > 0.0) kernel.row(way) /= all;
+  std::vector<double> scales;
+  for (const double modulus : markov::eigenvalue_moduli(kernel))
+    scales.push_back(gates * markov::implied_time_scale(modulus));
+  return scales;
+}
+
+/// The values that 95 % of them lie between.
+std::array<double, 2> middle_95(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto rim = static_cast<std::size_t>(0.025 * static_cast<double>(values.size()));
+  return {values[rim], values[values.size() - 1 - rim]};
+}
+
 /// Step number `gates`, with what chance makes of it; `null`: the excess of every draw.
 GatesAhead::Step step_of(int gates, const Table& seen, const Table& predicted,
                          const std::vector<Counts>& null) {
@@ -178,11 +198,18 @@ GatesAhead::Step step_of(int gates, const Table& seen, const Table& predicted,
   std::tie(step.chance, step.chance_95) = mean_and_95(distances);
   for (std::size_t c = 0; c < step.seen.size(); ++c) {
     for (std::size_t k = 0; k < null.size(); ++k) values[k] = null[k][gates].data()[c];
-    std::sort(values.begin(), values.end());
-    const auto rim = static_cast<std::size_t>(0.025 * static_cast<double>(values.size()));
+    const auto [low, high] = middle_95(values);
     const double excess = step.seen[c] - step.predicted[c];
-    step.excess_95.push_back({excess - values[values.size() - 1 - rim], excess - values[rim]});
+    step.excess_95.push_back({excess - high, excess - low});
   }
+  step.seen_scales = time_scales(seen, gates);
+  step.predicted_scales = time_scales(predicted, gates);
+  std::vector<std::vector<double>> drawn(step.seen_scales.size());  // by scale
+  for (const Counts& n : null) {
+    const std::vector<double> scales = time_scales(predicted + n[gates], gates);
+    for (std::size_t k = 0; k < drawn.size(); ++k) drawn[k].push_back(scales[k]);
+  }
+  for (const std::vector<double>& of_scale : drawn) step.scales_95.push_back(middle_95(of_scale));
   return step;
 }
 

@@ -50,6 +50,10 @@ struct GatesAhead {
     std::vector<std::array<double, 2>> excess_95{};  // of seen - predicted; chance as in the null
     LookedAt::Test total_variation;                  // of the two
     double chance = 0.0, chance_95 = 0.0;  // the null's total variation: mean, and 95 % of it
+    /// Implied time scales -k / ln |eigenvalue| of where walks are k = `gates` later by where they
+    /// are now (way by way, the longest first), in gates; 95 % of the null's about the prediction.
+    std::vector<double> seen_scales{}, predicted_scales{};
+    std::vector<std::array<double, 2>> scales_95{};
   };
   std::int64_t runs = 0;
   std::vector<Step> steps;  // 2, 3, ... gates; one gate ahead there is nothing to see

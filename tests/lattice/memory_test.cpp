@@ -200,6 +200,48 @@ TEST(Memory, GatesAheadByHand) {
   EXPECT_GT(s.excess_95[3][0], 0.0);
 }
 
+// Two ways, each left for the other by 1 of 4, 1 of 10 trapped: eigenvalues 0.9 and 0.9 (1 - 2/4),
+// of k gates their k-th powers, so that time scales are the same at every lag. A chain that is seen
+// as often as it says, without memory: walks of one run each.
+TEST(Memory, TimeScalesOfTwoWaysByHand) {
+  StateWalks w;
+  w.ways = 2;
+  w.way = {0, 1};
+  for (std::int32_t from = 0; from < 2; ++from) {
+    for (int i = 0; i < 675; ++i) w.add(std::vector<std::int32_t>{from}, from);
+    for (int i = 0; i < 225; ++i) w.add(std::vector<std::int32_t>{from}, 1 - from);
+    for (int i = 0; i < 100; ++i) w.add(std::vector<std::int32_t>{from}, StateWalks::kTrapped);
+  }
+  const GatesAhead g = gates_ahead(w, 5, 99, 1);
+  for (const GatesAhead::Step& s : g.steps) {
+    ASSERT_EQ(s.predicted_scales.size(), 2u);
+    EXPECT_NEAR(s.predicted_scales[0], -1.0 / std::log(0.9), 1e-10);
+    EXPECT_NEAR(s.predicted_scales[1], -1.0 / std::log(0.45), 1e-10);
+    // Every walk goes on by the kernel after its only run.
+    for (const int k : {0, 1}) {
+      EXPECT_NEAR(s.seen_scales[k], s.predicted_scales[k], 1e-10);
+      EXPECT_LE(s.scales_95[k][0], s.predicted_scales[k] + 1e-10);
+      EXPECT_GE(s.scales_95[k][1], s.predicted_scales[k] - 1e-10);
+    }
+  }
+}
+
+// Bodies that come back to where they were two gates before, always: the kernel says 1/2, and its
+// second time scale is 0, the seen one is endless.
+TEST(Memory, TimeScalesShowMemory) {
+  StateWalks w;
+  w.ways = 2;
+  w.way = {0, 1};
+  for (int i = 0; i < 100; ++i)
+    for (std::int32_t a = 0; a < 2; ++a)
+      for (std::int32_t b = 0; b < 2; ++b)
+        w.add(std::vector<std::int32_t>{a, b, a, b, a, b, a, b}, a);
+  const GatesAhead::Step& s = gates_ahead(w, 2, 99, 1).steps[0];
+  EXPECT_NEAR(s.predicted_scales[1], 0.0, 0.1);
+  EXPECT_GT(s.seen_scales[1], 2.0);
+  EXPECT_GT(s.seen_scales[1], s.scales_95[1][1]);
+}
+
 TEST(Memory, HolmCountsTheQuestions) {
   MemoryStudy s;
   s.ahead.p = 0.04;

@@ -401,6 +401,8 @@ TEST(QuasiStationary, IsTheFirstEigenvectorOfTheMatrix) {
   std::sort(moduli.begin(), moduli.end(), std::greater<>());
   EXPECT_NEAR(q.survival, moduli[0], 1e-12);
   EXPECT_NEAR(q.second, moduli[1], 1e-8);
+  ASSERT_EQ(std::ssize(q.moduli), kToldEigenvalues);
+  for (std::size_t k = 0; k < q.moduli.size(); ++k) EXPECT_NEAR(q.moduli[k], moduli[k], 1e-13);
   const Eigen::Map<const Eigen::VectorXd> states(q.states.data(), 87);
   EXPECT_NEAR(states.sum(), 1.0, 1e-12);
   EXPECT_LT((kernel * states - q.survival * states).cwiseAbs().maxCoeff(), 1e-12);
@@ -416,6 +418,71 @@ TEST(QuasiStationary, IsKnownForTwoStates) {
   EXPECT_NEAR(q.second, 0.25, 1e-6);
   EXPECT_NEAR(q.states[0], 2.0 / 3.0, 1e-10);
   EXPECT_NEAR(q.rows_per_cell, 2.0 / 3.0, 1e-10);  // moves to state 0 lead up
+}
+
+/// States in a ring: with `on` to the next one, with `back` to the one before, else stays; a tenth
+/// is trapped.
+Chain ring(int states, double on, double back) {
+  std::vector<Entry> entries;
+  std::vector<Exit> exits;
+  for (int i = 0; i < states; ++i) {
+    exits.push_back({i, 0, 1});
+    entries.push_back({i, i, 0.9 * (1.0 - on - back)});
+    entries.push_back({i, (i + 1) % states, 0.9 * on});
+    entries.push_back({i, (i + states - 1) % states, 0.9 * back});
+    entries.push_back({i, states, 0.1});
+  }
+  exits.push_back({});
+  return Chain::from_probabilities(matrix(states, states + 1, entries), exits);
+}
+
+// By hand: 0.9 (1 - 2 p + 2 p cos(2 pi k / n)) of steps to both sides; of a circle all have 0.9.
+TEST(QuasiStationary, OfARingHasItsTimeScales) {
+  const std::vector<double> both = quasi_stationary(ring(7, 0.2, 0.2), {1.0}).moduli;
+  ASSERT_EQ(std::ssize(both), kToldEigenvalues);
+  for (std::size_t k = 0; k < both.size(); ++k) {
+    const double turn = 2.0 * M_PI * static_cast<double>((k + 1) / 2) / 7.0;
+    EXPECT_NEAR(both[k], 0.9 * (0.6 + 0.4 * std::cos(turn)), 1e-14) << k;
+  }
+  EXPECT_NEAR(implied_time_scale(both[0]), -1.0 / std::log(0.9), 1e-12);
+  const std::vector<double> circle = quasi_stationary(ring(5, 1.0, 0.0), {1.0}).moduli;
+  ASSERT_EQ(circle.size(), 5u);
+  for (const double modulus : circle) EXPECT_NEAR(modulus, 0.9, 1e-14);
+  EXPECT_TRUE(std::isinf(implied_time_scale(1.0)));
+  EXPECT_EQ(implied_time_scale(0.0), 0.0);
+}
+
+// More states than are solved at once: what is told is right, and more than the two that were.
+TEST(QuasiStationary, OfManyStatesTellsWhatSettles) {
+  // 5 x 87 states, of which each draw changes both parts: eigenvalues are products.
+  const Probabilities slow = ring(5, 0.1, 0.02).matrix();
+  const Chain fast = Chain::from_counts(lattice_counts(7), never_down());
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(435, 435);
+  std::vector<Entry> entries;
+  std::vector<Exit> exits;
+  for (int a = 0; a < 5; ++a)
+    for (int i = 0; i < 87; ++i) {
+      exits.push_back({87 * a + i, 0, 1});
+      double ends = 1.0;
+      for (int b = 0; b < 5; ++b)
+        for (Probabilities::InnerIterator it(fast.matrix(), i); it; ++it) {
+          const double p = slow.coeff(a, b) * it.value();
+          if (it.col() == 87 || p == 0.0) continue;
+          entries.push_back({87 * a + i, 87 * b + static_cast<int>(it.col()), p});
+          dense(87 * a + i, 87 * b + it.col()) = p;
+          ends -= p;
+        }
+      entries.push_back({87 * a + i, 435, ends});
+    }
+  exits.push_back({});
+  const QuasiStationary q =
+      quasi_stationary(Chain::from_probabilities(matrix(435, 436, entries), exits), {1.0});
+  std::vector<double> moduli;
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(dense, false);
+  for (const auto& value : solver.eigenvalues()) moduli.push_back(std::abs(value));
+  std::sort(moduli.begin(), moduli.end(), std::greater<>());
+  ASSERT_GE(q.moduli.size(), 5u);
+  for (std::size_t k = 0; k < q.moduli.size(); ++k) EXPECT_NEAR(q.moduli[k], moduli[k], 1e-8) << k;
 }
 
 TEST(QuasiStationary, SaysWhereNobodySurvives) {

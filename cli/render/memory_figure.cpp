@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "cli/render/memory.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using lattice::GatesAhead;
+using lattice::MemoryStudy;
+
+constexpr double kPanelsLeft = 64, kPanelsRight = 492, kPanelHeight = 54, kPanelGap = 14,
+                 kPanelsHead = 50, kScalesHeight = 110, kScalesHead = 82;
+/// More ways than this would make panels too small to read.
+constexpr std::size_t kMostWays = 6;
+constexpr std::size_t kDrawnScales = 3;
+
+const std::string kBand =
+    std::string(" with filledcurves fs transparent solid 0.25 noborder lc rgb '");
+const std::string kLine = " with lines lw 1.2 lc rgb '";
+/// Numbers of panels that are small themselves; and of those that are not.
+const std::string kSmallTics = "set tics font ',12'\n", kTics = "set tics font ',15'\n";
+const std::string kPoints = " with points pt 7 ps 0.45 lc rgb '";
+
+/// One curve: what the kernel's powers say with its 95 %, and what was seen. Rows "gates low high
+/// predicted seen".
+std::string curve(const std::string& block, const char* colour, const char* seen_colour) {
+  return block + " using 1:2:3" + kBand + colour + "', " + block + " using 1:4" + kLine + colour +
+         "', " + block + " using 1:5" + kPoints + seen_colour + "'";
+}
+
+std::string line(int gates, double low, double high, double predicted, double seen) {
+  return std::to_string(gates) + " " + digits(low) + " " + digits(high) + " " + digits(predicted) +
+         " " + digits(seen) + "\n";
+}
+
+/// Of the bodies that enter by this way, how many are where so many gates later, in %.
+struct Probabilities {
+  std::string rows;
+  double most = 0.0;
+
+  Probabilities(const GatesAhead& ahead, std::size_t ways, std::size_t from, std::size_t to) {
+    for (const GatesAhead::Step& s : ahead.steps) {
+      const auto begin = static_cast<std::ptrdiff_t>(from * (ways + 1));
+      const auto sum = [&](const std::vector<double>& shares) {
+        double all = 0.0;
+        for (std::size_t k = 0; k <= ways; ++k) all += shares[static_cast<std::size_t>(begin) + k];
+        return all;
+      };
+      const std::size_t at = static_cast<std::size_t>(begin) + to;
+      const double unit = 100.0 / sum(s.predicted), excess = s.seen[at] - s.predicted[at];
+      if (!std::isfinite(unit)) continue;
+      const double predicted = unit * s.predicted[at], seen = 100.0 / sum(s.seen) * s.seen[at],
+                   low = std::max(0.0, predicted + unit * (excess - s.excess_95[at][1])),
+                   high = predicted + unit * (excess - s.excess_95[at][0]);
+      rows += line(s.gates, low, high, predicted, seen);
+      most = std::max({most, high, seen, predicted});
+    }
+  }
+};
+
+/// The upper end of an axis from 0, and the tic on it.
+struct UpTo {
+  double end, tic;
+  explicit UpTo(double most) : end(most > 0.0 ? 1.15 * most : 1.0), tic(tic_step(end, 2.0)) {}
+  [[nodiscard]] std::string commands() const {
+    return "set yrange [0:" + digits(end) + "]\nset ytics 0," + digits(tic) + "\n";
+  }
+};
+
+std::string of_ways(const MemoryStudy& study, const Sheet& sheet, double top) {
+  const GatesAhead& ahead = study.ahead;
+  const std::vector<std::string>& names = study.outcomes;  // the last one: trapped
+  const std::size_t ways = names.size() - 1;
+  const double pitch = (kPanelsRight - kPanelsLeft) / static_cast<double>(ways + 1);
+  std::string out =
+      sheet.text("Chapman-Kolmogorov test: % of those who enter as at the left, some gates later",
+                 8, top + 14, kSmallFont) +
+      sheet.text("line: powers of the kernel, with 95 % of chance; points: trials", 8, top + 28,
+                 kSmallFont);
+  for (std::size_t to = 0; to <= ways; ++to)
+    out += sheet.text(names[to], kPanelsLeft + static_cast<double>(to) * pitch + 4,
+                      top + kPanelsHead - 6, kSmallFont);
+  const int first = ahead.steps.front().gates, last = ahead.steps.back().gates;
+  for (std::size_t from = 0; from < ways; ++from) {
+    const double above = top + kPanelsHead + static_cast<double>(from) * (kPanelHeight + kPanelGap);
+    out += sheet.text(names[from], 8, above + 0.5 * kPanelHeight, kSmallFont);
+    for (std::size_t to = 0; to <= ways; ++to) {
+      const Probabilities p(ahead, ways, from, to);
+      if (p.rows.empty()) continue;
+      const std::string block = "$ahead" + std::to_string(from) + "_" + std::to_string(to);
+      const double left = kPanelsLeft + static_cast<double>(to) * pitch;
+      out += data_block(block, p.rows) + kFrame + kSmallTics +
+             sheet.margins({left, left + pitch - 30, above, above + kPanelHeight}) +
+             "set xrange [" + digits(first - 0.5) + ":" + digits(last + 0.5) + "]\nset xtics 2,2" +
+             (from + 1 == ways ? "" : "\nset format x ''") + "\n" + UpTo(p.most).commands() +
+             Sheet::axes(from + 1 == ways && to == ways / 2 ? "'gates'" : "''", "''") + "plot " +
+             curve(block, kFirstColour, "black") + "\nunset label\nset format x '% h'\n";
+    }
+  }
+  return out;
+}
+
+std::string of_scales(const MemoryStudy& study, const Sheet& sheet, double top) {
+  const std::vector<GatesAhead::Step>& steps = study.ahead.steps;
+  const char* const colours[] = {kFirstColour, kSecondColour, kThirdColour};
+  const std::size_t count = std::min(kDrawnScales, steps.front().seen_scales.size());
+  std::string out = sheet.text("implied time scales of the same tables, in gates, over the lag", 8,
+                               top + 14, kSmallFont);
+  std::string plot;
+  double most = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::string rows;
+    for (const GatesAhead::Step& s : steps) {
+      if (!std::isfinite(s.seen_scales[k]) || !std::isfinite(s.scales_95[k][1])) continue;
+      rows += line(s.gates, s.scales_95[k][0], s.scales_95[k][1], s.predicted_scales[k],
+                   s.seen_scales[k]);
+      most = std::max({most, s.scales_95[k][1], s.seen_scales[k]});
+    }
+    if (rows.empty()) continue;
+    const std::string block = "$scale" + std::to_string(k);
+    out += data_block(block, rows);
+    plot += (plot.empty() ? "plot " : ", ") + curve(block, colours[k], colours[k]);
+  }
+  if (plot.empty()) return out + "unset label\n";
+  return out + kFrame + kTics +
+         sheet.margins({kPanelsLeft, 0.5 * (kPanelsLeft + kPanelsRight), top + 26,
+                        top + 26 + kScalesHeight}) +
+         "set xrange [" + digits(steps.front().gates - 0.5) + ":" +
+         digits(steps.back().gates + 0.5) + "]\nset xtics 2,1\n" + UpTo(most).commands() +
+         Sheet::axes("'lag, gates'", "'time scale'") + plot + "\nunset label\n";
+}
+
+}  // namespace
+
+MorePanels panels_of(const MemoryStudy& study) {
+  const GatesAhead& ahead = study.ahead;
+  const std::size_t ways = study.outcomes.empty() ? 0 : study.outcomes.size() - 1;
+  if (ahead.steps.empty() || ways == 0 || ways > kMostWays) return {};
+  const double of_all = kPanelsHead + static_cast<double>(ways) * (kPanelHeight + kPanelGap) + 34;
+  return {of_all + kScalesHead + kScalesHeight, [&study, of_all](const Sheet& sheet, double top) {
+            return of_ways(study, sheet, top) + of_scales(study, sheet, top + of_all);
+          }};
+}
+
+}  // namespace gatewalk::cli
