@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "cli/analysed.h"
 
+#include <charconv>
 #include <utility>
 
 #include "cli/arguments.h"
+#include "cli/exchange/imported.h"
 #include "cli/ranged.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/matrix.h"
 #include "cli/render/variance_shares.h"
+#include "lattice/gate_chain.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/study/prediction.h"
 
@@ -96,6 +99,100 @@ lattice::ParameterEffects effects_of(const lattice::ParameterOptions& how, Subje
   if (!s.pool) return lattice::parameter_effects(s.problem, *c.chain, analysis.target, how, work);
   return lattice::parameter_effects(s.problem, *s.pool, analysis.target, how, s.how.per_leaf,
                                     s.how.most_runs - c.gate_runs, work);
+}
+
+namespace {
+
+/// States of a matrix that bodies enter: without those of its starts.
+int entered_states(const dynamics::StateSpace& space) {
+  return space.size() - static_cast<int>(space.points().size());
+}
+
+/// One of these by its name, or its number; none where there is none.
+std::optional<int> state_named(const Subject& s, const std::string& text) {
+  if (!s.file) return {};
+  const dynamics::StateSpace& space = s.file->transitions.space;
+  if (s.foreign) {
+    const auto entry = foreign_start(*s.file, text);
+    return entry ? std::optional(space.index_of(*entry).state) : std::nullopt;
+  }
+  const std::vector<std::string> names = lattice::state_names(*s.file);
+  for (int state = 0; state < entered_states(space); ++state)
+    if (text == names[static_cast<std::size_t>(state)] || text == std::to_string(state))
+      return state;
+  return {};
+}
+
+/// "IX,IY" at the beginning of a text, of a gate in the field; `rest` is what follows.
+std::optional<std::int64_t> cell_named(const lattice::FieldParams& field, const std::string& text,
+                                       std::string& rest) {
+  int at[2];
+  const char *from = text.data(), *const end = from + text.size();
+  for (const int k : {0, 1}) {
+    const auto [next, error] = std::from_chars(from, end, at[k]);
+    if (error != std::errc() ||
+        (k == 0 ? next == end || *next != ',' : next != end && *next != ','))
+      return {};
+    from = next == end ? next : next + 1;
+    if (k == 1 && next != end && from == end) return {};  // a comma and nothing
+  }
+  const int column = at[0] + field.start_column(), row = at[1];
+  if (!field.contains(column, row)) return {};
+  rest.assign(from, end);
+  return std::int64_t{row} * field.columns + column;
+}
+
+}  // namespace
+
+std::optional<PassageAsked> first_passage_asked(const Options& options, const Subject& s) {
+  if (!options.has("first-passage")) return {};
+  const std::string text = options.text("first-passage");
+  if (const auto ending = lattice::ending_named(text))
+    return PassageAsked{text, {.ending = *ending}};
+  if (const auto state = state_named(s, text)) return PassageAsked{text, {.input = *state}};
+  const lattice::FieldParams& field = s.problem.field;
+  std::string rest;
+  if (const auto cell = cell_named(field, text, rest)) {
+    if (rest.empty()) return PassageAsked{text, {.cell = *cell}};
+    if (const auto state = state_named(s, rest))
+      return PassageAsked{text, {.cell = *cell, .input = *state}};
+  }
+  std::string names;
+  for (const lattice::EndingName& e : lattice::kAllEndingNames) names += std::string(e.key) + ", ";
+  const auto range = [](int first, int count) {
+    return std::to_string(first) + " to " + std::to_string(first + count - 1);
+  };
+  throw UsageError(
+      "--first-passage " + text + ": must be an ending (" + names.substr(0, names.size() - 2) +
+      "), a gate IX,IY (IX " + range(-field.start_column(), field.columns) + ", IY " +
+      range(0, field.rows) + ")" +
+      (s.file ? ", a state by its name or number, or a state of one gate, IX,IY,STATE (the states "
+                "of " +
+                    s.path + ": " + lattice::state_names(*s.file).front() + ", ..., " +
+                    std::to_string(entered_states(s.file->transitions.space)) + " in all)"
+              : "; states are those of a matrix: gatewalk build"));
+}
+
+PassageAnswer first_passage_of(const Options& options, const std::optional<PassageAsked>& asked,
+                               const Subject& s, const AnalysedSubject& c) {
+  if (!asked) return {};
+  const dynamics::StateSpace& space = c.chain->space;
+  const bool same_states = !s.file || (space.trees() == s.file->transitions.space.trees() &&
+                                       space.bins() == s.file->transitions.space.bins());
+  if (asked->target.input && !same_states)
+    throw UsageError("--first-passage " + asked->text +
+                     ": runs were added to keep the accuracy, and the states are others now: build "
+                     "the matrix for this accuracy, field and start first");
+  const lattice::FirstPassage found =
+      lattice::first_passage(s.problem.field, *c.chain, asked->target);
+  std::vector<std::string> names =
+      s.foreign ? lattice::state_names(*s.file) : lattice::state_names(space);
+  names.pop_back();  // trapped
+  if (!has_tables(found.all, names.size()))
+    options.warn(
+        "--first-passage: the tables of all states are left out, they would have more "
+        "than 2 million lines: ask for fewer gates");
+  return {cli::to_json(found, *asked, names), text_of(found, *asked)};
 }
 
 void add_ranges(Options& options) {

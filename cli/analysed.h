@@ -8,6 +8,7 @@
 
 #include "cli/ranged.h"
 #include "cli/render/final_gates.h"
+#include "cli/render/first_passage.h"
 #include "cli/render/json.h"
 #include "cli/render/variance_shares.h"
 #include "cli/subject.h"
@@ -40,6 +41,19 @@ struct AnalysedSubject {
                                                    const AnalysedSubject& c,
                                                    const lattice::Analysis& analysis,
                                                    const dynamics::Work& work);
+
+/// What --first-passage asks for; none without it. Throws UsageError naming what is allowed.
+[[nodiscard]] std::optional<PassageAsked> first_passage_asked(const Options& options,
+                                                              const Subject& s);
+/// Its answer by the chain: `json` of the result and a line, and a warning where tables are left
+/// out. Null and nothing without. Throws UsageError for a state of a chain that has others now.
+struct PassageAnswer {
+  Json json;
+  std::string text;
+};
+[[nodiscard]] PassageAnswer first_passage_of(const Options& options,
+                                             const std::optional<PassageAsked>& asked,
+                                             const Subject& s, const AnalysedSubject& c);
 
 /// Declares --over and --over-trials.
 void add_ranges(Options& options);

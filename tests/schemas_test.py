@@ -73,9 +73,9 @@ predict runs.nc
 predict tree.nc --set field.columns=401 --set field.rows=401
 analyze field.toml --accuracy 0.2 --runs 200
 analyze mixed.toml --accuracy 0.2 --runs 0 --trials 50 --target trapped
-analyze bins.nc --runs 0
+analyze bins.nc --runs 0 --first-passage 0,1
 analyze passages.nc --set field.rows=4
-analyze field.toml --accuracy 0.2 --runs 0 --set field.max_gates=0 --lump 2,1,1
+analyze field.toml --accuracy 0.2 --runs 0 --set field.max_gates=0 --lump 2,1,1 --first-passage crossed
 lattice field.toml --trials 50
 lattice mixed.toml --trials 50
 rare field.toml --row 4 --accuracy 0.5

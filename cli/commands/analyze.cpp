@@ -34,6 +34,10 @@ int run_analyze(const Arguments& arguments) {
                    "what starts, paths and influences are of: crossed, left_side, right_side, "
                    "trapped or cut_off",
                    "crossed");
+  options.add_text("first-passage", "TARGET",
+                   "how likely bodies get there and how long that takes, from every state of every "
+                   "gate: an ending, a gate\nIX,IY, of a matrix a state (name or number), or "
+                   "IX,IY,STATE; --json and --csv have all states");
   options.add_count(
       "runs", "N",
       "gate runs with a little more, and as many with a little less of each number "
@@ -73,11 +77,13 @@ int run_analyze(const Arguments& arguments) {
                (s.foreign ? ", a chain that was made elsewhere" : ", whose runs were recorded"));
   how.lumping = lumping_of(options, s.problem.map().section);
   const auto ranged = over_of(options, s);
+  const auto passage = first_passage_asked(options, s);
   s.settle(options);
   const auto of_file = runs_of_file(options, s);
   AnalysedSubject c = analysed(options, s);
   const dynamics::Work work = options.work();
   const auto analysis = lattice::analyze(s.problem, *c.chain, how, work);
+  const PassageAnswer passages = first_passage_of(options, passage, s, c);
   if (s.pool) c.chain.reset();  // that for parameters is larger
   const auto effects = effects_of(parameters, s, c, analysis, work);
   std::optional<DirectTrials> direct;
@@ -99,8 +105,9 @@ int run_analyze(const Arguments& arguments) {
   const SharesAnswer shares = shares_of(options, ranged, s, how.target);
   if (shares.shares) shown.shares = &*shares.shares;
   json["variance_shares"] = shares.json;
+  if (passage) json["first_passage"] = passages.json;
   json["made_by"] = s.made_by(options);
-  options.give_out(json, table_of(shown) + shares.table);
+  options.give_out(json, passages.text + table_of(shown) + shares.table);
   options.warn(rest_warning(c.rest));
   if (const std::string why = analysis.why_unfinished(); !why.empty())
     options.warn("gates visited, visits, times and costs are not known: " + why);

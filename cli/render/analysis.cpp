@@ -171,6 +171,14 @@ std::string few_runs_text(const lattice::Analysis& a) {
   return text.empty() ? "" : text + ")\n";
 }
 
+/// "5.55, 1.99, 1.20"
+std::string time_scales_text(const markov::QuasiStationary& q) {
+  std::string text;
+  for (const double modulus : q.moduli)
+    text += (text.empty() ? "" : ", ") + fixed(markov::implied_time_scale(modulus), 2);
+  return text;
+}
+
 /// {"i_x": ..., "i_y": ...}
 Json gate_json(std::int64_t cell, const lattice::FieldParams& field) {
   return {{"i_x", cell % field.columns - field.start_column()}, {"i_y", cell / field.columns}};
@@ -322,6 +330,9 @@ Json to_json(const AnalysedField& f) {
     q["spectral_gap"] = a.endless->spectral_gap();
     q["kept_per_gate"] = a.endless->second / a.endless->survival;
     q["rows_per_gate"] = a.endless->rows_per_cell;
+    q["eigenvalues"] = a.endless->moduli;
+    for (const double modulus : a.endless->moduli)
+      q["time_scales_gates"].push_back(or_null(markov::implied_time_scale(modulus)));
     for (std::size_t b = 0; b < a.endless_boundaries.size(); ++b)
       q["boundaries"][a.space.section().faces[b].name] = a.endless_boundaries[b];
     q["states"] = a.endless->states;
@@ -461,7 +472,8 @@ std::string table_of(const AnalysedField& f) {
              " of them get through or out of each further gate; " +
              fixed(a.endless->rows_per_cell, 2) + " rows a gate; from gate to gate " +
              percent(a.endless->second / a.endless->survival, 1.0) +
-             " is left of what tells where they started\n";
+             " is left of what tells where they started\nimplied time scales (gates): " +
+             time_scales_text(*a.endless) + "\n";
   const std::string target = std::string("\"") + target_word(a.target) + "\"";
   const std::vector<std::string>& types = f.shown.types;
   if (f.from_trials)

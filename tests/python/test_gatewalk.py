@@ -313,6 +313,51 @@ class Elsewhere(unittest.TestCase):
             with self.assertRaisesRegex(gw.UsageError, "x.sta, .* is an input"):
                 gw.load(Path(folder) / "x.sta").export(Path(folder) / "x.tra")
 
+    def test_first_passages_solve_the_exported_chain(self):
+        matrix = gw.build(FIELD, bins="paper", trials=30, set={"field.rows": 3, "field.columns": 3})
+        for limit, target in ((0, (0, 2)), (0, "EN_7"), (0, "left_side"), (0, (1, 0, "LD_60")), (4, (0, 2)), (4, "crossed")):
+            key = {"field.max_gates": limit}
+            with tempfile.TemporaryDirectory() as folder:
+                matrix.export(Path(folder) / "field.npz", set=key)
+                chain = scipy.sparse.load_npz(Path(folder) / "field.npz").toarray()
+                states = pandas.read_csv(Path(folder) / "field.states.csv")
+            if isinstance(target, str):
+                there = (states["ending"] == target) | (states["state"] == target)
+            else:
+                there = (states["column"] == target[0] + 1) & (states["row"] == target[1])
+                there &= (states["state"] == target[2]) if len(target) > 2 else states["ending"].isna()
+            walks = (states["ending"].isna() & ~there).to_numpy()
+            left = np.eye(walks.sum()) - chain[np.ix_(walks, walks)]
+            chance = np.linalg.solve(left, chain[np.ix_(walks, there.to_numpy())].sum(axis=1))
+            gates = np.linalg.solve(left, chance)
+            first = matrix.first_passage(target, set=key)
+            table = first.to_frame()
+            # With a limit states of the exported chain know how many gates came before: only the start's had none.
+            where = states[walks & (states["entered_before"] == 0).to_numpy()]
+            own = table.loc[list(zip(where["row"].astype(int), where["column"].astype(int) - 1, where["state"]))]
+            count = len(own)
+            np.testing.assert_allclose(own["probability"], chance[:count], rtol=1e-9, atol=1e-300)
+            reached = chance[:count] > 1e-12
+            np.testing.assert_allclose(own["mean_gates"][reached], gates[:count][reached] / chance[:count][reached], rtol=1e-9)
+            self.assertAlmostEqual(first.probability, chance[0], 12)
+            self.assertIsNone(first.probability_95)
+            self.assertEqual(first.of_states["probability"].shape, (3, 3, 87))
+            self.assertEqual(first.states, [f"{face}_{k}" for k, face in enumerate(matrix.states["face"])])
+        np.testing.assert_array_equal(*(matrix.first_passage(state).of_states["mean_time_s"] for state in (3, "EN_3")))
+        with self.assertRaisesRegex(gw.UsageError, "must be an ending .crossed, .* a gate IX,IY .IX -1 to 1, IY 0 to 2.*EN_0, ..., 87 in all"):
+            matrix.first_passage((0, 3))
+
+    def test_time_scales_are_those_of_the_kernel(self):
+        matrix = gw.build(FIELD, bins="paper", trials=30)
+        moduli = np.sort(abs(np.linalg.eigvals(matrix.matrix.toarray()[:, :-1])))[::-1][:6]
+        found = matrix.analyze(runs=0, paths=0).quasi_stationary
+        np.testing.assert_allclose(found["eigenvalues"], moduli, rtol=1e-12)
+        np.testing.assert_allclose(found["time_scales_gates"], -1 / np.log(moduli), rtol=1e-10)
+        # What deeptime's timescales() are of: trapped as a state that stays.
+        n = len(matrix.states)
+        stochastic = np.vstack([matrix.matrix.toarray(), np.eye(n + 1)[n]])
+        np.testing.assert_allclose(np.sort(abs(np.linalg.eigvals(stochastic)))[::-1][:7], [1.0, *moduli], rtol=1e-12)
+
     def test_chains_from_elsewhere(self):
         states = {"state": [0, 1, 2], "move_x": [0, 1, 0], "move_y": [1, 0, 1], "name": ["up", "aside", "again"]}
         counts = np.array([[5, 3, 0, 2], [0, 0, 4, 0], [1, 0, 0, 0]])

@@ -31,14 +31,14 @@ import warnings as _warnings
 from . import _core
 from ._cell import BROKEN, TRAPPED, Cell, check_cell
 from ._core import BadFile, SceneError, UsageError
-from ._results import Analysis, Landscape, Prediction, Result, Sweep, Trace
+from ._results import Analysis, FirstPassage, Landscape, Prediction, Result, Sweep, Trace
 from ._scene import Scene, called as _called, file_of as _file_of, is_of_text as _is_of_text, renamed as _renamed
 from ._words import in_python as _in_python, input_of as _input_of, options_of as _options_of, plain as _plain, refuse as _refuse
 from ._words import whole as _whole, words_of as _words_of
 
 __version__: str = _core.version
-__all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "GatewalkWarning", "Landscape", "Matrix", "Prediction", "Result", "Scene", "SceneError", "Sweep",
-           "TRAPPED", "Trace", "UsageError", "analyze", "build", "check_cell", "design", "fit", "from_counts", "from_passages", "gate", "landscape", "lattice",
+__all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "FirstPassage", "GatewalkWarning", "Landscape", "Matrix", "Prediction", "Result", "Scene",
+           "SceneError", "Sweep", "TRAPPED", "Trace", "UsageError", "analyze", "build", "check_cell", "design", "fit", "from_counts", "from_passages", "gate", "landscape", "lattice",
            "load", "merge", "options", "passages", "plan", "power", "predict", "rare", "sample", "simulate", "sweep", "threads", "trace", "validate", "walk"]
 
 
@@ -377,7 +377,7 @@ def analyze(subject: _t.Any, *, accuracy: float | None = None, seed: int | None 
         Of the final gates (total variation, 95 %); 0.02 without it.
     seed, cell, progress, **more
         See `predict`; ``**more`` is any option of ``gatewalk analyze``: ``target="left_side"``, ``runs=0`` (no
-        derivatives, which take most of the time).
+        derivatives, which take most of the time), ``first_passage=(0, 4)`` (see `Matrix.first_passage`).
 
     Returns
     -------

@@ -16,7 +16,7 @@ import weakref
 
 from . import _core, _run
 from ._cell import Cell
-from ._results import Analysis, Prediction, Result, require_axes
+from ._results import Analysis, FirstPassage, Prediction, Result, require_axes
 from ._scene import OWN_ERRORS, called, file_of
 from ._words import in_python, input_of, path_of, plain, refuse
 
@@ -168,6 +168,39 @@ class Matrix:
         from . import analyze
 
         return analyze(self, **more)
+
+    def first_passage(self, target: t.Any, **more: t.Any) -> FirstPassage:
+        """Committors and mean first passage times, from the start and from every state of every gate.
+
+        Parameters
+        ----------
+        target : str, tuple or int
+            What is to be reached: an ending ("crossed"), a gate ((i_x, i_y), i_x 0 in the middle), a state in any gate (its
+            name or number), or a state of one gate (i_x, i_y, state).
+        **more
+            Options of ``gatewalk analyze``: ``set={"field.max_gates": 0}``, ``start``.
+
+        Returns
+        -------
+        FirstPassage
+
+        Raises
+        ------
+        UsageError
+            What the target must be.
+
+        Examples
+        --------
+        >>> import gatewalk as gw, numpy as np
+        >>> states = {"state": [0, 1], "move_x": [0, 0], "move_y": [1, -1]}
+        >>> fair = gw.from_counts(np.array([[0.5, 0.5], [0.5, 0.5]]), states, start=0,
+        ...                       set={"field.rows": 4, "field.columns": 1, "field.max_gates": 0})
+        >>> fair.first_passage((0, 3)).of_states["probability"][:, 0, 0].round(12).tolist()
+        [0.25, 0.5, 0.75, 1.0]
+        """
+        from . import _word, analyze
+
+        return FirstPassage(analyze(self, first_passage=_word(target), **{"runs": 0, "paths": 0, **more})["first_passage"])
 
     def walk(self, **more: t.Any) -> Result:
         """See `gatewalk.walk`."""

@@ -241,12 +241,52 @@ class Analysis(Result):
         than 100 bodies has no interval: ``why_no_interval``, by mean.
     quasi_stationary : dict or None
         What becomes of those who go on for ever: ``survival_per_gate``, ``kept_per_gate``, ...
+        ``time_scales_gates``: implied time scales, -1 / ln of the ``eigenvalues``.
+    first_passage : dict or None
+        With ``first_passage=TARGET``: see `Matrix.first_passage`.
     starts, paths : list of dict
         Chances of the target from other ways in, those 300 that were entered most of ``starts_in_all``; the most
         frequent ways to it.
     sensitivities : dict
         What would change the chance of the target most.
     """
+
+
+class FirstPassage(Result):
+    """How likely bodies are to reach a gate, a state or an ending, and how long those that do are on their way.
+
+    Attributes
+    ----------
+    target : str
+        As it was asked for.
+    probability, mean_gates, mean_time_s : float
+        Of bodies from the start: how many get there; means over these, until they enter the target or have ended so. With
+        ``_95`` their intervals by groups of the trials, None for a state, and for matrices of bins and from elsewhere.
+    states : list of str
+        Names of the states; `Matrix.states` of trees has the start's own besides, the last.
+    of_states : dict of arrays, shape (rows, columns, states)
+        ``probability``, the committor, of bodies that enter that gate in that state, with all of ``field.max_gates`` before
+        them; ``never_sampled``, how many reach a state whose row was never sampled instead; ``mean_gates`` and
+        ``mean_time_s``, the mean first passage times, NaN where nobody gets there. In the target 1, and 0. Row 0 is the one
+        bodies enter by.
+    """
+
+    def __init__(self, data: dict[str, t.Any]) -> None:
+        tables = data.get("of_states") or {}
+        super().__init__({**data, "of_states": {k: None if v is None else np.array([[np.asarray(cell, dtype=float) for cell in row] for row in v])
+                                                for k, v in tables.items()} or None})
+
+    def to_frame(self) -> t.Any:
+        """A pandas.DataFrame: a line per gate and state, i_x (0 in the middle), i_y and the state's name its index."""
+        import pandas
+
+        tables = self._data["of_states"]
+        if tables is None:
+            raise ValueError("the field has too many gates and states for tables")
+        rows, columns, _ = tables["probability"].shape
+        index = pandas.MultiIndex.from_product([range(rows), np.arange(columns) - columns // 2, self._data["states"]],
+                                               names=["i_y", "i_x", "state"])
+        return pandas.DataFrame({k: v.ravel() for k, v in tables.items() if v is not None}, index=index)
 
 
 class Sweep(Result):
