@@ -200,7 +200,8 @@ class Matrix:
         """
         from . import _word, analyze
 
-        return FirstPassage(analyze(self, first_passage=_word(target), **{"runs": 0, "paths": 0, **more})["first_passage"])
+        more = {"runs": 0, "paths": 0, **more}
+        return FirstPassage(analyze(self, first_passage=_word(target), **more)["first_passage"])
 
     def walk(self, **more: t.Any) -> Result:
         """See `gatewalk.walk`."""
