@@ -193,7 +193,7 @@ class Matrix:
         --------
         >>> import gatewalk as gw, numpy as np
         >>> states = {"state": [0, 1], "move_x": [0, 0], "move_y": [1, -1]}
-        >>> fair = gw.from_counts(np.array([[0.5, 0.5], [0.5, 0.5]]), states, start=0,
+        >>> fair = gw.from_counts(np.array([[5, 5], [5, 5]]), states, start=0,
         ...                       set={"field.rows": 4, "field.columns": 1, "field.max_gates": 0})
         >>> fair.first_passage((0, 3)).of_states["probability"][:, 0, 0].round(12).tolist()
         [0.25, 0.5, 0.75, 1.0]
