@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/fitted.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "cli/render/observed.h"
@@ -37,6 +38,8 @@ void require_effect(const Ranged& ranged, lattice::RunsFrom from) {
       if (text.starts_with(r.key + " ")) throw UsageError("--free " + text);
 }
 
+bool is_of_passages(const std::string& path) { return lattice::has_columns(path, {"in", "out"}); }
+
 lattice::FitData of_passages(const Options& options, const Subject& s, const Ranged& ranged,
                              const lattice::ProblemAt& at, const std::string& path,
                              std::int64_t trials) {
@@ -70,9 +73,16 @@ lattice::FitData of_passages(const Options& options, const Subject& s, const Ran
 }
 
 lattice::FitData of_trials(const Options& options, const lattice::Problem& problem,
-                           const std::string& path) {
-  const lattice::Observed observed = lattice::read_observed({path}, problem.field);
+                           const std::vector<std::string>& paths) {
+  lattice::Observed observed = lattice::read_observed(paths, problem.field);
   for (const std::string& text : observed.remarks) options.warn(text);
+  if (observed.seen.has_gates() && observed.seen.has_endings() &&
+      observed.gates_by_ending[0].size() == 0) {
+    options.warn(
+        "the endings are left out: nothing says which of them belong to which final gates; "
+        "lines of trials (trial,ending,gate_x,gate_y) tell both");
+    observed.seen.endings = {};
+  }
   options.warn(who_went_back(observed));
   options.warn(not_listed(observed, problem.field));
   lattice::FitData data = lattice::trials_to_fit(observed, problem);
@@ -101,20 +111,24 @@ std::vector<std::string> files_of_draws(const Options& options, std::int64_t cou
   return files;
 }
 
-bool is_of_passages(const std::string& path) { return lattice::has_columns(path, {"in", "out"}); }
-
-CellTypes types_in(const std::string& path) {
-  return is_of_passages(path) && lattice::has_columns(path, {"type"}) ? CellTypes::all
-                                                                      : CellTypes::of_the_map;
+CellTypes types_in(const std::vector<std::string>& paths) {
+  return is_of_passages(paths.front()) && lattice::has_columns(paths.front(), {"type"})
+             ? CellTypes::all
+             : CellTypes::of_the_map;
 }
 
 lattice::FitData data_to_fit(const Options& options, const Subject& s, const Ranged& ranged,
-                             const lattice::ProblemAt& at, const std::string& path,
+                             const lattice::ProblemAt& at, const std::vector<std::string>& paths,
                              std::int64_t trials) {
-  const bool passages = is_of_passages(path);
+  const auto found = std::find_if(paths.begin(), paths.end(), is_of_passages);
+  const bool passages = found != paths.end();
+  if (passages && paths.size() > 1)
+    throw UsageError(*found +
+                     ": has passages, of which fit takes one file: gatewalk passages cuts "
+                     "the tracks of several recordings into one");
   require_effect(ranged, passages ? lattice::RunsFrom::all_types : lattice::RunsFrom::everywhere);
-  if (passages) return of_passages(options, s, ranged, at, path, trials);
-  return of_trials(options, at(std::vector<double>(ranged.ranges.size(), 0.5)), path);
+  if (passages) return of_passages(options, s, ranged, at, *found, trials);
+  return of_trials(options, at(std::vector<double>(ranged.ranges.size(), 0.5)), paths);
 }
 
 }  // namespace gatewalk::cli

@@ -17,14 +17,14 @@ namespace gatewalk::cli {
 /// read by the command, or another output of it.
 [[nodiscard]] std::vector<std::string> files_of_draws(const Options& options, std::int64_t count);
 
-/// Whether it is a table of passages.
-[[nodiscard]] bool is_of_passages(const std::string& path);
-/// The types of cells that such a table names, or those of the map.
-[[nodiscard]] CellTypes types_in(const std::string& path);
-/// What an experiment saw, from a table of counts, of trials, or of passages; and warns of what it
-/// leaves out. `at`: with types_in(path). Throws UsageError, and std::invalid_argument.
+/// The types of cells that a table of passages names, or those of the map.
+[[nodiscard]] CellTypes types_in(const std::vector<std::string>& paths);
+/// What an experiment saw, from tables of counts or of trials, as lattice::read_observed, or one of
+/// passages; and warns of what it leaves out. `at`: with types_in(paths). Throws UsageError, and
+/// std::invalid_argument.
 [[nodiscard]] lattice::FitData data_to_fit(const Options& options, const Subject& s,
                                            const Ranged& ranged, const lattice::ProblemAt& at,
-                                           const std::string& path, std::int64_t trials);
+                                           const std::vector<std::string>& paths,
+                                           std::int64_t trials);
 
 }  // namespace gatewalk::cli

@@ -19,7 +19,7 @@ std::vector<double> point_of(const Eigen::MatrixXd& draws, Eigen::Index draw) {
 
 int run_fit(const Arguments& arguments) {
   Options options(
-      "fit SCENE SEEN.csv --free KEY=LOW:HIGH [options]",
+      "fit SCENE SEEN.csv [MORE.csv ...] --free KEY=LOW:HIGH [options]",
       "Which numbers of the scene an experiment speaks for: their posterior, all of them anywhere "
       "in their\n"
       "ranges alike before. The chances of final gates and endings come from full trials at points "
@@ -32,11 +32,11 @@ int run_fit(const Arguments& arguments) {
       "gatewalk fit scenes/field.toml counts.csv --free forces.propulsion_N=5:9 --free "
       "forces.random_N=10:40");
   options.scene();
-  options.positional(
+  options.positional_list(
       "counts",
       "what the experiment saw (CSV: gate_x,gate_y,count; ending,count; or, for both, "
-      "trial,ending,gate_x,gate_y; also with time_s; or passages: runs.csv)",
-      true);
+      "trial,ending,gate_x,gate_y; also with time_s; files with the same columns are added up; or "
+      "passages: runs.csv)");
   options.add_texts("free", "KEY=LOW:HIGH",
                     "a number of the scene, or of the program, and its range (at most " +
                         std::to_string(lattice::kMostFitted) + "; may be repeated)");
@@ -65,7 +65,7 @@ int run_fit(const Arguments& arguments) {
   const auto ranged = ranges_of(options, s, "free", lattice::kMostFitted);
   if (!ranged) throw UsageError("--free KEY=LOW:HIGH says which numbers are to be found: give one");
   const auto numbers = static_cast<int>(ranged->ranges.size());
-  const std::string seen = options.text("counts");
+  const std::vector<std::string> seen = options.texts("counts");
   if (!ranged->scene && options.has("output"))
     throw UsageError("-o: writes scenes of gates; a program's numbers are given by --set");
   const lattice::FitOptions how{

@@ -39,8 +39,8 @@ int run_validate(const Arguments& arguments) {
                     "an experiment from this start, to hold against both: a line per trial, "
                     "trial,ending (crossed, left side, right side, trapped, cut off, or went back, "
                     "which the model does not have: left out) with or without gate_x,gate_y (the "
-                    "final gate's i_x and i_y); or counts, gate_x,gate_y,count or ending,count, a "
-                    "file of each may be given");
+                    "final gate's i_x and i_y); or counts, gate_x,gate_y,count or ending,count, or "
+                    "both; files with the same columns are added up");
   options.reads("observed", [](const std::string& file) { return file; });
   options.input_file("matrix", "matrix to validate; without it one is built from the scene");
   options.add_count("matrix-trials", "N",

@@ -278,34 +278,62 @@ void add_lines(Observed& observed, const CountTable& table, const FieldParams& f
                  observed.went_back);
 }
 
+void add(CellCounts& all, const CellCounts& some) {
+  if (all.size() == 0)
+    all = some;
+  else if (some.size() > 0)
+    all += some;
+}
+
+void add(Observed& all, const Observed& one) {
+  add(all.seen.final_gates, one.seen.final_gates);
+  for (std::size_t e = 0; e < markov::kEndings; ++e) {
+    all.seen.endings[e] += one.seen.endings[e];
+    all.listed[e] = all.listed[e] || one.listed[e];
+    add(all.gates_by_ending[e], one.gates_by_ending[e]);
+  }
+  all.timed.insert(all.timed.end(), one.timed.begin(), one.timed.end());
+  all.went_back += one.went_back;
+}
+
 }  // namespace
 
 Observed read_observed(const std::vector<std::string>& paths, const FieldParams& field) {
   Observed observed;
-  std::string of_gates, of_endings;
+  struct Recordings {
+    std::string files;
+    std::vector<bool> columns;  // of all of them
+  } of_gates, of_endings;
   for (const std::string& path : paths) {
+    if (std::count(paths.begin(), paths.end(), path) > 1)
+      throw std::invalid_argument(path + ": is given twice");
     const CountTable table = read_table(path, observed.remarks);
-    const auto take = [&](std::string& other, const char* what) {
-      if (!other.empty())
-        throw std::invalid_argument(path + ": " + other + " has " + what +
-                                    " too; at most one file of each is permitted");
-      other = path;
+    const std::vector<bool> columns{table.has("trial"), table.has("ending"), table.has("gate_x"),
+                                    table.has("time_s")};
+    const auto take = [&](Recordings& these, const char* what) {
+      if (!these.files.empty() && these.columns != columns)
+        throw std::invalid_argument(path + ": " + these.files + " has " + what +
+                                    " too; files that are added up have the same columns");
+      these = {these.files + (these.files.empty() ? "" : ", ") + path, columns};
     };
     if (table.has("ending")) take(of_endings, "endings");
     if (table.has("gate_x")) take(of_gates, "final gates");
+    Observed one;
     if (table.has("trial"))
-      add_lines(observed, table, field);
+      add_lines(one, table, field);
     else if (table.has("ending"))
-      add_endings(observed, table, field);
+      add_endings(one, table, field);
     else
-      add_gates(observed, table, field);
+      add_gates(one, table, field);
+    add(observed, one);
   }
   const SeenEndings of_the_endings{{}, observed.seen.endings};
   if (observed.seen.has_gates() && observed.seen.has_endings() &&
       observed.seen.trials() != of_the_endings.trials())
-    throw std::invalid_argument(
-        of_gates + " has " + std::to_string(observed.seen.trials()) + " trials, " + of_endings +
-        " " + std::to_string(of_the_endings.trials()) + ": both must be of the same trials");
+    throw std::invalid_argument(of_gates.files + " has " + std::to_string(observed.seen.trials()) +
+                                " trials, " + of_endings.files + " " +
+                                std::to_string(of_the_endings.trials()) +
+                                ": both must be of the same trials");
   return observed;
 }
 

@@ -34,13 +34,14 @@ struct Observed {
   std::vector<std::string> remarks{};  // what was understood of files that are not plain CSV
 };
 
-/// Reads what an experiment saw, in tables (lattice/text/table.h) with the columns: a line per
-/// trial (trial and ending, gate_x and gate_y, or all four; i_x and i_y of the final gate as
-/// everywhere; with endings also time_s, which may be empty for who did not leave the field), or
-/// counts of final gates (gate_x, gate_y, count; gates without a row have none), or of endings
-/// (ending, count), or a file of each of the counts. Endings are named as in kEndingNames, in
-/// either way, or "went back". Throws std::invalid_argument naming file, line and column for
-/// anything else, for no trial at all, and for two tables of different totals.
+/// Reads what an experiment saw, in tables (lattice/text/table.h): a line per trial (trial
+/// and ending, gate_x and gate_y, or all four; i_x and i_y of the final gate as everywhere; with
+/// endings also time_s, which may be empty for who did not leave the field), or counts of final
+/// gates (gate_x, gate_y, count; gates without a row have none), or of endings (ending, count), or
+/// files of each of the counts. Files with the same columns are recordings of one experiment: they
+/// are added up. Endings are named as in kEndingNames, in either way, or "went back". Throws
+/// std::invalid_argument naming file, line and column for anything else, for no trial at all, for a
+/// file given twice, and for final gates and endings of different totals.
 [[nodiscard]] Observed read_observed(const std::vector<std::string>& paths,
                                      const FieldParams& field);
 

@@ -121,10 +121,34 @@ TEST_F(CountsFile, OfBothInTwoFiles) {
   EXPECT_EQ(o.seen.trials(), 10);
   EXPECT_EQ(message({gates, other}),
             "g.csv has 10 trials, f.csv 4: both must be of the same trials");
-  EXPECT_EQ(message({ends, other}),
-            "f.csv: e.csv has endings too; at most one file of each is permitted");
-  EXPECT_EQ(message({gates, ends, gates}),
-            "g.csv: g.csv has final gates too; at most one file of each is permitted");
+  EXPECT_EQ(message({gates, ends, gates}), "g.csv: is given twice");
+  const std::string lines = file("l.csv", "trial,ending\n1,crossed\n");
+  EXPECT_EQ(message({ends, lines}),
+            "l.csv: e.csv has endings too; files that are added up have the same columns");
+}
+
+TEST_F(CountsFile, RecordingsOfOneExperimentAreAddedUp) {
+  const auto trapped = static_cast<std::size_t>(markov::Ending::trapped),
+             crossed = static_cast<std::size_t>(markov::Ending::far_edge);
+  const std::string one = file("a.csv", "ending,count\ncrossed,4\ntrapped,6\nwent back,1\n"),
+                    two = file("b.csv", "ending,count\ntrapped,5\nwent back,2\n"),
+                    gates = file("c.csv", "gate_x,gate_y,count\n0,0,7\n0,1,3\n"),
+                    more = file("d.csv", "gate_x,gate_y,count\n0,0,5\n");
+  const Observed o = read_observed({one, gates, two, more}, kField);
+  EXPECT_EQ(o.seen.endings[crossed], 4);
+  EXPECT_EQ(o.seen.endings[trapped], 11);
+  EXPECT_EQ(o.went_back, 3);
+  EXPECT_EQ(o.seen.final_gates.sum(), 15);
+  EXPECT_EQ(o.seen.final_gates(0, kField.start_column()), 12);
+  EXPECT_EQ(message({one, gates, two}),
+            "c.csv has 10 trials, a.csv, b.csv 15: both must be of the same trials");
+  // Trials are those of their file, whatever their names.
+  const std::string first = file("e.csv", "trial,ending,gate_x,gate_y,time_s\n1,trapped,0,0,\n"),
+                    second = file("f.csv", "trial,ending,gate_x,gate_y,time_s\n1,trapped,0,1,\n");
+  const Observed lines = read_observed({first, second}, kField);
+  EXPECT_EQ(lines.seen.endings[trapped], 2);
+  EXPECT_EQ(lines.timed.size(), 2u);
+  EXPECT_EQ(lines.gates_by_ending[trapped].sum(), 2);
 }
 
 TEST_F(CountsFile, OfTrialsOneLineEach) {

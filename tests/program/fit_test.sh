@@ -19,6 +19,17 @@ awk -F, 'NR > 1 { sum += $1 } END { print sum / (NR - 1) }' draws.csv >mean.txt
 jq --argjson m "$(cat mean.txt)" -e '.numbers[0].mean - $m | . < 1e-4 and . > -1e-4' fit.json >/dev/null || fail "draws of another mean"
 for f in best.toml best-1.toml best-2.toml; do "$gatewalk" scene $f --quiet --json scene.json || fail "$f is no scene"; done
 ! cmp -s best-1.toml best-2.toml || fail "scenes are alike"
+# Recordings of one experiment are added up: two files of half the counts each are the whole.
+awk -F, 'NR == 1 { print; next } { print $1 "," int($2 / 2) }' endings.csv >half.csv
+awk -F, 'NR == 1 { print; next } { print $1 "," $2 - int($2 / 2) }' endings.csv >rest.csv
+"$gatewalk" fit "${small[@]}" half.csv rest.csv "${free[@]}" --trials 16384 --quiet --json parts.json
+jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' fit.json parts.json | grep -q true || fail "fit: two files are not their sum"
+expect 2 'half.csv: is given twice' "$gatewalk" fit "${small[@]}" half.csv half.csv "${free[@]}"
+# A file of final gates and one of endings, of which nothing says what belongs together: as the gates alone.
+jq -r '"gate_x,gate_y,count", (.final_gates | to_entries[] | .key as $y | .value | (length - 1) / 2 as $middle | to_entries[] | "\(.key - $middle),\($y),\(.value)")' truth.json >gates.csv
+"$gatewalk" fit "${small[@]}" gates.csv "${free[@]}" --trials 16384 --quiet --json gates.json
+expect 0 'the endings are left out: nothing says which of them belong' "$gatewalk" fit "${small[@]}" gates.csv endings.csv "${free[@]}" --trials 16384 --quiet --json pair.json
+jq -s '.[0].numbers == .[1].numbers' gates.json pair.json | grep -q true || fail "fit: gates and endings are not the gates"
 # Lines of trials; two numbers of which one cannot be told; the same on one thread and when resumed.
 printf 'trial,ending,gate_x,gate_y\na,crossed,0,3\nb,trapped,0,1\nc,trapped,0,2\nd,crossed,1,3\ne,left side,-4,2\nf,crossed,0,3\n' >lines.csv
 both=("${free[@]}" --free contact.impulse_threshold_Ns=0.04:0.041 --trials 24576)
@@ -78,6 +89,7 @@ expect 2 'observed ones need [0-9]* trials or more' "$gatewalk" fit "${small[@]}
 { head -n 1 bare.csv; sed -n '2,$p' bare.csv | awk -F, '{ print ($1 * 7919) % 1009 "," NR "," $0 }' | sort -t, -k1,1n -k2,2n | cut -d, -f3-; } >other.csv
 "$gatewalk" fit "${small[@]}" other.csv "${free[@]}" --trials 100000 --quiet --json other.json
 jq -s '.[0].numbers == .[1].numbers' passages.json other.json | grep -q true || fail "fit: the order of the table's bodies matters"
+expect 2 'bare.csv: has passages, of which fit takes one file' "$gatewalk" fit "${small[@]}" bare.csv other.csv "${free[@]}"
 expect 2 'start has no meaning for passages' "$gatewalk" fit "${small[@]}" bare.csv "${free[@]}" --start 0,0,15
 # A program's numbers, by how trials ended and by passages, which say where bodies entered. hopper.py in awk, which starts at once.
 cat >hopper.awk <<'END'

@@ -139,6 +139,8 @@ class SameAsTheProgram(unittest.TestCase):
         seen = gw.fit(FIELD, {"crossed": 20, "trapped": 60, "left side": 2}, free=free, trials=12288, set=few)
         low, high = seen["numbers"][0]["interval_95"]
         self.assertTrue(5 < low < high < 9)
+        days = gw.fit(FIELD, [{"crossed": 12, "trapped": 60}, {"crossed": 8, "left side": 2}], free=free, trials=12288, set=few)
+        self.assertEqual(days["numbers"], seen["numbers"])
         with tempfile.TemporaryDirectory() as folder:
             table = Path(folder) / "counts.csv"
             table.write_text("ending,count\ncrossed,20\ntrapped,60\nleft side,2\n")

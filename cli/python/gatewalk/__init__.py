@@ -483,7 +483,7 @@ def fit(subject: _t.Any, observed: _t.Any, *, free: _t.Any, trials: int | None =
     ----------
     subject : Scene, path, text or dict
         A scene of gates; with ``cell_program`` a file of cells.
-    observed : dict, DataFrame or path
+    observed : dict, DataFrame, path, or list of these
         What an experiment saw, as in `validate`; with columns trial,ending,gate_x,gate_y too; or passages, as in `from_passages`.
     free : dict
         Numbers of the scene and their ranges, ``{"forces.propulsion_N": (5, 9)}``, or a program's (``"parameters.KEY"``); six at most.
