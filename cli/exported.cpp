@@ -19,7 +19,12 @@
 namespace gatewalk::cli {
 namespace {
 
-std::string stem_of(const std::string& output) { return output.substr(0, output.rfind('.')); }
+/// Without the ending, both of .dtrajs.npz.
+std::string stem_of(const std::string& output) {
+  constexpr std::string_view kBoth = ".dtrajs.npz";
+  return output.substr(0,
+                       output.ends_with(kBoth) ? output.size() - kBoth.size() : output.rfind('.'));
+}
 
 std::string numbers(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what;
@@ -70,7 +75,8 @@ void check_files_beside(const Options& options, ExportForm form) {
   const std::string output = options.text("output"), stem = stem_of(output);
   std::vector<std::string> files;
   if (form == ExportForm::prism) files = {stem + ".sta", stem + ".lab"};
-  if (form == ExportForm::matrix_market || form == ExportForm::csv || form == ExportForm::npz)
+  if (form == ExportForm::matrix_market || form == ExportForm::csv || form == ExportForm::npz ||
+      form == ExportForm::trajectories)
     files = {stem + ".states.csv"};
   for (const std::string& file : files) {
     for (const std::string& input : options.files_read()) {
@@ -136,9 +142,14 @@ std::string export_gate(const Options& options, ExportForm form, Json& json) {
   if (const Json states = recorded(file, path, "state_space");
       options.has("counts") && states.is_object() && states.value("probabilities", Json()) == true)
     throw UsageError("--counts: " + path + " was made of probabilities, and has no counts");
-  const SparseTable table =
-      options.has("counts") ? table_of(t.counts()) : table_of(lattice::make_chain(t).matrix());
-  const std::vector<std::string> names = lattice::state_names(file);
+  const std::vector<int> order = lattice::shown_order(t.space);
+  const SparseTable table = options.has("counts")
+                                ? table_of(in_order(t.counts(), order))
+                                : table_of(in_order(lattice::make_chain(t).matrix(), order));
+  const std::vector<std::string> all = lattice::state_names(file);
+  std::vector<std::string> names;
+  for (const int s : order) names.push_back(all[static_cast<std::size_t>(s)]);
+  names.push_back(all.back());
   const std::vector<std::int64_t> per_run =
       options.has("counts") ? counts_per_run_of(options, file, t) : std::vector<std::int64_t>();
   write_table(options, form, table, names, names, states_csv(file, per_run));
@@ -155,10 +166,14 @@ std::string export_gate(const Options& options, ExportForm form, Json& json) {
 std::string export_trials(const Options& options, Json& json) {
   const Subject s = open_subject(options, "matrix");
   if (!s.pool)
-    throw UsageError(s.path + ": keeps no trials: it was not made of trees or recorded runs");
+    throw UsageError(s.path + ": keeps no trials: it was not made of trees or recorded runs" +
+                     (s.foreign ? ", and of trajectories import keeps the counts of their steps, "
+                                  "which --gate --counts -o FILE.mtx writes"
+                                : ""));
   const dynamics::StateSpace& space = s.file->transitions.space;
   const Trajectories all = trajectories_of(*s.pool, space);
   const std::string output = options.text("output");
+  options.write(stem_of(output) + ".states.csv", states_csv(*s.file, {}));
   options.write(output, output.ends_with(".npz") ? npz_of(all) : text_of(all));
   json = {{"states", space.size()}, {"trajectories", all.size()}};
   json["made_by"] = s.made_by(options);

@@ -320,6 +320,42 @@ std::vector<std::string> state_names(const MatrixFile& file) {
   return file.state_names.empty() ? state_names(file.transitions.space) : file.state_names;
 }
 
+void name_states(MatrixFile& file, std::vector<std::string> names) {
+  file.state_names = std::move(names);
+  const StateSpace& space = file.transitions.space;
+  Section section = space.section();
+  if (space.has_trees() || section.coordinates.size() > 1) return;
+  const auto numbers = std::find_if(file.arrays.begin(), file.arrays.end(),
+                                    [](const auto& array) { return array.name == kNumberOfState; });
+  section.named.clear();
+  std::set<double> taken;
+  for (int s = 0; s < space.size(); ++s) {
+    const dynamics::StateRange range = space.range(s);
+    const auto& [from, to] = range.at[0];
+    const auto at = static_cast<std::size_t>(s);
+    section.named.push_back({range.face, from, to, file.state_names[at], s});
+    if (numbers == file.arrays.end()) continue;
+    const double number = at < numbers->values.size() ? numbers->values[at] : -1.0;
+    if (!(number >= 0.0 && number < space.size()) || number != std::floor(number) ||
+        !taken.insert(number).second)
+      throw std::invalid_argument(std::string(kNumberOfState) + " must number the states from 0");
+    section.named.back().number = static_cast<int>(number);
+  }
+  file.transitions.space = {std::move(section), space.bins(), space.open(), space.points()};
+}
+
+int shown_number(const StateSpace& space, int state) {
+  const std::vector<dynamics::NamedEntries>& named = space.section().named;
+  return state < std::ssize(named) ? named[static_cast<std::size_t>(state)].number : state;
+}
+
+std::vector<int> shown_order(const StateSpace& space) {
+  std::vector<int> order(static_cast<std::size_t>(space.size()));
+  for (int s = 0; s < space.size(); ++s)
+    order[static_cast<std::size_t>(shown_number(space, s))] = s;
+  return order;
+}
+
 std::string comment_on_counts(const CellMap& map, const StateSpace& space) {
   const bool any = std::any_of(map.types.begin(), map.types.end(),
                                [](const CellMap::Type& type) { return type.symmetric; });
@@ -330,24 +366,6 @@ std::string comment_on_counts(const CellMap& map, const StateSpace& space) {
          "Rows with few runs are those of several neighbouring states together. run_* has each run "
          "once.";
 }
-
-namespace {
-
-/// States go by these names from now on.
-void put_names(MatrixFile& file, const std::vector<std::string>& names) {
-  file.state_names = names;
-  const StateSpace& space = file.transitions.space;
-  Section section = space.section();
-  if (space.has_trees() || section.coordinates.size() > 1) return;
-  for (int s = 0; s < space.size(); ++s) {
-    const dynamics::StateRange range = space.range(s);
-    const auto& [from, to] = range.at[0];
-    section.named.push_back({range.face, from, to, names[static_cast<std::size_t>(s)]});
-  }
-  file.transitions.space = {std::move(section), space.bins(), space.open(), space.points()};
-}
-
-}  // namespace
 
 void write_matrix(const std::string& path, const MatrixFile& file) {
   const Transitions& t = file.transitions;
@@ -412,7 +430,8 @@ MatrixFile read_matrix(const std::string& path, const SectionOf& section_of) {
     if (in.exits != exits_of(space))
       throw markov::BadFile(path + ": exits are not those of its states");
     MatrixFile file{transitions_of(space, in), in.text, others_in(in.arrays, section)};
-    if (in.state_names != state_names(space)) put_names(file, in.state_names);
+    if (in.state_names != state_names(space) || find_array(in, kNumberOfState))
+      name_states(file, in.state_names);
     read_costs(in, "", path, file.transitions);
     for (const auto& [name, of_type] : in.types) {
       const auto at = file.types.emplace(name, transitions_of(space, of_type)).first;

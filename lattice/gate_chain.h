@@ -58,6 +58,16 @@ struct MatrixFile {
 struct MatrixFile;
 /// Those of a file: its own ones, if it has any.
 [[nodiscard]] std::vector<std::string> state_names(const MatrixFile& file);
+/// Gives a file's states names of their own, (n + 1). Where its arrays have kNumberOfState, that is
+/// their order in the table that they come from. Throws std::invalid_argument for another array of
+/// that name.
+void name_states(MatrixFile& file, std::vector<std::string> names);
+inline constexpr const char* kNumberOfState = "number_of_state";
+/// A state's number in the order in which results show states: that of the table that a chain from
+/// elsewhere was made of; else, and of "trapped", its own.
+[[nodiscard]] int shown_number(const dynamics::StateSpace& space, int state);
+/// The states in that order.
+[[nodiscard]] std::vector<int> shown_order(const dynamics::StateSpace& space);
 
 /// What readers of a file's counts must know of those of trees, where mirror images are counted;
 /// empty where there is nothing.

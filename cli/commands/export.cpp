@@ -13,7 +13,7 @@ int run_export(const Arguments& arguments) {
       "  .umb              PRISM (from 4.10), Storm (from 1.12)\n"
       "  .drn              Storm\n"
       "  .tra              PRISM, with .sta and .lab beside it\n"
-      "  .mtx              Matrix Market, with .states.csv beside it, as .csv and .npz\n"
+      "  .mtx              Matrix Market, with .states.csv beside it, as of all below\n"
       "  .csv              from,to,probability, by names of states\n"
       "  .npz              compressed rows, for scipy.sparse.load_npz\n"
       "  .dtrajs           a line for each trial, the states that it went through (deeptime, "

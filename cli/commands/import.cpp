@@ -92,10 +92,6 @@ int run_import(const Arguments& arguments) {
                        (mirrored ? "runs are counted with their mirror images (counts_per_run): "
                                    "intervals count each run once\n"
                                  : ""));
-  const std::vector<int> places = places_of(states, file.transitions.space);
-  if (!std::is_sorted(places.begin(), places.end()))
-    options.warn("states of one face stand together in " + output + ", in another order than in " +
-                 options.text("states"));
   if (matrix.probabilities)
     options.warn(path +
                  " has probabilities: nothing says how certain they are, so that predictions "

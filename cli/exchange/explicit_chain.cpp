@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "cli/exchange/archive.h"
+#include "cli/render/csv.h"
 #include "cli/render/json.h"
 #include "cli/render/little_endian.h"
 
@@ -150,11 +151,11 @@ std::string states_csv(const ExplicitChain& chain, const std::vector<std::string
   const std::vector<std::string> all = names_of(chain, names);
   std::string text = "number,name,column,row,state,entered_before,ending\n";
   for (std::size_t s = 0; s < all.size(); ++s) {
-    text += std::to_string(s) + "," + all[s] + ",";
+    text += std::to_string(s) + "," + csv_text(all[s]) + ",";
     if (s < chain.states.size()) {
       const ExplicitChain::State& state = chain.states[s];
       text += std::to_string(state.column) + "," + std::to_string(state.row) + "," +
-              entered_as(state, names) + "," + std::to_string(state.draws) + ",\n";
+              csv_text(entered_as(state, names)) + "," + std::to_string(state.draws) + ",\n";
     } else {
       text += ",,,," + all[s] + "\n";
     }

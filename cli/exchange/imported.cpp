@@ -184,10 +184,11 @@ std::string states_csv(const lattice::MatrixFile& file,
     text += "," + c.key + "_low," + c.key + "_high";
   if (!counts_per_run.empty()) text += std::string(",") + kCountsPerRun;
   const std::vector<std::string> names = lattice::state_names(file);
-  for (int s = 0; s < space.size(); ++s) {
+  for (const int s : lattice::shown_order(space)) {
     const dynamics::Face& face = section.faces[static_cast<std::size_t>(space.face(s))];
-    text += "\n" + std::to_string(s) + "," + csv_text(names[static_cast<std::size_t>(s)]) + "," +
-            csv_text(face.name) + "," + std::to_string(face.di_x) + "," + std::to_string(face.di_y);
+    text += "\n" + std::to_string(lattice::shown_number(space, s)) + "," +
+            csv_text(names[static_cast<std::size_t>(s)]) + "," + csv_text(face.name) + "," +
+            std::to_string(face.di_x) + "," + std::to_string(face.di_y);
     const dynamics::StateRange range = space.range(s);
     for (std::size_t c = 0; c < section.coordinates.size(); ++c)
       text += "," + shortest(range.at[c][0]) + "," + shortest(range.at[c][1]);
@@ -324,14 +325,15 @@ lattice::MatrixFile matrix_file(dynamics::Transitions t, const std::vector<Forei
   }
   names.emplace_back("trapped");
   lattice::MatrixFile file{std::move(t), std::move(text)};
-  file.arrays.push_back({kForeignNumber, "1", "number of each state in the table it was made of",
-                         std::move(number), "input_state", true});
+  file.arrays.push_back({lattice::kNumberOfState, "1",
+                         "number of each state in the table it was made of", std::move(number),
+                         "input_state", true});
   if (per_run.front() > 0.0)
     file.arrays.push_back({kCountsPerRun, "1",
                            "counts that a run makes in the row of each state; 2: its own and its "
                            "mirror image's; neighbouring rows that are equal are the same runs",
                            std::move(per_run), "input_state", true});
-  file.state_names = std::move(names);
+  lattice::name_states(file, std::move(names));
   return file;
 }
 
@@ -346,16 +348,12 @@ std::vector<std::int64_t> counts_per_run(const lattice::MatrixFile& file) {
 std::optional<dynamics::Entry> foreign_start(const lattice::MatrixFile& file,
                                              const std::string& text) {
   const dynamics::StateSpace& space = file.transitions.space;
-  const std::vector<std::string> names = lattice::state_names(file);
-  for (const markov::NamedArray& array : file.arrays) {
-    if (array.name != kForeignNumber || std::ssize(array.values) != space.size()) continue;
-    for (int s = 0; s < space.size(); ++s) {
-      const auto at = static_cast<std::size_t>(s);
-      if (text != names[at] && text != shortest(array.values[at])) continue;
-      dynamics::Entry entry{space.face(s)};
-      entry.at[0] = array.values[at];
-      return entry;
-    }
+  for (int s = 0; s < std::ssize(space.section().named); ++s) {
+    const dynamics::NamedEntries& state = space.section().named[static_cast<std::size_t>(s)];
+    if (text != state.name && text != std::to_string(state.number)) continue;
+    dynamics::Entry entry{space.face(s)};
+    entry.at[0] = state.number;
+    return entry;
   }
   return {};
 }

@@ -26,7 +26,8 @@ struct ForeignState {
 /// counts_per_run (2 where a run is counted with its mirror image); other columns are left alone.
 /// Without faces states with one move are of one. Throws std::runtime_error naming file and line.
 [[nodiscard]] std::vector<ForeignState> read_states(const std::string& path);
-/// The other way round: of a matrix file, with the low and high of each coordinate.
+/// The other way round: of a matrix file, with the low and high of each coordinate, in the order of
+/// lattice::shown_order.
 /// `counts_per_run`: by state; none: the column is left out.
 [[nodiscard]] std::string states_csv(const lattice::MatrixFile& file,
                                      const std::vector<std::int64_t>& counts_per_run);
@@ -61,7 +62,6 @@ struct ForeignMatrix {
 [[nodiscard]] lattice::MatrixFile matrix_file(dynamics::Transitions t,
                                               const std::vector<ForeignState>& states,
                                               std::map<std::string, std::string> text);
-inline constexpr const char* kForeignNumber = "number_of_state";
 /// By state, how many counts a run of such a file makes in its row; empty where nothing says so.
 /// Then neighbouring rows that are equal are the same runs, as in the matrices of trees that say
 /// it.

@@ -3,6 +3,7 @@
 /// Sparse matrices as other programs write and read them.
 
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -30,6 +31,24 @@ template <class Value>
          ++it)
       table.entries.push_back({row, it.col(), static_cast<double>(it.value())});
   return table;
+}
+
+/// The same with another order of its states, (n x n + 1): row k is that of states[k], and so are
+/// the columns but the last.
+template <class Matrix>
+[[nodiscard]] Matrix in_order(const Matrix& matrix, const std::vector<int>& states) {
+  if (std::is_sorted(states.begin(), states.end())) return matrix;
+  std::vector<int> place(states.size() + 1, static_cast<int>(states.size()));
+  for (std::size_t k = 0; k < states.size(); ++k)
+    place[static_cast<std::size_t>(states[k])] = static_cast<int>(k);
+  std::vector<Eigen::Triplet<typename Matrix::Scalar>> entries;
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row)
+    for (typename Matrix::InnerIterator it(matrix, row); it; ++it)
+      entries.emplace_back(place[static_cast<std::size_t>(row)],
+                           place[static_cast<std::size_t>(it.col())], it.value());
+  Matrix ordered(matrix.rows(), matrix.cols());
+  ordered.setFromTriplets(entries.begin(), entries.end());
+  return ordered;
 }
 
 /// Matrix Market's coordinate format, which counts from 1; `comment` on a line of its own.

@@ -17,6 +17,7 @@
 #include <stdexcept>
 
 #include "cli/commands.h"
+#include "cli/exchange/sparse_table.h"
 #include "cli/loaded_matrix.h"
 #include "cli/python/python_cell.h"
 #include "cli/render/json.h"
@@ -173,22 +174,29 @@ class Matrix {
           read_only(py::array_t<int>(rows + 1, m.outerIndexPtr(), self)),
           py::make_tuple(rows, static_cast<py::ssize_t>(m.cols())));
     };
-    return probabilities ? of(found->second.chain.matrix()) : of(found->second.counts);
+    return probabilities ? of(found->second.probabilities) : of(found->second.counts);
   }
-  /// Of the states: faces, and low and high of each coordinate.
+  /// Of the states, as rows and columns of csr(): names, if they have some, faces, and low and high
+  /// of each coordinate.
   [[nodiscard]] py::dict states() const {
     const dynamics::StateSpace& space = file().transitions.space;
     const auto n = static_cast<py::ssize_t>(space.size());
+    const std::vector<int> order = lattice::shown_order(space);
     py::dict all;
-    py::list faces;
-    for (int s = 0; s < space.size(); ++s)
+    py::list names, faces;
+    for (const int s : order) {
+      if (!file().state_names.empty())
+        names.append(file().state_names[static_cast<std::size_t>(s)]);
       faces.append(space.section().faces[static_cast<std::size_t>(space.face(s))].name);
+    }
+    if (!names.empty()) all["name"] = names;
     all["face"] = faces;
     for (std::size_t c = 0; c < space.section().coordinates.size(); ++c)
       for (const int side : {0, 1}) {
         py::array_t<double> values(n);
-        for (int s = 0; s < space.size(); ++s)
-          values.mutable_data()[s] = space.range(s).at[c][static_cast<std::size_t>(side)];
+        for (int k = 0; k < space.size(); ++k)
+          values.mutable_data()[k] =
+              space.range(order[static_cast<std::size_t>(k)]).at[c][static_cast<std::size_t>(side)];
         all[py::str(space.section().coordinates[c].key + (side == 0 ? "_low" : "_high"))] = values;
       }
     return all;
@@ -204,11 +212,13 @@ class Matrix {
  private:
   struct Type {
     markov::Counts counts;
-    markov::Chain chain;
+    markov::Probabilities probabilities;
   };
   [[nodiscard]] const lattice::MatrixFile& file() const { return *loaded_->file; }
   void add(const std::string& name, const dynamics::Transitions& t) {
-    types_.emplace(name, Type{t.counts(), lattice::make_chain(t)});
+    const std::vector<int> order = lattice::shown_order(t.space);
+    types_.emplace(name, Type{cli::in_order(t.counts(), order),
+                              cli::in_order(lattice::make_chain(t).matrix(), order)});
   }
   std::shared_ptr<const cli::LoadedMatrix> loaded_;
   std::map<std::string, Type> types_;  // "": the first, or only one
@@ -329,6 +339,7 @@ PYBIND11_MODULE(_core, m) {
       .def_property_readonly("text", &Matrix::text, "Scene, seed, version, command.")
       .def("csr", &Matrix::csr, pybind11::arg("type"), pybind11::arg("probabilities"),
            "(data, indices, indptr, shape), views of the matrix.")
-      .def("states", &Matrix::states, "By name: face, and low and high of each coordinate.")
+      .def("states", &Matrix::states,
+           "By name: name, if states have some, face, and low and high of each coordinate.")
       .def("faces", &Matrix::faces, "(name, di_x, di_y) of each face.");
 }

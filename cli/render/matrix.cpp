@@ -56,10 +56,10 @@ std::string row_table(const Transitions& t) {
   out << "trials clamped |";
   for (const Face& face : section.faces) out << padded(face.name, 5) << " ";
   out << " trap (%)\n";
-  for (int row = 0; row < t.space.size(); ++row) {
+  for (const int row : lattice::shown_order(t.space)) {
     const StateRange range = t.space.range(row);
     const auto share = outcome_shares(t, row);
-    out << padded(std::to_string(row + 1), 4) << "  "
+    out << padded(std::to_string(lattice::shown_number(t.space, row) + 1), 4) << "  "
         << padded(name_of(section, range.middle()), -static_cast<int>(width))
         << section.faces[range.face].name << " ";
     for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
@@ -72,11 +72,21 @@ std::string row_table(const Transitions& t) {
   return out.str();
 }
 
-std::string outputs_table(const Transitions& t, int row) {
+/// The outputs of a row, in the order in which states are shown: state here, count.
+std::map<int, std::pair<int, std::int64_t>> outputs_of(const Transitions& t, int row) {
+  std::map<int, std::pair<int, std::int64_t>> outputs;
+  for (const auto& [column, count] : t.rows[row])
+    outputs[lattice::shown_number(t.space, column)] = {column, count};
+  return outputs;
+}
+
+std::string outputs_table(const Transitions& t, int shown) {
   lattice::TextStream out;
-  out << "\n  outputs of input " << row + 1 << "\n";
-  for (const auto& [column, count] : t.rows[row]) {
-    out << padded(std::to_string(column + 1), 6) << padded(std::to_string(count), 9) << "  ";
+  out << "\n  outputs of input " << shown + 1 << "\n";
+  const int row = lattice::shown_order(t.space)[static_cast<std::size_t>(shown)];
+  for (const auto& [number, output] : outputs_of(t, row)) {
+    const auto& [column, count] = output;
+    out << padded(std::to_string(number + 1), 6) << padded(std::to_string(count), 9) << "  ";
     if (column == t.space.trapped()) {
       out << "trapped\n";
       continue;
@@ -227,13 +237,14 @@ Json to_json(const lattice::MatrixFile& file, const std::string& path) {
   if (!file.types.empty()) json["types"] = types_json(file);
   json["counted_from"] = 1;  // inputs and outputs below
   json["rows"] = Json::array();
-  for (int row = 0; row < n; ++row) {
+  for (const int row : lattice::shown_order(t.space)) {
     const StateRange range = t.space.range(row);
     Json outputs = Json::array();
-    for (const auto& [column, count] : t.rows[row])
-      outputs.push_back({{"output", column + 1}, {"count", count}});
+    for (const auto& [number, output] : outputs_of(t, row))
+      outputs.push_back({{"output", number + 1}, {"count", output.second}});
     const Section& section = t.space.section();
-    Json shown = {{"input", row + 1}, {"boundary", section.faces[range.face].name}};
+    Json shown = {{"input", lattice::shown_number(t.space, row) + 1},
+                  {"boundary", section.faces[range.face].name}};
     if (const std::string name = name_of(section, range.middle()); !name.empty())
       shown["name"] = name;
     for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)

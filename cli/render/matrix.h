@@ -47,7 +47,8 @@ void require_keepable(const lattice::Scene& scene);
 [[nodiscard]] std::string summary_table(const lattice::MatrixFile& file, const std::string& path);
 
 [[nodiscard]] Json to_json(const lattice::MatrixFile& file, const std::string& path);
-/// What is shown besides the summary: a line per row, all outputs of one row (from 0).
+/// What is shown besides the summary: a line per row, all outputs of one row (from 0, in the order
+/// of lattice::shown_order, as all of them).
 struct ShownRows {
   bool all = false;
   std::optional<int> one;

@@ -75,7 +75,7 @@ StartTexts::StartTexts(const dynamics::Section& section, const std::vector<dynam
 }
 
 Json to_json(const lattice::ChainStart& start, const dynamics::StateSpace& space) {
-  return {{"input", start.start.input + 1},
+  return {{"input", lattice::shown_number(space, start.start.input) + 1},
           {"counted_from", 1},
           {"bin", text_of(space.section(), space.range(start.start.input))},
           {"clamped", start.clamped}};

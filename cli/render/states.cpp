@@ -126,7 +126,8 @@ std::string states_line(const Json& j) {
   if (j.at("bins") == "tree") return tree_line(j);
   if (j.at("bins") == "imported")
     return "states: " + j.at("states").dump() + ", of a chain from elsewhere" +
-           (j.value("probabilities", Json()) == true ? ", given as probabilities" : "") + "\n";
+           (j.value("probabilities", Json()) == true ? ", given as probabilities" : "") +
+           "; --start takes a name, or a number from 0 (input less 1)\n";
   const Json &r = j.at("resolution"), &pilot = j.at("pilot"),
              &unresolved = r.at("unresolved_variance");
   const std::string kind = j.at("bins");

@@ -64,6 +64,7 @@ struct NamedEntries {
   int face = 0;
   double from = 0.0, to = 0.0;
   std::string name;
+  int number = 0;  // among all that have names: theirs in the table that names them, from 0
 };
 
 /// The surface of section that all cells of a field share: entries are points on it.

@@ -402,7 +402,7 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
     out.trapping.data()[place.cell] += effect;
     out.type_trapping[type] += effect;
     if (place.input < space.size())
-      out.state_trapping[static_cast<std::size_t>(place.input)] += effect;
+      out.state_trapping[static_cast<std::size_t>(shown_number(space, place.input))] += effect;
   });
   if (!unfinished.empty()) {
     out.passed.setConstant(kNotKnown);

@@ -75,8 +75,9 @@ struct Analysis {
   /// -ln of the share trapped, the others going on as the rest does). Of the target "trapped", and
   /// of one that nobody ends in, the latter is empty.
   markov::CellProbabilities passed, trapping;
-  std::vector<double> state_trapping;  // the latter by state, in all gates together
-  std::vector<double> type_trapping;   // and by type of cell
+  std::vector<double>
+      state_trapping;                 // the latter by shown_number of states, in all gates together
+  std::vector<double> type_trapping;  // and by type of cell
   struct Type {
     double visits = 0.0, trapped = 0.0;  // expected, of a body
   };

@@ -46,7 +46,7 @@ state,name,move_x,move_y
 2,up_again,0,1
 END
 printf 'from,to,count\nup,up,5\nup,aside,3\nup,trapped,2\naside,up_again,4\nup_again,1,1\n' >own.csv
-expect 0 'states of one face stand together' "$gatewalk" import own.csv --states s.csv --start 0 --set field.rows=2 --set field.columns=3 -o own.nc
+expect 0 '15 counted steps' "$gatewalk" import own.csv --states s.csv --start 0 --set field.rows=2 --set field.columns=3 -o own.nc
 printf '0 0 0 0 0 0 1 2 1\n0 1 2\n0 1 2\n1 2\n0 3\n0 3\n' >own.dtrajs
 expect 0 '15 counted steps' "$gatewalk" import own.dtrajs --states s.csv --start 0 --set field.rows=2 --set field.columns=3 -o steps.nc
 for command in predict analyze "walk --walks 1000" "show --rows"; do
@@ -65,7 +65,30 @@ for start in 0 1 2; do
 done
 expect 2 'has no state of that name or number' "$gatewalk" predict own.nc --start 3
 "$gatewalk" export own.nc --gate --counts -o named.csv --quiet >/dev/null
-[ "$(sort named.csv)" = "$(sed 's/^up_again,1,/up_again,aside,/' own.csv | sort)" ] || fail "names of states are lost: $(cat named.csv)"
+[ "$(cat named.csv)" = "$(sed 's/^up_again,1,/up_again,aside,/' own.csv)" ] || fail "names or order of states are lost: $(cat named.csv)"
+# States have one order everywhere: that of their table, though those of one face stand together in the file.
+[ "$(cut -d, -f1-5 named.states.csv)" = "$(printf 'state,name,face,move_x,move_y\n0,up,ahead,0,1\n1,aside,right,1,0\n2,up_again,ahead,0,1')" ] || fail "order: $(cat named.states.csv)"
+for form in mtx csv npz; do
+  "$gatewalk" export own.nc --gate --counts -o once.$form --force --quiet >/dev/null
+  "$gatewalk" import once.$form --states once.states.csv --start 0 --set field.rows=2 --set field.columns=3 -o once.nc --force --quiet >/dev/null
+  "$gatewalk" export once.nc --gate --counts -o twice.$form --force --quiet >/dev/null
+  cmp -s <(grep -av '^%' once.$form) <(grep -av '^%' twice.$form) && cmp -s once.states.csv twice.states.csv || fail "$form: another order when it comes back"
+done
+"$gatewalk" show own.nc --json show.json --quiet >/dev/null
+holds '[.rows[] | [.input, .name]] == [[1, "up"], [2, "aside"], [3, "up_again"]] and .rows[1].outputs == [{"output": 3, "count": 4}]' show.json
+expect 0 '^ *3 *4 *up_again$' "$gatewalk" show own.nc --row 2
+expect 0 'start takes a name, or a number from 0' "$gatewalk" show own.nc
+"$gatewalk" predict own.nc --start aside --json start.json --quiet
+holds '.starts[0].start_state | .input == 2 and .bin == "aside"' start.json
+# Names with commas and quotes are quoted as RFC 4180 has it, in all CSV.
+printf 'state,name,move_x,move_y\n0,"fast, ahead",0,1\n1,"the ""right""",1,0\n' >quoted.csv
+printf '0 1 0 0 2\n' >quoted.dtrajs
+"$gatewalk" import quoted.dtrajs --states quoted.csv --start 0 --set field.rows=1 --set field.columns=1 --set field.max_gates=0 -o quoted.nc --quiet >/dev/null
+"$gatewalk" export quoted.nc -o q.mtx --quiet >/dev/null
+[ "$(sed -n 2p q.states.csv)" = '0,"x0_y0_fast, ahead_n0",0,0,"fast, ahead",0,' ] || fail "quotes: $(cat q.states.csv)"
+"$gatewalk" export quoted.nc --gate --counts -o q.csv --force --quiet >/dev/null
+[ "$(sed -n 5p q.csv)" = '"the ""right""","fast, ahead",1' ] || fail "quotes: $(cat q.csv)"
+expect 0 '4 counted steps' "$gatewalk" import q.csv --states q.states.csv --start 'fast, ahead' -o requoted.nc
 
 expect 2 'has no \[start\]' bash -c "'$gatewalk' import own.csv --states s.csv -o nowhere.nc && '$gatewalk' predict nowhere.nc"
 
@@ -73,7 +96,18 @@ expect 2 'has no \[start\]' bash -c "'$gatewalk' import own.csv --states s.csv -
 "$gatewalk" export tree.nc -o t.dtrajs --json t.json --quiet
 [ "$(wc -l <t.dtrajs)" = "$(jq .trajectories t.json)" ] || fail "trajectories"
 [ "$(tr ' ' '\n' <t.dtrajs | grep -c .)" = "$(($(ncdump -h tree.nc | sed -n 's/^\trun = \([0-9]*\) ;/\1/p') + $(wc -l <t.dtrajs)))" ] || fail "steps of the trajectories"
-"$gatewalk" export tree.nc -o t.dtrajs.npz --quiet >/dev/null && [ -s t.dtrajs.npz ] || fail "export .dtrajs.npz"
+# They come with the table of states that import needs; the counts of their steps are those of the lines.
+awk '{ for (k = 2; k <= NF; ++k) print $(k - 1) + 1, $k + 1 }' t.dtrajs | sort | uniq -c | awk '{ print $2, $3, $1 }' | sort -n -k1,1 -k2,2 >steps.txt
+"$gatewalk" import t.dtrajs --states t.states.csv --start 0 -o t.nc --quiet >/dev/null || fail "import of t.dtrajs"
+"$gatewalk" export t.nc --gate --counts -o steps.mtx --quiet >/dev/null
+grep -v '^%' steps.mtx | sed 1d | cmp -s - steps.txt || fail "steps of t.dtrajs"
+[ "$(cut -d, -f1-5 steps.states.csv)" = "$(cut -d, -f1-5 t.states.csv)" ] || fail "states of t.dtrajs"
+"$gatewalk" export tree.nc -o u.dtrajs.npz --quiet >/dev/null && cmp -s t.states.csv u.states.csv || fail "export .dtrajs.npz"
+"$gatewalk" import u.dtrajs.npz --states u.states.csv --start 0 -o u.nc --quiet >/dev/null
+"$gatewalk" export u.nc --gate --counts -o u.mtx --force --quiet >/dev/null
+cmp -s <(grep -v '^%' u.mtx) <(grep -v '^%' steps.mtx) || fail "steps of u.dtrajs.npz"
+expect 2 'import keeps the counts of their steps' "$gatewalk" export t.nc -o no.dtrajs
+expect 2 'is written beside -o' "$gatewalk" export tree.nc -o z.dtrajs --json z.states.csv
 expect 2 'keeps no trials' "$gatewalk" export p.nc -o p.dtrajs
 
 # What is wrong is said, and where.

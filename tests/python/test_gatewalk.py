@@ -372,8 +372,14 @@ class Elsewhere(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:  # and back
             path = Path(folder) / "counts.npz"
             dense.export(path, gate=True, counts=True)
-            # states of one face stand together: up, again, aside
-            np.testing.assert_array_equal(scipy.sparse.load_npz(path).toarray(), counts[[0, 2, 1]][:, [0, 2, 1, 3]])
+            np.testing.assert_array_equal(scipy.sparse.load_npz(path).toarray(), counts)
+        # The order of the table, though states of one face (up, again) stand together in the file.
+        np.testing.assert_array_equal(dense.counts().toarray(), counts)
+        np.testing.assert_array_equal(dense.matrix.toarray(), counts / counts.sum(axis=1, keepdims=True))
+        self.assertEqual(list(dense.states.name), states["name"])
+        self.assertEqual(list(dense.states.face), ["ahead", "right", "ahead"])
+        for number, name in enumerate(states["name"]):
+            self.assertEqual(dense.predict(start=number).endings, dense.predict(start=name).endings)
         shares = gw.from_counts(counts / counts.sum(axis=1, keepdims=True), states, **field)
         self.assertTrue(math.isnan(shares.predict().endings_95["crossed"][0]))
         with self.assertRaisesRegex(gw.UsageError, "the chain: is 2 x 2; of 3 states it must be 3 x 4"):

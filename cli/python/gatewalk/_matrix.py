@@ -108,7 +108,10 @@ class Matrix:
 
     @property
     def states(self) -> t.Any:
-        """A pandas.DataFrame: face, and low and high of each coordinate (m, m/s), of every state."""
+        """A pandas.DataFrame: face, and low and high of each coordinate (m, m/s), of every state; of `from_counts` also its name.
+
+        Its index is what ``start=`` takes of `from_counts`' states, and the order of rows and columns of `matrix` and `counts`.
+        """
         import pandas
 
         return pandas.DataFrame(self._core.states()).rename_axis("state")
