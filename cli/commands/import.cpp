@@ -32,9 +32,9 @@ int run_import(const Arguments& arguments) {
       "of scipy), states x states or states x (states + 1), the last column trapped; or\n"
       "trajectories (.dtrajs: a line each, states between blanks; .npz: an array each), whose "
       "last\n"
-      "state may be the number of states: trapped. Whole numbers are counts, from which error "
-      "bars\n"
-      "follow. STATES.csv says by which move from cell to cell each state is entered:\n"
+      "state may be the number of states: trapped; -1 is a gap. Whole numbers are counts, from\n"
+      "which error bars follow. STATES.csv says by which move from cell to cell each state is "
+      "entered:\n"
       "state,move_x,move_y (columns to the right, rows ahead; and if wanted name, face;\n"
       "counts_per_run: 2 where a run is counted with its mirror image, as in counts of trees that\n"
       "export wrote: error bars then count it once).",
@@ -71,7 +71,10 @@ int run_import(const Arguments& arguments) {
   Json space = {{"bins", "imported"}, {"states", t.space.size()}};
   if (matrix.probabilities) space["probabilities"] = true;
   Json made_by = to_json(options.provenance());
-  const lattice::MatrixFile file =
+  const std::vector<std::string>& understood = matrix.table.understood;
+  std::string lines;
+  for (const std::string& line : understood) lines += line + "\n";
+  lattice::MatrixFile file =
       matrix_file(std::move(t), states,
                   {{"title", "gatewalk counts of a chain from elsewhere"},
                    {"state_space", space.dump()},
@@ -79,19 +82,20 @@ int run_import(const Arguments& arguments) {
                    {"commit", made_by.at("commit")},
                    {"command", options.canonical()},
                    {lattice::kCellText, lattice::to_toml(cells)}});
+  if (!lines.empty()) file.text["understood"] = lines.substr(0, lines.size() - 1);
   const std::string output = options.text("output");
   options.keep_old(output);
   lattice::write_matrix(output, file);
   Json json = to_json(file, output);
   json["matrix"] = output;
+  json["understood"] = understood;
   json["made_by"] = made_by;
   const std::vector<std::int64_t> per_run = counts_per_run(file);
-  const bool mirrored = std::count(per_run.begin(), per_run.end(), 2) > 0;
-  options.give_out(json,
-                   summary_table(file, output) +
-                       (mirrored ? "runs are counted with their mirror images (counts_per_run): "
-                                   "intervals count each run once\n"
-                                 : ""));
+  if (std::count(per_run.begin(), per_run.end(), 2) > 0)
+    lines +=
+        "runs are counted with their mirror images (counts_per_run): intervals count each run "
+        "once\n";
+  options.give_out(json, summary_table(file, output) + lines);
   if (matrix.probabilities)
     options.warn(path +
                  " has probabilities: nothing says how certain they are, so that predictions "

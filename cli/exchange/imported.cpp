@@ -2,10 +2,12 @@
 #include "cli/exchange/imported.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -50,19 +52,61 @@ double steps_of(std::int64_t states) {
   return std::ldexp(1.0, bits);
 }
 
+constexpr double kOff = 1e-9;  // so far rows of doubles may be off 1, whoever added them up
+
+/// By how much rounding may have moved the sum of a row: by half a unit of the last digit of each
+/// number. Who writes one or two digits does so by hand, and means them.
+double rounding_of(const SparseTable& table, std::size_t begin, std::size_t end, bool floats) {
+  constexpr int kFewestDigits = 3;
+  if (table.precision.digits < kFewestDigits) return 0.0;
+  double most = 0.0;
+  for (std::size_t k = begin; k < end; ++k) {
+    const double value = table.entries[k].value;
+    if (value == 0.0) continue;
+    // Where trailing zeros are left out a number does not show its last digit; the table does, by
+    // digits behind the point or by digits from the first.
+    const double last =
+        std::max(std::pow(10.0, -table.precision.decimals),
+                 std::pow(10.0, std::floor(std::log10(value)) + 1.0 - table.precision.digits));
+    most += 0.5 * std::max(last, floats ? double{std::numeric_limits<float>::epsilon()} : 0.0);
+  }
+  constexpr double kTies = 1.0 + 1e-6;  // sums that are off by all of it
+  return most * kTies;
+}
+
+std::string row_text(const SparseTable::Entry& e) {
+  return "row " + std::to_string(e.row) + " (from 0)";
+}
+
+constexpr const char* kEffective =
+    "round effective counts to whole numbers, which keeps error bars, or divide each row by its "
+    "sum, "
+    "which makes probabilities, without error bars";
+
 /// The rows as whole numbers of such steps.
 void in_steps(const std::string& path, SparseTable& table) {
-  constexpr double kOff = 1e-9;
   const double steps = steps_of(table.rows);
+  // Doubles that were floats, and texts of no more digits than floats have.
+  const bool floats =
+      table.precision.digits <= std::numeric_limits<float>::max_digits10 ||
+      std::all_of(table.entries.begin(), table.entries.end(), [](const SparseTable::Entry& e) {
+        return e.value == double{static_cast<float>(e.value)};
+      });
+  std::string scaled;
   for (std::size_t begin = 0, end = 0; begin < table.entries.size(); begin = end) {
     double sum = 0.0;
     for (; end < table.entries.size() && table.entries[end].row == table.entries[begin].row; ++end)
       sum += table.entries[end].value;
-    if (sum != 0.0 && !(std::abs(sum - 1.0) <= kOff))
-      throw std::runtime_error(path + ": row " + std::to_string(table.entries[begin].row) +
-                               " (from 0) sums to " + shortest(sum) +
-                               ": probabilities of a row sum to 1, counts are whole numbers "
-                               "(integer, count)");
+    if (const double off = std::abs(sum - 1.0); sum != 0.0 && off > kOff) {
+      if (off > rounding_of(table, begin, end, floats))
+        throw std::runtime_error(path + ": " + row_text(table.entries[begin]) + " sums to " +
+                                 shortest(sum) +
+                                 ": probabilities of a row sum to 1, counts are whole numbers "
+                                 "(integer, count); " +
+                                 kEffective);
+      if (scaled.empty()) scaled = row_text(table.entries[begin]) + " to " + shortest(sum);
+      for (std::size_t k = begin; k < end; ++k) table.entries[k].value /= sum;
+    }
     double left = sum == 0.0 ? 0.0 : steps;
     std::size_t largest = begin;
     for (std::size_t k = begin; k < end; ++k) {
@@ -77,24 +121,65 @@ void in_steps(const std::string& path, SparseTable& table) {
     }
     table.entries[largest].value = left;
   }
+  if (!scaled.empty())
+    table.understood.push_back("rows sum to 1 but for the rounding of their numbers (" + scaled +
+                               "): divided by their sums");
   std::erase_if(table.entries, [](const SparseTable::Entry& e) { return e.value == 0.0; });
 }
 
+/// Whether all of a table of reals are whole numbers, as counts are; then says what it takes them
+/// for.
+bool are_counts(SparseTable& table) {
+  const auto is_whole = [](const SparseTable::Entry& e) { return e.value == std::floor(e.value); };
+  if (table.entries.empty() || !std::all_of(table.entries.begin(), table.entries.end(), is_whole))
+    return false;
+  std::map<std::int64_t, double> sums;
+  for (const SparseTable::Entry& e : table.entries) sums[e.row] += e.value;
+  const auto any_above = [&](double low) {
+    return std::any_of(sums.begin(), sums.end(), [&](const auto& s) { return s.second > low; });
+  };
+  if (!any_above(0.0)) return false;
+  const bool counts = any_above(1.0);
+  table.understood.emplace_back(
+      counts ? "whole numbers, written as reals: counts"
+             : "each row is a single 1, a real: probabilities (as integers they would be counts of "
+               "one run each)");
+  return counts;
+}
+
+/// Each step is a count; -1 is a gap, before and behind which a trajectory is another one.
 SparseTable counts_of(const std::string& path, const Trajectories& all, std::int64_t states) {
+  constexpr std::int64_t kGap = -1;
   std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> counts;
-  for (std::size_t t = 0; t < all.size(); ++t)
-    for (std::size_t k = 0; k < all[t].size(); ++k) {
-      const bool is_last = k + 1 == all[t].size();
-      if (all[t][k] < 0 || all[t][k] > (is_last ? states : states - 1))
-        throw std::runtime_error(
-            path + ": trajectory " + std::to_string(t + 1) + ", step " + std::to_string(k + 1) +
-            ": there is no state " + std::to_string(all[t][k]) + " (0 to " +
-            std::to_string(states - 1) + "; at the end " + std::to_string(states) + ": trapped)");
-      if (k > 0) ++counts[{all[t][k - 1], all[t][k]}];
+  std::int64_t cut = 0, pieces = 0;
+  for (std::size_t t = 0; t < all.size(); ++t) {
+    const auto& one = all[t];
+    const bool has_gaps = std::find(one.begin(), one.end(), kGap) != one.end();
+    cut += has_gaps ? 1 : 0;
+    for (std::size_t k = 0; k < one.size(); ++k) {
+      if (one[k] == kGap) continue;
+      const bool is_last = k + 1 == one.size() || one[k + 1] == kGap;
+      if (one[k] < 0 || one[k] > (is_last ? states : states - 1))
+        throw std::runtime_error(path + ": trajectory " + std::to_string(t + 1) + ", step " +
+                                 std::to_string(k + 1) + ": there is no state " +
+                                 std::to_string(one[k]) + " (0 to " + std::to_string(states - 1) +
+                                 "; at the end " + std::to_string(states) +
+                                 ": trapped; -1: a gap)");
+      pieces += has_gaps && is_last ? 1 : 0;
+      if (k > 0 && one[k - 1] != kGap) ++counts[{one[k - 1], one[k]}];
     }
+  }
+  if (counts.empty())
+    throw std::runtime_error(path +
+                             ": no trajectory has a second state: one column? a line is a "
+                             "trajectory, its states between blanks; of .npz an array is one");
   SparseTable table{states, states + 1, {}, true};
   for (const auto& [place, n] : counts)
     table.entries.push_back({place.first, place.second, static_cast<double>(n)});
+  if (cut > 0)
+    table.understood.push_back("-1 is a gap: " + std::to_string(cut) + " of " +
+                               std::to_string(all.size()) + " trajectories are cut there, into " +
+                               std::to_string(pieces));
   return table;
 }
 
@@ -132,12 +217,11 @@ std::vector<ForeignState> read_states(const std::string& path) {
     };
     const auto whole = [&](const char* name) {
       const std::string text = field(name);
-      int value = 0;
-      const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-      if (read.ec != std::errc() || read.ptr != text.data() + text.size() ||
-          std::abs(value) > 1'000'000)
+      std::string_view rest = text;
+      const double value = lattice::take_number(rest).value_or(HUGE_VAL);
+      if (!rest.empty() || value != std::floor(value) || !(std::abs(value) <= 1e6))
         refuse(std::string(name) + " \"" + lattice::printable(text) + "\" is no whole number");
-      return value;
+      return static_cast<int>(value);
     };
     if (whole("state") != std::ssize(states))
       refuse("state must be " + std::to_string(states.size()) +
@@ -203,25 +287,37 @@ ForeignMatrix read_foreign(const std::string& path, const std::vector<ForeignSta
   std::vector<std::string> names;
   for (const ForeignState& s : states) names.push_back(s.name);
   names.emplace_back("trapped");
-  const bool npz = path.ends_with(".npz");
+  const auto ends_in = [&](std::string_view ending) {  // in capitals or not
+    return path.size() >= ending.size() &&
+           std::equal(ending.rbegin(), ending.rend(), path.rbegin(),
+                      [](char a, unsigned char b) { return a == std::tolower(b); });
+  };
+  const bool npz = ends_in(".npz");
   std::vector<NumpyArray> arrays;
   if (npz) arrays = read_npz(path);
   ForeignMatrix matrix;
-  if (path.ends_with(".dtrajs") || (npz && hold_trajectories(arrays))) {
+  if (ends_in(".dtrajs") || (npz && hold_trajectories(arrays))) {
     matrix.table = counts_of(
         path, npz ? trajectories_of(path, std::move(arrays)) : read_trajectories(path), n);
     matrix.trajectories = true;
     return matrix;
   }
-  if (path.ends_with(".mtx"))
+  if (ends_in(".mtx"))
     matrix.table = read_matrix_market(path);
-  else if (path.ends_with(".csv"))
+  else if (ends_in(".csv"))
     matrix.table = read_csv(path, n, names);
   else if (npz)
     matrix.table = table_of(path, arrays);
   else
-    throw std::runtime_error(path + ": must end in .mtx, .csv, .npz or .dtrajs");
+    throw std::runtime_error(
+        path + ": must end in .mtx, .csv, .npz or .dtrajs" +
+        (ends_in(".tra") || ends_in(".drn") || ends_in(".umb")
+             ? ": a model checker's chain is one of a whole field, import takes that of one cell "
+               "(export --gate -o FILE.mtx); of a .tra of one cell sed -e '1cfrom,to,probability' "
+               "-e 's/ /,/g' makes a .csv"
+             : ""));
   SparseTable& table = matrix.table;
+  if (!table.whole && !table.probabilities) table.whole = are_counts(table);
   if (table.rows != n || (table.columns != n && table.columns != n + 1))
     throw std::runtime_error(path + ": is " + std::to_string(table.rows) + " x " +
                              std::to_string(table.columns) + "; of " + std::to_string(n) +
@@ -232,9 +328,13 @@ ForeignMatrix read_foreign(const std::string& path, const std::vector<ForeignSta
   for (const SparseTable::Entry& e : table.entries)
     if (!(e.value >= 0.0) || !std::isfinite(e.value) ||
         (table.whole && (e.value != std::floor(e.value) || e.value > 1e15)))
-      throw std::runtime_error(path + ": row " + std::to_string(e.row) + ", column " +
-                               std::to_string(e.column) + " (from 0): " + shortest(e.value) +
-                               (table.whole ? " is no count" : " is no probability"));
+      throw std::runtime_error(
+          path + ": row " + std::to_string(e.row) + ", column " + std::to_string(e.column) +
+          " (from 0): " + shortest(e.value) +
+          (table.whole ? " is no count" : " is no probability") +
+          (table.whole && e.value > 0.0 && std::isfinite(e.value)
+               ? std::string(": counts are whole numbers of runs; ") + kEffective
+               : ""));
   matrix.probabilities = !table.whole;
   if (matrix.probabilities) in_steps(path, table);
   double sum = 0.0;

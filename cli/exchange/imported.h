@@ -39,9 +39,11 @@ struct ForeignMatrix {
   bool trajectories = false;  // counted here, each run once
 };
 /// Reads .mtx, .csv, .npz (a matrix, or trajectories) or .dtrajs. A matrix without a column of
-/// "trapped" has nobody trapped. Whole numbers are counts, others probabilities whose rows sum to 1
-/// within 1e-9, or to 0. Of a trajectory each step is a count; its last state may be the number of
-/// states: trapped. Throws std::runtime_error naming the file and the place.
+/// "trapped" has nobody trapped. Whole numbers are counts, written as reals too unless no row has
+/// more than a single 1; others are probabilities whose rows sum to 1, within 1e-9 or what the
+/// rounding of three or more digits, or of floats, allows, or to 0. Of a trajectory each step is a
+/// count; its last state may be the number of states: trapped, and -1 is a gap. Throws
+/// std::runtime_error naming the file and the place.
 [[nodiscard]] ForeignMatrix read_foreign(const std::string& path,
                                          const std::vector<ForeignState>& states);
 

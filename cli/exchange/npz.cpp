@@ -65,6 +65,8 @@ bool put_numbers(const std::string& type, std::string_view bytes, NumpyArray& ar
     convert<std::int16_t>(bytes, whole);
   else if (type == "i1")
     convert<std::int8_t>(bytes, whole);
+  else if (type == "u8")
+    convert<std::uint64_t>(bytes, whole);  // those above 2^63 - 1 come out below 0
   else if (type == "u4")
     convert<std::uint32_t>(bytes, whole);
   else if (type == "u2")
@@ -102,7 +104,9 @@ NumpyArray array_of(const PackedFile& file, const std::string& path) {
       R"re(\{\s*'descr':\s*'([<|=])([a-zA-Z])(\d+)',\s*'fortran_order':\s*(True|False),\s*'shape':\s*\(([\d,\s]*)\),?\s*\}\s*)re");
   std::smatch found;
   if (length > 1000 || !std::regex_match(header, found, pattern))
-    refuse("is of a kind that is not read: little-endian numbers and texts are");
+    refuse(
+        "is of a kind that is not read: little-endian numbers and texts are (numpy: "
+        "array.astype(\"<i8\") or \"<f8\")");
   NumpyArray array{name, {}, {}};
   std::size_t count = 1;
   const std::string shape = found[5];
@@ -114,7 +118,8 @@ NumpyArray array_of(const PackedFile& file, const std::string& path) {
     count *= static_cast<std::size_t>(array.shape.back());
     if (count > kMostNumbers) refuse("is too large");
   }
-  if (found[4] == "True" && array.shape.size() > 1) refuse("is in Fortran's order");
+  if (found[4] == "True" && array.shape.size() > 1)
+    refuse("is in Fortran's order (numpy.ascontiguousarray makes another)");
   if (found[3].length() > 9) refuse("is too large");
   const std::string kind = found[2], type = kind + found[3].str();
   const std::string_view data = bytes.substr(begin + length);
@@ -127,8 +132,13 @@ NumpyArray array_of(const PackedFile& file, const std::string& path) {
       if (c != '\0') text += c;
     array.values = std::move(text);
   } else if (!put_numbers(type, data, array)) {
-    refuse("holds " + type + ": whole numbers, f4 and f8 are read");
+    refuse("holds " + type + ": whole numbers, f4 and f8 are read (numpy: array.astype(float))");
+  } else if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&array.values);
+             type == "u8" &&
+             std::any_of(whole->begin(), whole->end(), [](auto n) { return n < 0; })) {
+    refuse("has a number above 2^63 - 1");
   }
+  array.type = type;
   return array;
 }
 

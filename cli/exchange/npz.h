@@ -13,6 +13,7 @@ struct NumpyArray {
   std::string name;
   std::vector<std::int64_t> shape;  // none: a single value
   std::variant<std::vector<double>, std::vector<std::int64_t>, std::string> values;
+  std::string type{};  // numpy's, of one that was read: "f4", "b1"
 };
 
 /// Little-endian, version 1 of numpy's format. Throws std::runtime_error.

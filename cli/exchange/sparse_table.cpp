@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -33,11 +35,51 @@ std::vector<std::string> lines_of_file(const std::string& path) {
   }
 }
 
+constexpr double kMostWhole = 9007199254740992.0;  // doubles hold all whole numbers up to it
+
 /// The whole text as a number.
-template <class T>
-bool read_number(const std::string& text, T& value) {
+bool read_number(const std::string& text, double& value) {
+  std::string_view rest = text;
+  const auto read = lattice::take_number(rest);
+  value = read.value_or(0.0);
+  return read && rest.empty();
+}
+
+/// As a whole number, which may be written as 3, +3, 3.0 or 3e0.
+bool read_number(const std::string& text, std::int64_t& value) {
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  return read.ec == std::errc() && read.ptr == text.data() + text.size();
+  if (read.ec == std::errc() && read.ptr == text.data() + text.size()) return true;
+  double real = 0.0;
+  if (!read_number(text, real) || real != std::floor(real) || std::abs(real) > kMostWhole)
+    return false;
+  value = static_cast<std::int64_t>(real);
+  return true;
+}
+
+/// Of a number's text.
+SparseTable::Precision precision_of(std::string_view text) {
+  const std::size_t e = std::min(text.find_first_of("eE"), text.size());
+  const std::string_view mantissa = text.substr(0, e);
+  SparseTable::Precision precision;
+  bool behind_point = false;
+  for (const char c : mantissa) {
+    if (c == '.') behind_point = true;
+    if (c < '0' || c > '9') continue;
+    precision.decimals += behind_point ? 1 : 0;
+    precision.digits += c != '0' || precision.digits > 0 ? 1 : 0;
+  }
+  std::string_view exponent = text.substr(std::min(e + 1, text.size()));
+  precision.decimals -= static_cast<int>(lattice::take_number(exponent).value_or(0.0));
+  return precision;
+}
+
+/// A number of the table: false where the text is none.
+bool read_value(const std::string& text, SparseTable& table, double& value) {
+  if (!read_number(text, value)) return false;
+  const SparseTable::Precision precision = precision_of(text);
+  table.precision.digits = std::max(table.precision.digits, precision.digits);
+  table.precision.decimals = std::max(table.precision.decimals, precision.decimals);
+  return true;
 }
 
 std::vector<std::string> words_of(const std::string& line) {
@@ -45,8 +87,9 @@ std::vector<std::string> words_of(const std::string& line) {
   return {std::istream_iterator<std::string>(in), {}};
 }
 
-/// In order, and no place twice. `line_of`: of each entry as read.
-void put_in_order(const std::string& path, SparseTable& table, std::vector<std::size_t> line_of) {
+/// In order; entries of one place are added up, or, with the line of each, refused.
+void put_in_order(const std::string& path, SparseTable& table,
+                  const std::vector<std::size_t>& line_of = {}) {
   std::vector<std::size_t> order(table.entries.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
   const auto place = [&](std::size_t k) {
@@ -56,11 +99,20 @@ void put_in_order(const std::string& path, SparseTable& table, std::vector<std::
                    [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
   std::vector<SparseTable::Entry> sorted;
   for (std::size_t k = 0; k < order.size(); ++k) {
-    if (k > 0 && place(order[k]) == place(order[k - 1]))
+    if (k == 0 || place(order[k]) != place(order[k - 1])) {
+      sorted.push_back(table.entries[order[k]]);
+      continue;
+    }
+    if (!line_of.empty())
       refuse(path, line_of[order[k]],
              "has the same row and column as line " + std::to_string(line_of[order[k - 1]]));
-    sorted.push_back(table.entries[order[k]]);
+    sorted.back().value += table.entries[order[k]].value;
   }
+  if (const std::size_t added = table.entries.size() - sorted.size(); added > 0)
+    table.understood.push_back(
+        "entries with the row and column of another are added to it, as "
+        "scipy does: " +
+        std::to_string(added));
   table.entries = std::move(sorted);
 }
 
@@ -74,7 +126,33 @@ const NumpyArray* find(const std::vector<NumpyArray>& arrays, const std::string&
   return nullptr;
 }
 
-constexpr double kMostWhole = 9007199254740992.0;  // doubles hold all whole numbers up to it
+/// What the first line of a Matrix Market file says, in lower case; refused with what to do where
+/// the numbers are none of a chain.
+std::vector<std::string> market_head(const std::string& path, const std::string& line) {
+  std::vector<std::string> head = words_of(line);
+  for (std::string& word : head)
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+  const auto is = [&](std::size_t at, std::initializer_list<const char*> words) {
+    return std::find(words.begin(), words.end(), head[at]) != words.end();
+  };
+  if (head.size() != 5 || head[0] != "%%matrixmarket" || head[1] != "matrix" ||
+      !is(2, {"coordinate", "array"}))
+    refuse(path, 1,
+           "must be \"%%MatrixMarket matrix coordinate real general\", array for coordinate, "
+           "integer or unsigned-integer for real, symmetric for general");
+  if (!is(3, {"real", "integer", "unsigned-integer"}))
+    refuse(path, 1,
+           "\"" + printable(head[3]) + "\" are no counts or probabilities" +
+               (head[3] == "pattern" ? ": the numbers are left out" : "") +
+               ": write real or integer (scipy.io.mmwrite(FILE, matrix, field=\"real\"))");
+  if (!is(4, {"general", "symmetric"}))
+    refuse(path, 1,
+           "\"" + printable(head[4]) +
+               "\" are no counts or probabilities: write general or symmetric "
+               "(scipy.io.mmwrite(FILE, matrix, symmetry=\"general\"))");
+  return head;
+}
 
 }  // namespace
 
@@ -125,46 +203,64 @@ std::string npz_of(const SparseTable& table) {
 
 SparseTable read_matrix_market(const std::string& path) {
   const std::vector<std::string> lines = lines_of_file(path);
+  const std::vector<std::string> head = market_head(path, lines.empty() ? "" : lines.front());
+  const bool dense = head[2] == "array", symmetric = head[4] == "symmetric";
+  const std::size_t sizes = dense ? 2 : 3;
   SparseTable table;
-  std::vector<std::string> head = words_of(lines.empty() ? "" : lines.front());
-  for (std::string& word : head)
-    std::transform(word.begin(), word.end(), word.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
-  if (head.size() != 5 || head[0] != "%%matrixmarket" || head[1] != "matrix" ||
-      head[2] != "coordinate" || (head[3] != "real" && head[3] != "integer") ||
-      head[4] != "general")
-    refuse(path, 1,
-           "must be \"%%MatrixMarket matrix coordinate real general\", or integer for real");
-  table.whole = head[3] == "integer";
-  std::int64_t promised = -1;
-  std::vector<std::size_t> line_of;
+  table.whole = head[3] != "real";
+  std::int64_t promised = -1, seen = 0, row = 0, column = 0;  // the last two: next of an array
   for (std::size_t k = 1; k < lines.size(); ++k) {
     if (lines[k].starts_with('%')) continue;
     const std::vector<std::string> words = words_of(lines[k]);
     if (words.empty()) continue;
     if (promised < 0) {
-      if (words.size() != 3 || !read_number(words[0], table.rows) ||
-          !read_number(words[1], table.columns) || !read_number(words[2], promised) ||
-          table.rows < 1 || table.columns < 1 || promised < 0)
-        refuse(path, k + 1, "must be the numbers of rows, columns and entries");
+      promised = 0;
+      constexpr std::int64_t kMostRows = std::int64_t{1} << 31;
+      if (words.size() != sizes || !read_number(words[0], table.rows) ||
+          !read_number(words[1], table.columns) || table.rows < 1 || table.columns < 1 ||
+          table.rows > kMostRows || table.columns > kMostRows ||
+          (!dense && !read_number(words[2], promised)) || promised < 0)
+        refuse(path, k + 1,
+               std::string("must be the numbers of rows") +
+                   (dense ? " and columns" : ", columns and entries"));
+      if (symmetric && table.rows != table.columns)
+        refuse(path, k + 1, "a symmetric matrix has as many rows as columns");
+      if (dense)
+        promised = symmetric ? table.rows * (table.rows + 1) / 2 : table.rows * table.columns;
       continue;
     }
-    SparseTable::Entry e;
-    if (words.size() != 3 || !read_number(words[0], e.row) || !read_number(words[1], e.column) ||
-        !read_number(words[2], e.value))
-      refuse(path, k + 1, "must be a row, a column and a number, such as 1 2 0.25");
-    if (e.row < 1 || e.row > table.rows || e.column < 1 || e.column > table.columns)
-      refuse(path, k + 1,
-             "row and column must lie in 1 to " + std::to_string(table.rows) + " and 1 to " +
-                 std::to_string(table.columns));
-    table.entries.push_back({e.row - 1, e.column - 1, e.value});
-    line_of.push_back(k + 1);
+    if (++seen > promised) continue;  // refused below
+    SparseTable::Entry e{row, column, 0.0};
+    if (dense) {
+      if (words.size() != 1 || !read_value(words[0], table, e.value))
+        refuse(path, k + 1, "must be a number, those of a column one after the other");
+      if (++row == table.rows) {
+        ++column;
+        row = symmetric ? column : 0;
+      }
+    } else {
+      if (words.size() != 3 || !read_number(words[0], e.row) || !read_number(words[1], e.column) ||
+          !read_value(words[2], table, e.value))
+        refuse(path, k + 1, "must be a row, a column and a number, such as 1 2 0.25");
+      if (e.row < 1 || e.row > table.rows || e.column < 1 || e.column > table.columns)
+        refuse(path, k + 1,
+               "row and column must lie in 1 to " + std::to_string(table.rows) + " and 1 to " +
+                   std::to_string(table.columns));
+      if (symmetric && e.column > e.row)
+        refuse(path, k + 1, "lies above the diagonal: a symmetric file has the entries up to it");
+      e = {e.row - 1, e.column - 1, e.value};
+    }
+    table.entries.push_back(e);
+    if (symmetric && e.row != e.column) table.entries.push_back({e.column, e.row, e.value});
   }
   if (promised < 0) throw std::runtime_error(path + ": holds no numbers of rows and columns");
-  if (promised != std::ssize(table.entries))
-    throw std::runtime_error(path + ": has " + std::to_string(table.entries.size()) +
-                             " entries, not " + std::to_string(promised) + " as it says");
-  put_in_order(path, table, line_of);
+  if (promised != seen)
+    throw std::runtime_error(path + ": has " + std::to_string(seen) + " entries, not " +
+                             std::to_string(promised) + " as it says");
+  if (dense) std::erase_if(table.entries, [](const auto& e) { return e.value == 0.0; });
+  if (symmetric)
+    table.understood.emplace_back("symmetric: what is below the diagonal is above it too");
+  put_in_order(path, table);
   return table;
 }
 
@@ -177,7 +273,8 @@ SparseTable read_csv(const std::string& path, std::int64_t rows,
   const auto state = [&](const std::string& text, std::int64_t end, std::size_t line) {
     const auto named = number_of.find(text);
     std::int64_t s = named == number_of.end() ? -1 : named->second, number = -1;
-    if (read_number(text, number)) {
+    const bool plain = text.find_first_not_of("0123456789") == text.npos;
+    if ((plain || named == number_of.end()) && read_number(text, number)) {
       if (named != number_of.end() && s != number)
         refuse(path, line,
                "\"" + printable(text) + "\" is the name of state " + std::to_string(s) +
@@ -206,6 +303,7 @@ SparseTable read_csv(const std::string& path, std::int64_t rows,
         if (name == "to") to = static_cast<int>(f);
         if (is_count || name == "probability") value = static_cast<int>(f);
         table.whole = table.whole || is_count;
+        table.probabilities = table.probabilities || name == "probability";
       }
       const auto times = [&](const char* name) {
         return std::count(fields->begin(), fields->end(), name);
@@ -225,7 +323,7 @@ SparseTable read_csv(const std::string& path, std::int64_t rows,
     };
     SparseTable::Entry e{state(field(from), rows, k + 1), state(field(to), table.columns, k + 1),
                          0.0};
-    if (!read_number(field(value), e.value))
+    if (!read_value(field(value), table, e.value))
       refuse(path, k + 1, "\"" + printable(field(value)) + "\" is no number");
     table.entries.push_back(e);
     line_of.push_back(k + 1);
@@ -235,51 +333,71 @@ SparseTable read_csv(const std::string& path, std::int64_t rows,
 }
 
 SparseTable table_of(const std::string& path, const std::vector<NumpyArray>& arrays) {
+  constexpr const char* kSaved = "scipy.sparse.save_npz(FILE, matrix.tocsr())";
   const auto whole = [&](const char* name) -> const std::vector<std::int64_t>& {
     const NumpyArray* const array = find(arrays, name);
     const auto* const values =
         array ? std::get_if<std::vector<std::int64_t>>(&array->values) : nullptr;
     if (!values)
-      throw std::runtime_error(path + ": has no whole numbers \"" + name +
-                               "\": it must be as scipy.sparse.save_npz writes compressed rows");
+      throw std::runtime_error(path + ": has no whole numbers \"" + name + "\": it must be as of " +
+                               kSaved);
     return *values;
   };
   const NumpyArray* const format = find(arrays, "format");
   const auto* const kind = format ? std::get_if<std::string>(&format->values) : nullptr;
-  if (!kind || *kind != "csr")
-    throw std::runtime_error(path + ": its format must be csr (scipy: matrix.tocsr())");
-  const auto &shape = whole("shape"), &first = whole("indptr"), &column = whole("indices");
+  if (!kind || (*kind != "csr" && *kind != "csc" && *kind != "coo"))
+    throw std::runtime_error(path + ": its format must be csr, csc or coo" +
+                             (kind ? ", not " + printable(*kind) : "") + ": " + kSaved);
+  const auto& shape = whole("shape");
   const NumpyArray* const data = find(arrays, "data");
   if (!data || std::holds_alternative<std::string>(data->values))
     throw std::runtime_error(path + ": has no numbers \"data\"");
+  if (data->type == "b1")
+    throw std::runtime_error(path +
+                             ": its data are true and false, and no counts: "
+                             "matrix.astype(int) has 1 for true");
   SparseTable table;
-  table.whole = std::holds_alternative<std::vector<std::int64_t>>(data->values);
   std::vector<double> values;
-  if (table.whole) {
-    const auto& counts = std::get<std::vector<std::int64_t>>(data->values);
-    values.assign(counts.begin(), counts.end());
+  if (const auto* counts = std::get_if<std::vector<std::int64_t>>(&data->values)) {
+    table.whole = true;
+    values.assign(counts->begin(), counts->end());
   } else {
     values = std::get<std::vector<double>>(data->values);
+    const int digits = data->type == "f4" ? std::numeric_limits<float>::max_digits10
+                                          : std::numeric_limits<double>::max_digits10;
+    table.precision = {digits, digits};
   }
-  if (shape.size() != 2 || shape[0] < 1 || shape[1] < 1 || std::ssize(first) != shape[0] + 1 ||
-      values.size() != column.size() || first.front() != 0 || first.back() != std::ssize(column))
-    throw std::runtime_error(path + ": its arrays do not fit each other");
+  const auto unfit = [&] {
+    return std::runtime_error(path + ": its arrays do not fit each other");
+  };
+  if (shape.size() != 2 || shape[0] < 1 || shape[1] < 1) throw unfit();
   table.rows = shape[0];
   table.columns = shape[1];
-  std::vector<std::size_t> entry_of;
-  for (std::size_t row = 0; row + 1 < first.size(); ++row) {
-    if (first[row + 1] < first[row])
-      throw std::runtime_error(path + ": indptr goes down at row " + std::to_string(row));
-    for (std::int64_t k = first[row]; k < first[row + 1]; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      if (column[at] < 0 || column[at] >= table.columns)
-        throw std::runtime_error(path + ": row " + std::to_string(row) + " has a column " +
-                                 std::to_string(column[at]));
-      table.entries.push_back({static_cast<std::int64_t>(row), column[at], values[at]});
-      entry_of.push_back(at + 1);
+  // Lines are rows of csr, and columns of csc.
+  const bool by_column = *kind == "csc";
+  std::vector<std::int64_t> line;
+  if (*kind != "coo") {
+    const auto& first = whole("indptr");
+    if (std::ssize(first) != shape[by_column ? 1 : 0] + 1 || first.front() != 0 ||
+        first.back() != std::ssize(values))
+      throw unfit();
+    for (std::size_t l = 0; l + 1 < first.size(); ++l) {
+      if (first[l + 1] < first[l] || first[l + 1] > first.back())
+        throw std::runtime_error(path + ": indptr goes down at " + std::to_string(l));
+      line.insert(line.end(), static_cast<std::size_t>(first[l + 1] - first[l]),
+                  static_cast<std::int64_t>(l));
     }
   }
-  put_in_order(path, table, entry_of);
+  const auto& rows = *kind == "coo" ? whole("row") : by_column ? whole("indices") : line;
+  const auto& columns = *kind == "coo" ? whole("col") : by_column ? line : whole("indices");
+  if (rows.size() != values.size() || columns.size() != values.size()) throw unfit();
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (rows[k] < 0 || rows[k] >= table.rows || columns[k] < 0 || columns[k] >= table.columns)
+      throw std::runtime_error(path + ": has a row " + std::to_string(rows[k]) + " and column " +
+                               std::to_string(columns[k]));
+    table.entries.push_back({rows[k], columns[k], values[k]});
+  }
+  put_in_order(path, table);
   return table;
 }
 
@@ -300,25 +418,45 @@ std::string npz_of(const Trajectories& all) {
   return npz_of(arrays);
 }
 
-bool hold_trajectories(const std::vector<NumpyArray>& arrays) { return !find(arrays, "indptr"); }
+bool hold_trajectories(const std::vector<NumpyArray>& arrays) {
+  return !find(arrays, "format") && !find(arrays, "indptr");
+}
 
 Trajectories trajectories_of(const std::string& path, std::vector<NumpyArray> arrays) {
   Trajectories all;
   for (NumpyArray& array : arrays) {
-    auto* const values = std::get_if<std::vector<std::int64_t>>(&array.values);
-    if (!values || array.shape.size() != 1)
-      throw std::runtime_error(path + ": array " + printable(array.name) +
-                               ": a trajectory is one row of whole numbers");
-    all.push_back(std::move(*values));
+    const auto refuse = [&](const std::string& what) {
+      throw std::runtime_error(path + ": array " + printable(array.name) + ": " + what);
+    };
+    if (array.shape.size() == 2)
+      refuse(
+          "has two dimensions: of a matrix scipy.sparse.save_npz(FILE, "
+          "scipy.sparse.csr_matrix(matrix)) makes the file, a trajectory is an array of its own");
+    if (array.shape.size() != 1 || array.type == "b1" ||
+        std::holds_alternative<std::string>(array.values))
+      refuse("a trajectory is one row of whole numbers");
+    if (const auto* real = std::get_if<std::vector<double>>(&array.values)) {
+      std::vector<std::int64_t> states;
+      for (const double x : *real) {
+        if (!(std::abs(x) <= kMostWhole) || x != std::floor(x))
+          refuse(shortest(x) + " is no whole number");
+        states.push_back(static_cast<std::int64_t>(x));
+      }
+      all.push_back(std::move(states));
+      continue;
+    }
+    all.push_back(std::get<std::vector<std::int64_t>>(std::move(array.values)));
   }
   return all;
 }
 
 Trajectories read_trajectories(const std::string& path) {
   Trajectories all;
-  const std::vector<std::string> lines = lines_of_file(path);
+  std::vector<std::string> lines = lines_of_file(path);
   for (std::size_t k = 0; k < lines.size(); ++k) {
     if (lines[k].starts_with('#')) continue;
+    std::replace_if(
+        lines[k].begin(), lines[k].end(), [](char c) { return c == ',' || c == ';'; }, ' ');
     const std::vector<std::string> words = words_of(lines[k]);
     if (words.empty()) continue;
     auto& one = all.emplace_back();
@@ -327,7 +465,7 @@ Trajectories read_trajectories(const std::string& path) {
         refuse(path, k + 1,
                "\"" + printable(word) +
                    "\" is no whole number: a line is the states of a "
-                   "trajectory, between blanks");
+                   "trajectory, between blanks or commas");
   }
   return all;
 }

@@ -14,13 +14,21 @@ namespace gatewalk::cli {
 
 /// Entries in the order of rows, within each of columns; no two at one place.
 struct SparseTable {
+  /// How finely numbers are written, at most: digits from the first that is not 0, and behind the
+  /// point. Of doubles and floats in binary the digits that tell any two apart.
+  struct Precision {
+    int digits = 0, decimals = 0;
+  };
   struct Entry {
     std::int64_t row = 0, column = 0;  // from 0
     double value = 0.0;
   };
   std::int64_t rows = 0, columns = 0;
   std::vector<Entry> entries;
-  bool whole = false;  // written as whole numbers
+  bool whole = false;          // written as whole numbers
+  bool probabilities = false;  // its file calls them so
+  Precision precision{};
+  std::vector<std::string> understood{};  // what its reader decided, a sentence each
 };
 
 template <class Value>
@@ -59,17 +67,20 @@ template <class Matrix>
 /// As scipy.sparse.load_npz reads it: compressed rows.
 [[nodiscard]] std::string npz_of(const SparseTable& table);
 
-/// "coordinate", "real" or "integer", "general". These throw std::runtime_error naming file, line
-/// and what is allowed.
+/// "coordinate" or "array"; "real", "integer" or "unsigned-integer"; "general" or "symmetric".
+/// Entries of one place are added up, as scipy does. These throw std::runtime_error naming file,
+/// line and what is allowed.
 [[nodiscard]] SparseTable read_matrix_market(const std::string& path);
 /// Columns from, to and count or probability, in any order; states by these names, or by their
 /// numbers from 0. `columns`: names of outputs, the first `rows` of which are those of the rows.
 [[nodiscard]] SparseTable read_csv(const std::string& path, std::int64_t rows,
                                    const std::vector<std::string>& columns);
-/// Of an .npz: compressed rows, as scipy writes them.
+/// Of an .npz: compressed rows or columns, or coordinates, as scipy.sparse.save_npz writes them.
+/// Entries of one place are added up.
 [[nodiscard]] SparseTable table_of(const std::string& path, const std::vector<NumpyArray>& arrays);
 
-/// Sequences of states from 0: a line each, numbers between blanks; or an array each of an .npz.
+/// Sequences of states from 0: a line each, numbers between blanks or commas; or an array each of
+/// an .npz. -1 is a gap: where no state is known.
 using Trajectories = std::vector<std::vector<std::int64_t>>;
 [[nodiscard]] std::string text_of(const Trajectories& all);
 [[nodiscard]] std::string npz_of(const Trajectories& all);

@@ -110,6 +110,43 @@ expect 2 'import keeps the counts of their steps' "$gatewalk" export t.nc -o no.
 expect 2 'is written beside -o' "$gatewalk" export tree.nc -o z.dtrajs --json z.states.csv
 expect 2 'keeps no trials' "$gatewalk" export p.nc -o p.dtrajs
 
+# As others write them. By hand: counts 5 2 1 1 / 3 0 0 1 / 3 0 0 1 of states up, aside, up_again and trapped.
+taken() { # TEXT FILE CONTENT
+  printf '%b' "$3" >"$2"
+  expect 0 "$1" "$gatewalk" import "$2" --states s.csv --start 0 --set field.rows=2 --set field.columns=3 -o taken.nc --force --json taken.json
+  # shellcheck disable=SC2046
+  "$gatewalk" export taken.nc --gate $(jq -r 'if .state_space.probabilities then "" else "--counts" end' taken.json) -o taken.csv --force --quiet >/dev/null
+}
+is() { [ "$(sed 1d taken.csv | tr '\n' ' ')" = "$1 " ] || fail "$2: $(cat taken.csv)"; }
+counts='up,up,5 up,aside,2 up,up_again,1 up,trapped,1 aside,up,3 aside,trapped,1 up_again,up,3 up_again,trapped,1'
+head='%%MatrixMarket matrix coordinate'
+rest='1 2 2\n1 3 1\n1 4 1\n2 1 3\n2 4 1\n3 1 3\n3 4 1\n'
+taken '17 counted steps' a.mtx "$head unsigned-integer general\n%%\n3 4 8\n1 1 5\n$rest" && is "$counts" unsigned-integer
+taken 'whole numbers, written as reals: counts' a.mtx "$head real general\n3 4 8\n1 1 5.000000000000000e+00\n$rest" && is "$counts" 'whole reals'
+holds '.understood == ["whole numbers, written as reals: counts"] and .text.understood == .understood[0]' taken.json
+taken 'are added to it, as scipy does: 1' a.mtx "$head integer general\n3 4 9\n1 1 2\n${rest}1 1 3\n" && is "$counts" duplicates
+taken '17 counted steps' a.mtx '%%MatrixMarket matrix array integer general\n3 4\n5\n3\n3\n2\n0\n0\n1\n0\n0\n1\n1\n1\n' && is "$counts" array
+taken 'symmetric: ' a.mtx "$head integer symmetric\n3 3 3\n1 1 4\n2 1 2\n3 1 1\n" && is 'up,up,4 up,aside,2 up,up_again,1 aside,up,2 up_again,up,1' symmetric
+taken 'symmetric: ' a.mtx '%%MatrixMarket matrix array integer symmetric\n3 3\n4\n2\n1\n0\n0\n0\n' && is 'up,up,4 up,aside,2 up,up_again,1 aside,up,2 up_again,up,1' 'symmetric array'
+taken '17 counted steps' A.CSV 'from,to,count\nup,up,5.0\nup,aside,+2\nup,up_again,1e0\nup,trapped,1\naside,up,3\naside,trapped,1\nup_again,up,3\nup_again,trapped,1\n' && is "$counts" 'numbers of a spreadsheet'
+taken 'probabilities' a.mtx "$head real general\n3 4 4\n1 1 +0.5\n1 4 +5.0E-01\n2 1 1\n3 1 1\n" && is 'up,up,0.5 up,trapped,0.5 aside,up,1 up_again,up,1' plus
+# A third with six digits is a third; with those of floats too. One number that is no rounding of it is refused (below).
+thirds='up,up,0.3333333333333333 up,aside,0.3333333333333333 up,trapped,0.3333333333333333'
+for third in 0.333333 3.33333e-01 0.333 0.33333334 0.3333333432674408; do
+  taken 'rows sum to 1 but for the rounding of their numbers (row 0 (from 0) to ' a.csv "from,to,probability\nup,up,$third\nup,aside,$third\nup,trapped,$third\n"
+  sed -E '1d; s/(0.333333333333333)[0-9]*/\13/' taken.csv | tr '\n' ' ' | grep -qx "$thirds " || fail "$third: $(cat taken.csv)"
+done
+# Each row a single 1: what the numbers are written as decides.
+taken 'each row is a single 1, a real: probabilities' a.mtx "$head real general\n3 4 3\n1 2 1.0\n2 3 1\n3 1 1\n"
+holds '.state_space.probabilities' taken.json
+taken '3 counted steps' a.mtx "$head integer general\n3 4 3\n1 2 1\n2 3 1\n3 1 1\n"
+holds '.understood == []' taken.json
+# -1 is a gap: 0 0 1 | 1 0 | and 2 0 trapped.
+taken '^-1 is a gap: 1 of 2 trajectories are cut there, into 3$' a.dtrajs '0,0,1,-1,1,0,-1,-1,0\n2 0 3\n' && is 'up,up,1 up,aside,1 up,trapped,1 aside,up,1 up_again,up,1' gaps
+printf '3 3\n0 1 1\n1 0 0.25\n1 2 0.75\n' >one.tra
+sed -e '1cfrom,to,probability' -e 's/ /,/g' one.tra >tra.csv
+expect 0 probabilities "$gatewalk" import tra.csv --states s.csv -o tra.nc
+
 # What is wrong is said, and where.
 wrong() { # TEXT FILE CONTENT
   printf '%b' "$3" >"$2"
@@ -123,12 +160,27 @@ wrong 'w.csv: row 0, column 1 (from 0): -1 is no count' w.csv 'from,to,count\n0,
 wrong 'w.csv:1: must name the columns, each once: from,to,count' w.csv 'a,b,c\n'
 wrong 'w.csv:1: must name the columns, each once' w.csv 'from,to,count,probability\n0,1,10,1\n'
 wrong 'w.csv:2: has 4 fields, not 3' w.csv 'from,to,count\n0,1,1,500\n'
-wrong 'w.mtx:1: must be "%%MatrixMarket' w.mtx '%%MatrixMarket matrix array real general\n'
+wrong 'w.mtx:1: must be "%%MatrixMarket' w.mtx '%%MatrixMarket vector coordinate real general\n'
+wrong 'w.mtx:1: "pattern" are no counts or probabilities: the numbers are left out' w.mtx '%%MatrixMarket matrix coordinate pattern general\n3 3 1\n1 1\n'
+wrong 'w.mtx:1: "complex" are no counts' w.mtx '%%MatrixMarket matrix array complex general\n1 1\n1 0\n'
+wrong 'w.mtx:1: "skew-symmetric" are no counts or probabilities: write general or symmetric' w.mtx '%%MatrixMarket matrix coordinate integer skew-symmetric\n3 3 1\n2 1 4\n'
+wrong 'w.mtx:3: lies above the diagonal' w.mtx '%%MatrixMarket matrix coordinate integer symmetric\n3 3 1\n1 2 4\n'
+wrong 'w.mtx:2: a symmetric matrix has as many rows as columns' w.mtx '%%MatrixMarket matrix coordinate integer symmetric\n3 4 1\n1 1 4\n'
+wrong 'has 11 entries, not 12 as it says' w.mtx '%%MatrixMarket matrix array integer general\n3 4\n1\n1\n1\n1\n1\n1\n1\n1\n1\n1\n1\n'
 wrong 'w.mtx:3: row and column must lie in 1 to 3' w.mtx '%%MatrixMarket matrix coordinate integer general\n3 3 1\n4 1 2\n'
 wrong 'has 1 entries, not 2 as it says' w.mtx '%%MatrixMarket matrix coordinate integer general\n3 3 2\n1 1 2\n'
 wrong 'of 3 states it must be 3 x 4, the last column trapped, or 3 x 3' w.mtx '%%MatrixMarket matrix coordinate integer general\n2 3 1\n1 1 2\n'
 wrong 'trajectory 2, step 1: there is no state 3' w.dtrajs '0 1\n3 0\n'
 wrong 'w.dtrajs:1: "x" is no whole number' w.dtrajs '0 x\n'
+wrong 'trajectory 1, step 2: there is no state -2' w.dtrajs '0 -2 1\n'
+wrong 'no trajectory has a second state: one column?' w.dtrajs '0\n1\n0\n2\n'
+wrong 'no trajectory has a second state: one column?' w.dtrajs '0 -1 1\n'
+wrong 'row 0, column 0 (from 0): 4.5 is no count: counts are whole numbers of runs; round effective counts' w.csv 'from,to,count\n0,0,4.5\n0,trapped,2.5\n'
+wrong 'row 0 (from 0) sums to 7: probabilities of a row sum to 1, counts are whole numbers (integer, count); round effective counts' w.mtx '%%MatrixMarket matrix coordinate real general\n3 4 2\n1 1 4.5\n1 4 2.5\n'
+wrong 'row 0 (from 0) sums to 0.996' w.csv 'from,to,probability\n0,0,.333\n0,1,.333\n0,2,.33\n'
+wrong 'row 0 (from 0) sums to 0.999997' w.csv 'from,to,probability\n0,0,0.333333\n0,1,0.333333\n0,2,0.333331\n'
+wrong 'row 0 (from 0) sums to 10' w.csv 'from,to,probability\n0,0,5\n0,1,5\n'
+wrong 'chain is one of a whole field, import takes that of one cell' w.tra '3 3\n0 1 1\n1 2 1\n2 0 1\n'
 wrong 'w.npz' w.npz 'no archive\n'
 wrong 'must end in .mtx, .csv, .npz or .dtrajs' w.txt '0 1\n'
 head -c 3000 g.npz >cut.npz

@@ -24,6 +24,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas
+import scipy.io
 import scipy.sparse
 
 import gatewalk as gw
@@ -385,6 +386,73 @@ class Elsewhere(unittest.TestCase):
         with self.assertRaisesRegex(gw.UsageError, "the chain: is 2 x 2; of 3 states it must be 3 x 4"):
             gw.from_counts(counts[:2, :2], states)
 
+    def test_chains_as_scipy_writes_them(self):
+        states = {"state": [0, 1, 2], "move_x": [0, 1, 0], "move_y": [1, 0, 1]}
+        counts = np.array([[5, 2, 1, 1], [3, 0, 0, 1], [3, 0, 0, 1]])
+        square = np.array([[4, 2, 1], [2, 0, 0], [1, 0, 0]])  # mmwrite finds out that it is symmetric
+        shares = counts / counts.sum(axis=1, keepdims=True)
+
+        def read(path):
+            return gw.from_counts(path, states, start=0)
+
+        def equals(matrix, wanted, probabilities=False):
+            if probabilities:
+                self.assertTrue(np.isnan(matrix.predict().endings_95["crossed"]).all())
+                np.testing.assert_allclose(matrix.matrix.toarray()[:, : wanted.shape[1]], wanted, rtol=0, atol=2e-7)
+            else:
+                np.testing.assert_array_equal(matrix.counts().toarray()[:, : wanted.shape[1]], wanted)
+
+        with tempfile.TemporaryDirectory() as folder:
+            def path(name):
+                return os.path.join(folder, name)
+            for kind in ("int64", "uint64", "int8", "float32", "float64"):
+                for matrix in (counts, square):
+                    for made in (scipy.sparse.coo_matrix(matrix.astype(kind)), matrix.astype(kind)):
+                        with self.subTest(kind=kind, symmetric=matrix is square, dense=made.ndim and isinstance(made, np.ndarray)):
+                            scipy.io.mmwrite(path("a.mtx"), made)
+                            equals(read(path("a.mtx")), matrix)
+                    for form in ("csr", "csc", "coo"):
+                        with self.subTest(kind=kind, form=form):
+                            scipy.sparse.save_npz(path("a.npz"), scipy.sparse.coo_matrix(matrix.astype(kind)).asformat(form))
+                            equals(read(path("a.npz")), matrix)
+                with self.subTest(kind=kind):
+                    equals(gw.from_counts(counts.astype(kind), states, start=0), counts)
+            # Rows out of order, and a 5 that is 2 and 3, as scipy itself adds them.
+            twice = scipy.sparse.csr_matrix((np.array([2, 3, 1, 2, 1, 1, 3, 1, 3]), np.array([0, 0, 3, 1, 2, 3, 0, 3, 0]), np.array([0, 5, 7, 9])),
+                                            shape=(3, 4))
+            np.testing.assert_array_equal(twice.toarray(), counts)
+            scipy.sparse.save_npz(path("a.npz"), twice)
+            equals(read(path("a.npz")), counts)
+            self.assertEqual(read(path("a.npz")).made_by["understood"], "entries with the row and column of another are added to it, as scipy does: 1")
+            scipy.io.mmwrite(path("a.mtx"), twice)
+            equals(read(path("a.mtx")), counts)
+            for made in (shares, shares.astype("float32"), shares.astype("float32").astype("float64")):
+                scipy.sparse.save_npz(path("a.npz"), scipy.sparse.csr_matrix(made))
+                equals(read(path("a.npz")), shares, True)
+                scipy.io.mmwrite(path("a.mtx"), scipy.sparse.csr_matrix(made))
+                equals(read(path("a.mtx")), shares, True)
+                equals(gw.from_counts(made, states, start=0), shares, True)
+            np.savetxt(path("a.dtrajs"), [[0, 1, 0, 2, 0], [0, 0, 1, 0, 3]])  # as 0.000000000000000000e+00
+            equals(read(path("a.dtrajs")), np.array([[1, 2, 1, 1], [2, 0, 0, 0], [1, 0, 0, 0]]))
+            gaps = [np.array([0, 1, -1, -1, 0, 2]), np.array([-1.0, 0.0, 3.0])]  # 0 1, 0 2, 0 trapped
+            np.savez(path("a.dtrajs.npz"), *gaps)
+            for matrix in (read(path("a.dtrajs.npz")), gw.from_counts(gaps, states, start=0)):
+                equals(matrix, np.array([[0, 1, 1, 1], [0, 0, 0, 0], [0, 0, 0, 0]]))
+                self.assertEqual(matrix.made_by["understood"], "-1 is a gap: 2 of 2 trajectories are cut there, into 3")
+            for made, words in ((scipy.sparse.bsr_matrix(counts), "must be csr, csc or coo, not bsr: scipy.sparse.save_npz"),
+                                (scipy.sparse.csr_matrix(counts > 0), "true and false, and no counts"),
+                                (scipy.sparse.csr_matrix(counts * 0.9), "round effective counts to whole numbers"),
+                                (scipy.sparse.csr_matrix(counts.astype(complex)), "holds c16")):
+                scipy.sparse.save_npz(path("a.npz"), made)
+                with self.assertRaisesRegex(gw.UsageError, words):
+                    read(path("a.npz"))
+            for made, words in (([np.array([0]), np.array([1])], "no trajectory has a second state"), ([counts], "has two dimensions: .*save_npz"),
+                                ([np.array([True, False])], "whole numbers"), ([np.array([0, 0.5])], "0.5 is no whole number"),
+                                ([np.array([0, 2**63], dtype=np.uint64)], r"above 2\^63 - 1")):
+                np.savez(path("b.npz"), *made)
+                with self.assertRaisesRegex(gw.UsageError, words):
+                    read(path("b.npz"))
+
     def test_chains_that_would_have_to_be_guessed(self):
         states = {"state": [0, 1], "move_x": [0, 0], "move_y": [1, 1]}
         field = dict(start=0, set={"field.rows": 2, "field.columns": 1, "field.max_gates": 0})
@@ -416,7 +484,7 @@ class Elsewhere(unittest.TestCase):
                              (np.array([0, 1], dtype="timedelta64[s]"), "step 0 .*timedelta64.* is no whole number"),
                              ([0, np.timedelta64(1, "s"), 0, 0], "step 1 .*timedelta64.* is no whole number"),
                              ([0, np.ma.masked, 1, 0], "step 1 .*: masked; cut the trajectory there"),
-                             (np.array([0, -1, 1]), "step 1 .*: -1 is no state"),
+                             (np.array([0, -2, 1]), "step 1 .*: -2 is no state"),
                              (np.zeros((2, 2)), "is no sequence of states")):
             with self.assertRaisesRegex(gw.UsageError, "the chain: trajectory 1[, ].*" + words), warnings.catch_warnings():
                 warnings.simplefilter("error")

@@ -493,9 +493,9 @@ def _states_of(one: t.Any, which: int) -> list[int]:
         bad = ~(states == np.floor(states)) | ~(abs(states) < 2.0**53) if states.dtype.kind == "f" else np.zeros(len(states), bool)
     if bad.any():
         bad_step(_first(bad), f"{states[_first(bad)]} is no whole number" + ("; cut the trajectory there" if np.isnan(states[_first(bad)]) else ""))
-    if len(states) and (states < 0).any():
-        step = _first(states < 0)
-        bad_step(step, f"{states[step]} is no state, they count from 0; cut the trajectory where none is known")
+    if len(states) and (states < -1).any():
+        step = _first(states < -1)
+        bad_step(step, f"{states[step]} is no state, they count from 0; -1 is a gap")
     return [int(state) for state in states]
 
 
@@ -564,9 +564,11 @@ def from_counts(chain: t.Any, states: t.Any, *, start: int | None = None, **more
     Parameters
     ----------
     chain : scipy.sparse matrix, numpy array of shape (n, n) or (n, n + 1), list of trajectories, or path
-        Of one cell: whole numbers are counts, others probabilities; the last of n + 1 columns is trapped. Of a list each
-        element is a trajectory, a sequence of states, whose last may be n: trapped. A list of n lists of n or n + 1 numbers
-        may be either and is refused: make it a numpy array, or a list of 1-D arrays.
+        Of one cell: whole numbers are counts, floats too unless no row has more than a single 1.0; others are probabilities.
+        The last of n + 1 columns is trapped. Of a list each element is a trajectory, a sequence of states, whose last may be
+        n: trapped; -1 is a gap, where it is cut. A list of n lists of n or n + 1 numbers may be either and is refused: make
+        it a numpy array, or a list of 1-D arrays. Effective counts, which are not whole: round them, or divide each row by
+        its sum, which makes probabilities, without intervals.
     states : pandas.DataFrame, dict of lists, or path
         ``state`` (0, 1, ...), ``move_x``, ``move_y``: by which move from cell to cell each is entered; ``name``, ``face``.
     start : int, optional
