@@ -15,6 +15,7 @@
 #include "cli/walked.h"
 #include "lattice/cells/cell_matrix.h"
 #include "lattice/pool/tree_chain.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -22,8 +23,8 @@ namespace {
 /// Without the ending, both of .dtrajs.npz.
 std::string stem_of(const std::string& output) {
   constexpr std::string_view kBoth = ".dtrajs.npz";
-  return output.substr(0,
-                       output.ends_with(kBoth) ? output.size() - kBoth.size() : output.rfind('.'));
+  return output.substr(
+      0, lattice::has_ending(output, kBoth) ? output.size() - kBoth.size() : output.rfind('.'));
 }
 
 std::string numbers(std::size_t count, const char* what) {
@@ -66,7 +67,7 @@ ExportForm export_form(const std::string& output) {
       {".csv", ExportForm::csv},   {".dtrajs.npz", ExportForm::trajectories},
       {".npz", ExportForm::npz},   {".dtrajs", ExportForm::trajectories}};
   for (const auto& [ending, form] : kForms)
-    if (output.ends_with(ending)) return form;
+    if (lattice::has_ending(output, ending)) return form;
   throw UsageError("-o " + output +
                    ": must end in .umb, .drn, .tra, .mtx, .csv, .npz, .dtrajs or .dtrajs.npz");
 }
@@ -174,7 +175,7 @@ std::string export_trials(const Options& options, Json& json) {
   const Trajectories all = trajectories_of(*s.pool, space);
   const std::string output = options.text("output");
   options.write(stem_of(output) + ".states.csv", states_csv(*s.file, {}));
-  options.write(output, output.ends_with(".npz") ? npz_of(all) : text_of(all));
+  options.write(output, lattice::has_ending(output, ".npz") ? npz_of(all) : text_of(all));
   json = {{"states", space.size()}, {"trajectories", all.size()}};
   json["made_by"] = s.made_by(options);
   return numbers(all.size(), "trajectories through ") + std::to_string(space.size()) + " states; " +

@@ -20,6 +20,7 @@
 #include "lattice/scene/scene_trials.h"
 #include "lattice/study/trials.h"
 #include "lattice/text/digits.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -115,7 +116,7 @@ std::vector<dynamics::Cell::Number> parameters_of(const Options& options) {
 void refuse_files_of_cells(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return;  // a pipe is read only once
-  if (path.ends_with(".csv"))
+  if (lattice::has_ending(path, ".csv"))
     throw UsageError(path +
                      ": is a table, and no scene: of recorded runs gatewalk build TABLE --cell "
                      "CELL.toml -o MATRIX.nc makes a chain");

@@ -18,6 +18,8 @@ auto read_file(const Read& read) {
     return read();
   } catch (const std::runtime_error& e) {
     throw UsageError(e.what());
+  } catch (const std::invalid_argument& e) {
+    throw UsageError(e.what());
   }
 }
 

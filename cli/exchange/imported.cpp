@@ -15,7 +15,7 @@
 #include "cli/render/csv.h"
 #include "lattice/text/csv.h"
 #include "lattice/text/digits.h"
-#include "lattice/text/lines.h"
+#include "lattice/text/table.h"
 #include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
@@ -186,40 +186,28 @@ SparseTable counts_of(const std::string& path, const Trajectories& all, std::int
 }  // namespace
 
 std::vector<ForeignState> read_states(const std::string& path) {
-  const std::vector<std::string> lines = lattice::lines_of(path);
+  using lattice::Table;
+  Table file(path, [](const Table::Names& names) {
+    return Table::column_in(names, "state") && Table::column_in(names, "move_x") &&
+           Table::column_in(names, "move_y");
+  });
+  if (!file.has_header())
+    file.refuse(std::max<std::int64_t>(1, file.header_line()),
+                "must name the columns state,move_x,move_y[,name][,face]; there are " +
+                    file.column_words());
   std::vector<ForeignState> states;
-  std::vector<std::string> columns;
   std::set<std::string> names;
   std::map<std::string, std::pair<int, int>> moves;  // by face
-  for (std::size_t k = 0; k < lines.size(); ++k) {
-    const std::string& line = lines[k];
-    const auto refuse = [&](const std::string& what) {
-      throw std::runtime_error(path + ":" + std::to_string(k + 1) + ": " + what);
-    };
-    if (line.empty() || line.starts_with('#')) continue;
-    const auto fields = lattice::csv_fields(line);
-    if (!fields) refuse("has a quotation mark that is not closed");
-    if (columns.empty()) {
-      columns = *fields;
-      for (const char* needed : {"state", "move_x", "move_y"})
-        if (std::count(columns.begin(), columns.end(), needed) != 1)
-          refuse(std::string("must name the columns, ") + needed +
-                 " among them once: state,move_x,move_y[,name][,face]");
-      continue;
-    }
-    if (fields->size() != columns.size())
-      refuse("has " + std::to_string(fields->size()) + " fields, not " +
-             std::to_string(columns.size()));
-    const auto field = [&](const std::string& name) {
-      const auto at = std::find(columns.begin(), columns.end(), name);
-      return at == columns.end() ? std::string()
-                                 : (*fields)[static_cast<std::size_t>(at - columns.begin())];
+  while (file.next()) {
+    const auto refuse = [&](const std::string& what) { file.refuse(what); };
+    const auto field = [&](const char* name) {
+      const auto at = file.column(name);
+      return !at || lattice::says_nothing(file[*at]) ? std::string() : std::string(file[*at]);
     };
     const auto whole = [&](const char* name) {
       const std::string text = field(name);
-      std::string_view rest = text;
-      const double value = lattice::take_number(rest).value_or(HUGE_VAL);
-      if (!rest.empty() || value != std::floor(value) || !(std::abs(value) <= 1e6))
+      const double value = file.number(text).value_or(HUGE_VAL);
+      if (value != std::floor(value) || !(std::abs(value) <= 1e6))
         refuse(std::string(name) + " \"" + lattice::printable(text) + "\" is no whole number");
       return static_cast<int>(value);
     };
@@ -227,7 +215,7 @@ std::vector<ForeignState> read_states(const std::string& path) {
       refuse("state must be " + std::to_string(states.size()) +
              ": they are numbered from 0, in order");
     ForeignState s{field("name"), field("face"), whole("move_x"), whole("move_y")};
-    if (std::count(columns.begin(), columns.end(), kCountsPerRun) == 1) {
+    if (file.column(kCountsPerRun)) {
       s.counts_per_run = whole(kCountsPerRun);
       if (s.counts_per_run != 1 && s.counts_per_run != 2)
         refuse(std::string(kCountsPerRun) +
@@ -287,11 +275,7 @@ ForeignMatrix read_foreign(const std::string& path, const std::vector<ForeignSta
   std::vector<std::string> names;
   for (const ForeignState& s : states) names.push_back(s.name);
   names.emplace_back("trapped");
-  const auto ends_in = [&](std::string_view ending) {  // in capitals or not
-    return path.size() >= ending.size() &&
-           std::equal(ending.rbegin(), ending.rend(), path.rbegin(),
-                      [](char a, unsigned char b) { return a == std::tolower(b); });
-  };
+  const auto ends_in = [&](std::string_view ending) { return lattice::has_ending(path, ending); };
   const bool npz = ends_in(".npz");
   std::vector<NumpyArray> arrays;
   if (npz) arrays = read_npz(path);

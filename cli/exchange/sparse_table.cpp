@@ -12,9 +12,9 @@
 
 #include "cli/exchange/npz.h"
 #include "cli/render/csv.h"
-#include "lattice/text/csv.h"
 #include "lattice/text/digits.h"
 #include "lattice/text/lines.h"
+#include "lattice/text/table.h"
 #include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
@@ -73,12 +73,16 @@ SparseTable::Precision precision_of(std::string_view text) {
   return precision;
 }
 
+void note_precision(std::string_view number, SparseTable& table) {
+  const SparseTable::Precision precision = precision_of(number);
+  table.precision.digits = std::max(table.precision.digits, precision.digits);
+  table.precision.decimals = std::max(table.precision.decimals, precision.decimals);
+}
+
 /// A number of the table: false where the text is none.
 bool read_value(const std::string& text, SparseTable& table, double& value) {
   if (!read_number(text, value)) return false;
-  const SparseTable::Precision precision = precision_of(text);
-  table.precision.digits = std::max(table.precision.digits, precision.digits);
-  table.precision.decimals = std::max(table.precision.decimals, precision.decimals);
+  note_precision(text, table);
   return true;
 }
 
@@ -270,64 +274,47 @@ SparseTable read_csv(const std::string& path, std::int64_t rows,
   std::map<std::string, std::int64_t> number_of;
   for (std::size_t c = 0; c < columns.size(); ++c)
     number_of[columns[c]] = static_cast<std::int64_t>(c);
-  const auto state = [&](const std::string& text, std::int64_t end, std::size_t line) {
+  lattice::Table file(path, [](const lattice::Table::Names& names) {
+    const auto has = [&](const char* n) { return lattice::Table::column_in(names, n).has_value(); };
+    return has("from") && has("to") && (has("count") || has("probability"));
+  });
+  const auto state = [&](std::size_t column, std::int64_t end) {
+    const std::string text(file[column]);
     const auto named = number_of.find(text);
     std::int64_t s = named == number_of.end() ? -1 : named->second, number = -1;
     const bool plain = text.find_first_not_of("0123456789") == text.npos;
     if ((plain || named == number_of.end()) && read_number(text, number)) {
       if (named != number_of.end() && s != number)
-        refuse(path, line,
-               "\"" + printable(text) + "\" is the name of state " + std::to_string(s) +
-                   " and the number of another: give states names that are no numbers");
+        file.refuse("\"" + printable(text) + "\" is the name of state " + std::to_string(s) +
+                    " and the number of another: give states names that are no numbers");
       s = number;
     }
     if (s < 0 || s >= end)
-      refuse(path, line,
-             "there is no state \"" + printable(text) + "\"" +
-                 (named == number_of.end() ? "" : " to start from"));
+      file.refuse("there is no state \"" + printable(text) + "\"" +
+                  (named == number_of.end() ? "" : " to start from"));
     return s;
   };
-  const std::vector<std::string> lines = lines_of_file(path);
+  const auto from = file.column("from"), to = file.column("to"), count = file.column("count"),
+             probability = file.column("probability");
+  if (!from || !to || count.has_value() == probability.has_value())
+    file.refuse(std::max<std::int64_t>(1, file.header_line()),
+                "must name the columns from,to,count or from,to,probability; there are " +
+                    file.column_words());
+  table.whole = count.has_value();
+  table.probabilities = probability.has_value();
+  const std::size_t value = count ? *count : *probability;
   std::vector<std::size_t> line_of;
-  std::size_t columns_given = 0;
-  int from = -1, to = -1, value = -1;
-  for (std::size_t k = 0; k < lines.size(); ++k) {
-    if (lines[k].empty() || lines[k].starts_with('#')) continue;
-    const auto fields = lattice::csv_fields(lines[k]);
-    if (!fields) refuse(path, k + 1, "has a quotation mark that is not closed");
-    if (from < 0) {
-      for (std::size_t f = 0; f < fields->size(); ++f) {
-        const std::string& name = (*fields)[f];
-        const bool is_count = name == "count";
-        if (name == "from") from = static_cast<int>(f);
-        if (name == "to") to = static_cast<int>(f);
-        if (is_count || name == "probability") value = static_cast<int>(f);
-        table.whole = table.whole || is_count;
-        table.probabilities = table.probabilities || name == "probability";
-      }
-      const auto times = [&](const char* name) {
-        return std::count(fields->begin(), fields->end(), name);
-      };
-      if (times("from") != 1 || times("to") != 1 || times("count") + times("probability") != 1)
-        refuse(path, k + 1,
-               "must name the columns, each once: from,to,count or from,to,probability");
-      columns_given = fields->size();
-      continue;
-    }
-    if (fields->size() != columns_given)
-      refuse(path, k + 1,
-             "has " + std::to_string(fields->size()) + " fields, not " +
-                 std::to_string(columns_given));
-    const auto field = [&](int at) -> const std::string& {
-      return (*fields)[static_cast<std::size_t>(at)];
-    };
-    SparseTable::Entry e{state(field(from), rows, k + 1), state(field(to), table.columns, k + 1),
-                         0.0};
-    if (!read_value(field(value), table, e.value))
-      refuse(path, k + 1, "\"" + printable(field(value)) + "\" is no number");
-    table.entries.push_back(e);
-    line_of.push_back(k + 1);
+  while (file.next()) {
+    const auto number = file.number(file[value]);
+    if (!number || std::isnan(*number))
+      file.refuse("\"" + printable(file[value]) + "\" is no number");
+    std::string text(file[value]);
+    std::replace(text.begin(), text.end(), ',', '.');
+    note_precision(text, table);
+    table.entries.push_back({state(*from, rows), state(*to, table.columns), *number});
+    line_of.push_back(static_cast<std::size_t>(file.line()));
   }
+  for (std::string& remark : file.remarks()) table.understood.push_back(std::move(remark));
   put_in_order(path, table, line_of);
   return table;
 }

@@ -18,13 +18,6 @@
 namespace gatewalk::lattice {
 namespace {
 
-/// Whether the name of a file ends in .png.
-bool is_png(const std::string& path) {
-  std::string ending = path.size() < 4 ? "" : path.substr(path.size() - 4);
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending == ".png";
-}
-
 constexpr std::size_t kMostTypes = 100;
 constexpr const char* kKeys = "map, map_file, grey, random, seed and types";
 
@@ -371,7 +364,7 @@ void read_map(Terrain& terrain, const TerrainSettings& settings, const FieldPara
   }
   const auto greys = types_by_grey(settings, terrain);
   const std::string path = file != settings.end() ? path_of(file->second) : "";
-  if (!greys.empty() && !is_png(path)) {
+  if (!greys.empty() && !has_ending(path, ".png")) {
     const auto grey = settings.lower_bound("grey.");
     throw SceneError(
         grey->second.where() +
@@ -383,7 +376,7 @@ void read_map(Terrain& terrain, const TerrainSettings& settings, const FieldPara
   } else if (map != settings.end()) {
     terrain.type_of_cell =
         cells_of(rows_given(map->second), map->second.where() + ": terrain.map", terrain, field);
-  } else if (is_png(path)) {
+  } else if (has_ending(path, ".png")) {
     terrain.type_of_cell = cells_of_picture(file->second, path, greys, field);
   } else {
     terrain.type_of_cell = cells_of(rows_of_file(file->second, path),

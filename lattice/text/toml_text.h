@@ -12,6 +12,14 @@
 
 namespace gatewalk::lattice {
 
+/// Whether the name of a file ends so, in capitals or not; `ending` is in small letters.
+[[nodiscard]] inline bool has_ending(std::string_view path, std::string_view ending) {
+  return path.size() >= ending.size() &&
+         std::equal(ending.rbegin(), ending.rend(), path.rbegin(), [](char a, char b) {
+           return a == (b >= 'A' && b <= 'Z' ? static_cast<char>(b - 'A' + 'a') : b);
+         });
+}
+
 /// Without the blanks around it.
 [[nodiscard]] inline std::string_view trimmed(std::string_view s) {
   constexpr std::string_view kBlank = " \t\r";
