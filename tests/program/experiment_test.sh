@@ -77,7 +77,12 @@ unlimited 'bad.csv:3: a body cannot have been cut off: field.max_gates = 0' 'end
 unlimited 'bad.csv:2: a body cannot have been cut off: field.max_gates = 0' 'trial,ending\n1,cut off\n'
 refused 'bad.csv: has no trial' 'ending,count\ntrapped,0\n'
 refused 'bad.csv: is empty' ''
-expect 2 'ends.csv has 60\|far.csv: ends.csv has endings too' "$gatewalk" "${beside[@]}" --observed ends.csv --observed far.csv
+# Two recordings of one experiment are added up: 120 trials, those of both.
+expect 0 '^Observed: 120 trials, ' "$gatewalk" "${beside[@]}" --trials 2000 --observed ends.csv --observed far.csv --json both.json
+jq -s '.[0].observed.endings.crossed == .[1].observed.endings.crossed + 60' both.json observed.json | grep -q true || fail "two recordings: $(jq -c .observed.endings both.json)"
+printf 'trial,ending\n1,crossed\n' >line.csv
+expect 2 'line.csv: ends.csv has endings too; files that are added up have the same columns' "$gatewalk" "${beside[@]}" --observed ends.csv --observed line.csv
+expect 2 'ends.csv: is given twice' "$gatewalk" "${beside[@]}" --observed ends.csv --observed ends.csv
 printf 'ending,count\ncrossed,59\n' >fewer.csv
 expect 2 'gates.csv has 60 trials, fewer.csv 59: both must be of the same trials' "$gatewalk" "${beside[@]}" --observed gates.csv --observed fewer.csv
 expect 2 'nosuch.csv: cannot be read: No such file or directory' "$gatewalk" "${beside[@]}" --observed nosuch.csv
