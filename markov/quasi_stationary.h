@@ -2,9 +2,9 @@
 #pragma once
 /// What is left of walks that have been going on for long in an endless field.
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "markov/chain.h"
@@ -14,9 +14,11 @@ namespace gatewalk::markov {
 inline constexpr std::ptrdiff_t kToldEigenvalues = 6;
 
 /// How long what goes with an eigenvalue of this modulus lasts: -1 / ln of it, in cells. Infinite
-/// at 1.
+/// at 1, but for the rounding of an eigenvalue.
 [[nodiscard]] inline double implied_time_scale(double modulus) {
-  return modulus > 0.0 ? -1.0 / std::log(std::min(modulus, 1.0)) : 0.0;
+  constexpr double kRoundingOfOne = 1e-13;
+  if (modulus > 1.0 - kRoundingOfOne) return std::numeric_limits<double>::infinity();
+  return modulus > 0.0 ? -1.0 / std::log(modulus) : 0.0;
 }
 
 /// Of the states that walks are in which have not been trapped yet, wherever they are.

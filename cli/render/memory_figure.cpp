@@ -13,7 +13,7 @@ namespace {
 using lattice::GatesAhead;
 using lattice::MemoryStudy;
 
-constexpr double kPanelsLeft = 64, kPanelsRight = 492, kPanelHeight = 54, kPanelGap = 14,
+constexpr double kPanelsLeft = 88, kPanelsRight = 492, kPanelHeight = 54, kPanelGap = 14,
                  kPanelsHead = 50, kScalesHeight = 110, kScalesHead = 82;
 /// More ways than this would make panels too small to read.
 constexpr std::size_t kMostWays = 6;
@@ -72,37 +72,49 @@ struct UpTo {
   }
 };
 
+/// Ways by which somebody entered; the last column is trapped.
+std::vector<std::size_t> entered_ways(const MemoryStudy& study) {
+  const std::size_t ways = study.outcomes.size() - 1;
+  std::vector<std::size_t> entered;
+  for (std::size_t from = 0; from < ways; ++from)
+    if (!Probabilities(study.ahead, ways, from, ways).rows.empty()) entered.push_back(from);
+  return entered;
+}
+
 std::string of_ways(const MemoryStudy& study, const Sheet& sheet, double top) {
   const GatesAhead& ahead = study.ahead;
-  const std::vector<std::string>& names = study.outcomes;  // the last one: trapped
+  const std::vector<std::string>& names = study.outcomes;
   const std::size_t ways = names.size() - 1;
-  const double pitch = (kPanelsRight - kPanelsLeft) / static_cast<double>(ways + 1);
+  const std::vector<std::size_t> rows = entered_ways(study);
+  std::vector<std::size_t> columns = rows;
+  columns.push_back(ways);
+  const double pitch = (kPanelsRight - kPanelsLeft) / static_cast<double>(columns.size());
   std::string out =
       sheet.text("Chapman-Kolmogorov test: % of those who enter as at the left, some gates later",
-                 8, top + 14, kSmallFont) +
-      sheet.text("line: powers of the kernel, with 95 % of chance; points: trials", 8, top + 28,
-                 kSmallFont);
-  for (std::size_t to = 0; to <= ways; ++to)
-    out += sheet.text(names[to], kPanelsLeft + static_cast<double>(to) * pitch + 4,
-                      top + kPanelsHead - 6, kSmallFont);
+                 8, top + 14, kSmallFont);
+  out += sheet.text("line: powers of the kernel, with 95 % of chance; points: trials", 8, top + 28,
+                    kSmallFont);
+  const auto left_of = [&](std::size_t i) { return kPanelsLeft + static_cast<double>(i) * pitch; };
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    out += sheet.text(names[columns[i]], left_of(i) + 4, top + kPanelsHead - 6, kSmallFont);
   const int first = ahead.steps.front().gates, last = ahead.steps.back().gates;
-  for (std::size_t from = 0; from < ways; ++from) {
-    const double above = top + kPanelsHead + static_cast<double>(from) * (kPanelHeight + kPanelGap);
-    out += sheet.text(names[from], 8, above + 0.5 * kPanelHeight, kSmallFont);
-    for (std::size_t to = 0; to <= ways; ++to) {
-      const Probabilities p(ahead, ways, from, to);
-      if (p.rows.empty()) continue;
-      const std::string block = "$ahead" + std::to_string(from) + "_" + std::to_string(to);
-      const double left = kPanelsLeft + static_cast<double>(to) * pitch;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double above = top + kPanelsHead + static_cast<double>(k) * (kPanelHeight + kPanelGap);
+    const bool lowest = k + 1 == rows.size();
+    out += sheet.text(names[rows[k]], 8, above + 0.5 * kPanelHeight, kSmallFont);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const Probabilities p(ahead, ways, rows[k], columns[i]);
+      const std::string block = "$ahead" + std::to_string(k) + "_" + std::to_string(i);
       out += data_block(block, p.rows) + kFrame + kSmallTics +
-             sheet.margins({left, left + pitch - 30, above, above + kPanelHeight}) +
+             sheet.margins({left_of(i), left_of(i) + pitch - 30, above, above + kPanelHeight}) +
              "set xrange [" + digits(first - 0.5) + ":" + digits(last + 0.5) + "]\nset xtics 2,2" +
-             (from + 1 == ways ? "" : "\nset format x ''") + "\n" + UpTo(p.most).commands() +
-             Sheet::axes(from + 1 == ways && to == ways / 2 ? "'gates'" : "''", "''") + "plot " +
+             (lowest ? "" : "\nset format x ''") + "\n" + UpTo(p.most).commands() +
+             Sheet::x_axis(lowest && i == columns.size() / 2 ? "'gates'" : "''") + "set ylabel '" +
+             (i == 0 ? "%" : "") + "' font ',12' offset 2.2,0\nplot " +
              curve(block, kFirstColour, "black") + "\nunset label\nset format x '% h'\n";
     }
   }
-  return out;
+  return out + "set ylabel '' font ',15'\n";
 }
 
 std::string of_scales(const MemoryStudy& study, const Sheet& sheet, double top) {
@@ -141,7 +153,9 @@ MorePanels panels_of(const MemoryStudy& study) {
   const GatesAhead& ahead = study.ahead;
   const std::size_t ways = study.outcomes.empty() ? 0 : study.outcomes.size() - 1;
   if (ahead.steps.empty() || ways == 0 || ways > kMostWays) return {};
-  const double of_all = kPanelsHead + static_cast<double>(ways) * (kPanelHeight + kPanelGap) + 34;
+  const double of_all =
+      kPanelsHead + 34 +
+      static_cast<double>(entered_ways(study).size()) * (kPanelHeight + kPanelGap);
   return {of_all + kScalesHead + kScalesHeight, [&study, of_all](const Sheet& sheet, double top) {
             return of_ways(study, sheet, top) + of_scales(study, sheet, top + of_all);
           }};

@@ -449,6 +449,7 @@ TEST(QuasiStationary, OfARingHasItsTimeScales) {
   ASSERT_EQ(circle.size(), 5u);
   for (const double modulus : circle) EXPECT_NEAR(modulus, 0.9, 1e-14);
   EXPECT_TRUE(std::isinf(implied_time_scale(1.0)));
+  EXPECT_TRUE(std::isinf(implied_time_scale(std::nextafter(1.0, 0.0))));
   EXPECT_EQ(implied_time_scale(0.0), 0.0);
 }
 
