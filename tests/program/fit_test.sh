@@ -26,7 +26,7 @@ awk -F, 'NR == 1 { print; next } { print $1 "," $2 - int($2 / 2) }' endings.csv 
 jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' fit.json parts.json | grep -q true || fail "fit: two files are not their sum"
 expect 2 'half.csv: is given twice' "$gatewalk" fit "${small[@]}" half.csv half.csv "${free[@]}"
 # A file of final gates and one of endings, of which nothing says what belongs together: as the gates alone.
-jq -r '"gate_x,gate_y,count", (.final_gates | to_entries[] | .key as $y | .value | (length - 1) / 2 as $middle | to_entries[] | "\(.key - $middle),\($y),\(.value)")' truth.json >gates.csv
+jq -r '"gate_x,gate_y,count", (.final_gates | to_entries[] | .key as $y | .value | ((length - 1) / 2) as $middle | to_entries[] | "\(.key - $middle),\($y),\(.value)")' truth.json >gates.csv
 "$gatewalk" fit "${small[@]}" gates.csv "${free[@]}" --trials 16384 --quiet --json gates.json
 expect 0 'the endings are left out: nothing says which of them belong' "$gatewalk" fit "${small[@]}" gates.csv endings.csv "${free[@]}" --trials 16384 --quiet --json pair.json
 jq -s '.[0].numbers == .[1].numbers' gates.json pair.json | grep -q true || fail "fit: gates and endings are not the gates"
