@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <vector>
@@ -367,7 +368,11 @@ std::string comment_on_counts(const CellMap& map, const StateSpace& space) {
          "once.";
 }
 
-void write_matrix(const std::string& path, const MatrixFile& file) {
+namespace {
+
+/// With these arrays in place of its own.
+void write_matrix(const std::string& path, const MatrixFile& file,
+                  std::vector<markov::NamedArray> arrays) {
   const Transitions& t = file.transitions;
   markov::CountsFile out;
   static_cast<markov::RowCounts&>(out) = row_counts(t);
@@ -379,7 +384,7 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
   out.exits = exits_of(t.space);
   add_states(out, t.space);
   out.state_names = state_names(file);
-  out.arrays.insert(out.arrays.end(), file.arrays.begin(), file.arrays.end());
+  std::move(arrays.begin(), arrays.end(), std::back_inserter(out.arrays));
   const Section& section = t.space.section();
   for (std::size_t f = 0; f < section.faces.size(); ++f)
     if (t.space.has_trees())
@@ -404,6 +409,16 @@ void write_matrix(const std::string& path, const MatrixFile& file) {
   }
   out.text = file.text;
   markov::write_counts(path, out);
+}
+
+}  // namespace
+
+void write_matrix(const std::string& path, const MatrixFile& file) {
+  write_matrix(path, file, file.arrays);
+}
+
+void write_matrix(const std::string& path, MatrixFile&& file) {
+  write_matrix(path, file, std::move(file.arrays));
 }
 
 MatrixFile read_matrix(const std::string& path, const SectionOf& section_of) {

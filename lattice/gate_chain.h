@@ -76,8 +76,9 @@ inline constexpr const char* kNumberOfState = "number_of_state";
 /// The key of a file's text that has it.
 inline constexpr const char* kCommentText = "comment";
 
-/// As markov::write_counts.
+/// As markov::write_counts. Of a file that is given away its arrays, which may be large, are moved.
 void write_matrix(const std::string& path, const MatrixFile& file);
+void write_matrix(const std::string& path, MatrixFile&& file);
 
 /// The section of a file's cells, by its texts.
 using SectionOf = std::function<dynamics::Section(const std::map<std::string, std::string>& text)>;

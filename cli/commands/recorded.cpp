@@ -39,15 +39,16 @@ void give_out(const Options& options, std::vector<dynamics::Transitions> matrice
       {"commit", made_by.at("commit")},
       {"command", options.canonical()}};
   if (!status.is_null()) text["status"] = status.dump();
-  const lattice::MatrixFile file =
+  lattice::MatrixFile file =
       lattice::cell_matrix_file(std::move(matrices), cells, pool, std::move(text));
-  options.keep_old(path);
-  lattice::write_matrix(path, file);
+  const std::string summary = summary_table(file, path) + table_of(pool);
   Json json = options.takes_json() ? to_json(file, path) : Json();  // of many states it is large
   json["matrix"] = path;
   json["recorded"] = to_json(pool);
   json["made_by"] = made_by;
-  options.give_out(json, summary_table(file, path) + table_of(pool));
+  options.keep_old(path);
+  lattice::write_matrix(path, std::move(file));
+  options.give_out(json, summary);
 }
 
 }  // namespace
