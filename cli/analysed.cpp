@@ -185,14 +185,15 @@ PassageAnswer first_passage_of(const Options& options, const std::optional<Passa
                      "the matrix for this accuracy, field and start first");
   const lattice::FirstPassage found =
       lattice::first_passage(s.problem.field, *c.chain, asked->target);
-  std::vector<std::string> names =
+  const std::vector<std::string> names =
       s.foreign ? lattice::state_names(*s.file) : lattice::state_names(space);
-  names.pop_back();  // trapped
-  if (!has_tables(found.all, names.size()))
+  const std::vector<int> order =
+      lattice::shown_order(s.foreign ? s.file->transitions.space : space);
+  if (!has_tables(found.all, order.size()))
     options.warn(
         "--first-passage: the tables of all states are left out, they would have more "
         "than 2 million lines: ask for fewer gates");
-  return {cli::to_json(found, *asked, names), text_of(found, *asked)};
+  return {cli::to_json(found, *asked, names, order), text_of(found, *asked)};
 }
 
 void add_ranges(Options& options) {

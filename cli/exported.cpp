@@ -114,7 +114,11 @@ std::string export_field(const Options& options, ExportForm form, Json& json) {
   } else if (form == ExportForm::drn) {
     options.write(output, drn_of(chain));
   } else if (form == ExportForm::prism) {
-    const PrismFiles files = prism_of(chain);
+    const dynamics::StateSpace& space = s.foreign ? s.file->transitions.space : walked.space;
+    std::vector<int> numbers;
+    for (int state = 0; state < space.size(); ++state)
+      numbers.push_back(lattice::shown_number(space, state));
+    const PrismFiles files = prism_of(chain, numbers);
     options.write(stem_of(output) + ".sta", files.states);
     options.write(stem_of(output) + ".lab", files.labels);
     options.write(output, files.transitions);

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
@@ -116,6 +117,7 @@ int main(int argc, char** argv) {
   using namespace gatewalk;
   cli::usual_end = std::set_terminate(cli::end_without_memory);
   cli::install_interrupt_handler();
+  std::signal(SIGPIPE, SIG_IGN);  // a warning that nobody reads must not end what writes files
   const cli::RanksScope scope;
   // One of all processes speaks, but for what goes wrong in one alone.
   std::streambuf* const err = std::cerr.rdbuf();

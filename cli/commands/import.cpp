@@ -51,7 +51,8 @@ int run_import(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   if (!options.has("states"))
     throw UsageError("missing --states STATES.csv: which move enters each state");
-  auto states = read_file([&] { return read_states(options.text("states")); });
+  std::vector<std::string> understood;
+  auto states = read_file([&] { return read_states(options.text("states"), &understood); });
   const std::string path = options.text("file");
   const ForeignMatrix matrix = read_file([&] { return read_foreign(path, states); });
   // Of trajectories each run is counted once, and nothing else than a count has runs.
@@ -73,7 +74,8 @@ int run_import(const Arguments& arguments) {
   Json space = {{"bins", "imported"}, {"states", t.space.size()}};
   if (matrix.probabilities) space["probabilities"] = true;
   Json made_by = to_json(options.provenance());
-  const std::vector<std::string>& understood = matrix.table.understood;
+  understood.insert(understood.end(), matrix.table.understood.begin(),
+                    matrix.table.understood.end());
   std::string lines;
   for (const std::string& line : understood) lines += line + "\n";
   lattice::MatrixFile file =

@@ -89,7 +89,7 @@ std::string drn_of(const ExplicitChain& chain) {
   return text;
 }
 
-PrismFiles prism_of(const ExplicitChain& chain) {
+PrismFiles prism_of(const ExplicitChain& chain, const std::vector<int>& numbers) {
   PrismFiles files;
   files.transitions =
       std::to_string(chain.size()) + " " + std::to_string(chain.target.size()) + "\n";
@@ -108,7 +108,8 @@ PrismFiles prism_of(const ExplicitChain& chain) {
     } else {
       const ExplicitChain::State& state = chain.states[static_cast<std::size_t>(s)];
       files.states += std::to_string(s) + ":(" + at(state.column) + at(state.row) +
-                      at(state.input) + at(state.draws) + "-1)\n";
+                      at(numbers[static_cast<std::size_t>(state.input)]) + at(state.draws) +
+                      "-1)\n";
     }
     for (auto k = static_cast<std::size_t>(chain.first[static_cast<std::size_t>(s)]);
          k < static_cast<std::size_t>(chain.first[static_cast<std::size_t>(s) + 1]); ++k)

@@ -20,11 +20,13 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string umb_of(const markov::ExplicitChain& chain, const Json& tool);
 /// Storm's explicit text, with labels.
 [[nodiscard]] std::string drn_of(const markov::ExplicitChain& chain);
-/// PRISM's transitions, states and labels.
+/// PRISM's transitions, states and labels. `numbers`: as which number each state of the chain is
+/// written.
 struct PrismFiles {
   std::string transitions, states, labels;
 };
-[[nodiscard]] PrismFiles prism_of(const markov::ExplicitChain& chain);
+[[nodiscard]] PrismFiles prism_of(const markov::ExplicitChain& chain,
+                                  const std::vector<int>& numbers);
 
 /// The same as a sparse matrix, (states x states), and a table of its states: number, name, i_x and
 /// i_y of the cell, the state in which it is entered, how many were entered before, and the ending

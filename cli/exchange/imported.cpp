@@ -185,7 +185,8 @@ SparseTable counts_of(const std::string& path, const Trajectories& all, std::int
 
 }  // namespace
 
-std::vector<ForeignState> read_states(const std::string& path) {
+std::vector<ForeignState> read_states(const std::string& path,
+                                      std::vector<std::string>* understood) {
   using lattice::Table;
   Table file(path, [](const Table::Names& names) {
     return Table::column_in(names, "state") && Table::column_in(names, "move_x") &&
@@ -214,7 +215,9 @@ std::vector<ForeignState> read_states(const std::string& path) {
     if (whole("state") != std::ssize(states))
       refuse("state must be " + std::to_string(states.size()) +
              ": they are numbered from 0, in order");
-    ForeignState s{field("name"), field("face"), whole("move_x"), whole("move_y")};
+    const auto name = file.column("name");
+    ForeignState s{name ? std::string(file[*name]) : std::string(), field("face"), whole("move_x"),
+                   whole("move_y")};
     if (file.column(kCountsPerRun)) {
       s.counts_per_run = whole(kCountsPerRun);
       if (s.counts_per_run != 1 && s.counts_per_run != 2)
@@ -244,6 +247,8 @@ std::vector<ForeignState> read_states(const std::string& path) {
       refuse("there are more than " + std::to_string(dynamics::kMostStates) + " states");
   }
   if (states.empty()) throw std::runtime_error(path + ": holds no states");
+  if (understood)
+    for (const std::string& remark : file.remarks()) understood->push_back(path + ": " + remark);
   return states;
 }
 

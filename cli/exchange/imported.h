@@ -24,8 +24,10 @@ struct ForeignState {
 
 /// A table of states, CSV: state (0, 1, ... in order), move_x, move_y, and if wanted name, face and
 /// counts_per_run (2 where a run is counted with its mirror image); other columns are left alone.
-/// Without faces states with one move are of one. Throws std::runtime_error naming file and line.
-[[nodiscard]] std::vector<ForeignState> read_states(const std::string& path);
+/// Without faces states with one move are of one. What was understood of a file that is not plain
+/// CSV is added to `understood`. Throws std::runtime_error naming file and line.
+[[nodiscard]] std::vector<ForeignState> read_states(const std::string& path,
+                                                    std::vector<std::string>* understood = nullptr);
 /// The other way round: of a matrix file, with the low and high of each coordinate, in the order of
 /// lattice::shown_order.
 /// `counts_per_run`: by state; none: the column is left out.

@@ -310,6 +310,9 @@ SparseTable read_csv(const std::string& path, std::int64_t rows,
       file.refuse("\"" + printable(file[value]) + "\" is no number");
     std::string text(file[value]);
     std::replace(text.begin(), text.end(), ',', '.');
+    if (count && file.separator() != ',' && text.ends_with(".000"))
+      file.refuse("\"" + printable(file[value]) +
+                  "\" may be thousands: write counts without marks");
     note_precision(text, table);
     table.entries.push_back({state(*from, rows), state(*to, table.columns), *number});
     line_of.push_back(static_cast<std::size_t>(file.line()));

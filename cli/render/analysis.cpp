@@ -335,7 +335,8 @@ Json to_json(const AnalysedField& f) {
       q["time_scales_gates"].push_back(or_null(markov::implied_time_scale(modulus)));
     for (std::size_t b = 0; b < a.endless_boundaries.size(); ++b)
       q["boundaries"][a.space.section().faces[b].name] = a.endless_boundaries[b];
-    q["states"] = a.endless->states;
+    for (const int s : lattice::shown_order(a.space))
+      q["states"].push_back(a.endless->states[static_cast<std::size_t>(s)]);
   }
   json["answer_from"] = f.from_trials ? "trials" : "chain";
   json["lumping"] = Json();

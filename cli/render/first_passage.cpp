@@ -12,16 +12,17 @@ namespace {
 
 Json limits_of(const std::array<double, 2>& i) { return std::isfinite(i[0]) ? Json(i) : Json(); }
 
-/// (rows x columns x states); what is no number is null. A start's own row, behind these, is not of
-/// any gate.
-Json table(const std::vector<double>& values, const markov::FirstPassages& f, std::size_t states) {
+/// (rows x columns x states), these in `order`; what is no number is null. A start's own row,
+/// behind these, is not of any gate.
+Json table(const std::vector<double>& values, const markov::FirstPassages& f,
+           const std::vector<int>& order) {
   Json rows = Json::array();
   std::size_t at = 0;
   for (int row = 0; row < f.rows; ++row) {
     Json columns = Json::array();
     for (int column = 0; column < f.columns; ++column, at += static_cast<std::size_t>(f.inputs)) {
       Json cell = Json::array();
-      for (std::size_t s = 0; s < states; ++s) cell.push_back(or_null(values[at + s]));
+      for (const int s : order) cell.push_back(or_null(values[at + static_cast<std::size_t>(s)]));
       columns.push_back(std::move(cell));
     }
     rows.push_back(std::move(columns));
@@ -44,7 +45,7 @@ bool has_tables(const markov::FirstPassages& all, std::size_t states) {
 }
 
 Json to_json(const lattice::FirstPassage& f, const PassageAsked& asked,
-             const std::vector<std::string>& names) {
+             const std::vector<std::string>& names, const std::vector<int>& order) {
   Json json{{"target", asked.text},
             {"probability", f.chance.mean},
             {"probability_95", limits_of(f.chance.interval)},
@@ -55,14 +56,13 @@ Json to_json(const lattice::FirstPassage& f, const PassageAsked& asked,
             {"states", nullptr},
             {"of_states", nullptr}};
   if (!f.gates.why_none.empty()) json["why_no_interval"] = f.gates.why_none;
-  if (!has_tables(f.all, names.size())) return json;
-  json["states"] = names;
+  if (!has_tables(f.all, order.size())) return json;
+  for (const int s : order) json["states"].push_back(names[static_cast<std::size_t>(s)]);
   json["of_states"] = {
-      {"probability", table(f.all.chance, f.all, names.size())},
-      {"never_sampled", table(f.all.never_sampled, f.all, names.size())},
-      {"mean_gates", table(f.all.draws, f.all, names.size())},
-      {"mean_time_s",
-       f.all.totals.empty() ? Json() : table(f.all.totals.front(), f.all, names.size())}};
+      {"probability", table(f.all.chance, f.all, order)},
+      {"never_sampled", table(f.all.never_sampled, f.all, order)},
+      {"mean_gates", table(f.all.draws, f.all, order)},
+      {"mean_time_s", f.all.totals.empty() ? Json() : table(f.all.totals.front(), f.all, order)}};
   return json;
 }
 

@@ -22,9 +22,9 @@ struct PassageAsked {
 inline constexpr double kMostOfStates = 2e6;
 [[nodiscard]] bool has_tables(const markov::FirstPassages& all, std::size_t states);
 
-/// `names`: of the states, one each; tables are (rows x columns x states) of these.
+/// `names`: of the states; tables are (rows x columns x states) of them, in `order`.
 [[nodiscard]] Json to_json(const lattice::FirstPassage& f, const PassageAsked& asked,
-                           const std::vector<std::string>& names);
+                           const std::vector<std::string>& names, const std::vector<int>& order);
 [[nodiscard]] std::string text_of(const lattice::FirstPassage& f, const PassageAsked& asked);
 
 }  // namespace gatewalk::cli

@@ -211,15 +211,22 @@ class Cutter {
       if (const std::string words = words_of_steps(); !words.empty())
         cut_.doubts.push_back(std::to_string(lost) + " of " + std::to_string(all) +
                               " passages are lost in gaps and jumps: " + words);
+    std::int64_t places = 0;
+    for (const TrackPiece& p : cut_.pieces) places += static_cast<std::int64_t>(p.size());
+    if (10 * cut_.places_outside > 9 * places)
+      cut_.doubts.push_back(std::to_string(cut_.places_outside) + " of " + std::to_string(places) +
+                            " places lie outside the cells: are --origin (the lower left corner of "
+                            "the first row), --y-down and --metres-per-unit right?");
     std::int64_t ahead = 0, back = 0;
     for (const CutPassage& p : cut_.passages) {
       const int way = cell_.map.section.faces[static_cast<std::size_t>(p.in.face)].di_y;
       ahead += way > 0;
       back += way < 0;
     }
-    if (back > 0 && ahead == 0)
+    if (back > 9 * ahead)
       cut_.doubts.push_back(
-          "all bodies move backwards, down the rows: " +
+          (ahead == 0 ? "all" : "nearly all") +
+          std::string(" passages go backwards, down the rows: ") +
           std::string(file_.y_down ? "leave --y-down out if y grows upwards in the file"
                                    : "give --y-down if y grows downwards in the file, as in "
                                      "pictures"));
@@ -426,6 +433,19 @@ class Cutter {
     return entry;
   }
 
+  /// Which way is up, where that may be wrong; `highest`: of all places.
+  [[nodiscard]] std::string words_of_ways(double highest) const {
+    double up = 0.0;  // of all bodies
+    for (const Track& t : file_.tracks)
+      if (!t.y.empty()) up += t.y.back() - t.y.front();
+    const bool is_below = highest < 0.0;
+    const std::string below = is_below ? ": all lie below the first row" : "";
+    if (is_below && file_.y_down) return below + ": is --origin the lower left corner?";
+    if (!file_.y_down && (is_below || up < 0.0))
+      return below + ": is y measured downwards (--y-down)?";
+    return below;
+  }
+
   [[noreturn]] void refuse_nothing() const {
     std::array<double, 4> ends{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
     for (const TrackPiece& p : cut_.pieces)
@@ -442,11 +462,7 @@ class Cutter {
         (cut_.columns > 0 ? ", " + std::to_string(cut_.columns) + " x " +
                                 std::to_string(cut_.rows) + " of them from (0, 0) on"
                           : "") +
-        (ends[3] < 0.0 ? std::string(": all lie below the first row: ") +
-                             (file_.y_down ? "is --origin the lower left corner?"
-                                           : "is y measured downwards (--y-down)?")
-                       : std::string()) +
-        " (are --metres-per-unit, --origin, --fps and --fastest right? " +
+        words_of_ways(ends[3]) + " (are --metres-per-unit, --origin, --fps and --fastest right? " +
         std::to_string(cut_.jumps) + " steps were faster than --fastest, " +
         std::to_string(cut_.gaps) + " went over a gap)" +
         (2 * (cut_.jumps + cut_.gaps) > std::ssize(cut_.pieces) ? and_words_of_steps()

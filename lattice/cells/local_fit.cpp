@@ -56,6 +56,13 @@ struct Left {
   double all = 0.0;    // m^2, per degree of freedom
   double cubic = 0.0;  // m^2: its share along u^3, a unit vector at right angles to parabolas
 };
+/// A body at rest, or one that the tracker has lost: nothing of its noise is seen.
+bool is_one_place(const Track& track, std::size_t begin, std::size_t count) {
+  for (std::size_t i = begin + 1; i < begin + count; ++i)
+    if (track.x[i] != track.x[begin] || track.y[i] != track.y[begin]) return false;
+  return true;
+}
+
 /// Of so many windows of all as tell it well enough; none where no piece is as long.
 std::optional<Left> left_by_fits(const std::vector<TrackPiece>& pieces, std::size_t window) {
   constexpr std::size_t kEnough = 10'000;
@@ -67,7 +74,7 @@ std::optional<Left> left_by_fits(const std::vector<TrackPiece>& pieces, std::siz
   std::size_t number = 0, used = 0;
   for (const TrackPiece& p : pieces)
     for (std::size_t at = p.begin; at + window <= p.end; ++at) {
-      if (number++ % stride != 0) continue;
+      if (number++ % stride != 0 || is_one_place(*p.track, at, window)) continue;
       ++used;
       const Quadratic q = fitted(*p.track, at, window);
       Eigen::Vector3d cubes = Eigen::Vector3d::Zero();
@@ -88,6 +95,7 @@ std::optional<Left> left_by_fits(const std::vector<TrackPiece>& pieces, std::siz
       }
       sum.cubic += (x_along * x_along + y_along * y_along) / length;
     }
+  if (used == 0) return Left{};
   const double both = 2.0 * static_cast<double>(used);
   return Left{sum.all / (both * static_cast<double>(window - 3)), sum.cubic / both};
 }

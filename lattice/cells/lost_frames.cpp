@@ -65,20 +65,21 @@ double longest_by_chance(const TrackFile& file) {
   return std::max<double>(kLeastWindow - 1, by_chance);  // shorter ones fill no fit
 }
 
-/// A step that long, from (0, 0) or to it, is none that bodies make.
-double far_step(const TrackFile& file) {
-  constexpr double kTimes = 10.0;
+/// Nine of ten steps of all bodies are no longer.
+double usual_step(const TrackFile& file) {
   std::vector<double> steps;
   for (const Track& t : file.tracks)
     for (std::size_t i = 1; i < t.time.size(); ++i)
       steps.push_back(std::hypot(t.x[i] - t.x[i - 1], t.y[i] - t.y[i - 1]));
-  return kTimes * quantile(steps, 0.9);
+  return quantile(steps, 0.9);
 }
 
 }  // namespace
 
 void leave_out_lost(TrackFile& file, const TrackOptions& options) {
-  const double longest = longest_by_chance(file), far = far_step(file);
+  constexpr double kAway = 2.0, kFar = 10.0;  // usual steps
+  const double longest = longest_by_chance(file), usual = usual_step(file);
+  std::int64_t at_rest = 0;
   const double zero_x = file.metres_per_unit * (0.0 - options.origin_x);
   const double zero_y =
       file.metres_per_unit * (options.y_down ? options.origin_y - 0.0 : 0.0 - options.origin_y);
@@ -92,12 +93,18 @@ void leave_out_lost(TrackFile& file, const TrackOptions& options) {
            end < t.time.size() && t.x[end] == t.x[begin] && t.y[end] == t.y[begin];)
         ++end;
       const bool is_long = static_cast<double>(end - begin) > longest;
+      const auto goes_further = [&](double steps) {
+        return end < t.time.size() && distance(begin, end) > steps * usual;
+      };
       const bool is_zero = t.x[begin] == zero_x && t.y[begin] == zero_y;
-      const bool has_neighbour = begin > 0 || end < t.time.size();
-      const bool is_far = has_neighbour && (begin == 0 || distance(begin, begin - 1) > far) &&
-                          (end == t.time.size() || distance(begin, end) > far);
-      const std::size_t stays = is_zero && (is_long || is_far) ? 0 : is_long ? 1 : end - begin;
+      const bool is_far = (begin > 0 || end < t.time.size()) &&
+                          (begin == 0 || distance(begin, begin - 1) > kFar * usual) &&
+                          (end == t.time.size() || goes_further(kFar));
+      // A body that rests goes on from where it was; one that was lost is elsewhere by then.
+      const bool is_held = is_long && goes_further(kAway);
+      const std::size_t stays = is_zero && (is_long || is_far) ? 0 : is_held ? 1 : end - begin;
       (is_zero ? file.at_zero : file.repeated) += static_cast<std::int64_t>(end - begin - stays);
+      if (is_long && stays == end - begin) at_rest += static_cast<std::int64_t>(stays - 1);
       for (std::size_t i = begin; i < begin + stays; ++i) {
         kept.time.push_back(t.time[i]);
         kept.x.push_back(t.x[i]);
@@ -112,7 +119,13 @@ void leave_out_lost(TrackFile& file, const TrackOptions& options) {
                             (places == 1 ? " place " : " places ") + what +
                             ": a tracker writes so where it lost its body; taken as not seen");
   };
-  warn(file.repeated, "stand still exactly, for more frames than their noise allows");
+  warn(file.repeated,
+       "stand still exactly, for more frames than their noise allows, and their body goes on "
+       "elsewhere");
+  if (at_rest > 0)
+    file.remarks.push_back(std::to_string(at_rest) +
+                           " places stand still exactly, for more frames than their noise allows, "
+                           "until their body goes on from there or its track ends: at rest");
   warn(file.at_zero,
        "are exactly (0, 0), far from those before and behind, or for more frames "
        "than their noise allows");

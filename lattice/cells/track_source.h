@@ -69,8 +69,9 @@ void require_steps(std::vector<double> steps, const std::string& source, double 
 /// Whether a line is the first of a table of DeepLabCut, or of what writes like it.
 [[nodiscard]] bool is_of_deeplabcut(const Table::Names& line);
 /// Leaves out places that a tracker wrote in frames in which it had lost its body: the same one
-/// again, for more frames than the noise of places allows, but for the first of them; and (0, 0) of
-/// the file, for as many or far from those before and behind. Counts them, with a warning.
+/// again, for more frames than the noise of places allows, until the body is elsewhere, but for the
+/// first of them; and (0, 0) of the file, for as many frames or far from those before and behind.
+/// Counts them, with a warning.
 void leave_out_lost(TrackFile& file, const TrackOptions& options);
 
 [[nodiscard]] TrackFile read_deeplabcut(Table& table, const TrackOptions& options);

@@ -8,6 +8,7 @@
 
 #include "lattice/cells/track_source.h"
 #include "lattice/text/digits.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -51,13 +52,6 @@ constexpr std::array<std::string_view, 24> kUnmistakable{
     "micros",      "microsecond", "microseconds", "ns",      "nsec",        "nanosecond",
     "nanoseconds", "sec",         "secs",         "seconds", "minutes",     "hours"};
 
-std::string in_lower_case(std::string_view text) {
-  std::string word(text);
-  for (char& c : word)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return word;
-}
-
 struct Word {
   std::string_view text, gap;  // gap: what stands between it and the word before
   std::size_t begin;
@@ -96,7 +90,7 @@ std::size_t begin_of_speed(std::string_view text, bool is_name) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i].text.find("⁻¹") != text.npos) return words[i].begin;
     if (!is_time(unit_called(words[i].text))) continue;
-    const bool is_per = i > 0 && in_lower_case(words[i - 1].text) == "per";
+    const bool is_per = i > 0 && in_small_letters(words[i - 1].text) == "per";
     const bool is_inverse =
         i + 1 < words.size() && words[i + 1].text == "1" && words[i + 1].gap.find('-') != text.npos;
     if (!is_per && !is_inverse && words[i].gap.find('/') == text.npos) continue;
@@ -113,9 +107,9 @@ const Word* frames_in(const std::vector<Word>& words) {
   const Word* found = nullptr;
   bool has_time = false;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::string word = in_lower_case(words[i].text);
-    const bool is_of = has_time && (in_lower_case(words[i - 1].text) == "of" ||
-                                    in_lower_case(words[i - 1].text) == "per");
+    const std::string word = in_small_letters(words[i].text);
+    const bool is_of = has_time && (in_small_letters(words[i - 1].text) == "of" ||
+                                    in_small_letters(words[i - 1].text) == "per");
     if (word.find("time") != word.npos || word == "t" || word == "clock" || word == "elapsed" ||
         word == "stamp") {
       has_time = true;
@@ -154,7 +148,7 @@ std::optional<TrackUnit> unit_called(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kAround);
   if (first == text.npos) return {};
   const std::string word =
-      in_lower_case(text.substr(first, text.find_last_not_of(kAround) - first + 1));
+      in_small_letters(text.substr(first, text.find_last_not_of(kAround) - first + 1));
   for (const UnitWords& unit : kUnits)
     if (std::find(unit.words.begin(), unit.words.end(), word) != unit.words.end()) return unit.unit;
   return {};
@@ -190,10 +184,10 @@ StatedUnit unit_in_name(const std::string& name) {
     }
     const bool is_last = i + 1 == words.size();
     const bool is_letter = word.text.size() == 1 && i > 0 && word.gap.empty();  // xM
-    const bool is_known = is_last ? !is_letter && !is_ambiguous(in_lower_case(word.text)) &&
+    const bool is_known = is_last ? !is_letter && !is_ambiguous(in_small_letters(word.text)) &&
                                         (words.size() > 1 || unit->kind == UnitKind::time)
                                   : std::find(kUnmistakable.begin(), kUnmistakable.end(),
-                                              in_lower_case(word.text)) != kUnmistakable.end();
+                                              in_small_letters(word.text)) != kUnmistakable.end();
     if (is_known) return stated(word, unit);
   }
   return frames ? stated(*frames, TrackUnit{UnitKind::frame}) : StatedUnit{};

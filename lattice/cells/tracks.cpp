@@ -171,7 +171,9 @@ void add_recording(TrackFile& all, TrackFile&& file, const std::string& name) {
   all.repeated += file.repeated;
   all.at_zero += file.at_zero;
   all.unit_rows += file.unit_rows;
-  for (const std::string& remark : file.remarks) all.remarks.push_back(file.source + ": " + remark);
+  for (std::string& remark : file.remarks)  // what is alike is said once
+    if (std::find(all.remarks.begin(), all.remarks.end(), remark) == all.remarks.end())
+      all.remarks.push_back(std::move(remark));
   for (std::string& warning : file.warnings) all.warnings.push_back(std::move(warning));
 }
 
@@ -191,11 +193,10 @@ TrackFile read_tracks(const std::string& path, const TrackOptions& options) {
 
 TrackFile read_tracks(const std::vector<std::string>& paths, const TrackOptions& options) {
   if (paths.size() == 1) return read_tracks(paths.front(), options);
+  require_different(paths);
   const std::vector<std::string> names = short_names(paths);
   TrackFile all;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (std::count(paths.begin(), paths.end(), paths[i]) > 1)
-      throw std::invalid_argument(paths[i] + " is given twice");
     add_recording(all, read_tracks(paths[i], options), names[i]);
   }
   return all;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "lattice/cells/track_source.h"
 #include "lattice/cells/track_units.h"
@@ -67,12 +68,14 @@ NamedColumns named_columns(const std::string& given) {
   return names;
 }
 
-/// "1" of column "x1" and pattern "x*"; none: it is another column.
+/// "1" of column "x1" and pattern "x*", in capitals or not; none: it is another column.
 std::optional<std::string> body_in(const std::string& column, std::string_view pattern) {
   const std::size_t star = pattern.find('*');
-  const std::string_view before = pattern.substr(0, star), behind = pattern.substr(star + 1);
-  if (column.size() <= before.size() + behind.size() || !column.starts_with(before) ||
-      !column.ends_with(behind))
+  const std::string before = in_small_letters(pattern.substr(0, star)),
+                    behind = in_small_letters(pattern.substr(star + 1)),
+                    name = in_small_letters(column);
+  if (name.size() <= before.size() + behind.size() || !name.starts_with(before) ||
+      !name.ends_with(behind))
     return {};
   return column.substr(before.size(), column.size() - before.size() - behind.size());
 }
@@ -84,13 +87,13 @@ std::string column_of(const std::string& body, std::string pattern) {
 /// The pattern of x where columns look like places of a body each: "X_Arena0_Ind*" of
 /// X_Arena0_Ind1 beside Y_Arena0_Ind1. Empty: they do not.
 std::string pattern_in(const Table::Names& names) {
+  const std::unordered_set<std::string> all(names.begin(), names.end());
   for (const std::string& name : names) {
     const std::size_t digits = name.find_last_not_of("0123456789") + 1;
     if (digits == name.size() || (name[0] != 'x' && name[0] != 'X')) continue;
     std::string other = name;
     other[0] = name[0] == 'x' ? 'y' : 'Y';
-    if (std::find(names.begin(), names.end(), other) != names.end())
-      return name.substr(0, digits) + "*";
+    if (all.contains(other)) return name.substr(0, digits) + "*";
   }
   return {};
 }
@@ -179,7 +182,7 @@ class TrackTable {
     } else {
       for (const std::string& name : table_.columns()) {
         const auto body = body_in(name, names_[kX]);
-        if (!body) continue;
+        if (!body || !bodies_.try_emplace(*body, 0).second) continue;
         places_.push_back({column(name, "x"), column(column_of(*body, names_[kY]), "y"),
                            has(kConfidence)
                                ? column(column_of(*body, names_[kConfidence]), "confidence")
@@ -192,16 +195,26 @@ class TrackTable {
       file_.tracks.push_back({std::filesystem::path(file_.source).stem().string(), {}, {}, {}});
       file_.remarks.push_back("no column is body=: one body, " + printable(file_.tracks[0].body));
     }
-    if (has(kFrame)) find_other_times();
   }
-
-  /// A column of times beside that of frames, which may contradict --fps.
+  /// A column of times beside that of frames, which may contradict --fps. Places and the like are
+  /// none, whatever their names end in.
   void find_other_times() {
+    const auto is_used = [&](std::size_t i) {
+      return i == when_ || i == body_ ||
+             std::any_of(places_.begin(), places_.end(), [&](const Places& at) {
+               return i == at.x || i == at.y || i == at.confidence;
+             });
+    };
     for (std::size_t i = 0; i < table_.columns().size() && other_time_ == kNone; ++i)
-      if (const StatedUnit stated = unit_in_name(table_.columns()[i]);
-          i != when_ && stated.unit && stated.unit->kind == UnitKind::time) {
-        other_time_ = i;
-        other_unit_ = *stated.unit;
+      if (!is_used(i)) {
+        const std::string name = in_small_letters(table_.columns()[i]);
+        if (name == "time" || name == "t") other_time_ = i;
+        for (const StatedUnit& stated : stated_of(i))
+          if (stated.unit && stated.unit->kind == UnitKind::time) {
+            other_time_ = i;
+            other_unit_ = *stated.unit;
+            other_is_stated_ = true;
+          }
       }
   }
 
@@ -209,7 +222,9 @@ class TrackTable {
   bool is_unit_row() {
     if (!may_be_units_) return false;
     const Places& at = places_.front();
-    const bool is_text = !table_.number(table_[at.x]) && !table_.number(table_[at.y]);
+    const auto when = table_.number(table_[when_]);
+    const bool is_text = !table_.number(table_[at.x]) && !table_.number(table_[at.y]) &&
+                         (!when || std::isnan(*when));
     if (is_text && held_.size() < kMostUnitRows) {
       held_.push_back(table_.line());
       units_.assign(table_.fields().begin(), table_.fields().end());
@@ -241,7 +256,10 @@ class TrackTable {
     const auto value = table_.number(table_[at]);
     if (!value)
       table_.refuse("column " + printable(table_.columns()[at]) + ": " +
-                    in_quotes(std::string(table_[at])) + " is no number");
+                    in_quotes(std::string(table_[at])) + " is no number" +
+                    (at == when_ && table_[at].find(':') != std::string_view::npos
+                         ? " (a time of day? Give seconds, or frame= and --fps)"
+                         : ""));
     return *value;
   }
 
@@ -266,26 +284,34 @@ class TrackTable {
     for (const Places& at : places_)
       rows_.push_back({body++, static_cast<std::uint32_t>(table_.line()), when, number(at.x),
                        number(at.y), at.confidence == kNone ? 0.0 : number(at.confidence)});
+    if (std::exchange(is_first_row_, false) && has(kFrame)) find_other_times();
     if (other_time_ != kNone) compare_times(rows_.back());
   }
 
-  /// From one frame of a body to another, of those that come first.
+  /// From one frame of a body to a later one, of those that come first. What does not rise all the
+  /// time is no clock.
   void compare_times(const Row& row) {
     const auto time = table_.number(table_[other_time_]);
     if (!time || std::isnan(*time)) return;
     const auto [at, is_new] = seen_.try_emplace(row.body, row.when, *time);
-    if (!is_new && row.when > at->second.first)
-      seconds_a_frame_.push_back(other_unit_.in_si(*time - at->second.second) /
-                                 (row.when - at->second.first));
+    const double frames = row.when - at->second.first, later = *time - at->second.second;
     at->second = {row.when, *time};
-    if (seconds_a_frame_.size() >= kMostTimes) other_time_ = kNone;
+    if (is_new || frames == 0.0) return;
+    seconds_a_frame_.push_back(other_unit_.in_si(later) / frames);
+    if (later * frames <= 0.0) seconds_a_frame_.clear();
+    if (later * frames <= 0.0 || seconds_a_frame_.size() >= kMostTimes) other_time_ = kNone;
   }
   void warn_of_times() {
     constexpr double kOff = 0.1;
     if (seconds_a_frame_.empty()) return;
     const auto middle = seconds_a_frame_.begin() + std::ssize(seconds_a_frame_) / 2;
     std::nth_element(seconds_a_frame_.begin(), middle, seconds_a_frame_.end());
-    if (std::abs(*middle * *options_.fps - 1.0) <= kOff) return;
+    const auto is_near = [&](double frames) {
+      return std::abs(*middle * *options_.fps / frames - 1.0) <= kOff;
+    };
+    // Times may count frames; those of which nothing is said may be in ms or microseconds.
+    if (is_near(1.0) || is_near(*options_.fps)) return;
+    if (!other_is_stated_ && (is_near(1e3) || is_near(1e6))) return;
     file_.warnings.push_back(file_.source + ": --fps " + shortest(*options_.fps) +
                              " is a frame every " + rounded(1.0 / *options_.fps) +
                              " s, but by its times a frame takes " + rounded(*middle) +
@@ -407,7 +433,7 @@ class TrackTable {
   TrackFile file_;
   std::size_t body_ = kNone, when_ = kNone, other_time_ = kNone;  // columns
   std::vector<Places> places_;                                    // of each body, or of all
-  bool may_be_units_ = true;
+  bool may_be_units_ = true, is_first_row_ = true, other_is_stated_ = false;
   std::vector<std::int64_t> held_;      // lines that may be units
   std::vector<std::string> units_;      // the last of them
   std::optional<TrackUnit> time_unit_;  // that it states

@@ -62,8 +62,12 @@ std::vector<MapRow> rows_of_file(const TerrainSetting& given, const std::string&
                      " is a device: must be a file, whose end can be read");
   std::vector<MapRow> rows;
   try {
-    for (const std::string& text : lines_of(path))
-      rows.push_back({text, path + ":" + std::to_string(rows.size() + 1)});
+    std::size_t line = 0;
+    for (const std::string& text : lines_of(path)) {
+      ++line;
+      if (!text.starts_with("# "))  // a comment
+        rows.push_back({text, path + ":" + std::to_string(line)});
+    }
   } catch (const std::invalid_argument& e) {
     throw SceneError(given.where() + ": terrain.map_file: " + e.what());
   }
@@ -82,7 +86,9 @@ std::vector<std::string> names_in(const std::string& row, int columns) {
     for (const char c : row) names.emplace_back(1, c);
     return names;
   }
-  return csv_fields(row, separator).value_or(std::vector{row});
+  std::vector<std::string> names = csv_fields(row, separator).value_or(std::vector{row});
+  if (std::ssize(names) == columns + 1 && names.back().empty()) names.pop_back();
+  return names;
 }
 
 std::string all_names(const Terrain& terrain) {

@@ -27,12 +27,6 @@ std::string quoted(const std::string& text) {
   return shown.append(printable(text)).append("\"");
 }
 
-std::string lower_case(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
-
 /// A table as its file has it, with the names of its columns in small letters.
 struct CountTable {
   struct Row {
@@ -109,7 +103,7 @@ CountTable read_table(const std::string& path, std::vector<std::string>& remarks
       remarks.push_back(path + ": column " + std::to_string(i + 1) + " has no name: left out");
     } else if (file.column(name) == i) {
       kept.push_back(i);
-      table.columns.push_back(lower_case(name));
+      table.columns.push_back(in_small_letters(name));
     }
   }
   require_columns(table, file);
@@ -245,7 +239,7 @@ void add_lines(Observed& observed, const CountTable& table, const FieldParams& f
   CellCounts& gates = observed.seen.final_gates;
   if (has_gates) gates = CellCounts::Zero(field.rows, field.columns);
   if (has_gates && has_endings) observed.gates_by_ending.fill(gates);
-  if (has_endings)  // those that nobody had were not had, but cutting off must be looked for
+  if (has_endings)  // those that nobody had were not had, but cutting off must be looked for, ...
     for (const EndingName& e : kEndingNames)
       observed.listed[static_cast<std::size_t>(e.ending)] = e.ending != markov::Ending::cut_off;
   std::map<std::string, std::int64_t, std::less<>> lines;
@@ -264,6 +258,7 @@ void add_lines(Observed& observed, const CountTable& table, const FieldParams& f
       }
       require_limit(table, row, *ending, field);
       ++observed.seen.endings[*ending];
+      observed.listed[*ending] = true;
     }
     if (has_times) observed.timed.push_back({*ending, -1, time_of(table, row, *ending)});
     if (!has_gates) continue;
@@ -287,9 +282,13 @@ void add(CellCounts& all, const CellCounts& some) {
 
 void add(Observed& all, const Observed& one) {
   add(all.seen.final_gates, one.seen.final_gates);
+  const auto has_endings = [](const Observed& o) {
+    return std::find(o.listed.begin(), o.listed.end(), true) != o.listed.end();
+  };
+  const bool is_first = !has_endings(all), has_any = has_endings(one);
   for (std::size_t e = 0; e < markov::kEndings; ++e) {
     all.seen.endings[e] += one.seen.endings[e];
-    all.listed[e] = all.listed[e] || one.listed[e];
+    if (has_any) all.listed[e] = one.listed[e] && (is_first || all.listed[e]);
     add(all.gates_by_ending[e], one.gates_by_ending[e]);
   }
   all.timed.insert(all.timed.end(), one.timed.begin(), one.timed.end());
@@ -299,14 +298,13 @@ void add(Observed& all, const Observed& one) {
 }  // namespace
 
 Observed read_observed(const std::vector<std::string>& paths, const FieldParams& field) {
+  require_different(paths);
   Observed observed;
   struct Recordings {
     std::string files;
     std::vector<bool> columns;  // of all of them
   } of_gates, of_endings;
   for (const std::string& path : paths) {
-    if (std::count(paths.begin(), paths.end(), path) > 1)
-      throw std::invalid_argument(path + ": is given twice");
     const CountTable table = read_table(path, observed.remarks);
     const std::vector<bool> columns{table.has("trial"), table.has("ending"), table.has("gate_x"),
                                     table.has("time_s")};

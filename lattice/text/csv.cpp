@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "lattice/text/toml_text.h"
+
 namespace gatewalk::lattice {
 
 namespace {
@@ -60,13 +62,12 @@ char separator_in(std::string_view line) {
 }
 
 bool says_nothing(std::string_view field) {
-  constexpr std::array<std::string_view, 23> kWords{
-      "",      "na",      "n/a",     "nan",    "-nan",    "nan(ind)", "-nan(ind)", "none",
-      "null",  "missing", "-",       "<na>",   "#n/a",    "#na",      "#n/a n/a",  "#num!",
-      "#ref!", "#value!", "#div/0!", "1.#ind", "-1.#ind", "1.#qnan",  "-1.#qnan"};
-  std::string word(field);
-  for (char& c : word)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  constexpr std::array<std::string_view, 28> kWords{
+      "",         "na",       "n/a",     "nan",     "-nan",    "nan(ind)", "-nan(ind)",
+      "none",     "null",     "missing", "-",       "<na>",    "#n/a",     "#na",
+      "#n/a n/a", "#num!",    "#ref!",   "#value!", "#div/0!", "1.#ind",   "-1.#ind",
+      "1.#qnan",  "-1.#qnan", "#nv",     "#wert!",  "#zahl!",  "#name?",   "#null!"};
+  const std::string word = in_small_letters(field);
   return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
 }
 

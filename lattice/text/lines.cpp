@@ -9,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -39,7 +40,7 @@ constexpr std::array<FileKind, 19> kKinds{{
     {"CDF\x02"sv, "is NetCDF, no text: export a table (CSV) of it"},
     {"CDF\x05"sv, "is NetCDF, no text: export a table (CSV) of it"},
     {"\x93NUMPY"sv, "is an array of numpy: write it with numpy.savetxt"},
-    {"MATLAB "sv, "is a file of MATLAB: write the table with writetable(T, \"x.csv\")"},
+    {"MATLAB 5.0 MAT-file"sv, "is a file of MATLAB: write the table with writetable(T, \"x.csv\")"},
     {"PAR1"sv, "is Parquet: write it with DataFrame.to_csv(\"x.csv\", index=False)"},
     {"ARROW1"sv, "is Arrow: write it with DataFrame.to_csv(\"x.csv\", index=False)"},
     {"SQLite format 3"sv, "is a data base of SQLite: export a table (CSV) of it"},
@@ -50,8 +51,13 @@ constexpr std::array<FileKind, 19> kKinds{{
 }  // namespace
 
 std::string no_text(std::string_view first) {
-  for (const FileKind& kind : kKinds)
-    if (first.starts_with(kind.first)) return std::string(kind.words);
+  const bool is_binary = std::any_of(first.begin(), first.end(),
+                                     [](char c) { return static_cast<unsigned char>(c) < '\t'; });
+  for (const FileKind& kind : kKinds) {
+    // A column may be called so.
+    const bool is_word = kind.first == "PAR1" || kind.first == "ARROW1" || kind.first == "BZh";
+    if (first.starts_with(kind.first) && (is_binary || !is_word)) return std::string(kind.words);
+  }
   if (first.size() > 1 && first[0] == '\x80' && first[1] >= 2 && first[1] <= 5)
     return "is a pickle of Python: write it with DataFrame.to_csv(\"x.csv\", index=False)";
   if (first.find('\0') != first.npos)
@@ -128,6 +134,16 @@ bool Lines::fill() {
   filled_ += static_cast<std::size_t>(got);
   read_ += got;
   return got > 0;
+}
+
+void require_different(const std::vector<std::string>& paths) {
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      std::error_code missing;  // who reads it says so
+      if (paths[i] == paths[j] || std::filesystem::equivalent(paths[i], paths[j], missing))
+        throw std::invalid_argument(paths[i] + ": is given twice" +
+                                    (paths[i] == paths[j] ? "" : " (" + paths[j] + ")"));
+    }
 }
 
 std::vector<std::string> lines_of(const std::string& path) {

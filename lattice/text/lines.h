@@ -56,6 +56,9 @@ class Lines {
 /// gzip: unpack it (gunzip)". Empty: it may be such text.
 [[nodiscard]] std::string no_text(std::string_view first_bytes);
 
+/// Throws std::invalid_argument where two paths are of one file.
+void require_different(const std::vector<std::string>& paths);
+
 /// All lines of a file, however long. Throws as Lines.
 [[nodiscard]] std::vector<std::string> lines_of(const std::string& path);
 

@@ -18,11 +18,10 @@ namespace {
 constexpr std::size_t kMostBefore = 200;        // lines that are looked at for the header
 constexpr std::size_t kMostLinesOfHeader = 16;  // where its names have line ends in them
 
-char in_small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-bool same_but_for_capitals(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char x, char y) { return in_small(x) == in_small(y); });
+/// What programs write for a number that there is not, though a body may be called so.
+bool is_no_number(std::string_view field) {
+  constexpr std::array<std::string_view, 5> kWords{".", "nat", "n.a.", "1.#inf", "-1.#inf"};
+  return std::find(kWords.begin(), kWords.end(), in_small_letters(field)) != kWords.end();
 }
 
 template <class Number>
@@ -125,7 +124,7 @@ void Table::split_row(std::string_view line) {
     for (std::string_view more; state == LineState::open;) {
       if (all.size() > Lines::kMostBytes || !next_line(more))
         refuse(first, "a quotation mark is not closed");
-      const bool may_close = more.find('"') != more.npos;
+      const bool may_close = std::count(more.begin(), more.end(), '"') % 2 == 1;
       all.append("\n").append(more);
       if (may_close) state = split_fields(all, separator_, fields_, unquoted_);
     }
@@ -135,13 +134,25 @@ void Table::split_row(std::string_view line) {
   } else if (line.find('\r') != line.npos && line.find('"') == line.npos) {
     refuse("a carriage return within a line: lines must end in \\n or \\r\\n, or all in \\r");
   }
-  if (state == LineState::wrong) refuse("a quotation mark is not closed, or not at a field's end");
+  if (state == LineState::wrong)
+    refuse(std::string("a quotation mark is not closed, or not at a field's end") +
+           (line.find(separator_) == line.npos
+                ? "; fields must be set apart by commas, semicolons or tabs, not by blanks"
+                : ""));
 }
 
 bool Table::next() {
   for (std::string_view line; next_line(line);) {
-    if (has_no_fields(line)) continue;
+    if (has_no_fields(line)) {
+      const auto separators = std::count(line.begin(), line.end(), separator_);
+      comments_ += !line.empty() && separators > 0 && separators + 1 == std::ssize(columns_);
+      continue;
+    }
     split_row(line);
+    if (std::equal(fields_.begin(), fields_.end(), columns_.begin(), columns_.end())) {
+      ++headers_;  // of files that were put together
+      continue;
+    }
     // Spreadsheets write rows of separators below a table.
     if (std::all_of(fields_.begin(), fields_.end(), [](auto field) { return field.empty(); }))
       continue;
@@ -157,9 +168,14 @@ bool Table::next() {
 void Table::fit_to_columns() {
   const std::size_t wanted = columns_.size();
   const bool has_more = fields_.size() == wanted + 1;
-  if (std::exchange(is_first_row_, false) && has_more && !fields_.back().empty())
-    if (const auto number = whole(fields_.front()); number && (*number == 0 || *number == 1))
+  if (std::exchange(is_first_row_, false) && has_more)
+    if (const auto number = whole(fields_.front()); number && (*number == 0 || *number == 1)) {
+      if (fields_.back().empty())
+        refuse("has a field more than columns are named (line " + std::to_string(header_line_) +
+               "), and the last is empty: does the first number the rows, or does the line end in "
+               "a separator? Name that column too");
       row_number_ = *number - 1;
+    }
   if (row_number_ && has_more && whole(fields_.front()) == *row_number_ + 1) {
     ++*row_number_;
     fields_.erase(fields_.begin());
@@ -169,12 +185,20 @@ void Table::fit_to_columns() {
   if (fields_.size() != wanted)
     refuse("has " + std::to_string(fields_.size()) + (fields_.size() == 1 ? " field" : " fields") +
            ", the line of the columns (line " + std::to_string(header_line_) + ") has " +
-           std::to_string(wanted) + (row_number_ ? " behind the number of the row" : ""));
+           std::to_string(wanted) +
+           (row_number_ ? " behind the number of the row"
+            : has_more  ? " (are there names of rows? Name their column, or write none)"
+                        : ""));
 }
 
-void Table::require_same_content() const {
+void Table::require_same_content() {
+  const auto are_the_same = [&](std::string_view a, std::string_view b) {
+    if (a == b) return true;
+    const auto x = number(a), y = number(b);
+    return x && y && (*x == *y || (std::isnan(*x) && std::isnan(*y)));
+  };
   for (const auto& [a, b] : same_)
-    if (fields_[a] != fields_[b])
+    if (!are_the_same(fields_[a], fields_[b]))
       refuse("columns " + std::to_string(a + 1) + " and " + std::to_string(b + 1) +
              " are both named \"" + printable(columns_[a]) + "\" and differ: \"" +
              printable(fields_[a]) + "\", \"" + printable(fields_[b]) +
@@ -207,21 +231,24 @@ std::string Table::column_words() const {
 std::optional<std::size_t> Table::column_in(const Names& names, std::string_view name) {
   const auto same = std::find(names.begin(), names.end(), name);
   if (same != names.end()) return static_cast<std::size_t>(same - names.begin());
-  const auto is_like = [&](const std::string& other) { return same_but_for_capitals(other, name); };
+  const auto is_like = [small = in_small_letters(name)](const std::string& other) {
+    return other.size() == small.size() && in_small_letters(other) == small;
+  };
   const auto like = std::find_if(names.begin(), names.end(), is_like);
   if (like == names.end() || std::find_if(like + 1, names.end(), is_like) != names.end()) return {};
   return static_cast<std::size_t>(like - names.begin());
 }
 
 std::optional<std::size_t> Table::column(std::string_view name) {
-  const auto found = column_in(columns_, name);
+  if (places_.empty())
+    for (std::size_t i = 0; i < columns_.size(); ++i) places_[columns_[i]].push_back(i);
+  const auto same = places_.find(std::string(name));
+  const auto found =
+      same != places_.end() ? std::optional(same->second.front()) : column_in(columns_, name);
   if (!found) return {};
-  for (std::size_t other = *found + 1; other < columns_.size(); ++other) {
-    const std::pair pair(*found, other);
-    if (columns_[other] == columns_[*found] &&
-        std::find(same_.begin(), same_.end(), pair) == same_.end())
-      same_.push_back(pair);
-  }
+  std::vector<std::size_t>& all = places_[columns_[*found]];
+  for (std::size_t k = 1; k < all.size(); ++k) same_.emplace_back(*found, all[k]);
+  all.resize(1);  // these are known now
   return found;
 }
 
@@ -233,12 +260,16 @@ std::optional<double> Table::number(std::string_view field) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   double value = 0.0;
   if (!is_all_of(field, value)) {
-    if (says_nothing(field)) return kNone;
+    if (says_nothing(field) || is_no_number(field)) return kNone;
     const std::size_t comma = field.find(',');
     if (comma == field.npos || field.find('.') != field.npos) return {};
     std::string with_point(field);
     with_point[comma] = '.';
     if (!is_all_of(std::string_view(with_point), value)) return {};
+    if (separator_ == ',' && field.size() - comma == 4 && std::abs(value) >= 1.0)
+      refuse("\"" + printable(field) +
+             "\" may be thousands or have a decimal comma: write numbers "
+             "without marks of thousands, or set fields apart by semicolons");
     note_decimal(',', field);
   } else if (field.find('.') != field.npos) {
     note_decimal('.', field);
@@ -261,8 +292,14 @@ void Table::note_decimal(char mark, std::string_view field) {
 std::optional<std::int64_t> Table::whole(std::string_view field) {
   if (field.ends_with(".0")) field.remove_suffix(2);
   std::int64_t value = 0;
-  if (!is_all_of(field, value)) return {};
-  return value;
+  if (is_all_of(field, value)) return value;
+  constexpr double kMost = 9007199254740992.0;  // doubles hold all whole numbers up to it
+  double real = 0.0;                            // R writes 100000 as 1e+05
+  const bool has_exponent = field.find_first_of("eE") != field.npos;
+  if (!has_exponent || field.find('.') != field.npos || !is_all_of(field, real) ||
+      real != std::floor(real) || !(std::abs(real) <= kMost))
+    return {};
+  return static_cast<std::int64_t>(real);
 }
 
 void Table::refuse(std::int64_t line, const std::string& what) const {
@@ -280,6 +317,14 @@ std::vector<std::string> Table::remarks() const {
     all.push_back("the columns are named in line " + std::to_string(header_line_) + "; " +
                   std::to_string(before_header_) + (before_header_ == 1 ? " line" : " lines") +
                   " before it left out");
+  if (headers_ > 0)
+    all.push_back(std::to_string(headers_) +
+                  (headers_ == 1 ? " more line names" : " more lines name") +
+                  " the columns: left out");
+  if (comments_ > 0)
+    all.push_back(std::to_string(comments_) +
+                  (comments_ == 1 ? " line that begins" : " lines that begin") +
+                  " with # and may be a row: left out");
   if (row_number_) all.emplace_back("the first column has no name and numbers the rows: left out");
   for (const auto& [a, b] : same_)
     all.push_back("columns " + std::to_string(a + 1) + " and " + std::to_string(b + 1) +

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -51,6 +52,7 @@ class Table {
   [[nodiscard]] std::string_view operator[](std::size_t column) const { return fields_[column]; }
   [[nodiscard]] std::int64_t line() const { return line_; }
   [[nodiscard]] const Lines& lines() const { return lines_; }
+  [[nodiscard]] char separator() const { return separator_; }
 
   /// The number in a field: NaN where it says nothing or is infinite, none where it is no number.
   [[nodiscard]] std::optional<double> number(std::string_view field);
@@ -70,7 +72,7 @@ class Table {
   [[nodiscard]] bool next_line(std::string_view& line);
   void split_row(std::string_view line);
   void fit_to_columns();
-  void require_same_content() const;
+  void require_same_content();
   void note_decimal(char mark, std::string_view field);
 
   Lines lines_;
@@ -79,12 +81,13 @@ class Table {
   std::int64_t line_ = 0, header_line_ = 0, before_header_ = 0;
   bool has_header_ = false, is_first_row_ = true;
   char separator_ = ',', decimal_ = '\0';
-  std::int64_t decimal_line_ = 0;
+  std::int64_t decimal_line_ = 0, headers_ = 0, comments_ = 0;
   std::optional<std::int64_t> row_number_;  // of the row before, where a nameless column has them
   std::string record_, unquoted_;           // a row in several lines; fields in quotation marks
   Names columns_;
   std::vector<std::string_view> fields_;
-  std::vector<std::pair<std::size_t, std::size_t>> same_;  // columns of one name
+  std::unordered_map<std::string, std::vector<std::size_t>> places_;  // of columns, by name
+  std::vector<std::pair<std::size_t, std::size_t>> same_;             // columns of one name
 };
 
 }  // namespace gatewalk::lattice

@@ -4,7 +4,6 @@
 
 #include <toml++/toml.h>
 
-#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -12,12 +11,17 @@
 
 namespace gatewalk::lattice {
 
+/// Capitals of ASCII made small; no locale changes it.
+[[nodiscard]] inline std::string in_small_letters(std::string_view text) {
+  std::string small(text);
+  for (char& c : small)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return small;
+}
+
 /// Whether the name of a file ends so, in capitals or not; `ending` is in small letters.
 [[nodiscard]] inline bool has_ending(std::string_view path, std::string_view ending) {
-  return path.size() >= ending.size() &&
-         std::equal(ending.rbegin(), ending.rend(), path.rbegin(), [](char a, char b) {
-           return a == (b >= 'A' && b <= 'Z' ? static_cast<char>(b - 'A' + 'a') : b);
-         });
+  return in_small_letters(path).ends_with(ending);
 }
 
 /// Without the blanks around it.

@@ -206,7 +206,9 @@ TEST(OnceMore, CostsLittleAndChangesNothing) {
       const std::int64_t more = *calls - passages;
       EXPECT_GT(more, 0) << trials;
       EXPECT_LE(more, passages / 20 + 4) << trials;
-      if (trials == 40'000) EXPECT_LT(more, passages / 100);
+      if (trials == 40'000) {
+        EXPECT_LT(more, passages / 100);
+      }
       for (std::size_t t = 0; t < once.size(); ++t) {
         ASSERT_EQ(once[t].size(), some_twice[t].size());
         for (std::size_t k = 0; k < once[t].size(); ++k) {

@@ -530,10 +530,33 @@ TEST(CutTracks, CellsThatTracksDoNotHave) {
   EXPECT_EQ(refusal([&] { require_measurable(lopsided); }), "nothing refused");
 }
 
+// Windows in which a body stands still exactly tell nothing of its noise.
+TEST(LocalFit, PlacesThatAreTheSameAreNoNoise) {
+  TrackFile file = file_of({straight({0.05, 0.05}, 0.0, 0.4)}, 600, 1e-4);
+  const auto noise = [&] {
+    return noise_of({{&file.tracks[0], 0, file.tracks[0].time.size()}}, file.interval, 5).place;
+  };
+  const double before = noise();
+  Track& t = file.tracks[0];
+  for (int i = 0; i < 2000; ++i) {
+    t.time.push_back(t.time.back() + file.interval);
+    t.x.push_back(t.x.back());
+    t.y.push_back(t.y.back());
+  }
+  EXPECT_NEAR(noise(), before, 0.1 * before);  // half of it, if they counted
+}
+
 TEST(CutTracks, SaysWhatIsLikelyToBeWrong) {
   const Way up = straight({0.05, 0.05}, 0.0, 0.4), down = straight({0.05, 5.0}, 0.0, -0.4);
   EXPECT_TRUE(cut_tracks(file_of({up}, 600), squares(), fast()).doubts.empty());
   EXPECT_TRUE(cut_tracks(file_of({up, down}, 600), squares(), fast()).doubts.empty());
+  // One that turns round tells nothing of which way is up.
+  const Way turning = [](double t) { return Place{0.05, 0.05 + 0.4 * std::abs(t - 4.5)}; };
+  EXPECT_NE(cut_tracks(file_of({down, down, down, down, down, down, down, down, turning}, 600),
+                       squares(), fast())
+                .doubts.at(0)
+                .find("nearly all passages go backwards"),
+            std::string::npos);
   TrackFile back = file_of({down}, 600);
   EXPECT_NE(cut_tracks(back, squares(), fast()).doubts.at(0).find("give --y-down"),
             std::string::npos);

@@ -258,7 +258,7 @@ TEST_F(CountsFile, RefusalsNameFileLineColumnAndWhatIsAllowed) {
   EXPECT_EQ(refusal(header + "0,-1,3\n"),
             "x.csv:2: column gate_y: \"-1\" is not permitted: must be a whole number from 0 to 2 "
             "(field.rows = 3)");
-  for (const char* count : {"-1", "2.5", "3 trials", "1e3", "99999999999"})
+  for (const char* count : {"-1", "2.5", "3 trials", "1.5e3", "99999999999"})
     EXPECT_EQ(refusal(header + "0,0," + count + "\n"),
               std::string("x.csv:2: column count: \"") + count +
                   "\" is not permitted: must be a whole number from 0 to 1000000000");

@@ -206,7 +206,9 @@ TEST_F(Recorded, RefusesByFileLineAndColumn) {
        "x.csv:1: column time_s is missing: the columns must be " + columns +
            "; there are body, trial, in, s, vx, vy, out, out_s, out_vx, out_vy, work_J"},
       {",1.5\n", "\n", "x.csv:3: has 11 fields, the line of the columns (line 1) has 12"},
-      {",1.5\n", ",1.5,2\n", "x.csv:3: has 13 fields, the line of the columns (line 1) has 12"},
+      {",1.5\n", ",1.5,2\n",
+       "x.csv:3: has 13 fields, the line of the columns (line 1) has 12 (are there names of rows? "
+       "Name their column, or write none)"},
       {"b7,1,S", "b7", "x.csv:3: has 10 fields, the line of the columns (line 1) has 12"},
       {"b7,1,S", "\"b7,1,S", "x.csv:3: a quotation mark is not closed"},
       {"b7,1,S", ",1,S",

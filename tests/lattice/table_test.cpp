@@ -69,7 +69,7 @@ TEST_F(TableFile, PlainTablesHaveNoRemarks) {
         "\xEF\xBB\xBF"
         "a,b\n1,2\n3,4\n",
         "b,z,a\n2,,1\n4,5,3\n", "\"a\",\"b\"\n\"1\",\"2\"\n3,4\n", "a,b\n1,2\n3,4\n,\n \n,\n",
-        "a,b\r\r\n1,2\r\r\n3,4\r\r\n", "a,b\n1,2,\n3,4,\n"}) {
+        "a,b\r\r\n1,2\r\r\n3,4\r\r\n", "b,a\n2,1,\n4,3,\n"}) {
     EXPECT_EQ(rows(text), kPlain) << text;
     EXPECT_TRUE(remarks_.empty()) << text;
   }
@@ -89,7 +89,10 @@ TEST_F(TableFile, SaysWhatItUnderstood) {
                                     "the columns are named in line 2; 1 line before it left out"});
   expect("a,b\n0,1,2\n1,3,4\n", {"the first column has no name and numbers the rows: left out"});
   expect("a,b,a\n1,2,1\n3,4,3\n", {"columns 1 and 3 are both named a, with the same content"});
-  expect("# a b\n#a,b\n1,2\n3,4\n", {});       // numpy.savetxt
+  expect("# a b\n#a,b\n1,2\n3,4\n", {});                                        // numpy.savetxt
+  expect("a,b\n1,2\na,b\n3,4\n", {"1 more line names the columns: left out"});  // put together
+  expect("a,b\n1,2\n#5,6\n3,4\n", {"1 line that begins with # and may be a row: left out"});
+  expect("a,b,a\n1,2,1.0\n3,4,3\n", {"columns 1 and 3 are both named a, with the same content"});
   expect("A,B\n1,2\n3,4\n", {});               // no matter which capitals
   expect("\"x\ny\",a,b\n0,1,2\n0,3,4\n", {});  // a name of two lines
 }
@@ -99,11 +102,14 @@ TEST_F(TableFile, FieldsInQuotationMarksMayHaveLineEnds) {
 }
 
 TEST_F(TableFile, RefusesWhatIsAmbiguous) {
-  EXPECT_EQ(refusal("a,b\n2,2,3\n3,3,4\n"),
-            "x:2: has 3 fields, the line of the columns (line 1) has 2");
+  EXPECT_EQ(
+      refusal("a,b\n2,2,3\n3,3,4\n"),
+      "x:2: has 3 fields, the line of the columns (line 1) has 2 (are there names of rows? Name "
+      "their column, or write none)");
   EXPECT_EQ(refusal("a,b\n1,5,6\n3,7,8\n"),
             "x:3: has 3 fields, the line of the columns (line 1) has 2 behind the number of the "
             "row");
+  EXPECT_NE(refusal("a,b\n1,2,\n2,3,\n").find("does the first number the rows"), std::string::npos);
   EXPECT_EQ(refusal("a,b\n1,2\n3\n"), "x:3: has 1 field, the line of the columns (line 1) has 2");
   EXPECT_EQ(refusal("a,b,a\n1,2,1\n1,2,0\n"),
             "x:3: columns 1 and 3 are both named \"a\" and differ: \"1\", \"0\": give one of them "
@@ -127,6 +133,9 @@ TEST_F(TableFile, NumbersHaveDecimalPointsOrCommas) {
   EXPECT_EQ(remarks_, (std::vector<std::string>{"fields are set apart by semicolons",
                                                 "numbers have decimal commas"}));
   EXPECT_EQ(sum("a,b\n\"1,5\",\"2,5\"\n"), 4.0);
+  EXPECT_EQ(sum("a;b\n1,016;2,5\n"), 3.516);
+  EXPECT_EQ(sum("a,b\n\"0,125\",1\n"), 1.125);
+  EXPECT_THROW((void)sum("a,b\n1,\"1,016\"\n"), std::invalid_argument);  // or a thousand
   EXPECT_EQ(sum("a;b\n1.5;+2.5\n"), 4.0);
   EXPECT_THROW((void)sum("a;b\n1.5;2,5\n"), std::invalid_argument);
   EXPECT_THROW((void)sum("a;b\n1,5;2.5\n"), std::invalid_argument);
@@ -144,7 +153,8 @@ TEST_F(TableFile, WholeNumbersMayHaveADecimalZero) {
   EXPECT_EQ(Table::whole("12"), 12);
   EXPECT_EQ(Table::whole("+12.0"), 12);
   EXPECT_EQ(Table::whole("-3"), -3);
-  for (const char* none : {"", "1.5", "1.00", "1.000", "1,0", "1e3", "NaN"})
+  EXPECT_EQ(Table::whole("1e+05"), 100'000);  // R
+  for (const char* none : {"", "1.5", "1.00", "1.000", "1,0", "1e-1", "1.5e3", "1e300", "NaN"})
     EXPECT_FALSE(Table::whole(none)) << none;  // 1.000 is a thousand elsewhere
 }
 
@@ -180,7 +190,8 @@ TEST_F(TableFile, NamesWhatIsNoText) {
   expect("\x93NUMPY", "numpy");
   expect("{\"a\": 1}", "JSON");
   expect("MATLAB 5.0 MAT-file", "writetable");
-  expect("PAR1", "Parquet");
+  expect("PAR1\x15\x04", "Parquet");
+  EXPECT_EQ(no_text("PAR1,a\n"), "");
   expect("\x80\x04\x95", "pickle");
   EXPECT_EQ(no_text("a,b\n1,2\n"), "");
 }

@@ -137,7 +137,7 @@ TEST_F(TracksFile, TrackMateHasThreeRowsOfUnits) {
   options.confidence = 2.0;
   EXPECT_EQ(read(text, options).unsure, 2);
   // Two such rows are no TrackMate's: the line that is no number is named.
-  EXPECT_EQ(refusal("id,f,x,y\nid,f,x,y\nid,f,x,y\na,0,1,1\n", table_options()),
+  EXPECT_EQ(refusal("id,f,x,y\nID,F,x,y\nID,F,x,y\na,0,1,1\n", table_options()),
             "t.csv:3: column x: \"x\" is no number, nor are there three rows of descriptions and "
             "units behind the header, as TrackMate writes, or one of units");
 }
@@ -184,6 +184,7 @@ TEST_F(TracksFile, ATableMayHaveColumnsForEachBody) {
   EXPECT_EQ(other.tracks.at(0).body, "7");
   EXPECT_EQ(other.tracks[0].x, std::vector<double>{0.0015});
   EXPECT_EQ(other.unsure, 1);
+  EXPECT_EQ(read("F,x1,y1,x1\n0,1,1,1\n", table_options("frame=F,x=x*,y=y*")).tracks.size(), 1U);
   expect_refused("F,x1,y1,x2\n0,1,1,1\n", table_options("frame=F,x=x*,y=y*"),
                  "t.csv:1: there is no column \"y2\" (y= of --columns)");
   expect_refused("F,x1,y1,x2,y2\n0,1,1,1,1\n", table_options(),
@@ -227,6 +228,8 @@ TEST_F(TracksFile, RecordingsOfOneExperimentAreToldApart) {
   EXPECT_EQ(t.places, 4);
   EXPECT_EQ(t.source, one + ", " + two);
   EXPECT_THROW((void)read_tracks({one, one}, table_options()), std::invalid_argument);
+  EXPECT_THROW((void)read_tracks({one, folder_.string() + "/./one.csv"}, table_options()),
+               std::invalid_argument);
   TrackOptions by_time = table_options("body=id,time=f,x=x,y=y");
   by_time.fps = {};
   const std::string slow = file("id,f,x,y\n1,0,1,1\n1,2,2,1\n", "slow.csv");
@@ -238,6 +241,18 @@ TEST_F(TracksFile, TimesBesideFramesMayContradictTheFrameRate) {
   EXPECT_TRUE(read(text, table_options()).warnings.empty());  // 100 frames per second
   TrackOptions other = table_options();
   other.fps = 50.0;
+  const std::string plain = "id,f,x,y,time\na,0,1,1,0\na,1,2,1,";
+  EXPECT_FALSE(read(plain + "0.01\n", other).warnings.empty());
+  EXPECT_TRUE(read(plain + "20\n", other).warnings.empty());  // ms
+  EXPECT_TRUE(read(plain + "1\n", other).warnings.empty());   // frames
+  // What is no clock says nothing: a place, an exposure.
+  EXPECT_TRUE(read("id,f,x_s,y,exposure_ms\na,0,1,1,5\na,1,2,1,5\n",
+                   [&] {
+                     TrackOptions o = other;
+                     o.columns = "body=id,frame=f,x=x_s,y=y";
+                     return o;
+                   }())
+                  .warnings.empty());
   EXPECT_EQ(read(text, other).warnings.at(0).substr(folder_.string().size() + 1),
             "t.csv: --fps 50 is a frame every 0.02 s, but by its times a frame takes 0.01 s "
             "(median): one of both is wrong, and velocities with it");
@@ -282,6 +297,24 @@ TEST_F(LostFrames, PlacesThatStandStillForLongAreLeftOut) {
   EXPECT_EQ(t.repeated, 29);  // the first was seen
   EXPECT_EQ(t.tracks[0].time.size(), 371U);
   EXPECT_NE(t.warnings.at(0).find("29 places stand still exactly"), std::string::npos);
+}
+
+// A body that rests goes on from where it was, or stands there to the end: it may be trapped.
+TEST_F(LostFrames, ABodyAtRestIsSeen) {
+  double x0 = 0.0, y0 = 0.0;
+  const auto hold = [&](std::size_t first, std::size_t last) {
+    return with([&, first, last](std::size_t f, double& x, double& y) {
+      if (f == first) x0 = x, y0 = y;
+      if (f >= first && f < last) x = x0, y = y0;
+    });
+  };
+  for (const auto& [first, last] : {std::pair{120, 150}, std::pair{300, 400}}) {
+    const TrackFile t = hold(static_cast<std::size_t>(first), static_cast<std::size_t>(last));
+    EXPECT_EQ(t.repeated, 0) << first;
+    EXPECT_NE(t.remarks.at(0).find(std::to_string(last - first - 1) + " places stand still"),
+              std::string::npos)
+        << t.remarks.at(0);
+  }
 }
 
 // Where places are as coarse as they scatter, a body at rest stands still exactly.

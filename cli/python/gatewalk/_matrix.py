@@ -201,10 +201,12 @@ class Matrix:
         >>> fair.first_passage((0, 3)).of_states["probability"][:, 0, 0].round(12).tolist()
         [0.25, 0.5, 0.75, 1.0]
         """
-        from . import _word, analyze
+        from . import analyze
 
+        if target is None:
+            refuse("target", "an ending, (ix, iy), a state or (ix, iy, state)", target)
         more = {"runs": 0, "paths": 0, **more}
-        return FirstPassage(analyze(self, first_passage=_word(target), **more)["first_passage"])
+        return FirstPassage(analyze(self, first_passage=target, **more)["first_passage"])
 
     def walk(self, **more: t.Any) -> Result:
         """See `gatewalk.walk`."""

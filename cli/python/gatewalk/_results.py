@@ -282,7 +282,7 @@ class FirstPassage(Result):
 
         tables = self._data["of_states"]
         if tables is None:
-            raise ValueError("the field has too many gates and states for tables")
+            raise _core.UsageError("the field has too many gates and states for tables")
         rows, columns, _ = tables["probability"].shape
         index = pandas.MultiIndex.from_product([range(rows), np.arange(columns) - columns // 2, self._data["states"]],
                                                names=["i_y", "i_x", "state"])
