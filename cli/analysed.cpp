@@ -183,8 +183,9 @@ PassageAnswer first_passage_of(const Options& options, const std::optional<Passa
     throw UsageError("--first-passage " + asked->text +
                      ": runs were added to keep the accuracy, and the states are others now: build "
                      "the matrix for this accuracy, field and start first");
-  const lattice::FirstPassage found =
-      lattice::first_passage(s.problem.field, *c.chain, asked->target);
+  lattice::FirstPassage found = lattice::first_passage(s.problem.field, *c.chain, asked->target);
+  if (asked->target.ending)  // one number has one interval
+    found.chance.interval = c.endings.interval[static_cast<std::size_t>(*asked->target.ending)];
   const std::vector<std::string> names =
       s.foreign ? lattice::state_names(*s.file) : lattice::state_names(space);
   const std::vector<int> order =

@@ -56,8 +56,8 @@ int run_validate(const Arguments& arguments) {
   add_cell_program(options);
   options.add_figure(
       "final gates of dynamics and chain, and their difference; below them where bodies are 2 to 8 "
-      "gates later (Chapman-Kolmogorov), and implied time scales; with --observed what was counted, "
-      "with intervals, beside both");
+      "gates later (Chapman-Kolmogorov), and implied time scales; with --observed instead what was "
+      "counted, with intervals, beside both");
   if (!options.parse(arguments)) return kFine;
   if (!has_cell(options) && lattice::is_of_cells(options.text("scene")))
     return validate_recorded(options);

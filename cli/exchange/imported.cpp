@@ -2,11 +2,7 @@
 #include "cli/exchange/imported.h"
 
 #include <algorithm>
-#include <cctype>
-#include <cerrno>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <set>
@@ -247,6 +243,16 @@ std::vector<ForeignState> read_states(const std::string& path,
       refuse("there are more than " + std::to_string(dynamics::kMostStates) + " states");
   }
   if (states.empty()) throw std::runtime_error(path + ": holds no states");
+  for (std::int64_t k = 0; k < std::ssize(states); ++k)
+    if (const std::string& name = states[static_cast<std::size_t>(k)].name;
+        name != std::to_string(k))
+      if (const auto number = Table::whole(name);
+          number && *number >= 0 && *number < std::ssize(states))
+        throw std::runtime_error(
+            path + ": \"" + lattice::printable(name) + "\" is the name of state " +
+            std::to_string(k) +
+            " and the number of another, which count from 0: give states names "
+            "that are no numbers, or none");
   if (understood)
     for (const std::string& remark : file.remarks()) understood->push_back(path + ": " + remark);
   return states;

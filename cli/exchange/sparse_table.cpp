@@ -69,7 +69,9 @@ SparseTable::Precision precision_of(std::string_view text) {
     precision.digits += c != '0' || precision.digits > 0 ? 1 : 0;
   }
   std::string_view exponent = text.substr(std::min(e + 1, text.size()));
-  precision.decimals -= static_cast<int>(lattice::take_number(exponent).value_or(0.0));
+  constexpr double kMost = 400.0;  // no double has a larger exponent
+  precision.decimals -=
+      static_cast<int>(std::clamp(lattice::take_number(exponent).value_or(0.0), -kMost, kMost));
   return precision;
 }
 
@@ -134,9 +136,7 @@ const NumpyArray* find(const std::vector<NumpyArray>& arrays, const std::string&
 /// the numbers are none of a chain.
 std::vector<std::string> market_head(const std::string& path, const std::string& line) {
   std::vector<std::string> head = words_of(line);
-  for (std::string& word : head)
-    std::transform(word.begin(), word.end(), word.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
+  for (std::string& word : head) word = lattice::in_small_letters(word);
   const auto is = [&](std::size_t at, std::initializer_list<const char*> words) {
     return std::find(words.begin(), words.end(), head[at]) != words.end();
   };

@@ -175,9 +175,9 @@ std::string versus_table(const PlannedExperiment& p) {
   std::string keys;
   for (const std::string& key : p.versus) keys += (keys.empty() ? "" : ", ") + key;
   const std::string n = p.options.trials ? std::to_string(*p.options.trials) : "";
-  std::string text = "\nEach of two experiments" + (n.empty() ? "" : " of " + n + " trials") +
-                     (p.other_scene ? ", one of this scene, the other with\n"
-                                    : ", one of this group, the other of that of\n") +
+  std::string text = "\nTwo experiments" + (n.empty() ? "" : " of " + n + " trials each") +
+                     (p.other_scene ? ", one of this scene, one with\n"
+                                    : ", one with this group, one with that of\n") +
                      keys + ":\ntrials of each that tell them apart, for " + sureness(p.options) +
                      ":\n\n" + padded("", kName) + padded("predicted", kShare) +
                      padded("versus", kShare) + padded("trials of each ", kCell);

@@ -2,7 +2,6 @@
 #include "lattice/scene/scene_terrain.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>

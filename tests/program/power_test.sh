@@ -17,7 +17,7 @@ holds '.summary as [$shows, $takes] | .smallest_difference.final_gates_total_var
 [ "$(head -2 power.txt)" = "$(value '.summary[]' power.json)" ] || fail "power: the sentences do not come first"
 # Each table says what it is of; its marks stand below it, and none that it does not have.
 for line in 'One experiment against the model: trials needed, for 80 % power at a level of 5 %,' 'One experiment of 60 trials against the model: how likely ' \
-  'Each of two experiments of 60 trials, one of this scene, the other with' 'beams.stiffness_left_Nm_per_rad=200, beams.stiffness_right_Nm_per_rad=200:'; do
+  'Two experiments of 60 trials each, one of this scene, one with' 'beams.stiffness_left_Nm_per_rad=200, beams.stiffness_right_Nm_per_rad=200:'; do
   grep -q "^$line" power.txt || fail "power: no line '$line'"
 done
 [ "$(grep -c '^29 (41): 29 if this ending alone is looked at, 41 if all are' power.txt)" = 3 ] || fail "power: brackets are not explained"
@@ -69,7 +69,7 @@ done
 jq -s '.[0].versus.set == ["1.nc"] and .[0].versus.endings == .[1].endings and .[0].endings == .[2].endings and (.[0].versus | has("scene") | not)
   and (100 * (.[1].endings.crossed - .[2].endings.crossed) - .[0].versus.apart.endings.crossed.percentage_points | fabs) < 1e-9' groups.json one.json none.json |
   grep -q true || fail "power of two groups: not the predictions of both"
-grep -q '^Each of two experiments of 30 trials, one of this group, the other of that of$' groups.txt || fail "power: the groups are not named"
+grep -q '^Two experiments of 30 trials each, one with this group, one with that of$' groups.txt || fail "power: the groups are not named"
 holds '[.versus.apart.endings[].power] | length == 5 and all(. >= 0 and . < 0.8)' groups.json
 expect 2 '^gatewalk: --versus 0.nc: two matrices are compared where both are of recorded runs$' "$gatewalk" power "$scenes/field.toml" --versus 0.nc
 expect 2 "of recorded runs give another group's matrix\$" "$gatewalk" power 0.nc --versus forces.random_N=2
