@@ -128,6 +128,7 @@ void Table::split_row(std::string_view line) {
       if (may_close) state = split_fields(all, separator_, fields_, unquoted_);
     }
     record_ = std::move(all);
+    line = record_;
     (void)split_fields(record_, separator_, fields_, unquoted_);
     line_ = first;
   } else if (line.find('\r') != line.npos && line.find('"') == line.npos) {
@@ -148,14 +149,14 @@ bool Table::next() {
       continue;
     }
     split_row(line);
-    if (std::equal(fields_.begin(), fields_.end(), columns_.begin(), columns_.end())) {
-      ++headers_;  // of files that were put together
-      continue;
-    }
     // Spreadsheets write rows of separators below a table.
     if (std::all_of(fields_.begin(), fields_.end(), [](auto field) { return field.empty(); }))
       continue;
     fit_to_columns();
+    if (std::equal(fields_.begin(), fields_.end(), columns_.begin(), columns_.end())) {
+      ++headers_;  // of files that were put together
+      continue;
+    }
     if (!same_.empty()) require_same_content();
     return true;
   }
