@@ -63,7 +63,7 @@ class Matrix:
 
     def _is_of_states(self) -> bool:
         """Whether it is a chain from elsewhere, whose states have numbers and no places."""
-        return list(self._core.states()) == ["face", "state_low", "state_high"]
+        return list(self._core.states())[-3:] == ["face", "state_low", "state_high"]
 
     @property
     def matrix(self) -> t.Any:
