@@ -312,7 +312,7 @@ class Words(unittest.TestCase):
 
     def test_trajectories_count_from_0(self):
         states = {"state": [0, 1], "move_x": [0, 0], "move_y": [1, 1]}
-        for wrong, step in (([0, 9, 1], 1), ([0, 1, 9], 2), ([0, -1, 1], 1), ([0, 1.5], 1)):
+        for wrong, step in (([0, 9, 1], 1), ([0, 1, 9], 2), ([0, -2, 1], 1), ([0, 1.5], 1)):
             with self.assertRaisesRegex(gw.UsageError, rf"^the chain: trajectory 1, step {step} \(counted from 0\): "):
                 gw.from_counts([[0, 1, 1, 0], wrong], states)
 
