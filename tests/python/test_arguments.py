@@ -392,8 +392,12 @@ class Taken(unittest.TestCase):
         frame.loc[5:8, "x"] = np.nan
         holes = frame.to_dict("list")
         pandas.testing.assert_frame_equal(gw.passages(holes, CELL, **CUT, bridge=6, columns=NAMES), gw.passages(frame, CELL, **CUT, bridge=6, columns=NAMES))
-        holes["x"] = [None if x != x else x for x in holes["x"]]
-        pandas.testing.assert_frame_equal(gw.passages(holes, CELL, **CUT, bridge=6, columns=NAMES), gw.passages(frame, CELL, **CUT, bridge=6, columns=NAMES))
+        for missing in (None, pandas.NA, pandas.NaT):
+            holes["x"] = [missing if pandas.isna(x) else x for x in holes["x"]]
+            pandas.testing.assert_frame_equal(gw.passages(holes, CELL, **CUT, bridge=6, columns=NAMES), gw.passages(frame, CELL, **CUT, bridge=6, columns=NAMES))
+        nullable = frame.convert_dtypes()
+        pandas.testing.assert_frame_equal(gw.passages({name: nullable[name] for name in nullable}, CELL, **CUT, bridge=6, columns=NAMES),
+                                          gw.passages(frame, CELL, **CUT, bridge=6, columns=NAMES))
 
     def test_deeplabcut(self):
         y = 0.01 + 0.01 * np.arange(240)

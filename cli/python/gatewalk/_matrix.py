@@ -355,7 +355,10 @@ def _csv_of_columns(columns: t.Mapping[t.Any, t.Any], parameter: str) -> str:
         raise _core.UsageError(f"{parameter}: columns must be of one length; " + ", ".join(f"{name} has {n}" for name, n in lengths.items()))
 
     def field(value: t.Any) -> str:
-        return "" if value is None or value != value else repr(value) if isinstance(value, float) else str(value)
+        if isinstance(value, str):
+            return value
+        text = repr(value) if isinstance(value, float) else str(value)
+        return "" if text in ("None", "nan", "<NA>", "NaT") else text  # pandas.NA has no truth value to ask for
 
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
