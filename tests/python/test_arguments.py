@@ -167,6 +167,21 @@ class Wrong(unittest.TestCase):
             self.refused(lambda v: gw.passages(v, CELL, **CUT, columns=NAMES), "tracks", value)
             self.refused(lambda v: gw.from_passages(v, CELL), "table", value)
             self.refused(lambda v: gw.from_counts(CHAIN, v), "states", value)
+        frame = tracks(9)
+        for value, said in ((frame.to_dict("records"), r"pandas.DataFrame\(lines\)"), ({"a": frame, "b": frame}, "a list of tables"),
+                            ({"a": frame.to_dict("list")}, "a list of tables"), ([frame, tracks(9), frame], "^tracks: the table 2 is the table 0 again")):
+            with self.assertRaisesRegex(gw.UsageError, said):
+                gw.passages(value, CELL, **CUT, columns=NAMES)
+        for value, said in ((frame.to_dict("records"), r"pandas.DataFrame\(lines\)"), ({"a": frame}, "must be one table$")):
+            for call in (lambda v: gw.from_passages(v, CELL), lambda v: gw.from_counts(CHAIN, v)):
+                with self.assertRaisesRegex(gw.UsageError, said):
+                    call(value)
+        seen = pandas.DataFrame({"ending": ["crossed", "trapped"], "count": [3, 17]})
+        for value, said in (([seen, seen], "^observed: the table 1 is the table 0 again"), (seen.to_dict("records"), r"pandas.DataFrame\(lines\)"),
+                            ({"a": seen}, "^observed: is a dict of tables; must be a list of tables")):
+            for call in (lambda v: gw.validate(scene, observed=v), lambda v: gw.fit(scene, v, free=free)):
+                with self.assertRaisesRegex(gw.UsageError, said):
+                    call(value)
         five_levels = pandas.DataFrame([[1, 2]], columns=pandas.MultiIndex.from_tuples([tuple("abcdx"), tuple("abcdy")]))
         self.refused(lambda v: gw.passages(v, CELL, **CUT), "tracks", five_levels)
         for value in (5, None, object(), [], {1}):

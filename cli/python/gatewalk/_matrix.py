@@ -9,6 +9,7 @@ import io
 import numbers
 import os
 import re
+import reprlib
 import shutil
 import tempfile
 import typing as t
@@ -334,6 +335,7 @@ def build(subject: t.Any, *, accuracy: float | None = None, starts: t.Any = None
 
 #: What `_table_file` takes.
 _TABLES = "a path, a DataFrame, or a dict of lists"
+_OF_LINES = "pandas.DataFrame(lines) makes a table of a list of lines"
 
 
 def _is_column(value: t.Any) -> bool:
@@ -349,7 +351,8 @@ def _csv_of_columns(columns: t.Mapping[t.Any, t.Any], parameter: str) -> str:
     """A dict of lists or arrays as CSV, every digit; what is missing as nothing."""
     for name, column in columns.items():
         if not _is_column(column):
-            refuse(f"{parameter}: column {name!r}", "a list or an array, as the others are", column)
+            of_lines = "" if any(map(_is_column, columns.values())) else f" ({_OF_LINES})"
+            refuse(f"{parameter}: column {name!r}", "a list or an array, as the others are" + of_lines, column)
     lengths = {str(name): len(column) for name, column in columns.items()}
     if len(set(lengths.values())) > 1:
         raise _core.UsageError(f"{parameter}: columns must be of one length; " + ", ".join(f"{name} has {n}" for name, n in lengths.items()))
@@ -392,7 +395,8 @@ def _csv_of_frame(frame: t.Any, parameter: str) -> str:
 def _csv_of_counts(counts: t.Mapping[str, t.Any]) -> str:
     for ending, n in counts.items():
         if isinstance(n, bool) or not isinstance(n, numbers.Real) or n != n // 1:  # NaN too
-            raise _core.UsageError(f"the table: the count of {ending} must be a whole number, it is {n!r}")
+            of_lines = f"; {_OF_LINES}" if isinstance(n, str) else ""
+            raise _core.UsageError(f"the table: the count of {ending} must be a whole number, it is {reprlib.repr(n)}{of_lines}")
     out = io.StringIO()
     csv.writer(out, lineterminator="\n").writerows([("ending", "count"), *((ending, int(n)) for ending, n in counts.items())])
     return out.getvalue()
@@ -405,10 +409,14 @@ def _csv_of(table: t.Any, parameter: str) -> str:
     if getattr(getattr(table, "dtype", None), "names", None):  # an array of records
         table = {name: table[name] for name in table.dtype.names}
     if isinstance(table, t.Mapping):
+        if any(hasattr(one, "columns") or (isinstance(one, t.Mapping) and any(map(_is_column, one.values()))) for one in table.values()):
+            needed = "a list of tables: list(tables.values())" if parameter in ("tracks", "observed") else "one table"
+            raise _core.UsageError(f"{parameter}: is a dict of tables; must be {needed}")
         return _csv_of_counts(table) if counts and not any(map(_is_column, table.values())) else _csv_of_columns(table, parameter)
     if hasattr(table, "to_csv") and hasattr(table, "columns"):
         return _csv_of_frame(table, parameter)
-    refuse(parameter, _TABLES + (", or a dict of counts by ending" if counts else ""), table)
+    of_lines = f" ({_OF_LINES})" if isinstance(table, (list, tuple)) and table and isinstance(table[0], t.Mapping) else ""
+    refuse(parameter, _TABLES + (", or a dict of counts by ending" if counts else "") + of_lines, table)
 
 
 @contextlib.contextmanager
@@ -434,6 +442,10 @@ def _table_files(stack: contextlib.ExitStack, tables: t.Any, parameter: str) -> 
     several = list(tables) if isinstance(tables, (list, tuple)) else [tables]
     if not several:
         raise _core.UsageError(f"{parameter}: is empty; must be {_TABLES}, or a list of these")
+    for k, table in enumerate(several):
+        first = next(j for j, one in enumerate(several) if one is table)
+        if first < k:
+            raise _core.UsageError(f"{parameter}: the table {k} is the table {first} again (counted from 0), and would count twice")
     return {f"{parameter}[{k}]": stack.enter_context(_table_file(table, parameter, str(k) if len(several) > 1 else ""))
             for k, table in enumerate(several)}
 
