@@ -75,6 +75,15 @@ CUT = dict(fps=60, metres_per_unit=1, fastest=5.0)
 NAMES = {"body": "body", "frame": "frame", "x": "x", "y": "y"}
 
 
+def group(straight):
+    """Recorded runs of 40 bodies through one cell, of which so many went straight on."""
+    on = [body < straight for body in range(40)]
+    with warnings.catch_warnings():  # nobody came back
+        warnings.simplefilter("ignore")
+        return gw.from_passages({"body": range(40), "trial": [1] * 40, "in": ["S"] * 40, "s": [0.0] * 40, "out": ["S" if one else "trapped" for one in on],
+                                 "out_s": [0.0 if one else None for one in on], "time_s": [1.0] * 40}, UP)
+
+
 def matrix():
     return gw.from_counts(CHAIN, STATES, start=0, set=TWO_CELLS)
 
@@ -149,8 +158,9 @@ class Wrong(unittest.TestCase):
         for value in (5, "x", [1], object()):
             self.refused(lambda v: gw.Scene(FIELD, v), "set", value)
             self.refused(scene.with_set, "set", value)
-        for value in (3, (1, 2, 3), (1,), ("a", "b"), (None, 1), (4, 2), (1, float("nan"))):
-            self.refused(lambda v: gw.fit(scene, seen, free={"forces.random_N": v}), "free", value)
+        for value in (3, (1, 2, 3), (1,), ("a", "b"), (None, 1), (4, 2), (1, float("nan")), "4:2", "x"):
+            with self.assertRaisesRegex(gw.UsageError, "^free: 'forces.random_N': .*must be as in .*, the low one first$"):
+                gw.fit(scene, seen, free={"forces.random_N": value})
         for value in (5, [], [5], {"x": None}, {1: 2}, object()):
             self.refused(lambda v: gw.passages(tracks(9), CELL, **CUT, columns=v), "columns", value)
 
@@ -305,16 +315,33 @@ class Words(unittest.TestCase):
                 ("gatewalk build TABLE --cell CELL.toml -o M.nc makes one", "gatewalk.from_passages(table, cell=CELL.toml) makes one"),
                 ("give --free KEY=LOW:HIGH", "give free={KEY: (LOW, HIGH)}"),
                 ("see gatewalk predict --help", "see gatewalk.options('predict')"),
-                ("a--b.csv and /x--y/z: cannot be read", "a--b.csv and /x--y/z: cannot be read")):
-            command = "export" if "gate:" in said else "passages" if "lattice" in said or "bridge" in said else "predict"
+                ("a--b.csv and /x--y/z: cannot be read", "a--b.csv and /x--y/z: cannot be read"),
+                ("--origin 0,1,2: must be two numbers with a comma between", "origin=(0, 1, 2): must be two numbers, (X, Y)"),
+                ("--columns body=...,x=x* (time=... in place of frame=...; no body= for one body; give x=x*)",
+                 "columns={'body': ..., 'x': 'x*'} ('time': ... in place of 'frame': ...; no 'body' for one body; give 'x': 'x*')"),
+                ("a gate IX,IY, or IX,IY,STATE", "a gate (IX, IY), or (IX, IY, STATE)"),
+                ("--free a.b=x: must be KEY=LOW:HIGH", "free={'a.b': 'x'}: must be {KEY: (LOW, HIGH)}"),
+                ("give --vary KEY=from:step:to, or", "give vary={KEY: [VALUE, ...]}, or"),
+                ("which --gate --counts -o FILE.mtx writes", "which export('FILE.mtx', gate=True, counts=True) writes")):
+            command = "export" if "gate:" in said else "passages" if any(word in said for word in ("lattice", "bridge", "columns")) else "predict"
             self.assertEqual(in_python(said, command), expected)
         # A value that was given is known, whatever it looks like.
+        self.assertEqual(in_python("--start Q:0,0.5: must be seen, or 2 numbers s,v (m, m/s), behind a face S or W and a colon unless it is the first",
+                                   "predict", ["--start=Q:0,0.5"]),
+                         "start=('Q', 0, 0.5): must be 'seen', or 2 numbers s,v (m, m/s), with a face in front unless it is the first: ('S', s, v), of S or W")
+        names = '"body=ID","frame=FRAME","x=x, m"'
+        self.assertEqual(in_python(f"--columns {names}: y= is missing", "passages", [f"--columns={names}", "--confidence=0.5"]),
+                         "columns={'body': 'ID', 'frame': 'FRAME', 'x': 'x, m'}: 'y' is missing")
         self.assertEqual(in_python("--only left side: no such end", "trace", ["--only=left side"]), "only='left side': no such end")
 
     def test_one_call_of_each_kind(self):
         chain = matrix()
         for call, said in ((lambda: gw.load(FIELD), r"gatewalk\.build makes a matrix of one"),
                            (lambda: chain.predict(start=1), "^start=1: the matrix has no state of that name or number|^start=1: must be"),
+                           (lambda: gw.from_counts(CHAIN, STATES, start=9), "^start=9: the table of states has no such state$"),
+                           (lambda: chain.first_passage(True), r"must be an ending, a gate \(i_x, i_y\), a state, or"),
+                           (lambda: gw.predict(FIELD, start=pandas.DataFrame({"d": [0.0]})), r"of a DataFrame .to_numpy\(\)"),
+                           (lambda: gw.power(gw.Scene(FIELD, SMALL), versus=chain), "^versus='the other matrix': two matrices are compared"),
                            (lambda: gw.predict(FIELD, accuracy=2), "^accuracy=2: must lie between 0 and 1"),
                            (lambda: gw.predict(FIELD, acuracy=2), r"^there is no parameter acuracy= \(did you mean accuracy=\?\)"),
                            (lambda: gw.gate(FIELD, strict="x"), "^strict: must be True or False, not 'x'$"),
@@ -374,6 +401,10 @@ class Taken(unittest.TestCase):
         two = gw.from_counts(np.array([[6, 0, 4], [0, 3, 7]]), {"state": [0, 1], "move_x": [0, 0], "move_y": [1, 1]}, set=TWO_CELLS)
         for starts in ([0, 1], np.array([0, 1]), (np.int64(0), "1"), ["0", 1]):  # by hand 0.6^2 and 0.3^2 cross
             np.testing.assert_allclose([p.endings["crossed"] for p in two.predict(start=starts).starts], [0.36, 0.09], rtol=1e-12)
+        recorded = group(20)  # by hand 0.5^4 cross
+        for start in (("S", 0.0), ["S", np.float32(0)], [("S", 0.0)], [("S", 0.0), (0.0,), "S:0"], pandas.DataFrame({"in": ["S"], "s": [0.0]}).to_numpy()):
+            for p in recorded.predict(start=start).starts:
+                self.assertAlmostEqual(p.endings["crossed"], 0.0625, 12)
         outcome = gw.sweep(FIELD, {"forces.random_N": np.array([10, 20])}, trials=5, set=SMALL)
         self.assertEqual(outcome, gw.sweep(FIELD, {"forces.random_N": "10,20"}, trials=5, set=SMALL))
 
@@ -401,6 +432,15 @@ class Taken(unittest.TestCase):
         for observed in (table, pandas.DataFrame(table), pandas.DataFrame(table).set_index("ending"), pandas.Series(counts),
                          {k: np.int64(v) for k, v in counts.items()}):
             self.assertEqual(gw.validate(FIELD, observed=observed, **how)["observed"]["trials"], expected)
+
+    def test_two_groups(self):
+        one, other = group(20), group(36)
+        of_matrix = gw.power(one, versus=other, trials=20)
+        self.assertAlmostEqual(of_matrix.versus["endings"]["crossed"], 0.9**4, 12)
+        with tempfile.TemporaryDirectory() as folder:
+            other.save(Path(folder) / "other.nc")
+            of_file = gw.power(one, versus=Path(folder) / "other.nc", trials=20)
+        self.assertEqual(of_file.versus["apart"], of_matrix.versus["apart"])
 
     def test_what_is_missing_in_a_dict_is_missing(self):
         frame = tracks()

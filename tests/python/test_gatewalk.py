@@ -347,7 +347,7 @@ class Elsewhere(unittest.TestCase):
             self.assertEqual(first.of_states["probability"].shape, (3, 3, 87))
             self.assertEqual(first.states, [f"{face}_{k}" for k, face in enumerate(matrix.states["face"])])
         np.testing.assert_array_equal(*(matrix.first_passage(state).of_states["mean_time_s"] for state in (3, "EN_3")))
-        with self.assertRaisesRegex(gw.UsageError, "must be an ending .crossed, .* a gate IX,IY .IX -1 to 1, IY 0 to 2.*EN_0, ..., 87 in all"):
+        with self.assertRaisesRegex(gw.UsageError, "must be an ending .crossed, .* a gate .IX, IY. .IX -1 to 1, IY 0 to 2.*EN_0, ..., 87 in all"):
             matrix.first_passage((0, 3))
 
     def test_time_scales_are_those_of_the_kernel(self):

@@ -124,14 +124,15 @@ def _run(command: str, subjects: dict[str, _t.Any], given: dict[str, _t.Any], ex
         words += _words_of(command, given) + (extra or []) + ["--quiet"]
         if gives_json:
             words.append("--json=-")
-        matrices = [m for m in (*subjects.values(), *given.values()) if isinstance(m, Matrix)]
-        for matrix in matrices:
-            stack.enter_context(_called(matrix._file, matrix._name))
+        matrices = {name: m for name, m in {**subjects, **given}.items() if isinstance(m, Matrix)}
+        for name, matrix in matrices.items():
+            stack.enter_context(_called(matrix._file, "the other matrix" if name == "versus" and matrix._file != matrix._name else matrix._name))
+        called_words = [_renamed(word) for word in words]
         warned: list[str] = []
         try:
-            status, result = _core.run(command, words, told=bars, warned=warned.append, cell=cell, matrices=[m._core for m in matrices])
+            status, result = _core.run(command, words, told=bars, warned=warned.append, cell=cell, matrices=[m._core for m in matrices.values()])
         except (SceneError, UsageError, BadFile, RuntimeError) as error:
-            said = _in_python(_renamed(str(error)), command, words)
+            said = _in_python(_renamed(str(error)), command, called_words)
             is_cells = error.__traceback__ is not None and error.__traceback__.tb_next is not None  # of code in Python
             if is_cells or said == str(error):
                 raise
@@ -140,7 +141,7 @@ def _run(command: str, subjects: dict[str, _t.Any], given: dict[str, _t.Any], ex
             if bars is not None:
                 bars.close()
             for text in warned:
-                _warnings.warn(_in_python(_renamed(text), command, words), GatewalkWarning, stacklevel=_outside())
+                _warnings.warn(_in_python(_renamed(text), command, called_words), GatewalkWarning, stacklevel=_outside())
     if subjects and not isinstance(next(iter(subjects.values())), Matrix):
         result = _without_folder(result, words[0])
     if status != 0 and given.get("strict"):
@@ -205,8 +206,9 @@ def predict(subject: _t.Any, scene: _t.Any = None, *, accuracy: float | None = N
     accuracy : float, optional
         Of all shares together (total variation, 95 %); 0.02 without it.
     start : tuple or list of tuples, optional
-        (d, vx, vy) in m and m/s, of each start: where and how fast a body enters the field. Of a chain from elsewhere the number
-        or name of a state, or a list of these.
+        (d, vx, vy) in m and m/s, of each start: where and how fast a body enters the field. Of a cell with several faces
+        (face, ...), the name of the face and then its coordinates. Of a chain from elsewhere the number or name of a state, or
+        a list of these.
     seed : int, optional
         Of all trials; 1 without it.
     cell : Cell, optional
@@ -518,7 +520,7 @@ def power(subject: _t.Any, *, trials: int | None = None, seed: int | None = None
         Trials of the experiment that is planned.
     seed, cell, progress, **more
         See `predict`; ``**more`` is any option of ``gatewalk power``: ``versus={"forces.random_N": 30.0}`` is the other
-        scene.
+        scene, ``versus=MATRIX`` the other group of recorded runs.
 
     Returns
     -------

@@ -19,7 +19,7 @@ from . import _core, _run
 from ._cell import Cell
 from ._results import Analysis, FirstPassage, Prediction, Result, require_axes
 from ._scene import OWN_ERRORS, called, file_of
-from ._words import in_python, input_of, path_of, plain, refuse
+from ._words import _OTHERS, in_python, input_of, path_of, plain, refuse
 
 
 def _unlink(path: str, owner: int | None = None) -> None:
@@ -205,7 +205,7 @@ class Matrix:
         from . import analyze
 
         if target is None:
-            refuse("target", "an ending, (ix, iy), a state or (ix, iy, state)", target)
+            refuse("target", _OTHERS["first-passage"], target)
         more = {"runs": 0, "paths": 0, **more}
         return FirstPassage(analyze(self, first_passage=target, **more)["first_passage"])
 
@@ -433,7 +433,7 @@ def _table_file(table: t.Any, parameter: str, number: str = "") -> t.Iterator[st
             name = os.path.join(folder, f"table{number}.csv")
             with open(name, "w", encoding="utf-8", newline="") as file:
                 file.write(_csv_of(table, parameter))
-        with called(name, "the states" if parameter == "states" else f"the table {number}" if number else "the table"):
+        with called(name, "the table of states" if parameter == "states" else f"the table {number}" if number else "the table"):
             yield name
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import csv
 import decimal
 import difflib
 import functools
@@ -110,11 +111,18 @@ def _setting(value: t.Any) -> str:
 
 def _range(value: t.Any) -> str:
     """(low, high)."""
-    if isinstance(value, str):
-        return value
-    if not isinstance(value, list) or len(value) != 2 or not all(map(_is_number, value)):
+    if isinstance(value, str) and re.fullmatch(rf"{_NUMBER}:{_NUMBER}", value):
+        value = [float(end) for end in value.split(":")]
+    if not isinstance(value, list) or len(value) != 2 or not all(map(_is_number, value)) or not value[0] < value[1]:
         raise TypeError
     return ":".join(map(_word, value))
+
+
+def _start(value: t.Any) -> str:
+    """A place, behind a face or not, or a state."""
+    if isinstance(value, list) and len(value) > 1 and isinstance(value[0], str) and all(map(_is_number, value[1:])):
+        return f"{value[0]}:{_word(value[1:])}"
+    return _word(value)
 
 
 #: Options with a dict for a value: of an item the text behind "=", and an example.
@@ -122,13 +130,15 @@ _DICTS: dict[str, tuple[t.Callable[[t.Any], str], str]] = {
     "set": (_setting, '{"forces.random_N": 20}'),
     "versus": (_setting, '{"forces.random_N": 20}'),
     "vary": (_word, '{"forces.random_N": [10, 20, 30]} or {"forces.random_N": "10:5:30"}'),
-    "over": (_range, '{"forces.random_N": (10, 30)}'),
-    "free": (_range, '{"forces.random_N": (10, 30)}'),
+    "over": (_range, '{"forces.random_N": (10, 30)}, the low one first'),
+    "free": (_range, '{"forces.random_N": (10, 30)}, the low one first'),
     "columns": (_word, '{"x": "POSITION_X", "y": "POSITION_Y"}'),
 }
 #: What others take, where the help page has no word for it.
-_OTHERS = {"matrix": "a Matrix or the path of one", "start": "(d, vx, vy), the number or name of a state, or a list of these",
-           "starts": "'all', or a (low, high) each of d, vx and vy"}
+_OTHERS = {"matrix": "a Matrix or the path of one", "starts": "'all', or a (low, high) each of d, vx and vy",
+           "start": '(d, vx, vy), (face, s, vx, vy), the number or name of a state, or a list or array of these (of a DataFrame .to_numpy())',
+           "versus": f"a dict such as {_DICTS['versus'][1]}, or of recorded runs another Matrix or the path of one",
+           "first-passage": "an ending, a gate (i_x, i_y), a state, or a state of one gate (i_x, i_y, state)"}
 
 
 def _allowed(name: str, option: Option) -> str:
@@ -160,7 +170,7 @@ def _values_of(name: str, key: str, option: Option, given: t.Any) -> list[str]:
     """What stands behind "=", each time that the option is given."""
     from ._matrix import Matrix
 
-    value = given._path if isinstance(given, Matrix) and name == "matrix" else plain(given)
+    value = given._path if isinstance(given, Matrix) and name in ("matrix", "versus") else plain(given)
     if isinstance(value, dict) and name in _DICTS:
         return _of_dict(name, key, value)
     is_list, is_file = isinstance(value, list), option.is_file and name not in _DICTS
@@ -169,12 +179,13 @@ def _values_of(name: str, key: str, option: Option, given: t.Any) -> list[str]:
         refuse(key, _allowed(name, option), given)
     if is_list and not value:
         raise _core.UsageError(f"{key}: is empty; must be {_allowed(name, option)}")
-    # Numbers belong together, (d, vx, vy); of a list of lists each is one.
-    several = is_list and option.is_repeated and not (option.kind == "text" and all(map(_is_number, value)))
+    # Numbers belong together, (d, vx, vy), behind a face too; of a list of lists each is one.
+    behind_face = value[1:] if is_list and name == "start" and isinstance(value[0], str) and len(value) > 1 else value
+    several = is_list and option.is_repeated and not (option.kind == "text" and all(map(_is_number, behind_face)))
     try:
         if is_list and not several and all(isinstance(one, list) for one in value):
             return [",".join(map(_range, value))]
-        return [_word(one) for one in (value if several else [value])]
+        return [(_start if name == "start" else _word)(one) for one in (value if several else [value])]
     except TypeError:
         refuse(key, _allowed(name, option), given)
 
@@ -230,13 +241,16 @@ def _literal(text: str) -> str:
 def _spelled(name: str, text: str) -> str:
     """An option with its value as a keyword argument."""
     key = name.replace("-", "_")
+    if name == "start" and (place := re.fullmatch(rf"([^:]+):({_NUMBER}(?:,{_NUMBER})*)", text)):
+        return f"start=({place[1]!r}, {place[2].replace(',', ', ')})"
     if name not in _DICTS or "=" not in text:
         return f"{key}={_literal(text)}"
     items = []
-    for item in text.split(",") if name == "columns" else [text]:
+    for item in next(csv.reader([text])) if name == "columns" else [text]:
         k, _, v = item.strip('"').partition("=")
         low, _, high = v.partition(":")
-        value = f"({_literal(low)}, {_literal(high)})" if high and name in ("over", "free") else _literal(v)
+        is_name = name == "columns" and v != "..." and not re.fullmatch(_NUMBER, v)
+        value = repr(v) if is_name else f"({_literal(low)}, {_literal(high)})" if high and name in ("over", "free") else _literal(v)
         items.append(f"{k if k == 'KEY' else repr(k)}: {value}")
     return f"{key}={{{', '.join(items)}}}"
 
@@ -275,6 +289,24 @@ def _of_options(text: str, command: str) -> str:
     return text
 
 
+def _face_in_front(match: re.Match[str]) -> str:
+    names, units, faces = match.groups()
+    return f"numbers {names} ({units}), with a face in front unless it is the first: ({faces.split(' or ')[0]!r}, {names.replace(',', ', ')}), of {faces}"
+
+
+#: What is written otherwise in Python, beside options.
+_SENTENCES: list[tuple[str, str | t.Callable[[re.Match[str]], str]]] = [
+    ("two numbers with a comma between", "two numbers, (X, Y)"),
+    (r"\bIX,IY(,STATE)?\b", lambda m: "(IX, IY, STATE)" if m[1] else "(IX, IY)"),
+    (r"must be KEY=LOW:HIGH", "must be {KEY: (LOW, HIGH)}"),
+    (r"\{KEY: 'from:step:to'\}|\bkey=from:step:to or key=value,value", "{KEY: [VALUE, ...]}"),
+    (r"must be seen, or", "must be 'seen', or"),
+    (r"numbers (\S+) \(([^)]*)\), behind a face (.+) and a colon unless it is the first", _face_in_front),
+]
+#: A column's meaning, outside of --columns.
+_MEANING = r"(?P<option>--columns[ =]\S+)|(?<![\w-])(?P<name>body|frame|time|x|y|confidence)=(?P<column>\.\.\.|[\w ]*\*\w*|(?=[ )]))"
+
+
 def in_python(text: str, command: str, words: t.Sequence[str] = ()) -> str:
     """What a command says, with options as keyword arguments and commands as functions. `words`: what it was given."""
     for word in sorted((w for w in words if w.startswith("--") and "=" in w), key=len, reverse=True):
@@ -298,8 +330,17 @@ def in_python(text: str, command: str, words: t.Sequence[str] = ()) -> str:
             said.append(keyword + ("..." if keyword.endswith("=") else "") if part.startswith("--") else part.split(".")[0].lower())
         return f"gatewalk.{function}" + (f"({', '.join(said)})" if said else "")
 
+    def meaning(match: re.Match[str]) -> str:
+        column = match["column"]
+        return match[0] if match["option"] else repr(match["name"]) + (f": {_literal(column)}" if column else "")
+
+    text = re.sub(_MEANING, meaning, text) if command in ("passages", "fit") else text
+    text = re.sub(r"(?:export )?((?:--[a-z-]+ )+)-o (FILE\.\w+)",
+                  lambda m: f"export({m[2]!r}, {', '.join(flag[2:] + '=True' for flag in m[1].split())})", text)
     text = re.sub(r"\bgatewalk ([a-z-]+) --help", lambda m: f"gatewalk.options({m[1]!r})", text)
     text = _of_options(_CALL.sub(call, text), command)
+    for said, in_words in _SENTENCES:
+        text = re.sub(said, in_words, text)
     text = re.sub(r"(?<=must be )all\b|(?<=, or )all\b|(?<=\()all(?=:)", "'all'", text)
     output = "path" if command == "export" else "the program's option output"
     return re.sub(r"(?<![\w-])-o(?=[ :,;.)]|$)", output, text)
