@@ -363,6 +363,50 @@ class Words(unittest.TestCase):
             gw.from_counts(CHAIN / CHAIN.sum(), STATES)
 
 
+class NoTemporaryFile(unittest.TestCase):
+    """Files that only the package knows have no place in what users read."""
+
+    def setUp(self):
+        self.folder, self.before = tempfile.TemporaryDirectory(), tempfile.tempdir
+        tempfile.tempdir = os.path.realpath(self.folder.name)
+
+    def tearDown(self):
+        tempfile.tempdir = self.before
+        self.folder.cleanup()
+
+    def texts(self, value):
+        if isinstance(value, (dict, gw.Result)):
+            return [text for one in value.values() for text in self.texts(one)]
+        if isinstance(value, (list, tuple)):
+            return [text for one in value for text in self.texts(one)]
+        return [value] if isinstance(value, str) else []
+
+    def test_in_results(self):
+        scene, seen = {"field": {"rows": 2, "columns": 3}}, pandas.DataFrame({"ending": ["crossed", "trapped"], "count": [3, 17]})
+        cut, chain, recorded = gw.passages([tracks(), tracks()], CELL + "# a text\n", **CUT, columns=NAMES), matrix(), group(20)
+        trees, other = gw.build(scene, accuracy=0.4, bins="tree"), os.path.join(self.folder.name, "saved.nc")
+        recorded.save(other)
+        results = {"passages": cut.attrs, "from_passages": recorded.made_by, "load": gw.load(other).made_by, "from_counts": chain.made_by,
+                   "build": trees.made_by, "predict": recorded.predict(), "of a dict": gw.predict(scene, accuracy=0.4),
+                   "power": gw.power(recorded, versus=group(30), trials=20), "walk": gw.walk(chain), "analyze": chain.analyze(),
+                   "validate": gw.validate(scene, observed=[seen, seen.copy()], accuracy=0.4, trials=100, null_draws=99)}
+        for name, result in results.items():
+            said = [text for text in self.texts(result) if tempfile.tempdir in text.replace(other, "")]
+            self.assertEqual(said, [], name)
+        self.assertEqual(cut.attrs["tracks"]["file"], "the table 0, the table 1")
+        self.assertRegex(cut.attrs["made_by"]["command"], "^gatewalk passages table0.csv table1.csv .* --cell cell.toml$")
+        self.assertRegex(recorded.made_by["command"], "^gatewalk build table.csv --cell cell.toml$")
+        self.assertRegex(chain.made_by["command"], "^gatewalk import chain.npz .* --states states.csv$")
+        self.assertRegex(" ".join(results["power"].summary), "To tell this group from the other matrix so often")
+        self.assertEqual(results["validate"].observed["files"], ["the table 0", "the table 1"])
+
+    def test_in_errors(self):
+        for cell in ({"cell": {"width_m": 1.0}}, "[cell]\nwidth_m = 1.0\n"):
+            for call in (lambda v: gw.passages(tracks(9), v, **CUT, columns=NAMES), lambda v: gw.from_passages({"body": [1]}, v)):
+                with self.assertRaisesRegex(gw.SceneError, r"^the cell:\d"):
+                    call(cell)
+
+
 class Taken(unittest.TestCase):
     """What users of numpy and pandas give."""
 

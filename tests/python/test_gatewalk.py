@@ -190,7 +190,7 @@ class SameAsTheProgram(unittest.TestCase):
         self.assertEqual(of_file["trials"], 60)
         for table in (counts, pandas.DataFrame({"ending": counts.keys(), "count": counts.values()})):
             of_table = gw.validate(FIELD, observed=table, **how)["observed"]
-            self.assertEqual(of_table["files"], ["a table"])
+            self.assertEqual(of_table["files"], ["the table"])
             self.assertEqual(plain({**of_table, "files": 0}), plain({**of_file, "files": 0}))
         for wrong, text in (({"crosed": 1}, '^the table:2: column ending: "crosed" is not permitted'), ({"crossed": 1.5}, "^the table: the count of crossed must be a whole number, it is 1.5")):
             with self.assertRaisesRegex(ValueError, text):
@@ -916,7 +916,7 @@ class AsAGuest(unittest.TestCase):
                 matrix.export(folder / "chain.tra")
                 for ending in (".mtx", ".csv"):
                     matrix.export(folder / f"gate{ending}", gate=True)
-                files = {f.name: re.sub(rb"/CreationDate[^\n]*|gatewalk-\w+\.nc", b"", f.read_bytes()) for f in folder.iterdir()}
+                files = {f.name: re.sub(rb"/CreationDate[^\n]*|gatewalk-[\w-]+\.nc", b"", f.read_bytes()) for f in folder.iterdir()}
                 shutil.rmtree(folder)
                 return [plain(one) for one in said], files
 

@@ -32,7 +32,7 @@ from . import _core
 from ._cell import BROKEN, TRAPPED, Cell, check_cell
 from ._core import BadFile, SceneError, UsageError
 from ._results import Analysis, FirstPassage, Landscape, Prediction, Result, Sweep, Trace
-from ._scene import Scene, called as _called, file_of as _file_of, is_of_text as _is_of_text, renamed as _renamed
+from ._scene import Scene, called as _called, file_of as _file_of, renamed as _renamed, without_folders as _without_folders
 from ._words import in_python as _in_python, input_of as _input_of, options_of as _options_of, plain as _plain, refuse as _refuse
 from ._words import whole as _whole, words_of as _words_of
 
@@ -46,16 +46,14 @@ class GatewalkWarning(UserWarning):
     """What a result must not be taken at face value for; the program's own words."""
 
 
-def _without_folder(value: _t.Any, name: str) -> _t.Any:
-    """A result in which the file of a text is called scene.toml."""
-    if not _is_of_text(name):
-        return value
+def _as_called(value: _t.Any, key: str = "") -> _t.Any:
+    """A result in which files that only this package knows are called as in errors, and in commands by their names."""
     if isinstance(value, str):
-        return value.replace(name, "scene.toml")
+        return _without_folders(value if key == "command" else _renamed(value))
     if isinstance(value, dict):
-        return {k: _without_folder(v, name) for k, v in value.items()}
+        return {k: _as_called(v, k) for k, v in value.items()}
     if isinstance(value, list):
-        return [_without_folder(v, name) for v in value]
+        return [_as_called(v) for v in value]
     return value
 
 
@@ -142,8 +140,7 @@ def _run(command: str, subjects: dict[str, _t.Any], given: dict[str, _t.Any], ex
                 bars.close()
             for text in warned:
                 _warnings.warn(_in_python(_renamed(text), command, called_words), GatewalkWarning, stacklevel=_outside())
-    if subjects and not isinstance(next(iter(subjects.values())), Matrix):
-        result = _without_folder(result, words[0])
+        result = _as_called(result)
     if status != 0 and given.get("strict"):
         raise RuntimeError(f"gatewalk.{command}: the result's status is not clean")
     return _t.cast("dict[str, _t.Any]", result) if result is not None else {}
@@ -362,9 +359,6 @@ def validate(subject: _t.Any, *, observed: _t.Any = None, trials: int | None = N
     with _contextlib.ExitStack() as stack:
         paths = None if observed is None else list(_table_files(stack, observed, "observed").values())
         data = _run("validate", {"subject": subject}, dict(observed=paths, trials=trials, seed=seed, cell=cell, progress=progress, **more))
-    if paths:
-        tables = observed if isinstance(observed, (list, tuple)) else [observed]
-        data["observed"]["files"] = [path if isinstance(table, (str, _os.PathLike)) else "a table" for table, path in zip(tables, paths)]
     return Result(data)
 
 

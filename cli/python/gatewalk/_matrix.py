@@ -18,7 +18,7 @@ import weakref
 from . import _core, _run
 from ._cell import Cell
 from ._results import Analysis, FirstPassage, Prediction, Result, require_axes
-from ._scene import OWN_ERRORS, called, file_of
+from ._scene import OWN_ERRORS, TEMPORARY, called, file_of, without_folders
 from ._words import _OTHERS, in_python, input_of, path_of, plain, refuse
 
 
@@ -125,7 +125,7 @@ class Matrix:
     @property
     def made_by(self) -> dict[str, str]:
         """Where it comes from: scene, seed, version, command."""
-        return self._core.text
+        return {key: without_folders(text) for key, text in self._core.text.items()}
 
     def save(self, path: t.Any) -> None:
         """Writes it to `path` as NetCDF-4, as a whole or not at all. Raises OSError where that fails."""
@@ -263,7 +263,7 @@ class Matrix:
 
 
 def _temporary() -> str:
-    handle, name = tempfile.mkstemp(suffix=".nc", prefix="gatewalk-")
+    handle, name = tempfile.mkstemp(suffix=".nc", prefix=TEMPORARY)
     os.close(handle)
     return name
 
@@ -425,12 +425,12 @@ def _table_file(table: t.Any, parameter: str, number: str = "") -> t.Iterator[st
     if isinstance(table, (str, os.PathLike)):
         yield input_of(table, parameter)
         return
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(prefix=TEMPORARY) as folder:
         if hasattr(table, "to_netcdf") and not hasattr(table, "to_csv"):
             name = os.path.join(folder, f"tracks{number}.nc")
             table.to_netcdf(name)
         else:
-            name = os.path.join(folder, f"table{number}.csv")
+            name = os.path.join(folder, "states.csv" if parameter == "states" else f"table{number}.csv")
             with open(name, "w", encoding="utf-8", newline="") as file:
                 file.write(_csv_of(table, parameter))
         with called(name, "the table of states" if parameter == "states" else f"the table {number}" if number else "the table"):
@@ -551,7 +551,7 @@ def _chain_file(chain: t.Any) -> t.Iterator[str]:
     if is_array and chain.ndim != 2 and chain.dtype != object:
         raise _core.UsageError(f"the chain: is an array of shape {chain.shape}; a matrix has two dimensions, one trajectory is a list "
                                "of one array: [states]")
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(prefix=TEMPORARY) as folder:
         if issparse(chain) or (is_array and chain.ndim == 2):
             name = os.path.join(folder, "chain.npz")
             _require_matrix(chain)

@@ -209,6 +209,16 @@ def renamed(text: str) -> str:
     return text
 
 
+#: How folders and files begin that nobody but this package knows.
+TEMPORARY = "gatewalk-in-python-"
+_TEMPORARY_PATH = re.compile(rf"[^\s'\"]*/{TEMPORARY}\w{{8}}(?:/(?:[0-9a-f]{{16}}/)?|(?P<matrix>\.nc))")
+
+
+def without_folders(text: str) -> str:
+    """A text in which such files have their names alone."""
+    return _TEMPORARY_PATH.sub(lambda match: "matrix.nc" if match["matrix"] else "", text)
+
+
 @contextlib.contextmanager
 def file_of(subject: t.Any, parameter: str) -> t.Iterator[tuple[str, dict[str, t.Any]]]:
     """A file that a command can read, and the keys set on top of it; a text is written to a folder of its own. Raises UsageError for an
@@ -226,22 +236,22 @@ def file_of(subject: t.Any, parameter: str) -> t.Iterator[tuple[str, dict[str, t
         allowed = "a Matrix or a path" if parameter == "matrix" else SUBJECTS + (", or a Matrix" if parameter == "subject" else "")
         yield _path(subject, parameter, allowed), {}
         return
-    name = _file_of_text(text)
-    with called(name, "scene.toml"):
+    name = _file_of_text(text, "cell.toml" if parameter == "cell" else "scene.toml")
+    with called(name, "the cell" if parameter == "cell" else "scene.toml"):
         yield name, getattr(subject, "_set", {})
 
 
 _folders: dict[int, str] = {}  # by process: a forked one makes its own
 
 
-def _file_of_text(text: str) -> str:
-    """A file with that text, the same one for the same text until the process ends."""
+def _file_of_text(text: str, base: str) -> str:
+    """A file of that name with that text, the same one for the same text until the process ends."""
     folder = _folders.get(os.getpid())
     if folder is None:
-        folder = _folders[os.getpid()] = tempfile.mkdtemp(prefix="gatewalk-")
+        folder = _folders[os.getpid()] = tempfile.mkdtemp(prefix=TEMPORARY)
         atexit.register(_remove, folder, os.getpid())
     place = os.path.join(folder, hashlib.sha256(text.encode()).hexdigest()[:16])
-    name = os.path.join(place, "scene.toml")
+    name = os.path.join(place, base)
     if not os.path.exists(name):
         os.makedirs(place, exist_ok=True)
         with open(f"{name}.{threading.get_ident()}", "w", encoding="utf-8") as out:
@@ -253,9 +263,3 @@ def _file_of_text(text: str) -> str:
 def _remove(folder: str, owner: int) -> None:
     if os.getpid() == owner:
         shutil.rmtree(folder, ignore_errors=True)
-
-
-def is_of_text(name: str) -> bool:
-    """Whether it is a file of _file_of_text."""
-    folder = _folders.get(os.getpid())
-    return folder is not None and name.startswith(folder + os.sep)
