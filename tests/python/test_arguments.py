@@ -319,6 +319,7 @@ class Words(unittest.TestCase):
                 ("--origin 0,1,2: must be two numbers with a comma between", "origin=(0, 1, 2): must be two numbers, (X, Y)"),
                 ("--columns body=...,x=x* (time=... in place of frame=...; no body= for one body; give x=x*)",
                  "columns={'body': ..., 'x': 'x*'} ('time': ... in place of 'frame': ...; no 'body' for one body; give 'x': 'x*')"),
+                ("no column nope (x= of --columns): give x=x*,y=y* and no body=)", "no column nope ('x' of columns=): give 'x': 'x*', 'y': 'y*' and no 'body')"),
                 ("a gate IX,IY, or IX,IY,STATE", "a gate (IX, IY), or (IX, IY, STATE)"),
                 ("--free a.b=x: must be KEY=LOW:HIGH", "free={'a.b': 'x'}: must be {KEY: (LOW, HIGH)}"),
                 ("give --vary KEY=from:step:to, or", "give vary={KEY: [VALUE, ...]}, or"),
@@ -446,7 +447,7 @@ class Taken(unittest.TestCase):
         for starts in ([0, 1], np.array([0, 1]), (np.int64(0), "1"), ["0", 1]):  # by hand 0.6^2 and 0.3^2 cross
             np.testing.assert_allclose([p.endings["crossed"] for p in two.predict(start=starts).starts], [0.36, 0.09], rtol=1e-12)
         recorded = group(20)  # by hand 0.5^4 cross
-        for start in (("S", 0.0), ["S", np.float32(0)], [("S", 0.0)], [("S", 0.0), (0.0,), "S:0"], pandas.DataFrame({"in": ["S"], "s": [0.0]}).to_numpy()):
+        for start in (("S", 0.0), ["S", np.float32(0)], [("S", 0.0)], [("S", 0.0), (0.0,), "S:0"], np.array([("S", 0.0)]), pandas.DataFrame({"in": ["S"], "s": [0.0]}).to_numpy()):
             for p in recorded.predict(start=start).starts:
                 self.assertAlmostEqual(p.endings["crossed"], 0.0625, 12)
         outcome = gw.sweep(FIELD, {"forces.random_N": np.array([10, 20])}, trials=5, set=SMALL)

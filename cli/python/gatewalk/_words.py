@@ -120,7 +120,10 @@ def _range(value: t.Any) -> str:
 
 def _start(value: t.Any) -> str:
     """A place, behind a face or not, or a state."""
-    if isinstance(value, list) and len(value) > 1 and isinstance(value[0], str) and all(map(_is_number, value[1:])):
+    def is_number(one: t.Any) -> bool:  # numpy makes texts of numbers beside a text
+        return _is_number(one) or isinstance(one, str) and re.fullmatch(_NUMBER, one) is not None
+
+    if isinstance(value, list) and len(value) > 1 and isinstance(value[0], str) and all(map(is_number, value[1:])):
         return f"{value[0]}:{_word(value[1:])}"
     return _word(value)
 
@@ -304,7 +307,7 @@ _SENTENCES: list[tuple[str, str | t.Callable[[re.Match[str]], str]]] = [
     (r"numbers (\S+) \(([^)]*)\), behind a face (.+) and a colon unless it is the first", _face_in_front),
 ]
 #: A column's meaning, outside of --columns.
-_MEANING = r"(?P<option>--columns[ =]\S+)|(?<![\w-])(?P<name>body|frame|time|x|y|confidence)=(?P<column>\.\.\.|[\w ]*\*\w*|(?=[ )]))"
+_MEANING = r"(?P<option>--columns[ =]\S+)|(?<![\w-])(?P<name>body|frame|time|x|y|confidence)=(?P<column>\.\.\.|[\w ]*\*\w*|(?=[ )]))(?P<comma>,(?=\w+=))?"
 
 
 def in_python(text: str, command: str, words: t.Sequence[str] = ()) -> str:
@@ -332,7 +335,7 @@ def in_python(text: str, command: str, words: t.Sequence[str] = ()) -> str:
 
     def meaning(match: re.Match[str]) -> str:
         column = match["column"]
-        return match[0] if match["option"] else repr(match["name"]) + (f": {_literal(column)}" if column else "")
+        return match[0] if match["option"] else repr(match["name"]) + (f": {_literal(column)}" if column else "") + (", " if match["comma"] else "")
 
     text = re.sub(_MEANING, meaning, text) if command in ("passages", "fit") else text
     text = re.sub(r"(?:export )?((?:--[a-z-]+ )+)-o (FILE\.\w+)",
