@@ -155,9 +155,15 @@ std::string_view closest_key(std::string_view name) {
     if (!leaf_of(name).empty() && table_of(k.key) == table_of(name) &&
         leaf_of(k.key).starts_with(leaf_of(name)))
       return k.key;
+  // Words of an own make are meant for the table that they stand in; a key of another table is
+  // spelled as it is there.
+  const auto is_elsewhere = [&](const SceneKey& k) { return leaf_of(k.key) == leaf_of(name); };
+  const bool in_table = is_table(table_of(name)) && name.find('.') != name.npos &&
+                        std::none_of(scene_keys().begin(), scene_keys().end(), is_elsewhere);
   std::string_view closest;
   std::size_t least = name.npos;
   for (const SceneKey& k : scene_keys()) {
+    if (in_table && table_of(k.key) != table_of(name)) continue;
     const std::size_t distance =
         std::min(edit_distance(name, k.key), 1 + edit_distance(leaf_of(name), leaf_of(k.key)));
     if (distance < least) {
