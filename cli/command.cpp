@@ -29,6 +29,7 @@
 #include "lattice/scene/map_file.h"
 #include "lattice/scene/scene.h"
 #include "lattice/text/edit_distance.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
 
@@ -158,14 +159,26 @@ std::string advice(const po::options_description& offered) {
 }
 
 /// What the words of a command cannot be read as, and what is allowed instead.
-std::string mistake_in(const po::error& error, const po::options_description& offered) {
-  if (dynamic_cast<const po::too_many_positional_options_error*>(&error))
-    return "there are more arguments than the command takes";
+std::string mistake_in(const po::error& error, const po::options_description& offered,
+                       const Strings& words) {
+  const bool takes_tables = offered.find_nothrow("cell", false) != nullptr;
+  if (dynamic_cast<const po::too_many_positional_options_error*>(&error)) {
+    const auto tables = std::count_if(words.begin(), words.end(), [](const std::string& word) {
+      return lattice::has_ending(word, ".csv");
+    });
+    return std::string("there are more arguments than the command takes") +
+           (takes_tables && tables > 1
+                ? " (gatewalk passages cuts several recordings into one RUNS.csv)"
+                : "");
+  }
   const auto* named = dynamic_cast<const po::error_with_option_name*>(&error);
   if (!named) return error.what();
   std::string given = named->get_option_name();
   given = given.substr(0, given.find('='));
   if (dynamic_cast<const po::unknown_option*>(&error)) {
+    if (given == "--cell" && !takes_tables)
+      return "there is no option --cell here: gatewalk build TABLE --cell CELL.toml -o MATRIX.nc "
+             "makes a matrix of recorded runs";
     Strings names;
     for (const auto& option : offered.options()) names.push_back(option->long_name());
     const std::string meant =
@@ -503,6 +516,10 @@ void Options::check_files() {
       state_->values.find(output.name)->second.value() = std::string("-");
     const std::string path = text(output.name), option = shown(output.name);
     if (path.empty()) throw UsageError(option + " needs a file name");
+    for (const char* ending : {".xlsx", ".xls", ".ods", ".parquet"})
+      if (lattice::has_ending(path, ending))
+        throw UsageError(option + " " + path + ": no " + ending +
+                         " is written; tables are CSV, which spreadsheets read: a name in .csv");
     if (path != "-") {
       outputs.emplace_back(option + " " + path, path);
       continue;
@@ -626,6 +643,11 @@ bool Options::parse(const Arguments& arguments) {
   all.add(offered).add(state_->hidden);
   using namespace po::command_line_style;
   const int style = unix_style & ~allow_guessing;  // an abbreviation is a typing error
+  const Strings& given = arguments.words;
+  for (std::size_t i = 1; i < given.size() && state_->no_scene.empty(); ++i)
+    if (given[i - 1] == "--set" && !given[i].starts_with("--") &&
+        given[i].find('=') == Strings::value_type::npos)
+      (void)lattice::keys_set_by(given[i]);  // refuses it, before its value counts as an argument
   po::parsed_options parsed(&all);
   Strings remarks;
   try {
@@ -641,7 +663,7 @@ bool Options::parse(const Arguments& arguments) {
       for (std::string& remark : repeated_keys(option, texts(option)))
         remarks.push_back(std::move(remark));
   } catch (const po::error& e) {
-    throw UsageError(mistake_in(e, offered) + "; see gatewalk " +
+    throw UsageError(mistake_in(e, offered, arguments.words) + "; see gatewalk " +
                      state_->synopsis.substr(0, state_->synopsis.find(' ')) + " --help");
   }
   if (has("help")) {

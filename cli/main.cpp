@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <iterator>
 #include <new>
@@ -51,6 +52,10 @@ void print_help(std::ostream& out) {
 const Command* find_command(const std::string& name) {
   if (const Command* const named = command_named(name)) return named;
   std::cerr << "gatewalk: no command '" << name << "'";
+  if (std::error_code error; std::filesystem::is_regular_file(name, error)) {
+    std::cerr << ", but a file: the command comes first, gatewalk COMMAND " << name << "\n";
+    return nullptr;
+  }
   std::vector<std::string> names;
   for (const Command& c : commands()) names.emplace_back(c.name);
   if (name.starts_with('-')) names = {"--help", "--version"};

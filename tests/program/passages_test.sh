@@ -160,4 +160,6 @@ expect 2 'nosuch.csv' "$gatewalk" passages nosuch.csv "${table[@]:1}" -o x.csv
 expect 2 'empty.csv: is empty' "$gatewalk" passages empty.csv "${table[@]:1}" -o x.csv
 kept tracks.svg
 
+# Its table is CSV by any name but another format's.
+expect 2 '^gatewalk: -o runs.XLSX: no .xlsx is written; tables are CSV, which spreadsheets read: a name in .csv$' "$gatewalk" passages x.csv --cell c.toml -o runs.XLSX
 finish

@@ -9,6 +9,7 @@ expect 0 '^gatewalk [0-9]' "$gatewalk" --version
 expect 0 '^gatewalk [0-9]' "$gatewalk" -V
 expect 2 'usage: gatewalk' "$gatewalk"
 expect 2 "no command 'fly'" "$gatewalk" fly
+expect 2 "^gatewalk: no command '$scenes/field.toml', but a file: the command comes first, gatewalk COMMAND $scenes/field.toml\$" "$gatewalk" "$scenes/field.toml" predict
 for command in $("$gatewalk" --help | awk '/^usage/ { list = 1; next } list && /^  [a-z]/ { print $1 }'); do
   expect 0 'Example:' "$gatewalk" $command --help
   expect 2 'there is no option' "$gatewalk" $command --no-such-option
@@ -25,6 +26,11 @@ expect 2 '^gatewalk: --threads 1025: must be at least 0 and at most 1024' "$gate
 for number in abc nan inf 0,1; do
   expect 2 "^gatewalk: --accuracy: '$number' is not a number" "$gatewalk" predict "$scenes/field.toml" --accuracy $number
 done
+# A blank instead of = makes an argument of the value.
+for command in gate predict; do
+  expect 2 '^gatewalk: --set body.mass_g: must be KEY=VALUE, for example' "$gatewalk" $command "$scenes/field.toml" --set body.mass_g 5
+done
+expect 2 '^gatewalk: --set --quiet: looks like an option' "$gatewalk" gate "$scenes/field.toml" --set --quiet
 expect 2 'at least 1' "$gatewalk" gate "$scenes/field.toml" --trials 0
 expect 2 "'1.5' is not a whole number" "$gatewalk" gate "$scenes/field.toml" --trials 1.5
 expect 2 "'-1' is not a seed" "$gatewalk" gate "$scenes/field.toml" --seed -1
