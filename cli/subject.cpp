@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <utility>
 
@@ -56,7 +55,6 @@ void put_problem(Subject& s, const Options& options) {
 }
 
 Subject open_scene(const Options& options, const std::string& path) {
-  refuse_files_of_cells(path);
   Subject s{.path = path, .scene = lattice::read_scene(path, options.overrides())};
   s.pool.emplace();
   s.how = accuracy_of(options);
@@ -110,26 +108,6 @@ std::vector<dynamics::Cell::Number> parameters_of(const Options& options) {
   }
   return set;
 }
-
-}  // namespace
-
-void refuse_files_of_cells(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return;  // a pipe is read only once
-  if (lattice::has_ending(path, ".csv"))
-    throw UsageError(path +
-                     ": is a table, and no scene: of recorded runs gatewalk build TABLE --cell "
-                     "CELL.toml -o MATRIX.nc makes a chain");
-  std::ifstream in(path);
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with("[cell]"))
-      throw UsageError(path +
-                       ": has cells of another kind, [cell]: --cell-program COMMAND says who "
-                       "simulates them, gatewalk build TABLE --cell " +
-                       path + " makes a chain of recorded runs");
-}
-
-namespace {
 
 std::string names(const std::vector<dynamics::CostInfo>& costs) {
   std::string all;

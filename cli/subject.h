@@ -64,8 +64,6 @@ struct Subject {
 /// and warns of what its file or its runs cannot tell. Throws UsageError and as what reads it.
 [[nodiscard]] Subject open_subject(const Options& options, const std::string& name);
 
-/// Throws UsageError for tables of runs and files of cells, which are taken for scenes easily.
-void refuse_files_of_cells(const std::string& path);
 /// A cell file, or a matrix of such cells, and the program of --cell-program. As open_subject.
 [[nodiscard]] Subject open_program(const Options& options, const std::string& path);
 

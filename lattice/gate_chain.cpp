@@ -429,9 +429,13 @@ MatrixFile read_matrix(const std::string& path, const SectionOf& section_of) {
       const std::string found = markov::diagnose_counts(path);
       throw markov::BadFile(e.what() + (found.empty() ? "" : "; " + found));
     } catch (const markov::BadFile& e) {
-      if (!path.ends_with(".toml")) throw;
-      throw markov::BadFile(std::string(e.what()) +
-                            ", but a scene by its name; gatewalk build makes a matrix of one");
+      const bool table = path.ends_with(".csv");
+      if (!table && !path.ends_with(".toml")) throw;
+      throw markov::BadFile(
+          std::string(e.what()) +
+          (table ? ", but a table by its name; of recorded runs gatewalk build TABLE --cell "
+                   "CELL.toml makes a matrix"
+                 : ", but a scene by its name; gatewalk build makes a matrix of one"));
     }
   }();
   try {

@@ -99,7 +99,6 @@ int run_build(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   if (has_cell(options)) return build_program(options);
   if (options.has("cell")) return build_recorded(options);
-  refuse_files_of_cells(options.text("scene"));
   lattice::Scene scene = options.read_scene();
   require_keepable(scene);
   const lattice::BinsChoice choice = bins_choice(options, scene, options.has("trials"));

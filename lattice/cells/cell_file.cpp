@@ -523,6 +523,10 @@ std::string quoted_toml(const std::string& text) {
 }  // namespace
 
 CellFile read_cell_file(const std::string& path, const std::vector<std::string>& overrides) {
+  if (has_ending(path, ".csv"))
+    throw SceneError(path +
+                     ": is a table, and no file of cells, which is TOML (lattice/cells/README.md); "
+                     "with --cell CELL.toml the table stands before it");
   return parse_cell_file(scene_text(path), path == "-" ? "standard input" : path, overrides);
 }
 

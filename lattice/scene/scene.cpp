@@ -523,7 +523,16 @@ Scene parse_scene(std::string_view text, std::string name,
                   const std::vector<std::string>& overrides) {
   if (name == "-") name = kStandardInput;
   const Origin origin = [&name](std::size_t line) { return name + ":" + std::to_string(line); };
+  if (has_ending(name, ".csv"))
+    throw SceneError(name +
+                     ": is a table, and no scene: of recorded runs gatewalk build TABLE --cell "
+                     "CELL.toml -o MATRIX.nc makes a chain");
   const toml::table document = parse_toml_file(text, name, "a scene");
+  if (document["cell"].is_table())
+    throw SceneError(name +
+                     ": has cells of another kind, [cell]: --cell-program COMMAND says who "
+                     "simulates them, gatewalk build TABLE --cell " +
+                     name + " makes a chain of recorded runs");
   const Settings of_file = settings_of(document, origin);
   Settings settings = of_file;
   std::deque<toml::table> override_documents;

@@ -197,6 +197,22 @@ expect 0 's is up to 39.8 m, and a cell is 0.1 m large: is it in metres' "$gatew
 expect 2 'is a table, and no scene: .* gatewalk build TABLE --cell' "$gatewalk" predict sides.csv
 expect 2 'is a table, and no scene' "$gatewalk" build sides.csv -o x.nc
 expect 2 'has cells of another kind, \[cell\]: --cell-program' "$gatewalk" predict sides.toml
+for command in gate lattice validate trace 'landscape -o folder' 'sweep --vary forces.random_N=1'; do
+  # shellcheck disable=SC2086
+  expect 2 '^gatewalk: sides.csv: is a table, and no scene: .* gatewalk build TABLE --cell' "$gatewalk" $command sides.csv
+  # shellcheck disable=SC2086
+  expect 2 '^gatewalk: sides.toml: has cells of another kind, \[cell\]: .* gatewalk build TABLE --cell sides.toml' "$gatewalk" $command sides.toml
+done
+for command in "build sides.csv" "passages sides.csv --fastest 1" "build sides.toml"; do
+  # shellcheck disable=SC2086
+  expect 2 '^gatewalk: sides.csv: is a table, and no file of cells, .*; with --cell CELL.toml the table stands before it$' "$gatewalk" $command --cell sides.csv -o x.nc
+done
+for command in show walk 'export -o x.mtx'; do
+  # shellcheck disable=SC2086
+  expect 2 'not a NetCDF-4 file, but a table by its name; of recorded runs gatewalk build TABLE --cell CELL.toml makes a matrix$' "$gatewalk" $command sides.csv
+done
+expect 2 'more arguments than the command takes (gatewalk passages cuts several recordings into one RUNS.csv); see' "$gatewalk" build sides.csv mm.csv --cell sides.toml -o x.nc
+expect 2 'there is no option --cell here: gatewalk build TABLE --cell CELL.toml -o MATRIX.nc makes a matrix of recorded runs; see' "$gatewalk" power sides.csv --cell sides.toml
 expect 0 'none on record: runs were recorded' "$gatewalk" show sides.nc
 # Nothing is run, so nothing is divided or stopped.
 expect 2 'shard has no meaning' "$gatewalk" validate types.nc --shard 1/2 --part x
