@@ -319,6 +319,19 @@ std::optional<Subject> versus(const Options& options, const Subject& s) {
   if (const std::vector<std::string> given = options.texts("versus");
       given.size() == 1 && is_matrix(given.front()))
     return other_group(options, s, given.front());
+  for (const std::string& text : options.texts("versus")) {
+    if (text.find('=') != text.npos) continue;
+    std::error_code error;
+    throw UsageError(
+        "--versus " + text +
+        (!std::filesystem::exists(text, error)
+             ? ": there is no such file; must be the matrix of another group's recorded runs, or "
+               "KEY=VALUE, for example forces.random_N=20"
+         : is_matrix(text)
+             ? ": a matrix of another group's recorded runs is given once, and alone"
+             : ": is no matrix; of two scenes give each key in which the other one differs, as "
+               "--versus KEY=VALUE"));
+  }
   if (!s.scene || s.file)
     throw UsageError("--versus KEY=VALUE is of a scene, which " + s.path +
                      " is not; of recorded runs give another group's matrix");

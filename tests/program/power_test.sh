@@ -74,5 +74,11 @@ holds '[.versus.apart.endings[].power] | length == 5 and all(. >= 0 and . < 0.8)
 expect 2 '^gatewalk: --versus 0.nc: two matrices are compared where both are of recorded runs$' "$gatewalk" power "$scenes/field.toml" --versus 0.nc
 expect 2 "of recorded runs give another group's matrix\$" "$gatewalk" power 0.nc --versus forces.random_N=2
 expect 2 'are the same file' "$gatewalk" power 0.nc --versus 1.nc --json 1.nc
+# What is no KEY=VALUE is taken for a file.
+for first in 0.nc "$scenes/field.toml"; do
+  expect 2 "^gatewalk: --versus nosuch.nc: there is no such file; must be the matrix of another group's recorded runs, or KEY=VALUE" "$gatewalk" power "$first" --versus nosuch.nc
+done
+expect 2 'mixed.toml: is no matrix; of two scenes give each key in which the other one differs, as --versus KEY=VALUE$' "$gatewalk" power "$scenes/field.toml" --versus "$scenes/mixed.toml"
+expect 2 "^gatewalk: --versus 1.nc: a matrix of another group's recorded runs is given once, and alone\$" "$gatewalk" power 0.nc --versus 1.nc --versus 1.nc
 
 finish
