@@ -94,7 +94,7 @@ int predict_from_matrix(const Options& options, const Subject& s,
   options.warn(text_of(prediction.left_out));
   const ShownField field_shown = s.shown();
   const PredictedField shown{*s.file, field_shown, s.given ? s.starts : std::vector<Start>(),
-                             others, gates.exact};
+                             others,  gates.exact, s.foreign};
   Json json = to_json(prediction, shown, solver);
   say_left_out(json, field.columns, field.rows);
   json["made_by"] = s.made_by(options);

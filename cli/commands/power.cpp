@@ -15,6 +15,10 @@ namespace gatewalk::cli {
 namespace {
 
 void require_error_bars(const Subject& s) {
+  if (s.foreign)
+    throw UsageError(s.path +
+                     ": is a chain that was made elsewhere: its error bars are of its "
+                     "counts, not of trials, which plans of experiments are made with");
   if (!s.pool || (s.is_recorded() && s.pool->bodies() < lattice::kLeastBodies))
     throw UsageError(s.path + ": has no error bars, which plans are made with: power needs a " +
                      "chain of trees" + (s.pool ? ", of 16 bodies or more" : ""));

@@ -15,6 +15,10 @@ int validate_recorded(const Options& options) {
           "start", "bins", "memory", "strict", "shard", "part", "checkpoint", "resume", "max-time"},
          "for " + path + ", of whose bodies one half is held against the other");
   const Subject s = open_subject(options, "scene");
+  if (s.foreign)
+    throw UsageError(path +
+                     ": is a chain that was made elsewhere: there are no trials to hold it "
+                     "against, and no bodies whose steps could be told apart");
   if (s.pool->scattered.each.bodies.empty())
     throw UsageError(path + ": its runs were not recorded: --cell-program says who makes more");
   lattice::HalvesOptions how{.null_draws = {}, .seed = options.seed(), .per_leaf = s.how.per_leaf};

@@ -39,7 +39,7 @@ int run_walk(const Arguments& arguments) {
   const double seconds = watch.seconds();
 
   const Json status = recorded_status(*s.file);
-  const ShownWalks told{tally, walked.start_state, walked.start_text};
+  const ShownWalks told{tally, walked.start_state, walked.start_text, s.foreign};
   Json json = to_json(told, shown);
   json["matrix_status"] = status;
   json["made_by"] = s.made_by(options);

@@ -115,8 +115,9 @@ std::string table_of(const ShownWalks& walks, const ShownField& shown) {
       limits_text(shown) + map_of(tally.final_cells.cast<double>() / n) +
       map_of_trapped(tally.trapped_cells.cast<double>() / n) + "departed " +
       percent(static_cast<double>(tally.left_field), n, 2) + "\nstart: " + walks.start +
-      "\nThe intervals count chance in the walks alone: that of the matrix gatewalk predict has, "
-      "the chain's own error (bins, memory) gatewalk validate measures.\n";
+      "\nThe intervals count chance in the walks alone: that of the matrix gatewalk predict has" +
+      (walks.foreign ? ".\n"
+                     : ", the chain's own error (bins, memory) gatewalk validate measures.\n");
   if (tally.unsampled > 0)
     table += "reach a state never sampled: " + percent(static_cast<double>(tally.unsampled), n, 4) +
              "\n";

@@ -31,6 +31,7 @@ struct ShownWalks {
   const markov::WalkTally& tally;
   Json start_state;
   std::string start;
+  bool foreign = false;  // of a chain that was made elsewhere, which has no trials beside it
 };
 [[nodiscard]] Rest rest_of(const markov::WalkTally& tally);
 /// Without "matrix_status", "made_by".

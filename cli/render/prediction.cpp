@@ -52,9 +52,11 @@ std::string table_of(const lattice::StartPrediction& s, const PredictedField& of
       cli::table_of(shown_exits(s.exits, f), of.shown) +
       "start: " + text_of(space.section(), space.range(s.start.start.input)) + "\n";
   return table + rest_text(rest_of(f)) +
-         "The chain's own error (bins, memory, and with bins from a pilot where its rows start) "
-         "is not in the intervals:\n"
-         "gatewalk validate measures it.\n"
+         (of.foreign
+              ? ""
+              : "The chain's own error (bins, memory, and with bins from a pilot where its rows "
+                "start) is not in the intervals:\n"
+                "gatewalk validate measures it.\n") +
          "Rounding and walks not finished, which are not the error of the prediction: at most " +
          digits(f.remainder + f.rounding, 2) + " in all shares together\n";
 }

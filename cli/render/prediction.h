@@ -21,6 +21,7 @@ struct PredictedField {
   const std::vector<Start>& starts;
   const std::vector<lattice::RowMatrix>& other_rows;
   bool probabilities = false;  // the matrix was given so, not counted
+  bool foreign = false;        // a chain that was made elsewhere, which has no trials beside it
 };
 
 /// Without "made_by".

@@ -54,6 +54,10 @@ for command in predict analyze "walk --walks 1000" "show --rows"; do
   for matrix in own steps; do "$gatewalk" ${command%% *} $matrix.nc $(printf '%s' "${command#"${command%% *}"}") --json $matrix.json --quiet 2>/dev/null || fail "$command $matrix.nc"; done
   [ "$(jq -cS 'del(.made_by, .text, .seconds, .file, .matrix)' own.json)" = "$(jq -cS 'del(.made_by, .text, .seconds, .file, .matrix)' steps.json)" ] || fail "$command: steps are not their counts"
 done
+# Of such a chain there are no trials, with which it could be compared or planned.
+expect 2 '^gatewalk: own.nc: is a chain that was made elsewhere: there are no trials to hold it against' "$gatewalk" validate own.nc
+expect 2 '^gatewalk: own.nc: is a chain that was made elsewhere: its error bars are of its counts, not of trials' "$gatewalk" power own.nc
+for command in walk predict; do ! "$gatewalk" $command own.nc 2>&1 | grep 'gatewalk validate' || fail "$command: sends to what refuses the chain"; done
 # A start is a state, by its name or number, and answers as one that import was told.
 for start in 0 1 2; do
   "$gatewalk" import own.csv --states s.csv --start $start --set field.rows=2 --set field.columns=3 -o from.nc --force --quiet >/dev/null 2>&1
