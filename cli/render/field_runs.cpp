@@ -23,6 +23,14 @@ std::array<double, 2> still_walking_95(const markov::WalkTally& tally,
   return share_interval(tally.still_walking, tally.walks);
 }
 
+/// Those who still walk may end in any way: the upper limits count them.
+lattice::EndingShares shares_of(const markov::WalkTally& tally, const lattice::FieldParams& field) {
+  lattice::EndingShares shares(tally.endings, tally.walks);
+  for (std::size_t e = 0; e < markov::kEndings; ++e)
+    shares.interval[e][1] = share_interval(tally.endings[e] + tally.still_walking, tally.walks)[1];
+  return shares.with_limit(field.max_gates);
+}
+
 }  // namespace
 
 Json to_json(const lattice::FieldTally& tally, const ShownField& shown,
@@ -86,8 +94,7 @@ Json to_json(const ShownWalks& walks, const ShownField& shown) {
   const markov::WalkTally& tally = walks.tally;
   Json json;
   json["endings"] = endings(tally.endings);
-  json["endings_95"] = endings_95(
-      lattice::EndingShares(tally.endings, tally.walks).with_limit(shown.field.max_gates));
+  json["endings_95"] = endings_95(shares_of(tally, shown.field));
   json["final_gates"] = small_grid(tally.final_cells);
   json["trapped_gates"] = small_grid(tally.trapped_cells);
   json["departed_gates"] = small_grid(tally.departed_cells);
@@ -109,9 +116,8 @@ std::string table_of(const ShownWalks& walks, const ShownField& shown) {
   const markov::WalkTally& tally = walks.tally;
   const auto n = static_cast<double>(tally.walks);
   std::string table =
-      endings_text(
-          lattice::EndingShares(tally.endings, tally.walks).with_limit(shown.field.max_gates),
-          "of " + std::to_string(tally.walks) + " walks, 95 % intervals") +
+      endings_text(shares_of(tally, shown.field),
+                   "of " + std::to_string(tally.walks) + " walks, 95 % intervals") +
       limits_text(shown) + map_of(tally.final_cells.cast<double>() / n) +
       map_of_trapped(tally.trapped_cells.cast<double>() / n) + "departed " +
       percent(static_cast<double>(tally.left_field), n, 2) + "\nstart: " + walks.start +

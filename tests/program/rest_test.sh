@@ -40,6 +40,8 @@ expect 0 '% were still walking after 1000000 gates, the most that a walk is foll
 expect 0 '^cut off       0.00 %  \[0.00, 0.00\]$' "$gatewalk" walk circles.nc --walks 20
 holds '.endings.cut_off == 0 and .cut_off == 0 and .still_walking > 0 and .still_walking + .endings.trapped == 20 and .still_walking_95[0] < .still_walking / 20 and .still_walking / 20 < .still_walking_95[1]' circles.json
 holds '([.final_gates[][]] | add) == .endings.trapped' circles.json
+# Those who still walk may end in any way but cut off: of 20 nobody crossed, and it may be as many as walk or, of 20, chance leaves out.
+holds '.still_walking_95[1] as $more | .endings_95 | .crossed == [0, $more] and .left_side == [0, $more] and .trapped[1] == 1 and .cut_off == [0, 0]' circles.json
 # With a limit it is the field's.
 "$gatewalk" walk circles.nc --walks 20 --set field.max_gates=100 --quiet --json limit.json
 jq -s '.[0].still_walking == .[1].cut_off and .[1].still_walking == 0' circles.json limit.json | grep -q true || fail "a limit of the field is none: $(jq -c .endings limit.json)"
