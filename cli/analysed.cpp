@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/analysed.h"
 
+#include <algorithm>
 #include <charconv>
 #include <utility>
 
@@ -147,9 +148,12 @@ std::optional<std::int64_t> cell_named(const lattice::FieldParams& field, const 
 std::optional<PassageAsked> first_passage_asked(const Options& options, const Subject& s) {
   if (!options.has("first-passage")) return {};
   const std::string text = options.text("first-passage");
-  if (const auto ending = lattice::ending_named(text))
+  const auto state = state_named(s, text);
+  const bool capitals =
+      std::any_of(text.begin(), text.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
+  if (const auto ending = lattice::ending_named(text); ending && !(state && capitals))
     return PassageAsked{text, {.ending = *ending}};
-  if (const auto state = state_named(s, text)) return PassageAsked{text, {.input = *state}};
+  if (state) return PassageAsked{text, {.input = *state}};
   const lattice::FieldParams& field = s.problem.field;
   std::string rest;
   if (const auto cell = cell_named(field, text, rest)) {

@@ -24,7 +24,7 @@ double FieldCosts::Sums::mean(std::size_t cost) const {
 double FieldCosts::Sums::sd(std::size_t cost) const {
   const double m = mean(cost);
   const double square = squares[cost] / static_cast<double>(trials);
-  return std::sqrt(std::max(0.0, square - m * m));
+  return std::sqrt(std::max(square - m * m, 0.0));  // NaN stays NaN
 }
 
 FieldCosts::Sums FieldCosts::all() const {

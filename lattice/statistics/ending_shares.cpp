@@ -2,6 +2,7 @@
 #include "lattice/statistics/ending_shares.h"
 
 #include <cmath>
+#include <string>
 
 #include "dynamics/base/share.h"
 #include "lattice/statistics/share_95.h"
@@ -9,8 +10,11 @@
 namespace gatewalk::lattice {
 
 std::optional<markov::Ending> ending_named(std::string_view name) {
+  std::string small(name);
+  for (char& c : small)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   for (const EndingName& e : kAllEndingNames)
-    if (name == e.key || name == e.name) return e.ending;
+    if (small == e.key || small == e.name) return e.ending;
   return {};
 }
 

@@ -30,7 +30,7 @@ inline constexpr EndingName kWentBack{markov::Ending::near_edge, "went_back", "w
 inline constexpr std::array<EndingName, 6> kAllEndingNames{
     kEndingNames[0], kEndingNames[1], kEndingNames[2], kEndingNames[3], kEndingNames[4], kWentBack};
 
-/// By either of its names; none for any other.
+/// By either of its names, in capitals or not; none for any other.
 [[nodiscard]] std::optional<markov::Ending> ending_named(std::string_view name);
 
 /// Shares of all, with 95 % intervals (NaN: none), by markov::Ending.

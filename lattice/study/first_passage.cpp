@@ -3,6 +3,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -13,12 +14,16 @@
 namespace gatewalk::lattice {
 namespace {
 
-/// The time alone.
+/// The time alone; nothing where nobody measured it: who is there already would need 0 s.
 markov::Rewards times_of(const markov::Rewards& rewards) {
   markov::Rewards times;
-  for (const auto& of_type : rewards)
-    if (!of_type.empty()) times.push_back({of_type.front()});
-  return times;
+  bool known = false;
+  for (const auto& of_type : rewards) {
+    if (of_type.empty()) continue;
+    const std::vector<double>& mean = times.emplace_back(1, of_type.front()).front().mean;
+    known = known || std::any_of(mean.begin(), mean.end(), [](double x) { return x == x; });
+  }
+  return known ? times : markov::Rewards{};
 }
 
 struct AtStart {

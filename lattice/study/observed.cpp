@@ -160,8 +160,10 @@ void add_gates(Observed& observed, const CountTable& table, const FieldParams& f
 /// Of a row; none: it went back.
 std::optional<std::size_t> ending_of(const CountTable& table, const CountTable::Row& row) {
   const std::string& name = table.at(row, "ending");
-  if (name == "went back" || name == "went_back") return {};
-  if (const auto ending = ending_named(name)) return static_cast<std::size_t>(*ending);
+  if (const auto ending = ending_named(name)) {
+    if (*ending == kWentBack.ending) return {};
+    return static_cast<std::size_t>(*ending);
+  }
   std::string all;
   for (const EndingName& e : kEndingNames) all += std::string(e.name) + ", ";
   table.refuse(row.line, "column ending: " + quoted(name) + " is not permitted: must be one of " +

@@ -412,7 +412,9 @@ bool goes_down(const FieldChain& chain) {
 
 }  // namespace
 
-double Moments::sd() const { return std::sqrt(std::max(0.0, square / share - mean() * mean())); }
+double Moments::sd() const {  // NaN, of what nobody knows, passes std::max in this order
+  return std::sqrt(std::max(square / share - mean() * mean(), 0.0));
+}
 
 Moments WalkTotals::all(const std::array<Moments, kEndings>& by_ending) {
   Moments sum;

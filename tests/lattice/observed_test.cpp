@@ -164,6 +164,15 @@ TEST_F(CountsFile, OfTrialsOneLineEach) {
   EXPECT_FALSE(o.listed[static_cast<std::size_t>(markov::Ending::cut_off)]);
 }
 
+TEST_F(CountsFile, NamesEndingsInCapitalsToo) {
+  const Observed o = read("ending,count\nCrossed,4\nLeft side,3\nRIGHT_SIDE,2\nWent back,1\n");
+  EXPECT_EQ(o.seen.endings[static_cast<std::size_t>(markov::Ending::far_edge)], 4);
+  EXPECT_EQ(o.seen.endings[static_cast<std::size_t>(markov::Ending::left_edge)], 3);
+  EXPECT_EQ(o.seen.endings[static_cast<std::size_t>(markov::Ending::right_edge)], 2);
+  EXPECT_EQ(o.seen.trials(), 9);
+  EXPECT_EQ(o.went_back, 1);
+}
+
 TEST_F(CountsFile, OfTrialsWithTheirGatesCountAsTheTwoTablesDo) {
   const Observed lines = read(
       "trial,ending,gate_x,gate_y\n1,crossed,0,2\n2,trapped,-2,1\n3,trapped,-2,1\n4,went back,,\n");

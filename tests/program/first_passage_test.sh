@@ -24,6 +24,17 @@ for state in 'lost, again' 1; do
 done
 "$gatewalk" analyze fair.nc --first-passage "0,2,lost, again" --json one.json --quiet || fail "a state of one gate"
 holds '.first_passage.of_states.probability[2][0] | add > 1 and (add < 2)' one.json
+# A time that nobody measured is not known, not 0, also of those who are there: of whom, by ending, there is no spread either.
+"$gatewalk" analyze fair.nc --first-passage won --json there.json --quiet
+holds '(.first_passage | .probability == 1 and .mean_gates == 0 and .mean_time_s == null and .of_states.mean_time_s == null) and ([.by_ending[] | .mean_time_s, .sd_time_s] | all(. == null))' there.json
+# Endings may be in capitals, but for a state of that very name.
+"$gatewalk" analyze fair.nc --first-passage Crossed --json capitals.json --quiet || fail "an ending in capitals"
+jq -s '[.[].first_passage | del(.target)] | .[0] == .[1]' won.json capitals.json | grep -q true || fail "an ending in capitals is another one"
+sed 's/won/Trapped/' games.csv >named.csv
+sed 's/won/Trapped/g' fair.csv >named.from.csv
+"$gatewalk" import named.from.csv --states named.csv --start Trapped --set field.rows=4 --set field.columns=1 --set field.max_gates=0 -o named.nc --quiet
+"$gatewalk" analyze named.nc --first-passage Trapped --json named.json --quiet
+holds '.first_passage | .probability == 1 and .mean_gates == 0' named.json
 # With a limit of two gates it is won from the last two alone: 1/2 from the last, after 1 gate, and 1/4 after 2.
 "$gatewalk" analyze fair.nc --set field.max_gates=2 --first-passage crossed --json two.json --csv two.csv --quiet
 holds '.first_passage.of_states | [.probability[][0][0]] == [0, 0, 0.25, 0.5] and [.mean_gates[][0][0]] == [null, null, 2, 1]' two.json
