@@ -14,7 +14,7 @@ cp "$scenes/programs/pillars.py" program && chmod +x program
 paper_matrix M.nc
 named() {
   sed -E 's|CELL.toml|pillars.toml|; s|COMMAND|./program|; s|KEY=a:step:b|forces.random_N=1:1:2|; s|KEY=A:B|forces.random_N=1:20|
-    s|D,VX,VY|0,0,15|; s|FILE\.csv|observed.csv|; s|FILE\.html|page.html|; s|\bDIR\b|folder|; s|\bNAME\b|field|; s|--row I\b|--row 1|
+    s|D,VX,VY|0,0,15|; s|FILE\.csv|observed.csv|; s|FILE\.html|page.html|; s|\bDIR\b|folder|; s|\bNAME\b|field|; s|\bTARGET\b|crossed|; s|--row I\b|--row 1|
     s|^design SCENE|design mixed.toml|; s|\bSCENE\b|field.toml|g; s|^predict \.\.\.|predict field.toml|'
 }
 commands=$("$gatewalk" --help | awk '/^usage/ { list = 1; next } list && /^  [a-z]/ { print $1 }')
