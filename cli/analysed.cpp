@@ -158,8 +158,8 @@ std::optional<PassageAsked> first_passage_asked(const Options& options, const Su
   std::string rest;
   if (const auto cell = cell_named(field, text, rest)) {
     if (rest.empty()) return PassageAsked{text, {.cell = *cell}};
-    if (const auto state = state_named(s, rest))
-      return PassageAsked{text, {.cell = *cell, .input = *state}};
+    if (const auto entered = state_named(s, rest))
+      return PassageAsked{text, {.cell = *cell, .input = *entered}};
   }
   std::string names;
   for (const lattice::EndingName& e : lattice::kAllEndingNames) names += std::string(e.key) + ", ";

@@ -19,7 +19,6 @@
 #include "lattice/scene/scene_trials.h"
 #include "lattice/study/trials.h"
 #include "lattice/text/digits.h"
-#include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
 namespace {
