@@ -116,6 +116,7 @@ bool Table::next_line(std::string_view& line) {
 }
 
 void Table::split_row(std::string_view line) {
+  begins_quoted_ = line.starts_with('"');
   const std::int64_t first = line_;
   LineState state = split_fields(line, separator_, fields_, unquoted_);
   if (state == LineState::open) {
@@ -168,7 +169,8 @@ bool Table::next() {
 void Table::fit_to_columns() {
   const std::size_t wanted = columns_.size();
   const bool has_more = fields_.size() == wanted + 1;
-  if (std::exchange(is_first_row_, false) && has_more)
+  // In quotation marks, as R writes the names of rows; other rows may as well have a last field more.
+  if (std::exchange(is_first_row_, false) && has_more && begins_quoted_)
     if (const auto number = whole(fields_.front()); number && (*number == 0 || *number == 1)) {
       if (fields_.back().empty())
         refuse("has a field more than columns are named (line " + std::to_string(header_line_) +

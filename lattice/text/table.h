@@ -79,7 +79,7 @@ class Table {
   std::deque<std::string> held_;  // lines that were read ahead, ...
   std::int64_t held_line_ = 0;    // ... and the number of the first of them
   std::int64_t line_ = 0, header_line_ = 0, before_header_ = 0;
-  bool has_header_ = false, is_first_row_ = true;
+  bool has_header_ = false, is_first_row_ = true, begins_quoted_ = false;
   char separator_ = ',', decimal_ = '\0';
   std::int64_t decimal_line_ = 0, headers_ = 0, comments_ = 0;
   std::optional<std::int64_t> row_number_;  // of the row before, where a nameless column has them

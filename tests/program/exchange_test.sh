@@ -161,9 +161,9 @@ wrong 'w.csv: row 0 (from 0) sums to 0.9: probabilities' w.csv 'from,to,probabil
 wrong 'w.csv:2: there is no state "sideways"' w.csv 'from,to,count\nsideways,up,1\n'
 wrong 'w.csv:3: has the same row and column as line 2' w.csv 'from,to,count\n0,1,1\nup,aside,2\n'
 wrong 'w.csv: row 0, column 1 (from 0): -1 is no count' w.csv 'from,to,count\n0,1,-1\n'
-wrong 'w.csv:1: must name the columns, each once: from,to,count' w.csv 'a,b,c\n'
-wrong 'w.csv:1: must name the columns, each once' w.csv 'from,to,count,probability\n0,1,10,1\n'
-wrong 'w.csv:2: has 4 fields, not 3' w.csv 'from,to,count\n0,1,1,500\n'
+wrong 'w.csv:1: must name the columns from,to,count or from,to,probability; there are a, b, c' w.csv 'a,b,c\n'
+wrong 'w.csv:1: must name the columns from,to,count or from,to,probability' w.csv 'from,to,count,probability\n0,1,10,1\n'
+wrong 'w.csv:2: has 4 fields, the line of the columns (line 1) has 3' w.csv 'from,to,count\n0,1,1,500\n'
 wrong 'w.mtx:1: must be "%%MatrixMarket' w.mtx '%%MatrixMarket vector coordinate real general\n'
 wrong 'w.mtx:1: "pattern" are no counts or probabilities: the numbers are left out' w.mtx '%%MatrixMarket matrix coordinate pattern general\n3 3 1\n1 1\n'
 wrong 'w.mtx:1: "complex" are no counts' w.mtx '%%MatrixMarket matrix array complex general\n1 1\n1 0\n'
@@ -195,7 +195,7 @@ printf 'state,move_x,move_y\n0,0,0\n' >s2.csv
 expect 2 's2.csv:2: the move must lead to another cell' "$gatewalk" import own.csv --states s2.csv -o no.nc
 printf 'state,move_x,move_y,name\n0,0,1,1\n1,0,1,0\n' >s2.csv
 printf 'from,to,count\n0,1,3\n' >n.csv
-expect 2 'is the name of state 1 and the number of another' "$gatewalk" import n.csv --states s2.csv -o no.nc
+expect 2 'is the name of state 0 and the number of another' "$gatewalk" import n.csv --states s2.csv -o no.nc
 printf 'state,move_x,move_y,face\n0,0,1,a b\n' >s2.csv
 expect 2 's2.csv:2: face "a b" must be a name' "$gatewalk" import own.csv --states s2.csv -o no.nc
 { echo state,move_x,move_y; for k in $(seq 0 64); do echo "$k,$((k + 1)),1"; done; } >s2.csv

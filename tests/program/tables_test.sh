@@ -44,7 +44,7 @@ tr ',' '\t' <plain.csv >tabs.csv && same tabs 'set apart by tabs' "${columns[@]}
 tr '\n' '\r' <plain.csv >cr.csv && same cr 'CR alone' "${columns[@]}"
 { printf 'video: a.mp4\nframes: 80\n\n' && cat plain.csv; } >below.csv && same below 'named in line 4; 2 lines' "${columns[@]}"
 awk -F, '{ print (NR > 1 ? NR - 2 : "") "," $0 }' plain.csv >pandas.csv && same pandas 'y grows upwards' "${columns[@]}"
-awk -F, '{ print (NR > 1 ? NR - 1 "," : "") $0 }' plain.csv >r.csv && same r 'numbers the rows' "${columns[@]}"
+awk -F, '{ print (NR > 1 ? "\"" NR - 1 "\"," : "") $0 }' plain.csv >r.csv && same r 'numbers the rows' "${columns[@]}"
 awk -F, '{ print $0 "," $3 }' plain.csv >twice.csv && same twice 'both named x, with the same content' "${columns[@]}"
 sed 's/[^,]*/"&"/g; $s/$/\n,,,\n\n/' plain.csv >quoted.csv && same quoted 'y grows upwards' "${columns[@]}"
 sed '1s/^/# /' plain.csv >savetxt.csv && same savetxt 'y grows upwards' "${columns[@]}"
@@ -96,7 +96,7 @@ for name in german tabs cr below r; do
     tabs) tr ',' '\t' ;;
     cr) tr '\n' '\r' ;;
     below) printf 'made by hand\n\n' && cat ;;
-    r) awk '{ print (NR > 1 ? NR - 1 "," : "") $0 }' ;;
+    r) awk '{ print (NR > 1 ? "\"" NR - 1 "\"," : "") $0 }' ;;
   esac <plain_runs.csv >runs.csv
   "$gatewalk" build runs.csv --cell cell.toml -o runs.nc --force --quiet >/dev/null 2>err.txt || fail "build: $name: $(cat err.txt)"
   grep -q '^gatewalk: runs.csv: ' err.txt || fail "build: $name: nothing is said"
