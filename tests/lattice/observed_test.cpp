@@ -217,8 +217,8 @@ TEST_F(CountsFile, RefusalsOfLinesOfTrials) {
   EXPECT_EQ(refusal(header + "7,crossed\n8,trapped\n7,trapped\n"),
             "x.csv:4: trial \"7\" was given in line 2 already");
   EXPECT_EQ(refusal(header + ",crossed\n"), "x.csv:2: column trial: has no name or number");
-  EXPECT_EQ(refusal(header + "1,Crossed\n"),
-            "x.csv:2: column ending: \"Crossed\" is not permitted: must be one of crossed, left "
+  EXPECT_EQ(refusal(header + "1,crosses\n"),
+            "x.csv:2: column ending: \"crosses\" is not permitted: must be one of crossed, left "
             "side, right side, trapped, cut off, or went back");
   EXPECT_EQ(refusal(header), "x.csv: has no trial");
   EXPECT_EQ(refusal(header + "1,went back\n"), "x.csv: has no trial that did not go back");
