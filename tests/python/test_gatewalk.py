@@ -343,7 +343,8 @@ class Elsewhere(unittest.TestCase):
             reached = chance[:count] > 1e-12
             np.testing.assert_allclose(own["mean_gates"][reached], gates[:count][reached] / chance[:count][reached], rtol=1e-9)
             self.assertAlmostEqual(first.probability, chance[0], 12)
-            self.assertIsNone(first.probability_95)
+            ending = matrix.analyze(runs=0, paths=0, set=key).endings.get(target) if isinstance(target, str) else None
+            self.assertEqual(first.probability_95, tuple(ending["interval_95"]) if ending else None)  # of one number one interval
             self.assertEqual(first.of_states["probability"].shape, (3, 3, 87))
             self.assertEqual(first.states, [f"{face}_{k}" for k, face in enumerate(matrix.states["face"])])
         np.testing.assert_array_equal(*(matrix.first_passage(state).of_states["mean_time_s"] for state in (3, "EN_3")))
