@@ -14,7 +14,6 @@
 #include <iostream>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <typeinfo>
 
 #include "cli/arguments.h"
@@ -29,6 +28,7 @@
 #include "lattice/scene/map_file.h"
 #include "lattice/scene/scene.h"
 #include "lattice/text/edit_distance.h"
+#include "lattice/text/text_stream.h"
 #include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
@@ -667,7 +667,7 @@ bool Options::parse(const Arguments& arguments) {
                      state_->synopsis.substr(0, state_->synopsis.find(' ')) + " --help");
   }
   if (has("help")) {
-    std::ostringstream page;
+    lattice::TextStream page;
     page << "gatewalk " << state_->synopsis << "\n\n" << state_->about << "\n\n";
     for (const auto& [name, help] : state_->positional_help) {
       const std::string argument = upper_case(name);

@@ -9,7 +9,6 @@
 #include <iostream>
 #include <iterator>
 #include <new>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -22,6 +21,7 @@
 #include "cli/terminal/output.h"
 #include "lattice/scene/scene.h"
 #include "lattice/text/edit_distance.h"
+#include "lattice/text/text_stream.h"
 #include "markov/formats/counts.h"
 #include "markov/formats/file.h"
 
@@ -82,7 +82,7 @@ int run(const std::vector<std::string>& words) {
     return command ? command->run({"--help"}) : kWrongUse;
   }
   if (words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
-    std::ostringstream text;
+    lattice::TextStream text;
     print_help(text);
     write_text_atomically("-", text.str());
     return kFine;

@@ -148,7 +148,7 @@ Json to_json(const MemoryStudy& study, const GatesAhead& ahead) {
          {"excess_95", by_ways(study, s.excess_95)},
          {"time_scales_gates", scales(s.seen_scales)},
          {"predicted_time_scales_gates", scales(s.predicted_scales)},
-         {"predicted_time_scales_gates_95", s.scales_95}});
+         {"time_scales_chance_95", s.scales_95}});
   j["sentence"] = sentence_ahead(study);
   return j;
 }

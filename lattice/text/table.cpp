@@ -169,7 +169,8 @@ bool Table::next() {
 void Table::fit_to_columns() {
   const std::size_t wanted = columns_.size();
   const bool has_more = fields_.size() == wanted + 1;
-  // In quotation marks, as R writes the names of rows; other rows may as well have a last field more.
+  // In quotation marks, as R writes the names of rows; other rows may as well have a last field
+  // more.
   if (std::exchange(is_first_row_, false) && has_more && begins_quoted_)
     if (const auto number = whole(fields_.front()); number && (*number == 0 || *number == 1)) {
       if (fields_.back().empty())

@@ -87,7 +87,8 @@ TEST_F(TableFile, SaysWhatItUnderstood) {
          {"the columns are named in line 4; 2 lines before it left out"});
   expect("sep=;\na;b\n1;2\n3;4\n", {"fields are set apart by semicolons",
                                     "the columns are named in line 2; 1 line before it left out"});
-  expect("a,b\n\"0\",1,2\n\"1\",3,4\n", {"the first column has no name and numbers the rows: left out"});
+  expect("a,b\n\"0\",1,2\n\"1\",3,4\n",
+         {"the first column has no name and numbers the rows: left out"});
   expect("a,b,a\n1,2,1\n3,4,3\n", {"columns 1 and 3 are both named a, with the same content"});
   expect("# a b\n#a,b\n1,2\n3,4\n", {});                                        // numpy.savetxt
   expect("a,b\n1,2\na,b\n3,4\n", {"1 more line names the columns: left out"});  // put together
@@ -109,7 +110,8 @@ TEST_F(TableFile, RefusesWhatIsAmbiguous) {
   EXPECT_EQ(refusal("a,b\n\"1\",5,6\n\"3\",7,8\n"),
             "x:3: has 3 fields, the line of the columns (line 1) has 2 behind the number of the "
             "row");
-  EXPECT_NE(refusal("a,b\n\"1\",2,\n\"2\",3,\n").find("does the first number the rows"), std::string::npos);
+  EXPECT_NE(refusal("a,b\n\"1\",2,\n\"2\",3,\n").find("does the first number the rows"),
+            std::string::npos);
   EXPECT_EQ(refusal("a,b\n1,2\n3\n"), "x:3: has 1 field, the line of the columns (line 1) has 2");
   EXPECT_EQ(refusal("a,b,a\n1,2,1\n1,2,0\n"),
             "x:3: columns 1 and 3 are both named \"a\" and differ: \"1\", \"0\": give one of them "
