@@ -109,7 +109,7 @@ int entered_states(const dynamics::StateSpace& space) {
   return space.size() - static_cast<int>(space.points().size());
 }
 
-/// One of these by its name, or its number; none where there is none.
+/// The state of that name or number; none if there is none.
 std::optional<int> state_named(const Subject& s, const std::string& text) {
   if (!s.file) return {};
   const dynamics::StateSpace& space = s.file->transitions.space;

@@ -48,7 +48,7 @@ double steps_of(std::int64_t states) {
   return std::ldexp(1.0, bits);
 }
 
-constexpr double kOff = 1e-9;  // so far rows of doubles may be off 1, whoever added them up
+constexpr double kOff = 1e-9;  // by which the sum of a row of doubles may miss 1
 
 /// By how much rounding may have moved the sum of a row: by half a unit of the last digit of each
 /// number. Who writes one or two digits does so by hand, and means them.
@@ -313,6 +313,15 @@ ForeignMatrix read_foreign(const std::string& path, const std::vector<ForeignSta
              : ""));
   SparseTable& table = matrix.table;
   if (!table.whole && !table.probabilities) table.whole = are_counts(table);
+  const auto is_of_trapped = [n](const SparseTable::Entry& e) { return e.row == n; };
+  if (table.rows == n + 1 && table.columns == n + 1 &&
+      std::all_of(table.entries.begin(), table.entries.end(), [&](const SparseTable::Entry& e) {
+        return !is_of_trapped(e) || e.column == n || e.value == 0.0;
+      })) {
+    table.rows = n;
+    std::erase_if(table.entries, is_of_trapped);
+    table.understood.emplace_back("the last state, which is never left, is trapped");
+  }
   if (table.rows != n || (table.columns != n && table.columns != n + 1))
     throw std::runtime_error(path + ": is " + std::to_string(table.rows) + " x " +
                              std::to_string(table.columns) + "; of " + std::to_string(n) +

@@ -22,7 +22,7 @@ constexpr std::size_t kDrawnScales = 3;
 const std::string kBand =
     std::string(" with filledcurves fs transparent solid 0.25 noborder lc rgb '");
 const std::string kLine = " with lines lw 1.2 lc rgb '";
-/// Numbers of panels that are small themselves; and of those that are not.
+/// Sizes of letters at small panels, and at large ones.
 const std::string kSmallTics = "set tics font ',12'\n", kTics = "set tics font ',15'\n";
 const std::string kPoints = " with points pt 7 ps 0.45 lc rgb '";
 
@@ -38,7 +38,7 @@ std::string line(int gates, double low, double high, double predicted, double se
          " " + digits(seen) + "\n";
 }
 
-/// Of the bodies that enter by this way, how many are where so many gates later, in %.
+/// Of the bodies that enter by one boundary, the share (%) that enters by another, k gates later.
 struct Probabilities {
   std::string rows;
   double most = 0.0;

@@ -130,6 +130,7 @@ taken 'whole numbers, written as reals: counts' a.mtx "$head real general\n3 4 8
 holds '.understood == ["whole numbers, written as reals: counts"] and .text.understood == .understood[0]' taken.json
 taken 'are added to it, as scipy does: 1' a.mtx "$head integer general\n3 4 9\n1 1 2\n${rest}1 1 3\n" && is "$counts" duplicates
 taken '17 counted steps' a.mtx '%%MatrixMarket matrix array integer general\n3 4\n5\n3\n3\n2\n0\n0\n1\n0\n0\n1\n1\n1\n' && is "$counts" array
+taken 'the last state, which is never left, is trapped' a.mtx "$head integer general\n4 4 9\n1 1 5\n${rest}4 4 1\n" && is "$counts" 'with a row of trapped'
 taken 'symmetric: ' a.mtx "$head integer symmetric\n3 3 3\n1 1 4\n2 1 2\n3 1 1\n" && is 'up,up,4 up,aside,2 up,up_again,1 aside,up,2 up_again,up,1' symmetric
 taken 'symmetric: ' a.mtx '%%MatrixMarket matrix array integer symmetric\n3 3\n4\n2\n1\n0\n0\n0\n' && is 'up,up,4 up,aside,2 up,up_again,1 aside,up,2 up_again,up,1' 'symmetric array'
 taken '17 counted steps' A.CSV 'from,to,count\nup,up,5.0\nup,aside,+2\nup,up_again,1e0\nup,trapped,1\naside,up,3\naside,trapped,1\nup_again,up,3\nup_again,trapped,1\n' && is "$counts" 'numbers of a spreadsheet'
