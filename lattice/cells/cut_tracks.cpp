@@ -191,8 +191,10 @@ class Cutter {
       add(rounded(std::round(1000.0 * missing / all) / 10.0) + " % of the frames are missing, " +
           (*gaps == *most ? rounded(*most - 1.0)
                           : rounded(*gaps - 1.0) + " to " + rounded(*most - 1.0)) +
-          " at a time: " + bridge(*most) + " bridges " +
-          (*most == frames.back() ? "them" : "most of them"));
+          " at a time: " +
+          (*most > kMostWindow
+               ? "too long to be bridged"
+               : bridge(*most) + " bridges " + (*most == frames.back() ? "them" : "most of them")));
     }
     if (const double middle = speeds[speeds.size() / 2]; middle > options_.fastest)
       add("most steps are faster than --fastest " + rounded(options_.fastest) + " m/s (median " +

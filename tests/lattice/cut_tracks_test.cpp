@@ -572,6 +572,12 @@ TEST(CutTracks, SaysWhatIsLikelyToBeWrong) {
   CutOptions bridged = fast();
   bridged.bridge = 1;
   EXPECT_TRUE(cut_tracks(lossy, squares(), bridged).doubts.empty());
+  TrackFile blind = file_of({up}, 950);
+  for (const int first : {720, 490, 260, 30}) hide(blind, first, first + 200);
+  EXPECT_NE(cut_tracks(blind, squares(), fast())
+                .doubts.at(0)
+                .find("200 at a time: too long to be bridged"),
+            std::string::npos);
   EXPECT_REFUSED("all lie below the first row: is y measured downwards (--y-down)?",
                  file_of({straight({0.05, -5.03}, 0.0, 0.001)}, 100), squares(), fast());
 }
