@@ -65,12 +65,13 @@ double longest_by_chance(const TrackFile& file) {
   return std::max<double>(kLeastWindow - 1, by_chance);  // shorter ones fill no fit
 }
 
-/// Nine of ten steps of all bodies are no longer.
+/// Of the steps of bodies that move, nine of ten are no longer.
 double usual_step(const TrackFile& file) {
   std::vector<double> steps;
   for (const Track& t : file.tracks)
     for (std::size_t i = 1; i < t.time.size(); ++i)
-      steps.push_back(std::hypot(t.x[i] - t.x[i - 1], t.y[i] - t.y[i - 1]));
+      if (t.x[i] != t.x[i - 1] || t.y[i] != t.y[i - 1])
+        steps.push_back(std::hypot(t.x[i] - t.x[i - 1], t.y[i] - t.y[i - 1]));
   return quantile(steps, 0.9);
 }
 

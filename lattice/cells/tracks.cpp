@@ -131,7 +131,8 @@ TrackFile read_by_kind(const std::string& path, const TrackOptions& options) {
   std::array<char, 16> bytes{};
   in.read(bytes.data(), bytes.size());
   const std::string_view first(bytes.data(), static_cast<std::size_t>(in.gcount()));
-  if (first.starts_with("\x89HDF") || first.starts_with("CDF")) return read_movement(path, options);
+  const bool is_classic = first.starts_with("CDF") && first.size() > 3 && first[3] < '\t';
+  if (first.starts_with("\x89HDF") || is_classic) return read_movement(path, options);
   return read_track_table(path, options);
 }
 
@@ -143,6 +144,24 @@ std::vector<std::string> short_names(const std::vector<std::string>& paths) {
   std::vector<std::string> sorted = names;
   std::sort(sorted.begin(), sorted.end());
   return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end() ? names : paths;
+}
+
+/// Those of all recordings once, others with the name of their file.
+std::vector<std::string> joined_remarks(const std::vector<std::string>& paths,
+                                        const std::vector<std::vector<std::string>>& of_files) {
+  std::vector<std::string> joined;
+  for (std::size_t i = 0; i < of_files.size(); ++i)
+    for (const std::string& remark : of_files[i]) {
+      const bool is_shared =
+          std::all_of(of_files.begin(), of_files.end(), [&](const auto& remarks) {
+            return std::find(remarks.begin(), remarks.end(), remark) != remarks.end();
+          });
+      if (!is_shared)
+        joined.push_back(paths[i] + ": " + remark);
+      else if (i == 0)
+        joined.push_back(remark);
+    }
+  return joined;
 }
 
 /// Adds the bodies of another recording.
@@ -171,9 +190,6 @@ void add_recording(TrackFile& all, TrackFile&& file, const std::string& name) {
   all.repeated += file.repeated;
   all.at_zero += file.at_zero;
   all.unit_rows += file.unit_rows;
-  for (std::string& remark : file.remarks)  // what is alike is said once
-    if (std::find(all.remarks.begin(), all.remarks.end(), remark) == all.remarks.end())
-      all.remarks.push_back(std::move(remark));
   for (std::string& warning : file.warnings) all.warnings.push_back(std::move(warning));
 }
 
@@ -196,9 +212,13 @@ TrackFile read_tracks(const std::vector<std::string>& paths, const TrackOptions&
   require_different(paths);
   const std::vector<std::string> names = short_names(paths);
   TrackFile all;
+  std::vector<std::vector<std::string>> remarks;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    add_recording(all, read_tracks(paths[i], options), names[i]);
+    TrackFile file = read_tracks(paths[i], options);
+    remarks.push_back(file.remarks);
+    add_recording(all, std::move(file), names[i]);
   }
+  all.remarks = joined_remarks(paths, remarks);
   return all;
 }
 

@@ -169,8 +169,7 @@ bool Table::next() {
 void Table::fit_to_columns() {
   const std::size_t wanted = columns_.size();
   const bool has_more = fields_.size() == wanted + 1;
-  // In quotation marks, as R writes the names of rows; other rows may as well have a last field
-  // more.
+  // R writes names of rows in quotation marks. Without them the extra field may be the last one.
   if (std::exchange(is_first_row_, false) && has_more && begins_quoted_)
     if (const auto number = whole(fields_.front()); number && (*number == 0 || *number == 1)) {
       if (fields_.back().empty())

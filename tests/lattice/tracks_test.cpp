@@ -227,6 +227,10 @@ TEST_F(TracksFile, RecordingsOfOneExperimentAreToldApart) {
   EXPECT_EQ(t.tracks[2].body, "two/2");
   EXPECT_EQ(t.places, 4);
   EXPECT_EQ(t.source, one + ", " + two);
+  ASSERT_EQ(t.remarks.size(), 1U);  // where the lattice begins, of both
+  const TrackFile other =
+      read_tracks({one, file("id;f;x;y\n1;0;5;1\n", "three.csv")}, table_options());
+  EXPECT_EQ(other.remarks.at(1), path("three.csv") + ": fields are set apart by semicolons");
   EXPECT_THROW((void)read_tracks({one, one}, table_options()), std::invalid_argument);
   EXPECT_THROW((void)read_tracks({one, folder_.string() + "/./one.csv"}, table_options()),
                std::invalid_argument);
@@ -315,6 +319,17 @@ TEST_F(LostFrames, ABodyAtRestIsSeen) {
               std::string::npos)
         << t.remarks.at(0);
   }
+}
+
+// Steps of bodies that move are what is usual, also where bodies rest nearly all the time.
+TEST_F(LostFrames, ABodyAtRestGoesOnWithAStep) {
+  double x0 = 0.0, y0 = 0.0;
+  const TrackFile t = with([&](std::size_t f, double& x, double& y) {
+    if (f == 20) x0 = x, y0 = y;
+    if (f >= 20 && f < 385) x = x0, y = y0;
+    if (f >= 385) y = y0 + 0.5 * static_cast<double>(f - 384);
+  });
+  EXPECT_EQ(t.repeated, 0);
 }
 
 // Where places are as coarse as they scatter, a body at rest stands still exactly.
