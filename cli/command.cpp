@@ -856,6 +856,10 @@ void Options::give_out(const Json& json, const std::string& table, int indent) c
   if (state_->given_out) state_->given_out(with_format_version(json));
 }
 
+void Options::give_out(const Description& describe, const std::string& table, int indent) const {
+  give_out(takes_json() ? json_of(describe) : Json(), table, indent);
+}
+
 void Options::keep_old(const std::string& path) const {
   if (path != "-" && !has("force") && is_first_rank()) state_->backups.try_emplace(path, path);
 }

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
 #include "cli/render/provenance.h"
@@ -208,6 +209,13 @@ class Options {
   /// table on standard output otherwise; with --json FILE the table too, unless --quiet. `indent`
   /// -1: JSON on one line, for long arrays.
   void give_out(const Json& json, const std::string& table, int indent = 2) const;
+  void give_out(const Description& describe, const std::string& table, int indent = 2) const;
+  /// The same of a result that is described.
+  template <class Result>
+  requires requires(Fields& out, const Result& result) { describe(out, result); }
+  void give_out(const Result& result, const std::string& table, int indent = 2) const {
+    give_out(Description([&](Fields& out) { describe(out, result); }), table, indent);
+  }
   /// To be called before an output is written: what is there is kept as a Backup until the command
   /// is done, unless there is --force or it is written again. Then it is said which backups stay.
   /// Throws std::runtime_error.

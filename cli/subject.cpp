@@ -429,12 +429,14 @@ void Subject::settle(const Options& options) {
   problem.start = *starts.front();
 }
 
-Json Subject::made_by(const Options& options) const {
-  if (scene) return to_json(options.provenance(*scene));
-  Json json = to_json(options.provenance());
-  json["cell"] = lattice::to_toml(*cells);
-  return json;
+Provenance Subject::provenance(const Options& options) const {
+  if (scene) return options.provenance(*scene);
+  Provenance made_by = options.provenance();
+  made_by.cell = lattice::to_toml(*cells);
+  return made_by;
 }
+
+Json Subject::made_by(const Options& options) const { return to_json(provenance(options)); }
 
 Subject open_subject(const Options& options, const std::string& name) {
   const std::string path = options.text(name);

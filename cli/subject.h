@@ -57,7 +57,8 @@ struct Subject {
   /// called when all options have been looked at.
   void settle(const Options& options);
   /// Where the result comes from.
-  [[nodiscard]] Json made_by(const Options& options) const;
+  [[nodiscard]] Provenance provenance(const Options& options) const;
+  [[nodiscard]] Json made_by(const Options& options) const;  // the same
 };
 
 /// Opens what the positional argument of this name says, with --cell-program, --start and --set,

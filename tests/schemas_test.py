@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""JSON as the schemas of cli/schemas promise it: many command lines of every command, validated; a schema that has a
-key no result has any more is told too.   schemas_test.py GATEWALK ROOT"""
+"""JSON as its schemas promise it: many command lines of every command, validated; a schema that has a
+key no result has any more is told too.   schemas_test.py GATEWALK ROOT SCHEMAS"""
 import json
 import subprocess
 import sys
@@ -15,7 +15,7 @@ except ImportError:
     sys.exit(77)
 
 gatewalk, root = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-schemas = {path.name: json.loads(path.read_text()) for path in (root / "cli/schemas").glob("*.json")}
+schemas = {path.name: json.loads(path.read_text()) for path in Path(sys.argv[3]).glob("*.json")}
 store = {schema["$id"]: schema for schema in schemas.values()}
 failures = []
 seen = {}  # by command: the keys at the top

@@ -3,7 +3,6 @@
 #include "cli/render/choice.h"
 #include "cli/render/gate_runs.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "dynamics/disc/study/accuracy.h"
 
@@ -24,18 +23,15 @@ int run_gate(const Arguments& arguments) {
   lattice::Scene scene = options.read_scene();
   const auto settled = settle_method(options, scene, lattice::RunsFrom::start);
 
-  const auto tally =
+  const GateResult result{
       dynamics::run_checked_trials(scene.gate, scene.start, options.seed(),
-                                   {"gate runs", options.trial_range()}, options.work());
+                                   {"gate runs", options.trial_range()}, options.work()),
+      settled, options.provenance(scene)};
   options.work().end_part();
 
-  Json json = to_json(tally);
-  if (settled) json["method"] = to_json(*settled);
-  json["status"] = to_json(tally.health);
-  json["made_by"] = to_json(options.provenance(scene));
-  options.give_out(json, scene_line(scene) + table_of(tally) + method_line(settled));
-  const int exit = status_of(options, tally.health);
-  options.draw([&] { return figure_of(tally); });
+  options.give_out(result, scene_line(scene) + table_of(result.tally) + method_line(settled));
+  const int exit = status_of(options, result.tally.health);
+  options.draw([&] { return figure_of(result.tally); });
   return exit;
 }
 

@@ -67,7 +67,7 @@ int run_landscape(const Arguments& arguments) {
     const auto settled = settle_method(options, scene, lattice::RunsFrom::start);
     const auto tally = dynamics::run_checked_trials(scene.gate, scene.start, options.seed(),
                                                     {"gate runs", {0, trials}}, options.work());
-    json["measured"] = to_json(tally);
+    json["measured"] = json_of([&](Fields& out) { describe(out, tally); });
     if (settled) json["measured"]["method"] = to_json(*settled);
     json["measured"]["status"] = to_json(tally.health);
     table += measured_line(tally);

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/rare.h"
 #include "cli/arguments.h"
-#include "cli/render/choice.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "cli/subject.h"
 #include "lattice/study/trials.h"
@@ -87,24 +85,22 @@ int run_rare(const Arguments& arguments) {
   if (subject.scene) (void)lattice::up_to_row(*subject.scene, how.row);  // refuses before a pilot
   subject.settle(options);
   const lattice::Problem deep = up_to_row(subject, how.row);
-  const lattice::RareEvent event = lattice::rare_event(deep, how, options.work());
-  const DirectRows direct = direct_rows(options, deep, how.row);
+  RareResult result{.event = lattice::rare_event(deep, how, options.work()),
+                    .direct = direct_rows(options, deep, how.row),
+                    .method = subject.settled,
+                    .made_by = subject.provenance(options)};
   options.work().end_part();
 
-  Json json = to_json(event, direct);
-  if (subject.settled) json["method"] = to_json(*subject.settled);
-  json["made_by"] = subject.made_by(options);
-  options.give_out(json,
-                   table_of(event, direct, subject.problem.field) + method_line(subject.settled));
-  if (const lattice::Splitting& s = event.splitting; !(s.rows.back().probability > 0.0))
+  options.give_out(result, table_of(result, subject.problem.field));
+  if (const lattice::Splitting& s = result.event.splitting; !(s.rows.back().probability > 0.0))
     options.warn("none of " + std::to_string(s.trials) + " trials entered row " +
                  std::to_string(how.row) + "; --gate-runs N goes on for so many gate runs");
   else if (!s.reached && !how.trials)
     options.warn("the relative standard error of " + digits(how.accuracy) +
                  " was not reached with " + std::to_string(how.most_runs) +
                  " gate runs; --gate-runs allows more");
-  const int exit = status_of(options, event.splitting.health);
-  options.draw([&] { return figure_of(event, direct); });
+  const int exit = status_of(options, result.event.splitting.health);
+  options.draw([&] { return figure_of(result); });
   return exit;
 }
 

@@ -11,7 +11,7 @@ install(CODE "
   file(GLOB pages \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1/gatewalk*.1\")
   execute_process(COMMAND gzip -9nf \${pages} COMMAND_ERROR_IS_FATAL ANY)" COMPONENT program)
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/gatewalk COMPONENT program)
-install(DIRECTORY cli/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/gatewalk COMPONENT program)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/gatewalk COMPONENT program)
 install(DIRECTORY cli/cluster DESTINATION ${CMAKE_INSTALL_DATADIR}/gatewalk COMPONENT program)
 install(TARGETS dynamics markov lattice EXPORT gatewalk COMPONENT dev
   FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gatewalk COMPONENT dev)

@@ -65,8 +65,6 @@ struct ShareTable {
   }
 };
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
 /// What is known of a place: of a state, of a start, of a cell; nothing of those without runs.
 struct Known {
   const lattice::EndingShares* endings;

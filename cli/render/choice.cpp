@@ -13,34 +13,56 @@ std::string setting_text(const dynamics::RunParams& run) {
                                 : ", run.step_s = " + Json(run.step).dump());
 }
 
+/// What was tried: a method with the value of the key that sets its accuracy.
+void describe_setting(Fields& out, const dynamics::Setting& setting, dynamics::Verdict verdict) {
+  out.text({"method", "run.method"}, setting.method);
+  out.text({"key", "the key of the scene that sets how exact the method is"}, setting.key);
+  out.number({"value", "its own", "value of this key"}, setting.value);
+  out.text({"verdict", "what its runs showed"}, dynamics::name_of(verdict));
+}
+
+void describe(Fields& out, const lattice::Settled& chosen) {
+  const dynamics::Choice& choice = chosen.choice;
+  out.text({"asked", "run.method of the scene"}, "auto");
+  out.number({"tolerance", "1", "total variation of outcomes that was asked for (run.tolerance)"},
+             chosen.tolerance);
+  out.text({"method", "run.method that was chosen"}, choice.params.run.method);
+  out.number({"step_s", "s", "run.step_s that was chosen"}, choice.params.run.step);
+  out.number({"event_tolerance_m", "m", "run.event_tolerance_m that was chosen"},
+             choice.params.run.event_tolerance);
+  out.flag({"met", "whether the tolerance was shown to be met"}, choice.met);
+  out.count({"pilot_trials", "1", "trials that each setting was tried on"}, choice.trials);
+  out.count({"pilot_starts", "1", "starts of these trials"}, chosen.pilot_starts);
+  out.object({"reference", "the setting that all others are compared with"},
+             [&](Fields& f) { describe_setting(f, choice.reference, choice.reference_verdict); });
+  out.list(
+      {"tried", "the settings that were tried, in this order"}, choice.tried,
+      [](Fields& f, const dynamics::Choice::Tried& t) {
+        describe_setting(f, t.setting, t.verdict);
+        f.number({"outcome_total_variation", "1",
+                  "total variation of the outcomes from those of the reference"},
+                 t.error.total_variation);
+        f.number({"uncertainty", "1", "standard error of this total variation, rather too large"},
+                 t.uncertainty);
+        f.count({"trials_changed", "1", "trials that ended otherwise than by the reference"},
+                t.error.changed);
+        f.number(
+            {"work_per_trial", "us", "time that a trial is expected to take, from its evaluations"},
+            t.work);
+      });
+}
+
 }  // namespace
 
-Json to_json(const lattice::Settled& chosen) {
-  const dynamics::Choice& choice = chosen.choice;
-  Json settled;
-  settled["asked"] = "auto";
-  settled["tolerance"] = chosen.tolerance;
-  settled["method"] = choice.params.run.method;
-  settled["step_s"] = choice.params.run.step;
-  settled["event_tolerance_m"] = choice.params.run.event_tolerance;
-  settled["met"] = choice.met;
-  settled["pilot_trials"] = choice.trials;
-  settled["pilot_starts"] = chosen.pilot_starts;
-  settled["reference"] = {{"method", choice.reference.method},
-                          {"key", choice.reference.key},
-                          {"value", choice.reference.value},
-                          {"verdict", dynamics::name_of(choice.reference_verdict)}};
-  settled["tried"] = Json::array();
-  for (const auto& t : choice.tried)
-    settled["tried"].push_back({{"method", t.setting.method},
-                                {"key", t.setting.key},
-                                {"value", t.setting.value},
-                                {"verdict", dynamics::name_of(t.verdict)},
-                                {"outcome_total_variation", t.error.total_variation},
-                                {"uncertainty", t.uncertainty},
-                                {"trials_changed", t.error.changed},
-                                {"work_per_trial", t.work}});
-  return settled;
+Json to_json(const lattice::Settled& settled) {
+  return json_of([&](Fields& out) { describe(out, settled); });
+}
+
+void describe_method(Fields& out, const std::optional<lattice::Settled>& settled) {
+  out.optional(settled.has_value(), [&](Fields& f) {
+    f.object(Label("method", "what run.method = \"auto\" chose").shared(),
+             [&](Fields& method) { describe(method, settled.value_or(lattice::Settled())); });
+  });
 }
 
 std::string complaint(const lattice::Settled& settled) {

@@ -6,11 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/json_fwd.h"
 #include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {
 
+/// The key "method", of results whose scene leaves the method to the program.
+void describe_method(Fields& out, const std::optional<lattice::Settled>& settled);
 [[nodiscard]] Json to_json(const lattice::Settled& settled);
 /// What is wrong with a choice, in a sentence; empty if nothing.
 [[nodiscard]] std::string complaint(const lattice::Settled& settled);

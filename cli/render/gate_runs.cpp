@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/gate_runs.h"
 
-#include "cli/render/json.h"
+#include "cli/render/choice.h"
+#include "cli/render/health.h"
 #include "cli/render/text.h"
 #include "dynamics/base/share.h"
 
@@ -9,18 +10,30 @@ namespace gatewalk::cli {
 
 using dynamics::Outcome;
 
-Json to_json(const dynamics::GateTally& tally) {
-  Json json;
-  json["trials"] = tally.trials;
-  json["traversed"] = tally.traversed();
-  for (const auto& [outcome, key, words] : dynamics::kOutcomeNames)
-    json[std::string(key)] = tally[outcome];
-  const auto interval = [&](std::int64_t n) { return dynamics::share_interval(n, tally.trials); };
-  json["intervals_95"] = {{"traversed", interval(tally.traversed())}};
-  for (const auto& [outcome, key, words] : dynamics::kOutcomeNames)
-    if (outcome != Outcome::traversed_even && outcome != Outcome::broken)
-      json["intervals_95"][std::string(key)] = interval(tally[outcome]);
-  return json;
+void describe(Fields& out, const dynamics::GateTally& tally) {
+  out.count({"trials", "1", "runs of the gate"}, tally.trials);
+  out.with_intervals_in({"intervals_95", "95 % intervals of the shares"}, [&](Fields& f) {
+    const auto counted = [&](const Field& field, std::int64_t n) {
+      f.counted(field, n, dynamics::share_interval(n, tally.trials));
+    };
+    counted({"traversed", "1", "runs in which the body came through, over either beam"},
+            tally.traversed());
+    for (const auto& [outcome, key, words] : dynamics::kOutcomeNames) {
+      const std::string meaning = "runs that ended so: " + std::string(words);
+      const Field field(key, "1", meaning);
+      if (outcome != Outcome::traversed_even && outcome != Outcome::broken)
+        counted(field, tally[outcome]);
+      else
+        f.count(field, tally[outcome]);
+    }
+  });
+}
+
+void describe(Fields& out, const GateResult& result) {
+  describe(out, result.tally);
+  describe_method(out, result.method);
+  describe_status(out, result.tally.health);
+  describe_made_by(out, result.made_by);
 }
 
 std::string table_of(const dynamics::GateTally& tally) {

@@ -1,17 +1,28 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How runs of one gate ended, as JSON and as a table.
+/// How runs of one gate ended, as a result, a table and a picture.
 
+#include <optional>
 #include <string>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 #include "dynamics/disc/ensemble.h"
+#include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {
 
 /// Counts, and 95 % intervals of their shares.
-[[nodiscard]] Json to_json(const dynamics::GateTally& tally);
+void describe(Fields& out, const dynamics::GateTally& tally);
+
+/// The result of `gate`.
+struct GateResult {
+  dynamics::GateTally tally;
+  std::optional<lattice::Settled> method;
+  Provenance made_by;
+};
+void describe(Fields& out, const GateResult& result);
 /// A line per outcome: count, share, 95 % interval.
 [[nodiscard]] std::string table_of(const dynamics::GateTally& tally);
 /// A bar per outcome.

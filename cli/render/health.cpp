@@ -7,15 +7,22 @@
 
 namespace gatewalk::cli {
 
-Json to_json(const dynamics::Health& h) {
-  Json j;
-  j["clean"] = h.clean();
+void describe(Fields& out, const dynamics::Health& h) {
+  out.flag({"clean", "whether no fault of the method was seen"}, h.clean());
   for (const dynamics::HealthNumber& n : dynamics::kHealthNumbers)
     if (n.count != nullptr)
-      j[n.key] = h.*n.count;
+      out.count({n.key, n.unit, n.meaning}, h.*n.count);
     else
-      j[n.key] = h.*n.largest;
-  return j;
+      out.number({n.key, n.unit, n.meaning}, h.*n.largest);
+}
+
+void describe_status(Fields& out, const dynamics::Health& health) {
+  out.object(Label("status", "numerical faults of the runs behind a result").shared(),
+             [&](Fields& status) { describe(status, health); });
+}
+
+Json to_json(const dynamics::Health& health) {
+  return json_of([&](Fields& out) { describe(out, health); });
 }
 
 dynamics::Health health_from(const Json& j) {

@@ -4,12 +4,16 @@
 
 #include <string>
 
+#include "cli/render/fields.h"
 #include "cli/render/json_fwd.h"
 #include "dynamics/cells/health.h"
 
 namespace gatewalk::cli {
 
-/// {"clean": bool, counts, worst values}.
+/// The keys of "status".
+void describe(Fields& out, const dynamics::Health& health);
+/// The key "status", which most results have.
+void describe_status(Fields& out, const dynamics::Health& health);
 [[nodiscard]] Json to_json(const dynamics::Health& health);
 /// Its inverse. Throws nlohmann::json::exception when a count is missing.
 [[nodiscard]] dynamics::Health health_from(const Json& j);

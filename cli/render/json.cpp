@@ -3,6 +3,8 @@
 
 #include <locale.h>
 
+#include <utility>
+
 namespace gatewalk::cli {
 namespace {
 
@@ -22,6 +24,61 @@ class PlainLocale {
   locale_t before_;
 };
 
+/// Fields as JSON, keys in the order in which they are described.
+class JsonFields final : public Fields {
+ public:
+  [[nodiscard]] Json take() && { return std::move(result_); }
+
+ protected:
+  void leaf(const Key& key, ValueKind, bool, const Value& value) override {
+    put(key, std::visit([](const auto& x) { return json_of_value(x); }, value));
+  }
+  void open(const Key& key, Shape shape, std::string_view) override {
+    open_.push_back(&put(key, shape == Shape::list ? Json::array() : Json::object()));
+  }
+  void next() override {
+    if (!open_.back()->is_array()) open_.pop_back();  // the item before
+    open_.back()->push_back(Json::object());
+    open_.push_back(&open_.back()->back());
+  }
+  void close() override {
+    const bool is_item = open_.size() > 1 && open_[open_.size() - 2]->is_array();
+    open_.resize(open_.size() - (is_item ? 2 : 1));
+  }
+
+ private:
+  static Json json_of_value(std::monostate) { return {}; }
+  static Json json_of_value(double x) { return or_null(x); }
+  static Json json_of_value(std::string_view words) { return std::string(words); }
+  template <class T>
+  static Json json_of_value(const T& x) {
+    return Json(x);
+  }
+  template <class T>
+  static Json json_of_value(const std::vector<T>* list) {
+    return Json(*list);
+  }
+  template <class Number>
+  static Json json_of_value(
+      const Eigen::Array<Number, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>* grid) {
+    Json rows = Json::array();
+    for (Eigen::Index r = 0; r < grid->rows(); ++r) {
+      Json row = Json::array();
+      for (Eigen::Index c = 0; c < grid->cols(); ++c) row.push_back((*grid)(r, c));
+      rows.push_back(std::move(row));
+    }
+    return rows;
+  }
+
+  Json& put(const Key& key, Json value) {
+    Json& object = open_.empty() ? result_ : *open_.back();
+    return object[std::string(key.key)] = std::move(value);
+  }
+
+  Json result_ = Json::object();
+  std::vector<Json*> open_;  // objects and lists that are not complete, innermost last
+};
+
 }  // namespace
 
 Json parsed_json(std::string_view text) {
@@ -29,12 +86,27 @@ Json parsed_json(std::string_view text) {
   return Json::parse(text, nullptr, false);
 }
 
+Json json_of(const Description& describe) {
+  JsonFields fields;
+  describe(fields);
+  return std::move(fields).take();
+}
+
+std::string json_string(std::string_view text) { return text_of(Json(std::string(text))); }
+
 std::string text_of(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
+void describe_version(Fields& out) {
+  out.count(Field("format_version", "1", "changes when a key goes or changes its meaning")
+                .at_least(kFormatVersion)
+                .at_most(kFormatVersion),
+            kFormatVersion);
+}
+
 Json with_format_version(const Json& result) {
-  Json all{{"format_version", kFormatVersion}};
+  Json all = json_of(describe_version);
   all.update(result);
   return all;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "cli/render/fields.h"
 #include "cli/render/json_fwd.h"
 
 namespace gatewalk::cli {
@@ -17,11 +18,18 @@ namespace gatewalk::cli {
 /// Of a text; one that is_discarded() where it is no JSON.
 [[nodiscard]] Json parsed_json(std::string_view text);
 
+/// The result that is described.
+[[nodiscard]] Json json_of(const Description& describe);
+
+/// A text in quotation marks, as JSON writes it.
+[[nodiscard]] std::string json_string(std::string_view text);
+
 /// null for what JSON has no number for.
 [[nodiscard]] inline Json or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }
 
 /// Of the JSON that commands write; a key that goes, or changes its meaning, makes another one.
 inline constexpr int kFormatVersion = 1;
+void describe_version(Fields& out);
 /// The result with "format_version" as its first key.
 [[nodiscard]] Json with_format_version(const Json& result);
 /// The same as the text of a file.

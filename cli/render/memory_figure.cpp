@@ -13,7 +13,7 @@ namespace {
 using lattice::GatesAhead;
 using lattice::MemoryStudy;
 
-constexpr double kPanelsLeft = 88, kPanelsRight = 492, kPanelHeight = 54, kPanelGap = 14,
+constexpr double kPanelsLeft = 88, kPanelsRight = 492, kMemoryPanelHeight = 54, kPanelGap = 14,
                  kPanelsHead = 50, kScalesHeight = 110, kScalesHead = 82;
 /// More ways than this would make panels too small to read.
 constexpr std::size_t kMostWays = 6;
@@ -99,19 +99,21 @@ std::string of_ways(const MemoryStudy& study, const Sheet& sheet, double top) {
     out += sheet.text(names[columns[i]], left_of(i) + 4, top + kPanelsHead - 6, kSmallFont);
   const int first = ahead.steps.front().gates, last = ahead.steps.back().gates;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const double above = top + kPanelsHead + static_cast<double>(k) * (kPanelHeight + kPanelGap);
+    const double above =
+        top + kPanelsHead + static_cast<double>(k) * (kMemoryPanelHeight + kPanelGap);
     const bool lowest = k + 1 == rows.size();
-    out += sheet.text(names[rows[k]], 8, above + 0.5 * kPanelHeight, kSmallFont);
+    out += sheet.text(names[rows[k]], 8, above + 0.5 * kMemoryPanelHeight, kSmallFont);
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const Probabilities p(ahead, ways, rows[k], columns[i]);
       const std::string block = "$ahead" + std::to_string(k) + "_" + std::to_string(i);
-      out += data_block(block, p.rows) + kFrame + kSmallTics +
-             sheet.margins({left_of(i), left_of(i) + pitch - 30, above, above + kPanelHeight}) +
-             "set xrange [" + digits(first - 0.5) + ":" + digits(last + 0.5) + "]\nset xtics 2,2" +
-             (lowest ? "" : "\nset format x ''") + "\n" + UpTo(p.most).commands() +
-             Sheet::x_axis(lowest && i == columns.size() / 2 ? "'gates'" : "''") + "set ylabel '" +
-             (i == 0 ? "%" : "") + "' font ',12' offset 2.2,0\nplot " +
-             curve(block, kFirstColour, "black") + "\nunset label\nset format x '% h'\n";
+      out +=
+          data_block(block, p.rows) + kFrame + kSmallTics +
+          sheet.margins({left_of(i), left_of(i) + pitch - 30, above, above + kMemoryPanelHeight}) +
+          "set xrange [" + digits(first - 0.5) + ":" + digits(last + 0.5) + "]\nset xtics 2,2" +
+          (lowest ? "" : "\nset format x ''") + "\n" + UpTo(p.most).commands() +
+          Sheet::x_axis(lowest && i == columns.size() / 2 ? "'gates'" : "''") + "set ylabel '" +
+          (i == 0 ? "%" : "") + "' font ',12' offset 2.2,0\nplot " +
+          curve(block, kFirstColour, "black") + "\nunset label\nset format x '% h'\n";
     }
   }
   return out + "set ylabel '' font ',15'\n";
@@ -155,7 +157,7 @@ MorePanels panels_of(const MemoryStudy& study) {
   if (ahead.steps.empty() || ways == 0 || ways > kMostWays) return {};
   const double of_all =
       kPanelsHead + 34 +
-      static_cast<double>(entered_ways(study).size()) * (kPanelHeight + kPanelGap);
+      static_cast<double>(entered_ways(study).size()) * (kMemoryPanelHeight + kPanelGap);
   return {of_all + kScalesHead + kScalesHeight, [&study, of_all](const Sheet& sheet, double top) {
             return of_ways(study, sheet, top) + of_scales(study, sheet, top + of_all);
           }};

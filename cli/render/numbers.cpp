@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "cli/render/csv.h"
 #include "cli/render/json.h"
@@ -19,8 +18,6 @@ std::array<Json, 2> limits_in(const Json& bars) {
       bars.is_array() && bars.size() == 2 && is_value(bars[0]) && is_value(bars[1]);
   return is_pair ? std::array<Json, 2>{bars[0], bars[1]} : std::array<Json, 2>{};
 }
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 class NumberTable {
  public:

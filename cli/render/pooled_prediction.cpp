@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/pooled_prediction.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -75,21 +77,33 @@ Json direct_seconds(const lattice::PooledPrediction& p) {
 
 }  // namespace
 
-Json to_json(const std::optional<lattice::OwnTrials>& own) {
-  if (!own) return nullptr;
-  return {{"trials", own->trials},
-          {"total_variation", own->total_variation},
-          {"chance_total_variation", own->chance_total_variation},
-          {"p", own->p},
-          {"differs", own->differs()}};
+void describe_own_trials(Fields& out, const std::optional<lattice::OwnTrials>& own) {
+  out.maybe(Label("own_trials",
+                  "the full trials of all starts against the chain that was made from them; null: "
+                  "none of a chain's answers, or answers by walks")
+                .shared(),
+            own, [](Fields& f, const lattice::OwnTrials& o) {
+              f.count({"trials", "1", "full trials"}, o.trials);
+              f.number({"total_variation", "1", "between their final gates and the chain's"},
+                       o.total_variation);
+              f.number({"chance_total_variation", "1",
+                        "mean of the same for as many trials drawn from the chain's answer"},
+                       o.chance_total_variation);
+              f.number({"p", "1", "of final gates and endings together"}, o.p);
+              f.flag({"differs", "p is at most 1 %: the chain errs"}, o.differs());
+            });
 }
 
-std::string own_trials_text(const Json& own) {
-  if (own.is_null()) return "";
-  return "check: its " + own.at("trials").dump() + " full trials themselves are " +
-         fixed(own.at("total_variation"), 4) + " away, chance makes " +
-         fixed(own.at("chance_total_variation"), 4) + " (" + p_words(own.at("p")) + ")" +
-         (own.at("differs") == true ? ": the chain errs" : "") + "\n";
+Json to_json(const std::optional<lattice::OwnTrials>& own) {
+  return json_of([&](Fields& out) { describe_own_trials(out, own); })["own_trials"];
+}
+
+std::string own_trials_text(const std::optional<lattice::OwnTrials>& own) {
+  if (!own) return "";
+  return fmt::format("check: its {} full trials themselves are {} away, chance makes {} ({}){}\n",
+                     own->trials, fixed(own->total_variation, 4),
+                     fixed(own->chance_total_variation, 4), p_words(own->p),
+                     own->differs() ? ": the chain errs" : "");
 }
 
 Json to_json(const lattice::PooledPrediction& p, const ShownField& shown, double accuracy,
@@ -122,7 +136,7 @@ std::string table_of(const lattice::PooledPrediction& p, const ShownField& shown
     table += (k > 0 ? "\n" : "") +
              (given ? title_of(shown.map.section, start_of(p.starts[k])) + "\n" : "") +
              table_of(p.starts[k], shown);
-  table += own_trials_text(to_json(p.own_trials));
+  table += own_trials_text(p.own_trials);
   const Json direct = direct_seconds(p);
   table += std::to_string(p.gate_runs) + " gate runs, " + std::to_string(p.states) + " states, " +
            fixed(p.seconds, 2) + " s";

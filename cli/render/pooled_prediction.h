@@ -19,9 +19,10 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string table_of(const lattice::PooledPrediction& prediction,
                                    const ShownField& shown, bool given);
 
-/// What a chain's own full trials say of it; null where there are none.
+/// The key "own_trials": what a chain's own full trials say of it; null where there are none.
+void describe_own_trials(Fields& out, const std::optional<lattice::OwnTrials>& own);
 [[nodiscard]] Json to_json(const std::optional<lattice::OwnTrials>& own);
-/// The same as a line, of that JSON; empty where it is null.
-[[nodiscard]] std::string own_trials_text(const Json& own);
+/// The same as a line; empty where there are none.
+[[nodiscard]] std::string own_trials_text(const std::optional<lattice::OwnTrials>& own);
 
 }  // namespace gatewalk::cli

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/json_fwd.h"
 
 namespace gatewalk::cli {
@@ -21,9 +22,13 @@ struct Provenance {
   std::set<std::string, std::less<>> derived;  // keys that the scene left out
   /// The files of a run's parts, with which part each is; none of a run in one.
   std::vector<std::pair<std::string, std::string>> parts{};
+  std::optional<std::string> cell{};  // what describes the cells of a recorded run, as TOML
 };
 
-/// {"program", "version", "commit", "command", ...}
+/// The keys of "made_by".
+void describe(Fields& out, const Provenance& provenance);
+/// The key "made_by", which all results have.
+void describe_made_by(Fields& out, const Provenance& provenance);
 [[nodiscard]] Json to_json(const Provenance& provenance);
 
 /// "AMD EPYC, 2 cores": what times were measured on.

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "cli/render/choice.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
@@ -15,13 +15,6 @@ std::string chance(double x) { return digits(x, 3); }
 
 std::string interval_text(const std::array<double, 2>& i) {
   return "[" + chance(i[0]) + ", " + chance(i[1]) + "]";
-}
-
-Json to_json(const lattice::RowChance& c) {
-  const bool known = c.probability > 0.0;
-  return {{"probability", c.probability},
-          {"interval_95", c.interval_95()},
-          {"relative_standard_error", known ? Json(c.relative_standard_error) : Json()}};
 }
 
 bool has_error(const lattice::RowChance& c) {
@@ -41,37 +34,57 @@ std::string rounded(double n) {
   return n < 1e9 ? fixed(two_digits, 0) : chance(two_digits);
 }
 
-}  // namespace
-
-Json to_json(const lattice::RareEvent& event, const DirectRows& direct) {
-  const lattice::Splitting& s = event.splitting;
-  Json json = to_json(s.rows.back());
-  json["row"] = s.rows.size();
-  json["chain"] = event.chain.back();
-  json["direct_trials_needed"] =
-      has_error(s.rows.back()) ? Json(trials_needed(s.rows.back())) : Json();
-  json["reached"] = s.reached;
-  json["gate_runs"] = s.gate_runs + event.pool_runs;
-  json["split_trials"] = s.trials;
-  json["chain_seconds"] = event.chain_seconds;
-  json["seconds"] = event.seconds;
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    Json row = to_json(s.rows[r]);
-    row["row"] = r + 1;
-    row["chain"] = event.chain[r];
-    if (direct.trials > 0) {
-      row["direct_entered"] = direct.entered[r];
-      row["direct_interval_95"] = dynamics::share_interval(direct.entered[r], direct.trials);
-    }
-    json["rows"].push_back(std::move(row));
-  }
-  if (direct.trials > 0) json["direct"] = {{"trials", direct.trials}, {"seconds", direct.seconds}};
-  json["status"] = to_json(s.health);
-  return json;
+void describe(Fields& out, const lattice::RowChance& c) {
+  out.estimate({"probability", "1", "chance that a body enters the row"}, c.probability,
+               c.interval_95(), "interval_95");
+  out.number({"relative_standard_error", "1", "of the chance; null where no body came"},
+             c.probability > 0.0 ? c.relative_standard_error : kUnknown);
 }
 
-std::string table_of(const lattice::RareEvent& event, const DirectRows& direct,
-                     const lattice::FieldParams& field) {
+}  // namespace
+
+void describe(Fields& out, const RareResult& result) {
+  const auto& [event, direct, method, made_by] = result;
+  const lattice::Splitting& s = event.splitting;
+  const lattice::RowChance last = s.rows.empty() ? lattice::RowChance() : s.rows.back();
+  describe(out, last);
+  out.count({"row", "1", "the row to enter; the one behind the start's is 1"}, s.rows.size());
+  out.number({"chain", "1", "the same chance by the chain alone"},
+             event.chain.empty() ? kUnknown : event.chain.back());
+  out.number({"direct_trials_needed", "1",
+              "trials of direct simulation that have the same relative standard error"},
+             has_error(last) ? trials_needed(last) : kUnknown);
+  out.flag({"reached", "whether the accuracy that was asked for was reached"}, s.reached);
+  out.count({"gate_runs", "1", "gate runs, of the chain and of the split trials"},
+            s.gate_runs + event.pool_runs);
+  out.count({"split_trials", "1", "independent trials, before they were split"}, s.trials);
+  out.number({"chain_seconds", "s", "time of the chain and its runs"}, event.chain_seconds);
+  out.number({"seconds", "s", "time in all"}, event.seconds);
+  out.list_of(
+      {"rows", "each row up to the target"}, s.rows.size(), [&](Fields& row, std::size_t r) {
+        describe(row, s.rows[r]);
+        row.count({"row", "1", "the one behind the start's is 1"}, r + 1);
+        row.number({"chain", "1", "the same chance by the chain alone"}, event.chain[r]);
+        row.optional(direct.trials > 0, [&](Fields& f) {
+          const std::int64_t entered = direct.trials > 0 ? direct.entered[r] : 0;
+          f.count({"direct_entered", "1", "trials of direct simulation that entered it"}, entered);
+          f.interval({"direct_interval_95", "1", "95 % interval of their share"},
+                     dynamics::share_interval(entered, direct.trials));
+        });
+      });
+  out.optional(direct.trials > 0, [&](Fields& f) {
+    f.object({"direct", "direct simulation beside it"}, [&](Fields& d) {
+      d.count({"trials", "1", "trials of direct simulation"}, direct.trials);
+      d.number({"seconds", "s", "time that they took"}, direct.seconds);
+    });
+  });
+  describe_status(out, s.health);
+  describe_method(out, method);
+  describe_made_by(out, made_by);
+}
+
+std::string table_of(const RareResult& result, const lattice::FieldParams& field) {
+  const auto& [event, direct, method, made_by] = result;
   const lattice::Splitting& s = event.splitting;
   const lattice::RowChance& last = s.rows.back();
   std::string table = "chance to enter row " + std::to_string(s.rows.size()) + ": ";
@@ -113,7 +126,7 @@ std::string table_of(const lattice::RareEvent& event, const DirectRows& direct,
          (direct.trials > 0 ? "; " + std::to_string(direct.trials) + " direct trials, " +
                                   fixed(direct.seconds, 1) + " s"
                             : "") +
-         "\n";
+         "\n" + method_line(method);
 }
 
 }  // namespace gatewalk::cli

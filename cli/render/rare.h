@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 #include "dynamics/base/share.h"
+#include "lattice/scene/settle.h"
 #include "lattice/study/rare.h"
 
 namespace gatewalk::cli {
@@ -20,9 +22,15 @@ struct DirectRows {
   double seconds = 0.0;
 };
 
-[[nodiscard]] Json to_json(const lattice::RareEvent& event, const DirectRows& direct);
-[[nodiscard]] std::string table_of(const lattice::RareEvent& event, const DirectRows& direct,
-                                   const lattice::FieldParams& field);
-[[nodiscard]] Figure figure_of(const lattice::RareEvent& event, const DirectRows& direct);
+/// The result of `rare`.
+struct RareResult {
+  lattice::RareEvent event;
+  DirectRows direct;
+  std::optional<lattice::Settled> method;
+  Provenance made_by;
+};
+void describe(Fields& out, const RareResult& result);
+[[nodiscard]] std::string table_of(const RareResult& result, const lattice::FieldParams& field);
+[[nodiscard]] Figure figure_of(const RareResult& result);
 
 }  // namespace gatewalk::cli

@@ -7,7 +7,8 @@
 
 namespace gatewalk::cli {
 
-Figure figure_of(const lattice::RareEvent& event, const DirectRows& direct) {
+Figure figure_of(const RareResult& result) {
+  const auto& [event, direct, method, made_by] = result;
   const lattice::Splitting& s = event.splitting;
   std::string split, chain, trials;
   double least = 1.0;

@@ -72,6 +72,13 @@ std::string starts_in(const Json& starts) {
   return text;
 }
 
+/// Of a file.
+std::optional<lattice::OwnTrials> own_trials_of(const Json& j) {
+  if (j.is_null()) return {};
+  return lattice::OwnTrials{j.at("trials"), j.at("total_variation"), j.at("chance_total_variation"),
+                            j.at("p")};
+}
+
 std::string tree_line(const Json& j) {
   std::string text = "states: " + j.at("states").dump() + " (leaves of trees with " +
                      j.at("entries_per_leaf").dump() + " entries or more" +
@@ -84,7 +91,7 @@ std::string tree_line(const Json& j) {
   if (const double bias = j.at("states_bias").get<double>(); bias > 0.0)
     text += "fewer states than the runs allow: total variation " + fixed(bias, 4) +
             " of the final gates\n";
-  return text + own_trials_text(j.value("own_trials", Json())) +
+  return text + own_trials_text(own_trials_of(j.value("own_trials", Json()))) +
          "a row has few runs and is noisy by itself: a prediction averages over all of them\n";
 }
 

@@ -53,7 +53,7 @@ Json to_json(const std::vector<SweepAxis>& axes, const std::vector<SweepPoint>& 
   for (const SweepPoint& p : points) {
     Json point;
     for (std::size_t i = 0; i < axes.size(); ++i) point["at"][axes[i].key] = value(p.values[i]);
-    point.update(to_json(p.tally));
+    point.update(json_of([&](Fields& out) { describe(out, p.tally); }));
     const Share right = shares_of(p.tally).back();
     if (right.whole > 0)
       point["intervals_95"][right.name] = share_interval(right.part, right.whole);

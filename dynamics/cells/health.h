@@ -54,31 +54,45 @@ struct Health {
   }
 };
 
-/// One number of Health: a count or a largest value (the other is null), with its name in files.
+/// One number of Health: a count or a largest value (the other is null), with its name in files,
+/// unit and meaning.
 struct HealthNumber {
-  const char* key;
+  const char *key, *unit, *meaning;
   std::int64_t Health::*count = nullptr;
   double Health::*largest = nullptr;
   bool is_recent = false;  // older files have none
 };
 /// All of them, in the order of files. Counts add, of the others the largest stays.
 inline constexpr std::array<HealthNumber, 16> kHealthNumbers{{
-    {"runs", &Health::runs},
-    {"runs_penetrating_over_1_percent", &Health::penetrating},
-    {"runs_creating_energy", &Health::creating_energy},
-    {"runs_too_fast_for_the_step", &Health::fast},
-    {"runs_beyond_the_stability_bound", &Health::unstable},
-    {"runs_not_finite", &Health::broken},
-    {"contacts_without_a_formula", &Health::undefined_contacts},
-    {"steps_forced_to_hold", &Health::forced_holds},
-    {"worst_penetration_m", nullptr, &Health::worst_penetration},
-    {"worst_energy_created_J", nullptr, &Health::worst_energy_created},
-    {"worst_speed_m_per_s", nullptr, &Health::worst_speed},
-    {"steps", &Health::steps},
-    {"evaluations", &Health::evaluations},
-    {"impacts", &Health::impacts},
-    {"trials_checked", &Health::checked_trials, nullptr, true},
-    {"outcome_error_seen", nullptr, &Health::outcome_error, true},
+    {"runs", "1", "gate runs", &Health::runs},
+    {"runs_penetrating_over_1_percent", "1",
+     "gate runs in which the body sank into a beam by more than 1 % of its radius",
+     &Health::penetrating},
+    {"runs_creating_energy", "1", "gate runs in which energy appeared from nothing",
+     &Health::creating_energy},
+    {"runs_too_fast_for_the_step", "1",
+     "gate runs in which body or beam moved over half a radius in one step", &Health::fast},
+    {"runs_beyond_the_stability_bound", "1",
+     "gate runs whose step is longer than the method is stable for", &Health::unstable},
+    {"runs_not_finite", "1", "gate runs that stopped being finite numbers", &Health::broken},
+    {"contacts_without_a_formula", "1",
+     "steps that overlapped a joint, for which the method has no formula",
+     &Health::undefined_contacts},
+    {"steps_forced_to_hold", "1", "steps in which hits piled up and were forced to end",
+     &Health::forced_holds},
+    {"worst_penetration_m", "m", "deepest overlap of body and beam", nullptr,
+     &Health::worst_penetration},
+    {"worst_energy_created_J", "J", "most energy that appeared from nothing in a gate run", nullptr,
+     &Health::worst_energy_created},
+    {"worst_speed_m_per_s", "m/s", "highest speed of the body", nullptr, &Health::worst_speed},
+    {"steps", "1", "time steps of all gate runs", &Health::steps},
+    {"evaluations", "1", "evaluations of the forces", &Health::evaluations},
+    {"impacts", "1", "impacts of body and beams", &Health::impacts},
+    {"trials_checked", "1", "trials that were run again by a better method",
+     &Health::checked_trials, nullptr, true},
+    {"outcome_error_seen", "1",
+     "total variation between their outcomes by both methods that chance does not explain", nullptr,
+     &Health::outcome_error, true},
 }};
 
 }  // namespace gatewalk::dynamics

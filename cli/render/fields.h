@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// A result described once, key by key: describe(Fields&, const Result&) names each key with its
+/// unit and meaning and gives its value. What takes the fields makes of them the result's JSON
+/// (json.h) or the schema of all such results (schema.h).
+
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <ranges>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "markov/predict.h"
+#include "markov/walk.h"
+
+namespace gatewalk::cli {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  // null
+using Interval = std::array<double, 2>;  // 95 %, from and to; NaN: there is none
+
+/// A key of a result with what its readers must know of it. It is used in the call that it is made
+/// for: texts are not copied.
+struct Key {
+  std::string_view key, unit, meaning;
+  std::string_view varies{};  // how the key is shown where it differs among results: "mean_<cost>"
+  std::optional<double> least{}, most{};  // of numbers
+  std::vector<std::string> words{};       // of texts: one of these
+  bool is_shared = false;                 // objects: many results have this very one
+};
+
+/// The key of numbers: with a unit, "1" for shares, counts and ratios.
+struct Field : Key {
+  Field(std::string_view name, std::string_view in, std::string_view what) : Key{name, in, what} {}
+  [[nodiscard]] Field varying(std::string_view shown) const { return with(&Key::varies, shown); }
+  [[nodiscard]] Field at_least(double x) const { return with(&Key::least, std::optional(x)); }
+  [[nodiscard]] Field at_most(double x) const { return with(&Key::most, std::optional(x)); }
+
+ private:
+  template <class T>
+  [[nodiscard]] Field with(T Key::*member, const T& value) const {
+    Field changed = *this;
+    changed.*member = value;
+    return changed;
+  }
+};
+
+/// The key of flags, texts, objects and lists, which have no unit.
+struct Label : Key {
+  Label(std::string_view name, std::string_view what) : Key{name, {}, what} {}
+  [[nodiscard]] Label varying(std::string_view shown) const {
+    Label changed = *this;
+    changed.varies = shown;
+    return changed;
+  }
+  /// A text that is one of these words.
+  [[nodiscard]] Label one_of(std::vector<std::string> allowed) const {
+    Label changed = *this;
+    changed.words = std::move(allowed);
+    return changed;
+  }
+  /// An object that many results have: their schemas define it once, by its key.
+  [[nodiscard]] Label shared() const {
+    Label changed = *this;
+    changed.is_shared = true;
+    return changed;
+  }
+};
+
+/// A value that takes fields; none: null.
+using Value =
+    std::variant<std::monostate, double, std::int64_t, std::uint64_t, bool, std::string_view,
+                 Interval, const std::vector<double>*, const std::vector<std::int64_t>*,
+                 const std::vector<std::string>*, const std::vector<Interval>*,
+                 const markov::CellProbabilities*, const markov::CellCounts*>;
+
+/// What a value may be, whatever it is in one result.
+enum class ValueKind {
+  number,  // or null where it is NaN or infinite
+  count,   // whole
+  flag,
+  text,
+  interval,   // or null
+  numbers,    // a list, of numbers or null
+  counts,     // a list
+  texts,      // a list
+  intervals,  // a list
+  grid,       // of numbers: rows and columns; or null
+};
+
+class Fields {
+ public:
+  Fields() = default;
+  virtual ~Fields() = default;
+  Fields(const Fields&) = delete;
+  Fields& operator=(const Fields&) = delete;
+
+  void number(const Field& f, double x) { leaf(f, ValueKind::number, false, x); }
+  template <std::integral T>
+  void count(const Field& f, T n) {
+    leaf(f, ValueKind::count, false, whole(n));
+  }
+  /// None: null.
+  template <std::integral T>
+  void count(const Field& f, const std::optional<T>& n) {
+    leaf(f, ValueKind::count, true, n ? whole(*n) : Value());
+  }
+  void flag(const Label& l, bool yes) { leaf(l, ValueKind::flag, false, yes); }
+  void text(const Label& l, std::string_view words) { leaf(l, ValueKind::text, false, words); }
+  /// None: null.
+  template <std::same_as<std::optional<std::string>> Words>
+  void text(const Label& l, const Words& words) {
+    leaf(l, ValueKind::text, true, words ? Value(std::string_view(*words)) : Value());
+  }
+  /// None: null.
+  void interval(const Field& f, const std::optional<Interval>& limits) {
+    leaf(f, ValueKind::interval, true, limits ? Value(*limits) : Value());
+  }
+  void numbers(const Field& f, const std::vector<double>& x) {
+    leaf(f, ValueKind::numbers, false, &x);
+  }
+  void counts(const Field& f, const std::vector<std::int64_t>& n) {
+    leaf(f, ValueKind::counts, false, &n);
+  }
+  void texts(const Label& l, const std::vector<std::string>& t) {
+    leaf(l, ValueKind::texts, false, &t);
+  }
+  void intervals(const Field& f, const std::vector<Interval>& bars) {
+    leaf(f, ValueKind::intervals, false, &bars);
+  }
+  /// A number for each gate, row by row from the start's side on.
+  void grid(const Field& f, const markov::CellProbabilities& x) {
+    leaf(f, ValueKind::grid, true, &x);
+  }
+  void grid(const Field& f, const markov::CellCounts& n) { leaf(f, ValueKind::grid, true, &n); }
+  void no_grid(const Field& f) { leaf(f, ValueKind::grid, true, {}); }
+  /// A number and behind it its 95 % interval (none: null), as `bar`: key_95 if that is empty.
+  void estimate(const Field& f, double x, const std::optional<Interval>& limits,
+                std::string_view bar = {}) {
+    leaf(f, ValueKind::number, false, x);
+    limits_of(f, limits, bar);
+  }
+  /// A count, and behind it the interval of its share.
+  template <std::integral T>
+  void counted(const Field& f, T n, const std::optional<Interval>& share,
+               std::string_view bar = {}) {
+    leaf(f, ValueKind::count, false, whole(n));
+    limits_of(f, share, bar);
+  }
+
+  template <class Describe>
+  void object(const Label& l, Describe describe) {
+    open(l, Shape::object, "");
+    describe(*this);
+    close();
+  }
+  /// The object where there is one, else null. `describe` also takes what it points to.
+  template <class Result, class Describe>
+  void maybe(const Label& l, const Result& result, Describe describe) {
+    if (!result && !is_schema()) return leaf(l, ValueKind::text, true, {});
+    open(l, Shape::object, "null");
+    if (result)
+      describe(*this, *result);
+    else
+      describe(*this, std::remove_cvref_t<decltype(*result)>{});
+    close();
+  }
+  /// An object, or words that stand in its place.
+  template <class Describe>
+  void object_or_text(const Label& l, const std::optional<std::string>& words, Describe describe) {
+    if (words && !is_schema()) return leaf(l, ValueKind::text, false, std::string_view(*words));
+    open(l, Shape::object, "string");
+    describe(*this);
+    close();
+  }
+  /// An object for each item. The schema is told of one that is made by default, if need be.
+  template <std::ranges::range Items, class Describe>
+  void list(const Label& l, const Items& items, Describe describe) {
+    open(l, Shape::list, "");
+    for (const auto& item : items) {
+      next();
+      describe(*this, item);
+    }
+    if constexpr (std::default_initializable<std::ranges::range_value_t<Items>>)
+      if (is_schema() && std::ranges::empty(items)) {
+        next();
+        describe(*this, std::ranges::range_value_t<Items>{});
+      }
+    close();
+  }
+  /// The same with the numbers 0 to n - 1 as items.
+  template <class Describe>
+  void list_of(const Label& l, std::size_t n, Describe describe) {
+    open(l, Shape::list, "");
+    for (std::size_t i = 0; i < n; ++i) {
+      next();
+      describe(*this, i);
+    }
+    close();
+  }
+  /// What not every result has: described where it is there. The schema takes it in any case.
+  template <class Describe>
+  void optional(bool there, Describe describe) {
+    if (!there && !is_schema()) return;
+    begin_optional();
+    describe(*this);
+    end_optional();
+  }
+  /// One of two descriptions, both of keys beside each other.
+  template <class First, class Second>
+  void either(bool is_first, First first, Second second) {
+    begin_either();
+    if (is_first || is_schema()) first(*this);
+    or_else();
+    if (!is_first || is_schema()) second(*this);
+    end_either();
+  }
+  /// The intervals of the numbers that `describe` gives stand behind these, in an object of their
+  /// own with the same keys.
+  template <class Describe>
+  void with_intervals_in(const Label& l, Describe describe) {
+    intervals_.emplace_back();
+    describe(*this);
+    put_intervals(l);
+  }
+  /// An object whose numbers have their intervals in a second one, behind it.
+  template <class Describe>
+  void object(const Label& l, const Label& intervals, Describe describe) {
+    with_intervals_in(intervals, [&](Fields& out) { out.object(l, describe); });
+  }
+
+  /// All that results may have is asked for: what is described only makes a schema.
+  [[nodiscard]] virtual bool is_schema() const { return false; }
+
+ protected:
+  enum class Shape { object, list };
+  virtual void leaf(const Key& key, ValueKind kind, bool may_be_null, const Value& value) = 0;
+  /// `also`: "null" or "string", what may stand in its place.
+  virtual void open(const Key& key, Shape shape, std::string_view also) = 0;
+  virtual void next() = 0;  // an item of a list
+  virtual void close() = 0;
+  virtual void begin_optional() {}
+  virtual void end_optional() {}
+  virtual void begin_either() {}
+  virtual void or_else() {}
+  virtual void end_either() {}
+
+ private:
+  struct Limits {
+    std::string key, unit, meaning, varies;
+    std::optional<Interval> limits;
+  };
+  template <std::integral T>
+  static Value whole(T n) {
+    if constexpr (std::is_unsigned_v<T>)
+      return static_cast<std::uint64_t>(n);
+    else
+      return static_cast<std::int64_t>(n);
+  }
+  void limits_of(const Field& f, const std::optional<Interval>& limits, std::string_view bar);
+  void put_intervals(const Label& l);
+
+  std::vector<std::vector<Limits>> intervals_;  // those that are still to be put, innermost last
+};
+
+using Description = std::function<void(Fields&)>;
+
+}  // namespace gatewalk::cli

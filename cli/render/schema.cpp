@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: MIT
+#include "cli/render/schema.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <stdexcept>
+
+#include "cli/render/json.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// A key of results and what it may hold.
+struct Node {
+  std::string key, unit, meaning, varies, also;
+  std::optional<double> least, most;
+  std::vector<std::string> words;
+  bool is_always_there = true, may_be_null = false;
+  std::string shared{};  // where its keys are defined; empty: here
+  enum class Form { leaf, object, list } form = Form::leaf;
+  ValueKind kind = ValueKind::number;  // of a leaf
+  std::vector<std::unique_ptr<Node>> keys{};
+  std::vector<std::string> either{};  // keys of which the results with `either_or` have none
+  std::vector<std::string> either_or{};
+
+  Node* find(std::string_view name) {
+    const auto found =
+        std::find_if(keys.begin(), keys.end(), [&](const auto& node) { return node->key == name; });
+    return found == keys.end() ? nullptr : found->get();
+  }
+};
+
+using Shared = std::map<std::string, std::unique_ptr<Node>, std::less<>>;
+
+class SchemaFields final : public Fields {
+ public:
+  [[nodiscard]] bool is_schema() const override { return true; }
+  [[nodiscard]] Node& root() { return root_; }
+  [[nodiscard]] const Shared& shared() const { return shared_; }
+
+ protected:
+  void leaf(const Key& key, ValueKind kind, bool may_be_null, const Value&) override {
+    Node& node = add(key);
+    node.form = Node::Form::leaf;
+    node.kind = kind;
+    node.may_be_null = node.may_be_null || may_be_null;
+  }
+  void open(const Key& key, Shape shape, std::string_view also) override {
+    Node& node = add(key);
+    node.form = shape == Shape::list ? Node::Form::list : Node::Form::object;
+    node.also = also;
+    Node* inside = &node;
+    if (key.is_shared) {
+      node.shared = key.key;
+      auto& defined = shared_[node.shared];
+      if (!defined) defined = std::make_unique<Node>();
+      inside = defined.get();
+      inside->form = node.form;
+    }
+    scopes_.push_back({inside, 0, {}});
+  }
+  void next() override {}
+  void close() override {
+    const Node& closed = *scopes_.back().node;
+    if (closed.keys.empty())
+      throw std::logic_error("what stands in " + closed.key +
+                             " is not described: the example of the result has none");
+    scopes_.pop_back();
+  }
+  void begin_optional() override { ++scopes_.back().optional; }
+  void end_optional() override { --scopes_.back().optional; }
+  void begin_either() override {
+    begin_optional();
+    scopes_.back().keys = &scopes_.back().node->either;
+  }
+  void or_else() override { scopes_.back().keys = &scopes_.back().node->either_or; }
+  void end_either() override {
+    scopes_.back().keys = nullptr;
+    end_optional();
+  }
+
+ private:
+  struct Scope {
+    Node* node;
+    int optional;                      // > 0: not every result has the keys that come
+    std::vector<std::string>* keys{};  // takes them where they are alternatives
+  };
+
+  Node& add(const Key& key) {
+    if (key.meaning.empty())
+      throw std::logic_error("the key " + std::string(key.key) + " says nothing of its meaning");
+    Scope& scope = scopes_.back();
+    const bool is_always_there = scope.optional == 0 && key.varies.empty();
+    const std::string_view name = key.varies.empty() ? key.key : key.varies;
+    if (scope.keys && scope.optional == 1) scope.keys->emplace_back(name);
+    if (Node* known = scope.node->find(name)) return *known;
+    auto node = std::make_unique<Node>();
+    node->key = name;
+    node->unit = key.unit;
+    node->meaning = key.meaning;
+    node->varies = key.varies;
+    node->least = key.least;
+    node->most = key.most;
+    node->words = key.words;
+    node->is_always_there = is_always_there;
+    scope.node->keys.push_back(std::move(node));
+    return *scope.node->keys.back();
+  }
+
+  Node root_;
+  Shared shared_;
+  std::vector<Scope> scopes_{{&root_, 0, {}}};
+};
+
+// ---- As JSON Schema ----
+
+std::string list_of(const std::vector<std::string>& texts) {
+  std::string list;
+  for (const std::string& text : texts) list += (list.empty() ? "" : ", ") + json_string(text);
+  return "[" + list + "]";
+}
+
+/// The words of the schema for a leaf: "type": "integer", "minimum": 0
+std::string type_of(const Node& node) {
+  const char* const kNumber = R"("type": ["number", "null"])";
+  const auto list = [](const std::string& items) {
+    return R"("type": "array", "items": {)" + items + "}";
+  };
+  const auto type = [&](const char* name) {
+    return node.may_be_null ? fmt::format(R"("type": ["{}", "null"])", name)
+                            : fmt::format(R"("type": "{}")", name);
+  };
+  std::string text;
+  switch (node.kind) {
+    case ValueKind::number:
+      text = kNumber;
+      break;
+    case ValueKind::count:
+      text = type("integer");
+      break;
+    case ValueKind::flag:
+      text = type("boolean");
+      break;
+    case ValueKind::text:
+      text = type("string");
+      break;
+    case ValueKind::interval:
+      return R"("$ref": "#/$defs/interval")";
+    case ValueKind::numbers:
+      return list(kNumber);
+    case ValueKind::counts:
+      return list(R"("type": "integer")");
+    case ValueKind::texts:
+      return list(R"("type": "string")");
+    case ValueKind::intervals:
+      return list(R"("$ref": "#/$defs/interval")");
+    case ValueKind::grid:
+      return R"("$ref": "#/$defs/grid")";
+  }
+  if (node.least && node.least == node.most) return "\"const\": " + digits(*node.least);
+  if (node.least) text += ", \"minimum\": " + digits(*node.least);
+  if (node.most) text += ", \"maximum\": " + digits(*node.most);
+  if (!node.words.empty()) text += ", \"enum\": " + list_of(node.words);
+  return text;
+}
+
+/// "mean_<cost>" as a regular expression.
+std::string pattern_of(const std::string& shown) {
+  std::string pattern = "^";
+  bool inside = false;
+  for (const char c : shown) {
+    if (c == '<') pattern += ".+";
+    if (c == '<' || c == '>')
+      inside = c == '<';
+    else if (!inside)
+      pattern += c;
+  }
+  return pattern + "$";
+}
+/// Whether any key is meant: "<cost>".
+bool is_any(const Node& node) {
+  return node.varies.starts_with('<') && node.varies.find('>') + 1 == node.varies.size();
+}
+
+std::string schema_text(const Node& node, const std::string& indent, bool says_what);
+
+/// "properties": {...}, "required": [...], ... of an object, behind its type.
+std::string keys_text(const Node& node, const std::string& indent) {
+  std::string fixed, patterns, others = "false";
+  std::vector<std::string> required;
+  for (const auto& key : node.keys) {
+    const auto line = [&](const std::string& name) {
+      return indent + "  " + json_string(name) + ": " + schema_text(*key, indent + "  ", true);
+    };
+    if (key->varies.empty())
+      fixed += (fixed.empty() ? "" : ",\n") + line(key->key);
+    else if (is_any(*key))
+      others = schema_text(*key, indent + " ", true);
+    else
+      patterns += (patterns.empty() ? "" : ",\n") + line(pattern_of(key->varies));
+    if (key->is_always_there) required.push_back(key->key);
+  }
+  std::string text;
+  if (!fixed.empty()) text += indent + " \"properties\": {\n" + fixed + "\n" + indent + " },\n";
+  if (!patterns.empty())
+    text += indent + " \"patternProperties\": {\n" + patterns + "\n" + indent + " },\n";
+  if (!required.empty()) text += indent + " \"required\": " + list_of(required) + ",\n";
+  if (!node.either.empty() || !node.either_or.empty())
+    text += indent + R"( "oneOf": [{"required": )" + list_of(node.either) + R"(}, {"required": )" +
+            list_of(node.either_or) + "}],\n";
+  return text + indent + " \"additionalProperties\": " + others + "\n";
+}
+
+std::string schema_text(const Node& node, const std::string& indent, bool says_what) {
+  std::string about;
+  if (says_what) {
+    about = "\"description\": " + json_string(node.meaning) + ", ";
+    if (!node.unit.empty()) about += "\"unit\": " + json_string(node.unit) + ", ";
+  }
+  if (node.form == Node::Form::leaf) return "{" + about + type_of(node) + "}";
+  if (!node.shared.empty() && says_what) {
+    const std::string ref = "\"$ref\": " + json_string("#/$defs/" + node.shared);
+    return "{" + about +
+           (node.also.empty() ? ref
+                              : R"("anyOf": [{"type": ")" + node.also + "\"}, {" + ref + "}]") +
+           "}";
+  }
+  if (node.form == Node::Form::object)
+    return "{" + about +
+           (node.also.empty() ? std::string(R"("type": "object")")
+                              : R"("type": ["object", ")" + node.also + "\"]") +
+           ",\n" + keys_text(node, indent) + indent + "}";
+  return "{" + about + "\"type\": \"array\", \"items\": {\"type\": \"object\",\n" +
+         keys_text(node, indent) + indent + "}}";
+}
+
+// ---- As lines ----
+
+std::string type_words(const Node& node) {
+  const std::string or_null = node.may_be_null ? " or null" : "";
+  switch (node.kind) {
+    case ValueKind::number:
+      return "number";
+    case ValueKind::count:
+      return "count" + or_null;
+    case ValueKind::flag:
+      return "yes or no";
+    case ValueKind::text:
+      return "text" + or_null;
+    case ValueKind::interval:
+      return "interval";
+    case ValueKind::numbers:
+      return "numbers";
+    case ValueKind::counts:
+      return "counts";
+    case ValueKind::texts:
+      return "texts";
+    case ValueKind::intervals:
+      return "intervals";
+    case ValueKind::grid:
+      return "grid";
+  }
+  return "";
+}
+
+void add_lines(const Node& node, const Shared& shared, const std::string& before,
+               std::vector<KeyLine>& lines) {
+  for (const auto& key : node.keys) {
+    const std::string path = before + key->key;
+    const bool is_list = key->form == Node::Form::list;
+    const std::string also =
+        key->also.empty() ? "" : " or " + (key->also == "string" ? "text" : key->also);
+    lines.push_back({path,
+                     key->form == Node::Form::leaf ? type_words(*key)
+                     : is_list                     ? "list"
+                                                   : "object" + also,
+                     key->unit, key->meaning, key->is_always_there});
+    const Node& inside = key->shared.empty() ? *key : *shared.at(key->shared);
+    add_lines(inside, shared, path + (is_list ? "[]." : "."), lines);
+  }
+}
+
+}  // namespace
+
+std::string schema_of(const ResultOf& of) {
+  SchemaFields fields;
+  describe_version(fields);
+  of.result(fields);
+  const std::string name = of.command;
+  std::string text =
+      "{\n \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n \"$id\": \"" + name +
+      ".schema.json\",\n \"title\": \"gatewalk " + name + " --json\",\n \"type\": \"object\",\n" +
+      keys_text(fields.root(), "");
+  text.pop_back();
+  text += ",\n \"$defs\": {\n";
+  for (const auto& [key, node] : fields.shared())
+    text += "  " + json_string(key) + ": " + schema_text(*node, "  ", false) + ",\n";
+  return text +
+         R"(  "interval": {"description": "from and to, 95 %; null: none", "anyOf": [{"type": "null"},
+   {"type": "array", "minItems": 2, "maxItems": 2, "items": {"type": ["number", "null"]}}]},
+  "grid": {"description": "rows of numbers; null: too many", "type": ["array", "null"],
+   "items": {"type": "array", "items": {"type": ["number", "null"]}}}
+ }
+}
+)";
+}
+
+std::vector<KeyLine> keys_of(const ResultOf& of) {
+  SchemaFields fields;
+  describe_version(fields);
+  of.result(fields);
+  std::vector<KeyLine> lines;
+  add_lines(fields.root(), fields.shared(), "", lines);
+  return lines;
+}
+
+}  // namespace gatewalk::cli
