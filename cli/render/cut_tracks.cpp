@@ -27,11 +27,6 @@ std::vector<std::int64_t> left_by(const CutTracks& cut, const lattice::CellFile&
   return counts;
 }
 
-/// "12 gaps", "1 gap"
-std::string counted(std::int64_t n, const std::string& one, const std::string& many) {
-  return std::to_string(n) + " " + (n == 1 ? one : many);
-}
-
 std::string line_of(const char* name, std::int64_t count, std::size_t all,
                     const std::string& of_what) {
   return padded(name, -10) + padded(std::to_string(count), 8) +

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/gate_runs.h"
 
+#include <fmt/core.h>
+
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 #include "dynamics/base/share.h"
 
 namespace gatewalk::cli {
@@ -37,22 +40,23 @@ void describe(Fields& out, const GateResult& result) {
 }
 
 std::string table_of(const dynamics::GateTally& tally) {
-  const auto line = [&](const std::string& name, std::int64_t n) {
+  TextTable table({{"trials", -18},
+                   {std::to_string(tally.trials), 10},
+                   {"share   ", 11, 2, "%"},
+                   {"95 % interval", 0, 0, "", "  "}});
+  const auto line = [&](std::string_view name, std::int64_t n) {
     const auto [low, high] = dynamics::share_interval(n, tally.trials);
-    return padded(name, -18) + padded(std::to_string(n), 10) +
-           padded(percent(static_cast<double>(n), static_cast<double>(tally.trials), 2), 11) +
-           "   [" + fixed(100.0 * low, 2) + ", " + fixed(100.0 * high, 2) + "]\n";
+    table.row({name, n, 100.0 * static_cast<double>(n) / static_cast<double>(tally.trials),
+               fmt::format(" [{}, {}]", fixed(100.0 * low, 2), fixed(100.0 * high, 2))});
   };
-  std::string table = padded("trials", -18) + padded(std::to_string(tally.trials), 10) +
-                      "   share     95 % interval\n" + line("traversed", tally.traversed()) +
-                      line("  left beam", tally[Outcome::traversed_left]) +
-                      line("  right beam", tally[Outcome::traversed_right]);
-  if (tally[Outcome::traversed_even] > 0)
-    table += line("  both evenly", tally[Outcome::traversed_even]);
+  line("traversed", tally.traversed());
+  line("  left beam", tally[Outcome::traversed_left]);
+  line("  right beam", tally[Outcome::traversed_right]);
+  if (tally[Outcome::traversed_even] > 0) line("  both evenly", tally[Outcome::traversed_even]);
   for (const auto& [outcome, key, words] : dynamics::kOutcomeNames)
     if (outcome > Outcome::traversed_even && (outcome != Outcome::broken || tally[outcome] > 0))
-      table += line(std::string(words), tally[outcome]);
-  return table;
+      line(words, tally[outcome]);
+  return table.text();
 }
 
 Figure figure_of(const dynamics::GateTally& tally) {

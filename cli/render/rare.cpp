@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/rare.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -87,46 +90,44 @@ std::string table_of(const RareResult& result, const lattice::FieldParams& field
   const auto& [event, direct, method, made_by] = result;
   const lattice::Splitting& s = event.splitting;
   const lattice::RowChance& last = s.rows.back();
-  std::string table = "chance to enter row " + std::to_string(s.rows.size()) + ": ";
+  std::string text = fmt::format("chance to enter row {}: ", s.rows.size());
   if (last.probability > 0.0)
-    table += chance(last.probability) + " " + interval_text(last.interval_95()) +
-             ", relative standard error " + fixed(100 * last.relative_standard_error, 1) + " %";
+    text += fmt::format("{} {}, relative standard error {} %", chance(last.probability),
+                        interval_text(last.interval_95()),
+                        fixed(100 * last.relative_standard_error, 1));
   else
-    table += "none of " + std::to_string(s.trials) + " trials did: at most " +
-             chance(last.at_most) + " (two-sided 95 %)";
-  table += "\nthe chain alone says " + chance(event.chain.back());
+    text += fmt::format("none of {} trials did: at most {} (two-sided 95 %)", s.trials,
+                        chance(last.at_most));
+  text += "\nthe chain alone says " + chance(event.chain.back());
   if (has_error(last))
-    table += "; direct simulation would need " + rounded(trials_needed(last)) +
-             " trials for the same error";
-  table += "\nof a field of " + std::to_string(field.columns) +
-           " columns: who leaves it by a side does not come back";
+    text += fmt::format("; direct simulation would need {} trials for the same error",
+                        rounded(trials_needed(last)));
+  text += fmt::format("\nof a field of {} columns: who leaves it by a side does not come back",
+                      field.columns);
   if (field.max_gates > 0)
-    table += "; bodies go on for as long as it takes:\nfield.max_gates = " +
-             std::to_string(field.max_gates) +
-             ", which predict and lattice keep, does not count here";
-  table += "\n\n   row      chance              95 %            chain";
-  if (direct.trials > 0) table += "      direct simulation, 95 %";
-  table += "\n";
+    text += fmt::format(
+        "; bodies go on for as long as it takes:\n"
+        "field.max_gates = {}, which predict and lattice keep, does not count here",
+        field.max_gates);
+  text += "\n\n   row      chance              95 %            chain";
+  if (direct.trials > 0) text += "      direct simulation, 95 %";
+  TextTable table({{"", 6}, {"", 12}, {"", 24}, {"", 12}, {"", 12}, {"", 24}});
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const lattice::RowChance& c = s.rows[r];
-    table += padded(std::to_string(r + 1), 6) + padded(chance(c.probability), 12) +
-             padded(interval_text(c.interval_95()), 24) + padded(chance(event.chain[r]), 12);
+    std::vector<TextCell> cells = {r + 1, chance(c.probability), interval_text(c.interval_95()),
+                                   chance(event.chain[r])};
     if (direct.trials > 0) {
-      const auto [low, high] = dynamics::share_interval(direct.entered[r], direct.trials);
-      table += padded(chance(static_cast<double>(direct.entered[r]) /
-                             static_cast<double>(direct.trials)),
-                      12) +
-               padded(interval_text({low, high}), 24);
+      cells.emplace_back(
+          chance(static_cast<double>(direct.entered[r]) / static_cast<double>(direct.trials)));
+      cells.emplace_back(interval_text(dynamics::share_interval(direct.entered[r], direct.trials)));
     }
-    table += "\n";
+    table.row(cells);
   }
-  return table + std::to_string(s.trials) + " trials that were split, " +
-         std::to_string(s.gate_runs + event.pool_runs) + " gate runs, " + fixed(event.seconds, 1) +
-         " s" +
-         (direct.trials > 0 ? "; " + std::to_string(direct.trials) + " direct trials, " +
-                                  fixed(direct.seconds, 1) + " s"
-                            : "") +
-         "\n" + method_line(method);
+  text += fmt::format("\n{}{} trials that were split, {} gate runs, {} s", table.rows(), s.trials,
+                      s.gate_runs + event.pool_runs, fixed(event.seconds, 1));
+  if (direct.trials > 0)
+    text += fmt::format("; {} direct trials, {} s", direct.trials, fixed(direct.seconds, 1));
+  return text + "\n" + method_line(method);
 }
 
 }  // namespace gatewalk::cli

@@ -2,7 +2,9 @@
 #pragma once
 /// Numbers and words of tables.
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace gatewalk::cli {
 
@@ -19,6 +21,10 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string digits(double x, int significant = 7);
 /// "6.9e-04" of one decimal.
 [[nodiscard]] std::string scientific(double x, int decimals);
+/// "1 gap", "12 gaps"
+[[nodiscard]] std::string counted(std::int64_t n, std::string_view one, std::string_view many);
+/// Characters of UTF-8.
+[[nodiscard]] int length_of(std::string_view text);
 /// Text padded on the left or (negative width) on the right.
 [[nodiscard]] std::string padded(const std::string& text, int width);
 
