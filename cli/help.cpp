@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/help.h"
 
+#include <fmt/core.h>
+
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
@@ -9,6 +11,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/render/schema.h"
 #include "cli/render/version.h"
 #include "cli/terminal/output.h"
 
@@ -213,6 +216,9 @@ void write_help(const std::string& share) {
     write_text_atomically((root / file).string(), text);
   };
   const std::vector<Page> all = pages();
+  for (const ResultOf& of : results())
+    write(fmt::format("gatewalk/schemas/{}.schema.json", of.command), schema_of(of));
+  write("doc/gatewalk/results.md", results_in_markdown());
   write("man/man1/gatewalk.1", manual(all));
   for (const Page& page : all) write("man/man1/gatewalk-" + page.name + ".1", manual_of(page));
   write("bash-completion/completions/gatewalk", for_bash(all));

@@ -16,6 +16,7 @@
 #include "cli/help.h"
 #include "cli/kept/kept_run.h"
 #include "cli/kept/ranks.h"
+#include "cli/render/schema.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "cli/terminal/output.h"
@@ -76,6 +77,17 @@ int run(const std::vector<std::string>& words) {
   if (words[0] == "help" && words.size() == 3 && words[1] == "--write") {
     write_help(words[2]);
     return kFine;
+  }
+  if (words[0] == "help" && words.size() == 3 && words[2] == "--result") {
+    const Command* const command = find_command(words[1]);
+    if (!command) return kWrongUse;
+    for (const ResultOf& of : results())
+      if (of.command == std::string_view(command->name)) {
+        write_text_atomically("-", result_page(of));
+        return kFine;
+      }
+    throw UsageError(words[1] +
+                     " has no result of its own: it gives those of other commands, or files");
   }
   if (words[0] == "help" && words.size() == 2 && words[1] != "help" && words[1] != "--help") {
     const Command* const command = find_command(words[1]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/schema.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
@@ -267,21 +267,45 @@ std::string type_words(const Node& node) {
   return "";
 }
 
-void add_lines(const Node& node, const Shared& shared, const std::string& before,
-               std::vector<KeyLine>& lines) {
+std::string constraints_of(const Node& node) {
+  if (node.least && node.least == node.most) return " " + digits(*node.least);
+  std::string text = node.words.empty() ? "" : fmt::format(": {}", fmt::join(node.words, ", "));
+  if (node.least) text += ", at least " + digits(*node.least);
+  if (node.most) text += ", at most " + digits(*node.most);
+  return text;
+}
+
+std::string type_of_key(const Node& key) {
+  if (key.form == Node::Form::leaf) return type_words(key) + constraints_of(key);
+  if (key.form == Node::Form::list) return "list";
+  if (key.also.empty()) return "object";
+  return key.also == "string" ? "object or text" : "object or null";
+}
+
+void add_lines(const Node& node, const std::string& before, std::vector<KeyLine>& lines) {
   for (const auto& key : node.keys) {
     const std::string path = before + key->key;
-    const bool is_list = key->form == Node::Form::list;
-    const std::string also =
-        key->also.empty() ? "" : " or " + (key->also == "string" ? "text" : key->also);
-    lines.push_back({path,
-                     key->form == Node::Form::leaf ? type_words(*key)
-                     : is_list                     ? "list"
-                                                   : "object" + also,
-                     key->unit, key->meaning, key->is_always_there});
-    const Node& inside = key->shared.empty() ? *key : *shared.at(key->shared);
-    add_lines(inside, shared, path + (is_list ? "[]." : "."), lines);
+    lines.push_back({path, type_of_key(*key), key->unit, key->meaning, key->is_always_there});
+    if (key->shared.empty())
+      add_lines(*key, path + (key->form == Node::Form::list ? "[]." : "."), lines);
   }
+}
+
+/// The text in lines of at most `width` bytes where words allow it, `indent` before each but the
+/// first.
+std::string in_lines(const std::string& text, std::size_t width, const std::string& indent) {
+  std::string lines, line;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, end - at);
+    if (!line.empty() && line.size() + 1 + word.size() > width) {
+      lines += line + "\n" + indent;
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+    at = end + 1;
+  }
+  return lines + line;
 }
 
 }  // namespace
@@ -309,13 +333,59 @@ std::string schema_of(const ResultOf& of) {
 )";
 }
 
-std::vector<KeyLine> keys_of(const ResultOf& of) {
+std::vector<KeyList> keys_of(const ResultOf& of) {
   SchemaFields fields;
   describe_version(fields);
   of.result(fields);
-  std::vector<KeyLine> lines;
-  add_lines(fields.root(), fields.shared(), "", lines);
-  return lines;
+  std::vector<KeyList> lists{{of.command, {}}};
+  add_lines(fields.root(), "", lists.front().keys);
+  for (const auto& [name, node] : fields.shared()) {
+    lists.push_back({name, {}});
+    add_lines(*node, "", lists.back().keys);
+  }
+  return lists;
+}
+
+std::string result_page(const ResultOf& of) {
+  std::string page = fmt::format(
+      "The result of gatewalk {}, as --json writes it. Keys with a * are not in every result; [] "
+      "stands for each item\n"
+      "of a list. An interval is [from, to], 95 %; without one it is null.\n",
+      of.command);
+  for (const KeyList& list : keys_of(of)) {
+    page += list.name == of.command ? "\nRESULT\n" : fmt::format("\n{}\n", list.name);
+    for (const KeyLine& key : list.keys) {
+      const std::string unit = key.unit.empty() || key.unit == "1" ? "" : ", " + key.unit;
+      const std::string line = fmt::format(
+          "{}{} ({}{}): {}", key.path, key.is_always_there ? "" : "*", key.type, unit, key.meaning);
+      page += "  " + in_lines(line, 112, "      ") + "\n";
+    }
+  }
+  return page;
+}
+
+std::string results_in_markdown() {
+  std::string page =
+      "# Results: the keys of `--json`\n\nMade by `gatewalk help --write`; the same of one "
+      "command: "
+      "`gatewalk help COMMAND --result`. Keys with a `*` are not\nin every result; `[]` stands for "
+      "each item of a list. An interval "
+      "is [from, to], 95 %; without one it is null.\n";
+  std::map<std::string, std::vector<KeyLine>, std::less<>> shared;
+  const auto add = [&page](const KeyList& list) {
+    page +=
+        fmt::format("\n## {}\n\n| key | type | unit | meaning |\n|---|---|---|---|\n", list.name);
+    for (const KeyLine& key : list.keys)
+      page += fmt::format("| `{}`{} | {} | {} | {} |\n", key.path, key.is_always_there ? "" : " *",
+                          key.type, key.unit, key.meaning);
+  };
+  for (const ResultOf& of : results()) {
+    const std::vector<KeyList> lists = keys_of(of);
+    add(lists.front());
+    for (std::size_t i = 1; i < lists.size(); ++i) shared[lists[i].name] = lists[i].keys;
+  }
+  for (const auto& [name, keys] : shared) add({"`" + name + "` of several commands", keys});
+  return page;
 }
 
 }  // namespace gatewalk::cli

@@ -26,6 +26,17 @@ struct KeyLine {
   std::string path, type, unit, meaning;
   bool is_always_there;
 };
-[[nodiscard]] std::vector<KeyLine> keys_of(const ResultOf& of);
+/// Keys under a name: the command, or the key of an object that the results of many commands have.
+struct KeyList {
+  std::string name;
+  std::vector<KeyLine> keys;
+};
+/// The keys of a command's results, and behind them those of each shared object that they have.
+[[nodiscard]] std::vector<KeyList> keys_of(const ResultOf& of);
+
+/// The page of `gatewalk help COMMAND --result`.
+[[nodiscard]] std::string result_page(const ResultOf& of);
+/// The keys of all results as tables in Markdown.
+[[nodiscard]] std::string results_in_markdown();
 
 }  // namespace gatewalk::cli

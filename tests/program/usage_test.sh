@@ -55,6 +55,11 @@ cmp lattice.json simulate.json || fail "simulate is not lattice"
 holds '.made_by.command | startswith("gatewalk lattice ")' simulate.json
 "$gatewalk" help simulate | cmp -s - <("$gatewalk" help lattice) || fail "help simulate is not help lattice"
 "$gatewalk" help --write share
+jq -e '.properties.chain.unit == "1" and (.properties.chain.description | length > 0)' share/gatewalk/schemas/rare.schema.json >/dev/null || fail "the schema of rare is not written"
+grep -q '^| `rows\[\].direct_entered` \* | count | 1 |' share/doc/gatewalk/results.md || fail "the keys of rare are not written"
+"$gatewalk" help rare --result | grep -q '^  chain_seconds (number, s): ' || fail "help rare --result does not say what its keys mean"
+"$gatewalk" help merge --result 2>err.txt && fail "merge has a result of its own"
+grep -q '^gatewalk: merge has no result of its own' err.txt || fail "help merge --result: $(cat err.txt)"
 grep -q "'simulate:another name of lattice'" share/zsh/vendor-completions/_gatewalk || fail "zsh does not complete simulate"
 grep -q "^    simulate) options='.*--passages" share/bash-completion/completions/gatewalk || fail "bash does not complete simulate"
 

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "cli/render/fields.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "cli/render/json.h"
+#include "cli/render/schema.h"
+
+namespace gatewalk::cli {
+namespace {
+
+/// A result with one number, one interval and one map: all that a new result needs is below.
+struct TrialResult {
+  double speed = 0.0;
+  Interval limits{};
+  markov::CellProbabilities map;
+};
+void describe(Fields& out, const TrialResult& r) {
+  out.estimate({"speed_m_per_s", "m/s", "mean speed of the bodies"}, r.speed, r.limits);
+  out.grid({"visits", "1", "mean visits of each gate"}, r.map);
+}
+const TrialResult kTrial{
+    1.5, {1.25, 1.75}, (markov::CellProbabilities(1, 2) << 0.5, 2.0).finished()};
+const ResultOf kTrialResult{"trial", [](Fields& out) { describe(out, TrialResult()); }};
+
+std::string json_text_of(const Description& describe) { return json_of(describe).dump(); }
+
+TEST(Fields, OneDescriptionIsJson) {
+  EXPECT_EQ(json_text_of([](Fields& out) { describe(out, kTrial); }),
+            R"({"speed_m_per_s":1.5,"speed_m_per_s_95":[1.25,1.75],"visits":[[0.5,2.0]]})");
+}
+
+TEST(Fields, TheSameDescriptionIsTheSchemaWithUnitsAndMeanings) {
+  const Json schema = parsed_json(schema_of(kTrialResult));
+  ASSERT_FALSE(schema.is_discarded());
+  EXPECT_EQ(schema["required"].dump(),
+            R"(["format_version","speed_m_per_s","speed_m_per_s_95","visits"])");
+  EXPECT_EQ(schema["additionalProperties"], false);
+  const Json& speed = schema["properties"]["speed_m_per_s"];
+  EXPECT_EQ(speed["unit"], "m/s");
+  EXPECT_EQ(speed["description"], "mean speed of the bodies");
+  EXPECT_EQ(speed["type"].dump(), R"(["number","null"])");
+  EXPECT_EQ(schema["properties"]["speed_m_per_s_95"]["$ref"], "#/$defs/interval");
+}
+
+TEST(Fields, AndThePageOfHelp) {
+  const std::string page = result_page(kTrialResult);
+  EXPECT_NE(page.find("  speed_m_per_s (number, m/s): mean speed of the bodies\n"), page.npos);
+  EXPECT_NE(page.find("  visits (grid): mean visits of each gate\n"), page.npos);
+}
+
+TEST(Fields, WhatIsNoNumberIsNull) {
+  EXPECT_EQ(json_text_of([](Fields& out) {
+              out.number({"a", "1", "not a number"}, kUnknown);
+              out.number({"b", "1", "infinite"}, std::numeric_limits<double>::infinity());
+              out.estimate({"c", "1", "without interval"}, 1.0, std::nullopt);
+              out.count({"d", "1", "unknown"}, std::optional<int>());
+              out.text({"e", "unknown"}, std::optional<std::string>());
+            }),
+            R"({"a":null,"b":null,"c":1.0,"c_95":null,"d":null,"e":null})");
+}
+
+/// Every kind of thing that may hold others; `is_full`: with all that is optional.
+Description all_parts(bool is_full) {
+  return [is_full](Fields& out) {
+    const std::vector<int> items = is_full ? std::vector{1, 2} : std::vector<int>();
+    out.list({"items", "some"}, items, [](Fields& f, int i) {
+      f.count({"n", "1", "its number"}, i);
+    });
+    out.optional(is_full, [](Fields& f) { f.flag({"extra", "only there"}, true); });
+    out.maybe({"part", "or none"}, is_full ? std::optional(3) : std::nullopt, [](Fields& f, int i) {
+      f.count({"n", "1", "its number"}, i);
+    });
+    out.either(
+        is_full,
+        [](Fields& f) {
+          f.count({"one", "1", "of two"}, 1);
+        },
+        [](Fields& f) {
+          f.count({"other", "1", "of two"}, 2);
+        });
+    out.object({"by", "of each cost"},
+               [](Fields& f) { f.number(Field("work_J", "J", "of it").varying("<cost>"), 4.0); });
+    out.with_intervals_in({"intervals_95", "of the shares"}, [](Fields& f) {
+      f.counted({"seen", "1", "that were seen"}, 7, Interval{0.25, 0.75});
+    });
+  };
+}
+
+TEST(Fields, PartsThatMayBeMissing) {
+  EXPECT_EQ(json_text_of(all_parts(true)),
+            R"({"items":[{"n":1},{"n":2}],"extra":true,"part":{"n":3},"one":1,)"
+            R"("by":{"work_J":4.0},"seen":7,"intervals_95":{"seen":[0.25,0.75]}})");
+  EXPECT_EQ(json_text_of(all_parts(false)),
+            R"({"items":[],"part":null,"other":2,)"
+            R"("by":{"work_J":4.0},"seen":7,"intervals_95":{"seen":[0.25,0.75]}})");
+}
+
+TEST(Fields, TheSchemaIsThatOfAllResultsWhateverTheExampleHas) {
+  const std::string full = schema_of({"x", all_parts(true)});
+  EXPECT_EQ(full, schema_of({"x", all_parts(false)}));
+  const Json schema = parsed_json(full), &keys = schema["properties"];
+  EXPECT_EQ(schema["required"].dump(),
+            R"(["format_version","items","part","by","seen","intervals_95"])");
+  EXPECT_EQ(schema["oneOf"].dump(), R"([{"required":["one"]},{"required":["other"]}])");
+  EXPECT_EQ(keys["items"]["items"]["required"].dump(), R"(["n"])");
+  EXPECT_EQ(keys["part"]["type"].dump(), R"(["object","null"])");
+  EXPECT_EQ(keys["by"]["additionalProperties"]["unit"], "J");
+}
+
+TEST(Fields, AKeyWithoutMeaningOrAListWithoutItemIsAMistakeOfTheProgram) {
+  EXPECT_THROW((void)schema_of({"x",
+                                [](Fields& out) {
+                                  out.flag({"a", ""}, true);
+                                }}),
+               std::logic_error);
+  EXPECT_THROW((void)schema_of({"x",
+                                [](Fields& out) {
+                                  out.list_of({"a", "some"}, 0, [](Fields&, std::size_t) {});
+                                }}),
+               std::logic_error);
+}
+
+}  // namespace
+}  // namespace gatewalk::cli
