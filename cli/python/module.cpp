@@ -21,6 +21,7 @@
 #include "cli/loaded_matrix.h"
 #include "cli/python/python_cell.h"
 #include "cli/render/json.h"
+#include "cli/render/schema.h"
 #include "cli/render/version.h"
 #include "dynamics/cells/check_cell.h"
 #include "lattice/gate_chain.h"
@@ -271,6 +272,22 @@ py::tuple run(const std::string& name, std::vector<std::string> words, const py:
   return py::make_tuple(status, to_python(result));
 }
 
+/// The keys of a command's results: name of each list, and its keys with type, unit, meaning and
+/// whether all results have them.
+py::list result_keys(const std::string& command) {
+  py::list all;
+  for (const cli::ResultOf& of : cli::results()) {
+    if (of.command != command) continue;
+    for (const cli::KeyList& list : cli::keys_of(of)) {
+      py::list keys;
+      for (const cli::KeyLine& k : list.keys)
+        keys.append(py::make_tuple(k.path, k.type, k.unit, k.meaning, k.is_always_there));
+      all.append(py::make_tuple(list.name, keys));
+    }
+  }
+  return all;
+}
+
 /// Complaints about a cell, from starts (face, coordinates).
 std::vector<std::string> check_cell(const py::object& cell,
                                     const std::vector<std::pair<int, std::vector<double>>>& starts,
@@ -317,6 +334,9 @@ PYBIND11_MODULE(_core, m) {
         "Runs a command with these words: (exit status, its result as JSON says it). told(what, "
         "done, total) hears how far it is, warned(text) what it warns of. Files of `matrices` are "
         "not read again.");
+  m.def("result_keys", &python::result_keys, pybind11::arg("command"),
+        "The keys of the command's results: [(command or shared object, [(key, type, unit, "
+        "meaning, always there)])].");
   m.def("options", &python::options, pybind11::arg("command"),
         "(name, value as shown, kind, is a file, may be repeated) of each option of a command.");
   m.def("check_cell", &python::check_cell, pybind11::arg("cell"), pybind11::arg("starts"),

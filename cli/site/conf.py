@@ -29,6 +29,7 @@ autodoc_member_order = "bysource"
 default_role = "py:obj"  # `predict` in a docstring
 napoleon_google_docstring = False
 napoleon_use_ivar = True
+napoleon_custom_sections = [("Keys of the result", "params_style")]
 
 breathe_projects = {"gatewalk": os.environ["GATEWALK_XML"]}
 breathe_default_project = "gatewalk"

@@ -31,7 +31,7 @@ import warnings as _warnings
 from . import _core
 from ._cell import BROKEN, TRAPPED, Cell, check_cell
 from ._core import BadFile, SceneError, UsageError
-from ._results import Analysis, FirstPassage, Landscape, Prediction, Result, Sweep, Trace
+from ._results import Analysis, FirstPassage, Landscape, Prediction, Result, Sweep, Trace, document as _document
 from ._scene import Scene, called as _called, file_of as _file_of, renamed as _renamed, without_folders as _without_folders
 from ._words import in_python as _in_python, input_of as _input_of, options_of as _options_of, plain as _plain, refuse as _refuse
 from ._words import whole as _whole, words_of as _words_of
@@ -626,3 +626,7 @@ def walk(matrix: _t.Any, *, seed: int | None = None, progress: bool | None = Non
 
 
 from ._matrix import Matrix, _made, _table_files, build, from_counts, from_passages, load, passages  # noqa: E402  (they use _run)
+
+
+for _name in ("gate", "validate", "rare", "plan", "design", "fit", "power", "walk"):
+    _document(globals()[_name], _name)

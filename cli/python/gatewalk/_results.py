@@ -37,7 +37,7 @@ def _same(a: t.Any, b: t.Any) -> bool:
 class Result(collections.abc.Mapping):  # type: ignore[type-arg]
     """A command's result: its JSON as a mapping, keys as attributes too. Equal where all but times and origin is.
 
-    Tables of numbers are numpy arrays, intervals are tuples (low, high).
+    Tables of numbers are numpy arrays, intervals are tuples (low, high). The docstring of the function that gives it says what each key means.
     """
 
     def __init__(self, data: dict[str, t.Any]) -> None:
@@ -370,3 +370,18 @@ class Trace(Result):
         axes.set_ylabel("y (m)")
         axes.set_aspect("equal")
         return axes
+
+
+def document(what: t.Any, command: str) -> None:
+    """Adds to the docstring what each key of the command's results means: of a class or a function that gives them."""
+    text = (what.__doc__ or "").rstrip() + "\n\n    Keys of the result\n    ------------------\n"
+    for name, keys in _core.result_keys(command):
+        for key, kind, unit, meaning, is_always_there in keys:
+            path = key if name == command else f"{name}.{key}"
+            about = ", ".join(word for word in (kind, "" if unit == "1" else unit, "" if is_always_there else "optional") if word)
+            text += f"    {path} : {about}\n        {meaning}\n"
+    what.__doc__ = text + "    "
+
+
+for _class, _command in ((Prediction, "predict"), (Analysis, "analyze"), (Sweep, "sweep"), (Landscape, "landscape"), (Trace, "trace")):
+    document(_class, _command)
