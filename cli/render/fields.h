@@ -73,11 +73,14 @@ struct Label : Key {
   }
 };
 
+using TextRows = std::vector<std::vector<std::optional<std::string>>>;  // none: null
+using Point = std::array<double, 2>;                                    // x and y
+
 /// A value that takes fields; none: null.
 using Value =
     std::variant<std::monostate, double, std::int64_t, std::uint64_t, bool, std::string_view,
                  Interval, const std::vector<double>*, const std::vector<std::int64_t>*,
-                 const std::vector<std::string>*, const std::vector<Interval>*,
+                 const std::vector<std::string>*, const TextRows*, const std::vector<Interval>*,
                  const markov::CellProbabilities*, const markov::CellCounts*>;
 
 /// What a value may be, whatever it is in one result.
@@ -90,7 +93,11 @@ enum class ValueKind {
   numbers,    // a list, of numbers or null
   counts,     // a list
   texts,      // a list
+  text_rows,  // a list of lists, of texts or null
+  given,      // a number, or else a text
+  givens,     // a list of these
   intervals,  // a list
+  points,     // a list
   grid,       // of numbers: rows and columns; or null
 };
 
@@ -131,8 +138,20 @@ class Fields {
   void texts(const Label& l, const std::vector<std::string>& t) {
     leaf(l, ValueKind::texts, false, &t);
   }
+  /// A text for each gate, row by row from the start's side on.
+  void text_rows(const Label& l, const TextRows& rows) {
+    leaf(l, ValueKind::text_rows, false, &rows);
+  }
+  /// What a user gave as text: a number where it is one.
+  void given(const Field& f, std::string_view text) { leaf(f, ValueKind::given, false, text); }
+  void givens(const Field& f, const std::vector<std::string>& t) {
+    leaf(f, ValueKind::givens, false, &t);
+  }
   void intervals(const Field& f, const std::vector<Interval>& bars) {
     leaf(f, ValueKind::intervals, false, &bars);
+  }
+  void points(const Field& f, const std::vector<Point>& places) {
+    leaf(f, ValueKind::points, false, &places);
   }
   /// A number for each gate, row by row from the start's side on.
   void grid(const Field& f, const markov::CellProbabilities& x) {
@@ -160,15 +179,17 @@ class Fields {
     describe(*this);
     close();
   }
-  /// The object where there is one, else null. `describe` also takes what it points to.
+  /// The object where there is one, else null. `describe` also takes what it points to; the schema
+  /// is told of one that is made by default, if need be.
   template <class Result, class Describe>
   void maybe(const Label& l, const Result& result, Describe describe) {
     if (!result && !is_schema()) return leaf(l, ValueKind::text, true, {});
     open(l, Shape::object, "null");
+    using Object = std::remove_cvref_t<decltype(*result)>;
     if (result)
       describe(*this, *result);
-    else
-      describe(*this, std::remove_cvref_t<decltype(*result)>{});
+    else if constexpr (std::default_initializable<Object>)
+      describe(*this, Object{});
     close();
   }
   /// An object, or words that stand in its place.
@@ -212,7 +233,7 @@ class Fields {
     describe(*this);
     end_optional();
   }
-  /// One of two descriptions, both of keys beside each other.
+  /// One of two descriptions, both of keys beside each other; they may share some.
   template <class First, class Second>
   void either(bool is_first, First first, Second second) {
     begin_either();

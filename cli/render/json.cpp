@@ -30,8 +30,15 @@ class JsonFields final : public Fields {
   [[nodiscard]] Json take() && { return std::move(result_); }
 
  protected:
-  void leaf(const Key& key, ValueKind, bool, const Value& value) override {
-    put(key, std::visit([](const auto& x) { return json_of_value(x); }, value));
+  void leaf(const Key& key, ValueKind kind, bool, const Value& value) override {
+    if (kind == ValueKind::given)
+      put(key, json_of_given(std::get<std::string_view>(value)));
+    else if (kind == ValueKind::givens)
+      for (Json& list = put(key, Json::array());
+           const std::string& text : *std::get<const std::vector<std::string>*>(value))
+        list.push_back(json_of_given(text));
+    else
+      put(key, std::visit([](const auto& x) { return json_of_value(x); }, value));
   }
   void open(const Key& key, Shape shape, std::string_view) override {
     open_.push_back(&put(key, shape == Shape::list ? Json::array() : Json::object()));
@@ -50,6 +57,21 @@ class JsonFields final : public Fields {
   static Json json_of_value(std::monostate) { return {}; }
   static Json json_of_value(double x) { return or_null(x); }
   static Json json_of_value(std::string_view words) { return std::string(words); }
+  static Json json_of_value(const Interval& limits) {
+    return {or_null(limits[0]), or_null(limits[1])};
+  }
+  static Json json_of_value(const TextRows* rows) {
+    Json all = Json::array();
+    for (const auto& row : *rows) {
+      Json& texts = all.emplace_back(Json::array());
+      for (const auto& text : row) texts.push_back(text ? Json(*text) : Json());
+    }
+    return all;
+  }
+  static Json json_of_given(std::string_view text) {
+    Json number = parsed_json(text);
+    return number.is_number() ? number : Json(text);
+  }
   template <class T>
   static Json json_of_value(const T& x) {
     return Json(x);

@@ -81,6 +81,7 @@ class SchemaFields final : public Fields {
   void end_either() override {
     scopes_.back().keys = nullptr;
     end_optional();
+    for (const auto& key : scopes_.back().node->keys) keep_if_in_both(*key);
   }
 
  private:
@@ -89,6 +90,18 @@ class SchemaFields final : public Fields {
     int optional;                      // > 0: not every result has the keys that come
     std::vector<std::string>* keys{};  // takes them where they are alternatives
   };
+
+  /// A key that both of two alternatives have is always there.
+  void keep_if_in_both(Node& key) {
+    Node& node = *scopes_.back().node;
+    const auto has = [&](const std::vector<std::string>& keys) {
+      return std::find(keys.begin(), keys.end(), key.key) != keys.end();
+    };
+    if (!has(node.either) || !has(node.either_or)) return;
+    std::erase(node.either, key.key);
+    std::erase(node.either_or, key.key);
+    key.is_always_there = scopes_.back().optional == 0;
+  }
 
   Node& add(const Key& key) {
     if (key.meaning.empty())
@@ -127,6 +140,7 @@ std::string list_of(const std::vector<std::string>& texts) {
 /// The words of the schema for a leaf: "type": "integer", "minimum": 0
 std::string type_of(const Node& node) {
   const char* const kNumber = R"("type": ["number", "null"])";
+  const char* const kGiven = R"("type": ["number", "string"])";
   const auto list = [](const std::string& items) {
     return R"("type": "array", "items": {)" + items + "}";
   };
@@ -156,8 +170,16 @@ std::string type_of(const Node& node) {
       return list(R"("type": "integer")");
     case ValueKind::texts:
       return list(R"("type": "string")");
+    case ValueKind::text_rows:
+      return list(list(R"("type": ["string", "null"])"));
+    case ValueKind::given:
+      return kGiven;
+    case ValueKind::givens:
+      return list(kGiven);
     case ValueKind::intervals:
       return list(R"("$ref": "#/$defs/interval")");
+    case ValueKind::points:
+      return list(list(kNumber) + R"(, "minItems": 2, "maxItems": 2)");
     case ValueKind::grid:
       return R"("$ref": "#/$defs/grid")";
   }
@@ -259,8 +281,16 @@ std::string type_words(const Node& node) {
       return "counts";
     case ValueKind::texts:
       return "texts";
+    case ValueKind::text_rows:
+      return "rows of texts";
+    case ValueKind::given:
+      return "number or text";
+    case ValueKind::givens:
+      return "numbers or texts";
     case ValueKind::intervals:
       return "intervals";
+    case ValueKind::points:
+      return "points";
     case ValueKind::grid:
       return "grid";
   }
