@@ -119,6 +119,11 @@ class Fields {
     leaf(f, ValueKind::count, true, n ? whole(*n) : Value());
   }
   void flag(const Label& l, bool yes) { leaf(l, ValueKind::flag, false, yes); }
+  /// None: null.
+  template <std::same_as<std::optional<bool>> Yes>
+  void flag(const Label& l, const Yes& yes) {
+    leaf(l, ValueKind::flag, true, yes ? Value(*yes) : Value());
+  }
   void text(const Label& l, std::string_view words) { leaf(l, ValueKind::text, false, words); }
   /// None: null.
   template <std::same_as<std::optional<std::string>> Words>
@@ -200,6 +205,14 @@ class Fields {
     describe(*this);
     close();
   }
+  /// A number (null where it is NaN or infinite), or an object that stands in its place.
+  template <class Describe>
+  void number_or_object(const Field& f, const std::optional<double>& x, Describe describe) {
+    if (x && !is_schema()) return leaf(f, ValueKind::number, false, *x);
+    open(f, Shape::object, "number");
+    describe(*this);
+    close();
+  }
   /// An object for each item. The schema is told of one that is made by default, if need be.
   template <std::ranges::range Items, class Describe>
   void list(const Label& l, const Items& items, Describe describe) {
@@ -262,7 +275,7 @@ class Fields {
  protected:
   enum class Shape { object, list };
   virtual void leaf(const Key& key, ValueKind kind, bool may_be_null, const Value& value) = 0;
-  /// `also`: "null" or "string", what may stand in its place.
+  /// `also`: "null", "string" or "number" (or null), what may stand in its place.
   virtual void open(const Key& key, Shape shape, std::string_view also) = 0;
   virtual void next() = 0;  // an item of a list
   virtual void close() = 0;

@@ -253,8 +253,9 @@ std::string schema_text(const Node& node, const std::string& indent, bool says_w
   }
   if (node.form == Node::Form::object)
     return "{" + about +
-           (node.also.empty() ? std::string(R"("type": "object")")
-                              : R"("type": ["object", ")" + node.also + "\"]") +
+           (node.also.empty()       ? std::string(R"("type": "object")")
+            : node.also == "number" ? std::string(R"("type": ["object", "number", "null"])")
+                                    : R"("type": ["object", ")" + node.also + "\"]") +
            ",\n" + keys_text(node, indent) + indent + "}";
   return "{" + about + "\"type\": \"array\", \"items\": {\"type\": \"object\",\n" +
          keys_text(node, indent) + indent + "}}";
@@ -270,7 +271,7 @@ std::string type_words(const Node& node) {
     case ValueKind::count:
       return "count" + or_null;
     case ValueKind::flag:
-      return "yes or no";
+      return (node.may_be_null ? "yes, no" : "yes or no") + or_null;
     case ValueKind::text:
       return "text" + or_null;
     case ValueKind::interval:
@@ -309,7 +310,7 @@ std::string type_of_key(const Node& key) {
   if (key.form == Node::Form::leaf) return type_words(key) + constraints_of(key);
   if (key.form == Node::Form::list) return "list";
   if (key.also.empty()) return "object";
-  return key.also == "string" ? "object or text" : "object or null";
+  return "object or " + (key.also == "string" ? "text" : key.also);
 }
 
 void add_lines(const Node& node, const std::string& before, std::vector<KeyLine>& lines) {

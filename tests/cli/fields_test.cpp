@@ -59,8 +59,9 @@ TEST(Fields, WhatIsNoNumberIsNull) {
               out.estimate({"c", "1", "without interval"}, 1.0, std::nullopt);
               out.count({"d", "1", "unknown"}, std::optional<int>());
               out.text({"e", "unknown"}, std::optional<std::string>());
+              out.flag({"f", "unknown"}, std::optional<bool>());
             }),
-            R"({"a":null,"b":null,"c":1.0,"c_95":null,"d":null,"e":null})");
+            R"({"a":null,"b":null,"c":1.0,"c_95":null,"d":null,"e":null,"f":null})");
 }
 
 /// Every kind of thing that may hold others; `is_full`: with all that is optional.
@@ -74,6 +75,10 @@ Description all_parts(bool is_full) {
     out.maybe({"part", "or none"}, is_full ? std::optional(3) : std::nullopt, [](Fields& f, int i) {
       f.count({"n", "1", "its number"}, i);
     });
+    out.number_or_object({"or", "1", "a number, or how small it is"},
+                         is_full ? std::nullopt : std::optional(2.0), [](Fields& f) {
+                           f.number({"below", "1", "more than the number"}, 5.0);
+                         });
     out.either(
         is_full,
         [](Fields& f) {
@@ -92,10 +97,10 @@ Description all_parts(bool is_full) {
 
 TEST(Fields, PartsThatMayBeMissing) {
   EXPECT_EQ(json_text_of(all_parts(true)),
-            R"({"items":[{"n":1},{"n":2}],"extra":true,"part":{"n":3},"one":1,)"
+            R"({"items":[{"n":1},{"n":2}],"extra":true,"part":{"n":3},"or":{"below":5.0},"one":1,)"
             R"("by":{"work_J":4.0},"seen":7,"intervals_95":{"seen":[0.25,0.75]}})");
   EXPECT_EQ(json_text_of(all_parts(false)),
-            R"({"items":[],"part":null,"other":2,)"
+            R"({"items":[],"part":null,"or":2.0,"other":2,)"
             R"("by":{"work_J":4.0},"seen":7,"intervals_95":{"seen":[0.25,0.75]}})");
 }
 
@@ -104,10 +109,11 @@ TEST(Fields, TheSchemaIsThatOfAllResultsWhateverTheExampleHas) {
   EXPECT_EQ(full, schema_of({"x", all_parts(false)}));
   const Json schema = parsed_json(full), &keys = schema["properties"];
   EXPECT_EQ(schema["required"].dump(),
-            R"(["format_version","items","part","by","seen","intervals_95"])");
+            R"(["format_version","items","part","or","by","seen","intervals_95"])");
   EXPECT_EQ(schema["oneOf"].dump(), R"([{"required":["one"]},{"required":["other"]}])");
   EXPECT_EQ(keys["items"]["items"]["required"].dump(), R"(["n"])");
   EXPECT_EQ(keys["part"]["type"].dump(), R"(["object","null"])");
+  EXPECT_EQ(keys["or"]["type"].dump(), R"(["object","number","null"])");
   EXPECT_EQ(keys["by"]["additionalProperties"]["unit"], "J");
 }
 
