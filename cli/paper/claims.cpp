@@ -1,65 +1,95 @@
 // SPDX-License-Identifier: MIT
 #include "cli/paper/claims.h"
 
+#include <fmt/core.h>
+
+#include <optional>
+#include <stdexcept>
+
 #include "cli/paper/studies.h"
 #include "cli/render/csv.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
+namespace {
 
-std::string number(double x, int digits) { return fixed(x, digits); }
+/// The text with its values; nothing where one of them is missing.
+std::optional<std::string> filled(std::string_view text, const Measured& measured) {
+  std::string out;
+  for (;;) {
+    const std::size_t open = text.find('{');
+    out += text.substr(0, open);
+    if (open == text.npos) return out;
+    const std::size_t close = text.find('}', open);
+    const std::string_view inside = text.substr(open + 1, close - open - 1),
+                           name = inside.substr(0, inside.find(':'));
+    const auto& value = measured.values.at(std::string(name)).held;
+    if (const auto* const number = std::get_if<double>(&value))
+      out += fixed(*number, name == inside ? 0 : inside.back() - '0');
+    else if (const auto* const words = std::get_if<std::string>(&value))
+      out += *words;
+    else
+      return std::nullopt;
+    text.remove_prefix(close + 1);
+  }
+}
+
+Claim claim_of(const ClaimRow& row, const Findings& f) {
+  const Measured measured = row.sides.measure(f);
+  const auto said = [&](const char* text) { return filled(text, measured).value_or(""); };
+  std::string why;
+  for (const char* sentence : row.why)
+    if (const auto text = filled(sentence, measured)) why += (why.empty() ? "" : " ") + *text;
+  return {row.place.id,
+          row.place.where,
+          said(row.text),
+          said(row.sides.paper),
+          said(row.sides.ours),
+          measured.verdict,
+          why,
+          row.place.see};
+}
+
+std::vector<ClaimRow> table() {
+  std::vector<ClaimRow> rows = claims_on_shares();
+  for (const auto& more : {claims_on_the_field(), claims_on_one_run()})
+    rows.insert(rows.end(), more.begin(), more.end());
+  return rows;
+}
+
+}  // namespace
+
 std::string of(std::int64_t part, std::int64_t whole) {
-  return std::to_string(part) + " of " + std::to_string(whole);
+  return fmt::format("{} of {}", part, whole);
+}
+
+Measured measured(const Trend& t, Values more, bool wiggles) {
+  more.insert({{"up", of(t.up, t.series)},
+               {"down", t.down},
+               {"falling", when(t.falling > 0, of(t.falling, t.steps))},
+               {"fall", 100 * t.largest_fall},
+               {"from", t.at},
+               {"seen", t.seen},
+               {"seen_of", when(t.lower > 0, of(t.seen, t.lower))}});
+  return {t.verdict(wiggles), more};
 }
 
 Share fig8_at(const Findings& f, double damping, double force, double random) {
   return f.fig8.at({{kDamping, damping}, {kPropulsion, force}, {kRandom, random}})
       .traversed_share();
 }
-const SweepPoint& fig12_at(const Findings& f, double damping, double force, double random,
-                           double k_left) {
-  return f.fig12.at(
-      {{kDamping, damping}, {kPropulsion, force}, {kRandom, random}, {kLeftStiffness, k_left}});
-}
 
 std::vector<Claim> claims_of(const Findings& f) {
-  return {rises_with_propulsion(f),
-          rises_then_falls(f),
-          peak_at_20(f),
-          exits_grow(f),
-          softer_side(f),
-          accord(f),
-          thirteen_and_eight(f),
-          alike(f),
-          percentage(f, "fifty_two_50", "Sec. III-B, Fig. 9B", 300, 50, 52),
-          percentage(f, "fifty_two_10", "Sec. III-B, Fig. 9B", 300, 10, 52),
-          percentage(f, "ninety_eight_50", "Sec. III-B, Fig. 9C", 100, 50, 98),
-          percentage(f, "ninety_eight_10", "Sec. III-B, Fig. 9C", 100, 10, 98),
-          right_share_falls(f, false),
-          right_share_falls(f, true),
-          fig12_propulsion(f),
-          accuracy(f),
-          table4_row(f, 0, "table4_1"),
-          table4_row(f, 1, "table4_2"),
-          table4_row(f, 2, "table4_3"),
-          table4_row(f, 3, "table4_4"),
-          speed_up(f),
-          side_entries(f),
-          side_entries_free(),
-          velocities(f),
-          drag(f),
-          states(),
-          thirteen_steps(f),
-          landscape_sides(),
-          basin(f),
-          escape(f),
-          steep(f),
-          above_landscape(f),
-          many_hits(f),
-          euler_step(f),
-          run_time(f),
-          inertia()};
+  std::vector<Claim> claims;
+  for (const ClaimRow& row : table()) claims.push_back(claim_of(row, f));
+  return claims;
+}
+
+Claim claim_of(std::string_view id, const Findings& f) {
+  for (const ClaimRow& row : table())
+    if (id == row.place.id) return claim_of(row, f);
+  throw std::out_of_range("no claim " + std::string(id));
 }
 
 Json to_json(const std::vector<Claim>& claims) {
@@ -77,20 +107,17 @@ Json to_json(const std::vector<Claim>& claims) {
 }
 
 std::string csv_of(const std::vector<Claim>& claims) {
-  std::string text = "id,where,claim,paper,ours,verdict,why,see\n";
+  Csv csv("id,where,claim,paper,ours,verdict,why,see");
   for (const Claim& c : claims)
-    text += csv_text(c.id) + "," + csv_text(c.where) + "," + csv_text(c.claim) + "," +
-            csv_text(c.paper) + "," + csv_text(c.ours) + "," +
-            csv_text(std::string(name_of(c.verdict))) + "," + csv_text(c.why) + "," +
-            csv_text(c.see) + "\n";
-  return text;
+    csv.row(c.id, c.where, c.claim, c.paper, c.ours, std::string(name_of(c.verdict)), c.why, c.see);
+  return csv.text();
 }
 
 std::string table_of(const std::vector<Claim>& claims) {
   std::string text;
   for (const Claim& c : claims)
-    text += padded(std::string(name_of(c.verdict)), -13) + c.claim + " (" + c.where + ")\n" +
-            padded("", -13) + "paper: " + c.paper + "; here: " + c.ours + "\n";
+    text += fmt::format("{:13}{} ({})\n{:13}paper: {}; here: {}\n", name_of(c.verdict), c.claim,
+                        c.where, "", c.paper, c.ours);
   return text;
 }
 

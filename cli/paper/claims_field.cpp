@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "cli/paper/claims.h"
 #include "cli/paper/studies.h"
+#include "cli/render/text.h"
 #include "lattice/reference.h"
 #include "lattice/scene/disc_field.h"
 
 namespace gatewalk::cli {
-
 namespace {
 
 /// The pair of Table IV here, and how far the paper's is from it, in standard deviations.
@@ -18,15 +20,13 @@ struct Reading {
 
   Reading(const Repeats& repeats, const ValidatedStart& start)
       : ours(repeats),
-        corrcoef_off((start.paper_corrcoef - ours.corrcoef.mean) / ours.corrcoef.sd),
-        rmse_off((start.paper_rmse - ours.rmse.mean) / ours.rmse.sd) {}
-  [[nodiscard]] bool fits() const { return std::abs(corrcoef_off) <= 2 && std::abs(rmse_off) <= 2; }
+        corrcoef_off(std::abs(start.paper_corrcoef - ours.corrcoef.mean) / ours.corrcoef.sd),
+        rmse_off(std::abs(start.paper_rmse - ours.rmse.mean) / ours.rmse.sd) {}
+  [[nodiscard]] bool fits() const { return corrcoef_off <= 2 && rmse_off <= 2; }
   [[nodiscard]] std::string text() const {
-    return number(ours.corrcoef.mean, 3) + " (" + number(ours.corrcoef.sd, 3) + ") / " +
-           number(ours.rmse.mean, 2) + " (" + number(ours.rmse.sd, 2) + ")";
-  }
-  [[nodiscard]] std::string floor() const {
-    return number(ours.corrcoef_floor, 3) + " / " + number(ours.rmse_floor, 2);
+    return fmt::format("{} ({}) / {} ({})", fixed(ours.corrcoef.mean, 3),
+                       fixed(ours.corrcoef.sd, 3), fixed(ours.rmse.mean, 2),
+                       fixed(ours.rmse.sd, 2));
   }
 };
 
@@ -34,132 +34,88 @@ struct Reading {
 bool on_an_edge(const ValidatedStart& start) {
   using namespace dynamics;
   const Bins bins = table3_space({}).bins()[Boundary::enter];
-  const auto among = [](double x, const std::vector<double>& edges) {
-    return std::find(edges.begin(), edges.end(), x) != edges.end();
+  const auto among = [&](double x, std::size_t axis) {
+    return std::count(bins.edges[axis].begin(), bins.edges[axis].end(), x) > 0;
   };
-  return among(start.d, bins.edges[kEntryD]) || among(start.vx, bins.edges[kEntryVx]) ||
-         among(start.vy, bins.edges[kEntryVy]);
+  return among(start.d, kEntryD) || among(start.vx, kEntryVx) || among(start.vy, kEntryVy);
 }
 
-}  // namespace
-
-Claim table4_row(const Findings& f, std::size_t i, const char* id) {
-  const ValidatedStart& start = f.field.starts.at(i);
+template <std::size_t kStart>
+Measured table4_row(const Findings& f) {
+  const ValidatedStart& start = f.field.starts.at(kStart);
   const Reading exact(start.exact, start), walks(start.walks, start);
-  const bool enough = start.repeats >= 50;  // to say what is two standard deviations off
-  std::string why =
-      "Mean (sd) of 100 trials against the exact chain; by chance alone a perfect chain gives " +
-      exact.floor() + ". Against 100 walks, as the paper's text says: " + walks.text() +
-      ", chance " + walks.floor() + ".";
-  if (exact.fits() != walks.fits())
-    why +=
-        exact.fits()
-            ? " The printed pair fits only the first: it is better than two samples of 100 can be."
-            : " The printed pair fits only the second.";
-  if (!exact.fits() && !walks.fits())
-    why += " The printed pair is " + number(std::abs(exact.corrcoef_off), 1) + " and " +
-           number(std::abs(exact.rmse_off), 1) + " standard deviations from the first.";
-  if (on_an_edge(start)) why += " This start lies on an edge of its bin.";
-  return {id,
-          "Sec. III-C, Table IV",
-          "Chain and dynamics, " + start.label() + ".",
-          number(start.paper_corrcoef, 3) + " / " + number(start.paper_rmse, 3),
-          exact.text(),
-          verdict_of(enough && !exact.fits() && !walks.fits(),
-                     enough && exact.fits() && walks.fits(), enough),
-          why,
-          "table4"};
+  const bool enough = start.repeats >= 50,  // to say what is two standard deviations off
+      neither = !exact.fits() && !walks.fits();
+  return {verdict_of(enough && neither, enough && exact.fits() && walks.fits(), enough),
+          {{"start", start.label()},
+           {"paper_corrcoef", start.paper_corrcoef},
+           {"paper_rmse", start.paper_rmse},
+           {"exact", exact.text()},
+           {"exact_corrcoef", start.exact.corrcoef_floor},
+           {"exact_rmse", start.exact.rmse_floor},
+           {"walks", walks.text()},
+           {"walks_corrcoef", start.walks.corrcoef_floor},
+           {"walks_rmse", start.walks.rmse_floor},
+           {"first", when(exact.fits() && !walks.fits(), "the first")},
+           {"second", when(walks.fits() && !exact.fits(), "the second")},
+           {"corrcoef_off", when(neither, exact.corrcoef_off)},
+           {"rmse_off", exact.rmse_off},
+           {"edge", when(on_an_edge(start), "an edge")}}};
 }
 
-namespace {
-
-/// An error of the chain that 100 trials show.
-bool shows_at_100(const ValidatedStart& s) {
-  return s.exact.rmse.mean - s.exact.rmse_floor > 2 * s.exact.rmse.sd;
-}
-
-}  // namespace
-
-Claim accuracy(const Findings& f) {
+Measured accuracy(const Findings& f) {
   double least = 1e9, most = 0;
-  int within = 0, visible = 0, starts = 0;
+  int within = 0, visible = 0;
   for (const ValidatedStart& s : f.field.starts) {
     least = std::min(least, s.rmse);
     most = std::max(most, s.rmse);
-    ++starts;
     within += s.finding != lattice::Finding::own_error;
-    visible += shows_at_100(s);
+    // An error of the chain that 100 trials show.
+    visible += s.exact.rmse.mean - s.exact.rmse_floor > 2 * s.exact.rmse.sd;
   }
-  return {
-      "accuracy",
-      "Abstract, Sec. III-C",
-      "The chain predicts the final gates with high accuracy; the error is around 1 of 100 trials.",
-      "RMSE about 1",
-      "RMSE " + number(least, 2) + " to " + number(most, 2),
-      verdict_of(within != starts && visible > 0, within == starts),
-      "All " + std::to_string(f.field.trials) + " trials a start, trials per 100. At " +
-          of(within, starts) +
-          " starts the difference is no more than chance in trials and matrix makes; at " +
-          std::to_string(visible) +
-          " it would show in 100 trials. With 100 trials a perfect chain would have an RMSE of "
-          "about 1 as well. Is it Markov: " +
-          f.field.markov,
-      "fig11"};
+  const std::int64_t starts = std::ssize(f.field.starts);
+  return {verdict_of(within != starts && visible > 0, within == starts),
+          {{"least", least},
+           {"most", most},
+           {"trials", f.field.trials},
+           {"within", of(within, starts)},
+           {"visible", visible},
+           {"markov", f.field.markov}}};
 }
 
-Claim speed_up(const Findings& f) {
+Measured speed_up(const Findings& f) {
   const double dynamics = f.field.seconds_per_trial(), walk = f.field.seconds_per_walk(),
                euler = f.field_paper_method.seconds_per_trial(), ratio = dynamics / walk;
-  return {
-      "speed",
-      "Abstract, Sec. III-C",
-      "The chain saves computing time by a factor of 10^5: 10 s instead of 100 h for 100 trials.",
-      "10^5",
-      number(ratio),
-      ratio >= 36000 ? Verdict::reproduced : Verdict::differs,
-      "A trial against a walk. The paper's own times make 36 000. Here 100 trials take " +
-          number(1e3 * 100 * dynamics, 1) + " ms (" + number(1e3 * 100 * euler, 1) +
-          " ms by the paper's Euler scheme) instead of 100 h, 100 walks " +
-          number(1e6 * 100 * walk, 1) + " us instead of 10 s: the dynamics has become " +
-          number(std::log10(360000.0 / (100 * dynamics)), 1) + " powers of ten faster, the walks " +
-          number(std::log10(10.0 / (100 * walk)), 1) + ".",
-      "speed"};
+  return {holds_or_differs(ratio >= 36000),
+          {{"ratio", ratio},
+           {"dynamics_ms", 1e3 * 100 * dynamics},
+           {"euler_ms", 1e3 * 100 * euler},
+           {"walks_us", 1e6 * 100 * walk},
+           {"dynamics_powers", std::log10(360000.0 / (100 * dynamics))},
+           {"walks_powers", std::log10(10.0 / (100 * walk))}}};
 }
 
-namespace {
-std::string shares_at(const Findings& f, Share (Crossings::*share)() const) {
-  std::string text;
+/// A share of crossings that the paper says is below a limit, and the same at other random forces.
+Measured below(double limit, const Findings& f, Share (Crossings::*share)() const) {
+  const Share ours = (f.field.crossings.*share)();
+  std::string others;
   for (const auto& [random, crossings] : f.field_random)
-    text += (text.empty() ? "" : ", ") + number(100 * (crossings.*share)().value, 1);
-  return text + " % at Rm 10, 20, 40 N";
-}
-}  // namespace
-
-Claim side_entries(const Findings& f) {
-  const Share ours = f.field.crossings.rt_and_lt_share();
-  return {"side_entries",
-          "Sec. III-C",
-          "Fewer than 4 % of the inputs come through RT or LT.",
-          "< 4 %",
-          percent_text(ours),
-          verdict_of(ours.low >= 0.04, ours.high < 0.04),
-          "At 7 N, Rm 50 N; " + shares_at(f, &Crossings::rt_and_lt_share) +
-              ". The paper does not print the field's forces; no pair for which Table IV fits "
-              "gives so few (results/field_scan).",
-          "crossings"};
+    others += (others.empty() ? "" : ", ") + fixed(100 * (crossings.*share)().value, 1);
+  return {verdict_of(ours.low >= limit, ours.high < limit), {{"ours", ours}, {"others", others}}};
 }
 
-Claim side_entries_free() {
+Measured side_entries_free(const Findings& /*f*/) {
   const dynamics::GateParams p = gate_of("scenes/field.toml");
   constexpr std::int64_t kBodies = 200;
   std::int64_t entries = 0, touching = 0;
   for (std::int64_t trial = 0; trial < kBodies; ++trial) {
     const auto trace = lattice::trace_field(p, {}, {0, 0, 0, 15}, 1, trial);
     for (std::size_t i = 1; i < trace.visits.size(); ++i) {
-      const auto &from = trace.visits[i - 1], &to = trace.visits[i];
-      if (to.row != from.row || to.trace.samples.front().state.body.y <= p.beams.joint_y) continue;
-      ++entries;
+      const auto& to = trace.visits[i];
       const auto& samples = to.trace.samples;
+      if (to.row != trace.visits[i - 1].row || samples.front().state.body.y <= p.beams.joint_y)
+        continue;
+      ++entries;
       touching += std::any_of(samples.begin(), samples.end(), [](const dynamics::TraceSample& s) {
         return s.contact[0] != dynamics::ContactMode::free ||
                s.contact[1] != dynamics::ContactMode::free;
@@ -167,73 +123,101 @@ Claim side_entries_free() {
     }
   }
   const Share share = share_by_bodies(touching, entries, kBodies);
-  return {"side_entries_free",
-          "Sec. III-C",
-          "Bodies that come through RT or LT are not involved with the beams of that gate.",
-          "none",
-          percent_text(share) + " touch a beam",
-          verdict_of(share.low > 0.05, share.high < 0.05),
-          of(touching, entries) +
-              " such visits in 200 trials of scenes/field.toml (gatewalk trace --field). One state "
-              "each for RT and LT is enough.",
-          "crossings"};
+  return {verdict_of(share.low > 0.05, share.high < 0.05),
+          {{"ours", share}, {"visits", of(touching, entries)}}};
 }
 
-Claim velocities(const Findings& f) {
-  const Share ours = f.field.crossings.clamped_share();
-  return {"velocities",
-          "Sec. III-C, Table III",
-          "With damping and drag the velocity stays in the range of Table III.",
-          "in the tested range",
-          percent_text(ours) + " of the crossings outside",
-          verdict_of(ours.low >= 0.05, ours.high < 0.05),
-          "Outside Table III's bins, by velocity or place, at 7 N, Rm 50 N; " +
-              shares_at(f, &Crossings::clamped_share) +
-              ". They are put into the nearest bin, and counted; one in twenty would pass here.",
-          "crossings"};
-}
-
-Claim drag(const Findings& f) {
+Measured drag(const Findings& f) {
   const Share with = f.field.crossings.clamped_share(),
               without = f.field_no_drag.crossings.clamped_share();
   const bool enough = std::min(with.whole, without.whole) >= kEnoughTrials;
-  return {"drag",
-          "Sec. III-C",
-          "Without drag and with less damping the velocity leaves the range that the chain covers.",
-          "leaves it",
-          percent_text(without) + " outside; with them " + percent_text(with),
-          verdict_of(falls(with, without) || (enough && !rises(with, without)),
+  return {verdict_of(falls(with, without) || (enough && !rises(with, without)),
                      enough && rises(with, without)),
-          "D = 0 and d = 10 against D = 0.06 and d = 50; 7 N, Rm 50 N.",
-          "crossings"};
+          {{"with", with}, {"without", without}}};
 }
 
-Claim states() {
+Measured states(const Findings& /*f*/) {
   const auto space = dynamics::table3_space({});
-  return {"states",
-          "Sec. III-C, Table III",
-          "87 input and 88 output states.",
-          "87 x 88",
-          std::to_string(space.size()) + " x " + std::to_string(space.trapped() + 1),
-          space.size() == 87 ? Verdict::reproduced : Verdict::differs,
-          "EN 25, RD 30, LD 30, RT 1, LT 1; and trapped.",
-          "crossings"};
+  return {holds_or_differs(space.size() == 87),
+          {{"inputs", space.size()}, {"outputs", space.trapped() + 1}}};
 }
 
-Claim thirteen_steps(const Findings& f) {
+Measured thirteen_steps(const Findings& f) {
   double most = 0;
   for (const ValidatedStart& s : f.field.starts) most = std::max(most, s.cut_off);
   const lattice::FieldParams field;
   const int needed = field.rows + field.columns / 2;
-  return {"thirteen_steps",
-          "Sec. III-C",
-          "At most 13 steps, to reach the furthest gate.",
-          "13",
-          std::to_string(needed) + " gates to the furthest corner",
-          needed == field.max_gates ? Verdict::reproduced : Verdict::differs,
-          "The first one included. Up to " + number(100 * most, 1) +
-              " % of the trials are still on their way after 13, because they also go sideways; "
-              "field.max_gates = 0 lifts the limit.",
-          "fig11"};
+  return {holds_or_differs(needed == field.max_gates),
+          {{"gates", needed}, {"cut_off", 100 * most}}};
 }
+
+ClaimRow table4_claim(const char* id, Measured (*measure)(const Findings&)) {
+  return {{id, "Sec. III-C, Table IV", "table4"},
+          "Chain and dynamics, {start}.",
+          {"{paper_corrcoef:3} / {paper_rmse:3}", "{exact}", measure},
+          {"Mean (sd) of 100 trials against the exact chain; by chance alone a perfect chain gives "
+           "{exact_corrcoef:3} / {exact_rmse:2}. Against 100 walks, as the paper's text says: "
+           "{walks}, chance {walks_corrcoef:3} / {walks_rmse:2}.",
+           "The printed pair fits only {first}: it is better than two samples of 100 can be.",
+           "The printed pair fits only {second}.",
+           "The printed pair is {corrcoef_off:1} and {rmse_off:1} standard deviations from the "
+           "first.",
+           "This start lies on {edge} of its bin."}};
+}
+
+}  // namespace
+
+std::vector<ClaimRow> claims_on_the_field() {
+  return {
+      {{"accuracy", "Abstract, Sec. III-C", "fig11"},
+       "The chain predicts the final gates with high accuracy; the error is around 1 of 100 "
+       "trials.",
+       {"RMSE about 1", "RMSE {least:2} to {most:2}", accuracy},
+       {"All {trials} trials a start, trials per 100. At {within} starts the difference is no more "
+        "than chance in trials and matrix makes; at {visible} it would show in 100 trials. With "
+        "100 trials a perfect chain would have an RMSE of about 1 as well. Is it Markov: "
+        "{markov}"}},
+      table4_claim("table4_1", table4_row<0>),
+      table4_claim("table4_2", table4_row<1>),
+      table4_claim("table4_3", table4_row<2>),
+      table4_claim("table4_4", table4_row<3>),
+      {{"speed", "Abstract, Sec. III-C", "speed"},
+       "The chain saves computing time by a factor of 10^5: 10 s instead of 100 h for 100 trials.",
+       {"10^5", "{ratio}", speed_up},
+       {"A trial against a walk. The paper's own times make 36 000. Here 100 trials take "
+        "{dynamics_ms:1} ms ({euler_ms:1} ms by the paper's Euler scheme) instead of 100 h, 100 "
+        "walks {walks_us:1} us instead of 10 s: the dynamics has become {dynamics_powers:1} powers "
+        "of ten faster, the walks {walks_powers:1}."}},
+      {{"side_entries", "Sec. III-C", "crossings"},
+       "Fewer than 4 % of the inputs come through RT or LT.",
+       {"< 4 %", "{ours}",
+        [](const Findings& f) { return below(0.04, f, &Crossings::rt_and_lt_share); }},
+       {"At 7 N, Rm 50 N; {others} % at Rm 10, 20, 40 N. The paper does not print the field's "
+        "forces; no pair for which Table IV fits gives so few (results/field_scan)."}},
+      {{"side_entries_free", "Sec. III-C", "crossings"},
+       "Bodies that come through RT or LT are not involved with the beams of that gate.",
+       {"none", "{ours} touch a beam", side_entries_free},
+       {"{visits} such visits in 200 trials of scenes/field.toml (gatewalk trace --field). One "
+        "state each for RT and LT is enough."}},
+      {{"velocities", "Sec. III-C, Table III", "crossings"},
+       "With damping and drag the velocity stays in the range of Table III.",
+       {"in the tested range", "{ours} of the crossings outside",
+        [](const Findings& f) { return below(0.05, f, &Crossings::clamped_share); }},
+       {"Outside Table III's bins, by velocity or place, at 7 N, Rm 50 N; {others} % at Rm 10, 20, "
+        "40 N. They are put into the nearest bin, and counted; one in twenty would pass here."}},
+      {{"drag", "Sec. III-C", "crossings"},
+       "Without drag and with less damping the velocity leaves the range that the chain covers.",
+       {"leaves it", "{without} outside; with them {with}", drag},
+       {"D = 0 and d = 10 against D = 0.06 and d = 50; 7 N, Rm 50 N."}},
+      {{"states", "Sec. III-C, Table III", "crossings"},
+       "87 input and 88 output states.",
+       {"87 x 88", "{inputs} x {outputs}", states},
+       {"EN 25, RD 30, LD 30, RT 1, LT 1; and trapped."}},
+      {{"thirteen_steps", "Sec. III-C", "fig11"},
+       "At most 13 steps, to reach the furthest gate.",
+       {"13", "{gates} gates to the furthest corner", thirteen_steps},
+       {"The first one included. Up to {cut_off:1} % of the trials are still on their way after "
+        "13, because they also go sideways; field.max_gates = 0 lifts the limit."}}};
+}
+
 }  // namespace gatewalk::cli

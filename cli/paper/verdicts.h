@@ -30,6 +30,11 @@ inline constexpr std::array<std::string_view, 4> kVerdictNames{"reproduced", "ag
   return agrees ? Verdict::agrees : Verdict::cannot_tell;
 }
 
+/// Of a claim that no chance decides.
+[[nodiscard]] inline Verdict holds_or_differs(bool holds) {
+  return holds ? Verdict::reproduced : Verdict::differs;
+}
+
 inline constexpr std::int64_t kPaperTrials = 100;
 /// A statement without a number, such as "never falls", is reproduced only by so many trials.
 inline constexpr std::int64_t kEnoughTrials = 1000;

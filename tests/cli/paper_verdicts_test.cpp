@@ -162,12 +162,11 @@ Findings found(std::int64_t trials, std::int64_t (*left)(double force, double ra
 TEST(PaperClaims, WhatIsSeenNowhereDiffers) {
   const auto none = [](double, double) { return std::int64_t{0}; };
   const auto verdicts = [](const Findings& f) {
-    return std::vector<Verdict>{rises_with_propulsion(f).verdict,
-                                rises_then_falls(f).verdict,
-                                peak_at_20(f).verdict,
-                                escape(f).verdict,
-                                softer_side(f).verdict,
-                                fig12_propulsion(f).verdict};
+    std::vector<Verdict> all;
+    for (const char* id : {"rises_with_propulsion", "rises_then_falls", "peak_at_20", "escape",
+                           "softer_side", "fig12_propulsion"})
+      all.push_back(claim_of(id, f).verdict);
+    return all;
   };
   EXPECT_EQ(verdicts(found(10000, none, none)), std::vector(6, Verdict::differs));
   EXPECT_EQ(verdicts(found(100, none, none)), std::vector(6, Verdict::cannot_tell));
@@ -176,8 +175,8 @@ TEST(PaperClaims, WhatIsSeenNowhereDiffers) {
 TEST(PaperClaims, BothSidesAlikeIsNotTheSofterSide) {
   const auto some = [](double, double) { return std::int64_t{2000}; };
   const auto none = [](double, double) { return std::int64_t{0}; };
-  EXPECT_EQ(softer_side(found(10000, some, some)).verdict, Verdict::differs);
-  EXPECT_EQ(softer_side(found(10000, some, none)).verdict, Verdict::reproduced);
+  EXPECT_EQ(claim_of("softer_side", found(10000, some, some)).verdict, Verdict::differs);
+  EXPECT_EQ(claim_of("softer_side", found(10000, some, none)).verdict, Verdict::reproduced);
 }
 
 // Table IV's pair is judged by standard deviations that some repeats must tell.
@@ -191,8 +190,24 @@ TEST(PaperClaims, AStartOfFewRepeatsIsNotJudged) {
   f.field.starts = {start, start};
   f.field.starts[0].repeats = 10;
   f.field.starts[1].repeats = 100;
-  EXPECT_EQ(table4_row(f, 0, "few").verdict, Verdict::cannot_tell);
-  EXPECT_EQ(table4_row(f, 1, "many").verdict, Verdict::differs);
+  EXPECT_EQ(claim_of("table4_1", f).verdict, Verdict::cannot_tell);
+  EXPECT_EQ(claim_of("table4_2", f).verdict, Verdict::differs);
+}
+
+// Sentences without their value are left out, numbers have the digits that the text asks for.
+TEST(PaperClaims, TextsHoldWhatWasMeasured) {
+  Findings f;
+  f.fig9_300.runs.resize(4);
+  f.fig9_300.runs[0].hits = 52;
+  const Claim claim = claim_of("many_hits", f);
+  EXPECT_EQ(claim.ours, "13 hits on average");
+  EXPECT_EQ(claim.why,
+            "In 4 traversals with k_L = 300, k_R = 500, d = 10; ten would count as many.");
+  EXPECT_EQ(claim_of("inertia", f).ours, "20.83 kg m^2");
+  const auto none = [](double, double) { return std::int64_t{0}; };
+  EXPECT_EQ(claim_of("peak_at_20", found(100, none, none)).why,
+            "Of 0 to 40 N no random force gives more than none beyond chance.");
+  EXPECT_THROW((void)claim_of("nothing", f), std::out_of_range);
 }
 
 TEST(PaperClaims, ALittleLessThanAlwaysAgrees) {
@@ -203,7 +218,7 @@ TEST(PaperClaims, ALittleLessThanAlwaysAgrees) {
     f.steep.fine.downhill = downhill;
     f.steep.measured.trials = 10000;
     f.steep.measured.traversed = traversed;
-    return steep(f).verdict;
+    return claim_of("steep", f).verdict;
   };
   EXPECT_EQ(verdict_of_steep(10000, true), Verdict::reproduced);
   EXPECT_EQ(verdict_of_steep(9990, true), Verdict::agrees);
