@@ -36,20 +36,20 @@ struct Claim {
 // ---- The table that they come from
 
 /// A measured value as a claim's texts have it. Without one the sentence is left out.
-struct Value {
+struct Said {
   std::variant<std::monostate, double, std::string> held;
 
-  Value() = default;
+  Said() = default;
   template <class T>
-  requires std::integral<T> || std::floating_point<T> Value(T x) : held(static_cast<double>(x)) {}
-  Value(std::string words) : held(std::move(words)) {}
-  Value(const char* words) : held(words) {}
-  Value(const Share& s) : held(percent_text(s)) {}
+  requires std::integral<T> || std::floating_point<T> Said(T x) : held(static_cast<double>(x)) {}
+  Said(std::string words) : held(std::move(words)) {}
+  Said(const char* words) : held(words) {}
+  Said(const Share& s) : held(percent_text(s)) {}
 };
-[[nodiscard]] inline Value when(bool applies, Value value) { return applies ? value : Value(); }
+[[nodiscard]] inline Said when(bool applies, Said value) { return applies ? value : Said(); }
 [[nodiscard]] std::string of(std::int64_t part, std::int64_t whole);  // "3 of 8"
 
-using Values = std::map<std::string, Value, std::less<>>;  // by their names in the texts
+using Values = std::map<std::string, Said, std::less<>>;  // by their names in the texts
 struct Measured {
   Verdict verdict;
   Values values;

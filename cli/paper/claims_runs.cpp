@@ -23,10 +23,10 @@ Measured landscape_sides(const Findings& /*f*/) {
 }
 
 Measured basin(const Findings& f) {
-  const LowestWay& way = f.fig5_symmetric.fine;
-  const double y = way.basin[1];
-  return {holds_or_differs(!way.downhill && y > 20 && y < dynamics::GateParams{}.beams.joint_y),
-          {{"ours", way.downhill ? "no basin" : "its floor is at y = " + fixed(y, 1) + " m"}}};
+  const dynamics::GridPasses& grid = f.fig5_symmetric.fine;
+  const double y = grid.from_basin.way.front()[1];
+  return {holds_or_differs(!grid.downhill() && y > 20 && y < dynamics::GateParams{}.beams.joint_y),
+          {{"ours", grid.downhill() ? "no basin" : "its floor is at y = " + fixed(y, 1) + " m"}}};
 }
 
 Measured escape(const Findings& f) {
@@ -38,11 +38,11 @@ Measured escape(const Findings& f) {
                      enough && helped && still.high < 0.5),
           {{"still", 100 * still.value},
            {"shaken", shaken},
-           {"trapped", 100 * share_of(p.trapped, p.trials).value}}};
+           {"trapped", 100 * share_of(p[dynamics::Outcome::trapped], p.trials).value}}};
 }
 
 Measured steep(const Findings& f) {
-  const bool downhill = f.steep.fine.downhill;
+  const bool downhill = f.steep.fine.downhill();
   const Share share = f.steep.measured.traversed_share();
   // "Always" is 100 of the paper's 100; by more trials, all of these.
   Verdict verdict = downhill ? against(kPaperTrials, share) : Verdict::differs;
@@ -99,13 +99,12 @@ Measured many_hits(const Findings& f) {
 Measured euler_step(const Findings& f) {
   const SweepPoint &by_paper = f.paper_method.at({{"run.method", "paper"}, {kDamping, 10}}),
                    &by_event = f.paper_method.at({{"run.method", "event"}, {kDamping, 10}});
-  const Share paper = share_of(by_paper.traversed_left, by_paper.trials),
-              event = share_of(by_event.traversed_left, by_event.trials);
+  const Share paper = by_paper.left_share(), event = by_event.left_share();
   const bool apart = rises(paper, event) || falls(paper, event), seen = seen_with_100(paper, event);
   return {verdict_of(apart && seen, !apart && paper.whole >= 10 * kEnoughTrials, apart),
           {{"paper", paper},
            {"event", event},
-           {"depth", by_paper.worst_penetration},
+           {"depth", by_paper.health.worst_penetration},
            {"unseen_by", when(!seen, kPaperTrials)}}};
 }
 

@@ -125,7 +125,7 @@ Measured exits_grow(const Findings& f) {
       trend.add(kPaperRandom, along(kPaperRandom, [&](double random) {
                   const SweepPoint& p =
                       f.fig8.at({{kDamping, damping}, {kPropulsion, force}, {kRandom, random}});
-                  return share_of(p.exited_left + p.exited_right, p.trials);
+                  return share_of(p.exited(), p.trials);
                 }));
   const auto early = std::count_if(f.exits.runs.begin(), f.exits.runs.end(),
                                    [](const TracedRun& run) { return run.hits == 0; });
@@ -179,7 +179,7 @@ Measured accord(const Findings& f) {
   for (const double damping : kDampings) {
     std::multimap<double, Share> held_back;  // by height: the share that does not traverse
     for (const auto& [k, landscape] : f.barriers) {
-      const double height = landscape.fine.above_basin;
+      const double height = landscape.fine.from_basin.barrier();
       const Share s = fig12_at(f, damping, 7, 10, k).traversed_share();
       held_back.emplace(height, share_of(s.whole - s.part, s.whole));
       if (damping == 10 && (k == 100 || k == 300 || k == 500))
@@ -199,8 +199,8 @@ Measured accord(const Findings& f) {
 
 Measured thirteen_and_eight(const Findings& f) {
   const SweepPoint& point = equal_beams(f);
-  const Share left = share_of(point.traversed_left, point.trials),
-              right = share_of(point.traversed_right, point.trials);
+  const Share left = point.left_share(),
+              right = share_of(point[dynamics::Outcome::traversed_right], point.trials);
   const LandscapeStudy& landscape = f.barriers.at(500);
   Share most;
   std::size_t settings = 0;
@@ -217,13 +217,13 @@ Measured thirteen_and_eight(const Findings& f) {
   return {std::max(against(13, left), against(8, right)),
           {{"left", left},
            {"right", right},
-           {"fine", landscape.fine.above_start},
-           {"coarse", landscape.coarse.above_start},
-           {"basin", landscape.fine.above_basin},
+           {"fine", landscape.fine.above_start()},
+           {"coarse", landscape.coarse.above_start()},
+           {"basin", landscape.fine.from_basin.barrier()},
            {"settings", settings},
            {"most", most},
-           {"force", enough ? enough->at(kPropulsion).text : Value()},
-           {"damping", enough ? enough->at(kDamping).text : Value()}}};
+           {"force", enough ? enough->text(kPropulsion) : Said()},
+           {"damping", enough ? enough->text(kDamping) : Said()}}};
 }
 
 Measured alike(const Findings& f) {
@@ -234,8 +234,7 @@ Measured alike(const Findings& f) {
 /// `printed` % by the left beam, with these beams.
 template <int kLeft, int kDampers, int kPrinted>
 Measured by_left_beam(const Findings& f) {
-  const SweepPoint& p = fig12_at(f, kDampers, 7, 10, kLeft);
-  const Share ours = share_of(p.traversed_left, p.trials);
+  const Share ours = fig12_at(f, kDampers, 7, 10, kLeft).left_share();
   return {against(kPrinted, ours), {{"ours", ours}}};
 }
 
@@ -266,11 +265,10 @@ Measured fig12_propulsion(const Findings& f) {
   Places cells;
   double softest = 1e9;
   for (const SweepPoint& p : f.fig12.points) {
-    if (p.at(kPropulsion).number != 7) continue;
-    const double k = p.at(kLeftStiffness).number;
+    if (p.number(kPropulsion) != 7) continue;
+    const double k = p.number(kLeftStiffness);
     const Share seven = p.traversed_share(),
-                eight = fig12_at(f, p.at(kDamping).number, 8, p.at(kRandom).number, k)
-                            .traversed_share();
+                eight = fig12_at(f, p.number(kDamping), 8, p.number(kRandom), k).traversed_share();
     ++cells.of;
     cells.hold += rises(seven, eight);
     if (!falls(seven, eight)) continue;

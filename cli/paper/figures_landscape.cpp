@@ -98,7 +98,8 @@ Section barriers(const Findings& f) {
   std::vector<std::string> studies;
   double trials = 0.0;
   for (const auto& [k, landscape] : f.barriers) {
-    const auto& [start, basin, downhill, place] = landscape.fine;
+    const double start = landscape.fine.above_start(), basin = landscape.fine.from_basin.barrier();
+    const bool downhill = landscape.fine.downhill();
     (downhill ? none : heights) += std::to_string(k) + " " + line_of({basin, start});
     for (const int damping : {10, 50}) {
       const Share s =

@@ -36,8 +36,8 @@ Section fig8(const Findings& f) {
         const Share s = p.traversed_share();
         const auto n = static_cast<double>(p.trials);
         csv.row(damping, force, random, n, s.value, s.low, s.high,
-                static_cast<double>(p.exited_left + p.exited_right) / n,
-                static_cast<double>(p.trapped) / n);
+                static_cast<double>(p.exited()) / n,
+                static_cast<double>(p[dynamics::Outcome::trapped]) / n);
         map += std::to_string(force) + " " + std::to_string(random) + " " +
                digits(root_percent(s.value)) + " " + short_share(s.value) + "\n";
         // Without a random force all trials are the same run.
@@ -205,17 +205,17 @@ Section thirteen_eight(const Findings& f) {
                        const std::string& unit) {
     RateGroup shown{group, {}, 21.0, groups.empty() ? "paper: 13 + 8 %" : ""};
     for (const SweepPoint& p : study.points) {
-      const std::string text = p.at(key).text + unit;
+      const std::string text = p.text(key) + unit;
       const Share s = p.traversed_share();
       const auto n = static_cast<double>(p.trials);
-      csv.row(group, text, p.at(kDamping).number, s.value, s.low, s.high,
-              static_cast<double>(p.traversed_left) / n, static_cast<double>(p.traversed_right) / n,
-              n);
+      csv.row(group, text, p.number(kDamping), s.value, s.low, s.high,
+              static_cast<double>(p[dynamics::Outcome::traversed_left]) / n,
+              static_cast<double>(p[dynamics::Outcome::traversed_right]) / n, n);
       auto row = std::find_if(shown.rows.begin(), shown.rows.end(),
                               [&](const RateRow& r) { return r.label == text; });
       if (row == shown.rows.end())
         row = shown.rows.insert(row, {text, {3, Share{std::nan(""), 0.0, 0.0}}});
-      const auto at = std::find(dampings.begin(), dampings.end(), p.at(kDamping).number);
+      const auto at = std::find(dampings.begin(), dampings.end(), p.number(kDamping));
       row->shares.at(static_cast<std::size_t>(at - dampings.begin())) = s;
       ++settings;
     }
@@ -234,10 +234,10 @@ Section thirteen_eight(const Findings& f) {
       "The 13 % and 8 % of Fig. 9A",
       {"With k_L = k_R = 500 the paper sees 21 of 100 bodies traverse. Here hardly any does. "
        "The landscape's argument: on the paper's grid of 0.5 m the lowest way through rises " +
-           fixed(landscape.coarse.above_start, 1) + " J above the start, on one of 0.05 m " +
-           fixed(landscape.fine.above_start, 1) +
+           fixed(landscape.coarse.above_start(), 1) + " J above the start, on one of 0.05 m " +
+           fixed(landscape.fine.above_start(), 1) +
            " J; a body that has come to rest in the basin must climb " +
-           fixed(landscape.fine.above_basin, 0) +
+           fixed(landscape.fine.from_basin.barrier(), 0) +
            " J. The start is at rest, so only the work of the random force could lift it, and "
            "hits and dampers take what it gives.",
        "Tried, " + std::to_string(settings) +

@@ -1,63 +1,49 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What the studies behind the paper's figures and claims gave: their files, read and checked once.
+/// What the studies behind the paper's figures and claims gave, read from their JSON: so a report
+/// that was interrupted goes on with what is there.
 
 #include <array>
 #include <cmath>
 #include <map>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "cli/paper/verdicts.h"
 #include "cli/render/json.h"
-#include "lattice/scene/table4.h"
+#include "dynamics/disc/ensemble.h"
+#include "dynamics/disc/landscape.h"
 #include "lattice/study/validation.h"
 
 namespace gatewalk::cli {
 
 // ---- sweep
 
-/// What a key of a scene is at a point: a number, or words.
-struct Setting {
-  double number = std::nan("");
-  std::string text;  // "7", "0.004", "stable"
-
-  Setting(double x) : number(x) {}
-  Setting(int x) : number(x) {}
-  Setting(const char* words) : text(words) {}
-  Setting(double x, std::string words) : number(x), text(std::move(words)) {}
-  [[nodiscard]] bool is(const Setting& other) const {
-    return std::isnan(other.number) ? text == other.text : number == other.number;
+/// How trials of one gate ended: traversals and exits as the paper counts them.
+struct Outcomes : dynamics::GateTally {
+  [[nodiscard]] Share traversed_share() const { return share_of(traversed(), trials); }
+  [[nodiscard]] Share left_share() const {
+    return share_of((*this)[dynamics::Outcome::traversed_left], trials);
   }
-};
-using At = std::vector<std::pair<std::string_view, Setting>>;
-
-/// Outcomes of single-gate trials.
-struct Outcomes {
-  std::int64_t trials = 0, traversed = 0, traversed_left = 0, traversed_right = 0;
-  std::int64_t exited_left = 0, exited_right = 0, trapped = 0;
-  double worst_penetration = 0.0;  // m
-
-  [[nodiscard]] Share traversed_share() const { return share_of(traversed, trials); }
   /// Right of those that pushed more past one beam (Fig. 12).
   [[nodiscard]] Share right_share() const {
-    return share_of(traversed_right, traversed_left + traversed_right);
+    const std::int64_t right = (*this)[dynamics::Outcome::traversed_right];
+    return share_of(right, (*this)[dynamics::Outcome::traversed_left] + right);
   }
 };
 
 struct SweepPoint : Outcomes {
-  std::vector<std::pair<std::string, Setting>> settings;
-  /// Throws std::out_of_range for a key that is not varied.
-  [[nodiscard]] const Setting& at(std::string_view key) const;
+  Json place;  // the varied keys of the scene: {"run.method": "stable", "forces.random_N": 10}
+
+  [[nodiscard]] double number(const char* key) const { return place.at(key).get<double>(); }
+  [[nodiscard]] std::string text(const char* key) const;  // "7", "0.004", "stable"
 };
 
 struct Sweep {
   std::vector<SweepPoint> points;  // at least one
   /// The point at which these keys have these values. Throws std::out_of_range if there is none.
-  [[nodiscard]] const SweepPoint& at(const At& where) const;
-  [[nodiscard]] std::vector<double> values(std::string_view key) const;  // ascending
+  [[nodiscard]] const SweepPoint& at(const Json& where) const;
+  [[nodiscard]] std::vector<double> values(const char* key) const;  // ascending
 };
 
 // ---- trace
@@ -77,17 +63,9 @@ struct Trace {
 
 // ---- landscape
 
-/// The way through whose highest point is lowest.
-struct LowestWay {
-  double above_start = 0.0;       // J, of its highest point
-  double above_basin = 0.0;       // J, the same; 0 if it is downhill from the basin's place on
-  bool downhill = false;          // there is no basin
-  std::array<double, 2> basin{};  // m
-};
-
-struct LandscapeStudy {
-  LowestWay coarse, fine;  // on the first grid (the paper's), on the last
-  Outcomes measured;       // of its trials, if there are any
+/// The passes without the landscapes that they lead over: coarse is the paper's grid.
+struct LandscapeStudy : dynamics::Passes {
+  Outcomes measured;  // of its trials, if there are any
 };
 
 // ---- validate
@@ -103,9 +81,9 @@ struct Repeats {
 };
 
 struct ValidatedStart {
-  double d = 0.0, vx = 0.0, vy = 0.0;             // m, m/s, m/s
-  double paper_corrcoef = 0.0, paper_rmse = 0.0;  // Table IV; nan: not one of its starts
-  std::int64_t repeats = 0;                       // of 100 trials
+  double d = 0.0, vx = 0.0, vy = 0.0;                                 // m, m/s, m/s
+  double paper_corrcoef = std::nan(""), paper_rmse = paper_corrcoef;  // of Table IV, if it has it
+  std::int64_t repeats = 0;                                           // of 100 trials
   Repeats exact, walks;
   double corrcoef = 0.0, rmse = 0.0;  // all trials against the exact chain
   double total_variation = 0.0, total_variation_floor = 0.0;
@@ -146,7 +124,7 @@ struct Validation {
 
 // ---- All of them
 
-/// Members as the studies are called (studies.cpp).
+/// What the studies gave; members as these are called (studies.cpp).
 struct Findings {
   Sweep fig8, fig12, paper_method;
   /// With k_L = k_R = 500, what could make 13 % and 8 %.
@@ -158,17 +136,13 @@ struct Findings {
   std::map<int, LandscapeStudy> barriers;  // by k_L; fewer in a quick run
   Validation field, field_paper_method, field_no_drag;
   std::map<int, Crossings> field_random;  // by Rm: 10, 20, 40 N
-
-  /// From the studies' JSON by their names. Throws std::runtime_error that names the file and the
-  /// key which is missing or is of another kind.
-  explicit Findings(const std::map<std::string, Json>& data);
-  Findings() = default;  // nothing found, to be filled
 };
 
-/// A study's file. Throws as Findings.
-[[nodiscard]] Sweep sweep_of(const Json& json, const std::string& file);
-[[nodiscard]] Trace trace_of(const Json& json, const std::string& file);
-[[nodiscard]] LandscapeStudy landscape_of(const Json& json, const std::string& file);
-[[nodiscard]] Validation validation_of(const Json& json, const std::string& file);
+// What a study's JSON says. They throw std::exception where it says something else.
+void read(Sweep& sweep, const Json& json);
+void read(Trace& trace, const Json& json);
+void read(LandscapeStudy& study, const Json& json);
+void read(Validation& validation, const Json& json);
+void read(Crossings& crossings, const Json& json);
 
 }  // namespace gatewalk::cli

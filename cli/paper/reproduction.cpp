@@ -136,9 +136,9 @@ class InFolder {
   std::filesystem::path before_ = std::filesystem::current_path();
 };
 
-/// What the studies gave, by their names.
+/// What the studies gave.
 struct Results {
-  std::map<std::string, Json> data;
+  Findings findings;
   double seconds = 0.0;  // of all of them
 };
 
@@ -150,33 +150,34 @@ class Records {
     if (!done_.is_object()) done_ = Json::object();
   }
 
-  /// The result of a study; null when it is not done yet, or by another command or program, or
-  /// cannot be read any more.
-  [[nodiscard]] Json result(const Study& s) const {
+  /// Takes the result of a study. False when it is not done yet, or by another command or program,
+  /// or cannot be read any more.
+  [[nodiscard]] bool take(const Study& s, Findings& findings) const {
     const auto known = done_.find(s.name);
-    if (known == done_.end() || !known->is_object()) return {};
+    if (known == done_.end() || !known->is_object()) return false;
     const Json wanted = record_of(s);
     for (const auto& [key, value] : wanted.items())
-      if (known->value(key, Json()) != value) return {};
-    if (!known->value("seconds", Json()).is_number()) return {};
+      if (known->value(key, Json()) != value) return false;
+    if (!known->value("seconds", Json()).is_number()) return false;
     for (auto word = s.arguments.begin(); word != s.arguments.end(); ++word)
-      if (*word == "--figure" && !std::filesystem::exists(*(word + 1))) return {};
-    Json data = read_json(file_of(s));
-    // A file of another run, or half a one, is no result.
-    return data.is_object() && data.contains("made_by") ? data : Json();
+      if (*word == "--figure" && !std::filesystem::exists(*(word + 1))) return false;
+    try {
+      take_file(s, findings);
+      return true;
+    } catch (const std::exception&) {  // a file of another run, or half a one, is no result
+      return false;
+    }
   }
-  /// Carries a study out and puts it on record.
-  [[nodiscard]] Json make(const Study& s, const dynamics::Work& work) {
+  /// Carries a study out, puts it on record and takes its result.
+  void make(const Study& s, const dynamics::Work& work, Findings& findings) {
     if (done_.erase(s.name) > 0) write();
     const dynamics::Stopwatch watch;
     const std::string remarks = run(s, work);
-    Json data = read_json(file_of(s));
-    if (data.is_null()) throw std::runtime_error(file_of(s) + ": cannot be read again");
+    take_file(s, findings);
     done_[s.name] = record_of(s);
     if (!remarks.empty()) done_[s.name]["remarks"] = remarks;
     done_[s.name]["seconds"] = watch.seconds();
     write();
-    return data;
   }
   [[nodiscard]] double seconds(const Study& s) const {
     return done_[s.name]["seconds"].get<double>();
@@ -185,6 +186,12 @@ class Records {
 
  private:
   static std::string file_of(const Study& s) { return "data/" + s.name + ".json"; }
+  /// Throws std::exception for a file that is no result of the study.
+  static void take_file(const Study& s, Findings& findings) {
+    const Json data = read_json(file_of(s));
+    (void)data.at("made_by");
+    if (s.take) s.take(findings, data);
+  }
   /// Returns its remarks: the paper's own scheme shows faults and says so; that belongs to the
   /// study, not to this run.
   static std::string run(const Study& s, const dynamics::Work& work) {
@@ -210,12 +217,9 @@ Results carry_out(const std::vector<Study>& studies, bool talk) {
   std::vector<const Study*> left;
   std::int64_t cost = 0;
   for (const Study& s : studies) {
-    if (Json data = records.result(s); !data.is_null()) {
-      results.data[s.name] = std::move(data);
-    } else {
-      left.push_back(&s);
-      cost += s.cost;
-    }
+    if (records.take(s, results.findings)) continue;
+    left.push_back(&s);
+    cost += s.cost;
   }
   std::size_t number = studies.size() - left.size();
   if (talk && number > 0)
@@ -229,8 +233,9 @@ Results carry_out(const std::vector<Study>& studies, bool talk) {
       progress.update(now);
     }};
     whole.tell(s->name, done, cost);
-    results.data[s->name] = records.make(
-        *s, whole.part(s->name, static_cast<double>(done), static_cast<double>(s->cost), cost));
+    records.make(*s,
+                 whole.part(s->name, static_cast<double>(done), static_cast<double>(s->cost), cost),
+                 results.findings);
     done += s->cost;
     progress.finish();
     if (talk)
@@ -302,10 +307,9 @@ Json first_screen(const std::map<std::string, std::string>& commands) {
 
 Reproduction report_of(const Results& results, const std::vector<Study>& studies, bool quick,
                        const Json& scenes) {
-  const Findings findings(results.data);
   std::map<std::string, std::string> commands;
   for (const Study& s : studies) commands[s.name] = s.text();
-  Reproduction r{.report = {}, .claims = claims_of(findings), .seconds = results.seconds};
+  Reproduction r{.report = {}, .claims = claims_of(results.findings), .seconds = results.seconds};
   r.report = {{"title", "Cluttered obstacle traversal: what gatewalk reproduces"},
               {"paper",
                "B. Zheng, Q. Xuan and C. Li, A minimalistic stochastic dynamics model of cluttered "
@@ -314,7 +318,7 @@ Reproduction report_of(const Results& results, const std::vector<Study>& studies
               {"claims", to_json(r.claims)},
               {"lead", lead_of(r, quick)},
               {"first", first_screen(commands)},
-              {"sections", sections_of(findings, commands)},
+              {"sections", sections_of(results.findings, commands)},
               {"made_by",
                {{"program", std::string("gatewalk ") + kVersion + " (" + kCommit + ")"},
                 {"command", std::string("gatewalk reproduce") + (quick ? " --quick" : "")},

@@ -2,21 +2,25 @@
 #pragma once
 /// The studies behind the paper's figures and claims: which commands are run.
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/paper/findings.h"
 #include "dynamics/disc/params.h"
 
 namespace gatewalk::cli {
 
-/// One command of this program. Its result goes to data/NAME.json.
+/// One command of this program, as the report prints it. Its result goes to data/NAME.json.
 struct Study {
   std::string name;
   int (*run)(const Arguments& arguments) = nullptr;
   std::string command;                 // "sweep"
   std::vector<std::string> arguments;  // without --json and --quiet
   std::int64_t cost = 1;               // expected seconds times 100, for the time that is left
+  /// Takes what the report needs of that result. Throws as findings.h; null: nothing.
+  std::function<void(Findings&, const Json&)> take = nullptr;
 
   [[nodiscard]] std::string text() const;  // "gatewalk sweep scenes/fig8.toml ..."
 };

@@ -142,11 +142,9 @@ Findings found(std::int64_t trials, std::int64_t (*left)(double force, double ra
   const auto add = [&](Sweep& to, double damping, double force, double random, double k) {
     SweepPoint p;
     p.trials = trials;
-    p.traversed_left = left(force, random);
-    p.traversed_right = right(force, random);
-    p.traversed = p.traversed_left + p.traversed_right;
-    p.settings = {{kDamping, damping}, {kPropulsion, force}, {kRandom, random}};
-    if (k > 0) p.settings.emplace_back(kLeftStiffness, k);
+    p.counts = {left(force, random), right(force, random)};
+    p.place = {{kDamping, damping}, {kPropulsion, force}, {kRandom, random}};
+    if (k > 0) p.place[kLeftStiffness] = k;
     to.points.push_back(std::move(p));
   };
   for (const double damping : {50.0, 10.0})
@@ -215,9 +213,9 @@ TEST(PaperClaims, ALittleLessThanAlwaysAgrees) {
     Findings f = found(
         10, [](double, double) { return std::int64_t{1}; },
         [](double, double) { return std::int64_t{1}; });
-    f.steep.fine.downhill = downhill;
+    f.steep.fine.from_basin.way.resize(downhill ? 1 : 2);
     f.steep.measured.trials = 10000;
-    f.steep.measured.traversed = traversed;
+    f.steep.measured.counts = {traversed};
     return claim_of("steep", f).verdict;
   };
   EXPECT_EQ(verdict_of_steep(10000, true), Verdict::reproduced);
