@@ -112,7 +112,7 @@ Section fig6(const Findings& f) {
 namespace {
 
 /// One of Fig. 9's panels: which study, with which beams.
-struct Panel {
+struct TracedPanel {
   const Trace& traced;
   double k_left, damping;
   const char* letter;
@@ -127,9 +127,9 @@ Section fig9(const Findings& f) {
   Csv csv("panel,k_left_Nm_per_rad,damping_Nms_per_rad,trial,side,time_s,x_m,y_m,potential_J");
   std::string data,
       maps = words(sheet, "traversed; F_prop = 7 N, Rm = 10 N, k_R = 500 N m/rad", 8, 18);
-  for (const Panel& panel : {Panel{f.fig9_500, 500, 50, "A", kLeft, kUpper},
-                             Panel{f.fig9_300, 300, 10, "B", kRight, kUpper},
-                             Panel{f.fig9_100, 100, 10, "C", kLeft, kLower}}) {
+  for (const TracedPanel& panel : {TracedPanel{f.fig9_500, 500, 50, "A", kLeft, kUpper},
+                                   TracedPanel{f.fig9_300, 300, 10, "B", kRight, kUpper},
+                                   TracedPanel{f.fig9_100, 100, 10, "C", kLeft, kLower}}) {
     std::string tracks[2];
     std::int64_t count[2] = {0, 0};
     for (const TracedRun& run : panel.traced.runs) {

@@ -7,6 +7,7 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
+#include "cli/render/panel.h"
 #include "cli/render/plan.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
@@ -126,73 +127,63 @@ std::string table_of(const FoundStart& f) {
 }
 
 Figure figure_of(const FoundStart& f) {
-  const dynamics::Section& section = f.shown.map.section;
   const lattice::BestStart& found = f.found;
   const StartMap map = map_of(f, found.best.column);
-  const auto axis = [&](std::size_t r) {
-    const dynamics::Coordinate& c = section.coordinates[f.ranges[r].coordinate];
-    const std::string unit = dynamics::behind_number(c.unit);
-    return "'start " + c.name + (unit.empty() ? "" : "," + unit) + "'";
-  };
-  const auto range = [](const lattice::CoordinateRange& r) {
-    return "[" + digits(r.low) + ":" + digits(r.high) + "]";
-  };
-  const auto tics = [](const lattice::CoordinateRange& r) {
-    return digits(tic_step(r.high - r.low, 5));
-  };
-  const auto place = [&](const dynamics::Entry& entry) {
-    return digits(entry.at[f.ranges[0].coordinate]) + " " +
-           digits(f.ranges.size() > 1 ? entry.at[f.ranges[1].coordinate]
-                                      : 100.0 * found.chance({found.best.column, entry})) +
-           "\n";
-  };
-  const std::vector<ShareBar> bars{
-      {"best", found.crossings.share(), found.crossings.interval_95()},
-      {"own", found.crossings_of_own.share(), found.crossings_of_own.interval_95()}};
-  const Box box{70, 370, 36, 236};
-  const Box bars_box{130, 330, box.bottom + 90, box.bottom + 90 + height_of_bars(bars.size())};
-  const Sheet sheet{static_cast<int>(bars_box.bottom) + 12};
   const bool two = f.ranges.size() > 1;
-  std::string rows;
+  Panels out;
+  Rows& rows = out.data("$starts");
   double most = 0.0;
   for (std::size_t i = 0; i < map.chance.size(); ++i) {
     const double percent = 100.0 * map.chance[i];
     most = std::max(most, percent);
-    rows += digits(map.across[i % kParts]) + " " +
-            (two ? digits(map.up[i / kParts]) + " " : std::string()) + digits(percent) + "\n";
+    if (two)
+      rows.add(map.across[i % kParts], map.up[i / kParts], percent);
+    else
+      rows.add(map.across[i % kParts], percent);
   }
+  const auto marked = [&](const char* name, const dynamics::Entry& entry) -> Rows& {
+    Rows& place = out.data(name);
+    place.add(
+        entry.at[f.ranges[0].coordinate],
+        two ? entry.at[f.ranges[1].coordinate] : 100.0 * found.chance({found.best.column, entry}));
+    return place;
+  };
+  const Rows &best = marked("$best", found.best.entry), &own = marked("$own", f.own);
+  const auto axis = [&](std::size_t r) {
+    const dynamics::Coordinate& c = f.shown.map.section.coordinates[f.ranges[r].coordinate];
+    const std::string unit = dynamics::behind_number(c.unit);
+    return Axis{"start " + c.name + (unit.empty() ? "" : "," + unit), f.ranges[r].low,
+                f.ranges[r].high, digits(tic_step(f.ranges[r].high - f.ranges[r].low, 5))};
+  };
   const auto half = [](const lattice::CoordinateRange& r) {
     return 0.5 * (r.high - r.low) / kParts;
   };
-  std::string plot =
-      two ? std::string(kSequential) + "set cbrange [0:" + digits(most > 0.0 ? most : 1.0) +
-                "]\nset cbtics auto scale 0\nset colorbox user origin screen " +
-                sheet.at(box.right + 12, box.bottom) + " size screen " +
-                digits(10.0 / Sheet::kWidth) + "," + digits((box.bottom - box.top) / sheet.height) +
-                "\nset yrange " + range(f.ranges[1]) + "\nset ytics " + tics(f.ranges[1]) + "\n" +
-                Sheet::axes(axis(0), axis(1)) + "plot $starts" +
-                cells(half(f.ranges[0]), half(f.ranges[1]))
-          : "set yrange [0:*]\nset ytics auto\n" + Sheet::axes(axis(0), "'% crossed'") +
-                "plot $starts using 1:2 with lines lw 1.5 lc rgb '" + std::string(kFirstColour) +
-                "'";
-  const auto marked = [](int type) {
-    return " with points pt " + std::to_string(type) + " ps 1 lw 2 lc rgb '" + kSecondColour + "'";
-  };
+  const Box box{70, 370, 36, 236};
+  Panel& panel = out.add(box);
   const bool here = found.best.column == f.shown.field.start_column();  // as the own start
-  const std::string column = f.columns.size() > 1 ? " in " + column_text(f, found.best.column) : "";
-  return {Sheet::kWidth, sheet.height,
-          "set multiplot\n" + data_block("$starts", rows) +
-              data_block("$best", place(found.best.entry)) + data_block("$own", place(f.own)) +
-              sheet.margins(box) + kFrame + "set xrange " + range(f.ranges[0]) + "\nset xtics " +
-              tics(f.ranges[0]) + "\n" +
-              sheet.text("% crossed by start" + column + ", by the chain; x: best" +
-                             (here ? ", +: own" : ""),
-                         8, 18) +
-              plot + ", $best" + marked(2) + (here ? ", $own" + marked(1) : "") +
-              "\nunset label\nunset colorbox\n" +
-              sheet.text("crossed, % of trials in full", 8, bars_box.top - 14) +
-              share_bars(sheet, bars_box, "$crossed", bars) + "unset multiplot\n",
-          kFont};
+  panel.say("% crossed by start" +
+                (f.columns.size() > 1 ? " in " + column_text(f, found.best.column) : "") +
+                ", by the chain; x: best" + (here ? ", +: own" : ""),
+            8, 18);
+  panel.x = axis(0);
+  if (two) {
+    panel.y = axis(1);
+    panel.colours = {0, most > 0.0 ? most : 1.0, box.beside(), "auto scale 0"};
+    panel.draw_cells(rows, half(f.ranges[0]), half(f.ranges[1]));
+  } else {
+    panel.y = {"% crossed", 0};
+    panel.draw(rows, "1:2", "lines", {.colour = kFirstColour, .width = 1.5});
+  }
+  panel.draw(best, "", "points", {kSecondColour, 2, 2, 1});
+  if (here) panel.draw(own, "", "points", {kSecondColour, 2, 1, 1});
+
+  const std::vector<ShareBar> bars{
+      {"best", found.crossings.share(), found.crossings.interval_95()},
+      {"own", found.crossings_of_own.share(), found.crossings_of_own.interval_95()}};
+  const Box below{130, 330, box.bottom + 90, box.bottom + 90 + height_of_bars(bars.size())};
+  add_share_bars(out, below, "$crossed", bars)
+      .say("crossed, % of trials in full", 8, below.top - 14);
+  return out.figure(static_cast<int>(below.bottom) + 12);
 }
 
 }  // namespace gatewalk::cli

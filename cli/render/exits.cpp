@@ -108,15 +108,11 @@ std::string places_outside(const FieldExits& dynamics, const FieldExits& chain) 
 
 double height_of_exits() { return 214.0; }
 
-std::string panels_of(const FieldExits& exits, const ShownField& shown, const Sheet& sheet,
-                      double top, const std::string& tag) {
+void add_exits(Panels& out, const FieldExits& exits, const ShownField& shown, double top,
+               const std::string& tag) {
   constexpr double kHead = 40, kTall = 116;
-  const std::array<Box, kSides.size()> boxes{{{374, 480, top + kHead, top + kHead + kTall},
-                                              {80, 174, top + kHead, top + kHead + kTall},
-                                              {212, 306, top + kHead, top + kHead + kTall}}};
+  const std::array<std::array<double, 2>, kSides.size()> ends{{{374, 480}, {80, 174}, {212, 306}}};
   const double sides = std::max(largest_share(exits[1]), largest_share(exits[2]));
-  std::string out =
-      sheet.text("where bodies leave along each side, % of all, 95 %", 8, top + 12) + kFrame;
   for (std::size_t side = 0; side < kSides.size(); ++side) {
     const bool far = side == lattice::kFarSide;
     const SideExits& e = exits[side];
@@ -124,40 +120,33 @@ std::string panels_of(const FieldExits& exits, const ShownField& shown, const Sh
     const Sized metre = readable_unit("m", std::max(-bounds.front(), bounds.back()));
     for (double& b : bounds) b /= metre.size;
     double most = far ? largest_share(e) : sides;
-    std::string rows;
+    Rows& rows = out.data("$exits" + tag + "_" + std::to_string(side));
     for (std::size_t i = 0; i < e.share.size(); ++i) {
       // Nothing where nobody is expected: in large fields its bars would be all that is seen.
       if (e.share[i] <= lattice::kShareRounding) continue;
       const bool known = std::isfinite(e.interval[i][0]);
       const double high = known ? e.interval[i][1] : e.share[i];
       most = std::max(most, high);
-      rows += digits(std::midpoint(bounds[i], bounds[i + 1])) + " " + digits(100.0 * e.share[i]) +
-              " " + digits(100.0 * (known ? e.interval[i][0] : e.share[i])) + " " +
-              digits(100.0 * high) + " " + digits(0.4 * (bounds[i + 1] - bounds[i])) + "\n";
+      rows.add(std::midpoint(bounds[i], bounds[i + 1]), 100.0 * e.share[i],
+               100.0 * (known ? e.interval[i][0] : e.share[i]), 100.0 * high,
+               0.4 * (bounds[i + 1] - bounds[i]));
     }
     if (!(most > 0.0)) most = 0.01;
-    if (rows.empty()) rows = "0 0 0 0 0\n";
-    const std::string name = "$exits" + tag + "_" + std::to_string(side);
-    const std::string along = "[" + digits(bounds.front()) + ":" + digits(bounds.back()) + "]",
-                      percents = "[0:" + digits(105.0 * most) + "]",
-                      step_along = digits(tic_step(bounds.back() - bounds.front(), far ? 2 : 4)),
-                      step = digits(tic_step(100.0 * most, 2));
-    out += data_block(name, rows) + sheet.margins(boxes[side]) +
-           sheet.text(name_of_side(side).name, boxes[side].left, boxes[side].top - 10, kSmallFont) +
-           "set style fill solid noborder\n" +
-           (far ? "set xrange " + along + "\nset yrange " + percents + "\nset xtics " + step_along +
-                      "\nset ytics " + step + "\n"
-                : "set xrange " + percents + "\nset yrange " + along + "\nset xtics " + step +
-                      "\nset ytics " + step_along + "\n") +
-           (far ? Sheet::axes("'x (" + metre.name + ")'", "'%'")
-                : Sheet::axes("'%'", side == 1 ? "'y (" + metre.name + ")'" : "''")) +
-           (side == 2 ? "set format y ''\n" : "set format y '%g'\n") + "plot " + name +
-           (far ? " using 1:($2/2):5:($2/2)" : " using ($2/2):1:($2/2):5") +
-           " with boxxyerror lc rgb '" + kFirstColour + "', " + name +
-           (far ? " using 1:3:(0):($4-$3)" : " using 3:1:($4-$3):(0)") + kInterval +
-           "\nunset label\n";
+    if (rows.empty()) rows.add(0, 0, 0, 0, 0);
+    Panel& panel = out.add({ends[side][0], ends[side][1], top + kHead, top + kHead + kTall});
+    if (far) panel.say("where bodies leave along each side, % of all, 95 %", 8, top + 12);
+    panel.say(name_of_side(side).name, panel.box.left, panel.box.top - 10, kSmallFont);
+    const Axis along{(far ? "x (" : "y (") + metre.name + ")", bounds.front(), bounds.back(),
+                     digits(tic_step(bounds.back() - bounds.front(), far ? 2 : 4))};
+    const Axis percents{"%", 0, 105.0 * most, digits(tic_step(100.0 * most, 2))};
+    panel.x = far ? along : percents;
+    panel.y = far ? percents : along;
+    panel.y.format = "%g";
+    panel.y.numbers = side != 2;
+    if (side == 2) panel.y.name = "";
+    panel.draw(rows, far ? "1:($2/2):5:($2/2)" : "($2/2):1:($2/2):5", kBars, {kFirstColour});
+    panel.draw(rows, far ? "1:3:(0):($4-$3)" : "3:1:($4-$3):(0)", kIntervals, kIntervalPen);
   }
-  return out + "set format y '%g'\n";
 }
 
 }  // namespace gatewalk::cli

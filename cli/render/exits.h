@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
+#include "cli/render/panel.h"
 #include "cli/render/shown_field.h"
 #include "lattice/exits.h"
 
@@ -29,7 +29,7 @@ namespace gatewalk::cli {
 /// Height of the panels, and the panels from this height on: bars with 95 % intervals by place
 /// along each side. `tag` tells their data from that of others.
 [[nodiscard]] double height_of_exits();
-[[nodiscard]] std::string panels_of(const lattice::FieldExits& exits, const ShownField& shown,
-                                    const Sheet& sheet, double top, const std::string& tag);
+void add_exits(Panels& out, const lattice::FieldExits& exits, const ShownField& shown, double top,
+               const std::string& tag);
 
 }  // namespace gatewalk::cli

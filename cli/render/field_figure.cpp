@@ -40,29 +40,64 @@ FieldPicture::FieldPicture(std::string name, const markov::WalkTally& tally)
       departed(tally.departed_cells.cast<double>() / static_cast<double>(tally.walks)),
       endings(tally.endings, tally.walks) {}
 
-SmallMap::SmallMap(const markov::CellProbabilities& shown)
-    : map(shown, 101, 101),  // gates, each way
-      columns(static_cast<double>(map.columns.blocks())),
-      rows(static_cast<double>(map.rows.blocks())) {
+SmallMap::SmallMap(const CellProbabilities& shown) : map(shown, 101, 101) {  // gates, each way
   constexpr double kLeft = 58, kTop = 44, kWidest = 300, kHighest = 300;
+  const auto columns = static_cast<double>(map.columns.blocks()),
+             rows = static_cast<double>(map.rows.blocks());
   const double cell = std::min(kWidest / columns, kHighest / rows);
   box = {kLeft, kLeft + std::max(0.3 * kWidest, cell * columns), kTop,
          kTop + std::max(100.0, cell * rows)};
 }
 
-std::string tics_of(const FieldMap::Span& span, Eigen::Index zero, double length, double apart) {
-  std::string list;
-  const auto most = std::max<Eigen::Index>(3, static_cast<Eigen::Index>(length / apart));
-  const Eigen::Index blocks = span.blocks(), step = (blocks - 1) / most + 1;
-  const Eigen::Index centre = std::clamp<Eigen::Index>(span.block_of(zero), 0, blocks - 1) % step;
-  for (Eigen::Index i = centre; i < blocks; i += step)
-    list += (list.empty() ? "'" : ", '") + std::to_string(span.middle(i) - zero) + "' " +
-            std::to_string(i);
-  return "(" + list + ")";
+Panel& add_map(Panels& out, const FieldMap& map, const Box& box, double apart) {
+  // Over blocks of gates, named by the gates in their middle, counted from `zero`.
+  const auto axis = [](const char* name, const FieldMap::Span& span, Eigen::Index zero,
+                       double length, double between) {
+    const auto most = std::max<Eigen::Index>(3, static_cast<Eigen::Index>(length / between));
+    const Eigen::Index blocks = span.blocks(), step = (blocks - 1) / most + 1;
+    std::vector<Tic> tics;
+    for (Eigen::Index i = std::clamp<Eigen::Index>(span.block_of(zero), 0, blocks - 1) % step;
+         i < blocks; i += step)
+      tics.push_back({std::to_string(span.middle(i) - zero), static_cast<double>(i)});
+    return Axis{markup(name), -0.5, static_cast<double>(blocks) - 0.5, tics_of(tics)};
+  };
+  Panel& panel = out.add(box);
+  panel.x = axis("column i_x", map.columns, map.middle_column, box.width(), apart);
+  panel.y = axis("row i_y", map.rows, 0, box.height(), 22);
+  // The fewer digits its tics have the further from them.
+  if (map.rows.first + map.rows.count <= 10) panel.y.name_look = "offset 0.2,0";
+  return panel;
 }
 
-std::string range_of(const FieldMap::Span& span) {
-  return "[-0.5:" + digits(static_cast<double>(span.blocks()) - 0.5) + "]";
+void add_shares(Rows& rows, const FieldMap& map, const CellProbabilities& shares, bool as_text) {
+  const CellProbabilities shown = map.blocks_of(shares);
+  if (!as_text) return add_values(rows, (100.0 * shown).sqrt());
+  for (Eigen::Index r = 0; r < shown.rows(); ++r)
+    for (Eigen::Index c = 0; c < shown.cols(); ++c)
+      rows.add(c, r, std::sqrt(100.0 * shown(r, c)), short_percent(shown(r, c)));
+}
+
+void add_values(Rows& rows, const CellProbabilities& values) {
+  for (Eigen::Index r = 0; r < values.rows(); ++r)
+    for (Eigen::Index c = 0; c < values.cols(); ++c) rows.add(c, r, values(r, c));
+}
+
+std::vector<std::size_t> gates_in(const FieldMap& map, Eigen::Index row, Eigen::Index column,
+                                  const lattice::FieldParams& field) {
+  std::vector<std::size_t> gates;
+  for (Eigen::Index i = 0; i < map.rows.block; ++i)
+    for (Eigen::Index j = 0; j < map.columns.block; ++j) {
+      const Eigen::Index y = map.rows.first + row * map.rows.block + i,
+                         x = map.columns.first + column * map.columns.block + j;
+      if (y >= 0 && y < field.rows && x >= 0 && x < field.columns)
+        gates.push_back(static_cast<std::size_t>(y * field.columns + x));
+    }
+  return gates;
+}
+
+bool numbers_fit(const FieldMap& map, const Box& box) {
+  return box.width() >= 26.0 * static_cast<double>(map.columns.blocks()) &&
+         box.height() >= 15.0 * static_cast<double>(map.rows.blocks());
 }
 
 namespace {
@@ -72,7 +107,7 @@ constexpr Eigen::Index kMostDrawn = 101;  // gates or blocks of gates, each way
 /// Places within one picture, px.
 struct Plan {
   static constexpr double kLeft = 58, kMap = 270, kSmall = 108, kSmallLeft = 384;
-  double top, map_width, map_height, cell_width, cell_height, legend_height;
+  double top, map_width, map_height, legend_height;
   bool with_exits;
   std::size_t endings;
 
@@ -84,14 +119,8 @@ struct Plan {
     const double cell = std::min(kMap / columns, 300.0 / rows);
     map_width = std::max(0.3 * kMap, cell * columns);
     map_height = std::max(120.0, cell * rows);
-    cell_width = map_width / columns;
-    cell_height = map_height / rows;
   }
   [[nodiscard]] Box map() const { return {kLeft, kLeft + map_width, top, top + map_height}; }
-  [[nodiscard]] Box colours() const {
-    const double left = map().right + 10;
-    return {left, left + 10, top, top + map_height};
-  }
   /// The upper (0) or lower (1) of the two small maps.
   [[nodiscard]] Box small(int i) const {
     const double each = std::min(kSmall * map_height / map_width, 0.5 * map_height - 14);
@@ -108,51 +137,34 @@ struct Plan {
   [[nodiscard]] double end() const { return exits() + (with_exits ? height_of_exits() : 0.0); }
 };
 
-/// "column row root_of_share label"
-std::string rows_of(const FieldMap& map, const CellProbabilities& shares) {
-  std::string out;
-  const CellProbabilities shown = map.blocks_of(shares);
-  for (Eigen::Index r = 0; r < shown.rows(); ++r)
-    for (Eigen::Index c = 0; c < shown.cols(); ++c)
-      out += std::to_string(c) + " " + std::to_string(r) + " " +
-             digits(std::sqrt(100.0 * shown(r, c))) + " " + short_percent(shown(r, c)) + "\n";
-  return out;
-}
-
-std::string image(const std::string& data) { return "plot " + data + cells(); }
-
 /// The large map with its numbers.
-std::string large_map(const FieldMap& map, const Plan& plan, const Sheet& sheet,
-                      const std::string& data, const RootScale& scale, const TypeMarks& types) {
-  const Box box = plan.map();
+void add_large_map(Panels& out, const FieldPicture& p, const FieldMap& map, const Plan& plan,
+                   const Rows& rows, const RootScale& scale, const TypeMarks& types) {
+  Panel& panel = add_map(out, map, plan.map());
+  if (const std::string rest = elsewhere_text(map, p.final_gates); !rest.empty())
+    panel.say("elsewhere" + rest.substr(rest.rfind(':')), Plan::kSmallLeft - 24, plan.top - 30,
+              kSmallFont);
+  panel.say(p.title, 8, plan.top - 30);
   std::string blocks;
   if (map.rows.block > 1 || map.columns.block > 1)
     blocks = ", blocks of " + std::to_string(map.columns.block) + " x " +
              std::to_string(map.rows.block) + " gates";
-  std::string out = sheet.margins(box) + kFrame + "set xrange " + range_of(map.columns) +
-                    "\nset yrange " + range_of(map.rows) + "\nset xtics " +
-                    tics_of(map.columns, map.middle_column, plan.map_width, 30) + "\nset ytics " +
-                    tics_of(map.rows, 0, plan.map_height, 22) + "\n" +
-                    Sheet::map_axes(map.rows.first + map.rows.count) +
-                    sheet.text("final gate, % of bodies" + blocks, Plan::kLeft, plan.top - 12) +
-                    scale.colours(sheet, plan.colours());
-  const TypeMarks::Drawn marks = types.on(map, plan.cell_width, plan.cell_height, data.substr(1));
-  out += types.legend(sheet, plan.legend(), marks.fits) + marks.data + image(data);
-  if (plan.cell_width >= 26 && plan.cell_height >= 15)
-    out += ", '' using 1:2:4:" + ink(std::sqrt(scale.most())) +
-           " with labels tc rgb variable font ',12'";
-  return out + marks.plot + "\nunset label\n";
+  panel.say("final gate, % of bodies" + blocks, Plan::kLeft, plan.top - 12);
+  add_colours(panel, scale, panel.box.beside(10));
+  panel.draw_cells(rows);
+  if (numbers_fit(map, panel.box)) panel.draw_numbers(std::sqrt(scale.most()));
+  types.add_legend(panel, plan.legend(), types.draw_on(out, panel, map, rows.name().substr(1)));
 }
 
 /// Maps without numbers: of whom, with the same colours.
-std::string small_map(const std::string& title, const FieldMap& map, const Box& box,
-                      const Sheet& sheet, const std::string& data) {
-  return sheet.margins(box) +
-         "set border 15\nunset xtics\nunset ytics\nunset xlabel\nunset "
-         "ylabel\nset xrange " +
-         range_of(map.columns) + "\nset yrange " + range_of(map.rows) + "\n" +
-         sheet.text(title, box.left, box.top - 10, kSmallFont) + "unset colorbox\n" + image(data) +
-         "\nunset label\n";
+void add_small_map(Panels& out, const std::string& title, const FieldMap& map, const Box& box,
+                   const Rows& rows, const RootScale& scale) {
+  Panel& panel = add_map(out, map, box);
+  for (Axis* axis : {&panel.x, &panel.y}) *axis = {"", axis->low, axis->high, kNoTics};
+  panel.border = 15;
+  panel.say(title, box.left, box.top - 10, kSmallFont);
+  panel.colours = {0, std::sqrt(scale.most())};
+  panel.draw_cells(rows);
 }
 
 /// The endings with their intervals, and what they leave out; who went back where cells let bodies
@@ -196,28 +208,26 @@ Figure figure_of(const std::vector<FieldPicture>& pictures, const ShownField& sh
     most = std::max(most, maps.back().blocks_of(p.final_gates).maxCoeff());
   }
   const RootScale scale(100.0 * most);
-  const Sheet sheet{static_cast<int>(std::ceil(height))};
-  std::string out =
-      std::string(kSequential) + "set multiplot\n" + kFrame + "set cbrange " + scale.range() + "\n";
+  Panels out;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const FieldPicture& p = pictures[i];
     const Plan& plan = plans[i];
     const std::string tag = std::to_string(i);
-    const auto block = [&](const char* name, const CellProbabilities& shares) {
-      return data_block(name + tag, rows_of(maps[i], shares));
+    const auto block = [&](const char* name, const CellProbabilities& shares) -> Rows& {
+      Rows& rows = out.data(name + tag);
+      add_shares(rows, maps[i], shares, true);
+      return rows;
     };
-    if (const std::string rest = elsewhere_text(maps[i], p.final_gates); !rest.empty())
-      out += sheet.text("elsewhere" + rest.substr(rest.rfind(':')), Plan::kSmallLeft - 24,
-                        plan.top - 30, kSmallFont);
-    out += block("$all", p.final_gates) + block("$trapped", p.trapped) +
-           block("$left", p.departed) + sheet.text(p.title, 8, plan.top - 30) +
-           large_map(maps[i], plan, sheet, "$all" + tag, scale, types) +
-           small_map("trapped, % of all", maps[i], plan.small(0), sheet, "$trapped" + tag) +
-           small_map("departed, % of all", maps[i], plan.small(1), sheet, "$left" + tag) +
-           share_bars(sheet, plan.bars(), "$endings" + tag, bars_of(p.endings, shown));
-    if (p.exits) out += panels_of(*p.exits, shown, sheet, plan.exits(), tag);
+    const Rows &all = block("$all", p.final_gates), &trapped = block("$trapped", p.trapped),
+               &departed = block("$left", p.departed);
+    add_large_map(out, p, maps[i], plan, all, scale, types);
+    add_small_map(out, "trapped, % of all", maps[i], plan.small(0), trapped, scale);
+    add_small_map(out, "departed, % of all", maps[i], plan.small(1), departed, scale);
+    add_share_bars(out, plan.bars(), "$endings" + tag, bars_of(p.endings, shown)).y.tics +=
+        " mirror offset 0,0";
+    if (p.exits) add_exits(out, *p.exits, shown, plan.exits(), tag);
   }
-  return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
+  return out.figure(static_cast<int>(std::ceil(height)));
 }
 
 }  // namespace gatewalk::cli

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/figure.h"
 #include "cli/render/final_gates.h"
+#include "cli/render/panel.h"
 #include "cli/render/shown_field.h"
 #include "lattice/exits.h"
 #include "lattice/lattice.h"
@@ -40,18 +40,24 @@ inline constexpr std::size_t kMostPictures = 8;
 /// A map of a field at the top left of a sheet, and where it is drawn.
 struct SmallMap {
   FieldMap map;
-  double columns, rows;  // of blocks
   Box box{};
 
   explicit SmallMap(const markov::CellProbabilities& shown);
-  [[nodiscard]] double width() const { return box.right - box.left; }
-  [[nodiscard]] double height() const { return box.bottom - box.top; }
 };
 
-/// Tics of an axis over blocks of gates that is so many points long, named by the gates in the
-/// blocks' middle, counted from `zero`; and its range.
-[[nodiscard]] std::string tics_of(const FieldMap::Span& span, Eigen::Index zero, double length,
-                                  double apart);
-[[nodiscard]] std::string range_of(const FieldMap::Span& span);
+/// A panel with a map's blocks of gates on its axes; the x axis' tics are so many points apart.
+[[nodiscard]] Panel& add_map(Panels& out, const FieldMap& map, const Box& box, double apart = 30);
+/// "column row root_of_share" in %, of blocks; and the share as a short text, where it is asked
+/// for.
+void add_shares(Rows& rows, const FieldMap& map, const markov::CellProbabilities& shares,
+                bool as_text = false);
+/// "column row value", of blocks.
+void add_values(Rows& rows, const markov::CellProbabilities& values);
+/// Those numbers of a field's gates, row by row, that a block of a map holds.
+[[nodiscard]] std::vector<std::size_t> gates_in(const FieldMap& map, Eigen::Index row,
+                                                Eigen::Index column,
+                                                const lattice::FieldParams& field);
+/// Whether there is room for numbers in the cells of a map in that box.
+[[nodiscard]] bool numbers_fit(const FieldMap& map, const Box& box);
 
 }  // namespace gatewalk::cli

@@ -30,6 +30,13 @@ struct AboutFigure {
 /// A rectangle of a figure, in points from its left and its upper edge.
 struct Box {
   double left, right, top, bottom;
+
+  [[nodiscard]] double width() const { return right - left; }
+  [[nodiscard]] double height() const { return bottom - top; }
+  /// The place for a bar of colours on its right.
+  [[nodiscard]] Box beside(double gap = 12, double wide = 10) const {
+    return {right + gap, right + gap + wide, top, bottom};
+  }
 };
 
 /// A panel's axes, ticks outwards with their numbers close by; and of lines that only help to

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/render/fit.h"
-#include "cli/render/text.h"
+#include "cli/render/panel.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -63,8 +63,21 @@ std::string tics_of(const std::array<double, 2>& range, double side) {
 
 /// Where there are many, a letter, which the upper right corner explains.
 std::string axis_name(const FittedScene& f, std::size_t k) {
-  return literal(f.ranges.size() > 2 ? std::string(1, static_cast<char>('a' + k))
-                                     : f.ranges[k].key);
+  return f.ranges.size() > 2 ? std::string(1, static_cast<char>('a' + k)) : f.ranges[k].key;
+}
+
+/// How many draws lie in each bin of a number; of two, row by row.
+std::vector<double> counts_of(const FittedScene& f, const std::vector<std::size_t>& numbers,
+                              const std::vector<std::array<double, 2>>& ranges) {
+  std::vector<double> counts(numbers.size() == 1 ? kBins : kBins * kBins, 0.0);
+  for (Eigen::Index i = 0; i < f.fit.draws.rows(); ++i) {
+    std::size_t bin = 0;
+    for (const std::size_t k : numbers)
+      bin = bin * kBins +
+            bin_of(f.ranges[k].at(f.fit.draws(i, static_cast<Eigen::Index>(k))), ranges[k]);
+    counts[bin] += 1.0;
+  }
+  return counts;
 }
 
 }  // namespace
@@ -73,71 +86,50 @@ Figure figure_of(const FittedScene& f) {
   const std::size_t numbers = f.ranges.size();
   constexpr double kLeft = 84, kTop = 40, kGap = 10;
   const double side = std::min(300.0, (478.0 - kLeft + kGap) / static_cast<double>(numbers) - kGap);
-  const Sheet sheet{static_cast<int>(kTop + static_cast<double>(numbers) * (side + kGap) + 60)};
-  std::string out = std::string("set multiplot\n") + kSequential +
-                    sheet.text("posterior after " + std::to_string(f.fit.observed) + " " +
-                                   counted(f) + "; dashed: 95 %",
-                               8, 18);
-  if (numbers > 2)
-    for (std::size_t k = 0; k < numbers; ++k)
-      out += sheet.text(std::string(1, static_cast<char>('a' + k)) + ": " + f.ranges[k].key,
-                        kLeft + side + kGap, kTop + 10 + 20 * static_cast<double>(k), kSmallFont);
   std::vector<std::array<double, 2>> ranges;
   for (std::size_t k = 0; k < numbers; ++k) ranges.push_back(shown_range(f, k));
-  const Eigen::Index draws = f.fit.draws.rows();
+  const auto axis = [&](std::size_t k, bool named) {
+    return Axis{named ? axis_name(f, k) : "", ranges[k][0], ranges[k][1],
+                tics_of(ranges[k], side),     "%g",         named};
+  };
+  Panels out;
   for (std::size_t down = 0; down < numbers; ++down)
     for (std::size_t right = 0; right <= down; ++right) {
       const double left = kLeft + static_cast<double>(right) * (side + kGap),
                    top = kTop + static_cast<double>(down) * (side + kGap);
-      const std::string name = "$p" + std::to_string(down) + "_" + std::to_string(right);
-      const bool lowest = down + 1 == numbers;
-      out += sheet.margins({left, left + side, top, top + side}) + kFrame + "set xrange [" +
-             digits(ranges[right][0]) + ":" + digits(ranges[right][1]) + "]\nset xtics " +
-             tics_of(ranges[right], side) + "\n" + (lowest ? "" : "set format x ''\n") +
-             (lowest ? Sheet::x_axis(axis_name(f, right)) : "set xlabel\n");
+      Rows& rows = out.data("$p" + std::to_string(down) + "_" + std::to_string(right));
+      Panel& p = out.add({left, left + side, top, top + side});
+      p.x = axis(right, down + 1 == numbers);
       if (right == down) {
-        std::vector<double> counts(kBins, 0.0);
-        for (Eigen::Index i = 0; i < draws; ++i)
-          counts[bin_of(f.ranges[down].at(f.fit.draws(i, static_cast<Eigen::Index>(down))),
-                        ranges[down])] += 1.0;
-        std::string data;
-        for (std::size_t b = 0; b < kBins; ++b)
-          data += digits(middle(b, ranges[down])) + " " + digits(counts[b]) + "\n";
-        const lattice::FittedNumber& n = f.fit.numbers[down];
-        out += data_block(name, data) + "set border 1\nunset ytics\nset ylabel\nset yrange [0:*]\n";
-        for (const double end : n.interval) {
-          const std::string x = digits(f.ranges[down].at(end));
-          out += "set arrow from " + x + ", graph 0 to " + x +
-                 ", graph 1 nohead front dt 2 lw 1.2 lt -1\n";
-        }
-        out += "plot " + name + " using 1:2 with boxes fs solid lc rgb '" + kFirstColour +
-               "'\nunset arrow\n";
+        const std::vector<double> counts = counts_of(f, {down}, ranges);
+        for (std::size_t b = 0; b < kBins; ++b) rows.add(middle(b, ranges[down]), counts[b]);
+        p.y = {"", 0, kFree, kNoTics};
+        p.border = 1;
+        for (const double end : f.fit.numbers[down].interval)
+          p.uprights.push_back(
+              {f.ranges[down].at(end), {.colour = kInk, .width = 1.2, .dashes = 2}, true});
+        p.draw(rows, "1:2", "boxes fs solid", {kFirstColour});
       } else {
-        std::vector<double> counts(kBins * kBins, 0.0);
-        for (Eigen::Index i = 0; i < draws; ++i)
-          counts[bin_of(f.ranges[down].at(f.fit.draws(i, static_cast<Eigen::Index>(down))),
-                        ranges[down]) *
-                     kBins +
-                 bin_of(f.ranges[right].at(f.fit.draws(i, static_cast<Eigen::Index>(right))),
-                        ranges[right])] += 1.0;
-        std::string data;
+        const std::vector<double> counts = counts_of(f, {down, right}, ranges);
         for (std::size_t b = 0; b < counts.size(); ++b)
           if (counts[b] > 0.0)
-            data += digits(middle(b % kBins, ranges[right])) + " " +
-                    digits(middle(b / kBins, ranges[down])) + " " + digits(counts[b]) + "\n";
+            rows.add(middle(b % kBins, ranges[right]), middle(b / kBins, ranges[down]), counts[b]);
         const auto half = [](const std::array<double, 2>& range) {
           return 0.5 * (range[1] - range[0]) / static_cast<double>(kBins);
         };
-        out +=
-            data_block(name, data) + "set yrange [" + digits(ranges[down][0]) + ":" +
-            digits(ranges[down][1]) + "]\nset ytics " + tics_of(ranges[down], side) + "\n" +
-            (right == 0 ? "set format y '%g'\nset ylabel " + axis_name(f, down) + " offset 0.8,0\n"
-                        : "set format y ''\nset ylabel\n") +
-            "unset colorbox\nplot " + name + cells(half(ranges[right]), half(ranges[down])) + "\n";
+        p.y = axis(down, right == 0);
+        p.colours = Colours{};
+        p.draw_cells(rows, half(ranges[right]), half(ranges[down]));
       }
-      out += "unset label\nset format x '%g'\nset format y '%g'\n";
+      if (down > 0) continue;
+      p.say(
+          "posterior after " + std::to_string(f.fit.observed) + " " + counted(f) + "; dashed: 95 %",
+          8, 18);
+      for (std::size_t k = 0; k < numbers && numbers > 2; ++k)
+        p.say(axis_name(f, k) + ": " + f.ranges[k].key, kLeft + side + kGap,
+              kTop + 10 + 20 * static_cast<double>(k), kSmallFont);
     }
-  return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
+  return out.figure(static_cast<int>(kTop + static_cast<double>(numbers) * (side + kGap) + 60));
 }
 
 }  // namespace gatewalk::cli

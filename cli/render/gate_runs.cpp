@@ -5,6 +5,7 @@
 
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
+#include "cli/render/panel.h"
 #include "cli/render/text.h"
 #include "cli/render/text_table.h"
 #include "dynamics/base/share.h"
@@ -69,15 +70,11 @@ Figure figure_of(const dynamics::GateTally& tally) {
   for (const auto& [outcome, key, words] : dynamics::kOutcomeNames)
     if (tally[outcome] > 0 || (outcome != Outcome::traversed_even && outcome != Outcome::broken))
       add(std::string(words), tally[outcome]);
-  constexpr double kTop = 36;
-  const Sheet sheet{static_cast<int>(kTop + height_of_bars(bars.size()) + 10)};
-  return {Sheet::kWidth, sheet.height,
-          "unset key\n" +
-              sheet.text("one gate, " + std::to_string(tally.trials) + " trials, 95 % intervals", 8,
-                         18) +
-              share_bars(sheet, {135, 320, kTop, kTop + height_of_bars(bars.size())}, "$outcomes",
-                         bars),
-          kFont};
+  const Box box{135, 320, 36, 36 + height_of_bars(bars.size())};
+  Panels out("unset key\n");
+  add_share_bars(out, box, "$outcomes", bars)
+      .say("one gate, " + std::to_string(tally.trials) + " trials, 95 % intervals", 8, 18);
+  return out.figure(static_cast<int>(box.bottom + 10));
 }
 
 }  // namespace gatewalk::cli

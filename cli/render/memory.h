@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "cli/render/figure.h"
 #include "cli/render/json_fwd.h"
+#include "cli/render/panel.h"
 #include "lattice/study/memory.h"
 
 namespace gatewalk::cli {
@@ -23,7 +23,7 @@ namespace gatewalk::cli {
 /// Panels of a figure below its others: so high, and drawn from `top` on.
 struct MorePanels {
   double height = 0.0;
-  std::function<std::string(const Sheet& sheet, double top)> draw{};
+  std::function<void(Panels& out, double top)> draw{};
 };
 /// The Chapman-Kolmogorov test: a panel for each way in and each way later, and the implied time
 /// scales over the lag. None where it was not asked, or of more ways than panels can be read.

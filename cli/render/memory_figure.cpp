@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/render/memory.h"
-#include "cli/render/text.h"
+#include "cli/render/panel.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -19,31 +19,22 @@ constexpr double kPanelsLeft = 88, kPanelsRight = 492, kMemoryPanelHeight = 54, 
 constexpr std::size_t kMostWays = 6;
 constexpr std::size_t kDrawnScales = 3;
 
-const std::string kBand =
-    std::string(" with filledcurves fs transparent solid 0.25 noborder lc rgb '");
-const std::string kLine = " with lines lw 1.2 lc rgb '";
-/// Sizes of letters at small panels, and at large ones.
-const std::string kSmallTics = "set tics font ',12'\n", kTics = "set tics font ',15'\n";
-const std::string kPoints = " with points pt 7 ps 0.45 lc rgb '";
-
 /// One curve: what the kernel's powers say with its 95 %, and what was seen. Rows "gates low high
 /// predicted seen".
-std::string curve(const std::string& block, const char* colour, const char* seen_colour) {
-  return block + " using 1:2:3" + kBand + colour + "', " + block + " using 1:4" + kLine + colour +
-         "', " + block + " using 1:5" + kPoints + seen_colour + "'";
-}
-
-std::string line(int gates, double low, double high, double predicted, double seen) {
-  return std::to_string(gates) + " " + digits(low) + " " + digits(high) + " " + digits(predicted) +
-         " " + digits(seen) + "\n";
+void draw_curve(Panel& panel, const Rows& rows, const char* colour, const char* seen_colour) {
+  panel.draw(rows, "1:2:3", "filledcurves fs transparent solid 0.25 noborder", {colour});
+  panel.draw(rows, "1:4", "lines", {.colour = colour, .width = 1.2});
+  panel.draw(rows, "1:5", "points", {.colour = seen_colour, .mark = 7, .size = 0.45});
 }
 
 /// Of the bodies that enter by one boundary, the share (%) that enters by another, k gates later.
 struct Probabilities {
-  std::string rows;
+  Rows rows;
   double most = 0.0;
 
-  Probabilities(const GatesAhead& ahead, std::size_t ways, std::size_t from, std::size_t to) {
+  Probabilities(const GatesAhead& ahead, std::size_t ways, std::size_t from, std::size_t to,
+                std::string name = "")
+      : rows(std::move(name)) {
     for (const GatesAhead::Step& s : ahead.steps) {
       const auto begin = static_cast<std::ptrdiff_t>(from * (ways + 1));
       const auto sum = [&](const std::vector<double>& shares) {
@@ -57,20 +48,17 @@ struct Probabilities {
       const double predicted = unit * s.predicted[at], seen = 100.0 / sum(s.seen) * s.seen[at],
                    low = std::max(0.0, predicted + unit * (excess - s.excess_95[at][1])),
                    high = predicted + unit * (excess - s.excess_95[at][0]);
-      rows += line(s.gates, low, high, predicted, seen);
+      rows.add(s.gates, low, high, predicted, seen);
       most = std::max({most, high, seen, predicted});
     }
   }
 };
 
-/// The upper end of an axis from 0, and the tic on it.
-struct UpTo {
-  double end, tic;
-  explicit UpTo(double most) : end(most > 0.0 ? 1.15 * most : 1.0), tic(tic_step(end, 2.0)) {}
-  [[nodiscard]] std::string commands() const {
-    return "set yrange [0:" + digits(end) + "]\nset ytics 0," + digits(tic) + "\n";
-  }
-};
+/// An axis from 0, with a tic or two.
+Axis up_to(double most, const char* name) {
+  const double end = most > 0.0 ? 1.15 * most : 1.0;
+  return {name, 0, end, "0," + digits(tic_step(end, 2.0))};
+}
 
 /// Ways by which somebody entered; the last column is trapped.
 std::vector<std::size_t> entered_ways(const MemoryStudy& study) {
@@ -81,7 +69,7 @@ std::vector<std::size_t> entered_ways(const MemoryStudy& study) {
   return entered;
 }
 
-std::string of_ways(const MemoryStudy& study, const Sheet& sheet, double top) {
+void add_ways(Panels& out, const MemoryStudy& study, double top) {
   const GatesAhead& ahead = study.ahead;
   const std::vector<std::string>& names = study.outcomes;
   const std::size_t ways = names.size() - 1;
@@ -89,64 +77,58 @@ std::string of_ways(const MemoryStudy& study, const Sheet& sheet, double top) {
   std::vector<std::size_t> columns = rows;
   columns.push_back(ways);
   const double pitch = (kPanelsRight - kPanelsLeft) / static_cast<double>(columns.size());
-  std::string out =
-      sheet.text("Chapman-Kolmogorov test: % of those who enter as at the left, some gates later",
-                 8, top + 14, kSmallFont);
-  out += sheet.text("line: powers of the kernel, with 95 % of chance; points: trials", 8, top + 28,
-                    kSmallFont);
   const auto left_of = [&](std::size_t i) { return kPanelsLeft + static_cast<double>(i) * pitch; };
-  for (std::size_t i = 0; i < columns.size(); ++i)
-    out += sheet.text(names[columns[i]], left_of(i) + 4, top + kPanelsHead - 6, kSmallFont);
-  const int first = ahead.steps.front().gates, last = ahead.steps.back().gates;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double above =
         top + kPanelsHead + static_cast<double>(k) * (kMemoryPanelHeight + kPanelGap);
     const bool lowest = k + 1 == rows.size();
-    out += sheet.text(names[rows[k]], 8, above + 0.5 * kMemoryPanelHeight, kSmallFont);
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      const Probabilities p(ahead, ways, rows[k], columns[i]);
-      const std::string block = "$ahead" + std::to_string(k) + "_" + std::to_string(i);
-      out +=
-          data_block(block, p.rows) + kFrame + kSmallTics +
-          sheet.margins({left_of(i), left_of(i) + pitch - 30, above, above + kMemoryPanelHeight}) +
-          "set xrange [" + digits(first - 0.5) + ":" + digits(last + 0.5) + "]\nset xtics 2,2" +
-          (lowest ? "" : "\nset format x ''") + "\n" + UpTo(p.most).commands() +
-          Sheet::x_axis(lowest && i == columns.size() / 2 ? "'gates'" : "''") + "set ylabel '" +
-          (i == 0 ? "%" : "") + "' font ',12' offset 2.2,0\nplot " +
-          curve(block, kFirstColour, "black") + "\nunset label\nset format x '% h'\n";
+      const Probabilities p(ahead, ways, rows[k], columns[i],
+                            "$ahead" + std::to_string(k) + "_" + std::to_string(i));
+      Panel& panel =
+          out.add({left_of(i), left_of(i) + pitch - 30, above, above + kMemoryPanelHeight});
+      if (k == 0 && i == 0) {
+        panel.say("Chapman-Kolmogorov test: % of those who enter as at the left, some gates later",
+                  8, top + 14, kSmallFont);
+        panel.say("line: powers of the kernel, with 95 % of chance; points: trials", 8, top + 28,
+                  kSmallFont);
+        for (std::size_t j = 0; j < columns.size(); ++j)
+          panel.say(names[columns[j]], left_of(j) + 4, top + kPanelsHead - 6, kSmallFont);
+      }
+      if (i == 0) panel.say(names[rows[k]], 8, above + 0.5 * kMemoryPanelHeight, kSmallFont);
+      panel.tics_font = kSmallFont;
+      panel.x = {lowest && i == columns.size() / 2 ? "gates" : "", ahead.steps.front().gates - 0.5,
+                 ahead.steps.back().gates + 0.5, "2,2"};
+      panel.x.numbers = lowest;
+      panel.y = up_to(p.most, i == 0 ? "%" : "");
+      panel.y.name_look = "font ',12' offset 2.2,0";
+      draw_curve(panel, out.data(p.rows), kFirstColour, "black");
     }
   }
-  return out + "set ylabel '' font ',15'\n";
 }
 
-std::string of_scales(const MemoryStudy& study, const Sheet& sheet, double top) {
+void add_scales(Panels& out, const MemoryStudy& study, double top) {
   const std::vector<GatesAhead::Step>& steps = study.ahead.steps;
   const char* const colours[] = {kFirstColour, kSecondColour, kThirdColour};
   const std::size_t count = std::min(kDrawnScales, steps.front().seen_scales.size());
-  std::string out = sheet.text("implied time scales of the same tables, in gates, over the lag", 8,
-                               top + 14, kSmallFont);
-  std::string plot;
+  Panel panel(
+      {kPanelsLeft, 0.5 * (kPanelsLeft + kPanelsRight), top + 26, top + 26 + kScalesHeight});
+  panel.say("implied time scales of the same tables, in gates, over the lag", 8, top + 14,
+            kSmallFont);
   double most = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
-    std::string rows;
+    Rows rows("$scale" + std::to_string(k));
     for (const GatesAhead::Step& s : steps) {
       if (!std::isfinite(s.seen_scales[k]) || !std::isfinite(s.scales_95[k][1])) continue;
-      rows += line(s.gates, s.scales_95[k][0], s.scales_95[k][1], s.predicted_scales[k],
-                   s.seen_scales[k]);
+      rows.add(s.gates, s.scales_95[k], s.predicted_scales[k], s.seen_scales[k]);
       most = std::max({most, s.scales_95[k][1], s.seen_scales[k]});
     }
-    if (rows.empty()) continue;
-    const std::string block = "$scale" + std::to_string(k);
-    out += data_block(block, rows);
-    plot += (plot.empty() ? "plot " : ", ") + curve(block, colours[k], colours[k]);
+    if (!rows.empty()) draw_curve(panel, out.data(rows), colours[k], colours[k]);
   }
-  if (plot.empty()) return out + "unset label\n";
-  return out + kFrame + kTics +
-         sheet.margins({kPanelsLeft, 0.5 * (kPanelsLeft + kPanelsRight), top + 26,
-                        top + 26 + kScalesHeight}) +
-         "set xrange [" + digits(steps.front().gates - 0.5) + ":" +
-         digits(steps.back().gates + 0.5) + "]\nset xtics 2,1\n" + UpTo(most).commands() +
-         Sheet::axes("'lag, gates'", "'time scale'") + plot + "\nunset label\n";
+  if (panel.layers.empty()) return;
+  panel.x = {"lag, gates", steps.front().gates - 0.5, steps.back().gates + 0.5, "2,1"};
+  panel.y = up_to(most, "time scale");
+  out.add(std::move(panel));
 }
 
 }  // namespace
@@ -158,8 +140,9 @@ MorePanels panels_of(const MemoryStudy& study) {
   const double of_all =
       kPanelsHead + 34 +
       static_cast<double>(entered_ways(study).size()) * (kMemoryPanelHeight + kPanelGap);
-  return {of_all + kScalesHead + kScalesHeight, [&study, of_all](const Sheet& sheet, double top) {
-            return of_ways(study, sheet, top) + of_scales(study, sheet, top + of_all);
+  return {of_all + kScalesHead + kScalesHeight, [&study, of_all](Panels& out, double top) {
+            add_ways(out, study, top);
+            add_scales(out, study, top + of_all);
           }};
 }
 

@@ -5,8 +5,6 @@
 #include <array>
 #include <utility>
 
-#include "cli/render/text.h"
-
 namespace gatewalk::cli {
 namespace {
 
@@ -30,10 +28,12 @@ MarkLook look_of_mark(std::size_t type) {
           white ? "#ffffff" : "#000000"};
 }
 
-std::string mark_point(int shape, const char* size, const char* colour) {
-  return "pt " + std::to_string(shape) + " ps " + size + " lc rgb '" + colour + "'";
+/// Both points of a mark.
+std::array<Pen, 2> pens_of_mark(std::size_t type) {
+  const MarkLook look = look_of_mark(type);
+  return {Pen{.colour = look.around, .mark = look.shape, .size = 0.75},
+          Pen{.colour = look.inside, .mark = look.shape, .size = 0.45}};
 }
-constexpr char kAroundMark[] = "0.75", kInsideMark[] = "0.45";
 
 }  // namespace
 
@@ -74,59 +74,48 @@ TypeMarks::TypeMarks(const ShownField& shown) : map_(shown.map) {
   }
 }
 
-TypeMarks::Drawn TypeMarks::on(const FieldMap& map, double width, double height,
-                               const std::string& tag) const {
+bool TypeMarks::draw_on(Panels& out, Panel& panel, const FieldMap& map,
+                        const std::string& tag) const {
   constexpr double kLeast = 7.0, kAside = 6.0;  // points
+  const double width = panel.box.width() / static_cast<double>(map.columns.blocks()),
+               height = panel.box.height() / static_cast<double>(map.rows.blocks());
   if (entries_.empty() || map.rows.block > 1 || map.columns.block > 1 ||
       std::min(width, height) < kLeast)
-    return {};
+    return false;
   // In the upper left corner, where it leaves room for a number.
   const double left = std::max(0.0, 0.5 - kAside / width),
                up = std::max(0.0, 0.5 - kAside / height);
-  Drawn drawn{.data = {}, .plot = {}, .fits = true};
   for (std::size_t type = 1; type < map_.types.size(); ++type) {
-    std::string rows;
+    Rows rows("$type" + tag + "_" + std::to_string(type));
     for (Eigen::Index r = 0; r < map.rows.count; ++r)
       for (Eigen::Index c = 0; c < map.columns.count; ++c)
         if (static_cast<std::size_t>(map_.type_of(static_cast<int>(map.columns.first + c),
                                                   static_cast<int>(map.rows.first + r))) == type)
-          rows += digits(static_cast<double>(c) - left) + " " +
-                  digits(static_cast<double>(r) + up) + "\n";
+          rows.add(static_cast<double>(c) - left, static_cast<double>(r) + up);
     if (rows.empty()) continue;
-    const std::string name = "$type" + tag + "_" + std::to_string(type);
-    const MarkLook look = look_of_mark(type);
-    drawn.data += data_block(name, rows);
-    drawn.plot += ", " + name + " using 1:2 with points " +
-                  mark_point(look.shape, kAroundMark, look.around) + ", " + name +
-                  " using 1:2 with points " + mark_point(look.shape, kInsideMark, look.inside);
+    const auto [around, inside] = pens_of_mark(type);
+    panel.draw_outlined(out.data(rows), "1:2", "points", around, inside);
   }
-  return drawn;
+  return true;
 }
 
 double TypeMarks::legend_height() const {
   return entries_.empty() ? 0.0 : entries_.back().top + kLegendLine;
 }
 
-std::string TypeMarks::legend(const Sheet& sheet, double top, bool marked) const {
-  if (entries_.empty()) return "";
-  if (!marked)
-    return sheet.text("gates are of several types: too small to be marked here", kLeftEnd,
-                      top + 0.5 * kLegendLine, kSmallFont);
-  std::string out;
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
+void TypeMarks::add_legend(Panel& panel, double top, bool marked) const {
+  if (!entries_.empty() && !marked)
+    panel.say("gates are of several types: too small to be marked here", kLeftEnd,
+              top + 0.5 * kLegendLine, kSmallFont);
+  for (std::size_t i = 0; i < entries_.size() && marked; ++i) {
     const Entry& e = entries_[i];
     const double middle = top + e.top + 0.5 * kLegendLine;
     const bool has_mark = i > 0 && i + 1 < entries_.size();
-    if (has_mark) {
-      const MarkLook look = look_of_mark(i);
-      for (const auto& [size, colour] :
-           {std::pair{kAroundMark, look.around}, std::pair{kInsideMark, look.inside}})
-        out += "set label '' at screen " + sheet.at(e.left + 6, middle) + " point " +
-               mark_point(look.shape, size, colour) + "\n";
-    }
-    out += sheet.text(e.name, e.left + (has_mark ? 14 : 0), middle, kSmallFont);
+    if (has_mark)
+      for (const Pen& pen : pens_of_mark(i))
+        panel.texts.push_back({.left = e.left + 6, .middle = middle, .mark = pen});
+    panel.say(e.name, e.left + (has_mark ? 14 : 0), middle, kSmallFont);
   }
-  return out;
 }
 
 }  // namespace gatewalk::cli

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/figure.h"
 #include "cli/render/final_gates.h"
+#include "cli/render/panel.h"
 #include "cli/render/shown_field.h"
 
 namespace gatewalk::cli {
@@ -21,20 +21,14 @@ class TypeMarks {
  public:
   explicit TypeMarks(const ShownField& shown);
 
-  /// For `plot`: its data, to be defined before, and what it adds behind a map whose gates are so
-  /// many points wide and high; both empty where gates are too small for marks. `tag` tells the
-  /// data of one map from another's.
-  struct Drawn {
-    std::string data, plot;
-    bool fits = false;  // there is room for them
-  };
-  [[nodiscard]] Drawn on(const FieldMap& map, double width, double height,
-                         const std::string& tag) const;
+  /// Marks the gates on a panel with this map, above what is drawn there so far; false where gates
+  /// are too small for marks. `tag` tells the data of one map from another's.
+  bool draw_on(Panels& out, Panel& panel, const FieldMap& map, const std::string& tag) const;
 
-  /// Height of the legend, 0 for none, and the legend from this height on; until "unset label".
-  /// `marked`: whether a map had room for marks.
+  /// Height of the legend, 0 for none, and the legend from this height on. `marked`: whether a map
+  /// had room for marks.
   [[nodiscard]] double legend_height() const;
-  [[nodiscard]] std::string legend(const Sheet& sheet, double top, bool marked) const;
+  void add_legend(Panel& panel, double top, bool marked) const;
 
  private:
   struct Entry {
