@@ -12,11 +12,11 @@
 namespace gatewalk::cli {
 namespace {
 
-using Axis = std::vector<double>;
-const Axis kDampings{50, 10}, kForces{4, 5, 6, 7, 8, 9}, kPaperRandom{0, 10, 20, 30, 40},
+using AxisValues = std::vector<double>;
+const AxisValues kDampings{50, 10}, kForces{4, 5, 6, 7, 8, 9}, kPaperRandom{0, 10, 20, 30, 40},
     kWideRandom{0, 10, 20, 30, 40, 50, 60};
 // Of Table II, with the left beam's stiffness.
-const Axis kForcesOf12{7, 8}, kRandomOf12{10, 20, 30, 40, 50, 60};
+const AxisValues kForcesOf12{7, 8}, kRandomOf12{10, 20, 30, 40, 50, 60};
 
 const SweepPoint& fig12_at(const Findings& f, double damping, double force, double random,
                            double k_left) {
@@ -26,12 +26,13 @@ const SweepPoint& fig12_at(const Findings& f, double damping, double force, doub
 
 /// What a function of each place on an axis is.
 template <class Of>
-std::vector<Share> along(const Axis& axis, Of of_place) {
+std::vector<Share> along(const AxisValues& axis, Of of_place) {
   std::vector<Share> shares;
   for (const double x : axis) shares.push_back(of_place(x));
   return shares;
 }
-std::vector<Share> over_random(const Findings& f, double damping, double force, const Axis& axis) {
+std::vector<Share> over_random(const Findings& f, double damping, double force,
+                               const AxisValues& axis) {
   return along(axis, [&](double random) { return fig8_at(f, damping, force, random); });
 }
 
@@ -186,7 +187,7 @@ Measured accord(const Findings& f) {
         shown += fmt::format("{}{} at {} J", shown.empty() ? "" : ", ", percent_text(s),
                              fixed(height, 0));
     }
-    Axis heights;
+    AxisValues heights;
     std::vector<Share> shares;
     for (const auto& [height, share] : held_back) {
       heights.push_back(height);
@@ -238,14 +239,14 @@ Measured by_left_beam(const Findings& f) {
   return {against(kPrinted, ours), {{"ours", ours}}};
 }
 
-Measured right_share_falls(const Findings& f, const Axis& randoms, bool strong) {
+Measured right_share_falls(const Findings& f, const AxisValues& randoms, bool strong) {
   constexpr std::int64_t kLeast = 10;  // of fewer there is no share to speak of
   Trend trend;
   for (const double damping : kDampings)
     for (const double force : kForcesOf12)
       for (const double random : randoms) {
         std::vector<Share> told;
-        Axis where, counted;
+        AxisValues where, counted;
         for (const double k : f.fig12.values(kLeftStiffness)) {
           const SweepPoint& cell = fig12_at(f, damping, force, random, k);
           if (cell.right_share().whole < kLeast) continue;

@@ -27,7 +27,7 @@ using Interval = std::array<double, 2>;  // 95 %, from and to; NaN: there is non
 
 /// A key of a result with what its readers must know of it. It is used in the call that it is made
 /// for: texts are not copied.
-struct Key {
+struct ResultKey {
   std::string_view key, unit, meaning;
   std::string_view varies{};  // how the key is shown where it differs among results: "mean_<cost>"
   std::optional<double> least{}, most{};  // of numbers
@@ -36,15 +36,18 @@ struct Key {
 };
 
 /// The key of numbers: with a unit, "1" for shares, counts and ratios.
-struct Field : Key {
-  Field(std::string_view name, std::string_view in, std::string_view what) : Key{name, in, what} {}
-  [[nodiscard]] Field varying(std::string_view shown) const { return with(&Key::varies, shown); }
-  [[nodiscard]] Field at_least(double x) const { return with(&Key::least, std::optional(x)); }
-  [[nodiscard]] Field at_most(double x) const { return with(&Key::most, std::optional(x)); }
+struct Field : ResultKey {
+  Field(std::string_view name, std::string_view in, std::string_view what)
+      : ResultKey{name, in, what} {}
+  [[nodiscard]] Field varying(std::string_view shown) const {
+    return with(&ResultKey::varies, shown);
+  }
+  [[nodiscard]] Field at_least(double x) const { return with(&ResultKey::least, std::optional(x)); }
+  [[nodiscard]] Field at_most(double x) const { return with(&ResultKey::most, std::optional(x)); }
 
  private:
   template <class T>
-  [[nodiscard]] Field with(T Key::*member, const T& value) const {
+  [[nodiscard]] Field with(T ResultKey::*member, const T& value) const {
     Field changed = *this;
     changed.*member = value;
     return changed;
@@ -52,8 +55,8 @@ struct Field : Key {
 };
 
 /// The key of flags, texts, objects and lists, which have no unit.
-struct Label : Key {
-  Label(std::string_view name, std::string_view what) : Key{name, {}, what} {}
+struct Label : ResultKey {
+  Label(std::string_view name, std::string_view what) : ResultKey{name, {}, what} {}
   [[nodiscard]] Label varying(std::string_view shown) const {
     Label changed = *this;
     changed.varies = shown;
@@ -74,7 +77,6 @@ struct Label : Key {
 };
 
 using TextRows = std::vector<std::vector<std::optional<std::string>>>;  // none: null
-using Point = std::array<double, 2>;                                    // x and y
 
 /// A value that takes fields; none: null.
 using Value =
@@ -155,7 +157,7 @@ class Fields {
   void intervals(const Field& f, const std::vector<Interval>& bars) {
     leaf(f, ValueKind::intervals, false, &bars);
   }
-  void points(const Field& f, const std::vector<Point>& places) {
+  void points(const Field& f, const std::vector<std::array<double, 2>>& places) {
     leaf(f, ValueKind::points, false, &places);
   }
   /// A number for each gate, row by row from the start's side on.
@@ -274,9 +276,9 @@ class Fields {
 
  protected:
   enum class Shape { object, list };
-  virtual void leaf(const Key& key, ValueKind kind, bool may_be_null, const Value& value) = 0;
+  virtual void leaf(const ResultKey& key, ValueKind kind, bool may_be_null, const Value& value) = 0;
   /// `also`: "null", "string" or "number" (or null), what may stand in its place.
-  virtual void open(const Key& key, Shape shape, std::string_view also) = 0;
+  virtual void open(const ResultKey& key, Shape shape, std::string_view also) = 0;
   virtual void next() = 0;  // an item of a list
   virtual void close() = 0;
   virtual void begin_optional() {}

@@ -30,7 +30,7 @@ class JsonFields final : public Fields {
   [[nodiscard]] Json take() && { return std::move(result_); }
 
  protected:
-  void leaf(const Key& key, ValueKind kind, bool, const Value& value) override {
+  void leaf(const ResultKey& key, ValueKind kind, bool, const Value& value) override {
     if (kind == ValueKind::given)
       put(key, json_of_given(std::get<std::string_view>(value)));
     else if (kind == ValueKind::givens)
@@ -40,7 +40,7 @@ class JsonFields final : public Fields {
     else
       put(key, std::visit([](const auto& x) { return json_of_value(x); }, value));
   }
-  void open(const Key& key, Shape shape, std::string_view) override {
+  void open(const ResultKey& key, Shape shape, std::string_view) override {
     open_.push_back(&put(key, shape == Shape::list ? Json::array() : Json::object()));
   }
   void next() override {
@@ -92,7 +92,7 @@ class JsonFields final : public Fields {
     return rows;
   }
 
-  Json& put(const Key& key, Json value) {
+  Json& put(const ResultKey& key, Json value) {
     Json& object = open_.empty() ? result_ : *open_.back();
     return object[std::string(key.key)] = std::move(value);
   }

@@ -43,13 +43,13 @@ class SchemaFields final : public Fields {
   [[nodiscard]] const Shared& shared() const { return shared_; }
 
  protected:
-  void leaf(const Key& key, ValueKind kind, bool may_be_null, const Value&) override {
+  void leaf(const ResultKey& key, ValueKind kind, bool may_be_null, const Value&) override {
     Node& node = add(key);
     node.form = Node::Form::leaf;
     node.kind = kind;
     node.may_be_null = node.may_be_null || may_be_null;
   }
-  void open(const Key& key, Shape shape, std::string_view also) override {
+  void open(const ResultKey& key, Shape shape, std::string_view also) override {
     Node& node = add(key);
     node.form = shape == Shape::list ? Node::Form::list : Node::Form::object;
     node.also = also;
@@ -103,7 +103,7 @@ class SchemaFields final : public Fields {
     key.is_always_there = scopes_.back().optional == 0;
   }
 
-  Node& add(const Key& key) {
+  Node& add(const ResultKey& key) {
     if (key.meaning.empty())
       throw std::logic_error("the key " + std::string(key.key) + " says nothing of its meaning");
     Scope& scope = scopes_.back();
