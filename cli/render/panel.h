@@ -146,7 +146,7 @@ struct Text {
 };
 
 /// A key, "on bottom left ...", or with its place on the sheet.
-struct Key {
+struct Legend {
   std::string how;
   double left = kFree, top = kFree;
 };
@@ -164,7 +164,7 @@ struct Panel {
   int border = 3;         // sum of its sides: 1 below, 2 left, 4 above, 8 right
   int tics_font = 0;      // of their numbers; 0: the figure's
   std::string grid = {};  // of which tics and how, "ytics lt -1 lw 0.2"; empty: none
-  std::optional<Key> key = {};
+  std::optional<Legend> key = {};
   std::optional<Colours> colours = {};
   std::vector<Text> texts = {};
   std::vector<Upright> uprights = {};
