@@ -3,6 +3,7 @@
 
 #include <archive.h>
 #include <archive_entry.h>
+#include <fmt/core.h>
 
 #include <memory>
 #include <stdexcept>
@@ -76,8 +77,7 @@ std::vector<PackedFile> unpack(const std::string& path, std::size_t most_bytes) 
       if (got < 0) check(archive.get(), static_cast<int>(got), path);
       bytes += static_cast<std::size_t>(got);
       if (bytes > most_bytes)
-        throw std::runtime_error(path + ": holds more than " + std::to_string(most_bytes) +
-                                 " bytes");
+        throw std::runtime_error(fmt::format("{}: holds more than {} bytes", path, most_bytes));
       file.bytes.append(block.data(), static_cast<std::size_t>(got));
     }
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/exchange/explicit_chain.h"
 
+#include <fmt/core.h>
+
 #include <array>
 #include <charconv>
 
@@ -66,55 +68,52 @@ std::string umb_of(const ExplicitChain& chain, const Json& tool) {
       {"branch-to-target.bin", all_little_endian(chain.target)},
       {"branch-to-probability.bin", all_little_endian(chain.probability)}};
   for (std::size_t e = 0; e < ending_labels().size(); ++e)
-    files.push_back({"annotations/aps/" + ending_labels()[e] + "/states/values.bin",
+    files.push_back({fmt::format("annotations/aps/{}/states/values.bin", ending_labels()[e]),
                      one_bit(n, chain.ends() + static_cast<std::int64_t>(e))});
   return pack(Packing::tar, files);
 }
 
 std::string drn_of(const ExplicitChain& chain) {
-  std::string text = "@type: DTMC\n@parameters\n\n@reward_models\n\n@nr_states\n" +
-                     std::to_string(chain.size()) + "\n@nr_choices\n" +
-                     std::to_string(chain.size()) + "\n@model\n";
+  std::string text = fmt::format(
+      "@type: DTMC\n@parameters\n\n@reward_models\n\n"
+      "@nr_states\n{0}\n@nr_choices\n{0}\n@model\n",
+      chain.size());
   for (std::int64_t s = 0; s < chain.size(); ++s) {
-    text += "state " + std::to_string(s);
+    text += fmt::format("state {}", s);
     if (s == 0) text += " init";
     if (s >= chain.ends())
       text += " " + ending_labels()[static_cast<std::size_t>(s - chain.ends())];
     text += "\n\taction 0\n";
     for (auto k = static_cast<std::size_t>(chain.first[static_cast<std::size_t>(s)]);
          k < static_cast<std::size_t>(chain.first[static_cast<std::size_t>(s) + 1]); ++k)
-      text += "\t\t" + std::to_string(chain.target[k]) + " : " + probability(chain.probability[k]) +
-              "\n";
+      text += fmt::format("\t\t{} : {}\n", chain.target[k], probability(chain.probability[k]));
   }
   return text;
 }
 
 PrismFiles prism_of(const ExplicitChain& chain, const std::vector<int>& numbers) {
   PrismFiles files;
-  files.transitions =
-      std::to_string(chain.size()) + " " + std::to_string(chain.target.size()) + "\n";
+  files.transitions = fmt::format("{} {}\n", chain.size(), chain.target.size());
   files.states = "(i_x,i_y,state,draws,ending)\n";
   files.labels = "0=\"init\" 1=\"deadlock\"";
   for (std::size_t e = 0; e < ending_labels().size(); ++e)
-    files.labels += " " + std::to_string(e + 2) + "=\"" + ending_labels()[e] + "\"";
+    files.labels += fmt::format(" {}=\"{}\"", e + 2, ending_labels()[e]);
   files.labels += "\n0: 0\n";
   for (std::int64_t s = 0; s < chain.size(); ++s) {
     const bool is_end = s >= chain.ends();
-    const auto at = [&](auto number) { return std::to_string(number) + ","; };
     if (is_end) {
       const std::int64_t e = s - chain.ends();
-      files.states += std::to_string(s) + ":(-1,-1,-1,-1," + std::to_string(e) + ")\n";
-      files.labels += std::to_string(s) + ": " + std::to_string(e + 2) + "\n";
+      files.states += fmt::format("{}:(-1,-1,-1,-1,{})\n", s, e);
+      files.labels += fmt::format("{}: {}\n", s, e + 2);
     } else {
       const ExplicitChain::State& state = chain.states[static_cast<std::size_t>(s)];
-      files.states += std::to_string(s) + ":(" + at(state.column) + at(state.row) +
-                      at(numbers[static_cast<std::size_t>(state.input)]) + at(state.draws) +
-                      "-1)\n";
+      files.states += fmt::format("{}:({},{},{},{},-1)\n", s, state.column, state.row,
+                                  numbers[static_cast<std::size_t>(state.input)], state.draws);
     }
     for (auto k = static_cast<std::size_t>(chain.first[static_cast<std::size_t>(s)]);
          k < static_cast<std::size_t>(chain.first[static_cast<std::size_t>(s) + 1]); ++k)
-      files.transitions += std::to_string(s) + " " + std::to_string(chain.target[k]) + " " +
-                           probability(chain.probability[k]) + "\n";
+      files.transitions +=
+          fmt::format("{} {} {}\n", s, chain.target[k], probability(chain.probability[k]));
   }
   return files;
 }
@@ -142,8 +141,7 @@ std::vector<std::string> names_of(const ExplicitChain& chain,
                                   const std::vector<std::string>& names) {
   std::vector<std::string> all;
   for (const ExplicitChain::State& s : chain.states)
-    all.push_back("x" + std::to_string(s.column) + "_y" + std::to_string(s.row) + "_" +
-                  entered_as(s, names) + "_n" + std::to_string(s.draws));
+    all.push_back(fmt::format("x{}_y{}_{}_n{}", s.column, s.row, entered_as(s, names), s.draws));
   all.insert(all.end(), ending_labels().begin(), ending_labels().end());
   return all;
 }
@@ -152,13 +150,13 @@ std::string states_csv(const ExplicitChain& chain, const std::vector<std::string
   const std::vector<std::string> all = names_of(chain, names);
   std::string text = "number,name,column,row,state,entered_before,ending\n";
   for (std::size_t s = 0; s < all.size(); ++s) {
-    text += std::to_string(s) + "," + csv_text(all[s]) + ",";
+    text += fmt::format("{},{},", s, csv_text(all[s]));
     if (s < chain.states.size()) {
       const ExplicitChain::State& state = chain.states[s];
-      text += std::to_string(state.column) + "," + std::to_string(state.row) + "," +
-              csv_text(entered_as(state, names)) + "," + std::to_string(state.draws) + ",\n";
+      text += fmt::format("{},{},{},{},\n", state.column, state.row,
+                          csv_text(entered_as(state, names)), state.draws);
     } else {
-      text += ",,,," + all[s] + "\n";
+      text += fmt::format(",,,,{}\n", all[s]);
     }
   }
   return text;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/exchange/imported.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -28,7 +30,7 @@ std::string name_of_move(int x, int y) {
   if (x == 1 && y == 0) return "right";
   if (x == -1 && y == 0) return "left";
   const auto sign = [](int n) { return (n < 0 ? "m" : "") + std::to_string(std::abs(n)); };
-  return "move_" + sign(x) + "_" + sign(y);
+  return fmt::format("move_{}_{}", sign(x), sign(y));
 }
 
 /// Faces in the order in which states name them.
@@ -70,9 +72,7 @@ double rounding_of(const SparseTable& table, std::size_t begin, std::size_t end,
   return most * kTies;
 }
 
-std::string row_text(const SparseTable::Entry& e) {
-  return "row " + std::to_string(e.row) + " (from 0)";
-}
+std::string row_text(const SparseTable::Entry& e) { return fmt::format("row {} (from 0)", e.row); }
 
 constexpr const char* kEffective =
     "round effective counts to whole numbers, which keeps error bars, or divide each row by its "
@@ -95,11 +95,10 @@ void in_steps(const std::string& path, SparseTable& table) {
       sum += table.entries[end].value;
     if (const double off = std::abs(sum - 1.0); sum != 0.0 && off > kOff) {
       if (off > rounding_of(table, begin, end, floats))
-        throw std::runtime_error(path + ": " + row_text(table.entries[begin]) + " sums to " +
-                                 shortest(sum) +
-                                 ": probabilities of a row sum to 1, counts are whole numbers "
-                                 "(integer, count); " +
-                                 kEffective);
+        throw std::runtime_error(
+            fmt::format("{}: {} sums to {}: probabilities of a row sum to 1, counts are whole "
+                        "numbers (integer, count); {}",
+                        path, row_text(table.entries[begin]), shortest(sum), kEffective));
       if (scaled.empty()) scaled = row_text(table.entries[begin]) + " to " + shortest(sum);
       for (std::size_t k = begin; k < end; ++k) table.entries[k].value /= sum;
     }
@@ -118,8 +117,8 @@ void in_steps(const std::string& path, SparseTable& table) {
     table.entries[largest].value = left;
   }
   if (!scaled.empty())
-    table.understood.push_back("rows sum to 1 but for the rounding of their numbers (" + scaled +
-                               "): divided by their sums");
+    table.understood.push_back(fmt::format(
+        "rows sum to 1 but for the rounding of their numbers ({}): divided by their sums", scaled));
   std::erase_if(table.entries, [](const SparseTable::Entry& e) { return e.value == 0.0; });
 }
 
@@ -156,11 +155,10 @@ SparseTable counts_of(const std::string& path, const Trajectories& all, std::int
       if (one[k] == kGap) continue;
       const bool is_last = k + 1 == one.size() || one[k + 1] == kGap;
       if (one[k] < 0 || one[k] > (is_last ? states : states - 1))
-        throw std::runtime_error(path + ": trajectory " + std::to_string(t + 1) + ", step " +
-                                 std::to_string(k + 1) + ": there is no state " +
-                                 std::to_string(one[k]) + " (0 to " + std::to_string(states - 1) +
-                                 "; at the end " + std::to_string(states) +
-                                 ": trapped; -1: a gap)");
+        throw std::runtime_error(
+            fmt::format("{}: trajectory {}, step {}: there is no state {} (0 to {}; at the end {}: "
+                        "trapped; -1: a gap)",
+                        path, t + 1, k + 1, one[k], states - 1, states));
       pieces += has_gaps && is_last ? 1 : 0;
       if (k > 0 && one[k - 1] != kGap) ++counts[{one[k - 1], one[k]}];
     }
@@ -173,9 +171,8 @@ SparseTable counts_of(const std::string& path, const Trajectories& all, std::int
   for (const auto& [place, n] : counts)
     table.entries.push_back({place.first, place.second, static_cast<double>(n)});
   if (cut > 0)
-    table.understood.push_back("-1 is a gap: " + std::to_string(cut) + " of " +
-                               std::to_string(all.size()) + " trajectories are cut there, into " +
-                               std::to_string(pieces));
+    table.understood.push_back(fmt::format(
+        "-1 is a gap: {} of {} trajectories are cut there, into {}", cut, all.size(), pieces));
   return table;
 }
 
@@ -205,12 +202,11 @@ std::vector<ForeignState> read_states(const std::string& path,
       const std::string text = field(name);
       const double value = file.number(text).value_or(HUGE_VAL);
       if (value != std::floor(value) || !(std::abs(value) <= 1e6))
-        refuse(std::string(name) + " \"" + lattice::printable(text) + "\" is no whole number");
+        refuse(fmt::format("{} \"{}\" is no whole number", name, lattice::printable(text)));
       return static_cast<int>(value);
     };
     if (whole("state") != std::ssize(states))
-      refuse("state must be " + std::to_string(states.size()) +
-             ": they are numbered from 0, in order");
+      refuse(fmt::format("state must be {}: they are numbered from 0, in order", states.size()));
     const auto name = file.column("name");
     ForeignState s{name ? std::string(file[*name]) : std::string(), field("face"), whole("move_x"),
                    whole("move_y")};
@@ -224,23 +220,26 @@ std::vector<ForeignState> read_states(const std::string& path,
     if (s.move_x == 0 && s.move_y == 0) refuse("the move must lead to another cell");
     constexpr int kFarthest = 1000;  // as in a cell file
     if (std::abs(s.move_x) > kFarthest || std::abs(s.move_y) > kFarthest)
-      refuse("a move must lead " + std::to_string(kFarthest) + " cells at most");
+      refuse(fmt::format("a move must lead {} cells at most", kFarthest));
     if (s.name.empty()) s.name = std::to_string(states.size());
     if (s.name == "trapped" || !names.insert(s.name).second)
-      refuse("name \"" + lattice::printable(s.name) + "\" is taken");
+      refuse(fmt::format("name \"{}\" is taken", lattice::printable(s.name)));
     if (s.face.empty()) s.face = name_of_move(s.move_x, s.move_y);
     if (!lattice::is_name(s.face) || s.face == "trapped" || s.face == "lost")
-      refuse("face \"" + lattice::printable(s.face) +
-             "\" must be a name: a letter, then letters, digits and _, neither trapped nor lost");
+      refuse(
+          fmt::format("face \"{}\" must be a name: a letter, then letters, digits and _, neither "
+                      "trapped nor lost",
+                      lattice::printable(s.face)));
     const auto [move, is_new] = moves.try_emplace(s.face, s.move_x, s.move_y);
     if (move->second != std::pair(s.move_x, s.move_y))
-      refuse("face " + s.face + " has another move than before");
+      refuse(fmt::format("face {} has another move than before", s.face));
     if (is_new && moves.size() > dynamics::kMostFaces)
-      refuse("there are more than " + std::to_string(dynamics::kMostFaces) +
-             " faces: states that are entered by one move may share one");
+      refuse(fmt::format(
+          "there are more than {} faces: states that are entered by one move may share one",
+          dynamics::kMostFaces));
     states.push_back(std::move(s));
     if (states.size() > static_cast<std::size_t>(dynamics::kMostStates))
-      refuse("there are more than " + std::to_string(dynamics::kMostStates) + " states");
+      refuse(fmt::format("there are more than {} states", dynamics::kMostStates));
   }
   if (states.empty()) throw std::runtime_error(path + ": holds no states");
   for (std::int64_t k = 0; k < std::ssize(states); ++k)
@@ -249,10 +248,9 @@ std::vector<ForeignState> read_states(const std::string& path,
       if (const auto number = Table::whole(name);
           number && *number >= 0 && *number < std::ssize(states))
         throw std::runtime_error(
-            path + ": \"" + lattice::printable(name) + "\" is the name of state " +
-            std::to_string(k) +
-            " and the number of another, which count from 0: give states names "
-            "that are no numbers, or none");
+            fmt::format("{}: \"{}\" is the name of state {} and the number of another, which count "
+                        "from 0: give states names that are no numbers, or none",
+                        path, lattice::printable(name), k));
   if (understood)
     for (const std::string& remark : file.remarks()) understood->push_back(path + ": " + remark);
   return states;
@@ -264,19 +262,19 @@ std::string states_csv(const lattice::MatrixFile& file,
   const dynamics::Section& section = space.section();
   std::string text = "state,name,face,move_x,move_y";
   for (const dynamics::Coordinate& c : section.coordinates)
-    text += "," + c.key + "_low," + c.key + "_high";
+    text += fmt::format(",{0}_low,{0}_high", c.key);
   if (!counts_per_run.empty()) text += std::string(",") + kCountsPerRun;
   const std::vector<std::string> names = lattice::state_names(file);
   for (const int s : lattice::shown_order(space)) {
     const dynamics::Face& face = section.faces[static_cast<std::size_t>(space.face(s))];
-    text += "\n" + std::to_string(lattice::shown_number(space, s)) + "," +
-            csv_text(names[static_cast<std::size_t>(s)]) + "," + csv_text(face.name) + "," +
-            std::to_string(face.di_x) + "," + std::to_string(face.di_y);
+    text += fmt::format("\n{},{},{},{},{}", lattice::shown_number(space, s),
+                        csv_text(names[static_cast<std::size_t>(s)]), csv_text(face.name),
+                        face.di_x, face.di_y);
     const dynamics::StateRange range = space.range(s);
     for (std::size_t c = 0; c < section.coordinates.size(); ++c)
-      text += "," + shortest(range.at[c][0]) + "," + shortest(range.at[c][1]);
+      text += fmt::format(",{},{}", shortest(range.at[c][0]), shortest(range.at[c][1]));
     if (!counts_per_run.empty())
-      text += "," + std::to_string(counts_per_run[static_cast<std::size_t>(s)]);
+      text += fmt::format(",{}", counts_per_run[static_cast<std::size_t>(s)]);
   }
   return text + "\n";
 }
@@ -323,35 +321,33 @@ ForeignMatrix read_foreign(const std::string& path, const std::vector<ForeignSta
     table.understood.emplace_back("the last state, which is never left, is trapped");
   }
   if (table.rows != n || (table.columns != n && table.columns != n + 1))
-    throw std::runtime_error(path + ": is " + std::to_string(table.rows) + " x " +
-                             std::to_string(table.columns) + "; of " + std::to_string(n) +
-                             " states it must be " + std::to_string(n) + " x " +
-                             std::to_string(n + 1) + ", the last column trapped, or " +
-                             std::to_string(n) + " x " + std::to_string(n));
+    throw std::runtime_error(
+        fmt::format("{0}: is {1} x {2}; of {3} states it must be {3} x {4}, the last column "
+                    "trapped, or {3} x {3}",
+                    path, table.rows, table.columns, n, n + 1));
   table.columns = n + 1;
   for (const SparseTable::Entry& e : table.entries)
     if (!(e.value >= 0.0) || !std::isfinite(e.value) ||
         (table.whole && (e.value != std::floor(e.value) || e.value > 1e15)))
       throw std::runtime_error(
-          path + ": row " + std::to_string(e.row) + ", column " + std::to_string(e.column) +
-          " (from 0): " + shortest(e.value) +
-          (table.whole ? " is no count" : " is no probability") +
-          (table.whole && e.value > 0.0 && std::isfinite(e.value)
-               ? std::string(": counts are whole numbers of runs; ") + kEffective
-               : ""));
+          fmt::format("{}: row {}, column {} (from 0): {}{}{}", path, e.row, e.column,
+                      shortest(e.value), table.whole ? " is no count" : " is no probability",
+                      table.whole && e.value > 0.0 && std::isfinite(e.value)
+                          ? fmt::format(": counts are whole numbers of runs; {}", kEffective)
+                          : ""));
   matrix.probabilities = !table.whole;
   if (matrix.probabilities) in_steps(path, table);
   double sum = 0.0;
   for (const SparseTable::Entry& e : table.entries) sum += e.value;
   if (sum > std::ldexp(1.0, 62))
-    throw std::runtime_error(path + ": its counts add up to " + shortest(sum) +
-                             ", more than a matrix may have");
+    throw std::runtime_error(fmt::format("{}: its counts add up to {}, more than a matrix may have",
+                                         path, shortest(sum)));
   return matrix;
 }
 
 std::string cell_text(const std::vector<ForeignState>& states, double width, double length) {
-  std::string text = "[cell]\nwidth_m = " + lattice::toml_float(width) +
-                     "\nlength_m = " + lattice::toml_float(length) + "\nsymmetric = false\n";
+  std::string text = fmt::format("[cell]\nwidth_m = {}\nlength_m = {}\nsymmetric = false\n",
+                                 lattice::toml_float(width), lattice::toml_float(length));
   for (const ForeignState* face : faces_of(states)) {
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (std::size_t s = 0; s < states.size(); ++s)
@@ -359,10 +355,9 @@ std::string cell_text(const std::vector<ForeignState>& states, double width, dou
         low = std::min(low, static_cast<double>(s) - 0.5);
         high = std::max(high, static_cast<double>(s) + 0.5);
       }
-    text += "\n[[cell.faces]]\nname = \"" + face->face + "\"\nmove = [" +
-            std::to_string(face->move_x) + ", " + std::to_string(face->move_y) +
-            "]\nusual.state = [" + lattice::toml_float(low) + ", " + lattice::toml_float(high) +
-            "]\n";
+    text += fmt::format(
+        "\n[[cell.faces]]\nname = \"{}\"\nmove = [{}, {}]\nusual.state = [{}, {}]\n", face->face,
+        face->move_x, face->move_y, lattice::toml_float(low), lattice::toml_float(high));
   }
   return text +
          "\n[[cell.coordinates]]\nname = \"state\"\nunit = \"1\"\nscale = 1.0\nwords = \"number of "

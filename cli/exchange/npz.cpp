@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/exchange/npz.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <regex>
 #include <stdexcept>
@@ -25,12 +27,12 @@ std::string npy_of(const NumpyArray& array) {
     data = all_little_endian(*whole);
   } else {
     data = std::get<std::string>(array.values);
-    type = "|S" + std::to_string(data.size());
+    type = fmt::format("|S{}", data.size());
   }
   std::string shape;
-  for (const std::int64_t n : array.shape) shape += std::to_string(n) + ", ";
+  for (const std::int64_t n : array.shape) shape += fmt::format("{}, ", n);
   std::string header =
-      "{'descr': '" + type + "', 'fortran_order': False, 'shape': (" + shape + "), }";
+      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
   constexpr std::size_t kAligned = 64;
   header.append(kAligned - (kPrefix + header.size() + 1) % kAligned, ' ');
   header += '\n';
@@ -85,7 +87,7 @@ bool put_numbers(const std::string& type, std::string_view bytes, NumpyArray& ar
 NumpyArray array_of(const PackedFile& file, const std::string& path) {
   const std::string name = file.name.substr(0, file.name.rfind(".npy"));
   const auto refuse = [&](const std::string& why) {
-    throw std::runtime_error(path + ": array " + lattice::printable(name) + ": " + why);
+    throw std::runtime_error(fmt::format("{}: array {}: {}", path, lattice::printable(name), why));
   };
   const std::string_view bytes = file.bytes;
   if (!bytes.starts_with(kMagic) || bytes.size() < kPrefix + 2) refuse("is none of numpy");
@@ -125,14 +127,15 @@ NumpyArray array_of(const PackedFile& file, const std::string& path) {
   const std::string_view data = bytes.substr(begin + length);
   const std::size_t size = std::stoul(found[3]) * (kind == "U" ? 4 : 1);
   if (data.size() != count * size)
-    refuse("has " + std::to_string(data.size()) + " bytes, not " + std::to_string(count * size));
+    refuse(fmt::format("has {} bytes, not {}", data.size(), count * size));
   if (kind == "S" || kind == "U") {
     std::string text;
     for (const char c : data)
       if (c != '\0') text += c;
     array.values = std::move(text);
   } else if (!put_numbers(type, data, array)) {
-    refuse("holds " + type + ": whole numbers, f4 and f8 are read (numpy: array.astype(float))");
+    refuse(fmt::format("holds {}: whole numbers, f4 and f8 are read (numpy: array.astype(float))",
+                       type));
   } else if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&array.values);
              type == "u8" &&
              std::any_of(whole->begin(), whole->end(), [](auto n) { return n < 0; })) {
@@ -158,8 +161,7 @@ std::vector<NumpyArray> read_npz(const std::string& path) {
     std::size_t count = 1;
     for (const std::int64_t n : arrays.back().shape) count *= static_cast<std::size_t>(n);
     if ((numbers += count) > kMostNumbers)
-      throw std::runtime_error(path + ": holds more than " + std::to_string(kMostNumbers) +
-                               " numbers");
+      throw std::runtime_error(fmt::format("{}: holds more than {} numbers", path, kMostNumbers));
   }
   return arrays;
 }

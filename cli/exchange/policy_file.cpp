@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/exchange/policy_file.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -33,7 +35,7 @@ std::string difference(const std::string& here, const std::string& there) {
     const std::size_t first = begin == 0 ? 0 : text.rfind('\n', begin - 1) + 1;
     return lattice::printable(std::string_view(text).substr(first, text.find('\n', begin) - first));
   };
-  return "\"" + line(here, a) + "\" here, \"" + line(there, b) + "\" there";
+  return fmt::format("\"{}\" here, \"{}\" there", line(here, a), line(there, b));
 }
 
 std::string bytes_of(const std::string& path) {
@@ -48,8 +50,9 @@ int number_in(const Json& json, std::size_t most) {
     const double number = json.get<double>();
     if (number >= -1.0 && number <= static_cast<double>(most)) return static_cast<int>(number);
   }
-  throw std::runtime_error((json.is_number() ? json.dump() : std::string(json.type_name())) +
-                           " is no whole number from -1 to " + std::to_string(most));
+  throw std::runtime_error(
+      fmt::format("{} is no whole number from -1 to {}",
+                  json.is_number() ? json.dump() : std::string(json.type_name()), most));
 }
 
 lattice::Policy policy_of(const Json& json, const PolicyField& made_for) {
@@ -71,7 +74,7 @@ lattice::Policy policy_of(const Json& json, const PolicyField& made_for) {
   }
   std::vector<dynamics::Entry> points;
   if (json.at("points").size() > kMostPoints)
-    throw std::runtime_error("more than " + std::to_string(kMostPoints) + " points");
+    throw std::runtime_error(fmt::format("more than {} points", kMostPoints));
   for (const Json& given : json.at("points")) {
     dynamics::Entry& point = points.emplace_back();
     point.face = number_in(given.at("face"), section.faces.size() - 1);
@@ -95,13 +98,13 @@ lattice::Policy policy_of(const Json& json, const PolicyField& made_for) {
              states = static_cast<std::size_t>(space.size());
   const Json& rows = json.at("action");
   if (rows.size() != draws * cells)
-    throw std::runtime_error("has decisions for " + std::to_string(rows.size()) +
-                             " gates, not for " + std::to_string(draws * cells));
+    throw std::runtime_error(
+        fmt::format("has decisions for {} gates, not for {}", rows.size(), draws * cells));
   for (const Json& given : rows) {
     const auto& row = given.get_ref<const std::string&>();
     if (row.size() != states)
-      throw std::runtime_error("a gate has decisions for " + std::to_string(row.size()) +
-                               " ways to enter, not for " + std::to_string(states));
+      throw std::runtime_error(
+          fmt::format("a gate has decisions for {} ways to enter, not for {}", row.size(), states));
     for (const char letter : row) {
       const std::size_t action = kLetters.find(letter);
       if (action >= actions)
@@ -134,9 +137,9 @@ void require_file_for(const PolicyField& made_for) {
       static_cast<double>(field.columns) * field.rows * std::max(1, field.max_gates);
   if (made_for.actions > kLetters.size() || gates > kMostGates)
     throw std::runtime_error(
-        made_for.source + ": a policy is a file for at most " + std::to_string(kLetters.size()) +
-        " actions and " + std::to_string(static_cast<int>(kMostGates)) +
-        " gates (field.columns times field.rows, and times field.max_gates if there is a limit)");
+        fmt::format("{}: a policy is a file for at most {} actions and {} gates (field.columns "
+                    "times field.rows, and times field.max_gates if there is a limit)",
+                    made_for.source, kLetters.size(), static_cast<int>(kMostGates)));
 }
 
 std::string policy_text(const lattice::Policy& policy, const PolicyField& made_for) {
@@ -182,8 +185,8 @@ lattice::Policy read_policy(const std::string& path, const PolicyField& made_for
   if (!json.contains(made_for.kind) && (json.contains("scene") || json.contains("cell")))
     throw std::runtime_error("was made for cells of another kind");
   if (const auto own = json.at(made_for.kind).get<std::string>(); own != made_for.text)
-    throw std::runtime_error("was made for another " + made_for.kind + ": " +
-                             difference(made_for.text, own));
+    throw std::runtime_error(
+        fmt::format("was made for another {}: {}", made_for.kind, difference(made_for.text, own)));
   return policy_of(json, made_for);
 } catch (const std::runtime_error& e) {
   throw markov::BadFile(path + ": " + e.what());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/exchange/sparse_table.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -24,7 +26,7 @@ using lattice::printable;
 using lattice::shortest;
 
 [[noreturn]] void refuse(const std::string& path, std::size_t line, const std::string& what) {
-  throw std::runtime_error(path + ":" + std::to_string(line) + ": " + what);
+  throw std::runtime_error(fmt::format("{}:{}: {}", path, line, what));
 }
 
 std::vector<std::string> lines_of_file(const std::string& path) {
@@ -111,14 +113,12 @@ void put_in_order(const std::string& path, SparseTable& table,
     }
     if (!line_of.empty())
       refuse(path, line_of[order[k]],
-             "has the same row and column as line " + std::to_string(line_of[order[k - 1]]));
+             fmt::format("has the same row and column as line {}", line_of[order[k - 1]]));
     sorted.back().value += table.entries[order[k]].value;
   }
   if (const std::size_t added = table.entries.size() - sorted.size(); added > 0)
-    table.understood.push_back(
-        "entries with the row and column of another are added to it, as "
-        "scipy does: " +
-        std::to_string(added));
+    table.understood.push_back(fmt::format(
+        "entries with the row and column of another are added to it, as scipy does: {}", added));
   table.entries = std::move(sorted);
 }
 
@@ -146,15 +146,16 @@ std::vector<std::string> market_head(const std::string& path, const std::string&
            "must be \"%%MatrixMarket matrix coordinate real general\", array for coordinate, "
            "integer or unsigned-integer for real, symmetric for general");
   if (!is(3, {"real", "integer", "unsigned-integer"}))
-    refuse(path, 1,
-           "\"" + printable(head[3]) + "\" are no counts or probabilities" +
-               (head[3] == "pattern" ? ": the numbers are left out" : "") +
-               ": write real or integer (scipy.io.mmwrite(FILE, matrix, field=\"real\"))");
+    refuse(
+        path, 1,
+        fmt::format("\"{}\" are no counts or probabilities{}: write real or integer "
+                    "(scipy.io.mmwrite(FILE, matrix, field=\"real\"))",
+                    printable(head[3]), head[3] == "pattern" ? ": the numbers are left out" : ""));
   if (!is(4, {"general", "symmetric"}))
     refuse(path, 1,
-           "\"" + printable(head[4]) +
-               "\" are no counts or probabilities: write general or symmetric "
-               "(scipy.io.mmwrite(FILE, matrix, symmetry=\"general\"))");
+           fmt::format("\"{}\" are no counts or probabilities: write general or symmetric "
+                       "(scipy.io.mmwrite(FILE, matrix, symmetry=\"general\"))",
+                       printable(head[4])));
   return head;
 }
 
@@ -163,23 +164,21 @@ std::vector<std::string> market_head(const std::string& path, const std::string&
 std::string matrix_market_of(const SparseTable& table, std::string comment) {
   for (char& c : comment)  // names of files may have anything
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  std::string text = std::string("%%MatrixMarket matrix coordinate ") +
-                     (table.whole ? "integer" : "real") + " general\n% " + comment + "\n" +
-                     std::to_string(table.rows) + " " + std::to_string(table.columns) + " " +
-                     std::to_string(table.entries.size()) + "\n";
+  std::string text = fmt::format("%%MatrixMarket matrix coordinate {} general\n% {}\n{} {} {}\n",
+                                 table.whole ? "integer" : "real", comment, table.rows,
+                                 table.columns, table.entries.size());
   for (const SparseTable::Entry& e : table.entries)
-    text += std::to_string(e.row + 1) + " " + std::to_string(e.column + 1) + " " +
-            value_text(table, e.value) + "\n";
+    text += fmt::format("{} {} {}\n", e.row + 1, e.column + 1, value_text(table, e.value));
   return text;
 }
 
 std::string csv_of(const SparseTable& table, const std::vector<std::string>& rows,
                    const std::vector<std::string>& columns, const std::string& value) {
-  std::string text = "from,to," + value + "\n";
+  std::string text = fmt::format("from,to,{}\n", value);
   for (const SparseTable::Entry& e : table.entries)
-    text += csv_text(rows[static_cast<std::size_t>(e.row)]) + "," +
-            csv_text(columns[static_cast<std::size_t>(e.column)]) + "," +
-            value_text(table, e.value) + "\n";
+    text += fmt::format("{},{},{}\n", csv_text(rows[static_cast<std::size_t>(e.row)]),
+                        csv_text(columns[static_cast<std::size_t>(e.column)]),
+                        value_text(table, e.value));
   return text;
 }
 
@@ -248,8 +247,8 @@ SparseTable read_matrix_market(const std::string& path) {
         refuse(path, k + 1, "must be a row, a column and a number, such as 1 2 0.25");
       if (e.row < 1 || e.row > table.rows || e.column < 1 || e.column > table.columns)
         refuse(path, k + 1,
-               "row and column must lie in 1 to " + std::to_string(table.rows) + " and 1 to " +
-                   std::to_string(table.columns));
+               fmt::format("row and column must lie in 1 to {} and 1 to {}", table.rows,
+                           table.columns));
       if (symmetric && e.column > e.row)
         refuse(path, k + 1, "lies above the diagonal: a symmetric file has the entries up to it");
       e = {e.row - 1, e.column - 1, e.value};
@@ -259,8 +258,8 @@ SparseTable read_matrix_market(const std::string& path) {
   }
   if (promised < 0) throw std::runtime_error(path + ": holds no numbers of rows and columns");
   if (promised != seen)
-    throw std::runtime_error(path + ": has " + std::to_string(seen) + " entries, not " +
-                             std::to_string(promised) + " as it says");
+    throw std::runtime_error(
+        fmt::format("{}: has {} entries, not {} as it says", path, seen, promised));
   if (dense) std::erase_if(table.entries, [](const auto& e) { return e.value == 0.0; });
   if (symmetric)
     table.understood.emplace_back("symmetric: what is below the diagonal is above it too");
@@ -285,13 +284,15 @@ SparseTable read_csv(const std::string& path, std::int64_t rows,
     const bool plain = text.find_first_not_of("0123456789") == text.npos;
     if ((plain || named == number_of.end()) && read_number(text, number)) {
       if (named != number_of.end() && s != number)
-        file.refuse("\"" + printable(text) + "\" is the name of state " + std::to_string(s) +
-                    " and the number of another: give states names that are no numbers");
+        file.refuse(
+            fmt::format("\"{}\" is the name of state {} and the number of another: give states "
+                        "names that are no numbers",
+                        printable(text), s));
       s = number;
     }
     if (s < 0 || s >= end)
-      file.refuse("there is no state \"" + printable(text) + "\"" +
-                  (named == number_of.end() ? "" : " to start from"));
+      file.refuse(fmt::format("there is no state \"{}\"{}", printable(text),
+                              named == number_of.end() ? "" : " to start from"));
     return s;
   };
   const auto from = file.column("from"), to = file.column("to"), count = file.column("count"),
@@ -307,12 +308,12 @@ SparseTable read_csv(const std::string& path, std::int64_t rows,
   while (file.next()) {
     const auto number = file.number(file[value]);
     if (!number || std::isnan(*number))
-      file.refuse("\"" + printable(file[value]) + "\" is no number");
+      file.refuse(fmt::format("\"{}\" is no number", printable(file[value])));
     std::string text(file[value]);
     std::replace(text.begin(), text.end(), ',', '.');
     if (count && file.separator() != ',' && text.ends_with(".000"))
-      file.refuse("\"" + printable(file[value]) +
-                  "\" may be thousands: write counts without marks");
+      file.refuse(fmt::format("\"{}\" may be thousands: write counts without marks",
+                              printable(file[value])));
     note_precision(text, table);
     table.entries.push_back({state(*from, rows), state(*to, table.columns), *number});
     line_of.push_back(static_cast<std::size_t>(file.line()));
@@ -329,15 +330,15 @@ SparseTable table_of(const std::string& path, const std::vector<NumpyArray>& arr
     const auto* const values =
         array ? std::get_if<std::vector<std::int64_t>>(&array->values) : nullptr;
     if (!values)
-      throw std::runtime_error(path + ": has no whole numbers \"" + name + "\": it must be as of " +
-                               kSaved);
+      throw std::runtime_error(
+          fmt::format("{}: has no whole numbers \"{}\": it must be as of {}", path, name, kSaved));
     return *values;
   };
   const NumpyArray* const format = find(arrays, "format");
   const auto* const kind = format ? std::get_if<std::string>(&format->values) : nullptr;
   if (!kind || (*kind != "csr" && *kind != "csc" && *kind != "coo"))
-    throw std::runtime_error(path + ": its format must be csr, csc or coo" +
-                             (kind ? ", not " + printable(*kind) : "") + ": " + kSaved);
+    throw std::runtime_error(fmt::format("{}: its format must be csr, csc or coo{}: {}", path,
+                                         kind ? ", not " + printable(*kind) : "", kSaved));
   const auto& shape = whole("shape");
   const NumpyArray* const data = find(arrays, "data");
   if (!data || std::holds_alternative<std::string>(data->values))
@@ -373,7 +374,7 @@ SparseTable table_of(const std::string& path, const std::vector<NumpyArray>& arr
       throw unfit();
     for (std::size_t l = 0; l + 1 < first.size(); ++l) {
       if (first[l + 1] < first[l] || first[l + 1] > first.back())
-        throw std::runtime_error(path + ": indptr goes down at " + std::to_string(l));
+        throw std::runtime_error(fmt::format("{}: indptr goes down at {}", path, l));
       line.insert(line.end(), static_cast<std::size_t>(first[l + 1] - first[l]),
                   static_cast<std::int64_t>(l));
     }
@@ -383,8 +384,8 @@ SparseTable table_of(const std::string& path, const std::vector<NumpyArray>& arr
   if (rows.size() != values.size() || columns.size() != values.size()) throw unfit();
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (rows[k] < 0 || rows[k] >= table.rows || columns[k] < 0 || columns[k] >= table.columns)
-      throw std::runtime_error(path + ": has a row " + std::to_string(rows[k]) + " and column " +
-                               std::to_string(columns[k]));
+      throw std::runtime_error(
+          fmt::format("{}: has a row {} and column {}", path, rows[k], columns[k]));
     table.entries.push_back({rows[k], columns[k], values[k]});
   }
   put_in_order(path, table);
@@ -404,7 +405,7 @@ std::string text_of(const Trajectories& all) {
 std::string npz_of(const Trajectories& all) {
   std::vector<NumpyArray> arrays;
   for (std::size_t k = 0; k < all.size(); ++k)
-    arrays.push_back({"arr_" + std::to_string(k), {std::ssize(all[k])}, all[k]});
+    arrays.push_back({fmt::format("arr_{}", k), {std::ssize(all[k])}, all[k]});
   return npz_of(arrays);
 }
 
@@ -416,7 +417,7 @@ Trajectories trajectories_of(const std::string& path, std::vector<NumpyArray> ar
   Trajectories all;
   for (NumpyArray& array : arrays) {
     const auto refuse = [&](const std::string& what) {
-      throw std::runtime_error(path + ": array " + printable(array.name) + ": " + what);
+      throw std::runtime_error(fmt::format("{}: array {}: {}", path, printable(array.name), what));
     };
     if (array.shape.size() == 2)
       refuse(
@@ -453,9 +454,9 @@ Trajectories read_trajectories(const std::string& path) {
     for (const std::string& word : words)
       if (!read_number(word, one.emplace_back()))
         refuse(path, k + 1,
-               "\"" + printable(word) +
-                   "\" is no whole number: a line is the states of a "
-                   "trajectory, between blanks or commas");
+               fmt::format("\"{}\" is no whole number: a line is the states of a trajectory, "
+                           "between blanks or commas",
+                           printable(word)));
   }
   return all;
 }
