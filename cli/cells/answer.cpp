@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/cells/answer.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +17,7 @@ namespace {
 double finite(std::string_view word, const std::string& name) {
   double x = 0.0;
   if (!number_in(word, x) || !std::isfinite(x))
-    throw WrongAnswer{name + " '" + excerpt(word, 40) + "' is not a finite number"};
+    throw WrongAnswer{fmt::format("{} '{}' is not a finite number", name, excerpt(word, 40))};
   return x;
 }
 
@@ -33,8 +35,8 @@ std::string form_of(const Section& section, std::string_view fate) {
 void require_count(const AnswerWords& words, std::size_t count, const Section& section,
                    std::string_view fate) {
   if (words.count == count) return;
-  throw WrongAnswer{"it has " + std::to_string(words.count) + " words, not " +
-                    std::to_string(count) + ": " + form_of(section, fate)};
+  throw WrongAnswer{
+      fmt::format("it has {} words, not {}: {}", words.count, count, form_of(section, fate))};
 }
 
 Costs read_costs(const AnswerWords& words, std::size_t at, const Section& section) {
@@ -81,16 +83,16 @@ Passage read_answer(const AnswerWords& words, const Section& section, Body& body
   const auto face = std::find_if(section.faces.begin(), section.faces.end(),
                                  [&](const Face& f) { return f.name == words.word[2]; });
   if (face == section.faces.end())
-    throw WrongAnswer{"there is no face '" + excerpt(words.word[2], 40) +
-                      "' to enter the next cell by, but " + names_of(section.faces)};
+    throw WrongAnswer{fmt::format("there is no face '{}' to enter the next cell by, but {}",
+                                  excerpt(words.word[2], 40), names_of(section.faces))};
   passage.next.face = static_cast<int>(face - section.faces.begin());
   for (std::size_t k = 0; k < coordinates; ++k)
     passage.next.at[k] = finite(words.word[3 + k], section.coordinates[k].name);
   passage.costs = read_costs(words, 3 + coordinates, section);
   const std::string_view memory = words.word[3 + coordinates + costs];
   if (memory.size() > sizeof CarriedWords::text)
-    throw WrongAnswer{"its memory has " + std::to_string(memory.size()) + " bytes; at most " +
-                      std::to_string(sizeof CarriedWords::text) + " are carried"};
+    throw WrongAnswer{fmt::format("its memory has {} bytes; at most {} are carried", memory.size(),
+                                  sizeof CarriedWords::text)};
   body.entry = passage.next;
   body.carried.put(carried_words(memory));
   return passage;

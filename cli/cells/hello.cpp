@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/cells/hello.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -32,10 +34,8 @@ class HelloTable {
     if (!json.is_object()) refuse(where_ + " must be an object { }");
     for (const auto& [key, value] : json.items()) {
       if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-      std::string allowed;
-      for (const std::string_view k : keys)
-        allowed += (allowed.empty() ? "" : ", ") + std::string(k);
-      refuse(where_ + " has no key '" + excerpt(key, 60) + "'; it has " + allowed);
+      refuse(fmt::format("{} has no key '{}'; it has {}", where_, excerpt(key, 60),
+                         fmt::join(keys, ", ")));
     }
   }
   [[nodiscard]] const Json* find(std::string_view key) const {
@@ -44,11 +44,11 @@ class HelloTable {
   }
   [[nodiscard]] const Json& at(std::string_view key) const {
     const Json* const value = find(key);
-    if (value == nullptr) refuse(where_ + ": '" + std::string(key) + "' is missing");
+    if (value == nullptr) refuse(fmt::format("{}: '{}' is missing", where_, key));
     return *value;
   }
   [[noreturn]] void refuse_value(std::string_view key, const std::string& must_be) const {
-    refuse(where_ + ": '" + std::string(key) + "' must be " + must_be);
+    refuse(fmt::format("{}: '{}' must be {}", where_, key, must_be));
   }
 
   [[nodiscard]] std::string word(std::string_view key) const {
@@ -67,8 +67,7 @@ class HelloTable {
     const Json* const value = find(key);
     if (value == nullptr) return otherwise;
     if (!value->is_number_integer() || value->get<double>() < low || value->get<double>() > high)
-      refuse_value(key,
-                   "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+      refuse_value(key, fmt::format("a whole number from {} to {}", low, high));
     return value->get<int>();
   }
   [[nodiscard]] const Json& list(std::string_view key) const {
@@ -107,7 +106,7 @@ std::string unit_in_key(const std::string& unit) {
 std::string origin_of(int di_x, int di_y) {
   if (di_x == 0) return di_y > 0 ? "from below" : "from above";
   if (di_y == 0) return di_x > 0 ? "from the left" : "from the right";
-  return "from " + std::to_string(-di_x) + ", " + std::to_string(-di_y);
+  return fmt::format("from {}, {}", -di_x, -di_y);
 }
 
 std::size_t coordinate_of(const dynamics::Section& section, const Json& name,
@@ -119,7 +118,7 @@ std::size_t coordinate_of(const dynamics::Section& section, const Json& name,
 
 void read_coordinates(const Json& list, dynamics::Section& section) {
   for (const Json& one : list) {
-    const std::string where = "coordinate " + std::to_string(section.coordinates.size() + 1);
+    const std::string where = fmt::format("coordinate {}", section.coordinates.size() + 1);
     const HelloTable table(one, where, {"name", "key", "unit", "words", "scale"});
     dynamics::Coordinate c{.name = table.word("name"),
                            .key = "",
@@ -136,7 +135,7 @@ void read_coordinates(const Json& list, dynamics::Section& section) {
 void read_faces(const Json& list, dynamics::Section& section, bool symmetric) {
   std::vector<std::string> mirrors;
   for (const Json& one : list) {
-    const std::string where = "face " + std::to_string(section.faces.size() + 1);
+    const std::string where = fmt::format("face {}", section.faces.size() + 1);
     const HelloTable table(one, where, {"name", "move", "mirror", "odd", "origin"});
     dynamics::Face face{.name = table.word("name"), .origin = ""};
     const Json& move = table.list("move");
@@ -160,18 +159,18 @@ void read_faces(const Json& list, dynamics::Section& section, bool symmetric) {
     if (mirrors[f].empty()) continue;
     const auto image = std::find_if(section.faces.begin(), section.faces.end(),
                                     [&](const dynamics::Face& o) { return o.name == mirrors[f]; });
-    if (image == section.faces.end()) refuse("face " + std::to_string(f + 1) + ": " + allowed);
+    if (image == section.faces.end()) refuse(fmt::format("face {}: {}", f + 1, allowed));
     images[f] = static_cast<int>(image - section.faces.begin());
   }
   dynamics::set_mirrors(section.faces, images, symmetric);
   for (const dynamics::Face& face : section.faces)
     if (symmetric && face.mirror == dynamics::kNoMirror)
-      refuse("face " + face.name + " of symmetric cells needs 'mirror': " + allowed);
+      refuse(fmt::format("face {} of symmetric cells needs 'mirror': {}", face.name, allowed));
 }
 
 void read_costs(const Json& list, dynamics::Section& section) {
   for (const Json& one : list) {
-    const HelloTable table(one, "cost " + std::to_string(section.costs.size() + 1),
+    const HelloTable table(one, fmt::format("cost {}", section.costs.size() + 1),
                            {"key", "unit", "words"});
     dynamics::CostInfo cost{table.word("key"), table.text("unit", "1"), ""};
     cost.words = table.text("words", cost.key);
@@ -181,7 +180,7 @@ void read_costs(const Json& list, dynamics::Section& section) {
 }
 
 Hello::Parameter read_parameter(const std::string& key, const Json& value) {
-  const std::string where = "parameter '" + excerpt(key, 60) + "'";
+  const std::string where = fmt::format("parameter '{}'", excerpt(key, 60));
   if (!is_word(key) || key.find('=') != key.npos)
     refuse(where + " must be a word without blanks and '='");
   constexpr double kAny = std::numeric_limits<double>::max();
@@ -197,7 +196,7 @@ Hello::Parameter read_parameter(const std::string& key, const Json& value) {
 
 std::string Hello::Parameter::range() const {
   const auto digits = [](double x) { return Json(x).dump(); };
-  return "a number from " + digits(low) + " to " + digits(high);
+  return fmt::format("a number from {} to {}", digits(low), digits(high));
 }
 
 Hello read_hello(std::string_view line) {
@@ -207,11 +206,11 @@ Hello read_hello(std::string_view line) {
                          {"gatewalk", "faces", "coordinates", "costs", "symmetric", "normals",
                           "uniforms", "parameters"});
   if (const Json& version = table.at("gatewalk"); version != kProgramProtocol)
-    refuse("'gatewalk' is the protocol, which must be " + std::to_string(kProgramProtocol));
+    refuse(fmt::format("'gatewalk' is the protocol, which must be {}", kProgramProtocol));
   Hello hello;
   read_coordinates(table.list("coordinates"), hello.section);
   if (hello.section.coordinates.size() > dynamics::kMostCoordinates)
-    refuse("'coordinates' must be at most " + std::to_string(dynamics::kMostCoordinates));
+    refuse(fmt::format("'coordinates' must be at most {}", dynamics::kMostCoordinates));
   if (const Json* const symmetric = table.find("symmetric")) {
     if (!symmetric->is_boolean()) table.refuse_value("symmetric", "true or false");
     hello.symmetric = symmetric->get<bool>();

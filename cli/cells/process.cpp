@@ -2,6 +2,7 @@
 #include "cli/cells/process.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -25,8 +26,8 @@ constexpr int kToldComplaints = 12;            // lines
 constexpr double kGrace = 0.5;
 
 [[noreturn]] void refuse_start(const std::string& command, int error) {
-  throw std::runtime_error("cell program '" + excerpt(command) +
-                           "' cannot be started: " + std::strerror(error));
+  throw std::runtime_error(fmt::format("cell program '{}' cannot be started: {}", excerpt(command),
+                                       std::strerror(error)));
 }
 
 struct Pipe {
@@ -181,9 +182,8 @@ std::optional<std::string> Process::ended() const {
       ::waitid(P_PID, static_cast<id_t>(program_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
       info.si_pid == 0)
     return {};
-  if (info.si_code == CLD_EXITED) return "ended with status " + std::to_string(info.si_status);
-  return "ended by signal " + std::to_string(info.si_status) + " (" + ::strsignal(info.si_status) +
-         ")";
+  if (info.si_code == CLD_EXITED) return fmt::format("ended with status {}", info.si_status);
+  return fmt::format("ended by signal {} ({})", info.si_status, ::strsignal(info.si_status));
 }
 
 std::optional<std::string> Process::let_end(double seconds) {
@@ -204,13 +204,14 @@ void Process::fail(const std::string& what) {
   read_complaints();
   kill();
   const std::string words = last_lines(complaints_);
-  throw std::runtime_error("cell program '" + excerpt(command_) + "': " + what +
-                           (words.empty() ? "; it wrote nothing to standard error"
-                                          : "; its last words on standard error:" + words));
+  throw std::runtime_error(fmt::format("cell program '{}': {}{}", excerpt(command_), what,
+                                       words.empty()
+                                           ? "; it wrote nothing to standard error"
+                                           : "; its last words on standard error:" + words));
 }
 
 void Process::fail_as_ended(const std::string& else_it) {
-  fail("it " + let_end(kGrace).value_or(else_it) + " while a line was awaited");
+  fail(fmt::format("it {} while a line was awaited", let_end(kGrace).value_or(else_it)));
 }
 
 void Process::write_some() {
@@ -260,7 +261,7 @@ void Process::exchange() {
     if (files[0].revents != 0 && !read_some(output_, text_))
       fail_as_ended("closed its standard output");
     if (left == 0.0 && text_.find('\n') == text_.npos)
-      fail("it wrote no line for " + std::to_string(std::lround(waited)) + " s");
+      fail(fmt::format("it wrote no line for {} s", std::lround(waited)));
     if (files[0].revents != 0 || (had_to_write && out_.empty())) return;
   }
 }
@@ -269,8 +270,7 @@ std::optional<std::string_view> Process::line() {
   const std::string_view rest = std::string_view(text_).substr(taken_);
   const std::size_t end = rest.find('\n');
   if (std::min(end, rest.size()) > kMostLine)
-    fail("it wrote a line of more than " + std::to_string(kMostLine) + " bytes: '" +
-         excerpt(rest, 40) + "'");
+    fail(fmt::format("it wrote a line of more than {} bytes: '{}'", kMostLine, excerpt(rest, 40)));
   if (end == rest.npos) return {};
   taken_ += end + 1;
   waits_since_ = Clock::now();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/cells/program.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -63,12 +65,13 @@ std::size_t parameter_of(const Hello& hello, const Cell::Number& wanted) {
     const Hello::Parameter& p = hello.parameters[k];
     if (p.number.key == wanted.key) {
       if (p.permits(wanted.value)) return k;
-      throw std::invalid_argument("cell program: parameter '" + wanted.key + "' must be " +
-                                  p.range());
+      throw std::invalid_argument(
+          fmt::format("cell program: parameter '{}' must be {}", wanted.key, p.range()));
     }
     all += (k > 0 ? ", " : ", but ") + p.number.key;
   }
-  throw std::invalid_argument("cell program: it has no parameter '" + wanted.key + "'" + all);
+  throw std::invalid_argument(
+      fmt::format("cell program: it has no parameter '{}'{}", wanted.key, all));
 }
 
 /// Values of all parameters, of which some are set.
@@ -101,8 +104,8 @@ ProgramCell::ProgramCell(std::string command, const ProgramOptions& options,
   if (!(options.timeout_s > 0.0))
     throw std::invalid_argument("cell program: the timeout must be > 0 s");
   if (options.in_flight < 1 || options.in_flight > std::int64_t{kMostInFlight})
-    throw std::invalid_argument("cell program: passages in flight must be 1 to " +
-                                std::to_string(kMostInFlight));
+    throw std::invalid_argument(
+        fmt::format("cell program: passages in flight must be 1 to {}", kMostInFlight));
   auto shared = std::make_shared<Program>(std::move(command), options);
   Program& program = *shared;
   auto running = std::make_unique<Running>(program.command, options);
@@ -110,8 +113,8 @@ ProgramCell::ProgramCell(std::string command, const ProgramOptions& options,
   try {
     program.hello = read_hello(program.first_line);
   } catch (const std::invalid_argument& e) {
-    running->process.fail("its first line says no cell: " + std::string(e.what()) +
-                          "; the line is '" + excerpt(program.first_line) + "'");
+    running->process.fail(fmt::format("its first line says no cell: {}; the line is '{}'", e.what(),
+                                      excerpt(program.first_line)));
   }
   for (const Hello::Parameter& p : program.hello.parameters) values_.push_back(p.number.value);
   put(values_, program.hello, set);
@@ -176,7 +179,8 @@ std::unique_ptr<ProgramCell::Running> ProgramCell::take() const {
 std::unique_ptr<ProgramCell::Running> ProgramCell::started() const {
   auto running = std::make_unique<Running>(program_->command, program_->options);
   if (const std::string_view line = running->process.wait_for_line(); line != program_->first_line)
-    running->process.fail("its first line is not the same at each start: '" + excerpt(line) + "'");
+    running->process.fail(
+        fmt::format("its first line is not the same at each start: '{}'", excerpt(line)));
   tell_values(*running);
   return running;
 }
@@ -260,8 +264,8 @@ void ProgramCell::carry_out_by(std::unique_ptr<Running> running, const NextPassa
         else
           --under_way;
       } catch (const WrongAnswer& wrong) {
-        process.fail("it wrote a line that is no answer: " + wrong.what + "; the line is '" +
-                     excerpt(*line) + "'");
+        process.fail(fmt::format("it wrote a line that is no answer: {}; the line is '{}'",
+                                 wrong.what, excerpt(*line)));
       }
     }
   }

@@ -19,13 +19,13 @@ namespace {
 
 std::vector<std::string> ffmpeg_command(VideoFormat format, const std::string& title,
                                         double frames_per_second) {
-  std::vector<std::string> command{
-      "ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-      "-xerror",  // else its status is 0 also when a write failed
-      // Pictures as cairo keeps them, without a header.
-      "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size",
-      std::to_string(kPictureWidth) + "x" + std::to_string(kPictureHeight), "-framerate",
-      fmt::format("{:f}", frames_per_second), "-i", "pipe:0", "-an"};
+  std::vector<std::string> command{"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
+                                   "-xerror",  // else its status is 0 also when a write failed
+                                   // Pictures as cairo keeps them, without a header.
+                                   "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size",
+                                   fmt::format("{}x{}", kPictureWidth, kPictureHeight),
+                                   "-framerate", fmt::format("{:f}", frames_per_second), "-i",
+                                   "pipe:0", "-an"};
   const std::vector<std::string> mp4{
       "-c:v", "libx264", "-preset", "veryfast", "-crf", "20",
       // Players take HD pictures for BT.709 ones.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/film/film.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -16,20 +18,18 @@ using dynamics::kRight;
 
 std::string title_of(const lattice::Scene& scene, const std::vector<std::string>& actions) {
   const dynamics::GateParams& p = scene.gate;
-  if (!actions.empty()) {
-    std::string all;
-    for (const std::string& action : actions) all += (all.empty() ? "" : ", ") + action;
-    return scene.source + ": actions " + all;
-  }
-  return scene.source + ": F " + quantity(p.forces.propulsion, "N", 7) + ", Rm " +
-         quantity(p.forces.random, "N", 7) + ", k " + digits(p.beams.stiffness_left) + " / " +
-         digits(p.beams.stiffness_right) + ", d " + digits(p.beams.damping) + ", " + p.run.method;
+  if (!actions.empty())
+    return fmt::format("{}: actions {}", scene.source, fmt::join(actions, ", "));
+  return fmt::format("{}: F {}, Rm {}, k {} / {}, d {}, {}", scene.source,
+                     quantity(p.forces.propulsion, "N", 7), quantity(p.forces.random, "N", 7),
+                     digits(p.beams.stiffness_left), digits(p.beams.stiffness_right),
+                     digits(p.beams.damping), p.run.method);
 }
 
 std::string label_of(const lattice::Recording& r, bool across_field, const dynamics::Scale& scale) {
-  return "trial " + std::to_string(r.trial) + ": " + r.ending + " after " +
-         reading(r.seconds, "s", 0.01 * scale.time) +
-         (across_field ? ", " + std::to_string(r.gates) + (r.gates == 1 ? " gate" : " gates") : "");
+  return fmt::format("trial {}: {} after {}{}", r.trial, r.ending,
+                     reading(r.seconds, "s", 0.01 * scale.time),
+                     across_field ? ", " + counted(r.gates, "gate", "gates") : "");
 }
 
 /// Without the random force, which a moment has had and a step will have.
@@ -59,11 +59,10 @@ std::string speed_words(double times_real) {
   constexpr double kEqual = 1e-6;
   const auto is_whole = [](double x) { return std::abs(x - std::round(x)) < kEqual * x; };
   if (std::abs(times_real - 1.0) < kEqual) return "in real time";
-  if (times_real > 1.0) return "at " + digits(times_real, 3) + " times real time";
-  return "at " +
-         (is_whole(1.0 / times_real) ? "1/" + digits(std::round(1.0 / times_real), 7)
-                                     : digits(times_real, 3)) +
-         " of real time";
+  if (times_real > 1.0) return fmt::format("at {} times real time", digits(times_real, 3));
+  return fmt::format("at {} of real time", is_whole(1.0 / times_real)
+                                               ? "1/" + digits(std::round(1.0 / times_real), 7)
+                                               : digits(times_real, 3));
 }
 
 Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/kept/kept_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -33,11 +35,12 @@ Json checked_head(const std::string& path, const std::string& text) {
           : kCommit;
   const auto require = [&](bool is_right, const char* key) {
     if (!is_right)
-      throw markov::BadFile(path + ": its second line, which says what the command was, has no " +
-                            key + " as a run writes it" +
-                            (commit == kCommit ? std::string()
-                                               : "; commit " + lattice::printable(commit) +
-                                                     " wrote it, and this is " + kCommit));
+      throw markov::BadFile(fmt::format(
+          "{}: its second line, which says what the command was, has no {} as a run writes it{}",
+          path, key,
+          commit == kCommit ? std::string()
+                            : fmt::format("; commit {} wrote it, and this is {}",
+                                          lattice::printable(commit), kCommit)));
   };
   require(head.is_object(), "object");
   const auto is_list = [&](const char* key, const auto& is_one) {
@@ -73,18 +76,17 @@ Json checked_head(const std::string& path, const std::string& text) {
 std::int64_t end_of(TrialRange items) { return items.first + items.count; }
 
 std::string shown(TrialRange items) {
-  return "items " + std::to_string(items.first) + " to " + std::to_string(end_of(items) - 1);
+  return fmt::format("items {} to {}", items.first, end_of(items) - 1);
 }
 
 /// "1 of 8"; or which trials.
 std::string name_of_part(const Json& head) {
   if (head.contains("shard"))
-    return "part " + std::to_string(head["shard"][0].get<std::int64_t>()) + " of " +
-           std::to_string(head["shard"][1].get<std::int64_t>());
+    return fmt::format("part {} of {}", head["shard"][0].get<std::int64_t>(),
+                       head["shard"][1].get<std::int64_t>());
   if (head.contains("first_trial")) {
     const auto first = head["first_trial"].get<std::int64_t>();
-    return "trials " + std::to_string(first) + " to " +
-           std::to_string(first + head["trials"].get<std::int64_t>() - 1);
+    return fmt::format("trials {} to {}", first, first + head["trials"].get<std::int64_t>() - 1);
   }
   return "a run";
 }
@@ -106,8 +108,8 @@ std::string scene_difference(const std::string& there, const std::string& here) 
 std::string difference(const Json& there, const Json& here) {
   for (const char* key : {"version", "commit", "command"})
     if (there.at(key) != here.at(key))
-      return std::string(key) + ": " + there.at(key).get<std::string>() + " there, " +
-             here.at(key).get<std::string>() + " here";
+      return fmt::format("{}: {} there, {} here", key, there.at(key).get<std::string>(),
+                         here.at(key).get<std::string>());
   if (there.at("scene") != here.at("scene")) {
     const std::string keys = there.at("scene").is_string() && here.at("scene").is_string()
                                  ? scene_difference(there.at("scene"), here.at("scene"))
@@ -123,9 +125,10 @@ std::string difference(const Json& there, const Json& here) {
         all += " " + word;
     return all;
   };
-  if (words(there) != words(here)) return "there:" + words(there) + "; here:" + words(here);
+  if (words(there) != words(here))
+    return fmt::format("there:{}; here:{}", words(there), words(here));
   if (there.at("others") != here.at("others"))
-    return "there: " + there.at("others").dump() + "; here: " + here.at("others").dump();
+    return fmt::format("there: {}; here: {}", there.at("others").dump(), here.at("others").dump());
   for (const Json& input : here.at("inputs"))
     if (std::find(there.at("inputs").begin(), there.at("inputs").end(), input) ==
         there.at("inputs").end())
@@ -150,8 +153,8 @@ Shard shard_of(const std::string& text) {
   if (slash == text.npos || !number(all.substr(0, slash), shard.number) ||
       !number(all.substr(slash + 1), shard.of) || shard.number < 1 || shard.of < shard.number ||
       shard.of > kMostParts)
-    throw UsageError("--shard " + text +
-                     ": must be I/N, part I of N, such as 3/8: I from 1 to N, N at most 1e6");
+    throw UsageError(fmt::format(
+        "--shard {}: must be I/N, part I of N, such as 3/8: I from 1 to N, N at most 1e6", text));
   return shard;
 }
 
@@ -185,25 +188,25 @@ void KeptRun::read(std::size_t number) {
       [](unsigned char c) { return (c < ' ' && c != '\n') || c == 127; }, '?');
   if (!differs.empty())
     throw UsageError(
-        path + ": is of another run" +
-        (goes_on || path == plan_.parts.front() ? "" : " than " + plan_.parts.front()) + ", " +
-        differs + (goes_on ? ". --force instead of --resume begins anew" : ""));
+        fmt::format("{}: is of another run{}, {}{}", path,
+                    goes_on || path == plan_.parts.front() ? "" : " than " + plan_.parts.front(),
+                    differs, goes_on ? ". --force instead of --resume begins anew" : ""));
   const bool skips = !goes_on && head.contains("shard") && head["shard"][0] != 1;
   const auto part_of = [](const Json& h) {
     return std::array{h.value("shard", Json()), h.value("first_trial", Json()),
                       h.value("trials", Json())};
   };
   if (goes_on && part_of(head) != part_of(plan_.head))
-    throw UsageError(path + ": holds " + name_of_part(head) + ", and this is " +
-                     name_of_part(plan_.head));
+    throw UsageError(fmt::format("{}: holds {}, and this is {}", path, name_of_part(head),
+                                 name_of_part(plan_.head)));
   for (const PieceRecord& record : file.records()) {
     if (record.stage == kEndStage) continue;
     if (is_name(record)) {
       const std::string name = lattice::printable(file.bytes_of(record));
       const auto [known, is_new] = names_.emplace(record.stage, name);
       if (!is_new && known->second != name)
-        throw UsageError(path + ": its stage " + std::to_string(record.stage) + " is " + name +
-                         ", that of other parts " + known->second);
+        throw UsageError(fmt::format("{}: its stage {} is {}, that of other parts {}", path,
+                                     record.stage, name, known->second));
       continue;
     }
     // What every part does is taken from one of them.
@@ -216,8 +219,9 @@ void KeptRun::read(std::size_t number) {
     };
     for (const auto& other : {after == pieces.begin() ? after : std::prev(after), after})
       if (other != pieces.end() && overlaps(other->second))
-        throw UsageError(path + " and " + files_[other->second.file].path() + " both have " +
-                         shown(other->second.record.items) + " of " + names_[record.stage]);
+        throw UsageError(fmt::format("{} and {} both have {} of {}", path,
+                                     files_[other->second.file].path(),
+                                     shown(other->second.record.items), names_[record.stage]));
     pieces.emplace(record.items.first, Found{number, record});
   }
 }
@@ -227,29 +231,30 @@ void KeptRun::check_parts() const {
   const std::int64_t of = first.contains("shard") ? first["shard"][1].get<std::int64_t>() : 0;
   std::set<std::int64_t> missing, to_do;
   for (std::int64_t i = 1; i <= of; ++i) missing.insert(i);
-  std::string unfinished;
+  std::vector<std::string> unfinished;
   for (const PieceFile& file : files_) {
     const Json head = head_of(file);
     const std::string name = name_of_part(head);
     if (head.contains("shard") != (of > 0) || (of > 0 && head["shard"][1] != of))
-      throw UsageError(file.path() + ": is " + name + ", and " + files_.front().path() + " is " +
-                       name_of_part(first));
+      throw UsageError(fmt::format("{}: is {}, and {} is {}", file.path(), name,
+                                   files_.front().path(), name_of_part(first)));
     if (of > 0 && missing.erase(head["shard"][0].get<std::int64_t>()) == 0)
-      throw UsageError(file.path() + ": " + name + " is given twice");
+      throw UsageError(fmt::format("{}: {} is given twice", file.path(), name));
     if (file.is_finished()) continue;
     if (of > 0) to_do.insert(head["shard"][0].get<std::int64_t>());
-    unfinished += (unfinished.empty() ? "not finished: " : ", ") + file.path() + " (" + name + ")";
+    unfinished.push_back(fmt::format("{} ({})", file.path(), name));
   }
   if (missing.empty() && unfinished.empty()) return;
-  std::string all, shards;
-  for (const std::int64_t i : missing)
-    all += (all.empty() ? "missing: part " : ", ") + std::to_string(i);
-  if (!missing.empty()) all += " of " + std::to_string(of) + (unfinished.empty() ? "" : "; ");
+  std::vector<std::string> lacks, shards;
+  if (!missing.empty())
+    lacks.push_back(fmt::format("missing: part {} of {}", fmt::join(missing, ", "), of));
+  if (!unfinished.empty())
+    lacks.push_back(fmt::format("not finished: {}", fmt::join(unfinished, ", ")));
   to_do.insert(missing.begin(), missing.end());
-  for (const std::int64_t i : to_do)
-    shards += (shards.empty() ? " --shard " : ", ") + std::to_string(i) + "/" + std::to_string(of);
-  throw UsageError(all + unfinished + "; the parts' command with" + shards +
-                   (shards.empty() ? "" : " and") + " --resume does what is left");
+  for (const std::int64_t i : to_do) shards.push_back(fmt::format("{}/{}", i, of));
+  throw UsageError(fmt::format(
+      "{}; the parts' command with {}--resume does what is left", fmt::join(lacks, "; "),
+      shards.empty() ? "" : fmt::format("--shard {} and ", fmt::join(shards, ", "))));
 }
 
 TrialRange KeptRun::own_share(const dynamics::Stage& stage) const {
@@ -274,9 +279,9 @@ void KeptRun::begin(const dynamics::Stage& stage) {
   if (const auto known = names_.find(stage_); known == names_.end()) {
     is_named_ = false;
   } else if (known->second != what_) {
-    throw markov::BadFile((files_.empty() ? plan_.file : files_.front().path()) + ": its stage " +
-                          std::to_string(stage_) + " is " + known->second + ", and here " + what_ +
-                          " comes next");
+    throw markov::BadFile(fmt::format("{}: its stage {} is {}, and here {} comes next",
+                                      files_.empty() ? plan_.file : files_.front().path(), stage_,
+                                      known->second, what_));
   }
 }
 
@@ -290,15 +295,15 @@ std::optional<dynamics::KeptPieces::Next> KeptRun::next(std::int64_t at) {
     const Found& found = there->second;
     const PieceFile& file = files_[found.file];
     if (end_of(found.record.items) > end_of(own_))
-      throw markov::BadFile(file.path() + ": has " + shown(found.record.items) + " of " + what_ +
-                            ", which has none from " + std::to_string(end_of(own_)) + " on");
+      throw markov::BadFile(fmt::format("{}: has {} of {}, which has none from {} on", file.path(),
+                                        shown(found.record.items), what_, end_of(own_)));
     return Next{found.record.items, file.bytes_of(found.record)};
   }
   const std::int64_t end =
       there == pieces.end() ? end_of(own_) : std::min(end_of(own_), there->first);
   const TrialRange gap{at, end - at};
   if (!plan_.parts.empty())
-    throw UsageError("missing: " + shown(gap) + " of " + what_ + ", which no part has");
+    throw UsageError(fmt::format("missing: {} of {}, which no part has", shown(gap), what_));
   if (is_late && goes_ahead_) throw Interrupted{};
   return Next{gap, {}};
 }

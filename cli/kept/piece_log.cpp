@@ -120,8 +120,8 @@ void PieceFile::read_records(std::istream& in) {
     if (head.bytes > size - at) break;
     if (head.first < 0 || head.count < 0 ||
         head.first > std::numeric_limits<std::int64_t>::max() - head.count)
-      throw markov::BadFile(path_ + ": has items that there are not, at byte " +
-                            std::to_string(end_));
+      throw markov::BadFile(
+          fmt::format("{}: has items that there are not, at byte {}", path_, end_));
     records_.push_back({head.stage, {head.first, head.count}, at, head.bytes, head.check});
     end_ = at + head.bytes;
   }
@@ -137,7 +137,7 @@ std::string PieceFile::bytes_of(const PieceRecord& record) const {
     in.seekg(static_cast<std::streamoff>(record.at));
     if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) ||
         crc_of(bytes) != record.check)
-      throw markov::BadFile(path_ + ": is damaged at byte " + std::to_string(record.at));
+      throw markov::BadFile(fmt::format("{}: is damaged at byte {}", path_, record.at));
   });
   return bytes;
 }

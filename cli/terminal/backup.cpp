@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/terminal/backup.h"
 
+#include <fmt/core.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -50,19 +51,21 @@ Backup::Backup(std::string path) : path_(std::move(path)) {
   struct stat old = {};
   if (::lstat(path_.c_str(), &old) != 0 || !S_ISREG(old.st_mode) || old.st_size == 0) return;
   for (int i = 1; i <= kMostBackups; ++i) {
-    std::string name = path_ + ".~" + std::to_string(i) + "~";
+    std::string name = fmt::format("{}.~{}~", path_, i);
     try {
       if (!kept_as(path_, name)) continue;
     } catch (const std::system_error& e) {
-      throw std::runtime_error(path_ + ": is there and cannot be kept as " + name + ": " +
-                               e.code().message() + "; --force replaces it");
+      throw std::runtime_error(
+          fmt::format("{}: is there and cannot be kept as {}: {}; --force replaces it", path_, name,
+                      e.code().message()));
     }
     name_ = std::move(name);
     return;
   }
-  throw std::runtime_error(path_ + ": is there, and so are " + std::to_string(kMostBackups) +
-                           " backups of it, " + path_ + ".~1~ and so on: remove some; --force " +
-                           "replaces it without a backup");
+  throw std::runtime_error(
+      fmt::format("{}: is there, and so are {} backups of it, {}.~1~ and so on: remove some; "
+                  "--force replaces it without a backup",
+                  path_, kMostBackups, path_));
 }
 
 std::string Backup::settle() noexcept {

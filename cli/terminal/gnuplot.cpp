@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/terminal/gnuplot.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <boost/crc.hpp>
 #include <cerrno>
@@ -48,21 +50,19 @@ constexpr double kPangoPoint = 0.75;
 
 /// gnuplot's words for a picture of f, as large as its kind has it.
 std::string terminal_of(Kind kind, const Figure& f) {
-  const std::string look =
-      " font 'sans," + std::to_string(f.font) + "' background '#ffffff' enhanced";
-  if (kind == Kind::svg)
-    return "svg size " + std::to_string(f.width) + "," + std::to_string(f.height) + look;
+  const std::string look = fmt::format(" font 'sans,{}' background '#ffffff' enhanced", f.font);
+  if (kind == Kind::svg) return fmt::format("svg size {},{}{}", f.width, f.height, look);
   if (kind == Kind::pdf) {
     const double shrunk = printed_inches(f) / f.width;
-    return "pdfcairo size " + digits(printed_inches(f)) + "," + digits(shrunk * f.height) + look +
-           " fontscale " + digits(kPangoPoint * 72.0 * shrunk) + " linewidth " +
-           digits(72.0 * shrunk);
+    return fmt::format("pdfcairo size {},{}{} fontscale {} linewidth {}", digits(printed_inches(f)),
+                       digits(shrunk * f.height), look, digits(kPangoPoint * 72.0 * shrunk),
+                       digits(72.0 * shrunk));
   }
   const double grown = 300.0 * printed_inches(f) / f.width;
   const std::string scale = digits(grown);
-  return "pngcairo size " + std::to_string(std::lround(grown * f.width)) + "," +
-         std::to_string(std::lround(grown * f.height)) + look + " fontscale " +
-         digits(kPangoPoint * grown) + " linewidth " + scale + " pointscale " + scale;
+  return fmt::format("pngcairo size {},{}{} fontscale {} linewidth {} pointscale {}",
+                     std::lround(grown * f.width), std::lround(grown * f.height), look,
+                     digits(kPangoPoint * grown), scale, scale);
 }
 
 /// As it stands in XML.
@@ -134,17 +134,15 @@ std::string pdf_with(std::string pdf, const AboutFigure& about) {
   if (pdf.find("\ntrailer") == std::string::npos) return pdf;
   const long size = number_after(pdf, "/Size"), root = number_after(pdf, "/Root"),
              info = number_after(pdf, "/Info"), previous = number_after(pdf, "startxref");
-  const std::string number = std::to_string(info);
   const std::size_t object = pdf.size();
-  pdf += number + " 0 obj\n<< /Title " + in_pdf(about.title) + " /Subject " +
-         in_pdf(about.made_by) + " /Creator (gatewalk) >>\nendobj\n";
-  std::string offset = std::to_string(object);
-  offset.insert(0, 10 - offset.size(), '0');
+  pdf += fmt::format("{} 0 obj\n<< /Title {} /Subject {} /Creator (gatewalk) >>\nendobj\n", info,
+                     in_pdf(about.title), in_pdf(about.made_by));
   const std::size_t table = pdf.size();
-  return pdf + "xref\n" + number + " 1\n" + offset + " 00000 n \ntrailer\n<< /Size " +
-         std::to_string(size) + " /Root " + std::to_string(root) + " 0 R /Info " + number +
-         " 0 R /Prev " + std::to_string(previous) + " >>\nstartxref\n" + std::to_string(table) +
-         "\n%%EOF\n";
+  return fmt::format(
+      "{}xref\n{} 1\n{:010} 00000 n \n"
+      "trailer\n<< /Size {} /Root {} 0 R /Info {} 0 R /Prev {} >>\n"
+      "startxref\n{}\n%%EOF\n",
+      pdf, info, object, size, root, info, previous, table);
 }
 
 /// Four bytes, the highest first.
@@ -183,7 +181,7 @@ void draw(const std::string& path, const Figure& f, const AboutFigure& about) {
   const Kind kind = kind_of(path);
   if (kind == Kind::other)
     throw std::invalid_argument(path + ": the name of a figure ends in .svg, .pdf or .png");
-  std::string made = drawn("set terminal " + terminal_of(kind, f) + "\n" + f.commands + "\n");
+  std::string made = drawn(fmt::format("set terminal {}\n{}\n", terminal_of(kind, f), f.commands));
   if (kind == Kind::svg) made = svg_with(std::move(made), about);
   if (kind == Kind::pdf) made = pdf_with(std::move(made), about);
   if (kind == Kind::png) made = png_with(std::move(made), about);

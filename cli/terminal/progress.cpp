@@ -36,7 +36,7 @@ std::string rough_duration(double seconds) {
   constexpr double kMinute = 60.0, kHour = 3600.0, kDay = 24.0 * kHour;
   if (!(seconds < 100.0 * kDay)) return "over 100 days";
   const auto some = [&](double unit, const char* name) {
-    return "some " + std::to_string(std::llround(seconds / unit)) + name;
+    return fmt::format("some {}{}", std::llround(seconds / unit), name);
   };
   if (seconds >= 100.0 * kMinute) return some(kHour, " h");
   return seconds >= 100.0 ? some(kMinute, " min") : some(1.0, " s");
