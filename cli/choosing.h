@@ -32,6 +32,13 @@ void take_choosing(const Options& options, How& how) {
   if (options.has("gate-runs")) how.most_runs = options.count("gate-runs", 1000);
 }
 
+/// Warns where the rounds of choosing ended before the choice was settled.
+inline void warn_of_choosing(const Options& options, bool settled, std::int64_t gate_runs) {
+  if (!settled)
+    options.warn("choosing was not finished after " + std::to_string(gate_runs) +
+                 " gate runs; --gate-runs allows more");
+}
+
 /// A scene of gates, or cells of a program, with one start; `made` ("a plan is made") is for it.
 /// Throws UsageError.
 [[nodiscard]] inline Subject field_to_run(const Options& options, const std::string& made) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/planned.h"
 
+#include <fmt/core.h>
+
 #include <array>
 #include <cmath>
 #include <string_view>
@@ -32,10 +34,13 @@ constexpr std::array<std::string_view, 3> kStartKeys{"start.x_m", "start.vx_m_pe
 std::vector<std::string> all_of(const lattice::Scene& scene) {
   const double speed = dynamics::meaning_of(scene.gate, scene.start).passage_speed;
   if (!std::isfinite(speed))
-    throw UsageError("--over: say where bodies may start, such as --over start.vy_m_per_s=0:1; " +
-                     scene.source + " has no push through a gate that tells a speed");
+    throw UsageError(
+        fmt::format("--over: say where bodies may start, such as --over start.vy_m_per_s=0:1; {} "
+                    "has no push through a gate that tells a speed",
+                    scene.source));
   const std::string x = lattice::toml_float(scene.gate.beams.joint_x - scene.gate.body.radius);
-  return {"start.x_m=-" + x + ":" + x, "start.vy_m_per_s=0:" + lattice::toml_float(speed)};
+  return {fmt::format("start.x_m=-{}:{}", x, x),
+          "start.vy_m_per_s=0:" + lattice::toml_float(speed)};
 }
 
 std::vector<lattice::CoordinateRange> ranges_in(const lattice::RangedScene& ranged) {
@@ -64,7 +69,8 @@ std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& 
     while (c < coordinates.size() && "start." + coordinates[c].key != range.key)
       known += (known.empty() ? "start." : ", start.") + coordinates[c++].key;
     if (c == coordinates.size())
-      throw UsageError("--over: " + lattice::printable(range.key) + " is none of " + known);
+      throw UsageError(
+          fmt::format("--over: {} is none of {}", lattice::printable(range.key), known));
     for (const double end : {range.low, range.high}) {  // refuses what is not permitted
       std::vector<std::string> overrides;
       for (const std::string& set : options.overrides())
@@ -75,8 +81,8 @@ std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& 
     ranges.push_back({c, range.low, range.high});
   }
   if (ranges.empty())
-    throw UsageError("--over: says where bodies may start, such as --over start." +
-                     coordinates.front().key + "=0:1");
+    throw UsageError(fmt::format("--over: says where bodies may start, such as --over start.{}=0:1",
+                                 coordinates.front().key));
   return ranges;
 }
 
@@ -85,7 +91,7 @@ std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& 
 std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const ShownField& shown) {
   if (!options.has("least")) {
     for (const char* other : {"points", "chance"})
-      if (options.has(other)) throw UsageError(std::string("--") + other + ": only with --least");
+      if (options.has(other)) throw UsageError(fmt::format("--{}: only with --least", other));
     return {};
   }
   lattice::ThriftOptions thrift;
@@ -94,15 +100,15 @@ std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const Sh
   while (thrift.cost < costs.size() && costs[thrift.cost].key != options.text("least"))
     known += (known.empty() ? "" : ", ") + costs[thrift.cost++].key;
   if (thrift.cost == costs.size())
-    throw UsageError("--least: '" + lattice::printable(options.text("least")) + "' is none of " +
-                     known);
+    throw UsageError(fmt::format("--least: '{}' is none of {}",
+                                 lattice::printable(options.text("least")), known));
   // Passages through gates may take 0 or less of anything but time and losses.
   const std::string& key = costs[thrift.cost].key;
   if (shown.mass && shown.field.max_gates == 0 && key != "time_s" && key != "lost_J")
-    throw UsageError("--least " + key +
-                     ": a passage may take 0 or less of it, and without a limit of gates a body "
-                     "would go on for ever: give --set field.max_gates=N, or --least time_s or "
-                     "lost_J");
+    throw UsageError(fmt::format(
+        "--least {}: a passage may take 0 or less of it, and without a limit of gates a body would "
+        "go on for ever: give --set field.max_gates=N, or --least time_s or lost_J",
+        key));
   if (options.has("points")) thrift.points = static_cast<int>(options.count("points", 2, 100));
   if (options.has("chance")) thrift.chance = options.number("chance");
   if (options.has("chance") && !(thrift.chance > 0.0 && thrift.chance < 1.0))
@@ -117,8 +123,8 @@ bool has_actions(const Subject& s) {
 int plan_start(const Options& options, Subject s) {
   for (const char* other : {"policy", "gate-policy", "least", "points", "chance", "robust"})
     if (options.has(other))
-      throw UsageError("--" + std::string(other) + ": is for a scene with actions; " + s.path +
-                       " has no tables [actions.NAME]");
+      throw UsageError(fmt::format(
+          "--{}: is for a scene with actions; {} has no tables [actions.NAME]", other, s.path));
   lattice::BestStartOptions how;
   take_choosing(options, how);
   const auto given = options.texts("over");
@@ -144,9 +150,7 @@ int plan_start(const Options& options, Subject s) {
   json["made_by"] = s.made_by(options);
   options.give_out(json, table_of(shown) + method_line(s.settled));
   options.warn(few_crossings(shown.found.crossings));
-  if (!shown.found.settled)
-    options.warn("choosing was not finished after " + std::to_string(shown.found.gate_runs) +
-                 " gate runs; --gate-runs allows more");
+  warn_of_choosing(options, shown.found.settled, shown.found.gate_runs);
   options.warn(too_few_gates(s.shown()));
   const int exit = status_of(options, shown.found.health);
   options.draw([&] { return figure_of(shown); });

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <filesystem>
 #include <set>
 
@@ -84,9 +86,10 @@ int run_chart(const Arguments& arguments) {
   } catch (const Interrupted&) {
     if (charts.empty()) throw;
     folder.draw("chart.svg", figure_of(charts));
-    options.warn("stopped before the end; " + folder.path("chart.csv") +
-                 ", chart.json and chart.svg hold the " + std::to_string(charts.size()) + " of " +
-                 std::to_string(paths.size()) + " scenes that were finished");
+    options.warn(
+        fmt::format("stopped before the end; {}, chart.json and chart.svg hold the {} of {} scenes "
+                    "that were finished",
+                    folder.path("chart.csv"), charts.size(), paths.size()));
     return kStopped;
   }
   options.give_out(json, table + "\n" + work_precision_legend(how.rounds));

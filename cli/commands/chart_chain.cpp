@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "cli/arguments.h"
@@ -23,7 +25,7 @@ std::vector<double> factors_of(const Options& options, lattice::BinsChoice::Kind
     try {
       if (kind == lattice::BinsChoice::Kind::automatic) (void)lattice::states_for(factor);
     } catch (const std::invalid_argument& e) {
-      throw UsageError("--bins " + Json(factor).dump() + ": " + e.what());
+      throw UsageError(fmt::format("--bins {}: {}", Json(factor).dump(), e.what()));
     }
   }
   return factors;
@@ -74,9 +76,9 @@ int run_chart_chain(const Arguments& arguments) {
   chosen.factors = factors_of(options, bins);
   lattice::ChainErrorPlan plan = lattice::plan_chain_error(scene, chosen, options.work());
   if (plan.empty())
-    throw UsageError("--runs-limit " + std::to_string(chosen.runs_limit) + ": too few for " +
-                     std::to_string(lattice::kChainTrials.front()) +
-                     " trials a row of any of these bins");
+    throw UsageError(
+        fmt::format("--runs-limit {}: too few for {} trials a row of any of these bins",
+                    chosen.runs_limit, lattice::kChainTrials.front()));
   const ResultFolder folder(options, files);
 
   options.remark("measuring the cost of a trial and of a gate run");

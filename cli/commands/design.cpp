@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/design.h"
+
+#include <fmt/format.h>
+
 #include "cli/arguments.h"
 #include "cli/choosing.h"
 #include "cli/render/health.h"
@@ -23,12 +26,9 @@ std::vector<int> types_named(const std::string& names, const lattice::Scene& sce
     const std::size_t end = std::min(names.find(',', from), names.size());
     const std::string name = names.substr(from, end - from);
     const auto at = std::find(known.begin(), known.end(), name);
-    if (at == known.end()) {
-      std::string all;
-      for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
-      throw UsageError("--types: \"" + lattice::printable(name) + "\" is no type of gate of " +
-                       scene.source + ": " + all);
-    }
+    if (at == known.end())
+      throw UsageError(fmt::format("--types: \"{}\" is no type of gate of {}: {}",
+                                   lattice::printable(name), scene.source, fmt::join(known, ", ")));
     types.push_back(static_cast<int>(at - known.begin()));
     from = end + 1;
   }
@@ -63,8 +63,7 @@ int run_design(const Arguments& arguments) {
                      ": has one type of gates: a table [terrain.types.NAME] makes another");
   const std::int64_t gates = std::int64_t{s.scene->field.columns} * s.scene->field.rows;
   const std::int64_t changes = options.count("changes", 1);
-  if (changes > gates)
-    throw UsageError("--changes: the field has " + std::to_string(gates) + " gates");
+  if (changes > gates) throw UsageError(fmt::format("--changes: the field has {} gates", gates));
   how.most_changes = static_cast<int>(changes);
   if (options.has("types")) how.become = types_named(options.text("types"), *s.scene);
   s.settled = settle_method(options, *s.scene, lattice::RunsFrom::all_types);
@@ -84,9 +83,7 @@ int run_design(const Arguments& arguments) {
     options.write(options.text("output"), lattice::scene_file(designed.after));
   const lattice::Crossings &with = designed.design.crossings, &without = designed.design.before;
   options.warn(few_crossings(with.crossed > without.crossed ? with : without));
-  if (!designed.design.settled)
-    options.warn("choosing was not finished after " + std::to_string(designed.design.gate_runs) +
-                 " gate runs; --gate-runs allows more");
+  warn_of_choosing(options, designed.design.settled, designed.design.gate_runs);
   options.warn(too_few_gates(s.shown()));
   const int exit = status_of(options, designed.design.health);
   options.draw([&] { return figure_of(designed); });

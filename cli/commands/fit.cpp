@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/fit.h"
+
+#include <fmt/core.h>
+
 #include "cli/arguments.h"
 #include "cli/choosing.h"
 #include "cli/fitted.h"
@@ -37,14 +40,16 @@ int run_fit(const Arguments& arguments) {
       "what the experiment saw (CSV: gate_x,gate_y,count; ending,count; or, for both, "
       "trial,ending,gate_x,gate_y; also with time_s; files with the same columns are added up; or "
       "passages: runs.csv)");
-  options.add_texts("free", "KEY=LOW:HIGH",
-                    "a number of the scene, or of the program, and its range (at most " +
-                        std::to_string(lattice::kMostFitted) + "; may be repeated)");
-  options.add_count("trials", "N",
-                    "full trials, or passages, all points together; " +
-                        std::to_string(lattice::least_trials_of_fit(1)) +
-                        " or more for each number",
-                    "400000");
+  options.add_texts(
+      "free", "KEY=LOW:HIGH",
+      fmt::format(
+          "a number of the scene, or of the program, and its range (at most {}; may be repeated)",
+          lattice::kMostFitted));
+  options.add_count(
+      "trials", "N",
+      fmt::format("full trials, or passages, all points together; {} or more for each number",
+                  lattice::least_trials_of_fit(1)),
+      "400000");
   options.add_texts("start", "D,VX,VY", "where bodies started (default: the scene's start)");
   options.add_seed();
   add_cell_program(options);

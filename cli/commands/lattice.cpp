@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include "cli/arguments.h"
 #include "cli/field_run.h"
 #include "cli/render/analysis.h"
@@ -46,8 +48,8 @@ int run_lattice(const Arguments& arguments) {
     json["methods"] = to_json(run.may_do);
   }
   json["made_by"] = run.made_by;
-  const FieldPicture picture("full dynamics, " + std::to_string(run.tally.trials) + " trials",
-                             run.tally, exits);
+  const FieldPicture picture(fmt::format("full dynamics, {} trials", run.tally.trials), run.tally,
+                             exits);
   if (options.has("netcdf"))
     options.write(options.text("netcdf"),
                   netcdf_of({{picture, run.start}}, run.shown.map.section, json["made_by"]));

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/plan.h"
+
+#include <fmt/core.h>
+
 #include "cli/actions.h"
 #include "cli/arguments.h"
 #include "cli/choosing.h"
@@ -54,7 +57,7 @@ int run_plan(const Arguments& arguments) {
   Subject s = field_to_run(options, "a plan is made");
   if (!has_actions(s)) return plan_start(options, std::move(s));
   if (options.has("over"))
-    throw UsageError("--over: is for a scene without actions; " + s.path + " has some");
+    throw UsageError(fmt::format("--over: is for a scene without actions; {} has some", s.path));
   how.thrift = thrift_of(options, s.shown());
   how.robust = options.has("robust");
   if (how.robust && how.thrift) throw UsageError("--robust: not with --least");
@@ -77,17 +80,16 @@ int run_plan(const Arguments& arguments) {
   }
   options.warn(few_crossings(planned.plan.crossings));
   if (options.has("policy") && !cheapest(planned) && !gains(planned))
-    options.warn("--policy: " + options.text("policy") + " is not shown to gain anything over " +
-                 planned.actions[best_alone(planned.plan)] + " all the time, which is simpler");
+    options.warn(fmt::format(
+        "--policy: {} is not shown to gain anything over {} all the time, which is simpler",
+        options.text("policy"), planned.actions[best_alone(planned.plan)]));
   if (how.thrift && how.thrift->chance > 0.0 && !cheapest(planned))
     options.warn("--chance: none of these policies crosses so often; --policy is the plan's own");
   if (!planned.plan.front_refused.empty())
     options.warn("--least: " + planned.plan.front_refused);
   else if (how.thrift && !planned.plan.front_finished)
     options.warn("--least: the search was not finished; --gate-runs and --points allow more");
-  if (!planned.plan.settled)
-    options.warn("choosing was not finished after " + std::to_string(planned.plan.gate_runs) +
-                 " gate runs; --gate-runs allows more");
+  warn_of_choosing(options, planned.plan.settled, planned.plan.gate_runs);
   options.warn(too_few_gates(s.shown()));
   const int exit = status_of(options, planned.plan.health);
   options.draw([&] { return figure_of(planned); });

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include "cli/answered.h"
 #include "cli/arguments.h"
 #include "cli/parsers.h"
@@ -41,8 +43,7 @@ int run_predict(const Arguments& arguments) {
   options.add_strict();
   add_cell_program(options);
   options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
-  options.add_figure("where bodies end, and how; of up to " + std::to_string(kMostPictures) +
-                     " starts");
+  options.add_figure(fmt::format("where bodies end, and how; of up to {} starts", kMostPictures));
   add_page(options);
   options.reads("row", [](const std::string& rows) { return rows.substr(rows.find('=') + 1); });
   options.add_seed(
@@ -51,8 +52,8 @@ int run_predict(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   if (const auto starts = options.texts("start");
       options.has("figure") && starts.size() > kMostPictures)
-    throw UsageError("--figure: shows at most " + std::to_string(kMostPictures) +
-                     " starts, these are " + std::to_string(starts.size()));
+    throw UsageError(fmt::format("--figure: shows at most {} starts, these are {}", kMostPictures,
+                                 starts.size()));
   (void)solver_of(options);
   Subject s = open_subject(options, "matrix");
   check_page(options, s);
@@ -62,18 +63,22 @@ int run_predict(const Arguments& arguments) {
   // First runs are added to those of a file, by the scene's dynamics or by a program.
   if (!s.file || s.is_recorded() || (s.cells && no_runs))
     refuse(options, {"first-runs"},
-           "for " + s.path + ": it is for a matrix of a scene, or (above 0) of a cell program");
+           fmt::format("for {}: it is for a matrix of a scene, or (above 0) of a cell program",
+                       s.path));
   if (!s.file || (!s.scene && !s.foreign)) {
-    refuse(options, {"row"}, "for " + s.path + ": it is for a matrix of a scene");
+    refuse(options, {"row"}, fmt::format("for {}: it is for a matrix of a scene", s.path));
     if (by_solver)
-      throw UsageError("--solver has no meaning for " + s.path + ": it is for a matrix of a scene");
+      throw UsageError(
+          fmt::format("--solver has no meaning for {}: it is for a matrix of a scene", s.path));
   }
-  if (s.foreign) refuse(options, {"row"}, "for " + s.path + ": it is for a matrix of a scene");
+  if (s.foreign)
+    refuse(options, {"row"}, fmt::format("for {}: it is for a matrix of a scene", s.path));
   if (s.file && s.scene) warn_of_range(options, *s.file, s.path, s.entries());
   if (s.file && (s.foreign || (s.scene && as_it_is))) {
-    const std::string why = "for " + s.path +
-                            ", which keeps no gate runs that could be added to (or " +
-                            "--row, --solver, --first-runs 0 asks for the matrix as it is)";
+    const std::string why = fmt::format(
+        "for {}, which keeps no gate runs that could be added to (or --row, --solver, --first-runs "
+        "0 asks for the matrix as it is)",
+        s.path);
     refuse(options, {"accuracy", "gate-runs"}, why);
     if (!no_runs) refuse(options, {"first-runs"}, why);
     return predict_from_matrix(options, s, other_rows(options));

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/rare.h"
+
+#include <fmt/core.h>
+
 #include "cli/arguments.h"
 #include "cli/render/health.h"
 #include "cli/render/text.h"
@@ -93,12 +96,14 @@ int run_rare(const Arguments& arguments) {
 
   options.give_out(result, table_of(result, subject.problem.field));
   if (const lattice::Splitting& s = result.event.splitting; !(s.rows.back().probability > 0.0))
-    options.warn("none of " + std::to_string(s.trials) + " trials entered row " +
-                 std::to_string(how.row) + "; --gate-runs N goes on for so many gate runs");
+    options.warn(
+        fmt::format("none of {} trials entered row {}; --gate-runs N goes on for so many gate runs",
+                    s.trials, how.row));
   else if (!s.reached && !how.trials)
-    options.warn("the relative standard error of " + digits(how.accuracy) +
-                 " was not reached with " + std::to_string(how.most_runs) +
-                 " gate runs; --gate-runs allows more");
+    options.warn(
+        fmt::format("the relative standard error of {} was not reached with {} gate runs; "
+                    "--gate-runs allows more",
+                    digits(how.accuracy), how.most_runs));
   const int exit = status_of(options, result.event.splitting.health);
   options.draw([&] { return figure_of(result); });
   return exit;

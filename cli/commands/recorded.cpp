@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands/recorded.h"
 
+#include <fmt/core.h>
+
 #include <map>
 #include <string>
 #include <utility>
@@ -69,8 +71,8 @@ int build_recorded(const Options& options) {
   const auto& costs = problem.map().section.costs;
   for (std::size_t c = 0; c < costs.size(); ++c)
     if (unknown[c] > 0)
-      options.warn(costs[c].key + " is blank in " + std::to_string(unknown[c]) +
-                   " passages: analyze gives none of it");
+      options.warn(fmt::format("{} is blank in {} passages: analyze gives none of it", costs[c].key,
+                               unknown[c]));
   auto matrices = lattice::cell_matrices(problem, pool, dynamics::kEntriesPerLeaf);
   const Json states = {{"bins", "tree"},
                        {"entries_per_leaf", dynamics::kEntriesPerLeaf},

@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/render/json.h"
+#include "cli/render/text_table.h"
 #include "cli/web/embedded.h"
 #include "lattice/text/edit_distance.h"
 
@@ -54,13 +55,12 @@ int run_sample(const Arguments& arguments) {
   if (!options.has("name")) {
     if (options.has("output")) throw UsageError("-o without NAME: which sample?");
     Json json;
-    std::string table;
+    TextTable table({{"", -12, 0, "", "  "}, {"", 0, 0, "", "  "}});
     for (const Sample& s : all) {
       json["samples"].push_back({{"name", s.name}, {"file", s.file}, {"about", s.about}});
-      table += "  " + s.name + std::string(14 - std::min<std::size_t>(12, s.name.size()), ' ') +
-               s.about + "\n";
+      table.row({s.name, s.about});
     }
-    options.give_out(json, table);
+    options.give_out(json, table.text());
     return kFine;
   }
   const std::string name = options.text("name");

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <set>
 
@@ -21,8 +23,8 @@ void refuse_overridden(const std::vector<lattice::SweepAxis>& axes,
     for (const std::string& key : lattice::keys_set_by(set))
       for (const lattice::SweepAxis& axis : axes)
         if (key == lattice::known_key(axis.key, "--vary"))
-          throw UsageError("--set " + set + " has no effect: " + key + " is varied; --vary " + key +
-                           "=VALUE fixes it");
+          throw UsageError(fmt::format(
+              "--set {} has no effect: {} is varied; --vary {}=VALUE fixes it", set, key, key));
 }
 
 /// What is wrong with the points' scenes, each thing once.
@@ -69,8 +71,7 @@ int run_sweep(const Arguments& arguments) {
   const auto axes = lattice::sweep_axes(scene.sweep, options.texts("vary"));
   refuse_overridden(axes, options.overrides());
   if (options.has("figure") && axes.size() > 2)
-    throw UsageError("--figure: shows one key or two, " + std::to_string(axes.size()) +
-                     " are varied");
+    throw UsageError(fmt::format("--figure: shows one key or two, {} are varied", axes.size()));
   auto points = lattice::sweep_points({text, source, options.overrides(), axes});
   for (const std::string& remark : remarks_on(points, options.talk())) options.warn(remark);
 

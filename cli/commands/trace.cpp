@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <optional>
 #include <string>
 #include <utility>
@@ -36,7 +38,7 @@ void declare(Options& options) {
   options.output_file("replay", "FILE.html", "write a page that plays the runs");
   options.output_file("video", "FILE.mp4|gif", "write a film of the first run (needs ffmpeg)",
                       Options::Content::binary);
-  options.add_figure("the ways of up to " + std::to_string(kMostDrawn) + " runs");
+  options.add_figure(fmt::format("the ways of up to {} runs", kMostDrawn));
   options.add_number(
       "video-speed", "X",
       "times as fast as real (default: the scene's own pace, 1 in the paper's scenes)");
@@ -47,8 +49,8 @@ std::optional<double> video_speed(const Options& options, const lattice::Scene& 
   const double speed = options.number("video-speed");
   const double pace = dynamics::scale_of(scene.gate).time;
   if (!(speed >= 0.01 * pace && speed <= 100.0 * pace))
-    throw UsageError("--video-speed: must lie in [" + digits(0.01 * pace) + ", " +
-                     digits(100.0 * pace) + "]");
+    throw UsageError(fmt::format("--video-speed: must lie in [{}, {}]", digits(0.01 * pace),
+                                 digits(100.0 * pace)));
   return speed;
 }
 
@@ -103,7 +105,7 @@ int run_trace(const Arguments& arguments) {
   if (options.has("video")) {
     const double times_real = speed.value_or(dynamics::scale_of(scene.gate).time);
     json["video_speed"] = times_real;
-    film_line = options.text("video") + ": plays " + speed_words(times_real) + "\n";
+    film_line = fmt::format("{}: plays {}\n", options.text("video"), speed_words(times_real));
   }
   json["recorded"] = recordings.runs.size();
   json["trials"] = recordings.trials;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include "cli/arguments.h"
 #include "cli/commands/recorded.h"
 #include "cli/render/final_gates.h"
@@ -72,8 +74,8 @@ int run_validate(const Arguments& arguments) {
   if (options.has("null-draws")) how.null_draws = options.count("null-draws", 1, kMostNullDraws);
   if (const auto starts = options.texts("start").size();
       options.has("figure") && starts > kMostValidated)
-    throw UsageError("--figure: shows at most " + std::to_string(kMostValidated) +
-                     " starts, these are " + std::to_string(starts));
+    throw UsageError(
+        fmt::format("--figure: shows at most {} starts, these are {}", kMostValidated, starts));
   if (options.has("matrix")) {
     refuse(options, {"bins"}, "beside --matrix: that one has its states already");
     refuse(options, {"matrix-trials", "accuracy", "gate-runs"},

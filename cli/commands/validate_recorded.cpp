@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include "cli/arguments.h"
 #include "cli/commands/recorded.h"
 #include "cli/render/halves.h"
@@ -13,7 +15,7 @@ int validate_recorded(const Options& options) {
   refuse(options,
          {"matrix", "matrix-trials", "observed", "trials", "walks", "accuracy", "gate-runs",
           "start", "bins", "memory", "strict", "shard", "part", "checkpoint", "resume", "max-time"},
-         "for " + path + ", of whose bodies one half is held against the other");
+         fmt::format("for {}, of whose bodies one half is held against the other", path));
   const Subject s = open_subject(options, "scene");
   if (s.foreign)
     throw UsageError(path +
@@ -28,8 +30,8 @@ int validate_recorded(const Options& options) {
                                            how.null_draws.value_or(999), how.seed);
   constexpr std::int64_t kChecked = 200;  // results/tracks
   if (s.pool->bodies() < kChecked)
-    options.warn("these are " + std::to_string(s.pool->bodies()) + " bodies: of fewer than " +
-                 std::to_string(kChecked) + " p may come out too small");
+    options.warn(fmt::format("these are {} bodies: of fewer than {} p may come out too small",
+                             s.pool->bodies(), kChecked));
   const ShownField shown = s.shown();
   const dynamics::Section& section = shown.map.section;
   Json json = to_json(halves);

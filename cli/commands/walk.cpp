@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include "cli/arguments.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"
@@ -49,12 +51,10 @@ int run_walk(const Arguments& arguments) {
   options.give_out(json, table_of(told, shown));
   options.warn(too_few_gates(shown));
   options.warn(rest_warning(rest_of(tally)));
-  options.remark(fixed(seconds, 3) + " s, " + fixed(static_cast<double>(walks) / seconds / 1e6, 2) +
-                 " million walks a second");
+  options.remark(fmt::format("{} s, {} million walks a second", fixed(seconds, 3),
+                             fixed(static_cast<double>(walks) / seconds / 1e6, 2)));
   const int exit = exit_status(options, faults_recorded(status).empty() && walked.clean);
-  options.draw([&] {
-    return figure_of({{"chain, " + std::to_string(walks) + " walks", tally}}, shown);
-  });
+  options.draw([&] { return figure_of({{fmt::format("chain, {} walks", walks), tally}}, shown); });
   return exit;
 }
 
