@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/actions.h"
 
+#include <fmt/core.h>
+
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -16,9 +18,9 @@ namespace {
 
 void require_two(std::size_t count, const std::string& source, const std::string& as_it_is) {
   if (count < 2)
-    throw UsageError(
-        source + ": has " + std::to_string(count) +
-        " tables [actions.NAME]: to choose among takes two at least; an empty one is " + as_it_is);
+    throw UsageError(fmt::format(
+        "{}: has {} tables [actions.NAME]: to choose among takes two at least; an empty one is {}",
+        source, count, as_it_is));
 }
 
 /// The program's cell while a body takes an action.
@@ -28,7 +30,8 @@ std::shared_ptr<const dynamics::Cell> cell_with(const lattice::Terrain::Type& ac
   for (const lattice::Terrain::Key& key : action.keys) try {
       cell = cell->with({{key.name.substr(lattice::kParameters.size()), key.value}});
     } catch (const std::invalid_argument& e) {
-      throw UsageError(key.origin + ": actions." + action.name + "." + key.name + ": " + e.what());
+      throw UsageError(
+          fmt::format("{}: actions.{}.{}: {}", key.origin, action.name, key.name, e.what()));
     }
   return cell;
 }
@@ -46,7 +49,7 @@ Actions program_actions(const Options& options, const Subject& s) {
     const auto& cell = all.actions.back().problem.cells.cells.front() = cell_with(action, *program);
     const std::string words = action.name + ": " + told_by(*cell);
     options.depends_on(words);
-    told += "# " + words + "\n";
+    told += fmt::format("# {}\n", words);
   }
   all.methods.resize(all.actions.size());
   all.made_for = policy_field(file, told);

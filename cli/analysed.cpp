@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "cli/analysed.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
+#include <ranges>
 #include <utility>
 
 #include "cli/arguments.h"
@@ -23,11 +26,10 @@ namespace {
 void require_room(const Subject& s, int states) {
   if (states <= lattice::most_analysed_states(s.problem)) return;
   const lattice::FieldParams& field = s.problem.field;
-  throw UsageError("the analysis of " + std::to_string(field.columns) + " x " +
-                   std::to_string(field.rows) + " cells would take more than 8 GiB with " +
-                   std::to_string(states) +
-                   " states: ask for fewer cells (--set field.columns=N, --set field.rows=N" +
-                   (field.max_gates > 0 ? ", --set field.max_gates=N)" : ")"));
+  throw UsageError(fmt::format(
+      "the analysis of {} x {} cells would take more than 8 GiB with {} states: ask for fewer "
+      "cells (--set field.columns=N, --set field.rows=N{}",
+      field.columns, field.rows, states, field.max_gates > 0 ? ", --set field.max_gates=N)" : ")"));
 }
 
 /// From gate runs, to which more are added until the error bar says enough.
@@ -52,10 +54,9 @@ AnalysedSubject chain_of_runs(const Options& options, Subject& s) {
                     .seconds = prediction.seconds};
   if (per_leaf != s.how.per_leaf)
     options.warn(
-        "the analysis has " + std::to_string(c.chain->space.size()) + " states, not " +
-        std::to_string(prediction.states) +
-        ", so that it takes no more than 8 GiB: what it says beside the endings is coarser "
-        "than they are");
+        fmt::format("the analysis has {} states, not {}, so that it takes no more than 8 GiB: what "
+                    "it says beside the endings is coarser than they are",
+                    c.chain->space.size(), prediction.states));
   c.of_runs = std::move(prediction);
   return c;
 }
@@ -63,7 +64,7 @@ AnalysedSubject chain_of_runs(const Options& options, Subject& s) {
 /// From a matrix of bins.
 AnalysedSubject chain_of_bins(const Options& options, const Subject& s) {
   refuse(options, {"accuracy", "gate-runs"},
-         "for " + s.path + ": it has bins, and keeps no gate runs that could be added to");
+         fmt::format("for {}: it has bins, and keeps no gate runs that could be added to", s.path));
   require_room(s, s.file->transitions.space.size());
   const std::vector<dynamics::Transitions> matrices = s.matrices();
   const auto start = ready_start(options, matrices, s.problem, *s.starts.front(), s.name_of(0));
@@ -161,20 +162,18 @@ std::optional<PassageAsked> first_passage_asked(const Options& options, const Su
     if (const auto entered = state_named(s, rest))
       return PassageAsked{text, {.cell = *cell, .input = *entered}};
   }
-  std::string names;
-  for (const lattice::EndingName& e : lattice::kAllEndingNames) names += std::string(e.key) + ", ";
+  const auto keys = lattice::kAllEndingNames | std::views::transform(&lattice::EndingName::key);
   const auto range = [](int first, int count) {
-    return std::to_string(first) + " to " + std::to_string(first + count - 1);
+    return fmt::format("{} to {}", first, first + count - 1);
   };
-  throw UsageError(
-      "--first-passage " + text + ": must be an ending (" + names.substr(0, names.size() - 2) +
-      "), a gate IX,IY (IX " + range(-field.start_column(), field.columns) + ", IY " +
-      range(0, field.rows) + ")" +
-      (s.file ? ", a state by its name or number, or a state of one gate, IX,IY,STATE (the states "
-                "of " +
-                    s.path + ": " + lattice::state_names(*s.file).front() + ", ..., " +
-                    std::to_string(entered_states(s.file->transitions.space)) + " in all)"
-              : "; states are those of a matrix: gatewalk build"));
+  throw UsageError(fmt::format(
+      "--first-passage {}: must be an ending ({}), a gate IX,IY (IX {}, IY {}){}", text,
+      fmt::join(keys, ", "), range(-field.start_column(), field.columns), range(0, field.rows),
+      s.file ? fmt::format(", a state by its name or number, or a state of one gate, "
+                           "IX,IY,STATE (the states of {}: {}, ..., {} in all)",
+                           s.path, lattice::state_names(*s.file).front(),
+                           entered_states(s.file->transitions.space))
+             : "; states are those of a matrix: gatewalk build"));
 }
 
 PassageAnswer first_passage_of(const Options& options, const std::optional<PassageAsked>& asked,
@@ -184,9 +183,10 @@ PassageAnswer first_passage_of(const Options& options, const std::optional<Passa
   const bool same_states = !s.file || (space.trees() == s.file->transitions.space.trees() &&
                                        space.bins() == s.file->transitions.space.bins());
   if (asked->target.input && !same_states)
-    throw UsageError("--first-passage " + asked->text +
-                     ": runs were added to keep the accuracy, and the states are others now: build "
-                     "the matrix for this accuracy, field and start first");
+    throw UsageError(
+        fmt::format("--first-passage {}: runs were added to keep the accuracy, and the states are "
+                    "others now: build the matrix for this accuracy, field and start first",
+                    asked->text));
   lattice::FirstPassage found = lattice::first_passage(s.problem.field, *c.chain, asked->target);
   if (asked->target.ending)  // one number has one interval
     found.chance.interval = c.endings.interval[static_cast<std::size_t>(*asked->target.ending)];
@@ -202,12 +202,12 @@ PassageAnswer first_passage_of(const Options& options, const std::optional<Passa
 }
 
 void add_ranges(Options& options) {
-  options.add_texts("over", "KEY=LOW:HIGH",
-                    "a number of the scene, or of the program, and a range: how much of the "
-                    "variance of the target's "
-                    "chance each of these\nmakes, all of them anywhere in their ranges alike "
-                    "(Sobol's first and total indices; at most " +
-                        std::to_string(lattice::kMostVaried) + ";\nmay be repeated)");
+  options.add_texts(
+      "over", "KEY=LOW:HIGH",
+      fmt::format("a number of the scene, or of the program, and a range: how much of the variance "
+                  "of the target's chance each of these\nmakes, all of them anywhere in their "
+                  "ranges alike (Sobol's first and total indices; at most {};\nmay be repeated)",
+                  lattice::kMostVaried));
   options.add_count("over-trials", "N",
                     "full trials for that, at most, all together (default: 200000)");
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/answered.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -125,8 +127,7 @@ Json shown_of(const Json& analysis) {
 
 std::string name_of_field(const Subject& s) {
   const lattice::FieldParams field = s.shown().field;
-  return "Through " + std::to_string(field.columns) + " x " + std::to_string(field.rows) +
-         (s.scene ? " gates" : " cells");
+  return fmt::format("Through {} x {} {}", field.columns, field.rows, s.scene ? "gates" : "cells");
 }
 
 }  // namespace
@@ -144,14 +145,15 @@ void check_page(const Options& options, const Subject& s) {
   if (!has_pages())
     throw UsageError("--page: needs pages: this gatewalk was built without (GATEWALK_PAGES=OFF)");
   if (s.foreign)
-    throw UsageError("--page: " + s.path +
-                     " was made elsewhere: a page is of a scene, or of a matrix of gatewalk build");
+    throw UsageError(fmt::format(
+        "--page: {} was made elsewhere: a page is of a scene, or of a matrix of gatewalk build",
+        s.path));
   const lattice::FieldParams& field = s.problem.field;
   if (std::int64_t{field.columns} * field.rows > kMostGates)
-    throw UsageError("--page: shows fields of up to " + std::to_string(kMostGates) +
-                     " gates, this one has " + std::to_string(field.columns) + " x " +
-                     std::to_string(field.rows) +
-                     " (--set field.columns=N, --set field.rows=N make it smaller)");
+    throw UsageError(
+        fmt::format("--page: shows fields of up to {} gates, this one has {} x {} (--set "
+                    "field.columns=N, --set field.rows=N make it smaller)",
+                    kMostGates, field.columns, field.rows));
 }
 
 std::optional<lattice::RunPool> runs_of_file(const Options& options, const Subject& s) {
@@ -243,9 +245,9 @@ void write_page(const Options& options, const Subject& s,
   std::string text = text_of_page(true);
   if (text.size() > kMostBytes) text = text_of_page(false);
   if (text.size() > kMostBytes)
-    throw std::runtime_error("no page: it would have " +
-                             fixed(1e-6 * static_cast<double>(text.size()), 1) +
-                             " MB, at most 2 MB are written; the numbers are written");
+    throw std::runtime_error(fmt::format(
+        "no page: it would have {} MB, at most 2 MB are written; the numbers are written",
+        fixed(1e-6 * static_cast<double>(text.size()), 1)));
   options.write(options.text("page"), text);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/arguments.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -25,10 +27,9 @@
 
 namespace gatewalk::cli {
 void add_starts(Options& options, const std::string& by_default) {
-  const std::string help =
-      "start at x = D m, y = 0 with this velocity in m/s (may be repeated; "
-      "default: " +
-      by_default + ")";
+  const std::string help = fmt::format(
+      "start at x = D m, y = 0 with this velocity in m/s (may be repeated; default: {})",
+      by_default);
   options.add_texts("start", "D,VX,VY", help);
 }
 
@@ -64,8 +65,9 @@ lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& sc
   const std::string text = options.text("bins");
   if (scene.bins)
     throw UsageError(
-        "--bins " + text +
-        ": the scene has a table [bins], which says what the bins are; leave out one of both");
+        fmt::format("--bins {}: the scene has a table [bins], which says what the bins are; leave "
+                    "out one of both",
+                    text));
   if (text == "auto") return {Kind::automatic};
   if (text == "paper") return {Kind::paper};
   if (text == "tree") return {Kind::tree};
@@ -73,18 +75,20 @@ lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& sc
   const char* end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, choice.factor);
   if (read.ec != std::errc() || read.ptr != end)
-    throw UsageError("--bins " + text + ": must be paper, tree, auto, or a factor > 0 such as 2");
+    throw UsageError(
+        fmt::format("--bins {}: must be paper, tree, auto, or a factor > 0 such as 2", text));
   (void)dynamics::refined(dynamics::table3_space(scene.gate),
                           choice.factor);  // refuses other factors
   return choice;
 }
 
 void add_accuracy(Options& options, const std::string& by_default) {
-  options.add_number("accuracy", "A",
-                     "trials are added until the final gates are right within a total variation of "
-                     "A, 95 times in 100 (0.02: of 100 bodies 2 end in another gate than said; "
-                     "default: " +
-                         by_default + ")");
+  options.add_number(
+      "accuracy", "A",
+      fmt::format(
+          "trials are added until the final gates are right within a total variation of A, 95 "
+          "times in 100 (0.02: of 100 bodies 2 end in another gate than said; default: {})",
+          by_default));
   options.add_count("gate-runs", "N", "but not many more gate runs than N, whatever the accuracy");
 }
 
@@ -92,8 +96,8 @@ lattice::AccuracyOptions accuracy_of(const Options& options) {
   lattice::AccuracyOptions how;
   if (options.has("accuracy")) how.accuracy = options.number("accuracy");
   if (!(how.accuracy > 0.0 && how.accuracy < 1.0))
-    throw UsageError("--accuracy " + digits(how.accuracy) +
-                     ": must lie between 0 and 1, such as 0.01");
+    throw UsageError(
+        fmt::format("--accuracy {}: must lie between 0 and 1, such as 0.01", digits(how.accuracy)));
   if (options.has("gate-runs")) how.most_runs = options.count("gate-runs");
   how.seed = options.seed();
   return how;
@@ -104,8 +108,8 @@ void fix_trials(const Options& options, lattice::AccuracyOptions& how, std::int6
     refuse(options, {"gate-runs", "accuracy"}, "beside --trials");
     how.trials = options.count("trials", lattice::PoolRunner::kLeastTrials * starts);
     if (*how.trials % starts != 0)
-      throw UsageError("--trials " + std::to_string(*how.trials) +
-                       ": must be so many for each of " + std::to_string(starts) + " starts alike");
+      throw UsageError(fmt::format("--trials {}: must be so many for each of {} starts alike",
+                                   *how.trials, starts));
   } else if (options.has("shard")) {
     throw UsageError(
         "--shard of trees needs --trials N: a part must know how many there are in all");
@@ -114,12 +118,11 @@ void fix_trials(const Options& options, lattice::AccuracyOptions& how, std::int6
 
 void warn_of(const Options& options, const std::optional<lattice::OwnTrials>& own) {
   if (own && own->differs())
-    options.warn(
-        "the full trials end otherwise than their chain says: " + fixed(own->total_variation, 4) +
-        " in total variation of the final gates, where chance makes " +
-        fixed(own->chance_total_variation, 4) + " (" + p_words(own->p) +
-        "). Bodies may remember more from gate to gate than the states hold: trust "
-        "gatewalk lattice");
+    options.warn(fmt::format(
+        "the full trials end otherwise than their chain says: {} in total variation of the final "
+        "gates, where chance makes {} ({}). Bodies may remember more from gate to gate than the "
+        "states hold: trust gatewalk lattice",
+        fixed(own->total_variation, 4), fixed(own->chance_total_variation, 4), p_words(own->p)));
 }
 
 void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy) {
@@ -128,8 +131,8 @@ void warn_of(const Options& options, const lattice::PooledPrediction& prediction
   double worst = 0.0;
   for (const lattice::StartAnswer& a : prediction.starts)
     worst = std::max(worst, a.error.total_variation);
-  options.warn("the accuracy asked for, " + digits(accuracy) +
-               ", was not reached: the error bar is " + fixed(worst, 4));
+  options.warn(fmt::format("the accuracy asked for, {}, was not reached: the error bar is {}",
+                           digits(accuracy), fixed(worst, 4)));
 }
 
 std::optional<lattice::StartRange> range_of(const Options& options, const lattice::Scene& scene) {
@@ -144,18 +147,19 @@ std::optional<lattice::StartRange> range_of(const Options& options, const lattic
     const bool has_colon = lattice::take_mark(rest, ':');
     const auto high = lattice::take_number(rest);
     if (!follows || !low || !has_colon || !high || !(*low <= *high) || !std::isfinite(*high - *low))
-      throw UsageError("--starts " + text +
-                       ": must be all, or three ranges of d, vx, vy in m and m/s, e.g. "
-                       "-5:5,-10:10,10:20");
+      throw UsageError(
+          fmt::format("--starts {}: must be all, or three ranges of d, vx, vy in m and m/s, e.g. "
+                      "-5:5,-10:10,10:20",
+                      text));
     range.at[axis] = {*low, *high};
   }
   if (!lattice::behind_blanks(rest).empty())
-    throw UsageError("--starts " + text + ": has more than three ranges");
+    throw UsageError(fmt::format("--starts {}: has more than three ranges", text));
   const double side = scene.gate.beams.joint_x;
   const auto& d = range.at[dynamics::kEntryD];
   if (!(d[0] >= -side && d[1] <= side))
-    throw UsageError("--starts " + text + ": d must lie inside the gate, [" + digits(-side) + ", " +
-                     digits(side) + "]");
+    throw UsageError(fmt::format("--starts {}: d must lie inside the gate, [{}, {}]", text,
+                                 digits(-side), digits(side)));
   return range;
 }
 
@@ -168,8 +172,9 @@ lattice::TreeOptions tree_options(const Options& options, const lattice::Scene& 
   lattice::require_inside(given_starts(options), scene);
   if (how.starts.empty() && !how.range) how.starts = {lattice::own_start(scene).entry()};
   if (scene.field.fidelity != lattice::Fidelity::active)
-    options.warn("field.fidelity = \"" + std::string(lattice::name_of(scene.field.fidelity)) +
-                 "\" is of the full dynamics: a chain always has \"active\"");
+    options.warn(fmt::format(
+        "field.fidelity = \"{}\" is of the full dynamics: a chain always has \"active\"",
+        lattice::name_of(scene.field.fidelity)));
   return how;
 }
 
@@ -198,9 +203,9 @@ void warn_of_range(const Options& options, const lattice::MatrixFile& file, cons
     return false;
   });
   if (count > 0)
-    options.warn(std::to_string(count) + (count == 1 ? " start lies" : " starts lie") +
-                 " outside the range that " + path +
-                 " was built for: " + text_of(file.transitions.space.section(), built));
+    options.warn(fmt::format("{} outside the range that {} was built for: {}",
+                             counted(count, "start lies", "starts lie"), path,
+                             text_of(file.transitions.space.section(), built)));
 }
 
 int entries_per_leaf(const lattice::MatrixFile& file, const std::string& path) {
@@ -225,8 +230,8 @@ void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Optio
   how.per_leaf = entries_per_leaf(*m.file, path);
   how.seed = options.seed();
   const auto prediction = lattice::predict_pooled(problem, pool, unknown, how, options.work());
-  options.remark(std::to_string(prediction.gate_runs) + " gate runs from starts that " + path +
-                 " does not know");
+  options.remark(
+      fmt::format("{} gate runs from starts that {} does not know", prediction.gate_runs, path));
   options.warn(complaint(prediction.health));
   warn_of(options, prediction, how.accuracy);
   std::vector<dynamics::Entry> all;
@@ -242,7 +247,7 @@ void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Optio
 void require_active(const Options& options, const lattice::Scene& scene) {
   if (scene.field.fidelity == lattice::Fidelity::active) return;
   const std::string key = "field.fidelity",
-                    value = " = \"" + std::string(lattice::name_of(scene.field.fidelity)) + "\"";
+                    value = fmt::format(" = \"{}\"", lattice::name_of(scene.field.fidelity));
   const auto overrides = options.overrides();
   const bool is_set = std::any_of(overrides.begin(), overrides.end(), [&](const std::string& o) {
     const auto keys = lattice::keys_set_by(o);
@@ -250,14 +255,15 @@ void require_active(const Options& options, const lattice::Scene& scene) {
   });
   if (options.has("matrix") && is_matrix(options.text("matrix")) && options.text("scene").empty() &&
       !is_set) {
-    options.warn(options.text("matrix") + " (its scene): " + key + value +
-                 " is of the full dynamics: a chain always has \"active\"");
+    options.warn(
+        fmt::format("{} (its scene): {}{} is of the full dynamics: a chain always has \"active\"",
+                    options.text("matrix"), key, value));
     return;
   }
   const auto given = scene.named.find(key);
-  throw UsageError((given == scene.named.end() ? scene.source : given->second) + ": " + key +
-                   value +
-                   " is not permitted for a chain: it has \"active\", gatewalk lattice the others");
+  throw UsageError(fmt::format(
+      "{}: {}{} is not permitted for a chain: it has \"active\", gatewalk lattice the others",
+      given == scene.named.end() ? scene.source : given->second, key, value));
 }
 
 bool is_matrix(const std::string& path) {
@@ -323,7 +329,7 @@ lattice::SceneMatrix read_matrix(const Options& options, const std::string& matr
          lattice::keys_without_effect(m.scene, lattice::RunsFrom::everywhere))
       options.warn(text);
   if (const std::string faults = faults_recorded(recorded_status(*m.file)); !faults.empty())
-    options.warn("the runs that made " + matrix_path + ": " + faults);
+    options.warn(fmt::format("the runs that made {}: {}", matrix_path, faults));
   return m;
 }
 
@@ -333,10 +339,9 @@ lattice::ChainStart checked_start(const Options& options, const dynamics::StateS
   const lattice::ChainStart start = lattice::start_in_bins(space, field, entry, name);
   if (start.beyond)
     options.warn(
-        name + " lies beyond every entry that the bins were made from, " +
-        lattice::entry_bins(space, entry.face) +
-        "; the prediction is that of the outermost bin. A matrix of a scene with this start suits "
-        "it");
+        fmt::format("{} lies beyond every entry that the bins were made from, {}; the prediction "
+                    "is that of the outermost bin. A matrix of a scene with this start suits it",
+                    name, lattice::entry_bins(space, entry.face)));
   return start;
 }
 
@@ -358,10 +363,10 @@ lattice::ChainStart ready_start(const Options& options,
       start.start.input >= space.size() - static_cast<int>(space.points().size());
   if (space.has_trees() && !own_state) {
     const auto& runs = matrices[static_cast<std::size_t>(problem.start_type())].trials;
-    options.warn(name + " is no state of its own: its row is that of its leaf, " +
-                 text_of(space.section(), range) + ", " +
-                 std::to_string(runs[static_cast<std::size_t>(start.start.input)]) +
-                 " runs in all, and as noisy as so few are");
+    options.warn(fmt::format(
+        "{} is no state of its own: its row is that of its leaf, {}, {} runs in all, and as noisy "
+        "as so few are",
+        name, text_of(space.section(), range), runs[static_cast<std::size_t>(start.start.input)]));
   }
   const auto on_edge = [](const std::array<double, 2>& edges, double v) {
     return edges[0] < edges[1] && (v == edges[0] || v == edges[1]);
@@ -370,8 +375,9 @@ lattice::ChainStart ready_start(const Options& options,
   for (std::size_t axis = 0; axis < space.section().coordinates.size(); ++axis)
     on_an_edge = on_an_edge || on_edge(range.at[axis], entry.at[axis]);
   if (on_an_edge)
-    options.remark(name + " lies on an edge of its bin, " + text_of(space.section(), range) +
-                   "; its prediction is that of the whole bin");
+    options.remark(
+        fmt::format("{} lies on an edge of its bin, {}; its prediction is that of the whole bin",
+                    name, text_of(space.section(), range)));
   return start;
 }
 

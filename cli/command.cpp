@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/command.h"
 
+#include <fmt/core.h>
 #include <sys/stat.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
@@ -21,6 +22,7 @@
 #include "cli/kept/ranks.h"
 #include "cli/render/json.h"
 #include "cli/render/numbers.h"
+#include "cli/render/text_table.h"
 #include "cli/terminal/backup.h"
 #include "cli/terminal/gnuplot.h"
 #include "cli/terminal/output.h"
@@ -116,8 +118,8 @@ Strings keep_last(std::vector<po::option>& given, const po::options_description&
       return o.string_key == name;
     });
     if (count > 1 && !last->value.empty())
-      remarks.push_back(shown(name) + " is given " + std::to_string(count) +
-                        " times: the last one counts, " + last->value.front());
+      remarks.push_back(fmt::format("{} is given {} times: the last one counts, {}", shown(name),
+                                    count, last->value.front()));
   }
   given.erase(std::remove_if(given.begin(), given.end(), all_but_last), given.end());
   return remarks;
@@ -137,8 +139,8 @@ Strings repeated_keys(const std::string& option, const Strings& settings) {
   Strings remarks;
   for (const auto& [key, all] : given)
     if (all.size() > 1)
-      remarks.push_back(shown(option) + " gives " + key + " " + std::to_string(all.size()) +
-                        " times: the last one counts, " + all.back());
+      remarks.push_back(fmt::format("{} gives {} {} times: the last one counts, {}", shown(option),
+                                    key, all.size(), all.back()));
   return remarks;
 }
 
@@ -184,7 +186,7 @@ std::string mistake_in(const po::error& error, const po::options_description& of
     const std::string meant =
         lattice::meant_name(given.substr(given.find_first_not_of('-')), names);
     return "there is no option " + given +
-           (meant.empty() ? "" : " (did you mean --" + meant + "?)");
+           (meant.empty() ? "" : fmt::format(" (did you mean --{}?)", meant));
   }
   using Syntax = po::invalid_syntax;
   if (const auto* syntax = dynamic_cast<const Syntax*>(&error)) {
@@ -210,11 +212,11 @@ void validate(boost::any& v, const std::vector<std::string>& values, Count*, int
       std::abs(number) > kMost || (real.ec == std::errc::result_out_of_range && !is_tiny);
   if (real.ptr != end || (real.ec != std::errc() && !is_large) || std::isnan(number) ||
       (!is_large && number != std::floor(number)))
-    throw po::error_with_option_name("%canonical_option%: '" + text +
-                                     "' is not a whole number, such as 20000 or 2e4");
+    throw po::error_with_option_name(
+        fmt::format("%canonical_option%: '{}' is not a whole number, such as 20000 or 2e4", text));
   if (is_large)
-    throw po::error_with_option_name("%canonical_option%: '" + text +
-                                     "' is out of range: at most 1e15 is allowed");
+    throw po::error_with_option_name(
+        fmt::format("%canonical_option%: '{}' is out of range: at most 1e15 is allowed", text));
   v = Count{static_cast<std::int64_t>(number)};
 }
 
@@ -225,8 +227,8 @@ void validate(boost::any& v, const std::vector<std::string>& values, Number*, in
   const auto read = std::from_chars(text.data(), text.data() + text.size(), number.value);
   if (read.ec != std::errc() || read.ptr != text.data() + text.size() ||
       !std::isfinite(number.value))
-    throw po::error_with_option_name("%canonical_option%: '" + text +
-                                     "' is not a number, such as 0.01 or 1e-2");
+    throw po::error_with_option_name(
+        fmt::format("%canonical_option%: '{}' is not a number, such as 0.01 or 1e-2", text));
   v = number;
 }
 
@@ -236,8 +238,8 @@ void validate(boost::any& v, const std::vector<std::string>& values, Seed*, int)
   Seed seed;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), seed.value);
   if (read.ec != std::errc() || read.ptr != text.data() + text.size())
-    throw po::error_with_option_name("%canonical_option%: '" + text +
-                                     "' is not a seed: a whole number from 0 to 2^64 - 1");
+    throw po::error_with_option_name(fmt::format(
+        "%canonical_option%: '{}' is not a seed: a whole number from 0 to 2^64 - 1", text));
   v = seed;
 }
 
@@ -427,7 +429,8 @@ void Options::output_folder(const std::string& help, std::vector<std::string> fi
 }
 
 void Options::add_figure(const std::string& shows) {
-  output_file("figure", "FILE.svg|pdf|png", "draw " + shows + " (needs gnuplot)", Content::binary);
+  output_file("figure", "FILE.svg|pdf|png", fmt::format("draw {} (needs gnuplot)", shows),
+              Content::binary);
 }
 
 void Options::without_scene(const std::string& reason) { state_->no_scene = reason; }
@@ -467,7 +470,7 @@ std::vector<Options::NamedFile> Options::inputs() const {
     files.emplace_back(name + " " + path, path);
     if (loaded(path)) return;  // a matrix names no map
     if (const std::string map = map_named_in(path); !map.empty())
-      files.emplace_back(map + " (the map of " + path + ")", map);
+      files.emplace_back(fmt::format("{} (the map of {})", map, path), map);
   };
   const auto each = [&](const std::string& option, const auto& take) {
     if (!has(option)) return;
@@ -494,15 +497,17 @@ void Options::check_values_given() const {
                                        [&](const State::Output& o) { return o.name == name; });
     for (const std::string& value : option.value)
       if (value.starts_with("--") || (is_output && value.size() > 1 && value[0] == '-'))
-        throw UsageError(shown(name) + " " + value + ": looks like an option, so the value of " +
-                         shown(name) + " is missing" +
-                         (is_output ? "; write ./" + value + " for a file of that name" : ""));
+        throw UsageError(fmt::format(
+            "{} {}: looks like an option, so the value of {} is missing{}", shown(name), value,
+            shown(name),
+            is_output ? fmt::format("; write ./{} for a file of that name", value) : ""));
   }
 }
 
 void Options::check_files() {
   if (!state_->needs_output.empty() && !has("output"))
-    throw UsageError("missing -o " + state_->needs_output + ": gatewalk " + state_->synopsis);
+    throw UsageError(
+        fmt::format("missing -o {}: gatewalk {}", state_->needs_output, state_->synopsis));
   for (const auto& [name, file_in] : state_->reads)
     if (has(name) && state_->values[name].value().type() == typeid(std::string) &&
         text(name).empty())
@@ -518,8 +523,9 @@ void Options::check_files() {
     if (path.empty()) throw UsageError(option + " needs a file name");
     for (const char* ending : {".xlsx", ".xls", ".ods", ".parquet"})
       if (lattice::has_ending(path, ending))
-        throw UsageError(option + " " + path + ": no " + ending +
-                         " is written; tables are CSV, which spreadsheets read: a name in .csv");
+        throw UsageError(fmt::format(
+            "{} {}: no {} is written; tables are CSV, which spreadsheets read: a name in .csv",
+            option, path, ending));
     if (path != "-") {
       outputs.emplace_back(option + " " + path, path);
       continue;
@@ -527,8 +533,8 @@ void Options::check_files() {
     if (output.content == Content::binary)
       throw UsageError(option + " cannot go to standard output: it needs a file of its own");
     if (!takes_stdout.empty())
-      throw UsageError(takes_stdout + " - and " + option +
-                       " -: only one thing can go to standard output");
+      throw UsageError(fmt::format("{} - and {} -: only one thing can go to standard output",
+                                   takes_stdout, option));
     takes_stdout = option;
   }
   const bool has_folder = !state_->needs_output.empty() && state_->needs_output == "DIR";
@@ -542,8 +548,8 @@ void Options::check_files() {
 
   const auto refuse_same = [](const NamedFile& a, const NamedFile& b) {
     if (a.is_same(b))
-      throw UsageError(a.name + " and " + b.name +
-                       " are the same file: an output needs a file of its own");
+      throw UsageError(fmt::format("{} and {} are the same file: an output needs a file of its own",
+                                   a.name, b.name));
   };
   std::vector<NamedFile> others = inputs();
   const bool takes_parts =
@@ -577,7 +583,7 @@ void Options::check_files() {
       check(shown(output.name), [&] { require_replaceable(text(output.name)); });
   if (has("figure")) {
     if (!can_be_drawn(text("figure")))
-      throw UsageError("--figure " + text("figure") + ": must end in .svg, .pdf or .png");
+      throw UsageError(fmt::format("--figure {}: must end in .svg, .pdf or .png", text("figure")));
     check("--figure", require_gnuplot);
   }
   if (!has_folder) return;
@@ -663,18 +669,17 @@ bool Options::parse(const Arguments& arguments) {
       for (std::string& remark : repeated_keys(option, texts(option)))
         remarks.push_back(std::move(remark));
   } catch (const po::error& e) {
-    throw UsageError(mistake_in(e, offered, arguments.words) + "; see gatewalk " +
-                     state_->synopsis.substr(0, state_->synopsis.find(' ')) + " --help");
+    throw UsageError(fmt::format("{}; see gatewalk {} --help",
+                                 mistake_in(e, offered, arguments.words),
+                                 state_->synopsis.substr(0, state_->synopsis.find(' '))));
   }
   if (has("help")) {
     lattice::TextStream page;
     page << "gatewalk " << state_->synopsis << "\n\n" << state_->about << "\n\n";
-    for (const auto& [name, help] : state_->positional_help) {
-      const std::string argument = upper_case(name);
-      page << "  " << argument << std::string(24 - std::min<std::size_t>(22, argument.size()), ' ')
-           << help << "\n";
-    }
-    page << "\n"
+    TextTable positionals({{"", -22, 0, "", "  "}, {"", 0, 0, "", "  "}});
+    for (const auto& [name, help] : state_->positional_help)
+      positionals.row({upper_case(name), help});
+    page << positionals.text() << "\n"
          << state_->own << "\n"
          << state_->shared << "\nExample:\n  " << state_->example << "\n";
     write_text_atomically("-", page.str());
@@ -684,7 +689,7 @@ bool Options::parse(const Arguments& arguments) {
     throw UsageError("--set has no meaning here: " + state_->no_scene);
   for (const auto& name : state_->required) {
     if (!has(name))
-      throw UsageError("missing " + upper_case(name) + ": gatewalk " + state_->synopsis);
+      throw UsageError(fmt::format("missing {}: gatewalk {}", upper_case(name), state_->synopsis));
   }
   if (talk())
     for (const std::string& text : remarks) warn(text);
@@ -717,7 +722,7 @@ bool Options::parse(const Arguments& arguments) {
                (is_output || is_strict || !shapes_nothing(option.string_key))) {
       if (option.value.empty()) words.push_back("--" + option.string_key);
       for (const auto& value : option.value)
-        words.push_back("--" + option.string_key + "=" + value);
+        words.push_back(fmt::format("--{}={}", option.string_key, value));
     }
     if (option.position_key >= 0) {
       state_->canonical += " " + shell_quoted(option.value.front());
@@ -734,8 +739,8 @@ bool Options::has(const std::string& name) const { return state_->values.count(n
 std::int64_t Options::count(const std::string& name, std::int64_t low, std::int64_t high) const {
   const std::int64_t value = state_->values[name].as<Count>().value;
   if (value < low || value > high)
-    throw UsageError("--" + name + " " + std::to_string(value) + ": must be at least " +
-                     std::to_string(low) + " and at most " + std::to_string(high));
+    throw UsageError(
+        fmt::format("--{} {}: must be at least {} and at most {}", name, value, low, high));
   return value;
 }
 
@@ -876,7 +881,7 @@ void Options::draw(const std::function<Figure()>& picture) const {
     keep_old(text("figure"));
     cli::draw(text("figure"), picture(), about());
   } catch (const std::runtime_error& e) {
-    throw std::runtime_error("no figure: " + std::string(e.what()) + "; the numbers are written");
+    throw std::runtime_error(fmt::format("no figure: {}; the numbers are written", e.what()));
   }
 }
 
@@ -910,8 +915,8 @@ void ResultFolder::draw(const std::string& file, const Figure& figure) const {
     options_.keep_old(path(file));
     cli::draw(path(file), figure, options_.about());
   } catch (const std::runtime_error& e) {
-    throw std::runtime_error("no figure: " + std::string(e.what()) + "; the other files in " +
-                             folder_ + " are written");
+    throw std::runtime_error(
+        fmt::format("no figure: {}; the other files in {} are written", e.what(), folder_));
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/exported.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
@@ -27,10 +29,6 @@ std::string stem_of(const std::string& output) {
       0, lattice::has_ending(output, kBoth) ? output.size() - kBoth.size() : output.rfind('.'));
 }
 
-std::string numbers(std::size_t count, const char* what) {
-  return std::to_string(count) + " " + what;
-}
-
 /// A sparse matrix, and its states beside it.
 void write_table(const Options& options, ExportForm form, const SparseTable& table,
                  const std::vector<std::string>& rows, const std::vector<std::string>& columns,
@@ -38,8 +36,8 @@ void write_table(const Options& options, ExportForm form, const SparseTable& tab
   const std::string output = options.text("output");
   options.write(stem_of(output) + ".states.csv", states);
   if (form == ExportForm::matrix_market)
-    options.write(output, matrix_market_of(table, "gatewalk " + std::string(kVersion) + ": " +
-                                                      options.canonical()));
+    options.write(output, matrix_market_of(table, fmt::format("gatewalk {}: {}", kVersion,
+                                                              options.canonical())));
   else if (form == ExportForm::csv)
     options.write(output, csv_of(table, rows, columns, table.whole ? "count" : "probability"));
   else
@@ -68,8 +66,8 @@ ExportForm export_form(const std::string& output) {
       {".npz", ExportForm::npz},   {".dtrajs", ExportForm::trajectories}};
   for (const auto& [ending, form] : kForms)
     if (lattice::has_ending(output, ending)) return form;
-  throw UsageError("-o " + output +
-                   ": must end in .umb, .drn, .tra, .mtx, .csv, .npz, .dtrajs or .dtrajs.npz");
+  throw UsageError(fmt::format(
+      "-o {}: must end in .umb, .drn, .tra, .mtx, .csv, .npz, .dtrajs or .dtrajs.npz", output));
 }
 
 void check_files_beside(const Options& options, ExportForm form) {
@@ -83,14 +81,14 @@ void check_files_beside(const Options& options, ExportForm form) {
     for (const std::string& input : options.files_read()) {
       std::error_code missing;
       if (std::filesystem::equivalent(file, input, missing))
-        throw UsageError(file + ", which is written beside -o " + output +
-                         ", is an input: give -o another name");
+        throw UsageError(fmt::format(
+            "{}, which is written beside -o {}, is an input: give -o another name", file, output));
     }
     for (const char* other : {"json", "csv"})
       if (options.has(other) && std::filesystem::weakly_canonical(options.text(other)) ==
                                     std::filesystem::weakly_canonical(file))
-        throw UsageError("--" + std::string(other) + " " + options.text(other) +
-                         ": is written beside -o " + output + ": give it another name");
+        throw UsageError(fmt::format("--{} {}: is written beside -o {}: give it another name",
+                                     other, options.text(other), output));
     try {
       require_writable(file);
     } catch (const std::runtime_error& e) {
@@ -132,9 +130,8 @@ std::string export_field(const Options& options, ExportForm form, Json& json) {
   for (std::size_t e = 0; e < ending_labels().size(); ++e)
     json["endings"][ending_labels()[e]] = chain.ends() + static_cast<std::int64_t>(e);
   json["made_by"] = s.made_by(options);
-  return std::to_string(chain.size()) + " states, " + numbers(chain.target.size(), "transitions") +
-         "; state 0 is " + walked.start_text + ", the last " +
-         numbers(ending_labels().size(), "are endings\n");
+  return fmt::format("{} states, {} transitions; state 0 is {}, the last {} are endings\n",
+                     chain.size(), chain.target.size(), walked.start_text, ending_labels().size());
 }
 
 std::string export_gate(const Options& options, ExportForm form, Json& json) {
@@ -142,11 +139,12 @@ std::string export_gate(const Options& options, ExportForm form, Json& json) {
   const lattice::MatrixFile file = lattice::read_any_matrix(path);
   const auto type = file.types.find(options.text("type"));
   if (options.has("type") && type == file.types.end())
-    throw UsageError("--type " + options.text("type") + ": " + path + " has no such type");
+    throw UsageError(fmt::format("--type {}: {} has no such type", options.text("type"), path));
   const dynamics::Transitions& t = options.has("type") ? type->second : file.transitions;
   if (const Json states = recorded(file, path, "state_space");
       options.has("counts") && states.is_object() && states.value("probabilities", Json()) == true)
-    throw UsageError("--counts: " + path + " was made of probabilities, and has no counts");
+    throw UsageError(
+        fmt::format("--counts: {} was made of probabilities, and has no counts", path));
   const std::vector<int> order = lattice::shown_order(t.space);
   const SparseTable table = options.has("counts")
                                 ? table_of(in_order(t.counts(), order))
@@ -160,11 +158,13 @@ std::string export_gate(const Options& options, ExportForm form, Json& json) {
   write_table(options, form, table, names, names, states_csv(file, per_run));
   json = {{"states", t.space.size()}, {"transitions", table.entries.size()}};
   json["made_by"] = to_json(options.provenance());
-  std::string text = std::to_string(t.space.size()) + " states of one gate, " +
-                     numbers(table.entries.size(), "entries; the last column is trapped\n");
+  std::string text = fmt::format("{} states of one gate, {} entries; the last column is trapped\n",
+                                 t.space.size(), table.entries.size());
   if (std::count(per_run.begin(), per_run.end(), 2) > 0)
-    text += "runs are counted twice, as they were and as their mirror images: counts_per_run in " +
-            stem_of(options.text("output")) + ".states.csv says in which rows\n";
+    text += fmt::format(
+        "runs are counted twice, as they were and as their mirror images: counts_per_run in "
+        "{}.states.csv says in which rows\n",
+        stem_of(options.text("output")));
   return text;
 }
 
@@ -182,8 +182,8 @@ std::string export_trials(const Options& options, Json& json) {
   options.write(output, lattice::has_ending(output, ".npz") ? npz_of(all) : text_of(all));
   json = {{"states", space.size()}, {"trajectories", all.size()}};
   json["made_by"] = s.made_by(options);
-  return numbers(all.size(), "trajectories through ") + std::to_string(space.size()) + " states; " +
-         std::to_string(space.size()) + " is trapped\n";
+  return fmt::format("{0} trajectories through {1} states; {1} is trapped\n", all.size(),
+                     space.size());
 }
 
 }  // namespace gatewalk::cli

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/fitted.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -15,7 +17,7 @@ std::string file_of_draw(const std::string& path, std::int64_t draw) {
   const std::size_t dot = path.rfind('.'), slash = path.rfind('/');
   const std::size_t at =
       dot == path.npos || (slash != path.npos && dot < slash) ? path.size() : dot;
-  return path.substr(0, at) + "-" + std::to_string(draw) + path.substr(at);
+  return fmt::format("{}-{}{}", path.substr(0, at), draw, path.substr(at));
 }
 
 /// Endings that the table has no row of count as 0; empty if it has all.
@@ -26,7 +28,7 @@ std::string not_listed(const lattice::Observed& observed, const lattice::FieldPa
     if (!observed.listed[static_cast<std::size_t>(e.ending)] &&
         (e.ending != markov::Ending::cut_off || field.max_gates > 0))
       names += (names.empty() ? "" : ", ") + std::string(e.name);
-  return names.empty() ? names : "the counts do not list " + names + ": taken as 0";
+  return names.empty() ? names : fmt::format("the counts do not list {}: taken as 0", names);
 }
 
 /// Throws UsageError for a number of a scene that changes nothing there.
@@ -45,8 +47,10 @@ lattice::FitData of_passages(const Options& options, const Subject& s, const Ran
                              std::int64_t trials) {
   for (const lattice::NumberRange& r : ranged.ranges)
     if (r.key.starts_with("start.") || r.key.starts_with("field."))
-      throw UsageError("--free " + r.key + ": says nothing of passages, which begin as they were " +
-                       "seen to, each through one cell");
+      throw UsageError(
+          fmt::format("--free {}: says nothing of passages, which begin as they were seen to, each "
+                      "through one cell",
+                      r.key));
   if (!s.cells || s.cells->start)
     refuse(options, {"start"}, "for passages, which begin as they were seen to");
   const auto numbers = static_cast<int>(ranged.ranges.size());
@@ -57,7 +61,7 @@ lattice::FitData of_passages(const Options& options, const Subject& s, const Ran
       lattice::read_runs(path, cells, lattice::CostColumns::as_there_are);
   for (const std::string& text : runs.remarks) options.warn(path + ": " + text);
   const auto of_all = [&](std::int64_t some) {
-    return std::to_string(some) + " of " + std::to_string(runs.passages.size()) + " passages ";
+    return fmt::format("{} of {} passages ", some, runs.passages.size());
   };
   if (runs.lost > 0)
     options.warn(of_all(runs.lost) +
@@ -105,8 +109,8 @@ std::vector<std::string> files_of_draws(const Options& options, std::int64_t cou
     for (const std::string& other : taken)
       if (std::filesystem::weakly_canonical(other) ==
           std::filesystem::weakly_canonical(files.back()))
-        throw UsageError("--scenes: would write " + files.back() +
-                         ", which is read, or another output");
+        throw UsageError(fmt::format("--scenes: would write {}, which is read, or another output",
+                                     files.back()));
   }
   return files;
 }

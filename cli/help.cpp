@@ -67,8 +67,8 @@ std::string roff(const std::string& text) {
 std::string header(const std::string& title, const std::string& summary) {
   std::string upper = title;
   for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return ".TH " + roff(upper) + " 1 " + day() + " \"gatewalk " + kVersion +
-         "\" \"User commands\"\n.SH NAME\n" + roff(title) + " \\- " + roff(summary) + "\n";
+  return fmt::format(".TH {} 1 {} \"gatewalk {}\" \"User commands\"\n.SH NAME\n{} \\- {}\n",
+                     roff(upper), day(), kVersion, roff(title), roff(summary));
 }
 
 std::string exit_status() {
@@ -81,18 +81,19 @@ std::string exit_status() {
 
 std::string manual_of(const Page& page) {
   std::string text = header("gatewalk-" + page.name, page.summary);
-  text += ".SH SYNOPSIS\n.B gatewalk " + roff(page.help.synopsis) + "\n.SH DESCRIPTION\n" +
-          roff(page.help.about) + "\n";
+  text += fmt::format(".SH SYNOPSIS\n.B gatewalk {}\n.SH DESCRIPTION\n{}\n",
+                      roff(page.help.synopsis), roff(page.help.about));
   for (const auto& [name, what] : page.help.arguments)
-    text += ".TP\n.I " + roff(name) + "\n" + roff(what) + "\n";
+    text += fmt::format(".TP\n.I {}\n{}\n", roff(name), roff(what));
   text += ".SH OPTIONS\n";
   for (const CommandHelp::Option& o : page.help.options) {
     text += ".TP\n";
-    if (o.letter != 0) text += "\\fB\\-" + std::string(1, o.letter) + "\\fR, ";
-    text += "\\fB" + roff("--" + o.name) + "\\fR" +
-            (o.value.empty() ? "" : " \\fI" + roff(o.value) + "\\fR") + "\n" + roff(o.text) + "\n";
+    if (o.letter != 0) text += fmt::format("\\fB\\-{}\\fR, ", o.letter);
+    text +=
+        fmt::format("\\fB{}\\fR{}\n{}\n", roff("--" + o.name),
+                    o.value.empty() ? "" : fmt::format(" \\fI{}\\fR", roff(o.value)), roff(o.text));
   }
-  text += exit_status() + ".SH EXAMPLE\n.nf\n" + roff(page.help.example) + "\n.fi\n";
+  text += fmt::format("{}.SH EXAMPLE\n.nf\n{}\n.fi\n", exit_status(), roff(page.help.example));
   return text + ".SH SEE ALSO\n.BR gatewalk (1)\n";
 }
 
@@ -106,13 +107,13 @@ std::string manual(const std::vector<Page>& all) {
       "it, and its "
       "final gates are compared with the full dynamics.\n.SH COMMANDS\n";
   for (const Command& c : kCommandsAndGroups)
-    text += c.run ? ".TP\n.BR " + roff("gatewalk-" + std::string(c.name)) + " (1)\n" +
-                        roff(c.summary) + "\n"
-                  : ".SS " + roff(c.name) + "\n";
+    text += c.run ? fmt::format(".TP\n.BR {} (1)\n{}\n", roff("gatewalk-" + std::string(c.name)),
+                                roff(c.summary))
+                  : fmt::format(".SS {}\n", roff(c.name));
   text += exit_status() + ".SH SEE ALSO\n";
   for (std::size_t k = 0; k < all.size(); ++k)
-    text +=
-        ".BR " + roff("gatewalk-" + all[k].name) + " (1)" + (k + 1 < all.size() ? "," : "") + "\n";
+    text += fmt::format(".BR {} (1){}\n", roff("gatewalk-" + all[k].name),
+                        k + 1 < all.size() ? "," : "");
   return text;
 }
 
@@ -135,23 +136,31 @@ std::string for_bash(const std::vector<Page>& all) {
   for (const Page& page : all) {
     commands += page.name + " ";
     std::string options;
-    for (const CommandHelp::Option& o : page.help.options) options += "--" + o.name + " ";
-    cases += "    " + page.name + ") options=" + in_quotes(options) + " ;;\n";
+    for (const CommandHelp::Option& o : page.help.options) options += fmt::format("--{} ", o.name);
+    cases += fmt::format("    {}) options={} ;;\n", page.name, in_quotes(options));
   }
-  return "# Completion of gatewalk for bash.\n_gatewalk() {\n"
-         "  local current=${COMP_WORDS[COMP_CWORD]} options=\n  COMPREPLY=()\n  if [ "
-         "\"$COMP_CWORD\" = 1 ]; then\n"
-         "    mapfile -t COMPREPLY < <(compgen -W " +
-         in_quotes(commands + "help --help --version") +
-         " -- \"$current\")\n    return\n  fi\n  case ${COMP_WORDS[1]} in\n" + cases +
-         "    help) options=" + in_quotes(commands) +
-         " ;;\n  esac\n  case $current in\n"
-         "    -*) mapfile -t COMPREPLY < <(compgen -W \"$options\" -- \"$current\") ;;\n"
-         "    *)\n      [ \"${COMP_WORDS[1]}\" != help ] || mapfile -t COMPREPLY < <(compgen -W "
-         "\"$options\" -- \"$current\")\n      [ ${#COMPREPLY[@]} -gt 0 ] || mapfile -t "
-         "COMPREPLY < <(compgen -f -- \"$current\")\n      ;;\n  esac\n}\ncomplete -o filenames -F "
-         "_gatewalk "
-         "gatewalk\n";
+  return fmt::format(R"(# Completion of gatewalk for bash.
+_gatewalk() {{
+  local current=${{COMP_WORDS[COMP_CWORD]}} options=
+  COMPREPLY=()
+  if [ "$COMP_CWORD" = 1 ]; then
+    mapfile -t COMPREPLY < <(compgen -W {} -- "$current")
+    return
+  fi
+  case ${{COMP_WORDS[1]}} in
+{}    help) options={} ;;
+  esac
+  case $current in
+    -*) mapfile -t COMPREPLY < <(compgen -W "$options" -- "$current") ;;
+    *)
+      [ "${{COMP_WORDS[1]}}" != help ] || mapfile -t COMPREPLY < <(compgen -W "$options" -- "$current")
+      [ ${{#COMPREPLY[@]}} -gt 0 ] || mapfile -t COMPREPLY < <(compgen -f -- "$current")
+      ;;
+  esac
+}}
+complete -o filenames -F _gatewalk gatewalk
+)",
+                     in_quotes(commands + "help --help --version"), cases, in_quotes(commands));
 }
 
 std::string for_zsh(const std::vector<Page>& all) {
@@ -167,17 +176,17 @@ std::string for_zsh(const std::vector<Page>& all) {
     return out;
   };
   for (const Page& page : all)
-    text += "    " + in_quotes(page.name + ":" + plain(page.summary)) + "\n";
+    text += fmt::format("    {}\n", in_quotes(page.name + ":" + plain(page.summary)));
   text +=
       "  )\n  if (( CURRENT == 2 )); then\n    _describe command commands\n    return\n  fi\n"
       "  case $words[2] in\n";
   for (const Page& page : all) {
-    text += "    " + page.name + ")\n      _arguments";
+    text += fmt::format("    {})\n      _arguments", page.name);
     for (const CommandHelp::Option& o : page.help.options)
-      text +=
-          " \\\n        " +
-          in_quotes("*--" + o.name + "[" + plain(o.text) + "]" +
-                    (o.value.empty() ? "" : ":" + plain(o.value) + (o.is_file ? ":_files" : ":")));
+      text += " \\\n        " +
+              in_quotes(fmt::format(
+                  "*--{}[{}]{}", o.name, plain(o.text),
+                  o.value.empty() ? "" : ":" + plain(o.value) + (o.is_file ? ":_files" : ":")));
     text += " \\\n        '*:file:_files'\n      ;;\n";
   }
   return text + "  esac\n}\n_gatewalk \"$@\"\n";
@@ -194,16 +203,17 @@ std::string for_fish(const std::vector<Page>& all) {
     return out + "'";
   };
   for (const Page& page : all)
-    text += "complete -c gatewalk -n __fish_use_subcommand -f -a " + page.name + " -d " +
-            escaped(page.summary) + "\n";
+    text += fmt::format("complete -c gatewalk -n __fish_use_subcommand -f -a {} -d {}\n", page.name,
+                        escaped(page.summary));
   for (const Page& page : all)
     for (const CommandHelp::Option& o : page.help.options)
-      text += "complete -c gatewalk -n '__fish_seen_subcommand_from " + page.name + "' -l " +
-              o.name +
-              (o.value.empty() ? ""
-               : o.is_file     ? " -r"
-                               : " -x") +
-              " -d " + escaped(o.text) + "\n";
+      text +=
+          fmt::format("complete -c gatewalk -n '__fish_seen_subcommand_from {}' -l {}{} -d {}\n",
+                      page.name, o.name,
+                      o.value.empty() ? ""
+                      : o.is_file     ? " -r"
+                                      : " -x",
+                      escaped(o.text));
   return text;
 }
 
@@ -220,7 +230,8 @@ void write_help(const std::string& share) {
     write(fmt::format("gatewalk/schemas/{}.schema.json", of.command), schema_of(of));
   write("doc/gatewalk/results.md", results_in_markdown());
   write("man/man1/gatewalk.1", manual(all));
-  for (const Page& page : all) write("man/man1/gatewalk-" + page.name + ".1", manual_of(page));
+  for (const Page& page : all)
+    write(fmt::format("man/man1/gatewalk-{}.1", page.name), manual_of(page));
   write("bash-completion/completions/gatewalk", for_bash(all));
   write("zsh/vendor-completions/_gatewalk", for_zsh(all));
   write("fish/vendor_completions.d/gatewalk.fish", for_fish(all));

@@ -17,6 +17,7 @@
 #include "cli/kept/kept_run.h"
 #include "cli/kept/ranks.h"
 #include "cli/render/schema.h"
+#include "cli/render/text.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "cli/terminal/output.h"
@@ -38,8 +39,7 @@ void print_help(std::ostream& out) {
     if (!c.run)
       out << (is_first ? "" : "\n") << c.name << "\n";
     else
-      out << "  " << c.name << std::string(13 - std::string(c.name).size(), ' ') << c.summary
-          << "\n";
+      out << "  " << padded(c.name, -13) << c.summary << "\n";
     is_first = false;
   }
   out << "\ngatewalk COMMAND --help, or gatewalk help COMMAND, explains a command and gives an "

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "cli/parsers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
+#include <ranges>
 #include <sstream>
 #include <stdexcept>
 
@@ -19,8 +22,8 @@ namespace {
 /// "4-6=other.nc": rows whose gates are those of another matrix.
 lattice::RowMatrix parse_rows(const Options& options, const std::string& text) {
   const auto wrong = [&] {
-    return UsageError("--row " + text +
-                      ": must be rows i_y and a matrix, e.g. 4-6=other.nc or 4=other.nc");
+    return UsageError(fmt::format(
+        "--row {}: must be rows i_y and a matrix, e.g. 4-6=other.nc or 4=other.nc", text));
   };
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals + 1 == text.size()) throw wrong();
@@ -55,7 +58,7 @@ template <class Check>
 void check_option(const Options& options, const char* name, Check check) try {
   if (options.has(name)) check(options.text(name));
 } catch (const std::invalid_argument& e) {
-  throw UsageError(std::string("--") + name + " " + e.what());
+  throw UsageError(fmt::format("--{} {}", name, e.what()));
 }
 
 }  // namespace
@@ -73,16 +76,15 @@ markov::PredictOptions::Solver solver_of(const Options& options) {
   if (name == "propagate") return Solver::steps;
   if (name == "march") return Solver::rows;
   if (name == "klu") return Solver::klu;
-  throw UsageError("--solver " + name + ": must be auto, propagate, march or klu");
+  throw UsageError(fmt::format("--solver {}: must be auto, propagate, march or klu", name));
 }
 
 markov::Ending target_of(const Options& options) {
   const std::string name = options.text("target");
   if (const auto ending = lattice::ending_named(name)) return *ending;
-  std::string names;
-  for (const lattice::EndingName& e : lattice::kEndingNames)
-    names += (names.empty() ? "" : ", ") + std::string(e.key);
-  throw UsageError("--target " + name + ": must be one of " + names);
+  throw UsageError(fmt::format(
+      "--target {}: must be one of {}", name,
+      fmt::join(lattice::kEndingNames | std::views::transform(&lattice::EndingName::key), ", ")));
 }
 
 lattice::LumpingParts lumping_of(const Options& options, const dynamics::Section& section) {
@@ -95,9 +97,8 @@ lattice::LumpingParts lumping_of(const Options& options, const dynamics::Section
     const auto [next, error] = std::from_chars(at, end, parts[i]);
     const bool ends_well = i + 1 < parts.size() ? next != end && *next == ',' : next == end;
     if (error != std::errc() || !ends_well || parts[i] < 1 || parts[i] > kMost)
-      throw UsageError("--lump " + text + ": must be " + std::to_string(parts.size()) +
-                       " whole numbers from 1 to " + std::to_string(kMost) + ": parts of " +
-                       names_of(section.coordinates, ","));
+      throw UsageError(fmt::format("--lump {}: must be {} whole numbers from 1 to {}: parts of {}",
+                                   text, parts.size(), kMost, names_of(section.coordinates, ",")));
     at = next + 1;
   }
   return parts;
@@ -108,8 +109,8 @@ double number_within(const Options& options, const char* name, double usual, dou
   if (!options.has(name)) return usual;
   const double value = options.number(name);
   if (!(value >= low && value <= high))
-    throw UsageError(std::string("--") + name + " " + digits(value) + ": must lie in [" +
-                     digits(low) + ", " + digits(high) + "]");
+    throw UsageError(fmt::format("--{} {}: must lie in [{}, {}]", name, digits(value), digits(low),
+                                 digits(high)));
   return value;
 }
 
@@ -117,15 +118,14 @@ std::vector<std::string> chosen_methods(const Options& options) {
   const auto known = dynamics::chart_methods();
   if (!options.has("methods")) return {known.begin(), known.end()};
   std::vector<std::string> methods = split(options.text("methods"));
-  std::string names;
-  for (const auto name : known) names += (names.empty() ? "" : ", ") + std::string(name);
+  const std::string names = fmt::format("{}", fmt::join(known, ", "));
   if (methods.empty()) throw UsageError("--methods needs at least one of " + names);
   for (std::size_t i = 0; i < methods.size(); ++i) {
     if (std::find(known.begin(), known.end(), methods[i]) == known.end())
-      throw UsageError("--methods: no method '" + methods[i] + "'; there are " + names);
+      throw UsageError(fmt::format("--methods: no method '{}'; there are {}", methods[i], names));
     if (std::find(methods.begin(), methods.begin() + static_cast<std::ptrdiff_t>(i), methods[i]) !=
         methods.begin() + static_cast<std::ptrdiff_t>(i))
-      throw UsageError("--methods: " + methods[i] + " stands there twice");
+      throw UsageError(fmt::format("--methods: {} stands there twice", methods[i]));
   }
   return methods;
 }
@@ -142,9 +142,8 @@ lattice::RecordingOptions recording_options(const Options& options) {
     lattice::require_ending(only, wanted.across_field);
   });
   if (!options.has("only") && wanted.trials > lattice::kMostRecordings)
-    throw UsageError("--trials " + std::to_string(wanted.trials) + ": at most " +
-                     std::to_string(lattice::kMostRecordings) +
-                     " runs are recorded; pick some with --only");
+    throw UsageError(fmt::format("--trials {}: at most {} runs are recorded; pick some with --only",
+                                 wanted.trials, lattice::kMostRecordings));
   check_option(options, "replay", [](const std::string&) {
     if (!has_pages())
       throw std::invalid_argument(

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/predicted.h"
 
+#include <fmt/core.h>
+
 #include <array>
 #include <string>
 
@@ -34,9 +36,9 @@ void show(const Options& options, const Subject& s, const std::vector<Answer>& a
   std::vector<FieldArrays> arrays;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     pictures.emplace_back(
-        "prediction, " + std::to_string(shown.field.columns) + " x " +
-            std::to_string(shown.field.rows) + (s.scene ? " gates" : " cells") +
-            (s.given ? ", " + title_of(s.problem.map().section, s.starts[i]) : ""),
+        fmt::format("prediction, {} x {} {}{}", shown.field.columns, shown.field.rows,
+                    s.scene ? "gates" : "cells",
+                    s.given ? ", " + title_of(s.problem.map().section, s.starts[i]) : ""),
         answers[i].final, answers[i].*shares, answers[i].exits);
     arrays.push_back({pictures.back(), s.starts[i]});
     if (gates_95 != nullptr) arrays.back().gates_95 = answers[i].*gates_95;
@@ -87,8 +89,8 @@ int predict_from_matrix(const Options& options, const Subject& s,
   for (std::size_t k = 0; k < s.starts.size(); ++k)
     starts.push_back(ready_start(options, matrices, s.problem, *s.starts[k], s.name_of(k)));
   if ((solver == "klu" || solver == "march") && field.max_gates != 0)
-    throw UsageError("--solver " + solver + " needs field.max_gates = 0 (no limit), it is " +
-                     std::to_string(field.max_gates));
+    throw UsageError(fmt::format("--solver {} needs field.max_gates = 0 (no limit), it is {}",
+                                 solver, field.max_gates));
   const auto prediction = lattice::predict(gates, field, starts, {.solver = solver_of(options)},
                                            options.seed(), options.work());
   options.warn(text_of(prediction.left_out));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/ranged.h"
 
+#include <fmt/core.h>
+
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -29,15 +31,15 @@ std::vector<lattice::NumberRange> ranges_in_program(const Options& options, cons
     const lattice::NumberRange range = lattice::range_in(text, option);
     const std::string origin = option + " " + text;
     if (!range.key.starts_with(lattice::kParameters))
-      throw UsageError(origin + ": numbers of a program are " + std::string(lattice::kParameters) +
-                       "KEY");
+      throw UsageError(
+          fmt::format("{}: numbers of a program are {}KEY", origin, lattice::kParameters));
     for (const lattice::NumberRange& other : ranges)
       if (other.key == range.key)
-        throw UsageError(origin + ": " + range.key + " is varied already");
+        throw UsageError(fmt::format("{}: {} is varied already", origin, range.key));
     for (const std::string& set : options.overrides())
       if (set.starts_with(range.key + "="))
-        throw UsageError("--set " + set + " has no effect: " + range.key + " is varied (" + origin +
-                         ")");
+        throw UsageError(
+            fmt::format("--set {} has no effect: {} is varied ({})", set, range.key, origin));
     for (const double end : {range.low, range.high}) try {
         (void)program->with({{parameter_of(range), end}});
       } catch (const std::invalid_argument& e) {
@@ -68,20 +70,21 @@ std::optional<Ranged> ranges_of(const Options& options, const Subject& s, const 
   const std::string shown = "--" + option;
   if (given.empty()) return {};
   if (s.file || s.is_recorded())
-    throw UsageError(shown + ": is for a scene, or a program's cells, whose numbers vary; " +
-                     s.path + " is a matrix");
+    throw UsageError(
+        fmt::format("{}: is for a scene, or a program's cells, whose numbers vary; {} is a matrix",
+                    shown, s.path));
   if (std::ssize(given) > most)
-    throw UsageError(shown + ": at most " + std::to_string(most) + " numbers can vary");
+    throw UsageError(fmt::format("{}: at most {} numbers can vary", shown, most));
   if (!s.scene) return Ranged{ranges_in_program(options, s, given, shown)};
   lattice::RangedScene ranged(lattice::scene_text(s.path), s.path, options.overrides(), given,
                               shown);
   for (const lattice::NumberRange& r : ranged.ranges()) {
     if (s.given && r.key.starts_with("start."))
-      throw UsageError(shown + " " + r.key +
-                       ": varies the scene's start, and --start gives another");
+      throw UsageError(
+          fmt::format("{} {}: varies the scene's start, and --start gives another", shown, r.key));
     if (s.scene->gate.run.method == "auto" && r.key.starts_with("run."))
-      throw UsageError(shown + " " + r.key +
-                       ": varies what run.method = \"auto\" chooses; name a method");
+      throw UsageError(fmt::format(
+          "{} {}: varies what run.method = \"auto\" chooses; name a method", shown, r.key));
   }
   return Ranged{ranged.ranges(), std::move(ranged)};
 }

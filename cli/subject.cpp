@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli/subject.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <ranges>
 #include <utility>
 
 #include "cli/arguments.h"
@@ -102,16 +105,15 @@ std::vector<dynamics::Cell::Number> parameters_of(const Options& options) {
     rest = equals == std::string::npos ? "" : rest.substr(equals + 1);
     const auto value = lattice::take_number(rest);
     if (!value || !rest.empty() || !std::isfinite(*value))
-      throw UsageError("--set " + std::string(kParameters) + text + ": must be KEY=NUMBER");
+      throw UsageError(fmt::format("--set {}{}: must be KEY=NUMBER", kParameters, text));
     set.push_back({text.substr(0, equals), *value});
   }
   return set;
 }
 
 std::string names(const std::vector<dynamics::CostInfo>& costs) {
-  std::string all;
-  for (const dynamics::CostInfo& cost : costs) all += (all.empty() ? "" : ", ") + cost.key;
-  return all;
+  return fmt::format("{}",
+                     fmt::join(costs | std::views::transform(&dynamics::CostInfo::key), ", "));
 }
 
 /// The cell that carries bodies through: the one given, or that of --cell-program.
@@ -134,8 +136,8 @@ void require_same(const dynamics::Cell& cell, const lattice::CellFile& file,
   const auto differ = [&](bool differs, const std::string& what, const std::string& there,
                           const std::string& here) {
     if (differs)
-      throw UsageError("--cell-program: " + what + " " + there + " of its cell, " + here + " in " +
-                       path);
+      throw UsageError(
+          fmt::format("--cell-program: {} {} of its cell, {} in {}", what, there, here, path));
   };
   const auto name = [&](const char* what, const auto& a, const auto& b) {
     differ(names_of(a) != names_of(b), what, names_of(a), names_of(b));
@@ -143,40 +145,43 @@ void require_same(const dynamics::Cell& cell, const lattice::CellFile& file,
   name("faces", program.faces, own.faces);
   name("coordinates", program.coordinates, own.coordinates);
   if (file.types.size() > 1)
-    throw UsageError("--cell-program: is a cell of one type, " + path + " has " +
-                     std::to_string(file.types.size()));
+    throw UsageError(
+        fmt::format("--cell-program: is a cell of one type, {} has {}", path, file.types.size()));
   for (std::size_t c = 0; c < own.coordinates.size(); ++c) {
     const dynamics::Coordinate &a = program.coordinates[c], &b = own.coordinates[c];
-    differ(a.key != b.key && a.unit != b.unit, "the unit of " + a.name + " is", a.unit, b.unit);
+    differ(a.key != b.key && a.unit != b.unit, fmt::format("the unit of {} is", a.name), a.unit,
+           b.unit);
   }
   const bool symmetric = cell.is_symmetric();
   differ(symmetric != file.map.types.front().symmetric, "symmetric is",
          symmetric ? "true" : "false", symmetric ? "false" : "true");
   const auto move_of = [](const dynamics::Face& face) {
-    return "[" + std::to_string(face.di_x) + ", " + std::to_string(face.di_y) + "]";
+    return fmt::format("[{}, {}]", face.di_x, face.di_y);
   };
   for (std::size_t f = 0; f < own.faces.size(); ++f) {
     const dynamics::Face &a = program.faces[f], &b = own.faces[f];
-    differ(move_of(a) != move_of(b), "the move of face " + a.name + " is", move_of(a), move_of(b));
+    differ(move_of(a) != move_of(b), fmt::format("the move of face {} is", a.name), move_of(a),
+           move_of(b));
     if (symmetric && (a.mirror != b.mirror || a.odd != b.odd))
-      throw UsageError("--cell-program: face " + a.name +
-                       " of its cell has another mirror image, " +
-                       "or other odd coordinates, than in " + path);
+      throw UsageError(
+          fmt::format("--cell-program: face {} of its cell has another mirror image, or other odd "
+                      "coordinates, than in {}",
+                      a.name, path));
   }
   for (const dynamics::CostInfo& cost : own.costs)
     if (std::none_of(program.costs.begin(), program.costs.end(),
                      [&](const dynamics::CostInfo& c) { return c.key == cost.key; }))
-      throw UsageError("--cell-program: its cell has no cost " + cost.key + ", which " + path +
-                       " has");
+      throw UsageError(
+          fmt::format("--cell-program: its cell has no cost {}, which {} has", cost.key, path));
 }
 
 }  // namespace
 
 std::string told_by(const dynamics::Cell& cell) {
-  std::string text = "cell program: " + names_of(cell.section().faces) + "; " +
-                     names_of(cell.section().coordinates) + "; " + names(cell.section().costs);
+  std::string text = fmt::format("cell program: {}; {}; {}", names_of(cell.section().faces),
+                                 names_of(cell.section().coordinates), names(cell.section().costs));
   for (const dynamics::Cell::Number& n : cell.numbers())
-    text += "; " + n.key + " = " + digits(n.value);
+    text += fmt::format("; {} = {}", n.key, digits(n.value));
   return text;
 }
 
@@ -186,8 +191,9 @@ Subject open_program(const Options& options, const std::string& path) {
   s.how = accuracy_of(options);
   if (is_matrix(path)) {
     if (!parameters_of(options).empty())
-      throw UsageError("--set parameters: " + path +
-                       " holds runs of the program with its own: make a matrix with these");
+      throw UsageError(fmt::format(
+          "--set parameters: {} holds runs of the program with its own: make a matrix with these",
+          path));
     lattice::CellMatrix m = read_cell_matrix(options, path, overrides);
     s.cells = std::move(m.cells);
     s.file = std::move(m.file);
@@ -202,8 +208,9 @@ Subject open_program(const Options& options, const std::string& path) {
   const std::shared_ptr<const dynamics::Cell> cell = cell_of(options);
   require_same(*cell, *s.cells, path);
   if (s.file && names(cell->section().costs) != names(s.cells->map.section.costs))
-    throw UsageError("--cell-program: costs " + names(cell->section().costs) + " of its cell, " +
-                     names(s.cells->map.section.costs) + " of the runs in " + path);
+    throw UsageError(fmt::format("--cell-program: costs {} of its cell, {} of the runs in {}",
+                                 names(cell->section().costs), names(s.cells->map.section.costs),
+                                 path));
   options.depends_on(told_by(*cell));
   s.problem = lattice::problem_of(*s.cells, *s.pool);
   dynamics::CellMap& map = s.problem.cells.map;
@@ -225,7 +232,8 @@ void put_foreign_starts(Subject& s, const Options& options) {
   for (const std::string& text : options.texts("start")) {
     const auto start = foreign_start(*s.file, text);
     if (!start)
-      throw UsageError("--start " + text + ": " + s.path + " has no state of that name or number");
+      throw UsageError(
+          fmt::format("--start {}: {} has no state of that name or number", text, s.path));
     s.starts.emplace_back(start);
   }
   if (s.starts.empty()) s.starts.push_back(s.cells->start);
@@ -303,10 +311,11 @@ void require_same_size(const lattice::FieldParams& now, const lattice::FieldPara
 /// Recorded runs of another group of bodies.
 Subject other_group(const Options& options, const Subject& s, const std::string& path) {
   if (!s.is_recorded() || s.foreign || !lattice::is_of_cells(path) || has_cell(options))
-    throw UsageError("--versus " + path +
-                     ": two matrices are compared where both are of recorded runs");
+    throw UsageError(fmt::format(
+        "--versus {}: two matrices are compared where both are of recorded runs", path));
   Subject other = open_recorded(options, path);
-  if (other.foreign) throw UsageError("--versus " + path + ": is a chain that was made elsewhere");
+  if (other.foreign)
+    throw UsageError(fmt::format("--versus {}: is a chain that was made elsewhere", path));
   require_same_size(s.cells->field, other.cells->field);
   return other;
 }
@@ -332,8 +341,10 @@ std::optional<Subject> versus(const Options& options, const Subject& s) {
                "--versus KEY=VALUE"));
   }
   if (!s.scene || s.file)
-    throw UsageError("--versus KEY=VALUE is of a scene, which " + s.path +
-                     " is not; of recorded runs give another group's matrix");
+    throw UsageError(
+        fmt::format("--versus KEY=VALUE is of a scene, which {} is not; of recorded runs give "
+                    "another group's matrix",
+                    s.path));
   Subject other = s;
   other.scene = read_other(options);
   require_active(options, *other.scene);
@@ -350,12 +361,12 @@ Start parse_start(const std::string& text, const dynamics::Section& section, Sta
     std::string units;
     for (const dynamics::Coordinate& c : section.coordinates)
       units += (units.empty() ? "" : ", ") + (c.unit == "m s-1" ? "m/s" : c.unit);
-    return UsageError("--start " + text + ": must be " + (seen ? "seen, or " : "") +
-                      std::to_string(section.coordinates.size()) + " numbers " +
-                      names_of(section.coordinates, ",") + " (" + units + ")" +
-                      (faces ? ", behind a face " + names_of(section.faces, " or ") +
-                                   " and a colon unless it is the first"
-                             : ""));
+    return UsageError(
+        fmt::format("--start {}: must be {}{} numbers {} ({}){}", text, seen ? "seen, or " : "",
+                    section.coordinates.size(), names_of(section.coordinates, ","), units,
+                    faces ? fmt::format(", behind a face {} and a colon unless it is the first",
+                                        names_of(section.faces, " or "))
+                          : ""));
   };
   dynamics::Entry entry;
   const std::size_t colon = faces ? text.find(':') : std::string::npos;
@@ -445,8 +456,9 @@ Subject open_subject(const Options& options, const std::string& name) {
              of_cells = program || (loaded ? !loaded->scene : matrix && lattice::is_of_cells(path));
   if (const std::string second = second_scene(options, name);
       !second.empty() && (!matrix || of_cells))
-    throw UsageError(path + ": is no matrix of a scene; a second one, \"" + second +
-                     "\", has no meaning beside it");
+    throw UsageError(
+        fmt::format("{}: is no matrix of a scene; a second one, \"{}\", has no meaning beside it",
+                    path, second));
   if (program) return open_program(options, path);
   refuse(options, {"cell-timeout"}, "without --cell-program");
   if (!matrix) return open_scene(options, path);
@@ -464,7 +476,7 @@ lattice::PooledPrediction predict(const Options& options, Subject& s) {
 void refuse(const Options& options, std::initializer_list<const char*> names,
             const std::string& where) {
   for (const char* name : names)
-    if (options.has(name)) throw UsageError(std::string("--") + name + " has no meaning " + where);
+    if (options.has(name)) throw UsageError(fmt::format("--{} has no meaning {}", name, where));
 }
 
 bool has_cell(const Options& options) { return options.has("cell-program") || options.cell(); }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/validated.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -39,8 +41,8 @@ std::vector<lattice::PaperStart> starts_for(const Options& options, const lattic
   auto starts = options.has("start") ? given_starts(options)
                                      : std::vector<lattice::PaperStart>{lattice::own_start(scene)};
   if (starts.size() > 1)
-    throw UsageError("--observed: the counts belong to one start, --start gives " +
-                     std::to_string(starts.size()));
+    throw UsageError(
+        fmt::format("--observed: the counts belong to one start, --start gives {}", starts.size()));
   return starts;
 }
 
@@ -53,9 +55,10 @@ void warn_of_trials(const Options& options, const lattice::Observed& observed) {
   if (!observed.timed.empty())
     options.warn("--observed: times are not looked at here; gatewalk fit does");
   if (options.has("trials") && options.trials() < kTrialsPerObserved * n)
-    options.warn("--trials " + std::to_string(options.trials()) + " for " + std::to_string(n) +
-                 " observed: chance in the dynamics' own trials hides differences too; take " +
-                 std::to_string(kTrialsPerObserved * n) + " or more");
+    options.warn(
+        fmt::format("--trials {} for {} observed: chance in the dynamics' own trials hides "
+                    "differences too; take {} or more",
+                    options.trials(), n, kTrialsPerObserved * n));
 }
 
 std::optional<lattice::Observed> experiment_of(const Options& options,
