@@ -65,7 +65,8 @@ int predict_from_runs(const Options& options, Subject& s) {
     if (bounds.lost > 0.0) json["recorded"]["lost_bounds"] = to_json(bounds);
     table += table_of(*s.pool) + table_of(bounds);
   }
-  say_left_out(json, shown.field.columns, shown.field.rows);
+  json.update(
+      json_of([&](Fields& out) { describe_left_out(out, shown.field.columns, shown.field.rows); }));
   json["made_by"] = s.made_by(options);
   options.give_out(json, table);
   options.warn(too_few_gates(shown));
@@ -98,7 +99,7 @@ int predict_from_matrix(const Options& options, const Subject& s,
   const PredictedField shown{*s.file, field_shown, s.given ? s.starts : std::vector<Start>(),
                              others,  gates.exact, s.foreign};
   Json json = to_json(prediction, shown, solver);
-  say_left_out(json, field.columns, field.rows);
+  json.update(json_of([&](Fields& out) { describe_left_out(out, field.columns, field.rows); }));
   json["made_by"] = s.made_by(options);
   options.give_out(json, table_of(prediction, shown));
   options.warn(too_few_gates(field_shown));

@@ -3,7 +3,7 @@
 
 #include "cli/arguments.h"
 #include "cli/field_run.h"
-#include "cli/render/analysis.h"
+#include "cli/render/costs.h"
 #include "cli/render/exits.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"

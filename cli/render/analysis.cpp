@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <span>
 
+#include "cli/render/costs.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
@@ -18,12 +18,10 @@ namespace gatewalk::cli {
 namespace {
 
 using dynamics::Cost;
-using dynamics::kMostCosts;
 using lattice::FieldCosts;
 using lattice::Mean95;
 
 constexpr std::int64_t kFew = 50;  // walks or trials
-constexpr double kLevels[] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
 Json interval(const std::array<double, 2>& i) { return std::isfinite(i[0]) ? Json(i) : Json(); }
 
@@ -47,25 +45,6 @@ double quantile(const std::vector<double>& sorted, double level) {
   return sorted[std::min(at, sorted.size() - 1)];
 }
 
-Json quantiles_json(const std::function<double(double)>& quantile) {
-  Json json = Json::array();
-  for (const double level : kLevels) json.push_back(or_null(quantile(level)));
-  return json;
-}
-
-/// Means and standard deviations of one ending, or of all.
-struct Spent {
-  double share = 0.0;
-  dynamics::Costs mean{}, sd{};  // by Section::costs
-  [[nodiscard]] double of(Cost c) const { return mean[static_cast<std::size_t>(c)]; }
-  /// Of a disc: work of both forces per mass and way forward, J / (kg m).
-  [[nodiscard]] double cost_of_transport(double mass) const {
-    return of(Cost::forward) > 0.0
-               ? (of(Cost::propulsion_work) + of(Cost::random_work)) / (mass * of(Cost::forward))
-               : std::nan("");
-  }
-};
-
 Spent spent(const lattice::Analysis& a, std::optional<markov::Ending> ending) {
   Spent s;
   for (std::size_t c = 0; c < a.totals.totals.size(); ++c) {
@@ -76,60 +55,10 @@ Spent spent(const lattice::Analysis& a, std::optional<markov::Ending> ending) {
     s.mean[c] = m.mean();
     s.sd[c] = m.sd();
   }
+  const std::vector<double> walks = durations_of(a, ending);
+  for (std::size_t q = 0; q < s.quantiles.size(); ++q)
+    s.quantiles[q] = quantile(walks, Spent::kLevels[q]);
   return s;
-}
-
-Spent spent(const FieldCosts& costs, std::optional<markov::Ending> ending) {
-  const FieldCosts::Sums sums = ending ? costs.of(*ending) : costs.all();
-  Spent s;
-  s.share = static_cast<double>(sums.trials) / static_cast<double>(costs.all().trials);
-  for (std::size_t c = 0; c < kMostCosts; ++c) {
-    s.mean[c] = sums.mean(c);
-    s.sd[c] = sums.sd(c);
-  }
-  return s;
-}
-
-Json spent_json(const Spent& s, const ShownField& shown,
-                const std::function<double(double)>& quantile) {
-  Json json;
-  for (std::size_t c = 0; c < costs_of(shown).size(); ++c) {
-    const std::string& key = costs_of(shown)[c].key;
-    json["mean_" + key] = or_null(s.mean[c]);
-    json["sd_" + key] = or_null(s.sd[c]);
-  }
-  json["quantiles_time_s"] = quantiles_json(quantile);
-  if (shown.mass) json["cost_of_transport_J_per_kg_m"] = or_null(s.cost_of_transport(*shown.mass));
-  return json;
-}
-
-/// "crossed      25.1   18 to 33    1490      35    1400    8.1"; of other cells than a disc's,
-/// time and each further cost.
-std::string line_of(const std::string& name, const Spent& s, const ShownField& shown,
-                    const std::function<double(double)>& quantile) {
-  const auto number = [](double x) {
-    return padded(std::isfinite(x) ? fixed(x, std::abs(x) < 10     ? 3
-                                              : std::abs(x) < 1000 ? 1
-                                                                   : 0)
-                                   : "-",
-                  11);
-  };
-  const double low = quantile(0.05), high = quantile(0.95);
-  std::string line = padded(name, -11) + number(s.mean.front()) +
-                     padded(std::isfinite(low) ? fixed(low, 2) + " to " + fixed(high, 2) : "-", 18);
-  if (shown.mass)
-    line += number(s.of(Cost::propulsion_work)) + number(s.of(Cost::random_work)) +
-            number(s.of(Cost::lost)) + number(s.cost_of_transport(*shown.mass));
-  else
-    for (std::size_t c = 1; c < costs_of(shown).size(); ++c) line += " " + number(s.mean[c]);
-  return line + "\n";
-}
-std::string header_of(const ShownField& shown) {
-  std::string header = "            mean time/s     5 to 95 %/s";
-  if (shown.mass) return header + "   work/J of: push     noise   lost/J   J/(kg m)\n";
-  for (std::size_t c = 1; c < costs_of(shown).size(); ++c)
-    header += " " + padded(costs_of(shown)[c].key, 11);
-  return header + "\n";
 }
 
 std::string with_interval(const Mean95& m, int decimals) {
@@ -242,34 +171,6 @@ KolmogorovDistance duration_distance(const lattice::Analysis& a, const FieldCost
   return {distance, kSmirnov95 * std::sqrt(1.0 / n + 1.0 / m)};
 }
 
-Json to_json(const FieldCosts& costs, const ShownField& shown) {
-  Json json;
-  const auto add = [&](const char* key, std::optional<markov::Ending> ending) {
-    const auto sums = ending ? costs.of(*ending) : costs.all();
-    if (sums.trials == 0) return;
-    const auto steps = ending ? costs.durations(*ending) : costs.durations();
-    json[key] = spent_json(spent(costs, ending), shown,
-                           [&](double level) { return lattice::quantile(steps, level); });
-    json[key]["trials"] = sums.trials;
-  };
-  add("all", {});
-  for (const EndingName& e : kAllEndingNames) add(e.key, e.ending);
-  return json;
-}
-
-std::string table_of(const FieldCosts& costs, const ShownField& shown) {
-  std::string table = header_of(shown);
-  const auto add = [&](const char* name, std::optional<markov::Ending> ending) {
-    if ((ending ? costs.of(*ending) : costs.all()).trials == 0) return;
-    const auto steps = ending ? costs.durations(*ending) : costs.durations();
-    table += line_of(name, spent(costs, ending), shown,
-                     [&](double level) { return lattice::quantile(steps, level); });
-  };
-  add("all", {});
-  for (const EndingName& e : kAllEndingNames) add(e.name, e.ending);
-  return table;
-}
-
 Json to_json(const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
   Json json;
@@ -306,9 +207,7 @@ Json to_json(const AnalysedField& f) {
   const auto add = [&](const char* key, std::optional<markov::Ending> ending) {
     const Spent s = spent(a, ending);
     if (!(s.share > 0.0)) return;
-    const auto walks = durations_of(a, ending);
-    json["by_ending"][key] =
-        spent_json(s, f.shown, [&](double level) { return quantile(walks, level); });
+    json["by_ending"][key] = json_of([&](Fields& out) { describe(out, s, f.shown); });
     json["by_ending"][key]["probability"] = s.share;
     for (std::size_t c = 0; c < costs_of(f.shown).size() && ending; ++c)
       add_interval(json["by_ending"][key], "mean_" + costs_of(f.shown)[c].key,
@@ -435,16 +334,15 @@ std::string table_of(const AnalysedField& f) {
       (a.gates.why_none.empty()   ? ""
        : std::isnan(a.gates.mean) ? " (nor visits, times and costs: " + a.gates.why_none + ")"
                                   : " (no interval: " + a.gates.why_none + ")") +
-      "\n\nby the chain\n" + header_of(f.shown);
+      "\n\nby the chain\n";
+  CostTable costs(f.shown);
   const auto add = [&](const char* name, std::optional<markov::Ending> ending) {
     const Spent s = spent(a, ending);
-    if (!(s.share > 0.0)) return;
-    const auto walks = durations_of(a, ending);
-    table += line_of(name, s, f.shown, [&](double level) { return quantile(walks, level); });
+    if (s.share > 0.0) costs.add(name, s);
   };
   add("all", {});
   for (const EndingName& e : kAllEndingNames) add(e.name, e.ending);
-  table += few_runs_text(a);
+  table += costs.text() + few_runs_text(a);
   if (!std::isfinite(a.costs.front().mean) && !std::isnan(a.gates.mean))
     table += f.shown.mass
                  ? "(the file is of an older version, which kept no durations: build it again)\n"

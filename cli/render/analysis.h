@@ -50,10 +50,6 @@ struct KolmogorovDistance {
                                                    const lattice::FieldCosts& costs,
                                                    std::optional<markov::Ending> ending);
 
-/// What trials took, by how they ended: means, standard deviations, quantiles of the duration.
-[[nodiscard]] Json to_json(const lattice::FieldCosts& costs, const ShownField& shown);
-[[nodiscard]] std::string table_of(const lattice::FieldCosts& costs, const ShownField& shown);
-
 /// The target in words.
 [[nodiscard]] const char* target_name(const AnalysedField& field);
 /// The distribution function of the durations of the chain's walks with one ending, at some hundred

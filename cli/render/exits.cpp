@@ -26,20 +26,41 @@ std::vector<double> place_bounds(const ShownField& shown, std::size_t side) {
   return lattice::exit_bounds(shown.width, shown.length, shown.field, side);
 }
 
-/// A place with its bounds, to which the caller adds its shares.
-template <class Add>
-Json json_by_place(const ShownField& shown, Add add) {
-  Json json;
-  for (std::size_t side = 0; side < kSides.size(); ++side) {
-    const std::vector<double> bounds = place_bounds(shown, side);
-    Json& places = json[name_of_side(side).key] = Json::array();
-    for (std::size_t i = 0; i + 1 < bounds.size(); ++i) {
-      Json place = {{"from_m", bounds[i]}, {"to_m", bounds[i + 1]}};
-      add(place, side, i);
-      places.push_back(std::move(place));
+Label exits_label() { return {"exits", "where bodies leave the field along each of its sides"}; }
+
+/// What one or two answers say of it.
+struct Place {
+  double from = 0.0, to = 0.0;  // m
+  std::array<double, 2> share{};
+  std::array<Interval, 2> interval{};
+};
+
+/// `describe_shares` adds the shares of a place.
+template <class Describe>
+void describe_places(Fields& out, const Label& l, const std::vector<const FieldExits*>& exits,
+                     const ShownField& shown, Describe describe_shares) {
+  out.object(l, [&](Fields& sides) {
+    for (std::size_t side = 0; side < kSides.size(); ++side) {
+      const std::vector<double> bounds = place_bounds(shown, side);
+      std::vector<Place> places(bounds.size() - 1);
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        places[i] = {bounds[i], bounds[i + 1]};
+        for (std::size_t k = 0; k < exits.size() && !out.is_schema(); ++k) {
+          places[i].share[k] = (*exits[k])[side].share[i];
+          places[i].interval[k] = (*exits[k])[side].interval[i];
+        }
+      }
+      sides.list({name_of_side(side).key,
+                  side == lattice::kFarSide
+                      ? "along x, from the middle of the start's column: each column of gates"
+                      : "along y, from the near end of the field: each row of gates"},
+                 places, [&](Fields& f, const Place& place) {
+                   f.number({"from_m", "m", "where the place begins"}, place.from);
+                   f.number({"to_m", "m", "where the place ends"}, place.to);
+                   describe_shares(f, place);
+                 });
     }
-  }
-  return json;
+  });
 }
 
 double largest_share(const SideExits& side) {
@@ -59,20 +80,28 @@ FieldExits shown_exits(FieldExits exits, const markov::FinalDistribution& f) {
   return exits;
 }
 
-Json to_json(const FieldExits& exits, const ShownField& shown) {
-  return json_by_place(shown, [&](Json& place, std::size_t side, std::size_t i) {
-    place["share"] = exits[side].share[i];
-    place["interval_95"] = exits[side].interval[i];
+void describe_exits(Fields& out, const FieldExits& exits, const ShownField& shown) {
+  describe_places(out, exits_label().shared(), {&exits}, shown, [](Fields& f, const Place& p) {
+    f.estimate({"share", "1", "share of all bodies that leave there"}, p.share[0], p.interval[0],
+               "interval_95");
   });
 }
 
-Json to_json(const FieldExits& dynamics, const FieldExits& chain, const ShownField& shown) {
-  return json_by_place(shown, [&](Json& place, std::size_t side, std::size_t i) {
-    place["dynamics"] = dynamics[side].share[i];
-    place["dynamics_95"] = dynamics[side].interval[i];
-    place["exact"] = chain[side].share[i];
-    place["exact_95"] = chain[side].interval[i];
+void describe_exits(Fields& out, const FieldExits& dynamics, const FieldExits& chain,
+                    const ShownField& shown) {
+  describe_places(out, exits_label(), {&dynamics, &chain}, shown, [](Fields& f, const Place& p) {
+    f.estimate({"dynamics", "1", "share of all trials that leave there"}, p.share[0],
+               p.interval[0]);
+    f.estimate({"exact", "1", "the same share by the chain"}, p.share[1], p.interval[1]);
   });
+}
+
+Json to_json(const FieldExits& exits, const ShownField& shown) {
+  return json_of([&](Fields& out) { describe_exits(out, exits, shown); })["exits"];
+}
+
+Json to_json(const FieldExits& dynamics, const FieldExits& chain, const ShownField& shown) {
+  return json_of([&](Fields& out) { describe_exits(out, dynamics, chain, shown); })["exits"];
 }
 
 std::string table_of(const FieldExits& exits, const ShownField& shown) {

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "cli/render/fields.h"
 #include "cli/render/json_fwd.h"
 #include "cli/render/panel.h"
 #include "cli/render/shown_field.h"
@@ -14,9 +15,12 @@ namespace gatewalk::cli {
 /// A prediction's places as they are shown: 0 as in shown_endings.
 [[nodiscard]] lattice::FieldExits shown_exits(lattice::FieldExits exits,
                                               const markov::FinalDistribution& f);
-/// By side, with the names of endings: the places with their bounds (m), shares and intervals.
-[[nodiscard]] Json to_json(const lattice::FieldExits& exits, const ShownField& shown);
+/// The key "exits", by side: the places along it with their bounds, shares and intervals.
+void describe_exits(Fields& out, const lattice::FieldExits& exits, const ShownField& shown);
 /// The same of the dynamics beside a chain.
+void describe_exits(Fields& out, const lattice::FieldExits& dynamics,
+                    const lattice::FieldExits& chain, const ShownField& shown);
+[[nodiscard]] Json to_json(const lattice::FieldExits& exits, const ShownField& shown);
 [[nodiscard]] Json to_json(const lattice::FieldExits& dynamics, const lattice::FieldExits& chain,
                            const ShownField& shown);
 /// A line for each place that bodies leave at; empty if none does, and for fields too large to

@@ -40,10 +40,10 @@ Json to_json(const lattice::FieldTally& tally, const ShownField& shown,
   Json json;
   json["endings"] = endings(tally.endings);
   json["endings_95"] = endings_95(shares);
-  json["final_gates"] = small_grid(tally.final_gates);
-  json["trapped_gates"] = small_grid(tally.trapped_gates);
-  json["departed_gates"] = small_grid(tally.departed_gates);
-  say_left_out(json, shown.field.columns, shown.field.rows);
+  json.update(json_of([&](Fields& out) {
+    describe_gates(out, tally.final_gates, tally.trapped_gates, tally.departed_gates);
+    describe_left_out(out, shown.field.columns, shown.field.rows);
+  }));
   json["trials"] = tally.trials;
   json["trapped"] = tally.trapped;
   json["departed"] = tally.left_field;
@@ -95,11 +95,10 @@ Json to_json(const ShownWalks& walks, const ShownField& shown) {
   Json json;
   json["endings"] = endings(tally.endings);
   json["endings_95"] = endings_95(shares_of(tally, shown.field));
-  json["final_gates"] = small_grid(tally.final_cells);
-  json["trapped_gates"] = small_grid(tally.trapped_cells);
-  json["departed_gates"] = small_grid(tally.departed_cells);
-  say_left_out(json, static_cast<int>(tally.final_cells.cols()),
-               static_cast<int>(tally.final_cells.rows()));
+  json.update(json_of([&](Fields& out) {
+    describe_gates(out, tally.final_cells, tally.trapped_cells, tally.departed_cells);
+    describe_left_out(out, shown.field.columns, shown.field.rows);
+  }));
   json["walks"] = tally.walks;
   json["trapped"] = tally.trapped;
   json["departed"] = tally.left_field;

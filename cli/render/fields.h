@@ -32,7 +32,7 @@ struct ResultKey {
   std::string_view varies{};  // how the key is shown where it differs among results: "mean_<cost>"
   std::optional<double> least{}, most{};  // of numbers
   std::vector<std::string> words{};       // of texts: one of these
-  bool is_shared = false;                 // objects: many results have this very one
+  std::string_view shared_as{};           // objects and lists that are defined once, by this name
 };
 
 /// The key of numbers: with a unit, "1" for shares, counts and ratios.
@@ -68,10 +68,11 @@ struct Label : ResultKey {
     changed.words = std::move(allowed);
     return changed;
   }
-  /// An object that many results have: their schemas define it once, by its key.
-  [[nodiscard]] Label shared() const {
+  /// An object or a list that stands in many places: a schema defines it once, by this name (by
+  /// its key if there is none).
+  [[nodiscard]] Label shared(std::string_view name = {}) const {
     Label changed = *this;
-    changed.is_shared = true;
+    changed.shared_as = name.empty() ? key : name;
     return changed;
   }
 };
@@ -218,17 +219,13 @@ class Fields {
   /// An object for each item. The schema is told of one that is made by default, if need be.
   template <std::ranges::range Items, class Describe>
   void list(const Label& l, const Items& items, Describe describe) {
-    open(l, Shape::list, "");
-    for (const auto& item : items) {
-      next();
-      describe(*this, item);
-    }
-    if constexpr (std::default_initializable<std::ranges::range_value_t<Items>>)
-      if (is_schema() && std::ranges::empty(items)) {
-        next();
-        describe(*this, std::ranges::range_value_t<Items>{});
-      }
-    close();
+    list(l, &items, "", describe);
+  }
+  /// The list where there is one, else null.
+  template <std::ranges::range Items, class Describe>
+  void list(const Label& l, const std::optional<Items>& items, Describe describe) {
+    if (!items && !is_schema()) return leaf(l, ValueKind::text, true, {});
+    list(l, items ? &*items : nullptr, "null", describe);
   }
   /// The same with the numbers 0 to n - 1 as items.
   template <class Describe>
@@ -288,6 +285,21 @@ class Fields {
   virtual void end_either() {}
 
  private:
+  template <class Items, class Describe>
+  void list(const Label& l, const Items* items, std::string_view also, Describe describe) {
+    open(l, Shape::list, also);
+    if (items)
+      for (const auto& item : *items) {
+        next();
+        describe(*this, item);
+      }
+    if constexpr (std::default_initializable<std::ranges::range_value_t<Items>>)
+      if (is_schema() && (!items || std::ranges::empty(*items))) {
+        next();
+        describe(*this, std::ranges::range_value_t<Items>{});
+      }
+    close();
+  }
   struct Limits {
     std::string key, unit, meaning, varies;
     std::optional<Interval> limits;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/final_gates.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,56 +12,76 @@
 
 namespace gatewalk::cli {
 
+void describe(Fields& out, const lattice::Comparison& c) {
+  const auto with_floor = [&](const Field& field, double value, std::string_view floor,
+                              double by_chance) {
+    out.number(field, value);
+    out.number({floor, field.unit,
+                "floor: the best to expect, which sampling alone gives two maps of one field"},
+               by_chance);
+  };
+  with_floor({"corrcoef", "1", "Pearson correlation of the two maps, over the gates"}, c.corrcoef,
+             "corrcoef_floor", c.floor.corrcoef);
+  with_floor({"rmse_per_100", "trials per 100", "root mean squared difference, over the gates"},
+             c.rmse_per_100, "rmse_per_100_floor", c.floor.rmse_per_100);
+  with_floor({"total_variation", "1", "half the sum of the absolute differences of the shares"},
+             c.total_variation, "total_variation_floor", c.floor_total_variation);
+  out.number({"total_variation_floor_95", "1",
+              "by sampling alone, 95 of 100 total variations are at most this"},
+             c.floor_total_variation_95);
+  out.object({"p_values", "how often chance makes two maps of one field at least as different"},
+             [&](Fields& p) {
+               p.number({"chi_squared", "1", "by the chi-squared statistic"}, c.p_chi_squared);
+               p.number({"total_variation", "1", "by the total variation"}, c.p_total_variation);
+               p.number({"energy_distance", "1", "by the energy distance; null: too many gates"},
+                        c.p_energy);
+               p.count({"null_draws", "1", "random draws behind these numbers"}, c.null_draws);
+             });
+}
+
 Json to_json(const lattice::Comparison& c) {
-  Json j;
-  j["corrcoef"] = c.corrcoef;
-  j["corrcoef_floor"] = c.floor.corrcoef;
-  j["rmse_per_100"] = c.rmse_per_100;
-  j["rmse_per_100_floor"] = c.floor.rmse_per_100;
-  j["total_variation"] = c.total_variation;
-  j["total_variation_floor"] = c.floor_total_variation;
-  j["total_variation_floor_95"] = c.floor_total_variation_95;
-  j["p_values"] = {{"chi_squared", c.p_chi_squared},
-                   {"total_variation", c.p_total_variation},
-                   {"energy_distance", c.p_energy},
-                   {"null_draws", c.null_draws}};
-  return j;
+  return json_of([&](Fields& out) { describe(out, c); });
+}
+
+void describe(Fields& out, const lattice::Judgement& j) {
+  out.flag({"differs", "whether p is at most the level"}, j.differs());
+  out.number({"p", "1", "how often chance makes as large a difference in any of the statistics"},
+             j.p);
+  out.number({"level", "1", "the verdict's level of significance"}, lattice::Judgement::kLevel);
+  out.object(
+      {"p_adjusted", "p of each statistic, corrected for looking at all; null: not counted"},
+      [&](Fields& p) {
+        p.number({"total_variation", "1", "of the final gates"}, j.total_variation.p_adjusted);
+        p.number({"energy_distance", "1", "of the final gates; null also of too many gates"},
+                 j.energy.p_adjusted);
+        p.number({"chi_squared", "1", "of the final gates"}, j.chi_squared.p_adjusted);
+        p.object({"endings", "of the share of each ending"}, [&](Fields& e) {
+          for (const EndingName& name : kEndingNames)
+            e.number({name.key, "1", fmt::format("of bodies that {}", meaning_of(name))},
+                     j.endings[static_cast<std::size_t>(name.ending)].p_adjusted);
+          e.number({"never_sampled", "1", "of bodies that reach a state whose row has no run"},
+                   j.endings[static_cast<std::size_t>(markov::Ending::unsampled)].p_adjusted);
+        });
+      });
+  out.object(
+      {"total_variation_by_chance", "total variation of the final gates by chance alone"},
+      [&](Fields& f) {
+        f.number({"mean", "1", "mean of the random draws"}, j.chance_total_variation);
+        f.number({"at_95", "1", "95 of 100 draws have no more"}, j.chance_total_variation_95);
+      });
+  out.count({"null_draws", "1", "random draws behind these numbers"}, j.null_draws);
 }
 
 Json to_json(const lattice::Judgement& j) {
-  Json adjusted = {{"total_variation", j.total_variation.p_adjusted},
-                   {"energy_distance", j.energy.p_adjusted},
-                   {"chi_squared", j.chi_squared.p_adjusted}};
-  for (const EndingName& e : kEndingNames)
-    adjusted["endings"][e.key] = j.endings[static_cast<std::size_t>(e.ending)].p_adjusted;
-  adjusted["endings"]["never_sampled"] =
-      j.endings[static_cast<std::size_t>(markov::Ending::unsampled)].p_adjusted;
-  return {{"differs", j.differs()},
-          {"p", j.p},
-          {"level", lattice::Judgement::kLevel},
-          {"p_adjusted", adjusted},
-          {"total_variation_by_chance",
-           {{"mean", j.chance_total_variation}, {"at_95", j.chance_total_variation_95}}},
-          {"null_draws", j.null_draws}};
+  return json_of([&](Fields& out) { describe(out, j); });
 }
 
-namespace {
-
-template <class Cells>
-Json rows_of(const Cells& cells) {
-  Json rows = Json::array();
-  for (Eigen::Index r = 0; r < cells.rows(); ++r) {
-    Json row = Json::array();
-    for (Eigen::Index c = 0; c < cells.cols(); ++c) row.push_back(cells(r, c));
-    rows.push_back(std::move(row));
-  }
-  return rows;
+Json grid(const markov::CellCounts& cells) {
+  return json_of([&](Fields& out) { out.grid({"of", "1", "gates"}, cells); })["of"];
 }
-
-}  // namespace
-
-Json grid(const markov::CellCounts& cells) { return rows_of(cells); }
-Json grid(const markov::CellProbabilities& cells) { return rows_of(cells); }
+Json grid(const markov::CellProbabilities& cells) {
+  return json_of([&](Fields& out) { out.grid({"of", "1", "gates"}, cells); })["of"];
+}
 
 namespace {
 
@@ -79,29 +101,47 @@ FieldMap::Span span_of(const Eigen::ArrayXd& shares, Eigen::Index most) {
 
 }  // namespace
 
-Json small_grid(const markov::CellCounts& cells) {
-  return cells.size() > kMostGatesInJson ? Json() : grid(cells);
-}
-Json small_grid(const markov::CellProbabilities& cells) {
-  return cells.size() > kMostGatesInJson ? Json() : grid(cells);
+namespace {
+
+template <class Cells>
+void describe_three(Fields& out, std::string_view what, const Cells& final_gates,
+                    const Cells& trapped, const Cells& departed) {
+  const auto map = [&](std::string_view key, std::string_view who, const Cells& cells) {
+    describe_map(out, {key, "1", fmt::format("{} {}, by the gate where they end", what, who)},
+                 cells);
+  };
+  map("final_gates", "all that end", final_gates);
+  map("trapped_gates", "those that are trapped", trapped);
+  map("departed_gates", "those that leave the field", departed);
 }
 
-void say_left_out(Json& json, int columns, int rows) {
-  if (Eigen::Index{columns} * rows <= kMostGatesInJson) return;
-  json["left_out"] = "maps of " + std::to_string(columns) + " x " + std::to_string(rows) +
-                     " gates (null here; JSON has up to " + std::to_string(kMostGatesInJson) +
-                     " gates): --netcdf FILE.nc writes them";
+}  // namespace
+
+void describe_gates(Fields& out, const markov::CellCounts& final_gates,
+                    const markov::CellCounts& trapped, const markov::CellCounts& departed) {
+  describe_three(out, "number of", final_gates, trapped, departed);
 }
 
-void add_final_gates(Json& json, const markov::FinalDistribution& f) {
-  json["final_gates"] = small_grid(f.final_cells);
-  json["trapped_gates"] = small_grid(markov::trapped_cells(f));
-  json["departed_gates"] = small_grid(markov::departed_cells(f));
-  json["trapped"] = f.trapped;
-  json["departed"] = f.left_field;
-  json["cut_off"] = shown_endings(lattice::EndingShares(f.endings), f)
-                        .share[static_cast<std::size_t>(markov::Ending::cut_off)];
-  json["never_sampled"] = f.unsampled;
+void describe_final_gates(Fields& out, const markov::FinalDistribution& f) {
+  describe_three(out, "shares of", f.final_cells, markov::trapped_cells(f),
+                 markov::departed_cells(f));
+  out.number({"trapped", "1", "share of bodies that are trapped"}, f.trapped);
+  out.number({"departed", "1", "share of bodies that leave the field"}, f.left_field);
+  out.number({"cut_off", "1", "share of bodies that the limit of gates cuts off"},
+             shown_endings(lattice::EndingShares(f.endings), f)
+                 .share[static_cast<std::size_t>(markov::Ending::cut_off)]);
+  out.number({"never_sampled", "1",
+              "share that the endings leave out: it reaches a state whose row has no run"},
+             f.unsampled);
+}
+
+void describe_left_out(Fields& out, int columns, int rows) {
+  out.optional(Eigen::Index{columns} * rows > kMostGatesInJson, [&](Fields& f) {
+    f.text({"left_out", "which maps are null, as they have too many gates"},
+           fmt::format("maps of {} x {} gates (null here; JSON has up to {} gates): --netcdf "
+                       "FILE.nc writes them",
+                       columns, rows, kMostGatesInJson));
+  });
 }
 
 FieldMap::FieldMap(const markov::CellProbabilities& shares, Eigen::Index most_rows,
@@ -177,13 +217,17 @@ namespace {
 
 constexpr auto kBack = static_cast<std::size_t>(lattice::kWentBack.ending);
 
-/// `back`: some went back, which is an ending of its own then.
-template <class Values>
-Json by_name(const Values& values, bool back) {
-  Json j;
-  for (const EndingName& e : kEndingNames) j[e.key] = values[static_cast<std::size_t>(e.ending)];
-  if (back) j[lattice::kWentBack.key] = values[kBack];
-  return j;
+/// `back`: some went back, which is an ending of its own then. `put` takes key and meaning.
+template <class Put>
+void by_ending(Fields& out, const Label& l, bool back, std::string_view what, Put put) {
+  out.object(l, [&](Fields& f) {
+    const auto add = [&](const EndingName& e) {
+      put(f, Field(e.key, "1", fmt::format("{} bodies that {}", what, meaning_of(e))),
+          static_cast<std::size_t>(e.ending));
+    };
+    for (const EndingName& e : kEndingNames) add(e);
+    f.optional(back, [&](Fields&) { add(lattice::kWentBack); });
+  });
 }
 
 }  // namespace
@@ -192,14 +236,65 @@ std::string percents(double share) {
   return share > 0.0 && share < 5e-5 ? digits(100.0 * share, 2) : fixed(100.0 * share, 2);
 }
 
-Json endings(const std::array<std::int64_t, markov::kEndings>& counts) {
-  return by_name(counts, counts[kBack] > 0);
+std::string_view meaning_of(const EndingName& e) {
+  switch (e.ending) {
+    case markov::Ending::far_edge:
+      return "leave the field over its far side";
+    case markov::Ending::left_edge:
+      return "leave the field over its left side";
+    case markov::Ending::right_edge:
+      return "leave the field over its right side";
+    case markov::Ending::near_edge:
+      return "leave the field over the side that they came in by";
+    case markov::Ending::trapped:
+      return "are trapped in a gate";
+    case markov::Ending::cut_off:
+      return "have visited as many gates as field.max_gates allows, and would have gone on";
+    case markov::Ending::unsampled:
+      break;
+  }
+  return "reach a state whose row has no run";
 }
-Json endings(const std::array<double, markov::kEndings>& shares) {
-  return by_name(shares, shares[kBack] > 0.0);
+
+void describe_endings(Fields& out, const Label& l, const EndingCounts& counts) {
+  by_ending(out, l, counts[kBack] > 0, "number of",
+            [&](Fields& f, const Field& e, std::size_t at) { f.count(e, counts[at]); });
+}
+void describe_endings(Fields& out, const Label& l, const EndingChances& shares) {
+  by_ending(out, l, shares[kBack] > 0.0, "share of",
+            [&](Fields& f, const Field& e, std::size_t at) { f.number(e, shares[at]); });
+}
+void describe_endings_95(Fields& out, const Label& l, const lattice::EndingShares& shares) {
+  by_ending(out, l, shares.share[kBack] > 0.0, "95 % interval of the share of",
+            [&](Fields& f, const Field& e, std::size_t at) { f.interval(e, shares.interval[at]); });
+}
+
+namespace {
+
+void describe_intervals(Fields& out, const lattice::EndingShares& shares) {
+  describe_endings_95(out, {"endings_95", "95 % intervals of the shares by ending"}, shares);
+}
+
+}  // namespace
+
+void describe_endings(Fields& out, const EndingCounts& counts,
+                      const lattice::EndingShares& shares) {
+  describe_endings(out, {"endings", "how bodies end: the number of them by ending"}, counts);
+  describe_intervals(out, shares);
+}
+void describe_endings(Fields& out, const lattice::EndingShares& shares) {
+  describe_endings(out, {"endings", "how bodies end: the share of them by ending"}, shares.share);
+  describe_intervals(out, shares);
+}
+
+Json endings(const EndingCounts& counts) {
+  return json_of([&](Fields& out) { describe_endings(out, {"of", "them"}, counts); })["of"];
+}
+Json endings(const EndingChances& shares) {
+  return json_of([&](Fields& out) { describe_endings(out, {"of", "them"}, shares); })["of"];
 }
 Json endings_95(const lattice::EndingShares& shares) {
-  return by_name(shares.interval, shares.share[kBack] > 0.0);
+  return json_of([&](Fields& out) { describe_intervals(out, shares); })["endings_95"];
 }
 
 lattice::EndingShares shown_endings(lattice::EndingShares shares,

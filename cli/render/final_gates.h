@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "cli/render/fields.h"
 #include "cli/render/json_fwd.h"
 #include "lattice/statistics/ending_shares.h"
 #include "markov/predict.h"
@@ -18,21 +19,31 @@ struct Judgement;
 
 namespace gatewalk::cli {
 
+/// The keys of a comparison of two maps of final gates.
+void describe(Fields& out, const lattice::Comparison& c);
 [[nodiscard]] Json to_json(const lattice::Comparison& c);
-/// What one test of all statistics counted.
+/// The keys of one test of all statistics.
+void describe(Fields& out, const lattice::Judgement& j);
 [[nodiscard]] Json to_json(const lattice::Judgement& j);
 [[nodiscard]] Json grid(const markov::CellCounts& cells);
 [[nodiscard]] Json grid(const markov::CellProbabilities& cells);
 
-/// What commands with --netcdf have in JSON: nothing (null) of fields of more gates than this.
+/// A map of a command with --netcdf: null in fields of more gates than kMostGatesInJson.
 inline constexpr Eigen::Index kMostGatesInJson = 100'000;
-[[nodiscard]] Json small_grid(const markov::CellCounts& cells);
-[[nodiscard]] Json small_grid(const markov::CellProbabilities& cells);
-/// Says in the result that such maps are left out, if they are.
-void say_left_out(Json& json, int columns, int rows);
-
-/// Where what was predicted ends: in all, trapped, departed; and the sums.
-void add_final_gates(Json& json, const markov::FinalDistribution& f);
+template <class Cells>
+void describe_map(Fields& out, const Field& f, const Cells& cells) {
+  if (cells.size() > kMostGatesInJson)
+    out.no_grid(f);
+  else
+    out.grid(f, cells);
+}
+/// The keys "final_gates", "trapped_gates" and "departed_gates": counts, or shares of all.
+void describe_gates(Fields& out, const markov::CellCounts& final_gates,
+                    const markov::CellCounts& trapped, const markov::CellCounts& departed);
+/// The same of a prediction, and the shares "trapped", "departed", "cut_off" and "never_sampled".
+void describe_final_gates(Fields& out, const markov::FinalDistribution& f);
+/// The key "left_out" where a field has so many gates that its maps are null.
+void describe_left_out(Fields& out, int columns, int rows);
 
 /// What of a field is shown: all of it, or, of fields too large, the part that holds all but next
 /// to nothing, in blocks if need be.
@@ -75,9 +86,20 @@ struct FieldMap {
 using lattice::EndingName;
 using lattice::kAllEndingNames;
 using lattice::kEndingNames;
+/// What bodies do that end so: "are trapped in a gate".
+[[nodiscard]] std::string_view meaning_of(const EndingName& ending);
+using EndingCounts = std::array<std::int64_t, markov::kEndings>;
+using EndingChances = std::array<double, markov::kEndings>;
+/// An object with a key for each ending: counts, shares of all bodies, or 95 % intervals of these.
+void describe_endings(Fields& out, const Label& l, const EndingCounts& counts);
+void describe_endings(Fields& out, const Label& l, const EndingChances& shares);
+void describe_endings_95(Fields& out, const Label& l, const lattice::EndingShares& shares);
+/// The keys "endings" and "endings_95".
+void describe_endings(Fields& out, const EndingCounts& counts, const lattice::EndingShares& shares);
+void describe_endings(Fields& out, const lattice::EndingShares& shares);
 /// {"crossed": ..., "left_side": ..., ...}: counts, shares, or [low, high] (null: no interval).
-[[nodiscard]] Json endings(const std::array<std::int64_t, markov::kEndings>& counts);
-[[nodiscard]] Json endings(const std::array<double, markov::kEndings>& shares);
+[[nodiscard]] Json endings(const EndingCounts& counts);
+[[nodiscard]] Json endings(const EndingChances& shares);
 [[nodiscard]] Json endings_95(const lattice::EndingShares& shares);
 /// A prediction's endings as they are shown: 0 where the share is no more than rounding and walks
 /// not finished may make.

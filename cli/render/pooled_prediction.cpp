@@ -22,11 +22,15 @@ void add_to(Json& json, const lattice::StartAnswer& a, const ShownField& shown) 
   const lattice::EndingShares told = shown_endings(a.endings, f);
   json["endings"] = endings(told.share);
   json["endings_95"] = endings_95(told);
-  add_final_gates(json, f);
+  json.update(json_of([&](Fields& out) { describe_final_gates(out, f); }));
   json["still_walking"] = f.remainder;
   json["exits"] = cli::to_json(shown_exits(a.exits, f), shown);
-  json["final_gates_95"] = {{"low", small_grid(a.gates_95[0])},
-                            {"high", small_grid(a.gates_95[1])}};
+  json.update(json_of([&](Fields& out) {
+    out.object({"final_gates_95", "95 % intervals of the final gates"}, [&](Fields& g) {
+      describe_map(g, {"low", "1", "their lower ends"}, a.gates_95[0]);
+      describe_map(g, {"high", "1", "their upper ends"}, a.gates_95[1]);
+    });
+  }));
   json["answer_from"] = a.from_trials ? "trials" : "chain";
   json["error_95"] = a.error.total_variation;
   json["corrcoef_95"] = a.error.corrcoef;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/json_fwd.h"
 #include "cli/render/shown_field.h"
 #include "lattice/pool/pooled_prediction.h"

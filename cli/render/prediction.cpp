@@ -24,7 +24,7 @@ void add_to(Json& json, const lattice::StartPrediction& s, const ShownField& sho
   json["matrix_sampling"] = {{"replicates", s.replicates},
                              {"total_variation_mean", s.mean_total_variation},
                              {"total_variation_95", s.total_variation_95}};
-  add_final_gates(json, f);
+  json.update(json_of([&](Fields& out) { describe_final_gates(out, f); }));
   json["exits"] = cli::to_json(shown_exits(s.exits, f), shown_field);
   json["still_walking"] = f.remainder;
   json["rounding_at_most"] = f.rounding;

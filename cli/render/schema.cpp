@@ -54,8 +54,8 @@ class SchemaFields final : public Fields {
     node.form = shape == Shape::list ? Node::Form::list : Node::Form::object;
     node.also = also;
     Node* inside = &node;
-    if (key.is_shared) {
-      node.shared = key.key;
+    if (!key.shared_as.empty()) {
+      node.shared = key.shared_as;
       auto& defined = shared_[node.shared];
       if (!defined) defined = std::make_unique<Node>();
       inside = defined.get();
@@ -257,8 +257,9 @@ std::string schema_text(const Node& node, const std::string& indent, bool says_w
             : node.also == "number" ? std::string(R"("type": ["object", "number", "null"])")
                                     : R"("type": ["object", ")" + node.also + "\"]") +
            ",\n" + keys_text(node, indent) + indent + "}";
-  return "{" + about + "\"type\": \"array\", \"items\": {\"type\": \"object\",\n" +
-         keys_text(node, indent) + indent + "}}";
+  return "{" + about + "\"type\": " +
+         (node.also.empty() ? std::string("\"array\"") : "[\"array\", \"" + node.also + "\"]") +
+         ", \"items\": {\"type\": \"object\",\n" + keys_text(node, indent) + indent + "}}";
 }
 
 // ---- As lines ----
@@ -308,9 +309,10 @@ std::string constraints_of(const Node& node) {
 
 std::string type_of_key(const Node& key) {
   if (key.form == Node::Form::leaf) return type_words(key) + constraints_of(key);
-  if (key.form == Node::Form::list) return "list";
-  if (key.also.empty()) return "object";
-  return "object or " + (key.also == "string" ? "text" : key.also);
+  const std::string also = key.also == "string" ? "text" : key.also;
+  return fmt::format("{}{}{}", key.form == Node::Form::list ? "list" : "object",
+                     also.empty() ? "" : " or " + also,
+                     key.shared.empty() || key.shared == key.key ? "" : ": " + key.shared);
 }
 
 void add_lines(const Node& node, const std::string& before, std::vector<KeyLine>& lines) {

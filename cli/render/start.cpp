@@ -6,34 +6,59 @@
 
 #include "cli/render/json.h"
 #include "cli/render/text.h"
+#include "dynamics/disc/disc_section.h"
 
 namespace gatewalk::cli {
 
 namespace {
 
-/// The name that an entry goes by; its face, but the first goes without saying.
-Json with_face(const dynamics::Section& section, const dynamics::Entry& entry) {
-  Json json = Json::object();
-  if (const std::string name = name_of(section, entry); !name.empty()) json["name"] = name;
-  if (entry.face != 0) json["face"] = section.faces[static_cast<std::size_t>(entry.face)].name;
-  return json;
+/// `put` takes the key of a coordinate and its number.
+template <class Put>
+void describe_entry(Fields& out, const dynamics::Section& of, const dynamics::Entry& entry,
+                    std::string_view what, Put put) {
+  const dynamics::Section& section = out.is_schema() ? dynamics::disc_section() : of;
+  const std::string name = out.is_schema() ? "" : name_of(section, entry);
+  out.optional(!name.empty(), [&](Fields& f) {
+    f.text({"name", "of the state that the body enters in, where states have names"}, name);
+  });
+  out.optional(entry.face != 0, [&](Fields& f) {
+    f.text({"face", "by which face of the cell the body enters, where it is not the first one"},
+           section.faces[static_cast<std::size_t>(entry.face)].name);
+  });
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+    put(Field(section.coordinates[axis].key, "its own", what).varying("<coordinate>"), axis);
 }
 
 }  // namespace
 
+void describe(Fields& out, const dynamics::Section& section, const dynamics::Entry& entry) {
+  describe_entry(out, section, entry, "a coordinate of the entry: its place or a speed",
+                 [&](const Field& f, std::size_t axis) { out.number(f, entry.at[axis]); });
+}
+
+void describe(Fields& out, const dynamics::Section& section, const dynamics::StateRange& range) {
+  describe_entry(out, section, range.middle(), "a coordinate of the entries, from and to",
+                 [&](const Field& f, std::size_t axis) { out.interval(f, range.at[axis]); });
+}
+
+void describe_start(Fields& out, const Label& l, const dynamics::Section& section,
+                    const Start& start) {
+  out.object_or_text(l.shared("start"),
+                     start ? std::nullopt : std::optional<std::string>("as seen"),
+                     [&](Fields& f) { describe(f, section, start.value_or(dynamics::Entry())); });
+}
+
+void describe_start(Fields& out, const dynamics::Section& section, const Start& start) {
+  describe_start(out, {"start", "how bodies enter the field; \"as seen\": as they were recorded"},
+                 section, start);
+}
+
 Json to_json(const dynamics::Section& section, const Start& start) {
-  if (!start) return "as seen";
-  Json json = with_face(section, *start);
-  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
-    json[section.coordinates[axis].key] = start->at[axis];
-  return json;
+  return json_of([&](Fields& out) { describe_start(out, section, start); })["start"];
 }
 
 Json to_json(const dynamics::Section& section, const dynamics::StateRange& range) {
-  Json json = with_face(section, range.middle());
-  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
-    json[section.coordinates[axis].key] = range.at[axis];
-  return json;
+  return json_of([&](Fields& out) { describe(out, section, range); });
 }
 
 std::string title_of(const dynamics::Section& section, const Start& start) {
@@ -74,11 +99,24 @@ StartTexts::StartTexts(const dynamics::Section& section, const std::vector<dynam
         });
 }
 
+void describe_start_state(Fields& out, const lattice::ChainStart& start,
+                          const dynamics::StateSpace& space) {
+  out.object(
+      Label("start_state", "the state of the chain in which bodies start").shared(),
+      [&](Fields& f) {
+        const int state = start.start.input;
+        f.count({"input", "1", "number of the state"},
+                f.is_schema() ? 1 : lattice::shown_number(space, state) + 1);
+        f.count(Field("counted_from", "1", "the first state's number").at_least(1).at_most(1), 1);
+        f.text({"bin", "the entries that the state stands for"},
+               f.is_schema() ? "" : text_of(space.section(), space.range(state)));
+        f.flag({"clamped", "the start lies outside all bins: the nearest one is taken"},
+               start.clamped);
+      });
+}
+
 Json to_json(const lattice::ChainStart& start, const dynamics::StateSpace& space) {
-  return {{"input", lattice::shown_number(space, start.start.input) + 1},
-          {"counted_from", 1},
-          {"bin", text_of(space.section(), space.range(start.start.input))},
-          {"clamped", start.clamped}};
+  return json_of([&](Fields& out) { describe_start_state(out, start, space); })["start_state"];
 }
 
 std::string start_text(const dynamics::Section& section, const dynamics::Entry& start) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/json_fwd.h"
 #include "lattice/gate_chain.h"
 
@@ -14,8 +15,14 @@ namespace gatewalk::cli {
 /// Where bodies start that are asked about: an entry, or (none) as bodies were seen to enter first.
 using Start = std::optional<dynamics::Entry>;
 
-/// {"d_m", "vx_m_per_s", "vy_m_per_s"}: by the coordinates' keys; with "face" where it is not the
-/// first one. Of a range [from, to] each. "as seen" where there is no entry.
+/// The keys of an entry: its coordinates' own, with "face" where it is not the first one, and its
+/// "name" where it has one. Of a range [from, to] each.
+void describe(Fields& out, const dynamics::Section& section, const dynamics::Entry& entry);
+void describe(Fields& out, const dynamics::Section& section, const dynamics::StateRange& range);
+/// An object of these, the key "start" of most results; "as seen" where there is no entry.
+void describe_start(Fields& out, const Label& l, const dynamics::Section& section,
+                    const Start& start);
+void describe_start(Fields& out, const dynamics::Section& section, const Start& start);
 [[nodiscard]] Json to_json(const dynamics::Section& section, const Start& start);
 [[nodiscard]] Json to_json(const dynamics::Section& section, const dynamics::StateRange& range);
 /// "start d 4 m, vx 5 m/s, vy 10 m/s"; with the face's name where it is not the first one.
@@ -29,7 +36,9 @@ struct StartTexts {
 };
 [[nodiscard]] std::string start_text(const dynamics::Section& section,
                                      const dynamics::Entry& start);
-/// {"input": from 1, "bin": its edges in words, "clamped"}
+/// The key "start_state": the state of a chain in which a body starts.
+void describe_start_state(Fields& out, const lattice::ChainStart& start,
+                          const dynamics::StateSpace& space);
 [[nodiscard]] Json to_json(const lattice::ChainStart& start, const dynamics::StateSpace& space);
 
 }  // namespace gatewalk::cli

@@ -169,12 +169,15 @@ TEST(FinalGates, SharesWithinRoundingAreNone) {
 TEST(FinalGates, LargeFieldsAreLeftOutOfJson) {
   const CellProbabilities small = CellProbabilities::Zero(100, 1000),
                           large = CellProbabilities::Zero(101, 1000);
-  EXPECT_EQ(small_grid(small), grid(small));
-  EXPECT_TRUE(small_grid(large).is_null());
-  Json json = Json::object();
-  say_left_out(json, 1000, 100);
+  Json json = json_of([&](Fields& out) {
+    describe_map(out, {"small", "1", "a map"}, small);
+    describe_map(out, {"large", "1", "a map"}, large);
+  });
+  EXPECT_EQ(json["small"], grid(small));
+  EXPECT_TRUE(json["large"].is_null());
+  json = json_of([](Fields& out) { describe_left_out(out, 1000, 100); });
   EXPECT_TRUE(json.empty());
-  say_left_out(json, 1000, 101);
+  json = json_of([](Fields& out) { describe_left_out(out, 1000, 101); });
   EXPECT_NE(json.at("left_out").get<std::string>().find("--netcdf"), std::string::npos);
 }
 
