@@ -910,6 +910,11 @@ void ResultFolder::write(const std::string& csv_file, const std::string& csv,
   options_.write(path(json_file), json_text(json));
 }
 
+void ResultFolder::write(const std::string& csv_file, const std::string& csv,
+                         const std::string& json_file, const Description& describe) const {
+  write(csv_file, csv, json_file, json_of(describe));
+}
+
 void ResultFolder::draw(const std::string& file, const Figure& figure) const {
   try {
     options_.keep_old(path(file));

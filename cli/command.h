@@ -252,6 +252,15 @@ class ResultFolder {
   /// beside new numbers.
   void write(const std::string& csv_file, const std::string& csv, const std::string& json_file,
              const Json& json) const;
+  void write(const std::string& csv_file, const std::string& csv, const std::string& json_file,
+             const Description& describe) const;
+  /// The same of a result that is described.
+  template <class Result>
+  requires requires(Fields& out, const Result& result) { describe(out, result); }
+  void write(const std::string& csv_file, const std::string& csv, const std::string& json_file,
+             const Result& result) const {
+    write(csv_file, csv, json_file, Description([&](Fields& out) { describe(out, result); }));
+  }
   /// Throws std::runtime_error, which says that the numbers are written, when gnuplot fails.
   void draw(const std::string& file, const Figure& figure) const;
   [[nodiscard]] std::string path(const std::string& file) const;

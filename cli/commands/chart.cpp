@@ -6,7 +6,6 @@
 
 #include "cli/command.h"
 #include "cli/parsers.h"
-#include "cli/render/json.h"
 #include "cli/render/work_precision.h"
 #include "cli/terminal/interrupt.h"
 #include "dynamics/base/work.h"
@@ -68,20 +67,18 @@ int run_chart(const Arguments& arguments) {
   require_chartable(options, paths);
   const ResultFolder folder(options, files);
 
-  std::vector<dynamics::WorkPrecision> charts;
-  Json json;
-  json["machine"] = machine();
-  json["scenes"] = Json::array();
+  ChartResult result;
+  const auto& charts = result.charts;
   std::string table;
   try {
     for (const std::string& path : paths) {
       const lattice::Scene scene = lattice::read_scene(path, options.overrides());
       how.label = label_of(path);
-      charts.push_back(dynamics::work_precision(scene.gate, scene.start, how, options.work()));
-      json["scenes"].push_back(to_json(charts.back()));
-      json["scenes"].back()["made_by"] = to_json(options.provenance(scene));
+      result.charts.push_back(
+          dynamics::work_precision(scene.gate, scene.start, how, options.work()));
+      result.made_by.push_back(options.provenance(scene));
       table += (table.empty() ? "" : "\n") + table_of(charts.back());
-      folder.write("chart.csv", csv_of(charts), "chart.json", json);
+      folder.write("chart.csv", csv_of(charts), "chart.json", result);
     }
   } catch (const Interrupted&) {
     if (charts.empty()) throw;
@@ -92,7 +89,7 @@ int run_chart(const Arguments& arguments) {
                     folder.path("chart.csv"), charts.size(), paths.size()));
     return kStopped;
   }
-  options.give_out(json, table + "\n" + work_precision_legend(how.rounds));
+  options.give_out(result, table + "\n" + work_precision_legend(how.rounds));
   folder.draw("chart.svg", figure_of(charts));
   bool clean = true;
   for (const auto& chart : charts) {

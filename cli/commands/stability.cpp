@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "cli/command.h"
-#include "cli/render/json.h"
 #include "cli/render/stability.h"
 #include "cli/render/text.h"
 #include "dynamics/base/work.h"
@@ -33,15 +32,14 @@ int run_stability(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   const ResultFolder folder(options, written);
 
-  const auto maps =
-      dynamics::run_maps({.quick = options.has("quick"), .seed = options.seed()}, options.work());
-
-  Json json = to_json(maps);
-  json["made_by"] = to_json(options.provenance());
-  folder.write("stability.csv", csv_of(maps), "stability.json", json);
+  const StabilityResult result{
+      dynamics::run_maps({.quick = options.has("quick"), .seed = options.seed()}, options.work()),
+      options.provenance()};
+  const auto& maps = result.maps;
+  folder.write("stability.csv", csv_of(maps), "stability.json", result);
   for (std::size_t kind = 0; kind < figures.size(); ++kind)
     folder.draw(figures[kind], figure_of(std::span(maps).subspan(kind * methods, methods)));
-  options.give_out(json, table_of(maps));
+  options.give_out(result, table_of(maps));
   double slowest = 0.0;
   for (const auto& m : maps)
     slowest = std::max(slowest, *std::max_element(m.seconds.begin(), m.seconds.end()));

@@ -4,6 +4,8 @@
 #include "cli/render/gate_runs.h"
 #include "cli/render/rare.h"
 #include "cli/render/schema.h"
+#include "cli/render/stability.h"
+#include "cli/render/work_precision.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -23,7 +25,9 @@ RareResult rare() {
 }  // namespace
 
 const std::vector<ResultOf>& results() {
-  static const std::vector<ResultOf> all{of<GateResult>("gate"), of("rare", rare())};
+  static const std::vector<ResultOf> all{of("chart", ChartResult{{{}}, {{}}}),
+                                         of<GateResult>("gate"), of("rare", rare()),
+                                         of<StabilityResult>("stability")};
   return all;
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/stability.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "cli/render/csv.h"
-#include "cli/render/json.h"
 #include "cli/render/text.h"
-#include "lattice/text/text_stream.h"
+#include "cli/render/text_table.h"
 
 namespace gatewalk::cli {
 
@@ -15,35 +16,45 @@ using dynamics::Verdict;
 
 namespace {
 
-Json to_json(const FinishedMap& m) {
-  Json j;
-  j["map"] = m.map.name;
-  j["method"] = m.map.method;
-  j["x"] = {{"name", m.map.x.name}, {"values", m.map.x.values}};
-  j["y"] = {{"name", m.map.y.name}, {"values", m.map.y.values}};
-  j["status"] = Json::array();
-  for (std::size_t iy = 0; iy < m.map.y.values.size(); ++iy) {
-    Json row = Json::array();
-    for (std::size_t ix = 0; ix < m.map.x.values.size(); ++ix)
-      row.push_back(dynamics::name_of(m.at(ix, iy).verdict));
-    j["status"].push_back(std::move(row));
-  }
-  j["borders"] = Json::array();
-  for (const auto& b : dynamics::borders(m.map))
-    j["borders"].push_back({{"label", b.label}, {"x", b.x}, {"y", b.y}});
-  return j;
+void describe(Fields& out, const dynamics::MapAxis& axis) {
+  out.text({"name", "the number that varies along this axis, with its unit"}, axis.name);
+  out.numbers({"values", "its own", "values of this number"}, axis.values);
+}
+
+void describe(Fields& out, const FinishedMap& m) {
+  const auto& [map, points, seconds] = m;
+  out.text({"map", "name of the map"}, map.name);
+  out.text({"method", "run.method of the trials"}, map.method);
+  out.object({"x", "the axis to the right"}, [&](Fields& f) { describe(f, map.x); });
+  out.object({"y", "the axis upwards"}, [&](Fields& f) { describe(f, map.y); });
+  TextRows status(map.y.values.size());
+  for (std::size_t iy = 0; iy < status.size(); ++iy)
+    for (std::size_t ix = 0; ix < map.x.values.size(); ++ix)
+      status[iy].emplace_back(std::string(dynamics::name_of(m.at(ix, iy).verdict)));
+  out.text_rows({"status", "the worst that the trials of each point showed: a row for each y"},
+                status);
+  out.list({"borders", "borders that theory predicts, as lines"},
+           points.empty() ? std::vector<dynamics::Border>() : dynamics::borders(map),
+           [](Fields& f, const dynamics::Border& b) {
+             f.text({"label", "formula of the border"}, b.label);
+             f.numbers({"x", "its own", "places of its points on the axis x"}, b.x);
+             f.numbers({"y", "its own", "places of its points on the axis y"}, b.y);
+           });
 }
 
 }  // namespace
 
-Json to_json(const std::vector<FinishedMap>& maps) {
-  Json json;
-  json["trials_per_point"] = dynamics::kTrialsPerPoint;
-  json["work_granted_per_point"] = dynamics::kMostWorkPerPoint;
-  json["holds_share"] = dynamics::Health::kPermittedHolds;
-  json["maps"] = Json::array();
-  for (const FinishedMap& m : maps) json["maps"].push_back(to_json(m));
-  return json;
+void describe(Fields& out, const StabilityResult& result) {
+  const auto& [maps, made_by] = result;
+  out.count({"trials_per_point", "1", "trials of each point"}, dynamics::kTrialsPerPoint);
+  out.count({"work_granted_per_point", "1",
+             "steps or evaluations that all trials of a point may take; beyond, it is stuck"},
+            dynamics::kMostWorkPerPoint);
+  out.number({"holds_share", "1", "share of steps that may be forced to hold; beyond, it is stuck"},
+             dynamics::Health::kPermittedHolds);
+  out.list({"maps", "one for each pair of axes and each method"}, maps,
+           [](Fields& f, const FinishedMap& m) { describe(f, m); });
+  describe_made_by(out, made_by);
 }
 
 std::string csv_of(const std::vector<FinishedMap>& maps) {
@@ -73,21 +84,19 @@ std::string table_of(const std::vector<FinishedMap>& maps) {
     if (std::any_of(maps.begin(), maps.end(),
                     [v](const FinishedMap& m) { return m.count(static_cast<Verdict>(v)) > 0; }))
       seen.push_back(static_cast<Verdict>(v));
-  lattice::TextStream out;
-  out << "Points of each map by the worst that their " << dynamics::kTrialsPerPoint
-      << " trials showed\n\n"
-      << padded("", -35);
-  for (const Verdict v : seen) out << padded(std::string(dynamics::name_of(v)), 13);
-  out << "\n";
+  std::vector<TextColumn> columns{{"", -24}, {"", -11}};
+  for (const Verdict v : seen) columns.push_back({std::string(dynamics::name_of(v)), 13});
+  TextTable table(columns);
   for (const FinishedMap& m : maps) {
-    out << padded(std::string(m.map.name), -24) << padded(m.map.method, -11);
+    std::vector<TextCell> cells{m.map.name, m.map.method};
     for (const Verdict v : seen) {
       const std::int64_t n = m.count(v);
-      out << padded(n > 0 ? std::to_string(n) : ".", 13);
+      cells.push_back(n > 0 ? TextCell(n) : ".");
     }
-    out << "\n";
+    table.row(cells);
   }
-  return out.str();
+  return fmt::format("Points of each map by the worst that their {} trials showed\n\n{}",
+                     dynamics::kTrialsPerPoint, table.text());
 }
 
 std::string figure_name(const dynamics::StabilityMap& map) {

@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Maps of where methods break, as JSON, CSV, a table and figures.
+/// Maps of where methods break, as a result, CSV, a table and figures.
 
 #include <span>
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 #include "dynamics/disc/study/stability.h"
 
 namespace gatewalk::cli {
 
-/// Without "made_by": every map with its axes, verdicts (y x x) and borders, and what its points
-/// were granted.
-[[nodiscard]] Json to_json(const std::vector<dynamics::FinishedMap>& maps);
+/// The result of `stability`.
+struct StabilityResult {
+  std::vector<dynamics::FinishedMap> maps;
+  Provenance made_by;
+};
+void describe(Fields& out, const StabilityResult& result);
 /// A line for each point.
 [[nodiscard]] std::string csv_of(const std::vector<dynamics::FinishedMap>& maps);
 /// How many points of each map got each verdict.

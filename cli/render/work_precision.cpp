@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/work_precision.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "cli/render/csv.h"
-#include "cli/render/figure.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
-#include "cli/render/provenance.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 #include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
@@ -70,77 +70,118 @@ std::string csv_of(const ChartPoint& p, const WorkPrecision& chart) {
   return out.str();
 }
 
-// ---- JSON ----
+// ---- Result ----
 
-Json to_json(const WeakError& e, double limit) {
+void describe(Fields& out, const WeakError& e, double limit) {
   const Shown tv = shown(e.total_variation, limit);
-  Json j;
-  j["total_variation"] = tv.value;
-  j["standard_error"] = tv.below ? std::nan("") : e.standard_error;
-  j["chance"] = e.chance;
-  j["trials_changed"] = e.changed;
-  if (tv.below) j["below"] = limit;
-  return j;
+  out.number({"total_variation", "1",
+              "total variation from the reference; null where there is none or it is below"},
+             tv.value);
+  out.number({"standard_error", "1", "standard error of this total variation"},
+             tv.below ? kUnknown : e.standard_error);
+  out.number({"chance", "1", "total variation that chance alone would show"}, e.chance);
+  out.count({"trials_changed", "1", "trials that ended otherwise than by the reference"},
+            e.changed);
+  out.optional(tv.below, [&](Fields& f) {
+    f.number({"below", "1", "the least total variation that can be told from none"}, limit);
+  });
 }
 
-Json to_json(const StrongError& e, const WorkPrecision& chart, bool of_reference) {
-  Json j;
-  j["compared"] = e.compared;
-  j["parted"] = e.parted;
-  j["parted_share"] = e.parted_share();
-  j["trapped_in_both"] = e.trapped;
-  const auto add = [&](const char* name, double value, double limit) {
-    const Shown median = shown(value, of_reference ? 0.0 : limit);
-    j[name]["median"] = median.below ? Json{{"below", limit}} : Json(median.value);
+void describe(Fields& out, const StrongError& e, const WorkPrecision& chart, bool of_reference) {
+  out.count({"compared", "1", "trials that took the same course in both runs"}, e.compared);
+  out.count({"parted", "1", "trials that took another course: they count as infinitely far"},
+            e.parted);
+  out.number({"parted_share", "1", "share of these among the trials that left the gate"},
+             e.parted_share());
+  out.count({"trapped_in_both", "1", "trials without an exit in both runs"}, e.trapped);
+  const auto median = [&](const Field& of, double value, double limit) {
+    const Shown m = shown(value, of_reference ? 0.0 : limit);
+    out.object(Label(of.key, of.meaning), [&](Fields& f) {
+      f.number_or_object(
+          {"median", of.unit, "median over the trials that left the gate; null: half have parted"},
+          m.below ? std::nullopt : std::optional(m.value), [&](Fields& below) {
+            below.number({"below", of.unit, "the least median that can be told from none"}, limit);
+          });
+    });
   };
-  add("position_m", e.position, chart.position_limit());
-  add("velocity_m_per_s", e.velocity, chart.strong_limit(&StrongError::velocity));
-  add("time_s", e.time, chart.strong_limit(&StrongError::time));
-  add("energy_J", e.energy, chart.strong_limit(&StrongError::energy));
-  return j;
+  median({"position_m", "m", "distance at the exit"}, e.position, chart.position_limit());
+  median({"velocity_m_per_s", "m/s", "difference of velocities at the exit"}, e.velocity,
+         chart.strong_limit(&StrongError::velocity));
+  median({"time_s", "s", "difference of times at the exit"}, e.time,
+         chart.strong_limit(&StrongError::time));
+  median({"energy_J", "J", "difference of kinetic energies at the exit"}, e.energy,
+         chart.strong_limit(&StrongError::energy));
 }
 
 /// What the reference shows of itself is given in full.
-Json to_json(const Errors& e, const WorkPrecision& chart, bool of_reference) {
-  return {{"outcomes", to_json(e.outcomes, of_reference ? 0.0 : chart.outcome_bound(e))},
-          {"columns", to_json(e.columns, of_reference ? 0.0 : chart.column_bound(e))},
-          {"strong", to_json(e.strong, chart, of_reference)}};
+void describe(Fields& out, const Errors& e, const WorkPrecision& chart, bool of_reference) {
+  out.object(Label("errors", "how far trials are from others under the same noise").shared(),
+             [&](Fields& f) {
+               f.object({"outcomes", "of the outcomes of trials"}, [&](Fields& weak) {
+                 describe(weak, e.outcomes, of_reference ? 0.0 : chart.outcome_bound(e));
+               });
+               f.object({"columns", "of the states in which trials enter the next gate"},
+                        [&](Fields& weak) {
+                          describe(weak, e.columns, of_reference ? 0.0 : chart.column_bound(e));
+                        });
+               f.object({"strong", "of single trials, one by one"},
+                        [&](Fields& strong) { describe(strong, e.strong, chart, of_reference); });
+             });
 }
 
-Json reference_json(const WorkPrecision& chart) {
+Label status_label(std::string_view meaning) {
+  return Label("status", meaning)
+      .one_of({dynamics::kVerdictNames.begin(), dynamics::kVerdictNames.end()});
+}
+
+void describe_reference(Fields& out, const WorkPrecision& chart) {
   const dynamics::Reference& r = chart.reference;
-  Json outcomes;  // those that are even count as right (accuracy.h)
-  for (const auto& [outcome, key, words] : dynamics::kOutcomeNames)
-    if (outcome != Outcome::traversed_even) outcomes[std::string(key)] = r[outcome];
-  return {{"setting", r.setting.name()},
-          {"status", dynamics::name_of(r.verdict)},
-          {"evaluations_per_trial", r.evaluations_per_trial},
-          {"outcomes", outcomes},
-          {"own_error", {{"against", r.second.name()}, {"errors", to_json(r.own, chart, true)}}},
-          {"another_method",
-           {{"against", r.other_method.name()}, {"errors", to_json(r.other, chart, true)}}}};
+  out.text({"setting", "method and its accuracy"}, r.setting.name());
+  out.text(status_label("ok, or the worst fault that its runs showed"),
+           dynamics::name_of(r.verdict));
+  out.number({"evaluations_per_trial", "1", "evaluations of the forces, mean over trials"},
+             r.evaluations_per_trial);
+  out.object({"outcomes", "how its trials ended"}, [&](Fields& f) {
+    for (const auto& [outcome, key, words] : dynamics::kOutcomeNames)
+      if (outcome != Outcome::traversed_even)  // those that are even count as right (accuracy.h)
+        f.count({key, "1", fmt::format("trials that ended so: {}", words)}, r[outcome]);
+  });
+  const auto against = [&](const Label& label, const dynamics::Setting& other, const Errors& e) {
+    out.object(label, [&](Fields& f) {
+      f.text({"against", "method and accuracy that the reference is held against"}, other.name());
+      describe(f, e, chart, true);
+    });
+  };
+  against({"own_error", "the reference against the same method, ten times coarser"}, r.second,
+          r.own);
+  against({"another_method", "the reference against another method"}, r.other_method, r.other);
 }
 
-Json to_json(const ChartPoint& p, const WorkPrecision& chart) {
-  Json s;
-  s["method"] = p.setting.method;
-  s["key"] = p.setting.key;
-  s["value"] = p.setting.value;
-  s["default"] = p.setting.usual;
-  s["status"] = dynamics::name_of(p.verdict);
-  if (!p.ran()) {
-    s["reason"] = p.refusal;
-    return s;
-  }
-  s["microseconds_per_trial"] = {{"min", p.least_microseconds()},
-                                 {"median", p.median_microseconds()},
-                                 {"rounds", p.microseconds}};
-  s["steps_per_trial"] = p.steps_per_trial();
-  s["evaluations_per_trial"] = p.evaluations_per_trial();
-  s["runs_cut_short"] = p.out_of_work;
-  s["errors"] = to_json(p.errors, chart, false);
-  s["health"] = gatewalk::cli::to_json(p.health);
-  return s;
+void describe(Fields& out, const ChartPoint& p, const WorkPrecision& chart) {
+  out.text({"method", "run.method"}, p.setting.method);
+  out.text({"key", "the key of the scene that sets how exact the method is"}, p.setting.key);
+  out.number({"value", "its own", "value of this key"}, p.setting.value);
+  out.flag({"default", "whether a scene has this value if it says nothing"}, p.setting.usual);
+  out.text(status_label("ok, or the worst fault that its runs showed"),
+           dynamics::name_of(p.verdict));
+  const auto ran = [&](Fields& f) {
+    f.object({"microseconds_per_trial", "time of a trial on one thread"}, [&](Fields& time) {
+      time.number({"min", "us", "least of the rounds"}, p.least_microseconds());
+      time.number({"median", "us", "median of the rounds"}, p.median_microseconds());
+      time.numbers({"rounds", "us", "mean of each round"}, p.microseconds);
+    });
+    f.number({"steps_per_trial", "1", "time steps, mean over trials"}, p.steps_per_trial());
+    f.number({"evaluations_per_trial", "1", "evaluations of the forces, mean over trials"},
+             p.evaluations_per_trial());
+    f.count({"runs_cut_short", "1", "trials that took more work than they were granted"},
+            p.out_of_work);
+    describe(f, p.errors, chart, false);
+    f.object({"health", "numerical faults of its trials"},
+             [&](Fields& health) { cli::describe(health, p.health); });
+  };
+  out.either(p.ran(), ran, [&](Fields& f) {
+    f.text({"reason", "why the method refuses the scene with this value"}, p.refusal);
+  });
 }
 
 // ---- Table ----
@@ -151,55 +192,79 @@ std::string error_text(double value, double limit) {
   return std::isfinite(value) ? scientific(value, 2) : "-";
 }
 
-std::string line_of(const ChartPoint& p, const WorkPrecision& chart) {
-  const std::string name = (p.setting.usual ? "* " : "  ") + padded(p.setting.name(), -20);
-  if (!p.ran()) return name + "   refused: " + p.refusal + "\n";
-  const auto& e = p.errors;
-  const bool below = e.outcomes.total_variation < chart.outcome_bound(e);
-  return name + padded(fixed(p.least_microseconds(), 1), 11) +
-         padded(fixed(p.steps_per_trial(), 0), 8) + "  " +
-         padded(error_text(e.outcomes.total_variation, chart.outcome_bound(e)), -10) +
-         padded(below ? "" : error_text(e.outcomes.standard_error, 0.0), -10) +
-         padded(error_text(e.outcomes.chance, 0.0), -10) +
-         padded(error_text(e.columns.total_variation, chart.column_bound(e)), -10) +
-         padded(error_text(e.strong.position, chart.position_limit()), -11) +
-         padded(percent(e.strong.parted_share(), 1.0, 2), 8) + "  " +
-         std::string(dynamics::name_of(p.verdict)) + "\n";
+/// A line for each setting.
+std::string lines_of(const WorkPrecision& chart) {
+  TextTable table({{"", -22},
+                   {"", 11, 1},
+                   {"", 8},
+                   {"", -10, 0, "", "  "},
+                   {"", -10},
+                   {"", -10},
+                   {"", -10},
+                   {"", -11},
+                   {"", 8},
+                   {"", 0, 0, "", "  "}});
+  for (const ChartPoint& p : chart.points) {
+    const std::string name = (p.setting.usual ? "* " : "  ") + p.setting.name();
+    if (!p.ran()) {
+      table.row({name, "   refused: " + p.refusal});
+      continue;
+    }
+    const auto& [outcomes, columns, strong] = p.errors;
+    const double bound = chart.outcome_bound(p.errors);
+    table.row({name, p.least_microseconds(), fixed(p.steps_per_trial(), 0),
+               error_text(outcomes.total_variation, bound),
+               outcomes.total_variation < bound ? "" : error_text(outcomes.standard_error, 0.0),
+               error_text(outcomes.chance, 0.0),
+               error_text(columns.total_variation, chart.column_bound(p.errors)),
+               error_text(strong.position, chart.position_limit()),
+               percent(strong.parted_share(), 1.0, 2), dynamics::name_of(p.verdict)});
+  }
+  return "  setting                us/trial   steps  outcomes  +-        chance    columns   "
+         "exit (m)   parted   status\n" +
+         table.rows();
 }
 
 std::string reference_text(const WorkPrecision& chart) {
   const dynamics::Reference& r = chart.reference;
-  lattice::TextStream out;
   const auto share = [&](Outcome outcome) {
     return percent(static_cast<double>(r[outcome]), static_cast<double>(chart.trials));
   };
   const auto against = [&](const dynamics::Setting& setting, const Errors& e) {
-    out << "  against " << padded(setting.name(), -20) << " outcomes "
-        << digits(e.outcomes.total_variation) << ", columns " << digits(e.columns.total_variation)
-        << ", exit " << quantity(e.strong.position, "m") << ", parted "
-        << percent(e.strong.parted_share(), 1.0, 3) << "\n";
+    return fmt::format("  against {} outcomes {}, columns {}, exit {}, parted {}\n",
+                       padded(setting.name(), -20), digits(e.outcomes.total_variation),
+                       digits(e.columns.total_variation), quantity(e.strong.position, "m"),
+                       percent(e.strong.parted_share(), 1.0, 3));
   };
-  out << "  reference " << r.setting.name() << " (" << dynamics::name_of(r.verdict)
-      << "): traversed left " << share(Outcome::traversed_left) << ", right "
-      << share(Outcome::traversed_right) << ", exited left " << share(Outcome::exited_left)
-      << ", right " << share(Outcome::exited_right) << ", trapped " << share(Outcome::trapped)
-      << "\n";
-  against(r.second, r.own);
-  against(r.other_method, r.other);
-  return out.str();
+  return fmt::format(
+             "  reference {} ({}): traversed left {}, right {}, exited left {}, right {}, trapped "
+             "{}\n",
+             r.setting.name(), dynamics::name_of(r.verdict), share(Outcome::traversed_left),
+             share(Outcome::traversed_right), share(Outcome::exited_left),
+             share(Outcome::exited_right), share(Outcome::trapped)) +
+         against(r.second, r.own) + against(r.other_method, r.other);
 }
 
 }  // namespace
 
-Json to_json(const WorkPrecision& chart) {
-  Json j;
-  j["scene"] = chart.label;
-  j["trials"] = chart.trials;
-  j["timed_trials"] = chart.timed_trials;
-  j["reference"] = reference_json(chart);
-  j["settings"] = Json::array();
-  for (const ChartPoint& p : chart.points) j["settings"].push_back(to_json(p, chart));
-  return j;
+void describe(Fields& out, const WorkPrecision& chart) {
+  out.text({"scene", "what the scene is called"}, chart.label);
+  out.count({"trials", "1", "trials of each setting"}, chart.trials);
+  out.count({"timed_trials", "1", "those that were timed; of settings that take long, fewer are"},
+            chart.timed_trials);
+  out.object({"reference", "the setting that all others are compared with"},
+             [&](Fields& f) { describe_reference(f, chart); });
+  out.list({"settings", "method by method, from coarse to fine"}, chart.points,
+           [&](Fields& f, const ChartPoint& p) { describe(f, p, chart); });
+}
+
+void describe(Fields& out, const ChartResult& result) {
+  out.text({"machine", "the processor on which times were taken"}, machine());
+  out.list_of({"scenes", "one for each scene"}, result.charts.size(),
+              [&](Fields& f, std::size_t s) {
+                describe(f, result.charts[s]);
+                describe_made_by(f, result.made_by[s]);
+              });
 }
 
 std::string csv_of(const std::vector<WorkPrecision>& charts) {
@@ -217,29 +282,25 @@ std::string csv_of(const std::vector<WorkPrecision>& charts) {
 }
 
 std::string table_of(const WorkPrecision& chart) {
-  std::string out = chart.label + ": " + std::to_string(chart.trials) + " trials per setting, " +
-                    std::to_string(chart.timed_trials) + " timed\n" + reference_text(chart) +
-                    "  setting                us/trial   steps  outcomes  +-        chance    "
-                    "columns   exit (m)   parted   status\n";
-  for (const ChartPoint& p : chart.points) out += line_of(p, chart);
   const ChartPoint* cheapest = chart.cheapest();
-  return out + "  cheapest setting without faults, outcomes within " +
-         digits(chart.params.run.tolerance) + ": " +
-         (cheapest == nullptr ? "none shown; more --trials may show one"
-                              : cheapest->setting.name()) +
-         "\n";
+  return fmt::format(
+      "{}: {} trials per setting, {} timed\n{}{}"
+      "  cheapest setting without faults, outcomes within {}: {}\n",
+      chart.label, chart.trials, chart.timed_trials, reference_text(chart), lines_of(chart),
+      digits(chart.params.run.tolerance),
+      cheapest ? cheapest->setting.name() : "none shown; more --trials may show one");
 }
 
 std::string work_precision_legend(std::int64_t rounds) {
-  return "* usual: the method's default. us/trial: least of " + std::to_string(rounds) +
-         " rounds on one thread, " + machine() +
-         "\noutcomes, columns: total variation from the reference, of the outcomes and of the "
-         "crossing"
-         "\nstates; +-: its standard error; chance: what chance alone would show; <: not told from "
-         "no error."
-         "\nexit (m): median distance at the exit; parted: share of exits that took another "
-         "course, these count"
-         "\nas infinitely far. status: ok, or the worst fault seen.\n";
+  return fmt::format(
+      "* usual: the method's default. us/trial: least of {} rounds on one thread, {}\n"
+      "outcomes, columns: total variation from the reference, of the outcomes and of the crossing\n"
+      "states; +-: its standard error; chance: what chance alone would show; <: not told from no "
+      "error.\n"
+      "exit (m): median distance at the exit; parted: share of exits that took another course, "
+      "these count\n"
+      "as infinitely far. status: ok, or the worst fault seen.\n",
+      rounds, machine());
 }
 
 }  // namespace gatewalk::cli

@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Speed against accuracy of the methods on scenes, as JSON, CSV, a table and a figure.
+/// Speed against accuracy of the methods on scenes, as a result, CSV, a table and a figure.
 
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 #include "dynamics/disc/study/work_precision.h"
 
 namespace gatewalk::cli {
 
-/// Without "made_by": a scene's reference and settings.
-[[nodiscard]] Json to_json(const dynamics::WorkPrecision& chart);
+/// The result of `chart`: a chart of each scene, and what made it.
+struct ChartResult {
+  std::vector<dynamics::WorkPrecision> charts;
+  std::vector<Provenance> made_by;
+};
+void describe(Fields& out, const ChartResult& result);
+/// A scene's reference and settings.
+void describe(Fields& out, const dynamics::WorkPrecision& chart);
 /// A line for each setting of each scene.
 [[nodiscard]] std::string csv_of(const std::vector<dynamics::WorkPrecision>& charts);
 /// The reference, a line for each setting, and the cheapest one that will do.
