@@ -14,7 +14,6 @@
 #include "cli/loaded_matrix.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/matrix.h"
 #include "cli/render/meaning.h"
 #include "cli/render/start.h"
@@ -178,24 +177,30 @@ lattice::TreeOptions tree_options(const Options& options, const lattice::Scene& 
   return how;
 }
 
+namespace {
+
+/// Of a matrix of trees; none of another one.
+std::optional<TreeRecord> recorded_trees(const lattice::MatrixFile& file, const std::string& path) {
+  const auto states = recorded_states(file, path);
+  return states ? states->trees : std::nullopt;
+}
+
+}  // namespace
+
 double accuracy_of(const lattice::MatrixFile& file, const std::string& path) {
-  const Json states = recorded(file, path, "state_space");
-  if (states.is_null() || !states.contains("accuracy")) return lattice::AccuracyOptions{}.accuracy;
-  return states.at("accuracy").get<double>() *
-         (states.at("range").is_null() ? 1.0 : lattice::kPartForOne);
+  const auto trees = recorded_trees(file, path);
+  if (!trees || !trees->accuracy) return lattice::AccuracyOptions{}.accuracy;
+  return *trees->accuracy * (trees->range ? lattice::kPartForOne : 1.0);
 }
 
 void warn_of_range(const Options& options, const lattice::MatrixFile& file, const std::string& path,
                    const std::vector<dynamics::Entry>& starts) {
-  const Json states = recorded(file, path, "state_space");
-  if (states.is_null() || !states.contains("range") || states.at("range").is_null()) return;
-  const Json& range = states.at("range");
+  const auto trees = recorded_trees(file, path);
+  if (!trees || !trees->range) return;
   const auto& coordinates = file.transitions.space.section().coordinates;
   const auto& own = file.transitions.space.points();
-  dynamics::StateRange built{starts.empty() ? 0 : starts.front().face};
-  for (std::size_t axis = 0; axis < coordinates.size(); ++axis)
-    for (std::size_t end = 0; end < 2; ++end)
-      built.at[axis][end] = range.at(coordinates[axis].key).at(end).get<double>();
+  dynamics::StateRange built = trees->range->range;
+  built.face = starts.empty() ? 0 : starts.front().face;
   const auto count = std::count_if(starts.begin(), starts.end(), [&](const dynamics::Entry& entry) {
     if (std::find(own.begin(), own.end(), entry) != own.end()) return false;
     for (std::size_t axis = 0; axis < coordinates.size(); ++axis)
@@ -209,9 +214,7 @@ void warn_of_range(const Options& options, const lattice::MatrixFile& file, cons
 }
 
 int entries_per_leaf(const lattice::MatrixFile& file, const std::string& path) {
-  const Json states = recorded(file, path, "state_space");
-  return states.is_null() ? dynamics::kEntriesPerLeaf
-                          : states.value("entries_per_leaf", dynamics::kEntriesPerLeaf);
+  return recorded_trees(file, path).value_or(TreeRecord()).entries_per_leaf;
 }
 
 void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Options& options,
@@ -328,7 +331,7 @@ lattice::SceneMatrix read_matrix(const Options& options, const std::string& matr
     for (const std::string& text :
          lattice::keys_without_effect(m.scene, lattice::RunsFrom::everywhere))
       options.warn(text);
-  if (const std::string faults = faults_recorded(recorded_status(*m.file)); !faults.empty())
+  if (const std::string faults = faults_recorded(recorded_health(*m.file)); !faults.empty())
     options.warn(fmt::format("the runs that made {}: {}", matrix_path, faults));
   return m;
 }

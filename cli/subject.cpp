@@ -251,8 +251,7 @@ Subject open_recorded(const Options& options, const std::string& path) {
             .pool = std::move(m.pool),
             .problem = std::move(m.problem)};
   if (!s.pool) {
-    const Json states = recorded(*s.file, path, "state_space");
-    if (!states.is_object() || states.value("bins", Json()) != "imported")
+    if (const auto states = recorded_states(*s.file, path); !states || !states->is_imported())
       throw markov::BadFile(path + ": its runs are missing");
     s.foreign = true;
     s.cells->map.section.named = s.problem.cells.map.section.named =
@@ -404,8 +403,8 @@ std::vector<dynamics::Transitions> Subject::matrices() const {
 
 lattice::CountedField Subject::counted() const {
   lattice::CountedField field = lattice::counted_field(problem.map(), matrices());
-  const Json states = recorded(*file, path, "state_space");
-  field.exact = states.is_object() && states.value("probabilities", Json()) == true;
+  const auto states = recorded_states(*file, path);
+  field.exact = states && states->are_probabilities;
   if (auto per_run = foreign ? counts_per_run(*file) : std::vector<std::int64_t>();
       !per_run.empty()) {
     field.small_rows = true;

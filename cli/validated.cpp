@@ -12,7 +12,6 @@
 #include "cli/render/health.h"
 #include "cli/render/matrix.h"
 #include "cli/render/observed.h"
-#include "cli/render/states.h"
 #include "cli/subject.h"
 
 namespace gatewalk::cli {
@@ -83,7 +82,7 @@ Validated read_subject(const Options& options) {
   v.observed = std::move(observed);
   v.status = recorded_status(*m.file);
   v.settled = recorded(*m.file, path, "method");
-  v.states = recorded(*m.file, path, "state_space");
+  v.states = recorded_states(*m.file, path);
   return v;
 }
 
@@ -93,7 +92,7 @@ void put_tree(Validated& v, const Options& options) {
   lattice::TreeChain chain = lattice::make_tree_chain(v.problem, how, options.work());
   warn_of(options, *chain.prediction, how.accuracy.accuracy);
   v.status = cli::to_json(chain.transitions.front().health);
-  v.states = cli::to_json(chain, how.accuracy.accuracy);
+  v.states = record_of(chain, how.accuracy.accuracy);
   v.matrices = std::move(chain.transitions);
 }
 
@@ -125,7 +124,7 @@ Validated build_subject(const Options& options) {
   v.matrices =
       lattice::build_matrices(*v.scene, states, {0, trials}, options.seed(), options.work());
   v.status = cli::to_json(v.matrices.front().health);
-  v.states = cli::to_json(states);
+  v.states = record_of(states);
   return v;
 }
 

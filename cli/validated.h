@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/render/json.h"
 #include "cli/render/shown_field.h"
+#include "cli/render/states.h"
 #include "dynamics/cells/transitions.h"
 #include "lattice/problem.h"
 #include "lattice/scene/scene.h"
@@ -22,7 +23,8 @@ struct Validated {
   std::vector<dynamics::Transitions> matrices{};
   std::vector<dynamics::Entry> starts{};
   std::optional<lattice::Observed> observed{};
-  Json status{}, settled{}, states{};
+  Json status{}, settled{};
+  std::optional<StateRecord> states{};
   std::optional<lattice::Scene> scene{};      // of gates, and ...
   std::vector<lattice::PaperStart> papers{};  // ... the starts with what the paper prints of them
   std::optional<ShownField> shown{};

@@ -2,9 +2,7 @@
 #include "cli/arguments.h"
 #include "cli/commands/recorded.h"
 #include "cli/render/choice.h"
-#include "cli/render/json.h"
 #include "cli/render/matrix.h"
-#include "cli/render/states.h"
 #include "cli/render/text.h"
 #include "cli/subject.h"
 #include "dynamics/base/work.h"
@@ -14,20 +12,18 @@ namespace {
 
 using Settled = std::optional<lattice::Settled>;
 
-/// Writes the file, and says what was made.
-int give_out(const Options& options, const lattice::Scene& scene, const MadeMatrix& made,
-             std::vector<markov::NamedArray> runs) {
-  const std::string path = options.text("output");
-  lattice::MatrixFile file{made.matrices.front(), record_of(made, scene, options.provenance(scene)),
-                           std::move(runs)};
-  lattice::put_matrices(file, scene, made.matrices);
-  options.keep_old(path);
-  lattice::write_matrix(path, file);
-  Json json = summary_json(made, file, path);
-  json["made_by"] = to_json(options.provenance(scene));
-  options.give_out(json, summary_table(file, path) + states_line(json["state_space"]) +
-                             method_line(made.settled));
-  return status_of(options, made.matrices.front().health);
+/// Writes the file of matrices, one for each type of gate, and says what was made.
+int give_out(const Options& options, const lattice::Scene& scene, MadeMatrix made,
+             const std::vector<dynamics::Transitions>& matrices) {
+  made.path = options.text("output");
+  made.made_by = options.provenance(scene);
+  made.file.text = texts_of(made, scene, matrices.front().health);
+  lattice::put_matrices(made.file, scene, matrices);
+  options.keep_old(made.path);
+  lattice::write_matrix(made.path, made.file);
+  options.give_out(made, summary_table(made.file, made.path) + states_line(made.states) +
+                             method_line(made.method));
+  return status_of(options, matrices.front().health);
 }
 
 int build_bins(const Options& options, const lattice::Scene& scene,
@@ -40,8 +36,12 @@ int build_bins(const Options& options, const lattice::Scene& scene,
   const auto matrices =
       lattice::build_matrices(scene, states, trials, options.seed(), options.work());
   options.work().end_part();
-  const Json bins = bins_json(states.choice), space = to_json(states);
-  const int status = give_out(options, scene, {matrices, bins, space, settled, trials.count}, {});
+  const int status = give_out(options, scene,
+                              {.file = {matrices.front(), {}},
+                               .states = record_of(states),
+                               .method = settled,
+                               .trials_per_row = trials.count},
+                              matrices);
   options.remark("built in " + fixed(watch.seconds(), 2) + " s");
   for (const std::string& text : complaints(states)) options.warn(text);
   return status;
@@ -54,9 +54,14 @@ int build_tree(const Options& options, const lattice::Scene& scene, const Settle
   const dynamics::Stopwatch watch;
   const lattice::TreeChain chain =
       lattice::make_tree_chain(lattice::problem_of(scene), how, options.work());
-  const Json bins = "tree", space = to_json(chain, how.accuracy.accuracy);
-  const int status = give_out(options, scene, {chain.transitions, bins, space, settled, {}},
-                              lattice::arrays_of(chain.pool, chain.kernel.space.section()));
+  const int status =
+      give_out(options, scene,
+               {.file = {.transitions = chain.transitions.front(),
+                         .text = {},
+                         .arrays = lattice::arrays_of(chain.pool, chain.kernel.space.section())},
+                .states = record_of(chain, how.accuracy.accuracy),
+                .method = settled},
+               chain.transitions);
   options.remark("built in " + fixed(watch.seconds(), 2) + " s");
   warn_of(options, chain.own_trials);
   if (how.accuracy.trials) return status;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "cli/command.h"
 #include "cli/exchange/imported.h"
 #include "cli/parsers.h"
-#include "cli/render/json.h"
 #include "cli/render/matrix.h"
+#include "cli/render/version.h"
 #include "lattice/cells/cell_matrix.h"
 
 namespace gatewalk::cli {
@@ -71,35 +73,33 @@ int run_import(const Arguments& arguments) {
     cells.start = entry_of(states, k, cells.map.section);
   }
   dynamics::Transitions t = transitions_of(matrix, states, cells);
-  Json space = {{"bins", "imported"}, {"states", t.space.size()}};
-  if (matrix.probabilities) space["probabilities"] = true;
-  Json made_by = to_json(options.provenance());
+  const StateRecord space{.states = t.space.size(), .are_probabilities = matrix.probabilities};
   understood.insert(understood.end(), matrix.table.understood.begin(),
                     matrix.table.understood.end());
-  std::string lines;
-  for (const std::string& line : understood) lines += line + "\n";
-  lattice::MatrixFile file =
-      matrix_file(std::move(t), states,
-                  {{"title", "gatewalk counts of a chain from elsewhere"},
-                   {"state_space", space.dump()},
-                   {"program", "gatewalk " + made_by.at("version").get<std::string>()},
-                   {"commit", made_by.at("commit")},
-                   {"command", options.canonical()},
-                   {lattice::kCellText, lattice::to_toml(cells)}});
-  if (!lines.empty()) file.text["understood"] = lines.substr(0, lines.size() - 1);
+  lattice::MatrixFile file = matrix_file(std::move(t), states,
+                                         {{"title", "gatewalk counts of a chain from elsewhere"},
+                                          {"state_space", attribute_of(space)},
+                                          {"program", std::string("gatewalk ") + kVersion},
+                                          {"commit", kCommit},
+                                          {"command", options.canonical()},
+                                          {lattice::kCellText, lattice::to_toml(cells)}});
+  std::string lines = fmt::format("{}", fmt::join(understood, "\n"));
+  if (!lines.empty()) {
+    file.text["understood"] = lines;
+    lines += "\n";
+  }
   const std::string output = options.text("output");
   options.keep_old(output);
   lattice::write_matrix(output, file);
-  Json json = to_json(file, output);
-  json["matrix"] = output;
-  json["understood"] = understood;
-  json["made_by"] = made_by;
   const std::vector<std::int64_t> per_run = counts_per_run(file);
   if (std::count(per_run.begin(), per_run.end(), 2) > 0)
     lines +=
         "runs are counted with their mirror images (counts_per_run): intervals count each run "
         "once\n";
-  options.give_out(json, summary_table(file, output) + lines);
+  const std::string table = summary_table(file, output) + lines;
+  options.give_out(
+      ImportedMatrix{{output, std::move(file)}, std::move(understood), options.provenance()},
+      table);
   if (matrix.probabilities)
     options.warn(path +
                  " has probabilities: nothing says how certain they are, so that predictions "

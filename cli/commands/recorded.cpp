@@ -14,6 +14,7 @@
 #include "cli/render/matrix.h"
 #include "cli/render/recorded.h"
 #include "cli/render/states.h"
+#include "cli/render/version.h"
 #include "cli/subject.h"
 #include "lattice/cells/cell_matrix.h"
 
@@ -29,28 +30,25 @@ namespace {
 
 /// Writes the file of these matrices and runs, and says what was made.
 void give_out(const Options& options, std::vector<dynamics::Transitions> matrices,
-              const lattice::CellFile& cells, const lattice::RunPool& pool, const Json& states,
-              const Json& status, const char* title) {
+              const lattice::CellFile& cells, const lattice::RunPool& pool,
+              const StateRecord& states, const std::optional<dynamics::Health>& health,
+              const char* title) {
+  std::map<std::string, std::string> text{{"title", title},
+                                          {"state_space", attribute_of(states)},
+                                          {"program", std::string("gatewalk ") + kVersion},
+                                          {"commit", kCommit},
+                                          {"command", options.canonical()}};
+  if (health) text["status"] = to_json(*health).dump();
   const std::string path = options.text("output");
-  Json made_by = to_json(options.provenance());
-  made_by["cell"] = lattice::to_toml(cells);
-  std::map<std::string, std::string> text{
-      {"title", title},
-      {"state_space", states.dump()},
-      {"program", "gatewalk " + made_by.at("version").get<std::string>()},
-      {"commit", made_by.at("commit")},
-      {"command", options.canonical()}};
-  if (!status.is_null()) text["status"] = status.dump();
-  lattice::MatrixFile file =
-      lattice::cell_matrix_file(std::move(matrices), cells, pool, std::move(text));
-  const std::string summary = summary_table(file, path) + table_of(pool);
-  Json json = options.takes_json() ? to_json(file, path) : Json();  // of many states it is large
-  json["matrix"] = path;
-  json["recorded"] = to_json(pool);
-  json["made_by"] = made_by;
+  CellMatrixResult built{
+      {path, lattice::cell_matrix_file(std::move(matrices), cells, pool, std::move(text))},
+      counts_of(pool),
+      options.provenance()};
+  built.made_by.cell = lattice::to_toml(cells);
   options.keep_old(path);
-  lattice::write_matrix(path, std::move(file));
-  options.give_out(json, summary);
+  lattice::write_matrix(path,
+                        std::move(built.matrix.file));  // takes the arrays, which no one shows
+  options.give_out(built, summary_table(built.matrix.file, path) + table_of(pool));
 }
 
 }  // namespace
@@ -74,13 +72,9 @@ int build_recorded(const Options& options) {
       options.warn(fmt::format("{} is blank in {} passages: analyze gives none of it", costs[c].key,
                                unknown[c]));
   auto matrices = lattice::cell_matrices(problem, pool, dynamics::kEntriesPerLeaf);
-  const Json states = {{"bins", "tree"},
-                       {"entries_per_leaf", dynamics::kEntriesPerLeaf},
-                       {"gate_runs", pool.gate_runs()},
-                       {"starts_of_their_own", Json::array()},
-                       {"range", nullptr},
-                       {"states_bias", 0.0},
-                       {"states", matrices.front().space.size()}};
+  const StateRecord states{.kind = "tree",
+                           .states = matrices.front().space.size(),
+                           .trees = TreeRecord{.gate_runs = pool.gate_runs()}};
   give_out(options, std::move(matrices), cells, pool, states, {},
            "gatewalk counts of passages through recorded cells");
   return kFine;
@@ -97,8 +91,8 @@ int build_program(const Options& options) {
   fix_trials(options, how.accuracy, std::ssize(how.starts));
   lattice::TreeChain chain = lattice::make_tree_chain(s.problem, how, options.work());
   const dynamics::Health health = chain.transitions.front().health;
-  const Json states = to_json(chain, s.how.accuracy);
-  give_out(options, std::move(chain.transitions), *s.cells, chain.pool, states, to_json(health),
+  const StateRecord states = record_of(chain, s.how.accuracy);
+  give_out(options, std::move(chain.transitions), *s.cells, chain.pool, states, health,
            "gatewalk counts of passages through cells that another program carries out");
   warn_of(options, chain.own_trials);
   if (!how.accuracy.trials) warn_of(options, *chain.prediction, s.how.accuracy);

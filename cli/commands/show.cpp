@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "cli/command.h"
-#include "cli/render/json.h"
 #include "cli/render/matrix.h"
 #include "lattice/cells/cell_matrix.h"
 
@@ -21,7 +20,8 @@ int run_show(const Arguments& arguments) {
   options.without_scene("a matrix keeps its scene");
   if (!options.parse(arguments)) return kFine;
   const std::string path = options.text("matrix");
-  lattice::MatrixFile file = lattice::read_any_matrix(path);
+  ShownMatrix matrix{path, lattice::read_any_matrix(path)};
+  lattice::MatrixFile& file = matrix.file;
   if (options.has("type")) {
     const auto type = file.types.find(options.text("type"));
     if (type == file.types.end())
@@ -32,7 +32,7 @@ int run_show(const Arguments& arguments) {
   if (options.has("row"))
     shown.one = static_cast<int>(options.count("row", 1, file.transitions.space.size())) - 1;
 
-  options.give_out(to_json(file, path), table_of(file, path, shown));
+  options.give_out(matrix, table_of(matrix, shown));
   options.draw([&] { return figure_of(file.transitions); });
   return kFine;
 }

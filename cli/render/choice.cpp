@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/choice.h"
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "cli/render/json.h"
 #include "cli/render/text.h"
 
@@ -52,10 +55,47 @@ void describe(Fields& out, const lattice::Settled& chosen) {
       });
 }
 
+dynamics::Setting setting_in(const Json& json) {
+  constexpr std::string_view kStep = "run.step_s", kTolerance = "run.event_tolerance_m";
+  return {.method = json.at("method"),
+          .key = json.at("key") == kStep ? kStep : kTolerance,
+          .value = number_in(json.at("value"))};
+}
+
+dynamics::Verdict verdict_in(const Json& json) {
+  const auto& names = dynamics::kVerdictNames;
+  const auto name = std::find(names.begin(), names.end(), json.at("verdict").get<std::string>());
+  if (name == names.end()) throw std::invalid_argument("there is no such verdict");
+  return static_cast<dynamics::Verdict>(name - names.begin());
+}
+
 }  // namespace
 
 Json to_json(const lattice::Settled& settled) {
   return json_of([&](Fields& out) { describe(out, settled); });
+}
+
+lattice::Settled settled_from(const Json& json) {
+  lattice::Settled settled{
+      .choice = {}, .tolerance = json.at("tolerance"), .pilot_starts = json.at("pilot_starts")};
+  dynamics::Choice& choice = settled.choice;
+  choice.reference = setting_in(json.at("reference"));
+  choice.reference_verdict = verdict_in(json.at("reference"));
+  choice.trials = json.at("pilot_trials");
+  choice.met = json.at("met");
+  dynamics::RunParams& run = choice.params.run;
+  run.method = json.at("method");
+  run.step = number_in(json.at("step_s"));
+  run.event_tolerance = number_in(json.at("event_tolerance_m"));
+  for (const Json& tried : json.at("tried"))
+    choice.tried.push_back(
+        {.setting = setting_in(tried),
+         .work = number_in(tried.at("work_per_trial")),
+         .error = {.total_variation = number_in(tried.at("outcome_total_variation")),
+                   .changed = tried.at("trials_changed")},
+         .uncertainty = number_in(tried.at("uncertainty")),
+         .verdict = verdict_in(tried)});
+  return settled;
 }
 
 void describe_method(Fields& out, const std::optional<lattice::Settled>& settled) {

@@ -15,6 +15,8 @@ namespace gatewalk::cli {
 /// The key "method", of results whose scene leaves the method to the program.
 void describe_method(Fields& out, const std::optional<lattice::Settled>& settled);
 [[nodiscard]] Json to_json(const lattice::Settled& settled);
+/// Its inverse. Throws nlohmann::json::exception and std::invalid_argument for what is none.
+[[nodiscard]] lattice::Settled settled_from(const Json& json);
 /// What is wrong with a choice, in a sentence; empty if nothing.
 [[nodiscard]] std::string complaint(const lattice::Settled& settled);
 /// "method stable, run.step_s = 0.02: chosen by ..." as a line of a table; empty for none.

@@ -18,6 +18,11 @@ namespace gatewalk::cli {
 /// Of a text; one that is_discarded() where it is no JSON.
 [[nodiscard]] Json parsed_json(std::string_view text);
 
+/// NaN for null.
+[[nodiscard]] inline double number_in(const Json& json) {
+  return json.is_null() ? kUnknown : json.get<double>();
+}
+
 /// The result that is described.
 [[nodiscard]] Json json_of(const Description& describe);
 

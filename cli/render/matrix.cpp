@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/matrix.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
-#include "cli/render/states.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
+#include "cli/render/version.h"
 #include "lattice/cells/cell_matrix.h"
 #include "lattice/pool/tree_chain.h"
-#include "lattice/text/text_stream.h"
+#include "lattice/text/digits.h"
 #include "markov/formats/counts.h"
 
 namespace gatewalk::cli {
@@ -23,10 +27,10 @@ using namespace dynamics;
 /// Gate runs behind the counts: of a tree, those that its record says (mirror images count twice,
 /// and first runs of trials are rows of their own).
 std::int64_t gate_runs_of(const lattice::MatrixFile& file, const std::string& path) {
-  const Json states = recorded(file, path, "state_space");
-  if (file.transitions.space.has_trees() && states.contains("gate_runs"))
-    return states.at("gate_runs").get<std::int64_t>();
-  return file.transitions.totals().runs;
+  const auto states = recorded_states(file, path);
+  return file.transitions.space.has_trees() && states && states->trees
+             ? states->trees->gate_runs
+             : file.transitions.totals().runs;
 }
 
 /// Share of a row's trials that came out at each boundary of the next gate, and trapped.
@@ -43,33 +47,36 @@ std::vector<double> outcome_shares(const Transitions& t, int row) {
 }
 
 std::string row_table(const Transitions& t) {
-  lattice::TextStream out;
   const Section& section = t.space.section();
-  std::size_t width = 0;  // of names, if states have some
-  for (const NamedEntries& named : section.named) width = std::max(width, named.name.size() + 2);
-  out << "\n  in  " << padded(width > 0 ? "name" : "", -static_cast<int>(width)) << "from";
+  int width = 0;  // of names, if states have some
+  for (const NamedEntries& named : section.named)
+    width = std::max(width, static_cast<int>(named.name.size()) + 2);
+  std::string head = "\n  in  " + padded(width > 0 ? "name" : "", -width) + "from";
+  std::vector<TextColumn> columns{{"", 4}, {"", -width, 0, "", "  "}, {}};
   for (const Coordinate& c : section.coordinates) {
+    const bool is_first = &c == &section.coordinates.front();
     const std::string unit = behind_number(c.unit);
-    const std::string head = c.name + (unit.empty() ? "" : " (" + unit.substr(1) + ")");
-    out << (&c == &section.coordinates.front() ? " " + padded(head, -13) : padded(head, -12));
+    const std::string name = c.name + (unit.empty() ? "" : " (" + unit.substr(1) + ")");
+    head += is_first ? " " + padded(name, -13) : padded(name, -12);
+    columns.push_back({"", -12, 0, "", is_first ? " " : ""});
   }
-  out << "trials clamped |";
-  for (const Face& face : section.faces) out << padded(face.name, 5) << " ";
-  out << " trap (%)\n";
+  columns.insert(columns.end(), {{"", 7}, {"", 8}, {"", 6, 1, "", " |"}});
+  columns.resize(columns.size() + section.faces.size(), {"", 6, 1});
+  TextTable table(std::move(columns));
   for (const int row : lattice::shown_order(t.space)) {
     const StateRange range = t.space.range(row);
-    const auto share = outcome_shares(t, row);
-    out << padded(std::to_string(lattice::shown_number(t.space, row) + 1), 4) << "  "
-        << padded(name_of(section, range.middle()), -static_cast<int>(width))
-        << section.faces[range.face].name << " ";
+    std::vector<TextCell> cells{lattice::shown_number(t.space, row) + 1,
+                                name_of(section, range.middle()), section.faces[range.face].name};
     for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
-      out << padded(dynamics::text_of(range.at[axis]) + " ", -12);
-    out << padded(std::to_string(t.trials[row]), 7) << padded(std::to_string(t.clamped[row]), 8)
-        << " |";
-    for (const double s : share) out << padded(fixed(100.0 * s, 1), 6);
-    out << "\n";
+      cells.emplace_back(dynamics::text_of(range.at[axis]) + " ");
+    cells.emplace_back(t.trials[row]);
+    cells.emplace_back(t.clamped[row]);
+    for (const double share : outcome_shares(t, row)) cells.emplace_back(100.0 * share);
+    table.row(cells);
   }
-  return out.str();
+  head += "trials clamped |";
+  for (const Face& face : section.faces) head += padded(face.name, 5) + " ";
+  return head + " trap (%)\n" + table.rows();
 }
 
 /// The outputs of a row, in the order in which states are shown: state here, count.
@@ -81,43 +88,98 @@ std::map<int, std::pair<int, std::int64_t>> outputs_of(const Transitions& t, int
 }
 
 std::string outputs_table(const Transitions& t, int shown) {
-  lattice::TextStream out;
-  out << "\n  outputs of input " << shown + 1 << "\n";
   const int row = lattice::shown_order(t.space)[static_cast<std::size_t>(shown)];
+  TextTable table({{"", 6}, {"", 9}, {"", 0, 0, "", "  "}});
   for (const auto& [number, output] : outputs_of(t, row)) {
     const auto& [column, count] = output;
-    out << padded(std::to_string(number + 1), 6) << padded(std::to_string(count), 9) << "  ";
-    if (column == t.space.trapped()) {
-      out << "trapped\n";
-      continue;
-    }
-    out << text_of(t.space.section(), t.space.range(column)) << "\n";
+    table.row({number + 1, count,
+               column == t.space.trapped() ? "trapped"
+                                           : text_of(t.space.section(), t.space.range(column))});
   }
-  return out.str();
+  return fmt::format("\n  outputs of input {}\n{}", shown + 1, table.text());
 }
 
-/// Matrices of other gates in the field.
-Json types_json(const lattice::MatrixFile& file) {
-  Json json;
+/// A line of each other gate in the field.
+void add_types(TextTable& table, const lattice::MatrixFile& file) {
   for (const auto& [name, t] : file.types) {
     const auto total = t.totals();
-    json[name] = {{"counts", total.runs},
-                  {"nonzeros", total.nonzeros},
-                  {"clamped_share", total.clamped_share()},
-                  {"rows_never_sampled", total.empty_rows}};
+    table.row({"type " + name, fmt::format("{} counts, {} nonzeros, {} rows never sampled",
+                                           total.runs, total.nonzeros, total.empty_rows)});
   }
-  return json;
 }
 
-std::string types_table(const lattice::MatrixFile& file, const std::string& indent) {
-  std::string table;
-  for (const auto& [name, t] : file.types) {
-    const auto total = t.totals();
-    table += indent + padded("type " + name, -20) + std::to_string(total.runs) + " counts, " +
-             std::to_string(total.nonzeros) + " nonzeros, " + std::to_string(total.empty_rows) +
-             " rows never sampled\n";
-  }
-  return table;
+// ---- Keys of results ----
+
+void describe_size(Fields& out, const Transitions& t) {
+  out.count({"inputs", "1", "rows: states in which a gate is entered"}, t.space.size());
+  out.count({"outputs", "1", "columns: states in which the next gate is entered, and trapped"},
+            t.space.size() + 1);
+}
+void describe_counts(Fields& out, const Transitions::Totals& total) {
+  out.count({"counts", "1", "counts in all: runs, with their mirror images where these count"},
+            total.runs);
+}
+void describe_nonzeros(Fields& out, const Transitions::Totals& total) {
+  out.count({"nonzeros", "1", "entries of the matrix that are not zero"}, total.nonzeros);
+}
+void describe_clamped_share(Fields& out, const Transitions::Totals& total) {
+  out.number({"clamped_share", "1",
+              "share of the crossings that lay outside every bin and count in the nearest one"},
+             total.clamped_share());
+}
+void describe_empty_rows(Fields& out, const Transitions::Totals& total) {
+  out.count({"rows_never_sampled", "1", "rows without any run"}, total.empty_rows);
+}
+
+void describe_types(Fields& out, const lattice::MatrixFile& file) {
+  out.optional(!file.types.empty(), [&](Fields& f) {
+    f.object({"types", "the matrices of other gates in the field, by the name of their type"},
+             [&](Fields& types) {
+               for (const auto& [name, t] : file.types)
+                 types.object(Label(name, "the matrix of this type").varying("<type>"),
+                              [&](Fields& type) {
+                                const auto total = t.totals();
+                                describe_counts(type, total);
+                                describe_nonzeros(type, total);
+                                describe_clamped_share(type, total);
+                                describe_empty_rows(type, total);
+                              });
+             });
+  });
+}
+
+void describe_row(Fields& out, const Transitions& t, int row) {
+  const StateRange range = t.space.range(row);
+  const Section& section = t.space.section();
+  out.count({"input", "1", "number of the state, from 1"}, lattice::shown_number(t.space, row) + 1);
+  out.text({"boundary", "the boundary that is entered"}, section.faces[range.face].name);
+  const std::string name = name_of(section, range.middle());
+  out.optional(!name.empty(), [&](Fields& f) {
+    f.text({"name", "the state's, of a chain that was made elsewhere"}, name);
+  });
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+    out.numbers(Field(section.coordinates[axis].key, "its own", "from and to, of the coordinate")
+                    .varying("<coordinate>"),
+                {range.at[axis][0], range.at[axis][1]});
+  out.count({"trials", "1", "runs from the state"}, t.trials[row]);
+  out.count({"clamped", "1", "crossings of these that lay outside every bin"}, t.clamped[row]);
+  out.list({"outputs", "how the next gate is entered"}, outputs_of(t, row),
+           [](Fields& f, const auto& output) {
+             f.count({"output", "1", "number of the state, from 1; the last one is trapped"},
+                     output.first + 1);
+             f.count({"count", "1", "counts of this output"}, output.second.second);
+           });
+}
+
+/// The factor on Table III's bins per axis, else the name of the bins.
+std::string bins_text(const StateRecord& states) {
+  return states.bins && states.bins->factor ? lattice::toml_float(*states.bins->factor)
+                                            : states.kind;
+}
+
+/// The key "matrix", of commands that write one.
+void describe_path(Fields& out, const std::string& path) {
+  out.text({"matrix", "the matrix file that was written"}, path);
 }
 
 }  // namespace
@@ -140,160 +202,200 @@ Json recorded_status(const lattice::MatrixFile& file) {
   return text == file.text.end() ? Json() : parsed_json(text->second);
 }
 
+namespace {
+
+/// Its record of this key, as `read` understands it; none where it has none.
+template <class Read>
+auto record_in(const lattice::MatrixFile& file, const std::string& path, const std::string& key,
+               const Read& read) -> std::optional<decltype(read(Json()))> {
+  const auto text = file.text.find(key);
+  if (text == file.text.end()) return {};
+  const char* const what = key == "method"   ? "chosen method"
+                           : key == "status" ? "status"
+                                             : "state space";
+  const std::string damaged = path + ": its record of the " + what + " is damaged";
+  try {
+    const Json json = parsed_json(text->second);
+    if (json.is_null()) return {};
+    return read(json);
+  } catch (const Json::exception&) {
+    throw markov::BadFile(damaged);
+  } catch (const std::invalid_argument&) {
+    throw markov::BadFile(damaged);
+  }
+}
+
+}  // namespace
+
+std::optional<StateRecord> recorded_states(const lattice::MatrixFile& file,
+                                           const std::string& path) {
+  return record_in(file, path, "state_space", [&](const Json& json) {
+    return state_record(json, file.transitions.space.section());
+  });
+}
+
+std::optional<lattice::Settled> recorded_method(const lattice::MatrixFile& file,
+                                                const std::string& path) {
+  return record_in(file, path, "method", settled_from);
+}
+
+std::optional<dynamics::Health> recorded_health(const lattice::MatrixFile& file) try {
+  return record_in(file, "", "status", health_from);
+} catch (const markov::BadFile&) {
+  return {};
+}
+
 std::string faults_recorded(const Json& status) {
   try {
     return complaint(health_from(status));
   } catch (const Json::exception&) {
-    return "the record of numerical faults is missing or damaged.";
+    return faults_recorded(std::nullopt);
   }
 }
 
-Json bins_json(const lattice::BinsChoice& choice) {
-  return choice.kind == lattice::BinsChoice::Kind::paper ? Json(choice.factor)
-                                                         : Json(choice.name());
+std::string faults_recorded(const std::optional<dynamics::Health>& status) {
+  return status ? complaint(*status) : "the record of numerical faults is missing or damaged.";
 }
 
 void require_keepable(const lattice::Scene& scene) {
   if (const auto bytes = lattice::to_toml(scene).size(); bytes > markov::kMostTextBytes)
-    throw std::invalid_argument(scene.source + ": the scene with its map has " +
-                                std::to_string(bytes) + " bytes, a matrix file keeps " +
-                                std::to_string(markov::kMostTextBytes) +
-                                ": take a random map, or a smaller one of the same types");
+    throw std::invalid_argument(fmt::format(
+        "{}: the scene with its map has {} bytes, a matrix file keeps {}: take a random map, or a "
+        "smaller one of the same types",
+        scene.source, bytes, markov::kMostTextBytes));
 }
 
-std::map<std::string, std::string> record_of(const MadeMatrix& made, const lattice::Scene& scene,
-                                             const Provenance& provenance) {
-  const Json made_by = to_json(provenance);
+std::map<std::string, std::string> texts_of(const MadeMatrix& made, const lattice::Scene& scene,
+                                            const dynamics::Health& health) {
   std::map<std::string, std::string> text = {
       {"title", "gatewalk input-output matrix of one gate, Eq. (16), as counts"},
       {"scene", lattice::to_toml(scene)},
-      {"seed", made_by.at("seed").dump()},
-      {"bins", made.bins.is_string()
-                   ? made.bins.get<std::string>()
-                   : made.bins.dump()},  // the shortest digits that read back the same
-      {"state_space", made.states.dump()},
-      {"program", "gatewalk " + made_by.at("version").get<std::string>()},
-      {"commit", made_by.at("commit")},
-      {"command", provenance.command},
-      {"status", to_json(made.matrices.front().health).dump()}};
+      {"seed", std::to_string(made.made_by.seed.value())},
+      {"bins", bins_text(made.states)},
+      {"state_space", attribute_of(made.states)},
+      {"program", std::string("gatewalk ") + kVersion},
+      {"commit", kCommit},
+      {"command", made.made_by.command},
+      {"status", to_json(health).dump()}};
   if (made.trials_per_row) text["trials_per_row"] = std::to_string(*made.trials_per_row);
-  if (made.settled) text["method"] = to_json(*made.settled).dump();
+  if (made.method) text["method"] = to_json(*made.method).dump();
   return text;
 }
 
-Json summary_json(const MadeMatrix& made, const lattice::MatrixFile& file,
-                  const std::string& path) {
-  const Transitions& t = made.matrices.front();
+void describe(Fields& out, const MadeMatrix& made) {
+  const Transitions& t = made.file.transitions;
   const auto total = t.totals();
-  Json json;
-  json["matrix"] = path;
-  json["inputs"] = t.space.size();
-  json["outputs"] = t.space.size() + 1;
-  if (made.trials_per_row) json["trials_per_row"] = *made.trials_per_row;
-  json["bins"] = made.bins;
-  json["nonzeros"] = total.nonzeros;
-  json["clamped_share"] = total.clamped_share();
-  json["state_space"] = made.states;
-  if (!file.types.empty()) json["types"] = types_json(file);
-  if (made.settled) json["method"] = to_json(*made.settled);
-  json["status"] = to_json(t.health);
-  return json;
+  describe_path(out, made.path);
+  describe_size(out, t);
+  out.optional(made.trials_per_row.has_value(), [&](Fields& f) {
+    f.count({"trials_per_row", "1", "runs from each state"}, made.trials_per_row.value_or(0));
+  });
+  out.given({"bins", "1",
+             "bins per axis as a multiple of Table III's; else auto: from a pilot, scene: the "
+             "scene's table [bins], tree: leaves of trees"},
+            bins_text(made.states));
+  describe_nonzeros(out, total);
+  describe_clamped_share(out, total);
+  describe_state_space(out, made.states);
+  describe_types(out, made.file);
+  describe_method(out, made.method);
+  describe_status(out, t.health);
+  describe_made_by(out, made.made_by);
 }
 
 std::string summary_table(const lattice::MatrixFile& file, const std::string& path) {
   const Transitions& t = file.transitions;
   const auto total = t.totals();
-  const std::string size = path + ": " + std::to_string(t.space.size()) + " x " +
-                           std::to_string(t.space.size() + 1) + " matrix, ";
-  if (t.space.has_trees())
-    return size + std::to_string(total.nonzeros) + " nonzeros\n" + types_table(file, "");
-  if (const Json states = recorded(file, path, "state_space");
-      states.is_object() && states.value("bins", Json()) == "imported")
-    return size +
-           (states.value("probabilities", Json()) == true
-                ? std::string("probabilities, ")
-                : std::to_string(total.runs) + " counted steps, ") +
-           std::to_string(total.nonzeros) + " nonzeros\n";
-  return size + std::to_string(total.runs) + " gate runs, " + std::to_string(total.nonzeros) +
-         " nonzeros, " + percent(total.clamped_share(), 1.0) +
-         " of the crossings clamped into the nearest bin\n" + types_table(file, "");
+  const auto states = recorded_states(file, path);
+  std::string text = fmt::format("{}: {} x {} matrix, ", path, t.space.size(), t.space.size() + 1);
+  if (!t.space.has_trees())
+    text += states && states->are_probabilities
+                ? "probabilities, "
+                : fmt::format("{} {}, ", total.runs,
+                              states && states->is_imported() ? "counted steps" : "gate runs");
+  text += fmt::format("{} nonzeros", total.nonzeros);
+  if (!t.space.has_trees() && !(states && states->is_imported()))
+    text += fmt::format(", {} of the crossings clamped into the nearest bin",
+                        percent(total.clamped_share(), 1.0));
+  TextTable types({{"", -20}, {}});
+  add_types(types, file);
+  return text + "\n" + types.text();
 }
 
-Json to_json(const lattice::MatrixFile& file, const std::string& path) {
+void describe(Fields& out, const ShownMatrix& shown) {
+  const auto& [path, file] = shown;
+  const Transitions& t = file.transitions;
+  const auto total = t.totals();
+  const double cells = static_cast<double>(t.space.size()) * (t.space.size() + 1);
+  describe_size(out, t);
+  out.count({"gate_runs", "1", "gate runs behind the counts"}, gate_runs_of(file, path));
+  describe_counts(out, total);
+  describe_nonzeros(out, total);
+  out.number({"density", "1", "share of the entries that are not zero"},
+             static_cast<double>(total.nonzeros) / cells);
+  describe_clamped_share(out, total);
+  describe_empty_rows(out, total);
+  describe_types(out, file);
+  out.count({"counted_from", "1", "the number of the first input and output in the rows"}, 1);
+  out.list({"rows", "each row of the matrix"}, lattice::shown_order(t.space),
+           [&](Fields& f, int row) { describe_row(f, t, row); });
+  if (const auto states = recorded_states(file, path); states || out.is_schema())
+    describe_state_space(out, states.value_or(StateRecord()));  // a foreign file may have none
+  out.object({"text", "what else the file keeps, as text"}, [&](Fields& f) {
+    for (const auto& [key, value] : file.text)
+      f.text(Label(key, "the attribute of this name").varying("<attribute>"), value);
+  });
+}
+
+void describe(Fields& out, const ImportedMatrix& imported) {
+  describe(out, imported.matrix);
+  describe_path(out, imported.matrix.path);
+  out.texts({"understood",
+             "what import decided where a file may be read in more than one way, a sentence each"},
+            imported.understood);
+  describe_made_by(out, imported.made_by);
+}
+
+void describe(Fields& out, const CellMatrixResult& built) {
+  describe(out, built.matrix);
+  describe_path(out, built.matrix.path);
+  describe_recorded(out, built.recorded);
+  describe_made_by(out, built.made_by);
+}
+
+std::string table_of(const ShownMatrix& matrix, const ShownRows& shown) {
+  const auto& [path, file] = matrix;
   const Transitions& t = file.transitions;
   const int n = t.space.size();
   const auto total = t.totals();
-  const double cells = static_cast<double>(n) * (n + 1);
-
-  Json json;
-  json["inputs"] = n;
-  json["outputs"] = n + 1;
-  json["gate_runs"] = gate_runs_of(file, path);
-  json["counts"] = total.runs;
-  json["nonzeros"] = total.nonzeros;
-  json["density"] = static_cast<double>(total.nonzeros) / cells;
-  json["clamped_share"] = total.clamped_share();
-  json["rows_never_sampled"] = total.empty_rows;
-  if (!file.types.empty()) json["types"] = types_json(file);
-  json["counted_from"] = 1;  // inputs and outputs below
-  json["rows"] = Json::array();
-  for (const int row : lattice::shown_order(t.space)) {
-    const StateRange range = t.space.range(row);
-    Json outputs = Json::array();
-    for (const auto& [number, output] : outputs_of(t, row))
-      outputs.push_back({{"output", number + 1}, {"count", output.second}});
-    const Section& section = t.space.section();
-    Json shown = {{"input", lattice::shown_number(t.space, row) + 1},
-                  {"boundary", section.faces[range.face].name}};
-    if (const std::string name = name_of(section, range.middle()); !name.empty())
-      shown["name"] = name;
-    for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
-      shown[section.coordinates[axis].key] = range.at[axis];
-    shown["trials"] = t.trials[row];
-    shown["clamped"] = t.clamped[row];
-    shown["outputs"] = std::move(outputs);
-    json["rows"].push_back(std::move(shown));
-  }
-  if (Json states = recorded(file, path, "state_space"); !states.is_null())
-    json["state_space"] = std::move(states);
-  json["text"] = Json::object();
-  for (const auto& [key, value] : file.text) json["text"][key] = value;
-  return json;
-}
-
-std::string table_of(const lattice::MatrixFile& file, const std::string& path,
-                     const ShownRows& shown) {
-  const Transitions& t = file.transitions;
-  const int n = t.space.size();
-  const auto total = t.totals();
-  const double cells = static_cast<double>(n) * (n + 1);
-  lattice::TextStream out;
-  out << path << "\n"
-      << "  size                " << n << " inputs x " << n + 1 << " outputs (the last: trapped)\n"
-      << "  gate runs           " << gate_runs_of(file, path)
-      << (t.space.has_trees() ? ", counts " + std::to_string(total.runs) : "") << "\n"
-      << "  nonzeros            " << total.nonzeros << " of " << std::int64_t{n} * (n + 1) << " ("
-      << percent(static_cast<double>(total.nonzeros), cells) << ")\n"
-      << (t.space.has_trees()
-              ? ""
-              : "  clamped crossings   " + percent(total.clamped_share(), 1.0) + "\n")
-      << "  rows never sampled  " << total.empty_rows << "\n"
-      << types_table(file, "  ");
+  const std::int64_t cells = std::int64_t{n} * (n + 1);
+  TextTable table({{"", -20, 0, "", "  "}, {}});
+  table.row({"size", fmt::format("{} inputs x {} outputs (the last: trapped)", n, n + 1)});
+  table.row({"gate runs",
+             fmt::format("{}{}", gate_runs_of(file, path),
+                         t.space.has_trees() ? fmt::format(", counts {}", total.runs) : "")});
+  table.row({"nonzeros", fmt::format("{} of {} ({})", total.nonzeros, cells,
+                                     percent(static_cast<double>(total.nonzeros),
+                                             static_cast<double>(cells)))});
+  if (!t.space.has_trees()) table.row({"clamped crossings", percent(total.clamped_share(), 1.0)});
+  table.row({"rows never sampled", total.empty_rows});
+  add_types(table, file);
   for (const char* key : {"program", "commit", "command", "seed", "trials_per_row", "bins"})
-    if (const auto it = file.text.find(key); it != file.text.end())
-      out << "  " << padded(key, -20) << it->second << "\n";
-  const Json status = recorded_status(file);
+    if (const auto it = file.text.find(key); it != file.text.end()) table.row({key, it->second});
+  std::string text = path + "\n" + table.text();
+  if (const auto states = recorded_states(file, path)) text += "  " + states_line(*states);
   const std::string faults =
-      status.is_null() && file.text.contains(lattice::kCellText)
+      !file.text.contains("status") && file.text.contains(lattice::kCellText)
           ? std::string("none on record") + (lattice::has_runs(file) ? ": runs were recorded" : "")
-          : faults_recorded(status);
-  const Json states = recorded(file, path, "state_space");
-  if (!states.is_null()) out << "  " << states_line(states);
-  out << "  numerical faults    " << (faults.empty() ? "none seen" : faults) << "\n";
-  if (shown.all) out << row_table(t);
-  if (shown.one) out << outputs_table(t, *shown.one);
-  if (file.text.count("scene") > 0) out << "\n" << file.text.at("scene");
-  return out.str();
+          : faults_recorded(recorded_health(file));
+  TextTable last({{"", -20, 0, "", "  "}, {}});
+  last.row({"numerical faults", faults.empty() ? "none seen" : faults});
+  text += last.text();
+  if (shown.all) text += row_table(t);
+  if (shown.one) text += outputs_table(t, *shown.one);
+  if (const auto scene = file.text.find("scene"); scene != file.text.end())
+    text += "\n" + scene->second;
+  return text;
 }
 
 }  // namespace gatewalk::cli

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/recorded.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,41 +14,49 @@
 namespace gatewalk::cli {
 namespace {
 
-struct Fates {
-  std::int64_t left = 0, trapped = 0, lost = 0;
-};
-
-Fates fates_of(const lattice::RunPool& pool) {
-  Fates fates;
-  const auto add = [&](const lattice::PassageTable& passages) {
-    for (std::size_t i = 0; i < passages.size(); ++i) {
-      const dynamics::Fate fate = passages[i].fate;
-      ++(fate == dynamics::Fate::left      ? fates.left
-         : fate == dynamics::Fate::trapped ? fates.trapped
-                                           : fates.lost);
-    }
-  };
-  add(pool.scattered.each.passages);
-  for (const lattice::StartTrials& s : pool.starts) {
-    add(s.full.passages);
-    add(s.first.passages);
+void add(RecordedCounts& counts, const lattice::PassageTable& passages) {
+  for (std::size_t i = 0; i < passages.size(); ++i) {
+    const dynamics::Fate fate = passages[i].fate;
+    ++(fate == dynamics::Fate::left      ? counts.left
+       : fate == dynamics::Fate::trapped ? counts.trapped
+                                         : counts.lost);
   }
-  return fates;
 }
 
 }  // namespace
 
+RecordedCounts counts_of(const lattice::RunPool& pool) {
+  RecordedCounts counts{pool.bodies(), pool.trials(), pool.gate_runs()};
+  add(counts, pool.scattered.each.passages);
+  for (const lattice::StartTrials& s : pool.starts) {
+    add(counts, s.full.passages);
+    add(counts, s.first.passages);
+  }
+  return counts;
+}
+
+void describe(Fields& out, const RecordedCounts& counts) {
+  out.count({"bodies", "1", "different bodies"}, counts.bodies);
+  out.count({"trials", "1", "trials: ways of a body through the field"}, counts.trials);
+  out.count({"passages", "1", "passages of a body through one cell"}, counts.passages);
+  out.count({"left", "1", "passages that led into the next cell"}, counts.left);
+  out.count({"trapped", "1", "passages in which the body was trapped"}, counts.trapped);
+  out.count({"lost", "1", "passages in which the body was lost from sight"}, counts.lost);
+}
+
+void describe_recorded(Fields& out, const RecordedCounts& counts) {
+  out.object({"recorded", "the recorded runs"}, [&](Fields& f) { describe(f, counts); });
+}
+
 Json to_json(const lattice::RunPool& pool) {
-  const Fates fates = fates_of(pool);
-  return {{"bodies", pool.bodies()}, {"trials", pool.trials()},  {"passages", pool.gate_runs()},
-          {"left", fates.left},      {"trapped", fates.trapped}, {"lost", fates.lost}};
+  return json_of([&](Fields& out) { describe(out, counts_of(pool)); });
 }
 
 std::string table_of(const lattice::RunPool& pool) {
-  const Fates fates = fates_of(pool);
-  return std::to_string(pool.bodies()) + " bodies, " + std::to_string(pool.trials()) + " trials, " +
-         std::to_string(pool.gate_runs()) + " passages: " + std::to_string(fates.left) + " left, " +
-         std::to_string(fates.trapped) + " trapped, " + std::to_string(fates.lost) + " lost\n";
+  const RecordedCounts counts = counts_of(pool);
+  return fmt::format("{} bodies, {} trials, {} passages: {} left, {} trapped, {} lost\n",
+                     counts.bodies, counts.trials, counts.passages, counts.left, counts.trapped,
+                     counts.lost);
 }
 
 std::string far_from_faces(const lattice::RunPool& pool, const lattice::Problem& problem) {
@@ -64,8 +74,8 @@ std::string far_from_faces(const lattice::RunPool& pool, const lattice::Problem&
 std::vector<std::string> doubts(const lattice::RunPool& pool, const lattice::Problem& problem) {
   std::vector<std::string> said;
   if (pool.bodies() < lattice::kLeastBodies)
-    said.push_back("no error bars: they need " + std::to_string(lattice::kLeastBodies) +
-                   " bodies at least, these are " + std::to_string(pool.bodies()));
+    said.push_back(fmt::format("no error bars: they need {} bodies at least, these are {}",
+                               lattice::kLeastBodies, pool.bodies()));
   std::vector<bool> entered(problem.map().section.faces.size(), false);
   lattice::each_entry(pool, {}, [&](const dynamics::Entry& entry, int) {
     entered[static_cast<std::size_t>(entry.face)] = true;

@@ -2,15 +2,25 @@
 #pragma once
 /// What is said of recorded runs.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/json_fwd.h"
 #include "lattice/cells/cell_matrix.h"
 
 namespace gatewalk::cli {
 
-/// Bodies, trials, passages by what became of them.
+/// Recorded runs by number.
+struct RecordedCounts {
+  std::int64_t bodies = 0, trials = 0, passages = 0;
+  std::int64_t left = 0, trapped = 0, lost = 0;  // of the passages, by what became of the body
+};
+[[nodiscard]] RecordedCounts counts_of(const lattice::RunPool& pool);
+void describe(Fields& out, const RecordedCounts& counts);
+/// The key "recorded", of results that recorded runs are behind.
+void describe_recorded(Fields& out, const RecordedCounts& counts);
 [[nodiscard]] Json to_json(const lattice::RunPool& pool);
 [[nodiscard]] std::string table_of(const lattice::RunPool& pool);
 /// What they cannot tell, a sentence each: few bodies, faces that nobody entered by.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <utility>
 
+#include "cli/render/cut_tracks.h"
+#include "cli/render/files.h"
 #include "cli/render/gate_runs.h"
+#include "cli/render/matrix.h"
 #include "cli/render/rare.h"
 #include "cli/render/schema.h"
 #include "cli/render/stability.h"
@@ -16,6 +19,33 @@ ResultOf of(const char* command, Result example = {}) {
   return {command, [example = std::move(example)](Fields& out) { describe(out, example); }};
 }
 
+/// With a gate of another type.
+lattice::MatrixFile matrix_file() {
+  const dynamics::Transitions t(dynamics::StateSpace(
+      dynamics::disc_section(), std::vector<dynamics::Tree>(dynamics::kBoundaries), {}));
+  return {.transitions = t,
+          .text = {{"title", ""}},
+          .arrays = {},
+          .types = {{"", t}},
+          .state_names = {}};
+}
+ShownMatrix shown_matrix() { return {"", matrix_file()}; }
+
+/// Of gates, or of cells that are not ours.
+void describe_build(Fields& out) {
+  out.either(
+      true, [](Fields& f) { describe(f, MadeMatrix{.file = matrix_file(), .states = {}}); },
+      [](Fields& f) {
+        describe(f, CellMatrixResult{shown_matrix(), {}, {}});
+      });
+}
+
+CutResult cut_tracks() {
+  CutResult example{{}, {}};
+  example.cell.map.section = dynamics::disc_section();
+  return example;
+}
+
 RareResult rare() {
   RareResult example;
   example.event = {.splitting = {.rows = {{}}, .health = {}}, .chain = {0.0}};
@@ -25,9 +55,19 @@ RareResult rare() {
 }  // namespace
 
 const std::vector<ResultOf>& results() {
-  static const std::vector<ResultOf> all{of("chart", ChartResult{{{}}, {{}}}),
-                                         of<GateResult>("gate"), of("rare", rare()),
-                                         of<StabilityResult>("stability")};
+  static const std::vector<ResultOf> all{
+      // One in each line.
+      {"build", describe_build},
+      of("chart", ChartResult{{{}}, {{}}}),
+      of<ExportResult>("export"),
+      of<GateResult>("gate"),
+      of("import", ImportedMatrix{shown_matrix(), {}, {}}),
+      of("passages", cut_tracks()),
+      of("rare", rare()),
+      of("sample", SampleResult{}),
+      of("show", shown_matrix()),
+      of<StabilityResult>("stability"),
+  };
   return all;
 }
 

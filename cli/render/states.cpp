@@ -1,158 +1,340 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/states.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/pooled_prediction.h"
-#include "cli/render/start.h"
 #include "cli/render/text.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
 namespace {
 
 using namespace dynamics;
 
-}  // namespace
+double clamped_share(const Resolution& r) {
+  return static_cast<double>(r.clamped) / static_cast<double>(std::max<std::int64_t>(1, r.entries));
+}
 
-Json to_json(const lattice::States& s) {
-  const Resolution& r = s.resolution;
-  const auto n = static_cast<double>(std::max<std::int64_t>(1, r.entries));
-  Json j;
-  j["bins"] = s.choice.name();
-  if (s.choice.kind == lattice::BinsChoice::Kind::paper) j["factor"] = s.choice.factor;
-  j["states"] = s.space.size();
-  j["outermost_bins"] = s.space.open() ? "open" : "closed";
-  j["row_starts"] = s.entries.empty() ? "uniform" : "visited";
-  if (!s.entries.empty()) {
-    const auto bins =
-        s.entries.begin() + (s.space.size() - static_cast<int>(s.space.points().size()));
-    j["rows_without_entries"] =
-        std::count_if(s.entries.begin(), bins, [](const auto& e) { return e.empty(); });
+// ---- From what was made ----
+
+void describe(Fields& out, const BinRecord& bins) {
+  const Resolution& r = bins.resolution;
+  out.object({"pilot", "full trials by which the bins are judged"}, [&](Fields& pilot) {
+    pilot.count({"trials", "1", "full trials"}, bins.pilot_trials);
+    pilot.count({"entries", "1", "entries into gates behind the first one"}, r.entries);
+    describe_status(pilot, bins.pilot_health);
+  });
+  out.object({"resolution", "how well the bins tell the pilot's entries apart"}, [&](Fields& f) {
+    f.number({"clamped_share", "1", "share of the entries that lie outside every bin"},
+             clamped_share(r));
+    f.count({"states_entered", "1", "states that any entry fell into"}, r.states_entered);
+    f.count({"states_of_90_percent", "1", "the fewest states that hold 90 % of the entries"},
+            r.states_of_90);
+    f.object({"unresolved_variance",
+              "variance of a coordinate within the states over that within the boundaries"},
+             [&](Fields& unresolved) {
+               unresolved.number({"d", "1", "of the place on the boundary"}, r.unresolved[kEntryD]);
+               unresolved.number({"vx", "1", "of the lateral velocity"}, r.unresolved[kEntryVx]);
+               unresolved.number({"vy", "1", "of the forward velocity"}, r.unresolved[kEntryVy]);
+             });
+    f.flag({"poor", "whether the bins tell too little for the chain to be trusted"}, r.poor());
+  });
+}
+
+/// Recorded runs have no accuracy that was asked for.
+bool is_of_recorded_runs(const TreeRecord& trees) { return !trees.accuracy; }
+
+void describe_start(Fields& out, const Section& section, const Entry& entry) {
+  out.optional(entry.face != 0, [&](Fields& f) {
+    f.text({"face", "the boundary that is entered, where it is not the first one"},
+           section.faces[static_cast<std::size_t>(entry.face)].name);
+  });
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+    out.number(Field(section.coordinates[axis].key, "its own", "value of the coordinate")
+                   .varying("<coordinate>"),
+               entry.at[axis]);
+}
+
+void describe(Fields& out, const lattice::PooledRange& range, const Section& section) {
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
+    const auto& [from, to] = range.range.at[axis];
+    out.numbers(Field(section.coordinates[axis].key, "its own", "from and to, of the coordinate")
+                    .varying("<coordinate>"),
+                {from, to});
   }
-  j["starts_of_their_own"] = Json::array();
-  for (const Entry& c : s.space.points())
-    j["starts_of_their_own"].push_back(to_json(s.space.section(), c));
-  j["pilot"] = {
-      {"trials", s.pilot.trials}, {"entries", r.entries}, {"status", to_json(s.pilot.health)}};
-  j["resolution"] = {{"clamped_share", static_cast<double>(r.clamped) / n},
-                     {"states_entered", r.states_entered},
-                     {"states_of_90_percent", r.states_of_90},
-                     {"unresolved_variance",
-                      {{"d", r.unresolved[kEntryD]},
-                       {"vx", r.unresolved[kEntryVx]},
-                       {"vy", r.unresolved[kEntryVy]}}},
-                     {"poor", r.poor()}};
-  return j;
+  out.count({"tried_on_starts", "1", "starts of the range on which its error was tried"},
+            range.tried_on);
+  out.number({"kernel_error_95", "1",
+              "total variation, 95 %, with endlessly many first runs: of the start in the middle"},
+             range.kernel_error_95);
+  out.number({"worst_kernel_error_95", "1", "the same of the worst of these starts"},
+             range.worst_kernel_error_95);
 }
 
-namespace {
+// ---- From a file ----
 
-std::string text_of_range(const Json& r) {
-  return dynamics::text_of(std::array<double, 2>{r.at(0).get<double>(), r.at(1).get<double>()});
+Entry start_in(const Json& json, const Section& section) {
+  Entry entry;
+  if (json.contains("face")) {
+    const auto face = std::find_if(section.faces.begin(), section.faces.end(),
+                                   [&](const Face& f) { return json.at("face") == f.name; });
+    if (face == section.faces.end()) throw std::invalid_argument("a start enters by no face");
+    entry.face = static_cast<int>(face - section.faces.begin());
+  }
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+    entry.at[axis] = number_in(json.at(section.coordinates[axis].key));
+  return entry;
 }
 
-/// "4,5,10", "W:0.1,0": as --start gives it. Numbers stand in the order of the coordinates.
-std::string text_of_start(const Json& start) {
+BinRecord bins_in(const Json& json) {
+  const Json &pilot = json.at("pilot"), &found = json.at("resolution"),
+             &unresolved = found.at("unresolved_variance");
+  BinRecord bins{
+      .pilot_trials = pilot.at("trials"),
+      .pilot_health = health_from(pilot.at("status")),
+      .resolution = {.entries = pilot.at("entries"),
+                     .states_entered = found.at("states_entered"),
+                     .states_of_90 = found.at("states_of_90_percent"),
+                     .unresolved = {unresolved.at("d"), unresolved.at("vx"), unresolved.at("vy")}}};
+  bins.resolution.clamped = std::llround(found.at("clamped_share").get<double>() *
+                                         static_cast<double>(bins.resolution.entries));
+  if (json.contains("factor")) bins.factor = json.at("factor");
+  if (json.contains("rows_without_entries"))
+    bins.rows_without_entries = json.at("rows_without_entries");
+  return bins;
+}
+
+TreeRecord trees_in(const Json& json, const Section& section) {
+  TreeRecord trees{.entries_per_leaf = json.at("entries_per_leaf"),
+                   .gate_runs = json.at("gate_runs"),
+                   .states_bias = number_in(json.at("states_bias"))};
+  if (json.contains("accuracy")) trees.accuracy = json.at("accuracy");
+  if (json.contains("error_95")) {
+    trees.error_95.emplace();
+    for (const Json& error : json.at("error_95")) trees.error_95->push_back(number_in(error));
+  }
+  if (const Json& range = json.at("range"); !range.is_null()) {
+    trees.range.emplace();
+    for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+      trees.range->range.at[axis] = range.at(section.coordinates[axis].key);
+    trees.range->tried_on = range.at("tried_on_starts");
+    trees.range->kernel_error_95 = number_in(range.at("kernel_error_95"));
+    trees.range->worst_kernel_error_95 = number_in(range.at("worst_kernel_error_95"));
+  }
+  if (json.contains("own_trials")) {
+    trees.own_trials.emplace();
+    if (const Json& own = json.at("own_trials"); !own.is_null())
+      *trees.own_trials = lattice::OwnTrials{own.at("trials"), own.at("total_variation"),
+                                             own.at("chance_total_variation"), own.at("p")};
+  }
+  return trees;
+}
+
+// ---- In words ----
+
+/// "4,5,10", "W:0.1,0": as --start gives it.
+std::string text_of_start(const Section& section, const Entry& start) {
   std::string text;
-  for (const auto& [key, value] : start.items())
-    if (value.is_number()) text += (text.empty() ? "" : ",") + digits(value.get<double>());
-  return (start.contains("face") ? start.at("face").get<std::string>() + ":" : "") + text;
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+    text += (axis == 0 ? "" : ",") + digits(start.at[axis]);
+  return start.face == 0 ? text
+                         : section.faces[static_cast<std::size_t>(start.face)].name + ":" + text;
 }
 
 /// ", for the starts 0,0,15; 4,5,10".
-std::string starts_in(const Json& starts) {
-  if (starts.empty()) return "";
-  std::string text = starts.size() == 1 ? ", for the start" : ", for the starts";
+std::string starts_text(const StateRecord& s) {
+  if (s.starts.empty()) return "";
+  std::string text = s.starts.size() == 1 ? ", for the start" : ", for the starts";
   constexpr std::size_t kMost = 4;
-  for (std::size_t i = 0; i < std::min(kMost, starts.size()); ++i)
-    text += std::string(i > 0 ? ";" : "") + " " + text_of_start(starts[i]);
-  if (starts.size() > kMost) text += "; ... " + std::to_string(starts.size()) + " in all";
+  for (std::size_t i = 0; i < std::min(kMost, s.starts.size()); ++i)
+    text += (i > 0 ? "; " : " ") + text_of_start(s.section, s.starts[i]);
+  if (s.starts.size() > kMost) text += fmt::format("; ... {} in all", s.starts.size());
   return text;
 }
 
-/// Of a file.
-std::optional<lattice::OwnTrials> own_trials_of(const Json& j) {
-  if (j.is_null()) return {};
-  return lattice::OwnTrials{j.at("trials"), j.at("total_variation"), j.at("chance_total_variation"),
-                            j.at("p")};
+std::string lines_of(const TreeRecord& trees, const StateRecord& s) {
+  std::string text =
+      fmt::format("states: {} (leaves of trees with {} entries or more{}) from {} gate runs\n",
+                  s.states, trees.entries_per_leaf, starts_text(s), trees.gate_runs);
+  if (trees.range) {
+    const auto& at = trees.range->range.at;
+    text += fmt::format("for starts d {} m, vx {} m/s, vy {} m/s\n", dynamics::text_of(at[kEntryD]),
+                        dynamics::text_of(at[kEntryVx]), dynamics::text_of(at[kEntryVy]));
+  }
+  if (trees.states_bias > 0.0)
+    text += fmt::format("fewer states than the runs allow: total variation {} of the final gates\n",
+                        fixed(trees.states_bias, 4));
+  return text + own_trials_text(trees.own_trials.value_or(std::nullopt)) +
+         "a row has few runs and is noisy by itself: a prediction averages over all of them\n";
 }
 
-std::string tree_line(const Json& j) {
-  std::string text = "states: " + j.at("states").dump() + " (leaves of trees with " +
-                     j.at("entries_per_leaf").dump() + " entries or more" +
-                     starts_in(j.at("starts_of_their_own")) + ") from " + j.at("gate_runs").dump() +
-                     " gate runs\n";
-  if (const auto& range = j.at("range"); !range.is_null())
-    text += "for starts d " + text_of_range(range.at("d_m")) + " m, vx " +
-            text_of_range(range.at("vx_m_per_s")) + " m/s, vy " +
-            text_of_range(range.at("vy_m_per_s")) + " m/s\n";
-  if (const double bias = j.at("states_bias").get<double>(); bias > 0.0)
-    text += "fewer states than the runs allow: total variation " + fixed(bias, 4) +
-            " of the final gates\n";
-  return text + own_trials_text(own_trials_of(j.value("own_trials", Json()))) +
-         "a row has few runs and is noisy by itself: a prediction averages over all of them\n";
+std::string lines_of(const BinRecord& bins, const StateRecord& s) {
+  const Resolution& r = bins.resolution;
+  std::string kind = s.kind == "paper"  ? "Table III's bins"
+                     : s.kind == "auto" ? "bins from a pilot"
+                                        : "the scene's bins";
+  if (bins.factor.value_or(1.0) != 1.0) kind += " x " + lattice::toml_float(*bins.factor);
+  std::string text = fmt::format(
+      "states: {} ({}); of {} entries in {} pilot trials {} lie outside, 90 % in {} states; "
+      "variance within states: d {}, vx {}, vy {}\n",
+      s.states, kind, r.entries, bins.pilot_trials, percent(clamped_share(r), 1.0), r.states_of_90,
+      percent(r.unresolved[kEntryD], 1.0), percent(r.unresolved[kEntryVx], 1.0),
+      percent(r.unresolved[kEntryVy], 1.0));
+  if (bins.rows_without_entries.value_or(0) > 0)
+    text += fmt::format("states without an entry seen: {}, their rows start anywhere in the bin\n",
+                        *bins.rows_without_entries);
+  return text;
 }
 
 }  // namespace
 
-Json to_json(const lattice::TreeChain& c, double accuracy) {
-  Json j;
-  j["bins"] = "tree";
-  j["states"] = c.transitions.front().space.size();
-  j["outermost_bins"] = "open";
-  j["entries_per_leaf"] = c.per_leaf;
-  j["gate_runs"] = c.pool.gate_runs();
-  j["accuracy"] = accuracy;
-  j["starts_of_their_own"] = Json::array();
-  for (const Entry& s : c.transitions.front().space.points())
-    j["starts_of_their_own"].push_back(to_json(c.transitions.front().space.section(), s));
-  if (c.prediction) {
-    j["error_95"] = Json::array();
-    for (const lattice::StartAnswer& a : c.prediction->starts)
-      j["error_95"].push_back(a.error.total_variation);
-  }
-  j["range"] = nullptr;
-  if (c.range) {
-    Json& range = j["range"] = Json::object();
-    const std::vector<Coordinate>& coordinates = c.transitions.front().space.section().coordinates;
-    for (std::size_t axis = 0; axis < coordinates.size(); ++axis)
-      range[coordinates[axis].key] = c.range->range.at[axis];
-    range["tried_on_starts"] = c.range->tried_on;
-    range["kernel_error_95"] = c.range->kernel_error_95;
-    range["worst_kernel_error_95"] = c.range->worst_kernel_error_95;
-  }
-  j["states_bias"] = c.states_bias;
-  j["own_trials"] = cli::to_json(c.own_trials);
-  return j;
+StateRecord record_of(const lattice::States& s) {
+  BinRecord bins{
+      .pilot_trials = s.pilot.trials, .pilot_health = s.pilot.health, .resolution = s.resolution};
+  if (s.choice.kind == lattice::BinsChoice::Kind::paper) bins.factor = s.choice.factor;
+  if (!s.entries.empty())
+    bins.rows_without_entries =
+        std::count_if(s.entries.begin(), s.entries.end() - std::ssize(s.space.points()),
+                      [](const auto& seen) { return seen.empty(); });
+  return {.kind = s.choice.name(),
+          .states = s.space.size(),
+          .are_open = s.space.open(),
+          .section = s.space.section(),
+          .starts = s.space.points(),
+          .bins = std::move(bins)};
 }
 
-std::string states_line(const Json& j) {
-  if (j.is_null()) return "";
-  if (j.at("bins") == "tree") return tree_line(j);
-  if (j.at("bins") == "imported")
-    return "states: " + j.at("states").dump() + ", of a chain from elsewhere" +
-           (j.value("probabilities", Json()) == true ? ", given as probabilities" : "") +
-           "; --start takes a name, or a number from 0 (input less 1)\n";
-  const Json &r = j.at("resolution"), &pilot = j.at("pilot"),
-             &unresolved = r.at("unresolved_variance");
-  const std::string kind = j.at("bins");
-  std::string text = "states: " + j.at("states").dump() +
-                     (kind == "paper"  ? " (Table III's bins"
-                      : kind == "auto" ? " (bins from a pilot"
-                                       : " (the scene's bins");
-  if (kind == "paper" && j.at("factor") != 1.0) text += " x " + j.at("factor").dump();
-  text += "); of " + pilot.at("entries").dump() + " entries in " + pilot.at("trials").dump() +
-          " pilot trials " + percent(r.at("clamped_share").get<double>(), 1.0) +
-          " lie outside, 90 % in " + r.at("states_of_90_percent").dump() +
-          " states; variance within states: d " + percent(unresolved.at("d").get<double>(), 1.0) +
-          ", vx " + percent(unresolved.at("vx").get<double>(), 1.0) + ", vy " +
-          percent(unresolved.at("vy").get<double>(), 1.0) + "\n";
-  if (const auto rows = j.find("rows_without_entries"); rows != j.end() && rows->get<int>() > 0)
-    text += "states without an entry seen: " + rows->dump() +
-            ", their rows start anywhere in the bin\n";
-  return text;
+StateRecord record_of(const lattice::TreeChain& c, double accuracy) {
+  const StateSpace& space = c.transitions.front().space;
+  TreeRecord trees{.entries_per_leaf = c.per_leaf,
+                   .gate_runs = c.pool.gate_runs(),
+                   .accuracy = accuracy,
+                   .range = c.range,
+                   .states_bias = c.states_bias,
+                   .own_trials = c.own_trials};
+  if (c.prediction) {
+    trees.error_95.emplace();
+    for (const lattice::StartAnswer& a : c.prediction->starts)
+      trees.error_95->push_back(a.error.total_variation);
+  }
+  return {.kind = "tree",
+          .states = space.size(),
+          .are_open = true,
+          .section = space.section(),
+          .starts = space.points(),
+          .trees = std::move(trees)};
+}
+
+StateRecord state_record(const Json& attribute, const Section& section) {
+  StateRecord s{.kind = attribute.at("bins"),
+                .states = attribute.at("states"),
+                .are_open = attribute.value("outermost_bins", "") == "open",
+                .section = section,
+                .are_probabilities = attribute.value("probabilities", false)};
+  if (s.is_imported()) return s;
+  for (const Json& start : attribute.at("starts_of_their_own"))
+    s.starts.push_back(start_in(start, section));
+  if (s.kind == "tree")
+    s.trees = trees_in(attribute, section);
+  else
+    s.bins = bins_in(attribute);
+  return s;
+}
+
+std::string attribute_of(const StateRecord& states) {
+  return text_of(json_of([&](Fields& out) { describe(out, states); }), -1);
+}
+
+void describe(Fields& out, const StateRecord& s) {
+  const BinRecord bins = s.bins.value_or(BinRecord());
+  const TreeRecord trees = s.trees.value_or(TreeRecord());
+  const bool recorded = s.trees && is_of_recorded_runs(trees);
+  const auto put_states = [&](Fields& f) {
+    f.count({"states", "1", "states of the chain"}, s.states);
+  };
+  out.text(Label("bins",
+                 "how the states are made: of Table III's bins, of bins from a pilot, of the "
+                 "scene's table [bins], of leaves of trees, or imported with the chain")
+               .one_of({"paper", "auto", "scene", "tree", "imported"}),
+           s.kind);
+  out.optional(bins.factor.has_value(), [&](Fields& f) {
+    f.number({"factor", "1", "bins per axis as a multiple of Table III's"},
+             bins.factor.value_or(1.0));
+  });
+  if (!recorded) put_states(out);
+  out.optional(s.bins || (s.trees && !recorded), [&](Fields& f) {
+    f.text(Label("outermost_bins", "whether they take all entries that lie beyond them")
+               .one_of({"open", "closed"}),
+           s.are_open ? "open" : "closed");
+  });
+  out.optional(s.bins.has_value(), [&](Fields& f) {
+    f.text(Label("row_starts", "where the runs of a bin start: anywhere in it, or as bodies enter")
+               .one_of({"uniform", "visited"}),
+           bins.rows_without_entries ? "visited" : "uniform");
+    f.optional(bins.rows_without_entries.has_value(), [&](Fields& rows) {
+      rows.count({"rows_without_entries", "1", "bins that no body was seen to enter"},
+                 bins.rows_without_entries.value_or(0));
+    });
+  });
+  out.optional(s.trees.has_value(), [&](Fields& f) {
+    f.count({"entries_per_leaf", "1", "entries that a leaf has at least"}, trees.entries_per_leaf);
+    f.count({"gate_runs", "1", "gate runs, or recorded passages, behind the chain"},
+            trees.gate_runs);
+    f.optional(trees.accuracy.has_value(), [&](Fields& asked) {
+      asked.number({"accuracy", "1",
+                    "total variation that was asked for (of a matrix for any start: half of it is "
+                    "the chain's)"},
+                   trees.accuracy.value_or(0.0));
+    });
+  });
+  out.optional(s.bins || s.trees, [&](Fields& f) {
+    f.list({"starts_of_their_own", "starts that are states of their own"}, s.starts,
+           [&](Fields& start, const Entry& entry) { describe_start(start, s.section, entry); });
+  });
+  out.optional(s.bins.has_value(), [&](Fields& f) { describe(f, bins); });
+  out.optional(s.trees.has_value(), [&](Fields& f) {
+    f.optional(trees.error_95.has_value(), [&](Fields& errors) {
+      errors.numbers({"error_95", "1",
+                      "by start: total variation of all shares, 95 %; null where nothing can be "
+                      "told"},
+                     trees.error_95.value_or(std::vector<double>()));
+    });
+    f.maybe({"range", "starts that the chain is good for; null: for starts of its own"},
+            trees.range,
+            [&](Fields& range, const lattice::PooledRange& r) { describe(range, r, s.section); });
+    f.number({"states_bias", "1",
+              "total variation of the final gates that a limit of states makes; 0 without one"},
+             trees.states_bias);
+    f.optional(trees.own_trials.has_value(), [&](Fields& own) {
+      describe_own_trials(own, trees.own_trials.value_or(std::nullopt));
+    });
+  });
+  if (recorded) put_states(out);
+  out.optional(s.are_probabilities, [&](Fields& f) {
+    f.flag({"probabilities", "the imported chain is made of probabilities, without counts"},
+           s.are_probabilities);
+  });
+}
+
+void describe_state_space(Fields& out, const StateRecord& states) {
+  out.object(Label("state_space", "the states of the chain").shared(),
+             [&](Fields& f) { describe(f, states); });
+}
+
+std::string states_line(const StateRecord& s) {
+  if (s.trees) return lines_of(*s.trees, s);
+  if (s.bins) return lines_of(*s.bins, s);
+  return fmt::format(
+      "states: {}, of a chain from elsewhere{}; --start takes a name, or a number from 0 (input "
+      "less 1)\n",
+      s.states, s.are_probabilities ? ", given as probabilities" : "");
 }
 
 std::vector<std::string> complaints(const lattice::States& s) {
@@ -160,19 +342,22 @@ std::vector<std::string> complaints(const lattice::States& s) {
   if (!s.entries.empty() && !s.pilot.health.clean())
     all.push_back("the pilot: " + complaint(s.pilot.health));
   if (s.pilot.entries.empty())
-    all.push_back("no body entered a second gate in " + std::to_string(s.pilot.trials) +
-                  " pilot trials: bins could not be judged by what bodies do");
-  if (s.resolution.poor())
     all.push_back(
-        "the bins resolve too little of how bodies enter gates: " +
+        fmt::format("no body entered a second gate in {} pilot trials: bins could not be judged by "
+                    "what bodies do",
+                    s.pilot.trials));
+  if (s.resolution.poor())
+    all.push_back(fmt::format(
+        "the bins resolve too little of how bodies enter gates: {} of the entries seen lie "
+        "outside, 90 % of "
+        "them in {} states; the chain may be far off. {}",
         percent(static_cast<double>(s.resolution.clamped),
-                static_cast<double>(s.resolution.entries)) +
-        " of the entries seen lie outside, 90 % of them in " +
-        std::to_string(s.resolution.states_of_90) + " states; the chain may be far off. " +
-        (s.choice.kind == lattice::BinsChoice::Kind::automatic
-             ? "Only " + std::to_string(s.resolution.entries) +
-                   " entries were seen, too few for more states"
-             : "--bins auto, without a table [bins] in the scene, makes bins that suit it"));
+                static_cast<double>(s.resolution.entries)),
+        s.resolution.states_of_90,
+        s.choice.kind == lattice::BinsChoice::Kind::automatic
+            ? fmt::format("Only {} entries were seen, too few for more states",
+                          s.resolution.entries)
+            : "--bins auto, without a table [bins] in the scene, makes bins that suit it"));
   return all;
 }
 

@@ -1,20 +1,70 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The states of a chain and how well they resolve a scene, as JSON and in words.
+/// The states of a chain and how well they resolve a scene: as a matrix file records them, as a
+/// part of results and in words.
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/json_fwd.h"
+#include "dynamics/disc/disc_section.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/scene/bins.h"
 
 namespace gatewalk::cli {
 
-[[nodiscard]] Json to_json(const lattice::States& states);
-[[nodiscard]] Json to_json(const lattice::TreeChain& chain, double accuracy);
-/// A line of a table about a state space as to_json describes it; empty for null.
-[[nodiscard]] std::string states_line(const Json& states);
+/// What is recorded of states that are bins.
+struct BinRecord {
+  std::optional<double> factor{};  // bins per axis as a multiple of Table III's
+  /// States without an entry seen, where rows start from entries seen; none: rows start anywhere.
+  std::optional<std::int64_t> rows_without_entries{};
+  std::int64_t pilot_trials = 0;
+  dynamics::Health pilot_health{};
+  dynamics::Resolution resolution{};
+};
+
+/// What is recorded of states that are leaves of trees.
+struct TreeRecord {
+  int entries_per_leaf = dynamics::kEntriesPerLeaf;
+  std::int64_t gate_runs = 0;
+  std::optional<double> accuracy{};               // that was asked for; none of recorded runs
+  std::optional<std::vector<double>> error_95{};  // by start
+  std::optional<lattice::PooledRange> range{};
+  double states_bias = 0.0;
+  /// None: the file does not say, as those of version 1.0.0.
+  std::optional<std::optional<lattice::OwnTrials>> own_trials{};
+};
+
+/// The states of a chain, as the attribute "state_space" of its matrix file describes them.
+struct StateRecord {
+  std::string kind = "imported";  // "paper", "auto", "scene"; "tree"; "imported": from elsewhere
+  int states = 0;
+  bool are_open = false;                                 // the outermost bins
+  dynamics::Section section = dynamics::disc_section();  // of the starts
+  std::vector<dynamics::Entry> starts{};                 // that are states of their own
+  std::optional<BinRecord> bins{};
+  std::optional<TreeRecord> trees{};
+  bool are_probabilities = false;  // of a chain from elsewhere: without counts
+
+  [[nodiscard]] bool is_imported() const { return kind == "imported"; }
+};
+[[nodiscard]] StateRecord record_of(const lattice::States& states);
+[[nodiscard]] StateRecord record_of(const lattice::TreeChain& chain, double accuracy);
+/// Of an attribute, in a file of cells with this section. Throws Json::exception and
+/// std::invalid_argument for one that is damaged.
+[[nodiscard]] StateRecord state_record(const Json& attribute, const dynamics::Section& section);
+/// The attribute.
+[[nodiscard]] std::string attribute_of(const StateRecord& states);
+
+/// The keys of "state_space".
+void describe(Fields& out, const StateRecord& states);
+/// The key "state_space", of results about one chain.
+void describe_state_space(Fields& out, const StateRecord& states);
+/// A line of a table, or some.
+[[nodiscard]] std::string states_line(const StateRecord& states);
 /// What is wrong with them, a sentence each: too little of what was seen is resolved, faults in a
 /// pilot that rows start from.
 [[nodiscard]] std::vector<std::string> complaints(const lattice::States& states);

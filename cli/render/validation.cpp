@@ -10,7 +10,6 @@
 #include "cli/render/json.h"
 #include "cli/render/memory.h"
 #include "cli/render/start.h"
-#include "cli/render/states.h"
 #include "cli/render/text.h"
 #include "lattice/text/text_stream.h"
 
@@ -260,8 +259,7 @@ double share(std::int64_t part, std::int64_t whole) {
 dynamics::Transitions::Totals totals_of(const ValidatedMatrix& matrix) {
   dynamics::Transitions::Totals total;
   for (const dynamics::Transitions& t : matrix.matrices) total += t.totals();
-  if (matrix.matrices.front().space.has_trees() && matrix.states.contains("gate_runs"))
-    total.runs = matrix.states.at("gate_runs").get<std::int64_t>();
+  if (matrix.states && matrix.states->trees) total.runs = matrix.states->trees->gate_runs;
   return total;
 }
 
@@ -305,7 +303,8 @@ Json to_json(const lattice::Validation& v, const ShownField& shown, const Valida
                     {"rows_never_sampled", total.empty_rows},
                     {"status", matrix.status},
                     {"seconds", matrix.seconds}};
-  if (!matrix.states.is_null()) json["state_space"] = matrix.states;
+  if (matrix.states)
+    json["state_space"] = json_of([&](Fields& out) { describe(out, *matrix.states); });
   json["markov"] = to_json(v.memory);
   json["threads"] = v.threads;
   json["status"] = to_json(v.health);
@@ -331,7 +330,7 @@ std::string table_of(const lattice::Validation& v, const ShownField& shown,
                         " through RT or LT" + (matrix.like_table4 ? " (paper: fewer than 4 %)" : "")
                   : by_face(v, shown.map.section)) +
       ", " + percent(static_cast<double>(v.clamped), crossings) + " outside the bins.\n" +
-      states_line(matrix.states);
+      (matrix.states ? states_line(*matrix.states) : "");
   table += text_of(v.memory);
   for (std::size_t k = 0; k < v.starts.size(); ++k)
     if (v.starts[k].force) table += labels.texts[k] + "  | " + text_of(*v.starts[k].force) + "\n";

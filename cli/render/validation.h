@@ -9,6 +9,7 @@
 #include "cli/render/json_fwd.h"
 #include "cli/render/memory.h"
 #include "cli/render/shown_field.h"
+#include "cli/render/states.h"
 #include "dynamics/cells/transitions.h"
 #include "lattice/scene/table4.h"
 #include "lattice/study/validation.h"
@@ -21,10 +22,11 @@ struct ValidatedMatrix {
   const std::vector<dynamics::Transitions>& matrices;
   /// The validation's starts with what the paper prints of them; none of other cells than its gate.
   const std::vector<lattice::PaperStart>& papers;
-  bool like_table4 = false;  // the scene is the paper's: its figures belong beside ours
-  std::string path;          // empty: it was built for this
-  double seconds = 0.0;      // to build or read it
-  const Json &status, &settled, &states;  // null where there is none
+  bool like_table4 = false;      // the scene is the paper's: its figures belong beside ours
+  std::string path;              // empty: it was built for this
+  double seconds = 0.0;          // to build or read it
+  const Json &status, &settled;  // null where there is none
+  const std::optional<StateRecord>& states;
 };
 
 /// One sentence: whether the chain agrees with the dynamics from one start.
