@@ -3,7 +3,6 @@
 
 #include "cli/command.h"
 #include "cli/render/cut_tracks.h"
-#include "cli/render/json.h"
 #include "lattice/cells/cut_tracks.h"
 #include "lattice/text/digits.h"
 
@@ -98,22 +97,22 @@ int run_passages(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   if (!options.has("cell")) throw UsageError("the cells are not said: --cell CELL.toml");
   const auto cutting = cut_options(options);
-  const auto cell = lattice::read_cell_file(options.text("cell"), options.overrides());
+  lattice::CellFile cell = lattice::read_cell_file(options.text("cell"), options.overrides());
   lattice::require_measurable(cell);
-  const auto file = lattice::read_tracks(options.texts("tracks"), track_options(options));
-  for (const std::string& text : file.warnings) options.warn(text);
-  const auto cut = lattice::cut_tracks(file, cell, cutting);
-  for (const std::string& text : cut.doubts) options.warn(text);
+  CutResult result{lattice::read_tracks(options.texts("tracks"), track_options(options)),
+                   std::move(cell)};
+  for (const std::string& text : result.file.warnings) options.warn(text);
+  result.cut = lattice::cut_tracks(result.file, result.cell, cutting);
+  for (const std::string& text : result.cut.doubts) options.warn(text);
+  result.made_by = options.provenance();
+  result.made_by.scene = lattice::to_toml(result.cell);
 
-  Json json = to_json(cut, file, cell);
-  Provenance made_by = options.provenance();
-  made_by.scene = lattice::to_toml(cell);
-  json["made_by"] = to_json(made_by);
   const std::string path = options.text("output");
   options.keep_old(path);
-  lattice::write_runs(path, cell, lattice::recorded_runs(cut, file, cell));
-  options.give_out(json, table_of(cut, file, cell));
-  options.draw([&] { return figure_of(cut, cell); });
+  lattice::write_runs(path, result.cell,
+                      lattice::recorded_runs(result.cut, result.file, result.cell));
+  options.give_out(result, table_of(result));
+  options.draw([&] { return figure_of(result.cut, result.cell); });
   return kFine;
 }
 

@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Tracks cut into passages: as a table, as JSON, and a picture.
+/// Tracks cut into passages: as a result, a table and a picture.
 
 #include <string>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 #include "lattice/cells/cut_tracks.h"
 
 namespace gatewalk::cli {
 
-[[nodiscard]] std::string table_of(const lattice::CutTracks& cut, const lattice::TrackFile& file,
-                                   const lattice::CellFile& cell);
-
-/// Lengths in m, times in s, shares of 1.
-[[nodiscard]] Json to_json(const lattice::CutTracks& cut, const lattice::TrackFile& file,
-                           const lattice::CellFile& cell);
+/// The result of `passages`.
+struct CutResult {
+  lattice::TrackFile file;
+  lattice::CellFile cell;
+  lattice::CutTracks cut{};  // of the file, which must stay where it is
+  Provenance made_by{};
+};
+void describe(Fields& out, const CutResult& result);
+[[nodiscard]] std::string table_of(const CutResult& result);
 
 /// All tracks over the cells, with the places where they were cut.
 [[nodiscard]] Figure figure_of(const lattice::CutTracks& cut, const lattice::CellFile& cell);
