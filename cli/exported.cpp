@@ -10,7 +10,6 @@
 #include "cli/exchange/explicit_chain.h"
 #include "cli/exchange/imported.h"
 #include "cli/exchange/trajectories.h"
-#include "cli/render/json.h"
 #include "cli/render/matrix.h"
 #include "cli/render/version.h"
 #include "cli/terminal/output.h"
@@ -97,7 +96,7 @@ void check_files_beside(const Options& options, ExportForm form) {
   }
 }
 
-std::string export_field(const Options& options, ExportForm form, Json& json) {
+Exported export_field(const Options& options, ExportForm form) {
   Subject s = open_subject(options, "matrix");
   if (s.starts.size() > 1) throw UsageError("--start: a chain has one");
   const Walked walked = walked_chain(options, s);
@@ -126,25 +125,24 @@ std::string export_field(const Options& options, ExportForm form, Json& json) {
     const std::vector<std::string> all = names_of(chain, names);
     write_table(options, form, table_of(chain), all, all, states_csv(chain, names));
   }
-  json = {{"states", chain.size()}, {"transitions", chain.target.size()}, {"initial_state", 0}};
-  for (std::size_t e = 0; e < ending_labels().size(); ++e)
-    json["endings"][ending_labels()[e]] = chain.ends() + static_cast<std::int64_t>(e);
-  json["made_by"] = s.made_by(options);
-  return fmt::format("{} states, {} transitions; state 0 is {}, the last {} are endings\n",
-                     chain.size(), chain.target.size(), walked.start_text, ending_labels().size());
+  return {{.states = chain.size(),
+           .transitions = std::ssize(chain.target),
+           .first_ending = chain.ends(),
+           .made_by = s.provenance(options)},
+          fmt::format("{} states, {} transitions; state 0 is {}, the last {} are endings\n",
+                      chain.size(), chain.target.size(), walked.start_text, kEndingLabels.size())};
 }
 
-std::string export_gate(const Options& options, ExportForm form, Json& json) {
+Exported export_gate(const Options& options, ExportForm form) {
   const std::string path = options.text("matrix");
   const lattice::MatrixFile file = lattice::read_any_matrix(path);
   const auto type = file.types.find(options.text("type"));
   if (options.has("type") && type == file.types.end())
     throw UsageError(fmt::format("--type {}: {} has no such type", options.text("type"), path));
   const dynamics::Transitions& t = options.has("type") ? type->second : file.transitions;
-  if (const Json states = recorded(file, path, "state_space");
-      options.has("counts") && states.is_object() && states.value("probabilities", Json()) == true)
-    throw UsageError(
-        fmt::format("--counts: {} was made of probabilities, and has no counts", path));
+  if (const auto states = recorded_states(file, path);
+      options.has("counts") && states && states->are_probabilities)
+    throw UsageError("--counts: " + path + " was made of probabilities, and has no counts");
   const std::vector<int> order = lattice::shown_order(t.space);
   const SparseTable table = options.has("counts")
                                 ? table_of(in_order(t.counts(), order))
@@ -156,8 +154,6 @@ std::string export_gate(const Options& options, ExportForm form, Json& json) {
   const std::vector<std::int64_t> per_run =
       options.has("counts") ? counts_per_run_of(options, file, t) : std::vector<std::int64_t>();
   write_table(options, form, table, names, names, states_csv(file, per_run));
-  json = {{"states", t.space.size()}, {"transitions", table.entries.size()}};
-  json["made_by"] = to_json(options.provenance());
   std::string text = fmt::format("{} states of one gate, {} entries; the last column is trapped\n",
                                  t.space.size(), table.entries.size());
   if (std::count(per_run.begin(), per_run.end(), 2) > 0)
@@ -165,25 +161,29 @@ std::string export_gate(const Options& options, ExportForm form, Json& json) {
         "runs are counted twice, as they were and as their mirror images: counts_per_run in "
         "{}.states.csv says in which rows\n",
         stem_of(options.text("output")));
-  return text;
+  return {{.states = t.space.size(),
+           .transitions = std::ssize(table.entries),
+           .made_by = options.provenance()},
+          text};
 }
 
-std::string export_trials(const Options& options, Json& json) {
+Exported export_trials(const Options& options) {
   const Subject s = open_subject(options, "matrix");
   if (!s.pool)
-    throw UsageError(s.path + ": keeps no trials: it was not made of trees or recorded runs" +
-                     (s.foreign ? ", and of trajectories import keeps the counts of their steps, "
-                                  "which --gate --counts -o FILE.mtx writes"
-                                : ""));
+    throw UsageError(fmt::format(
+        "{}: keeps no trials: it was not made of trees or recorded runs{}", s.path,
+        s.foreign ? ", and of trajectories import keeps the counts of their steps, which --gate "
+                    "--counts -o FILE.mtx writes"
+                  : ""));
   const dynamics::StateSpace& space = s.file->transitions.space;
   const Trajectories all = trajectories_of(*s.pool, space);
   const std::string output = options.text("output");
   options.write(stem_of(output) + ".states.csv", states_csv(*s.file, {}));
   options.write(output, lattice::has_ending(output, ".npz") ? npz_of(all) : text_of(all));
-  json = {{"states", space.size()}, {"trajectories", all.size()}};
-  json["made_by"] = s.made_by(options);
-  return fmt::format("{0} trajectories through {1} states; {1} is trapped\n", all.size(),
-                     space.size());
+  return {
+      {.states = space.size(), .trajectories = std::ssize(all), .made_by = s.provenance(options)},
+      fmt::format("{} trajectories through {} states; {} is trapped\n", all.size(), space.size(),
+                  space.size())};
 }
 
 }  // namespace gatewalk::cli

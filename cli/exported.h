@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cli/command.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/files.h"
 
 namespace gatewalk::cli {
 
@@ -17,9 +17,13 @@ enum class ExportForm { umb, drn, prism, matrix_market, csv, npz, trajectories }
 /// cannot be written.
 void check_files_beside(const Options& options, ExportForm form);
 
-/// Writes the files, and says in `json` and the text what they hold.
-[[nodiscard]] std::string export_field(const Options& options, ExportForm form, Json& json);
-[[nodiscard]] std::string export_gate(const Options& options, ExportForm form, Json& json);
-[[nodiscard]] std::string export_trials(const Options& options, Json& json);
+/// What was written, and in words.
+struct Exported {
+  ExportResult result;
+  std::string text;
+};
+[[nodiscard]] Exported export_field(const Options& options, ExportForm form);
+[[nodiscard]] Exported export_gate(const Options& options, ExportForm form);
+[[nodiscard]] Exported export_trials(const Options& options);
 
 }  // namespace gatewalk::cli

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/arguments.h"
 #include "cli/exported.h"
-#include "cli/render/json.h"
 #include "cli/subject.h"
 
 namespace gatewalk::cli {
@@ -52,15 +51,10 @@ int run_export(const Arguments& arguments) {
       throw UsageError("SCENE has no meaning beside --gate: a gate's matrix knows no field");
   }
   if (!is_matrix(options.text("matrix"))) (void)read_matrix(options);  // says what it is instead
-  Json json;
-  std::string text;
-  if (options.has("gate"))
-    text = export_gate(options, form, json);
-  else if (form == ExportForm::trajectories)
-    text = export_trials(options, json);
-  else
-    text = export_field(options, form, json);
-  options.give_out(json, text);
+  const Exported exported = options.has("gate")                ? export_gate(options, form)
+                            : form == ExportForm::trajectories ? export_trials(options)
+                                                               : export_field(options, form);
+  options.give_out(exported.result, exported.text);
   return kFine;
 }
 

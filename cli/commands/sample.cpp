@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <string>
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/render/json.h"
-#include "cli/render/text_table.h"
+#include "cli/render/files.h"
 #include "cli/web/embedded.h"
 #include "lattice/text/edit_distance.h"
 
 namespace gatewalk::cli {
 namespace {
-
-struct Sample {
-  std::string name, file, about;
-};
 
 /// What a file is: the comment that it begins with, up to the first colon, or the last full stop of
 /// its first line.
@@ -54,13 +51,7 @@ int run_sample(const Arguments& arguments) {
   const std::vector<Sample> all = samples();
   if (!options.has("name")) {
     if (options.has("output")) throw UsageError("-o without NAME: which sample?");
-    Json json;
-    TextTable table({{"", -12, 0, "", "  "}, {"", 0, 0, "", "  "}});
-    for (const Sample& s : all) {
-      json["samples"].push_back({{"name", s.name}, {"file", s.file}, {"about", s.about}});
-      table.row({s.name, s.about});
-    }
-    options.give_out(json, table.text());
+    options.give_out(SampleResult{all}, table_of(all));
     return kFine;
   }
   const std::string name = options.text("name");
@@ -70,15 +61,12 @@ int run_sample(const Arguments& arguments) {
     std::vector<std::string> names;
     for (const Sample& s : all) names.push_back(s.name);
     const std::string meant = lattice::meant_name(name, names);
-    throw UsageError("there is no sample '" + name + "'" +
-                     (meant.empty() ? "" : "; did you mean " + meant + "?") +
-                     " (gatewalk sample lists all)");
+    throw UsageError(fmt::format("there is no sample '{}'{} (gatewalk sample lists all)", name,
+                                 meant.empty() ? "" : "; did you mean " + meant + "?"));
   }
   const std::string text(carried_file(found->file));
-  const Json json{
-      {"name", found->name}, {"file", found->file}, {"about", found->about}, {"text", text}};
   if (options.has("output")) options.write(options.text("output"), text);
-  options.give_out(json, options.has("output") ? "" : text);
+  options.give_out(SampleResult{{*found}, text}, options.has("output") ? "" : text);
   return kFine;
 }
 

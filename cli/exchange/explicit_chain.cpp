@@ -8,6 +8,7 @@
 
 #include "cli/exchange/archive.h"
 #include "cli/render/csv.h"
+#include "cli/render/files.h"
 #include "cli/render/json.h"
 #include "cli/render/little_endian.h"
 
@@ -33,17 +34,11 @@ std::string one_bit(std::int64_t states, std::int64_t only) {
 
 }  // namespace
 
-const std::vector<std::string>& ending_labels() {
-  static const std::vector<std::string> names{"trapped",   "crossed", "left_side",    "right_side",
-                                              "went_back", "cut_off", "never_sampled"};
-  return names;
-}
-
 std::string umb_of(const ExplicitChain& chain, const Json& tool) {
   const std::int64_t n = chain.size();
   const Json boolean = {{"type", "bool"}, {"size", 1}};
   Json aps = Json::object();
-  for (const std::string& label : ending_labels())
+  for (const char* label : kEndingLabels)
     aps[label] = {{"alias", label}, {"applies-to", {"states"}}, {"type", boolean}};
   const Json index = {{"format-version", 1},
                       {"format-revision", 0},
@@ -67,8 +62,8 @@ std::string umb_of(const ExplicitChain& chain, const Json& tool) {
       {"choice-to-branches.bin", all_little_endian(chain.first)},
       {"branch-to-target.bin", all_little_endian(chain.target)},
       {"branch-to-probability.bin", all_little_endian(chain.probability)}};
-  for (std::size_t e = 0; e < ending_labels().size(); ++e)
-    files.push_back({fmt::format("annotations/aps/{}/states/values.bin", ending_labels()[e]),
+  for (std::size_t e = 0; e < kEndingLabels.size(); ++e)
+    files.push_back({fmt::format("annotations/aps/{}/states/values.bin", kEndingLabels[e]),
                      one_bit(n, chain.ends() + static_cast<std::int64_t>(e))});
   return pack(Packing::tar, files);
 }
@@ -82,7 +77,7 @@ std::string drn_of(const ExplicitChain& chain) {
     text += fmt::format("state {}", s);
     if (s == 0) text += " init";
     if (s >= chain.ends())
-      text += " " + ending_labels()[static_cast<std::size_t>(s - chain.ends())];
+      text += fmt::format(" {}", kEndingLabels[static_cast<std::size_t>(s - chain.ends())]);
     text += "\n\taction 0\n";
     for (auto k = static_cast<std::size_t>(chain.first[static_cast<std::size_t>(s)]);
          k < static_cast<std::size_t>(chain.first[static_cast<std::size_t>(s) + 1]); ++k)
@@ -96,8 +91,8 @@ PrismFiles prism_of(const ExplicitChain& chain, const std::vector<int>& numbers)
   files.transitions = fmt::format("{} {}\n", chain.size(), chain.target.size());
   files.states = "(i_x,i_y,state,draws,ending)\n";
   files.labels = "0=\"init\" 1=\"deadlock\"";
-  for (std::size_t e = 0; e < ending_labels().size(); ++e)
-    files.labels += fmt::format(" {}=\"{}\"", e + 2, ending_labels()[e]);
+  for (std::size_t e = 0; e < kEndingLabels.size(); ++e)
+    files.labels += fmt::format(" {}=\"{}\"", e + 2, kEndingLabels[e]);
   files.labels += "\n0: 0\n";
   for (std::int64_t s = 0; s < chain.size(); ++s) {
     const bool is_end = s >= chain.ends();
@@ -142,7 +137,7 @@ std::vector<std::string> names_of(const ExplicitChain& chain,
   std::vector<std::string> all;
   for (const ExplicitChain::State& s : chain.states)
     all.push_back(fmt::format("x{}_y{}_{}_n{}", s.column, s.row, entered_as(s, names), s.draws));
-  all.insert(all.end(), ending_labels().begin(), ending_labels().end());
+  all.insert(all.end(), kEndingLabels.begin(), kEndingLabels.end());
   return all;
 }
 

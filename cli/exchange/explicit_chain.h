@@ -12,9 +12,6 @@
 
 namespace gatewalk::cli {
 
-/// Names of the endings, by number: labels of the states that are never left.
-[[nodiscard]] const std::vector<std::string>& ending_labels();
-
 /// A tar of the Unified Markov Binary format (version 1): read by PRISM from 4.10, Storm from 1.12.
 /// `tool`: what and how it was made by. Bit-exact.
 [[nodiscard]] std::string umb_of(const markov::ExplicitChain& chain, const Json& tool);

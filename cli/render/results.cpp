@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "cli/render/cut_tracks.h"
+#include "cli/render/files.h"
 #include "cli/render/gate_runs.h"
 #include "cli/render/matrix.h"
 #include "cli/render/rare.h"
