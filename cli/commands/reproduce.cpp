@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <iostream>
 
 #include "cli/command.h"
 #include "cli/paper/reproduction.h"
-#include "cli/render/csv.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "cli/terminal/interrupt.h"
@@ -28,15 +29,16 @@ int run_reproduce(const Arguments& arguments) {
   if (options.has("json") && options.text("json") != "-")
     throw UsageError("--json takes only - here: DIR/report.json is written anyway");
   try {
-    const Reproduction r = reproduce({.folder = folder,
-                                      .quick = options.has("quick"),
-                                      .talk = options.talk(),
-                                      .force = options.has("force")});
-    options.give_out(r.report,
-                     options.talk() ? "\n" + table_of(r.claims) + "\n" + r.tally() + ". Studies " +
-                                          fixed(r.seconds, 0) + " s. Open " + folder +
-                                          (has_pages() ? "/report.html\n" : "/report.json\n")
-                                    : "",
+    const Report r = reproduce({.folder = folder,
+                                .quick = options.has("quick"),
+                                .talk = options.talk(),
+                                .force = options.has("force")});
+    options.give_out(to_json(r),
+                     options.talk()
+                         ? fmt::format("\n{}\n{}. Studies {} s. Open {}/report.{}\n",
+                                       table_of(r.claims), r.tally(), fixed(r.made_by.seconds, 0),
+                                       folder, has_pages() ? "html" : "json")
+                         : "",
                      -1);
   } catch (const Interrupted&) {
     std::cerr << "gatewalk: stopped before the end; what was finished stays in " << folder

@@ -8,7 +8,6 @@
 
 #include "cli/paper/studies.h"
 #include "cli/render/csv.h"
-#include "cli/render/json.h"
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
@@ -90,20 +89,6 @@ Claim claim_of(std::string_view id, const Findings& f) {
   for (const ClaimRow& row : table())
     if (id == row.place.id) return claim_of(row, f);
   throw std::out_of_range("no claim " + std::string(id));
-}
-
-Json to_json(const std::vector<Claim>& claims) {
-  Json list = Json::array();
-  for (const Claim& c : claims)
-    list.push_back({{"id", c.id},
-                    {"where", c.where},
-                    {"claim", c.claim},
-                    {"paper", c.paper},
-                    {"ours", c.ours},
-                    {"verdict", name_of(c.verdict)},
-                    {"why", c.why},
-                    {"see", c.see}});
-  return list;
 }
 
 std::string csv_of(const std::vector<Claim>& claims) {

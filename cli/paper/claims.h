@@ -28,8 +28,6 @@ struct Claim {
 /// Throws std::out_of_range for a claim that there is not.
 [[nodiscard]] Claim claim_of(std::string_view id, const Findings& f);
 
-/// Objects with the members of Claim as keys.
-[[nodiscard]] Json to_json(const std::vector<Claim>& claims);
 [[nodiscard]] std::string csv_of(const std::vector<Claim>& claims);
 [[nodiscard]] std::string table_of(const std::vector<Claim>& claims);
 

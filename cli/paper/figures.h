@@ -9,12 +9,13 @@
 #include <vector>
 
 #include "cli/paper/findings.h"
+#include "cli/paper/report.h"
 #include "cli/render/figure.h"
 #include "dynamics/disc/landscape.h"
 
 namespace gatewalk::cli {
 
-/// A section of the page: a figure and its numbers, or a film.
+/// A section of the page before it is drawn: a figure and its numbers, or a film.
 struct Section {
   const char* id;
   std::string heading;
@@ -29,8 +30,8 @@ struct Section {
 /// Draws the figures into the current folder (fig8.svg, fig8.pdf, fig8.csv, ...) and returns the
 /// sections of the page about them; `commands` are the studies' by their names. Throws Interrupted
 /// after a signal.
-[[nodiscard]] Json sections_of(const Findings& f,
-                               const std::map<std::string, std::string>& commands);
+[[nodiscard]] std::vector<Report::Section> sections_of(
+    const Findings& f, const std::map<std::string, std::string>& commands);
 
 // ---- One by one
 

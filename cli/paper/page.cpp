@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/paper/page.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -11,7 +13,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "cli/paper/verdicts.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "cli/web/embedded.h"
@@ -22,22 +23,14 @@ namespace {
 
 /// How a verdict is shown: never by colour alone.
 struct Mark {
-  std::string_view name;
   const char *style, *symbol;
 };
-constexpr std::array<Mark, 4> kMarks = {{{kVerdictNames[3], "differs", "≠"},
-                                         {kVerdictNames[2], "unknown", "?"},
-                                         {kVerdictNames[1], "agrees", "≈"},
-                                         {kVerdictNames[0], "reproduced", "✓"}}};
-
-const Mark& mark_of(const Json& claim) {
-  const auto name = claim.at("verdict").get<std::string>();
-  for (const Mark& m : kMarks) {
-    if (name == m.name) return m;
-  }
-  throw std::invalid_argument("claim " + claim.at("id").get<std::string>() +
-                              ": unknown verdict \"" + name + "\"");
-}
+constexpr std::array<Mark, 4> kMarks = {
+    {{"reproduced", "✓"}, {"agrees", "≈"}, {"unknown", "?"}, {"differs", "≠"}}};
+/// What differs comes first.
+constexpr std::array kOrder{Verdict::differs, Verdict::cannot_tell, Verdict::agrees,
+                            Verdict::reproduced};
+Mark mark_of(Verdict v) { return kMarks[static_cast<std::size_t>(v)]; }
 
 /// Whether a word is a quantity with an index as the paper prints it: k_L, F_prop.
 bool has_index(std::string_view word) {
@@ -63,16 +56,11 @@ std::string words(const std::string& plain) {
   return out;
 }
 
-/// A text field as words.
-std::string text(const Json& object, const char* field) {
-  return words(object.at(field).get<std::string>());
-}
-
 /// The same, with nothing broken apart at a line's end that belongs together: "46.0 % [45.3, 46.7]"
 /// between % and [ only.
-std::string values(const Json& object, const char* field) {
+std::string values(const std::string& plain) {
   std::string out;
-  const std::string all = text(object, field);
+  const std::string all = words(plain);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::size_t bracket = all.find_first_of("[]", i);
     const bool inside = bracket != std::string::npos && all[bracket] == ']';
@@ -86,73 +74,75 @@ std::string values(const Json& object, const char* field) {
 }
 
 /// An element that closes itself: <p class="why">...</p> from element("p class=\"why\"", ...).
-std::string element(std::string_view opening, const std::string& inside) {
-  const std::string_view name = opening.substr(0, opening.find(' '));
-  return "<" + std::string(opening) + ">" + inside + "</" + std::string(name) + ">\n";
+std::string element(std::string_view opening, std::string_view inside) {
+  return fmt::format("<{}>{}</{}>\n", opening, inside, opening.substr(0, opening.find(' ')));
+}
+/// An entry of a list of names and values.
+std::string entry(const char* name, const std::string& value) {
+  return element("div", element("dt", name) + element("dd", value));
 }
 
-std::string paragraphs(const Json& list) {
+std::string paragraphs(const std::vector<std::string>& list) {
   std::string out;
-  for (const Json& p : list) out += element("p", words(p.get<std::string>()));
+  for (const std::string& p : list) out += element("p", words(p));
   return out;
 }
 
-std::string badge(const Mark& v) {
-  return element(std::string("span class=\"badge ") + v.style + "\"",
-                 std::string("<i aria-hidden=\"true\">") + v.symbol + "</i>" + std::string(v.name));
+std::string badge(Verdict v) {
+  return element(fmt::format("span class=\"badge {}\"", mark_of(v).style),
+                 fmt::format("<i aria-hidden=\"true\">{}</i>{}", mark_of(v).symbol, name_of(v)));
 }
 
-std::int64_t count(const Json& claims, const Mark& mark) {
-  return std::count_if(claims.begin(), claims.end(),
-                       [&](const Json& c) { return &mark_of(c) == &mark; });
+/// Tells of each verdict that claims have, and how many.
+template <class Tell>
+void each_verdict(const std::vector<Claim>& claims, Tell tell) {
+  for (const Verdict v : kOrder)
+    if (const auto n = std::count_if(claims.begin(), claims.end(),
+                                     [&](const Claim& c) { return c.verdict == v; });
+        n > 0)
+      tell(v, n);
 }
 
 /// How many claims got each verdict, as a bar.
-std::string tally_of(const Json& claims) {
+std::string tally_of(const std::vector<Claim>& claims) {
   std::string bar;
-  for (const Mark& v : kMarks)
-    if (const auto n = count(claims, v); n > 0)
-      bar += "<span class=\"" + std::string(v.style) + "\" style=\"flex-grow:" + std::to_string(n) +
-             "\"></span>";
+  each_verdict(claims, [&](Verdict v, std::int64_t n) {
+    bar += fmt::format("<span class=\"{}\" style=\"flex-grow:{}\"></span>", mark_of(v).style, n);
+  });
   return element("div class=\"bar\" aria-hidden=\"true\"", bar);
 }
 
 /// Buttons that leave the claims of one verdict (report.css does it).
-std::string filter_of(const Json& claims) {
-  const auto button = [](const std::string& id, const std::string& label, bool checked) {
-    return element("label", "<input type=\"radio\" name=\"verdict\" id=\"show-" + id + "\"" +
-                                (checked ? " checked" : "") + ">" + element("span", label));
+std::string filter_of(const std::vector<Claim>& claims) {
+  const auto button = [](const char* id, const std::string& label, const char* checked) {
+    return element("label",
+                   fmt::format("<input type=\"radio\" name=\"verdict\" id=\"show-{}\"{}>{}", id,
+                               checked, element("span", label)));
   };
-  std::string out = button("all", "all " + std::to_string(claims.size()), true);
-  for (const Mark& v : kMarks)
-    if (const auto n = count(claims, v); n > 0)
-      out += button(v.style,
-                    std::string(v.symbol) + " " + std::string(v.name) + " " + std::to_string(n),
-                    false);
+  std::string out = button("all", fmt::format("all {}", claims.size()), " checked");
+  each_verdict(claims, [&](Verdict v, std::int64_t n) {
+    out += button(mark_of(v).style, fmt::format("{} {} {}", mark_of(v).symbol, name_of(v), n), "");
+  });
   return out;
 }
 
 /// Every claim, folded, those that differ first.
-std::string folded(const Json& claims, const std::map<std::string, std::string>& headings) {
+std::string folded(const std::vector<Claim>& claims,
+                   const std::map<std::string, std::string>& headings) {
   std::string out;
-  for (const Mark& v : kMarks)
-    for (const Json& c : claims) {
-      if (&mark_of(c) != &v) continue;
-      const auto see = c.at("see").get<std::string>();
-      const auto heading = headings.find(see);
+  for (const Verdict v : kOrder)
+    for (const Claim& c : claims) {
+      if (c.verdict != v) continue;
+      const auto heading = headings.find(c.see);
       if (heading == headings.end())
-        throw std::invalid_argument("claim " + c.at("id").get<std::string>() + ": no section \"" +
-                                    see + "\"");
-      const auto entry = [](const char* name, const std::string& value) {
-        return element("div", element("dt", name) + element("dd", value));
-      };
-      std::string about = entry("Paper", values(c, "paper")) + entry("Here", values(c, "ours"));
-      if (!c.at("why").get<std::string>().empty()) about += entry("Remark", text(c, "why"));
-      about += entry("Where", text(c, "where") + "; here: <a href=\"#" + escaped(see) + "\">" +
-                                  words(heading->second) + "</a>");
+        throw std::invalid_argument(fmt::format("claim {}: no section \"{}\"", c.id, c.see));
+      std::string about = entry("Paper", values(c.paper)) + entry("Here", values(c.ours));
+      if (!c.why.empty()) about += entry("Remark", words(c.why));
+      about += entry("Where", fmt::format("{}; here: <a href=\"#{}\">{}</a>", words(c.where),
+                                          escaped(c.see), words(heading->second)));
       out += element(
-          "details class=\"claim " + std::string(v.style) + "\" id=\"claim-" + text(c, "id") + "\"",
-          element("summary", badge(v) + element("span", text(c, "claim"))) + element("dl", about));
+          fmt::format("details class=\"claim {}\" id=\"claim-{}\"", mark_of(v).style, words(c.id)),
+          element("summary", badge(v) + element("span", words(c.claim))) + element("dl", about));
     }
   return out;
 }
@@ -188,116 +178,103 @@ std::string command(const std::string& line) {
   return element("code", out);
 }
 
-/// The picture of a section or of the page's beginning, with what made it.
-std::string figure(const Json& about, const std::string& file, const std::string& caption,
+/// A picture with what made it.
+std::string figure(const std::string& file, const std::string& alt, const std::string& caption,
                    const FigureText& figure_text) {
-  const auto alt = about.at("alt").get<std::string>();
   return element("figure",
                  element("a href=\"" + escaped(file) + "\"", picture(figure_text(file), alt)) +
                      element("figcaption", caption));
 }
 
-std::string first_screen(const Json& first, const FigureText& figure_text) {
+std::string first_screen(const std::vector<Report::First>& first, const FigureText& figure_text) {
   std::string out;
-  for (const Json& f : first)
-    out += figure(f, f.at("figure").get<std::string>(),
-                  element("p", text(f, "caption")) +
-                      element("div class=\"commands\"", command(f.at("command"))),
-                  figure_text);
+  for (const Report::First& f : first)
+    out += figure(
+        f.figure, f.alt,
+        element("p", words(f.caption)) + element("div class=\"commands\"", command(f.command)),
+        figure_text);
   return out;
 }
 
 /// What made a section, and its files.
-std::string made_with(const Json& s) {
+std::string made_with(const Report::Section& s) {
   std::string commands, files;
-  for (const Json& c : s.at("commands")) commands += command(c);
-  for (const Json& f : s.at("files")) {
-    const std::string name = escaped(f.get<std::string>());
-    files += "<a href=\"" + name + "\">" + name + "</a> ";
-  }
-  const auto n = s.at("commands").size();
+  for (const std::string& c : s.commands) commands += command(c);
+  for (const std::string& f : s.files) files += fmt::format("<a href=\"{0}\">{0}</a> ", escaped(f));
+  const auto n = s.commands.size();
   if (n > 0) commands = element("div class=\"commands\"", commands);
   if (n > 2)
-    commands = element("details", element("summary", std::to_string(n) + " commands") + commands);
+    commands = element("details", element("summary", fmt::format("{} commands", n)) + commands);
   return commands + (files.empty() ? "" : element("p class=\"files\"", "Files: " + files));
 }
 
-std::string section(const Json& s, const Json& claims, const FigureText& figure_text) {
-  const auto id = s.at("id").get<std::string>();
+std::string section(const Report::Section& s, const std::vector<Claim>& claims,
+                    const FigureText& figure_text) {
   std::string about;
-  for (const Json& c : claims)
-    if (c.at("see").get<std::string>() == id)
-      about += element("li", "<a href=\"#claim-" + text(c, "id") + "\">" + badge(mark_of(c)) +
-                                 element("span", text(c, "claim")) + "</a>");
+  for (const Claim& c : claims)
+    if (c.see == s.id)
+      about += element("li", fmt::format("<a href=\"#claim-{}\">{}{}</a>", words(c.id),
+                                         badge(c.verdict), element("span", words(c.claim))));
   if (!about.empty()) about = element("ul class=\"about\" aria-label=\"Claims shown here\"", about);
-  const std::string head = element("h2", text(s, "heading")),
-                    words = element("div class=\"text\"", paragraphs(s.at("text")) + about);
-  const bool plays = s.contains("film");
+  const bool plays = !s.film.is_null();
   const std::string shown =
-      plays ? "<figure><div class=\"replay\"><noscript><p>The animation needs JavaScript. " +
-                  text(s, "alt") +
-                  "</p></noscript></div>\n<script type=\"application/json\" id=\"film\">" +
-                  script_json(s.at("film")) + "</script>" + element("figcaption", made_with(s)) +
-                  "</figure>\n"
-            : figure(s, id + ".svg", made_with(s), figure_text);
-  return element("section id=\"" + escaped(id) + "\"" + (plays ? " class=\"wide\"" : ""),
-                 head + element("div class=\"beside\"", shown + words));
+      plays ? fmt::format(
+                  "<figure><div class=\"replay\"><noscript><p>The animation needs JavaScript. {}"
+                  "</p></noscript></div>\n<script type=\"application/json\" id=\"film\">{}"
+                  "</script>{}</figure>\n",
+                  words(s.alt), script_json(s.film), element("figcaption", made_with(s)))
+            : figure(s.id + ".svg", s.alt, made_with(s), figure_text);
+  return element(fmt::format("section id=\"{}\"{}", escaped(s.id), plays ? " class=\"wide\"" : ""),
+                 element("h2", words(s.heading)) +
+                     element("div class=\"beside\"",
+                             shown + element("div class=\"text\"", paragraphs(s.text) + about)));
 }
 
 std::string duration(double seconds) {
   if (seconds < 120) return fixed(seconds, seconds < 10 ? 1 : 0) + " s";
   const auto whole = std::llround(seconds);
-  if (whole < 7200) return std::to_string(whole / 60) + " min " + std::to_string(whole % 60) + " s";
-  return std::to_string(whole / 3600) + " h " + std::to_string(whole / 60 % 60) + " min";
+  return whole < 7200 ? fmt::format("{} min {} s", whole / 60, whole % 60)
+                      : fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
 }
 
-std::string made_by(const Json& made) {
-  const auto entry = [](const char* name, const std::string& value) {
-    return element("div", element("dt", name) + element("dd", value));
-  };
+std::string made_by(const Report::MadeBy& made) {
   std::string out = element(
-      "dl", entry("Program", text(made, "program")) +
-                entry("Command", command(made.at("command"))) +
-                entry("Seed", made.at("seed").dump()) + entry("Machine", text(made, "machine")) +
-                entry("Time taken", duration(made.at("seconds").get<double>())) +
-                entry("Date", text(made, "date")));
-  for (const Json& scene : made.at("scenes")) {
-    out += element("details", element("summary", text(scene, "name")) +
-                                  element("pre tabindex=\"0\"", text(scene, "text")));
-  }
+      "dl", entry("Program", words(made.program)) + entry("Command", command(made.command)) +
+                entry("Seed", std::to_string(kReportSeed)) + entry("Machine", words(made.machine)) +
+                entry("Time taken", duration(made.seconds)) + entry("Date", words(made.date)));
+  for (const Report::Scene& scene : made.scenes)
+    out += element("details", element("summary", words(scene.name)) +
+                                  element("pre tabindex=\"0\"", words(scene.text)));
   return out;
 }
 
 }  // namespace
 
-std::string report_page(const Json& report, const FigureText& figure_text) {
-  const Json& claims = report.at("claims");
+std::string report_page(const Report& report, const FigureText& figure_text) {
   std::map<std::string, std::string> headings;
   std::string contents, sections;
-  for (const Json& s : report.at("sections")) {
-    const auto id = s.at("id").get<std::string>();
-    const auto heading = s.at("heading").get<std::string>();
+  for (const Report::Section& s : report.sections) {
     // "Fig. 8: traversal of ..." is "Fig. 8" where room is short.
-    if (!headings.emplace(id, heading.substr(0, heading.find(':'))).second)
-      throw std::invalid_argument("two sections \"" + id + "\"");
-    contents += element("li", "<a href=\"#" + escaped(id) + "\">" + words(heading) + "</a>");
-    sections += section(s, claims, figure_text);
+    if (!headings.emplace(s.id, s.heading.substr(0, s.heading.find(':'))).second)
+      throw std::invalid_argument("two sections \"" + s.id + "\"");
+    contents +=
+        element("li", fmt::format("<a href=\"#{}\">{}</a>", escaped(s.id), words(s.heading)));
+    sections += section(s, report.claims, figure_text);
   }
-  return filled(carried_file("report.html"),
-                {{"title", text(report, "title")},
-                 {"paper", text(report, "paper")},
-                 {"css", std::string(carried_file("report.css"))},
-                 {"first", first_screen(report.at("first"), figure_text)},
-                 {"lead", paragraphs(report.at("lead"))},
-                 {"tally", tally_of(claims)},
-                 {"filter", filter_of(claims)},
-                 {"claims", folded(claims, headings)},
-                 {"contents", contents},
-                 {"sections", sections},
-                 {"made_by", made_by(report.at("made_by"))},
-                 {"replay", std::string(carried_file("replay.js"))},
-                 {"theme", std::string(carried_file("theme.js"))},
-                 {"js", std::string(carried_file("report.js"))}});
+  return filled(carried_file("report.html"), {{"title", words(report.title)},
+                                              {"paper", words(report.paper)},
+                                              {"css", std::string(carried_file("report.css"))},
+                                              {"first", first_screen(report.first, figure_text)},
+                                              {"lead", paragraphs(report.lead)},
+                                              {"tally", tally_of(report.claims)},
+                                              {"filter", filter_of(report.claims)},
+                                              {"claims", folded(report.claims, headings)},
+                                              {"contents", contents},
+                                              {"sections", sections},
+                                              {"made_by", made_by(report.made_by)},
+                                              {"replay", std::string(carried_file("replay.js"))},
+                                              {"theme", std::string(carried_file("theme.js"))},
+                                              {"js", std::string(carried_file("report.js"))}});
 }
 
 }  // namespace gatewalk::cli

@@ -5,6 +5,8 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <fmt/chrono.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -15,7 +17,7 @@
 #include <iostream>
 #include <iterator>
 #include <map>
-#include <sstream>
+#include <optional>
 
 #include "cli/command.h"
 #include "cli/paper/figures.h"
@@ -46,58 +48,35 @@ constexpr std::array<const char*, 5> kScenes{"scenes/single_gate.toml", "scenes/
 std::string build_id() {
   const char* const self = "/proc/self/exe";
   std::error_code error;
-  const auto size = std::filesystem::file_size(self, error);
-  const auto time = std::filesystem::last_write_time(self, error).time_since_epoch().count();
-  return std::string(kVersion) + " " + kCommit + " " + std::to_string(size) + " " +
-         std::to_string(time);
+  return fmt::format("{} {} {} {}", kVersion, kCommit, std::filesystem::file_size(self, error),
+                     std::filesystem::last_write_time(self, error).time_since_epoch().count());
 }
 
 /// What is known of a study that was carried out: enough to know whether it is still the same one.
 Json record_of(const Study& s) { return {{"command", s.text()}, {"program", build_id()}}; }
 
-/// A file of the folder.
-std::string file_text(const std::string& path) {
+/// A file of the folder; nothing where it cannot be read.
+std::optional<std::string> file_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error("cannot read " + path);
-  return {std::istreambuf_iterator<char>(in), {}};
+  if (!in) return std::nullopt;
+  return std::string(std::istreambuf_iterator<char>(in), {});
 }
-
-/// Empty when there is none, or none that can be read: then it is made again.
-Json read_json(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) return {};
-  Json j = parsed_json(std::string{std::istreambuf_iterator<char>(in), {}});
-  return j.is_discarded() ? Json() : j;
-}
-
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  std::tm day{};
-  ::gmtime_r(&now, &day);
-  char text[16];
-  std::strftime(text, sizeof text, "%Y-%m-%d", &day);
-  return text;
-}
+/// Discarded where it cannot be read, or is no JSON.
+Json read_json(const std::string& path) { return parsed_json(file_text(path).value_or("")); }
 
 /// Throws UsageError when a scene in the working folder, called `folder`, would be replaced that is
 /// neither what the program carries nor what an earlier report was made with.
 void require_no_scene_of_ones_own(const std::string& folder) {
-  const Json old = read_json("report.json");
-  const Json made_by = old.is_object() ? old.value("made_by", Json()) : Json();
-  const Json scenes = made_by.is_object() ? made_by.value("scenes", Json()) : Json();
-  for (const char* name : kScenes) {
-    std::ifstream in(name, std::ios::binary);
-    if (!in) continue;
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    bool known = text == carried_file(name);
-    if (scenes.is_array())
-      for (const Json& s : scenes)
-        known |=
-            s.is_object() && s.value("name", Json()) == name && s.value("text", Json()) == text;
-    if (!known)
+  const Json::json_pointer place("/made_by/scenes");
+  const Json old = read_json("report.json"),
+             scenes = old.contains(place) ? old.at(place) : Json::array();
+  for (const char* name : kScenes)
+    if (const auto text = file_text(name);
+        text && *text != carried_file(name) &&
+        std::find(scenes.begin(), scenes.end(), Json{{"name", name}, {"text", *text}}) ==
+            scenes.end())
       throw UsageError("-o " + folder + ": its " + name +
                        " is not the paper's and would be replaced; choose another folder");
-  }
 }
 
 /// Nobody else works in this folder while it lives.
@@ -250,98 +229,81 @@ Results carry_out(const std::vector<Study>& studies, bool talk) {
   return results;
 }
 
-/// Writes the scenes that the studies name. Returns them as the report has them.
-Json write_scenes() {
-  Json scenes = Json::array();
-  for (const char* scene : kScenes) {
-    const std::string text(carried_file(scene));
-    write_text_atomically(scene, text);
-    scenes.push_back({{"name", scene}, {"text", text}});
+/// Writes the scenes that the studies name.
+std::vector<Report::Scene> write_scenes() {
+  std::vector<Report::Scene> scenes;
+  for (const char* name : kScenes) {
+    scenes.push_back({name, std::string(carried_file(name))});
+    write_text_atomically(name, scenes.back().text);
   }
   return scenes;
 }
 
 /// What the page begins with.
-std::vector<std::string> lead_of(const Reproduction& r, bool quick) {
+std::vector<std::string> lead_of(const Report& r) {
   std::vector<std::string> lead{
       "The results of the paper, Figs. 5, 6, 8, 9, 11, 12 and Table IV, and what its abstract "
       "and its Sections II and III claim, made again from the model alone, beside the paper's "
       "own values.",
-      "Of " + std::to_string(r.claims.size()) + " claims: " + r.tally() +
-          ". \"Agrees\" means that it deviates by no more than the paper's 100 trials a point "
-          "would show (of Table IV: that the printed pair fits only one of two readings of what "
-          "was compared, trials with the exact chain or with 100 walks); \"cannot tell\", that "
-          "the trials here are too few. Why a claim differs, as far as it is known, stands beside "
-          "it. Intervals are 95 % "
-          "(Jeffreys).",
+      fmt::format(
+          "Of {} claims: {}. \"Agrees\" means that it deviates by no more than the paper's 100 "
+          "trials a point would show (of Table IV: that the printed pair fits only one of two "
+          "readings of what was compared, trials with the exact chain or with 100 walks); \"cannot "
+          "tell\", that the trials here are too few. Why a claim differs, as far as it is known, "
+          "stands beside it. Intervals are 95 % (Jeffreys).",
+          r.claims.size(), r.tally()),
       "Symbols as in the paper: F_prop propulsive force, Rm random force (N); k_L, k_R stiffness "
       "of the left and right beam (N m/rad), d their damping (N m s/rad, printed as N s/rad) "
       "and, of a start, the place where it enters (m); RT, LT: entries through the sides above "
       "the joints."};
-  if (quick)
+  if (r.quick)
     lead.push_back(
         "This is the quick version: few trials, wide intervals. The full one, without --quick, "
         "takes some four minutes.");
   return lead;
 }
 
-/// The two pictures that the page begins with: commands of the studies drew them.
-Json first_screen(const std::map<std::string, std::string>& commands) {
-  return {
-      {{"figure", "crossing.svg"},
-       {"alt",
-        "Twenty paths from the middle of the lower edge into the field, each with a disc where it "
-        "ended; of the nine by nine gates only the rows and columns that bodies reached are "
-        "drawn."},
-       {"caption",
-        "Full dynamics: twenty bodies push into the field of 9 x 9 gates; drawn are the rows and "
-        "columns that they reached."},
-       {"command", commands.at("crossing_ways")}},
-      {{"figure", "prediction.svg"},
-       {"alt",
-        "A map of nine by nine gates coloured by the share of bodies that end in each, and bars "
-        "of how they end."},
-       {"caption", "Markov chain: in which gate bodies end, and how."},
-       {"command", commands.at("prediction")}}};
-}
-
-Reproduction report_of(const Results& results, const std::vector<Study>& studies, bool quick,
-                       const Json& scenes) {
+Report report_of(const Results& results, const std::vector<Study>& studies, bool quick,
+                 const std::vector<Report::Scene>& scenes) {
   std::map<std::string, std::string> commands;
   for (const Study& s : studies) commands[s.name] = s.text();
-  Reproduction r{.report = {}, .claims = claims_of(results.findings), .seconds = results.seconds};
-  r.report = {{"title", "Cluttered obstacle traversal: what gatewalk reproduces"},
-              {"paper",
-               "B. Zheng, Q. Xuan and C. Li, A minimalistic stochastic dynamics model of cluttered "
-               "obstacle traversal, IEEE Robotics and Automation Letters (2022)"},
-              {"quick", quick},
-              {"claims", to_json(r.claims)},
-              {"lead", lead_of(r, quick)},
-              {"first", first_screen(commands)},
-              {"sections", sections_of(results.findings, commands)},
-              {"made_by",
-               {{"program", std::string("gatewalk ") + kVersion + " (" + kCommit + ")"},
-                {"command", std::string("gatewalk reproduce") + (quick ? " --quick" : "")},
-                {"seed", 1},
-                {"machine", machine()},
-                {"seconds", results.seconds},
-                {"date", today()},
-                {"scenes", scenes}}}};
+  Report r{.title = "Cluttered obstacle traversal: what gatewalk reproduces",
+           .paper =
+               "B. Zheng, Q. Xuan and C. Li, A minimalistic stochastic dynamics model of "
+               "cluttered obstacle traversal, IEEE Robotics and Automation Letters (2022)",
+           .quick = quick,
+           .claims = claims_of(results.findings)};
+  r.lead = lead_of(r);
+  r.first = {{"crossing.svg",
+              "Twenty paths from the middle of the lower edge into the field, each with a disc "
+              "where it ended; of the nine by nine gates only the rows and columns that bodies "
+              "reached are drawn.",
+              "Full dynamics: twenty bodies push into the field of 9 x 9 gates; drawn are the rows "
+              "and columns that they reached.",
+              commands.at("crossing_ways")},
+             {"prediction.svg",
+              "A map of nine by nine gates coloured by the share of bodies that end in each, and "
+              "bars of how they end.",
+              "Markov chain: in which gate bodies end, and how.", commands.at("prediction")}};
+  r.sections = sections_of(results.findings, commands);
+  r.made_by = {.program = fmt::format("gatewalk {} ({})", kVersion, kCommit),
+               .command = std::string("gatewalk reproduce") + (quick ? " --quick" : ""),
+               .machine = machine(),
+               .date = fmt::format("{:%F}", fmt::gmtime(std::time(nullptr))),
+               .seconds = results.seconds,
+               .scenes = scenes};
   return r;
+}
+
+/// Throws std::runtime_error.
+std::string drawn_figure(const std::string& name) {
+  if (auto text = file_text(name)) return *text;
+  throw std::runtime_error("cannot read " + name);
 }
 
 }  // namespace
 
-std::string Reproduction::tally() const {
-  const auto count = [&](Verdict verdict) {
-    return std::to_string(std::count_if(claims.begin(), claims.end(),
-                                        [&](const Claim& c) { return c.verdict == verdict; }));
-  };
-  return count(Verdict::reproduced) + " reproduced, " + count(Verdict::agrees) + " agree, " +
-         count(Verdict::cannot_tell) + " cannot be told, " + count(Verdict::differs) + " differ";
-}
-
-Reproduction reproduce(const ReproductionOptions& options) {
+Report reproduce(const ReproductionOptions& options) {
   const std::string& folder = options.folder;
   require_folder(folder);
   if (!options.force && !std::filesystem::is_empty(folder) &&
@@ -362,13 +324,13 @@ Reproduction reproduce(const ReproductionOptions& options) {
   require_no_scene_of_ones_own(folder);
   if (!std::filesystem::exists(kDone)) write_text_atomically(kDone, "{}\n");
   const std::vector<Study> studies = paper_studies(options.quick);
-  const Json scenes = write_scenes();
+  const std::vector<Report::Scene> scenes = write_scenes();
   // No old page beside new figures, should this be stopped between them.
   std::filesystem::remove("report.html");
-  Reproduction r = report_of(carry_out(studies, options.talk), studies, options.quick, scenes);
+  Report r = report_of(carry_out(studies, options.talk), studies, options.quick, scenes);
   write_text_atomically("claims.csv", csv_of(r.claims));
-  write_text_atomically("report.json", json_text(r.report, -1));
-  if (has_pages()) write_text_atomically("report.html", report_page(r.report, file_text));
+  write_text_atomically("report.json", json_text(to_json(r), -1));
+  if (has_pages()) write_text_atomically("report.html", report_page(r, drawn_figure));
   return r;
 }
 

@@ -3,10 +3,8 @@
 /// Everything of the paper, made again in a folder.
 
 #include <string>
-#include <vector>
 
-#include "cli/paper/claims.h"
-#include "cli/render/json.h"
+#include "cli/paper/report.h"
 
 namespace gatewalk::cli {
 
@@ -17,20 +15,11 @@ struct ReproductionOptions {
   bool force = false;  // also in a folder with files of others
 };
 
-struct Reproduction {
-  Json report;  // page.h
-  std::vector<Claim> claims;
-  double seconds = 0.0;  // of all studies
-
-  /// "18 reproduced, 9 agree, 0 cannot be told, 9 differ"
-  [[nodiscard]] std::string tally() const;
-};
-
 /// Runs the studies that are not done yet, inside the folder, and writes the figures, claims.csv,
 /// report.json and report.html; the working folder of the program is then that folder, because the
 /// studies are commands whose files are recorded as they are named in it. Throws UsageError for a
 /// folder that holds something of the user's own or a full report that --quick would replace,
 /// std::runtime_error when a study fails or another program works in the folder, Interrupted.
-[[nodiscard]] Reproduction reproduce(const ReproductionOptions& options);
+[[nodiscard]] Report reproduce(const ReproductionOptions& options);
 
 }  // namespace gatewalk::cli

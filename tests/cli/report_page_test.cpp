@@ -11,24 +11,19 @@ namespace gatewalk::cli {
 namespace {
 
 /// The smallest report that has one of everything.
-Json sample() {
-  return Json::parse(R"({"title": "T", "paper": "P", "lead": ["k_L and F_prop"],
-    "first": [{"figure": "x.svg", "alt": "A", "caption": "C", "command": "gatewalk show m.nc"}],
-    "claims": [
-      {"id": "c1", "where": "W", "claim": "C1", "paper": "52 %", "ours": "46.0 % [45.3, 46.7]",
-       "verdict": "agrees", "why": "", "see": "fig1"},
-      {"id": "c2", "where": "W", "claim": "C2", "paper": "P", "ours": "O", "verdict": "differs",
-       "why": "Because.", "see": "play"}],
-    "sections": [
-      {"id": "fig1", "heading": "Fig. 1: H", "text": ["T"], "alt": "A", "commands": ["gatewalk gate"],
-       "files": ["fig1.svg"]},
-      {"id": "play", "heading": "H", "text": ["T"], "alt": "A", "commands": [], "files": [],
-       "film": {"title": "F"}}],
-    "made_by": {"program": "P", "command": "C", "seed": 1, "machine": "M", "seconds": 1.5,
-      "date": "D", "scenes": [{"name": "N", "text": "T"}]}})");
+Report sample() {
+  return {.title = "T",
+          .paper = "P",
+          .claims = {{"c1", "W", "C1", "52 %", "46.0 % [45.3, 46.7]", Verdict::agrees, "", "fig1"},
+                     {"c2", "W", "C2", "P", "O", Verdict::differs, "Because.", "play"}},
+          .lead = {"k_L and F_prop"},
+          .first = {{"x.svg", "A", "C", "gatewalk show m.nc"}},
+          .sections = {{"fig1", "Fig. 1: H", {"T"}, "A", {"gatewalk gate"}, {"fig1.svg"}, nullptr},
+                       {"play", "H", {"T"}, "A", {}, {}, {{"title", "F"}}}},
+          .made_by = {"P", "C", "M", "D", 1.5, {{"N", "T"}}}};
 }
 
-std::string page_of(const Json& report) {
+std::string page_of(const Report& report) {
   return report_page(report, [](const std::string& name) {
     return "<svg id='" + name + "'\nwidth='1' fill='#fff'>100%</svg>";
   });
@@ -41,14 +36,12 @@ std::size_t count(const std::string& text, const std::string& part) {
 }
 
 TEST(ReportPage, HoldsEveryClaimAndSection) {
-  const Json report = sample();
+  const Report report = sample();
   const std::string page = page_of(report);
-  for (const Json& claim : report.at("claims")) {
-    EXPECT_EQ(count(page, "id=\"claim-" + claim.at("id").get<std::string>() + "\""), 1u);
-  }
-  for (const Json& s : report.at("sections")) {
-    EXPECT_EQ(count(page, "<section id=\"" + s.at("id").get<std::string>() + "\""), 1u);
-  }
+  for (const Claim& claim : report.claims)
+    EXPECT_EQ(count(page, "id=\"claim-" + std::string(claim.id) + "\""), 1u);
+  for (const Report::Section& s : report.sections)
+    EXPECT_EQ(count(page, "<section id=\"" + s.id + "\""), 1u);
   EXPECT_EQ(count(page, "{{"), 0u) << "a place of the template left open";
 }
 
@@ -74,11 +67,11 @@ TEST(ReportPage, PutsWhatDiffersOnTop) {
 
 // Text of a report is text: it can neither become markup nor end the script that holds the data.
 TEST(ReportPage, TextStaysText) {
-  Json report = sample();
+  Report report = sample();
   const std::string plain = page_of(report);
-  report["title"] = "<i>title</i>";
-  report["sections"][1]["film"]["title"] = "</script><i>title</i><!--";
-  report["sections"][0]["alt"] = "\"><i>title</i>";
+  report.title = "<i>title</i>";
+  report.sections[1].film["title"] = "</script><i>title</i><!--";
+  report.sections[0].alt = "\"><i>title</i>";
   const std::string page = page_of(report);
   EXPECT_EQ(count(page, "<i>title"), 0u);
   EXPECT_EQ(count(page, "</script"), count(plain, "</script"));
@@ -86,18 +79,20 @@ TEST(ReportPage, TextStaysText) {
 
 // An error rather than an empty place on the page.
 TEST(ReportPage, RefusesWhatItDoesNotKnow) {
-  Json report = sample();
-  report["claims"][0]["verdict"] = "splendid";
+  Report report = sample();
+  report.claims[0].see = "nowhere";
   EXPECT_THROW((void)page_of(report), std::invalid_argument);
   report = sample();
-  report["claims"][0]["see"] = "nowhere";
+  report.sections[1].id = report.sections[0].id;
   EXPECT_THROW((void)page_of(report), std::invalid_argument);
-  report = sample();
-  report["sections"][1]["id"] = report["sections"][0]["id"];
-  EXPECT_THROW((void)page_of(report), std::invalid_argument);
-  report = sample();
-  report["claims"][0].erase("paper");
-  EXPECT_THROW((void)page_of(report), nlohmann::json::exception);
+}
+
+TEST(ReportPage, ItsJsonHasTheFilmsInTheirSections) {
+  const Json json = to_json(sample());
+  EXPECT_EQ(json.at("claims").at(1).at("verdict"), "differs");
+  EXPECT_FALSE(json.at("sections").at(0).contains("film"));
+  EXPECT_EQ(json.at("sections").at(1).at("film").at("title"), "F");
+  EXPECT_EQ(json.at("made_by").at("scenes").at(0).at("name"), "N");
 }
 
 }  // namespace

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// The report of a reproduction: report.json, and what its page shows.
+
+#include <string>
+#include <vector>
+
+#include "cli/paper/claims.h"
+#include "cli/render/fields.h"
+#include "cli/render/json.h"
+
+namespace gatewalk::cli {
+
+struct Report {
+  /// A picture that the page begins with; a command of the studies drew it.
+  struct First {
+    std::string figure, alt, caption, command;
+  };
+  /// A figure and its numbers, or a film.
+  struct Section {
+    std::string id, heading;
+    std::vector<std::string> text;
+    std::string alt;  // what is seen, in words
+    std::vector<std::string> commands, files;
+    Json film;  // film/replay.h; null: none
+  };
+  struct Scene {
+    std::string name, text;
+  };
+  struct MadeBy {
+    std::string program, command, machine, date;
+    double seconds = 0.0;  // of all studies
+    std::vector<Scene> scenes;
+  };
+
+  std::string title, paper;
+  bool quick = false;
+  std::vector<Claim> claims;
+  std::vector<std::string> lead{};  // paragraphs
+  std::vector<First> first{};
+  std::vector<Section> sections{};
+  MadeBy made_by{};
+
+  /// "18 reproduced, 9 agree, 0 cannot be told, 9 differ"
+  [[nodiscard]] std::string tally() const;
+};
+inline constexpr int kReportSeed = 1;
+
+/// But for the films.
+void describe(Fields& out, const Report& report);
+[[nodiscard]] Json to_json(const Report& report);
+
+}  // namespace gatewalk::cli
