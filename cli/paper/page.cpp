@@ -78,7 +78,7 @@ std::string element(std::string_view opening, std::string_view inside) {
   return fmt::format("<{}>{}</{}>\n", opening, inside, opening.substr(0, opening.find(' ')));
 }
 /// An entry of a list of names and values.
-std::string entry(const char* name, const std::string& value) {
+std::string list_entry(const char* name, const std::string& value) {
   return element("div", element("dt", name) + element("dd", value));
 }
 
@@ -136,10 +136,10 @@ std::string folded(const std::vector<Claim>& claims,
       const auto heading = headings.find(c.see);
       if (heading == headings.end())
         throw std::invalid_argument(fmt::format("claim {}: no section \"{}\"", c.id, c.see));
-      std::string about = entry("Paper", values(c.paper)) + entry("Here", values(c.ours));
-      if (!c.why.empty()) about += entry("Remark", words(c.why));
-      about += entry("Where", fmt::format("{}; here: <a href=\"#{}\">{}</a>", words(c.where),
-                                          escaped(c.see), words(heading->second)));
+      std::string about = list_entry("Paper", values(c.paper)) + list_entry("Here", values(c.ours));
+      if (!c.why.empty()) about += list_entry("Remark", words(c.why));
+      about += list_entry("Where", fmt::format("{}; here: <a href=\"#{}\">{}</a>", words(c.where),
+                                               escaped(c.see), words(heading->second)));
       out += element(
           fmt::format("details class=\"claim {}\" id=\"claim-{}\"", mark_of(v).style, words(c.id)),
           element("summary", badge(v) + element("span", words(c.claim))) + element("dl", about));
@@ -238,10 +238,12 @@ std::string duration(double seconds) {
 }
 
 std::string made_by(const Report::MadeBy& made) {
-  std::string out = element(
-      "dl", entry("Program", words(made.program)) + entry("Command", command(made.command)) +
-                entry("Seed", std::to_string(kReportSeed)) + entry("Machine", words(made.machine)) +
-                entry("Time taken", duration(made.seconds)) + entry("Date", words(made.date)));
+  std::string out = element("dl", list_entry("Program", words(made.program)) +
+                                      list_entry("Command", command(made.command)) +
+                                      list_entry("Seed", std::to_string(kReportSeed)) +
+                                      list_entry("Machine", words(made.machine)) +
+                                      list_entry("Time taken", duration(made.seconds)) +
+                                      list_entry("Date", words(made.date)));
   for (const Report::Scene& scene : made.scenes)
     out += element("details", element("summary", words(scene.name)) +
                                   element("pre tabindex=\"0\"", words(scene.text)));
