@@ -147,25 +147,22 @@ Measured softer_side(const Findings& f) {
   Places cells;
   std::string worst;
   double most = 0.0;
-  for (const double damping : kDampings)
-    for (const double force : kForcesOf12)
-      for (const double random : kRandomOf12)
-        for (const double k : f.fig12.values(kLeftStiffness)) {
-          const SweepPoint& cell = fig12_at(f, damping, force, random, k);
-          const Share right = cell.right_share();
-          if (k == 500 || right.whole == 0) continue;
-          ++cells.of;
-          cells.hold += right.high < 0.5;
-          if (right.low <= 0.5) continue;
-          ++cells.fail;
-          const double successes = static_cast<double>(kPaperTrials) * cell.traversed_share().value;
-          cells.seen +=
-              (right.value - 0.5) * (right.value - 0.5) > 4.0 * 0.25 / std::max(1.0, successes);
-          if (right.value <= most || right.whole < 20) continue;
-          most = right.value;
-          worst = fmt::format(", such as {} right at k_L = {}, {} N, Rm {} N, d = {}",
-                              percent_text(right), k, force, random, damping);
-        }
+  for (const SweepPoint& cell : f.fig12.points) {
+    const Share right = cell.right_share();
+    if (cell.number(kLeftStiffness) == 500 || right.whole == 0) continue;
+    ++cells.of;
+    cells.hold += right.high < 0.5;
+    if (right.low <= 0.5) continue;
+    ++cells.fail;
+    const double successes = static_cast<double>(kPaperTrials) * cell.traversed_share().value,
+                 deviation = right.value - 0.5;
+    cells.seen += deviation * deviation > 4.0 * 0.25 / std::max(1.0, successes);
+    if (right.value <= most || right.whole < 20) continue;
+    most = right.value;
+    worst = fmt::format(", such as {} right at k_L = {}, {} N, Rm {} N, d = {}",
+                        percent_text(right), cell.text(kLeftStiffness), cell.text(kPropulsion),
+                        cell.text(kRandom), cell.text(kDamping));
+  }
   return {cells.verdict(f.fig12.points[0].trials >= kEnoughTrials),
           {{"ours", cells.of == 0 ? "nobody gets past unequal beams"
                                   : fmt::format("softer side in {} cells, stiffer side in {}",

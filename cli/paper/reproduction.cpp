@@ -23,7 +23,6 @@
 #include "cli/paper/figures.h"
 #include "cli/paper/page.h"
 #include "cli/paper/studies.h"
-#include "cli/render/csv.h"
 #include "cli/render/figure.h"
 #include "cli/render/json.h"
 #include "cli/render/provenance.h"
@@ -51,9 +50,6 @@ std::string build_id() {
   return fmt::format("{} {} {} {}", kVersion, kCommit, std::filesystem::file_size(self, error),
                      std::filesystem::last_write_time(self, error).time_since_epoch().count());
 }
-
-/// What is known of a study that was carried out: enough to know whether it is still the same one.
-Json record_of(const Study& s) { return {{"command", s.text()}, {"program", build_id()}}; }
 
 /// A file of the folder; nothing where it cannot be read.
 std::optional<std::string> file_text(const std::string& path) {
@@ -132,15 +128,12 @@ class Records {
   /// Takes the result of a study. False when it is not done yet, or by another command or program,
   /// or cannot be read any more.
   [[nodiscard]] bool take(const Study& s, Findings& findings) const {
-    const auto known = done_.find(s.name);
-    if (known == done_.end() || !known->is_object()) return false;
-    const Json wanted = record_of(s);
-    for (const auto& [key, value] : wanted.items())
-      if (known->value(key, Json()) != value) return false;
-    if (!known->value("seconds", Json()).is_number()) return false;
-    for (auto word = s.arguments.begin(); word != s.arguments.end(); ++word)
-      if (*word == "--figure" && !std::filesystem::exists(*(word + 1))) return false;
     try {
+      const Json& known = done_.at(s.name);
+      if (known.at("command") != s.text() || known.at("program") != build_id()) return false;
+      (void)known.at("seconds").get<double>();
+      for (auto word = s.arguments.begin(); word != s.arguments.end(); ++word)
+        if (*word == "--figure" && !std::filesystem::exists(*(word + 1))) return false;
       take_file(s, findings);
       return true;
     } catch (const std::exception&) {  // a file of another run, or half a one, is no result
@@ -153,7 +146,7 @@ class Records {
     const dynamics::Stopwatch watch;
     const std::string remarks = run(s, work);
     take_file(s, findings);
-    done_[s.name] = record_of(s);
+    done_[s.name] = {{"command", s.text()}, {"program", build_id()}};
     if (!remarks.empty()) done_[s.name]["remarks"] = remarks;
     done_[s.name]["seconds"] = watch.seconds();
     write();
@@ -180,8 +173,8 @@ class Records {
     arguments.work = work;
     arguments.warned = [&](const std::string& text) { remarks += "gatewalk: " + text + "\n"; };
     if (const int status = s.run(arguments); status != kFine)
-      throw std::runtime_error(s.text() + ": ended with status " + std::to_string(status) + ". " +
-                               remarks);
+      throw std::runtime_error(
+          fmt::format("{}: ended with status {}. {}", s.text(), status, remarks));
     return remarks;
   }
   void write() const { write_text_atomically(kDone, text_of(done_) + "\n"); }
@@ -218,11 +211,10 @@ Results carry_out(const std::vector<Study>& studies, bool talk) {
     done += s->cost;
     progress.finish();
     if (talk)
-      std::cout << padded(
-                       "[" + std::to_string(++number) + "/" + std::to_string(studies.size()) + "]",
-                       8)
-                << "  " << padded(s->name, -18) << padded(fixed(records.seconds(*s), 1), 7) << " s"
-                << (records.has_remarks(*s) ? "   (with remarks: data/done.json)" : "") << "\n"
+      std::cout << fmt::format("{:>8}  {:<18}{:>7} s{}\n",
+                               fmt::format("[{}/{}]", ++number, studies.size()), s->name,
+                               fixed(records.seconds(*s), 1),
+                               records.has_remarks(*s) ? "   (with remarks: data/done.json)" : "")
                 << std::flush;
   }
   for (const Study& s : studies) results.seconds += records.seconds(s);
