@@ -4,7 +4,6 @@
 #include "cli/actions.h"
 #include "cli/arguments.h"
 #include "cli/exchange/policy_file.h"
-#include "cli/render/json.h"
 #include "cli/subject.h"
 #include "lattice/cells/recorded_pool.h"
 #include "lattice/scene/scene_trials.h"
@@ -21,7 +20,7 @@ FieldRun run_scene(const Options& options) {
   const lattice::FieldParams& field = scene.scene.field;
   FieldRun run{ShownField(scene.scene),
                dynamics::entry_of(scene.scene.start),
-               to_json(options.provenance(scene.scene)),
+               options.provenance(scene.scene),
                lattice::FieldCosts(lattice::bin_of_durations(scene.scene.gate)),
                lattice::ExitCounts(field),
                scene,
@@ -37,7 +36,7 @@ FieldRun run_of(const Options& options, const Subject& s) {
   const lattice::FieldParams& field = s.problem.field;
   return {s.shown(),
           s.problem.start,
-          s.made_by(options),
+          s.provenance(options),
           lattice::FieldCosts(s.bin_of_durations(options)),
           lattice::ExitCounts(field),
           std::nullopt,

@@ -9,15 +9,12 @@
 #include "cli/answered.h"
 #include "cli/arguments.h"
 #include "cli/parsers.h"
-#include "cli/render/choice.h"
+#include "cli/render/field_ends.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
 #include "cli/render/matrix.h"
-#include "cli/render/pooled_prediction.h"
 #include "cli/render/prediction.h"
-#include "cli/render/recorded.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "lattice/cells/recorded_pool.h"
@@ -26,27 +23,40 @@
 namespace gatewalk::cli {
 namespace {
 
+/// Gives out the result, and warns of what its endings leave out.
+template <class Answer>
+void tell(const Options& options, const Subject& s, const PredictResult& result,
+          const std::vector<Answer>& answers) {
+  options.give_out(result, table_of(result));
+  options.warn(too_few_gates(result.shown));
+  for (std::size_t k = 0; k < answers.size(); ++k)
+    options.warn(rest_warning(rest_of(answers[k].final), s.where(k)));
+}
+
 /// The file of --netcdf and the figure, if they are asked for: a map for each start.
 template <class Answer>
-void show(const Options& options, const Subject& s, const std::vector<Answer>& answers,
-          lattice::EndingShares Answer::*shares,
+void show(const Options& options, const Subject& s, const PredictResult& result,
+          const std::vector<Answer>& answers, lattice::EndingShares Answer::*shares,
           std::array<markov::CellProbabilities, 2> Answer::*gates_95 = nullptr) {
-  const ShownField shown = s.shown();
+  const auto& [columns, rows, max_gates, fidelity] = result.shown.field;
   std::vector<FieldPicture> pictures;
-  std::vector<FieldArrays> arrays;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     pictures.emplace_back(
-        fmt::format("prediction, {} x {} {}{}", shown.field.columns, shown.field.rows,
-                    s.scene ? "gates" : "cells",
+        fmt::format("prediction, {} x {} {}{}", columns, rows, s.scene ? "gates" : "cells",
                     s.given ? ", " + title_of(s.problem.map().section, s.starts[i]) : ""),
-        answers[i].final, answers[i].*shares, answers[i].exits);
-    arrays.push_back({pictures.back(), s.starts[i]});
-    if (gates_95 != nullptr) arrays.back().gates_95 = answers[i].*gates_95;
+        ends_of(answers[i].final, answers[i].*shares), answers[i].exits, s.starts[i]);
+    if (gates_95 != nullptr) pictures.back().gates_95 = answers[i].*gates_95;
   }
   if (options.has("netcdf"))
     options.write(options.text("netcdf"),
-                  netcdf_of(arrays, s.problem.map().section, s.made_by(options)));
-  options.draw([&] { return figure_of(pictures, shown); });
+                  netcdf_of(pictures, s.problem.map().section, result.made_by));
+  options.draw([&] { return figure_of(pictures, result.shown); });
+}
+
+PredictResult empty_result(const Options& options, const Subject& s) {
+  return {.shown = s.shown(),
+          .given = s.given ? s.starts : std::vector<Start>(),
+          .made_by = s.provenance(options)};
 }
 
 }  // namespace
@@ -54,27 +64,16 @@ void show(const Options& options, const Subject& s, const std::vector<Answer>& a
 int predict_from_runs(const Options& options, Subject& s) {
   const auto of_file = runs_of_file(options, s);
   const lattice::PooledPrediction prediction = predict(options, s);
-  const ShownField shown = s.shown();
-  Json json = to_json(prediction, shown, s.how.accuracy, s.given);
-  std::string table = table_of(prediction, shown, s.given) + method_line(s.settled);
-  if (s.settled) json["method"] = to_json(*s.settled);
-  if (s.is_recorded()) {
-    const lattice::LostBounds bounds =
-        lattice::lost_bounds(s.problem, *s.pool, s.starts.front(), s.how.per_leaf, options.seed());
-    json["recorded"] = to_json(*s.pool);
-    if (bounds.lost > 0.0) json["recorded"]["lost_bounds"] = to_json(bounds);
-    table += table_of(*s.pool) + table_of(bounds);
-  }
-  json.update(
-      json_of([&](Fields& out) { describe_left_out(out, shown.field.columns, shown.field.rows); }));
-  json["made_by"] = s.made_by(options);
-  options.give_out(json, table);
-  options.warn(too_few_gates(shown));
-  for (std::size_t k = 0; k < prediction.starts.size(); ++k)
-    options.warn(rest_warning(rest_of(prediction.starts[k].final), s.where(k)));
+  PredictResult result = empty_result(options, s);
+  result.of_runs = {.prediction = prediction, .accuracy = s.how.accuracy, .method = s.settled};
+  if (s.is_recorded())
+    result.of_runs->recorded = {
+        counts_of(*s.pool),
+        lattice::lost_bounds(s.problem, *s.pool, s.starts.front(), s.how.per_leaf, options.seed())};
+  tell(options, s, result, prediction.starts);
   const int exit = status_of(options, prediction.health);
   write_page(options, s, of_file, page_starts(prediction));
-  show(options, s, prediction.starts, &lattice::StartAnswer::endings,
+  show(options, s, result, prediction.starts, &lattice::StartAnswer::endings,
        &lattice::StartAnswer::gates_95);
   return exit;
 }
@@ -95,20 +94,23 @@ int predict_from_matrix(const Options& options, const Subject& s,
   const auto prediction = lattice::predict(gates, field, starts, {.solver = solver_of(options)},
                                            options.seed(), options.work());
   options.warn(text_of(prediction.left_out));
-  const ShownField field_shown = s.shown();
-  const PredictedField shown{*s.file, field_shown, s.given ? s.starts : std::vector<Start>(),
-                             others,  gates.exact, s.foreign};
-  Json json = to_json(prediction, shown, solver);
-  json.update(json_of([&](Fields& out) { describe_left_out(out, field.columns, field.rows); }));
-  json["made_by"] = s.made_by(options);
-  options.give_out(json, table_of(prediction, shown));
-  options.warn(too_few_gates(field_shown));
-  for (std::size_t k = 0; k < prediction.starts.size(); ++k)
-    options.warn(rest_warning(rest_of(prediction.starts[k].final), s.where(k)));
+  PredictResult result = empty_result(options, s);
+  MatrixPrediction& of = result.of_matrix.emplace();
+  of = {.prediction = prediction,
+        .solver = solver,
+        .status = recorded_health(*s.file),
+        .probabilities = gates.exact,
+        .foreign = s.foreign};
+  for (const lattice::ChainStart& start : starts)
+    of.states.push_back(shown_state(start, s.file->transitions.space));
+  for (const auto& [first, last, path, matrix] : others)
+    of.rows.push_back(
+        {first, last, path, recorded_health(*matrix.file), lattice::to_toml(matrix.scene)});
+  tell(options, s, result, prediction.starts);
   options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
-  const int exit = exit_status(options, faults_recorded(recorded_status(*s.file)).empty());
+  const int exit = exit_status(options, faults_recorded(of.status).empty());
   write_page(options, s, s.pool, page_starts(prediction, s));
-  show(options, s, prediction.starts, &lattice::StartPrediction::shares);
+  show(options, s, result, prediction.starts, &lattice::StartPrediction::shares);
   return exit;
 }
 

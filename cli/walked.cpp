@@ -2,9 +2,7 @@
 #include "cli/walked.h"
 
 #include "cli/arguments.h"
-#include "cli/render/json.h"
 #include "cli/render/matrix.h"
-#include "cli/render/text.h"
 #include "lattice/pool/tree_chain.h"
 
 namespace gatewalk::cli {
@@ -18,8 +16,7 @@ Walked walked_chain(const Options& options, Subject& s) {
                 {lattice::first_row(kernel, s.problem.map(), *s.pool,
                                     s.pool->begin(s.starts.front()), s.problem.start_type())}),
             {s.problem.field.start_column(), 0, row},
-            to_json(s.problem.map().section, s.starts.front()),
-            title_of(s.problem.map().section, s.starts.front()),
+            std::nullopt,
             true,
             std::move(kernel.space)};
   }
@@ -32,12 +29,8 @@ Walked walked_chain(const Options& options, Subject& s) {
   const dynamics::StateSpace& space = matrices.front().space;
   const lattice::ChainStart start =
       ready_start(options, matrices, s.problem, s.entries().front(), "the start");
-  return {lattice::make_chain(s.problem.map(), matrices),
-          start.start,
-          to_json(start, space),
-          text_of(space.section(), space.range(start.start.input)),
-          s.file->transitions.health.clean(),
-          space};
+  return {lattice::make_chain(s.problem.map(), matrices), start.start, shown_state(start, space),
+          s.file->transitions.health.clean(), space};
 }
 
 }  // namespace gatewalk::cli

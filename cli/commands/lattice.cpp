@@ -3,11 +3,8 @@
 
 #include "cli/arguments.h"
 #include "cli/field_run.h"
-#include "cli/render/costs.h"
-#include "cli/render/exits.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"
-#include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "cli/subject.h"
@@ -38,23 +35,12 @@ int run_lattice(const Arguments& arguments) {
   const dynamics::Stopwatch watch;
   const FieldRun run = field_run(options);
   const double seconds = watch.seconds();
-  const lattice::FieldExits exits = lattice::exits_of(run.exits);
-
-  Json json = to_json(run.tally, run.shown, run.scene);
-  json["exits"] = to_json(exits, run.shown);
-  json["costs"] = to_json(run.costs, run.shown);
-  if (!run.may_do.actions.empty()) {
-    json["actions"] = run.may_do.actions;
-    json["methods"] = to_json(run.may_do);
-  }
-  json["made_by"] = run.made_by;
-  const FieldPicture picture(fmt::format("full dynamics, {} trials", run.tally.trials), run.tally,
-                             exits);
+  const FieldPicture picture(fmt::format("full dynamics, {} trials", run.tally.trials),
+                             ends_of(run.tally, run.shown.field), lattice::exits_of(run.exits),
+                             run.start);
   if (options.has("netcdf"))
-    options.write(options.text("netcdf"),
-                  netcdf_of({{picture, run.start}}, run.shown.map.section, json["made_by"]));
-  options.give_out(json, table_of(run.tally, run.shown, run.scene) + table_of(exits, run.shown) +
-                             table_of(run.costs, run.shown) + method_lines(run.may_do));
+    options.write(options.text("netcdf"), netcdf_of({picture}, run.shown.map.section, run.made_by));
+  options.give_out(run, table_of(run));
   options.remark(fixed(seconds, 2) + " s");
   options.warn(too_few_gates(run.shown));
   const int exit = status_of(options, run.tally.health);

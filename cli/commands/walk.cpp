@@ -5,7 +5,6 @@
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"
 #include "cli/render/field_runs.h"
-#include "cli/render/json.h"
 #include "cli/render/matrix.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
@@ -40,21 +39,26 @@ int run_walk(const Arguments& arguments) {
                                     options.work());
   const double seconds = watch.seconds();
 
-  const Json status = recorded_status(*s.file);
-  const ShownWalks told{tally, walked.start_state, walked.start_text, s.foreign};
-  Json json = to_json(told, shown);
-  json["matrix_status"] = status;
-  json["made_by"] = s.made_by(options);
+  const WalkResult result{.shown = shown,
+                          .tally = tally,
+                          .state = walked.state,
+                          .start = walked.state ? Start() : s.starts.front(),
+                          .foreign = s.foreign,
+                          .matrix_status = recorded_health(*s.file),
+                          .made_by = s.provenance(options)};
+  const FieldPicture picture(fmt::format("chain, {} walks", walks), ends_of(tally, shown.field), {},
+                             s.starts.front());
   if (options.has("netcdf"))
-    options.write(options.text("netcdf"), netcdf_of({{FieldPicture("", tally), s.starts.front()}},
-                                                    s.problem.map().section, json["made_by"]));
-  options.give_out(json, table_of(told, shown));
+    options.write(options.text("netcdf"),
+                  netcdf_of({picture}, s.problem.map().section, result.made_by));
+  options.give_out(result, table_of(result));
   options.warn(too_few_gates(shown));
   options.warn(rest_warning(rest_of(tally)));
   options.remark(fmt::format("{} s, {} million walks a second", fixed(seconds, 3),
                              fixed(static_cast<double>(walks) / seconds / 1e6, 2)));
-  const int exit = exit_status(options, faults_recorded(status).empty() && walked.clean);
-  options.draw([&] { return figure_of({{fmt::format("chain, {} walks", walks), tally}}, shown); });
+  const int exit =
+      exit_status(options, faults_recorded(result.matrix_status).empty() && walked.clean);
+  options.draw([&] { return figure_of({picture}, shown); });
   return exit;
 }
 

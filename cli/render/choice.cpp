@@ -69,6 +69,8 @@ dynamics::Verdict verdict_in(const Json& json) {
   return static_cast<dynamics::Verdict>(name - names.begin());
 }
 
+Label method_label() { return Label("method", "what run.method = \"auto\" chose").shared(); }
+
 }  // namespace
 
 Json to_json(const lattice::Settled& settled) {
@@ -100,7 +102,7 @@ lattice::Settled settled_from(const Json& json) {
 
 void describe_method(Fields& out, const std::optional<lattice::Settled>& settled) {
   out.optional(settled.has_value(), [&](Fields& f) {
-    f.object(Label("method", "what run.method = \"auto\" chose").shared(),
+    f.object(method_label(),
              [&](Fields& method) { describe(method, settled.value_or(lattice::Settled())); });
   });
 }
@@ -134,12 +136,26 @@ std::string method_line(const std::optional<lattice::Settled>& settled) {
   return text + "\n";
 }
 
-Json to_json(const ActionMethods& all) {
-  Json json;
+void describe_methods(Fields& out, const ActionMethods& all) {
+  struct Chosen {
+    std::string action{};
+    lattice::Settled method{};
+  };
+  std::optional<std::vector<Chosen>> chosen;
   for (std::size_t a = 0; a < all.actions.size(); ++a)
-    if (all.methods[a])
-      json.push_back({{"action", all.actions[a]}, {"method", to_json(*all.methods[a])}});
-  return json;
+    if (all.methods[a]) {
+      if (!chosen) chosen.emplace();
+      chosen->push_back({all.actions[a], *all.methods[a]});
+    }
+  out.list({"methods", "what run.method = \"auto\" chose for each action; null: nothing"}, chosen,
+           [](Fields& f, const Chosen& c) {
+             f.text({"action", "what bodies do"}, c.action);
+             f.object(method_label(), [&](Fields& method) { describe(method, c.method); });
+           });
+}
+
+Json to_json(const ActionMethods& all) {
+  return json_of([&](Fields& out) { describe_methods(out, all); })["methods"];
 }
 
 std::string method_lines(const ActionMethods& all) {

@@ -27,7 +27,8 @@ struct ActionMethods {
   std::vector<std::string> actions;
   std::vector<std::optional<lattice::Settled>> methods;
 };
-/// {"action", "method"} of those for which one was chosen; null: for none.
+/// The key "methods": of the actions for which one was chosen; null: of none.
+void describe_methods(Fields& out, const ActionMethods& all);
 [[nodiscard]] Json to_json(const ActionMethods& all);
 /// A line for each of these.
 [[nodiscard]] std::string method_lines(const ActionMethods& all);

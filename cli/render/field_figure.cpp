@@ -15,31 +15,6 @@ namespace gatewalk::cli {
 
 using markov::CellProbabilities;
 
-FieldPicture::FieldPicture(std::string name, const markov::FinalDistribution& final,
-                           const lattice::EndingShares& shares, const lattice::FieldExits& by_place)
-    : title(std::move(name)),
-      final_gates(final.final_cells),
-      trapped(markov::trapped_cells(final)),
-      departed(markov::departed_cells(final)),
-      endings(shown_endings(shares, final)),
-      exits(by_place) {}
-
-FieldPicture::FieldPicture(std::string name, const lattice::FieldTally& tally,
-                           const lattice::FieldExits& by_place)
-    : title(std::move(name)),
-      final_gates(lattice::shares(tally.final_gates)),
-      trapped(tally.trapped_gates.cast<double>() / static_cast<double>(tally.trials)),
-      departed(tally.departed_gates.cast<double>() / static_cast<double>(tally.trials)),
-      endings(tally.endings, tally.trials),
-      exits(by_place) {}
-
-FieldPicture::FieldPicture(std::string name, const markov::WalkTally& tally)
-    : title(std::move(name)),
-      final_gates(tally.final_cells.cast<double>() / static_cast<double>(tally.walks)),
-      trapped(tally.trapped_cells.cast<double>() / static_cast<double>(tally.walks)),
-      departed(tally.departed_cells.cast<double>() / static_cast<double>(tally.walks)),
-      endings(tally.endings, tally.walks) {}
-
 SmallMap::SmallMap(const CellProbabilities& shown) : map(shown, 101, 101) {  // gates, each way
   constexpr double kLeft = 58, kTop = 44, kWidest = 300, kHighest = 300;
   const auto columns = static_cast<double>(map.columns.blocks()),

@@ -2,16 +2,18 @@
 #pragma once
 /// Pictures of where bodies end in a field.
 
+#include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "cli/render/field_ends.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/panel.h"
 #include "cli/render/shown_field.h"
+#include "cli/render/start.h"
 #include "lattice/exits.h"
-#include "lattice/lattice.h"
-#include "lattice/reference.h"
 #include "lattice/statistics/ending_shares.h"
 #include "markov/predict.h"
 
@@ -23,12 +25,21 @@ struct FieldPicture {
   markov::CellProbabilities final_gates, trapped, departed;  // (rows x columns)
   lattice::EndingShares endings;
   std::optional<lattice::FieldExits> exits;
+  Start start;
+  std::optional<std::array<markov::CellProbabilities, 2>> gates_95;  // of final_gates: low, high
 
-  FieldPicture(std::string title, const markov::FinalDistribution& final,
-               const lattice::EndingShares& endings, const lattice::FieldExits& exits);
-  FieldPicture(std::string title, const lattice::FieldTally& tally,
-               const lattice::FieldExits& exits);
-  FieldPicture(std::string title, const markov::WalkTally& tally);
+  template <class Cells>
+  FieldPicture(std::string name, const FieldEnds<Cells>& ends,
+               std::optional<lattice::FieldExits> by_place, Start began,
+               std::optional<std::array<markov::CellProbabilities, 2>> intervals = {})
+      : title(std::move(name)),
+        final_gates(ends.share_of(ends.final_gates)),
+        trapped(ends.share_of(ends.trapped_gates)),
+        departed(ends.share_of(ends.departed_gates)),
+        endings(ends.shares),
+        exits(std::move(by_place)),
+        start(std::move(began)),
+        gates_95(std::move(intervals)) {}
 };
 
 /// The map of the final gates, those of the trapped and of the departed, the endings, and where

@@ -16,7 +16,7 @@ using markov::CellProbabilities;
 /// A map of each start.
 template <class MapOf>
 void put_maps(int nc, const std::array<int, 3>& dimensions, const char* name, const char* meaning,
-              const std::vector<FieldArrays>& fields, const MapOf& map_of) {
+              const std::vector<FieldPicture>& fields, const MapOf& map_of) {
   using namespace markov::netcdf;
   constexpr int kShuffle = 1, kDeflate = 1, kLevel = 4;
   int variable = -1;
@@ -42,15 +42,15 @@ std::vector<std::int32_t> numbers_from(int first, Eigen::Index count) {
 
 }  // namespace
 
-std::string netcdf_of(const std::vector<FieldArrays>& fields, const dynamics::Section& section,
-                      const Json& made_by) {
-  const Eigen::Index rows = fields.front().shares.final_gates.rows(),
-                     columns = fields.front().shares.final_gates.cols();
+std::string netcdf_of(const std::vector<FieldPicture>& fields, const dynamics::Section& section,
+                      const Provenance& made_by) {
+  const Eigen::Index rows = fields.front().final_gates.rows(),
+                     columns = fields.front().final_gates.cols();
   using namespace markov::netcdf;
   Image nc;
   nc.create();
   put_text(nc, NC_GLOBAL, "format", "gatewalk final gates");
-  for (const auto& [key, value] : made_by.items())
+  for (const auto& [key, value] : to_json(made_by).items())
     put_text(nc, NC_GLOBAL, key, value.is_string() ? value.get<std::string>() : text_of(value, -1));
   const int start = define_dimension(nc, "start", fields.size()),
             i_y = define_dimension(nc, "i_y", static_cast<std::size_t>(rows)),
@@ -61,7 +61,7 @@ std::string netcdf_of(const std::vector<FieldArrays>& fields, const dynamics::Se
   const auto of_starts = [&](const std::string& name, const char* unit, const std::string& meaning,
                              const auto& value) {
     std::vector<double> values;
-    for (const FieldArrays& f : fields) values.push_back(value(f));
+    for (const FieldPicture& f : fields) values.push_back(value(f));
     put_variable(nc, name, start, values, unit, meaning);
   };
   if (std::any_of(fields.begin(), fields.end(),
@@ -74,23 +74,23 @@ std::string netcdf_of(const std::vector<FieldArrays>& fields, const dynamics::Se
               [axis](const auto& f) { return f.start ? f.start->at[axis] : std::nan(""); });
   }
   for (const EndingName& e : kEndingNames)
-    of_starts(e.key, "1", std::string("share of all: ") + e.name, [&](const FieldArrays& f) {
-      return f.shares.endings.share[static_cast<std::size_t>(e.ending)];
+    of_starts(e.key, "1", std::string("share of all: ") + e.name, [&](const FieldPicture& f) {
+      return f.endings.share[static_cast<std::size_t>(e.ending)];
     });
   const std::array<int, 3> dimensions{start, i_y, i_x};
   const auto maps = [&](const char* name, const char* meaning, const auto& map_of) {
     put_maps(nc, dimensions, name, meaning, fields, map_of);
   };
-  using Arrays = FieldArrays;
+  using Arrays = FieldPicture;
   maps(
       "final_gates", "share of all that ended in this gate, however",
-      [](const Arrays& f) -> const auto& { return f.shares.final_gates; });
+      [](const Arrays& f) -> const auto& { return f.final_gates; });
   maps(
       "trapped_gates", "share of all that was trapped in this gate",
-      [](const Arrays& f) -> const auto& { return f.shares.trapped; });
+      [](const Arrays& f) -> const auto& { return f.trapped; });
   maps(
       "departed_gates", "share of all that departed from this gate",
-      [](const Arrays& f) -> const auto& { return f.shares.departed; });
+      [](const Arrays& f) -> const auto& { return f.departed; });
   if (std::all_of(fields.begin(), fields.end(), [](const Arrays& f) { return !!f.gates_95; })) {
     maps(
         "final_gates_low", "95 % interval of final_gates, lower end",

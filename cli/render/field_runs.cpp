@@ -1,138 +1,142 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/field_runs.h"
 
-#include "cli/render/choice.h"
-#include "cli/render/final_gates.h"
+#include <fmt/core.h>
+
+#include "cli/render/costs.h"
+#include "cli/render/exits.h"
+#include "cli/render/field_ends.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/scene.h"
-#include "cli/render/start.h"
 #include "cli/render/text.h"
 #include "dynamics/base/share.h"
 
 namespace gatewalk::cli {
-
-using dynamics::share_interval;
-
 namespace {
 
 /// A limit of gates ends every walk.
-std::array<double, 2> still_walking_95(const markov::WalkTally& tally,
-                                       const lattice::FieldParams& field) {
+Interval still_walking_95(const markov::WalkTally& tally, const lattice::FieldParams& field) {
   if (field.max_gates > 0) return {0.0, 0.0};
-  return share_interval(tally.still_walking, tally.walks);
-}
-
-/// Those who still walk may end in any way: the upper limits count them.
-lattice::EndingShares shares_of(const markov::WalkTally& tally, const lattice::FieldParams& field) {
-  lattice::EndingShares shares(tally.endings, tally.walks);
-  for (std::size_t e = 0; e < markov::kEndings; ++e)
-    shares.interval[e][1] = share_interval(tally.endings[e] + tally.still_walking, tally.walks)[1];
-  return shares.with_limit(field.max_gates);
+  return dynamics::share_interval(tally.still_walking, tally.walks);
 }
 
 }  // namespace
 
-Json to_json(const lattice::FieldTally& tally, const ShownField& shown,
-             const std::optional<RunScene>& run) {
-  const auto shares =
-      lattice::EndingShares(tally.endings, tally.trials).with_limit(shown.field.max_gates);
-  Json json;
-  json["endings"] = endings(tally.endings);
-  json["endings_95"] = endings_95(shares);
-  json.update(json_of([&](Fields& out) {
-    describe_gates(out, tally.final_gates, tally.trapped_gates, tally.departed_gates);
-    describe_left_out(out, shown.field.columns, shown.field.rows);
-  }));
-  json["trials"] = tally.trials;
-  json["trapped"] = tally.trapped;
-  json["departed"] = tally.left_field;
-  json["cut_off"] = tally.cut_off;
-  json["not_finite"] = tally.broken;
-  json["intervals_95"] = {
-      {"trapped", share_interval(tally.trapped, tally.trials)},
-      {"departed", share_interval(tally.left_field, tally.trials)},
-      {"cut_off", shares.interval[static_cast<std::size_t>(markov::Ending::cut_off)]}};
-  Json entries;
-  const auto& faces = shown.map.section.faces;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    entries[faces[f].name]["count"] = tally.entries[f];
-    if (run) entries[faces[f].name]["outside_bins"] = tally.clamped[f];
-  }
-  json["entries_between_gates"] = std::move(entries);
-  if (run) json["bins"] = run->scene.bins ? "scene" : "paper";  // what outside_bins counts by
-  if (run && run->settled) json["method"] = to_json(*run->settled);
-  json["status"] = to_json(tally.health);
-  return json;
+void describe(Fields& out, const FieldRun& run) {
+  const lattice::FieldTally& tally = run.tally;
+  const auto ends = ends_of(tally, run.shown.field);
+  ends.describe_endings(out);
+  ends.describe_gates(out);
+  describe_left_out(out, run.shown.field.columns, run.shown.field.rows);
+  out.count({"trials", "1", "trials through the field"}, tally.trials);
+  out.with_intervals_in({"intervals_95", "95 % intervals of the shares"}, [&](Fields& f) {
+    ends.describe_sums(f, true);
+    f.count({"not_finite", "1", "trials with a run that stopped being finite numbers"},
+            tally.broken);
+  });
+  out.object(
+      {"entries_between_gates", "how bodies enter gates other than the start's"},
+      [&](Fields& faces) {
+        for (std::size_t f = 0; f < run.shown.map.section.faces.size(); ++f)
+          faces.object(
+              Label(run.shown.map.section.faces[f].name, "by this face").varying("<face>"),
+              [&](Fields& face) {
+                face.count({"count", "1", "how many enter by it"}, tally.entries[f]);
+                face.optional(run.scene.has_value(), [&](Fields& of_scene) {
+                  of_scene.count({"outside_bins", "1", "those outside all bins"}, tally.clamped[f]);
+                });
+              });
+      });
+  out.optional(run.scene.has_value(), [&](Fields& f) {
+    f.text(Label("bins", "which bins outside_bins counts by: the scene's or the paper's")
+               .one_of({"scene", "paper"}),
+           run.scene && run.scene->scene.bins ? "scene" : "paper");
+  });
+  describe_method(out, run.scene ? run.scene->settled : std::nullopt);
+  describe_status(out, tally.health);
+  describe_exits(out, exits_of(run.exits), run.shown);
+  describe_costs(out, run.costs, run.shown);
+  out.optional(!run.may_do.actions.empty(), [&](Fields& f) {
+    f.texts({"actions", "under a policy: what bodies may do"}, run.may_do.actions);
+    describe_methods(f, run.may_do);
+  });
+  describe_made_by(out, run.made_by);
 }
 
-std::string table_of(const lattice::FieldTally& tally, const ShownField& shown,
-                     const std::optional<RunScene>& run) {
-  const auto n = static_cast<double>(tally.trials);
-  std::string table =
-      endings_text(
-          lattice::EndingShares(tally.endings, tally.trials).with_limit(shown.field.max_gates),
-          "of " + std::to_string(tally.trials) + " trials, 95 % intervals") +
-      limits_text(shown) + (run ? scene_line(run->scene) : "") +
-      map_of(tally.final_gates.cast<double>() / n) +
-      map_of_trapped(tally.trapped_gates.cast<double>() / n) + "departed " +
-      percent(static_cast<double>(tally.left_field), n, 2) + "\n";
+std::string table_of(const FieldRun& run) {
+  const lattice::FieldTally& tally = run.tally;
+  std::string text =
+      ends_of(tally, run.shown.field)
+          .table(fmt::format("of {} trials, 95 % intervals", tally.trials),
+                 limits_text(run.shown) + (run.scene ? scene_line(run.scene->scene) : ""));
   if (tally.broken > 0)
-    table +=
-        "stopped being finite numbers: " + percent(static_cast<double>(tally.broken), n, 4) + "\n";
-  return table + (run ? method_line(run->settled) : "");
+    text += fmt::format(
+        "stopped being finite numbers: {}\n",
+        percent(static_cast<double>(tally.broken), static_cast<double>(tally.trials), 4));
+  return text + (run.scene ? method_line(run.scene->settled) : "") +
+         table_of(exits_of(run.exits), run.shown) + table_of(run.costs, run.shown) +
+         method_lines(run.may_do);
 }
 
 Rest rest_of(const markov::WalkTally& tally) {
   const auto n = static_cast<double>(tally.walks);
   return {static_cast<double>(tally.unsampled) / n, static_cast<double>(tally.still_walking) / n,
-          "after " + std::to_string(markov::Walker::kMostCells) +
-              " gates, the most that a walk is followed where field.max_gates = 0 sets no limit"};
+          fmt::format("after {} gates, the most that a walk is followed where field.max_gates = 0 "
+                      "sets no limit",
+                      markov::Walker::kMostCells)};
 }
 
-Json to_json(const ShownWalks& walks, const ShownField& shown) {
-  const markov::WalkTally& tally = walks.tally;
-  Json json;
-  json["endings"] = endings(tally.endings);
-  json["endings_95"] = endings_95(shares_of(tally, shown.field));
-  json.update(json_of([&](Fields& out) {
-    describe_gates(out, tally.final_cells, tally.trapped_cells, tally.departed_cells);
-    describe_left_out(out, shown.field.columns, shown.field.rows);
-  }));
-  json["walks"] = tally.walks;
-  json["trapped"] = tally.trapped;
-  json["departed"] = tally.left_field;
-  json["cut_off"] = tally.cut_off;
-  json["never_sampled"] = tally.unsampled;
-  json["still_walking"] = tally.still_walking;
-  json["still_walking_95"] = still_walking_95(tally, shown.field);
-  json["gates_visited"] = tally.steps;
-  json["start_state"] = walks.start_state;
-  return json;
+void describe(Fields& out, const WalkResult& r) {
+  const auto ends = ends_of(r.tally, r.shown.field);
+  ends.describe_endings(out);
+  ends.describe_gates(out);
+  describe_left_out(out, r.shown.field.columns, r.shown.field.rows);
+  out.count({"walks", "1", "walks through the field"}, r.tally.walks);
+  ends.describe_sums(out);
+  ends.describe_never_sampled(out);
+  ends.describe_still_walking(out);
+  out.interval({"still_walking_95", "1", "95 % interval of the share that is still walking"},
+               still_walking_95(r.tally, r.shown.field));
+  out.count({"gates_visited", "1", "gates that all walks visited together"}, r.tally.steps);
+  const bool as_seen = !r.state && !r.start;
+  out.object_or_text(
+      {"start_state", "the state in which walks start; of recorded runs the way they start"},
+      as_seen ? std::optional<std::string>("as seen") : std::nullopt, [&](Fields& f) {
+        f.optional(r.state.has_value(),
+                   [&](Fields& of_chain) { describe(of_chain, r.state.value_or(ShownState())); });
+        f.optional(r.start.has_value(), [&](Fields& recorded) {
+          describe(recorded, r.shown.map.section, r.start.value_or(dynamics::Entry()));
+        });
+      });
+  out.maybe(Label("matrix_status",
+                  "numerical faults of the runs behind the matrix; null: none are "
+                  "on record")
+                .shared("status"),
+            r.matrix_status, [](Fields& f, const dynamics::Health& h) { describe(f, h); });
+  describe_made_by(out, r.made_by);
 }
 
-std::string table_of(const ShownWalks& walks, const ShownField& shown) {
-  const markov::WalkTally& tally = walks.tally;
+std::string table_of(const WalkResult& r) {
+  const markov::WalkTally& tally = r.tally;
   const auto n = static_cast<double>(tally.walks);
-  std::string table =
-      endings_text(shares_of(tally, shown.field),
-                   "of " + std::to_string(tally.walks) + " walks, 95 % intervals") +
-      limits_text(shown) + map_of(tally.final_cells.cast<double>() / n) +
-      map_of_trapped(tally.trapped_cells.cast<double>() / n) + "departed " +
-      percent(static_cast<double>(tally.left_field), n, 2) + "\nstart: " + walks.start +
-      "\nThe intervals count chance in the walks alone: that of the matrix gatewalk predict has" +
-      (walks.foreign ? ".\n"
-                     : ", the chain's own error (bins, memory) gatewalk validate measures.\n");
+  std::string text =
+      ends_of(tally, r.shown.field)
+          .table(fmt::format("of {} walks, 95 % intervals", tally.walks), limits_text(r.shown));
+  text += fmt::format(
+      "start: {}\nThe intervals count chance in the walks alone: that of the matrix gatewalk "
+      "predict "
+      "has{}\n",
+      r.state ? r.state->bin : title_of(r.shown.map.section, r.start),
+      r.foreign ? "." : ", the chain's own error (bins, memory) gatewalk validate measures.");
   if (tally.unsampled > 0)
-    table += "reach a state never sampled: " + percent(static_cast<double>(tally.unsampled), n, 4) +
-             "\n";
+    text += fmt::format("reach a state never sampled: {}\n",
+                        percent(static_cast<double>(tally.unsampled), n, 4));
   if (tally.still_walking > 0)
-    table += "still walking after " + std::to_string(markov::Walker::kMostCells) +
-             " gates, where walks are stopped: " +
-             with_interval(static_cast<double>(tally.still_walking) / n,
-                           still_walking_95(tally, shown.field)) +
-             " %\n";
-  return table;
+    text += fmt::format("still walking after {} gates, where walks are stopped: {} %\n",
+                        markov::Walker::kMostCells,
+                        with_interval(static_cast<double>(tally.still_walking) / n,
+                                      still_walking_95(tally, r.shown.field)));
+  return text;
 }
 
 }  // namespace gatewalk::cli

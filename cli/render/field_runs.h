@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Runs of the full dynamics and walks of the chain through the field, as JSON and as tables.
+/// Trials of the full dynamics and walks of the chain through a field, as results and as tables.
 
-#include <cstdint>
 #include <optional>
 #include <string>
 
+#include "cli/render/choice.h"
+#include "cli/render/fields.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
+#include "cli/render/provenance.h"
 #include "cli/render/shown_field.h"
+#include "cli/render/start.h"
+#include "lattice/exits.h"
+#include "lattice/field_costs.h"
 #include "lattice/gate_chain.h"
 #include "lattice/reference.h"
 #include "lattice/scene/settle.h"
@@ -20,22 +24,32 @@ struct RunScene {
   lattice::Scene scene;
   std::optional<lattice::Settled> settled{};
 };
-/// Without "made_by".
-[[nodiscard]] Json to_json(const lattice::FieldTally& tally, const ShownField& shown,
-                           const std::optional<RunScene>& scene);
-[[nodiscard]] std::string table_of(const lattice::FieldTally& tally, const ShownField& shown,
-                                   const std::optional<RunScene>& scene);
+/// The result of `lattice`: trials through the field, and what they are of.
+struct FieldRun {
+  ShownField shown;
+  dynamics::Entry start;
+  Provenance made_by;
+  lattice::FieldCosts costs;
+  lattice::ExitCounts exits;
+  std::optional<RunScene> scene{};  // of gates
+  lattice::FieldTally tally;
+  ActionMethods may_do{};  // under a policy
+};
+void describe(Fields& out, const FieldRun& run);
+[[nodiscard]] std::string table_of(const FieldRun& run);
 
-/// How walks through the field went, and the state in which they started, in JSON and in words.
-struct ShownWalks {
-  const markov::WalkTally& tally;
-  Json start_state;
-  std::string start;
-  bool foreign = false;  // of a chain that was made elsewhere, which has no trials beside it
+/// The result of `walk`: how walks of a chain through the field went.
+struct WalkResult {
+  ShownField shown;
+  markov::WalkTally tally{};
+  std::optional<ShownState> state{};  // in which they start; none: in a row of their own
+  Start start{};                      // for this entry (none: as seen)
+  bool foreign = false;               // the chain was made elsewhere: it has no trials beside it
+  std::optional<dynamics::Health> matrix_status{};
+  Provenance made_by{};
 };
 [[nodiscard]] Rest rest_of(const markov::WalkTally& tally);
-/// Without "matrix_status", "made_by".
-[[nodiscard]] Json to_json(const ShownWalks& walks, const ShownField& shown);
-[[nodiscard]] std::string table_of(const ShownWalks& walks, const ShownField& shown);
+void describe(Fields& out, const WalkResult& result);
+[[nodiscard]] std::string table_of(const WalkResult& result);
 
 }  // namespace gatewalk::cli

@@ -101,40 +101,6 @@ FieldMap::Span span_of(const Eigen::ArrayXd& shares, Eigen::Index most) {
 
 }  // namespace
 
-namespace {
-
-template <class Cells>
-void describe_three(Fields& out, std::string_view what, const Cells& final_gates,
-                    const Cells& trapped, const Cells& departed) {
-  const auto map = [&](std::string_view key, std::string_view who, const Cells& cells) {
-    describe_map(out, {key, "1", fmt::format("{} {}, by the gate where they end", what, who)},
-                 cells);
-  };
-  map("final_gates", "all that end", final_gates);
-  map("trapped_gates", "those that are trapped", trapped);
-  map("departed_gates", "those that leave the field", departed);
-}
-
-}  // namespace
-
-void describe_gates(Fields& out, const markov::CellCounts& final_gates,
-                    const markov::CellCounts& trapped, const markov::CellCounts& departed) {
-  describe_three(out, "number of", final_gates, trapped, departed);
-}
-
-void describe_final_gates(Fields& out, const markov::FinalDistribution& f) {
-  describe_three(out, "shares of", f.final_cells, markov::trapped_cells(f),
-                 markov::departed_cells(f));
-  out.number({"trapped", "1", "share of bodies that are trapped"}, f.trapped);
-  out.number({"departed", "1", "share of bodies that leave the field"}, f.left_field);
-  out.number({"cut_off", "1", "share of bodies that the limit of gates cuts off"},
-             shown_endings(lattice::EndingShares(f.endings), f)
-                 .share[static_cast<std::size_t>(markov::Ending::cut_off)]);
-  out.number({"never_sampled", "1",
-              "share that the endings leave out: it reaches a state whose row has no run"},
-             f.unsampled);
-}
-
 void describe_left_out(Fields& out, int columns, int rows) {
   out.optional(Eigen::Index{columns} * rows > kMostGatesInJson, [&](Fields& f) {
     f.text({"left_out", "which maps are null, as they have too many gates"},

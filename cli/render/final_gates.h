@@ -37,11 +37,6 @@ void describe_map(Fields& out, const Field& f, const Cells& cells) {
   else
     out.grid(f, cells);
 }
-/// The keys "final_gates", "trapped_gates" and "departed_gates": counts, or shares of all.
-void describe_gates(Fields& out, const markov::CellCounts& final_gates,
-                    const markov::CellCounts& trapped, const markov::CellCounts& departed);
-/// The same of a prediction, and the shares "trapped", "departed", "cut_off" and "never_sampled".
-void describe_final_gates(Fields& out, const markov::FinalDistribution& f);
 /// The key "left_out" where a field has so many gates that its maps are null.
 void describe_left_out(Fields& out, int columns, int rows);
 

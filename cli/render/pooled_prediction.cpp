@@ -3,68 +3,19 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 
+#include "cli/render/choice.h"
 #include "cli/render/exits.h"
+#include "cli/render/field_ends.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
-#include "cli/render/start.h"
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
-
-void add_to(Json& json, const lattice::StartAnswer& a, const ShownField& shown) {
-  const markov::FinalDistribution& f = a.final;
-  const lattice::EndingShares told = shown_endings(a.endings, f);
-  json["endings"] = endings(told.share);
-  json["endings_95"] = endings_95(told);
-  json.update(json_of([&](Fields& out) { describe_final_gates(out, f); }));
-  json["still_walking"] = f.remainder;
-  json["exits"] = cli::to_json(shown_exits(a.exits, f), shown);
-  json.update(json_of([&](Fields& out) {
-    out.object({"final_gates_95", "95 % intervals of the final gates"}, [&](Fields& g) {
-      describe_map(g, {"low", "1", "their lower ends"}, a.gates_95[0]);
-      describe_map(g, {"high", "1", "their upper ends"}, a.gates_95[1]);
-    });
-  }));
-  json["answer_from"] = a.from_trials ? "trials" : "chain";
-  json["error_95"] = a.error.total_variation;
-  json["corrcoef_95"] = a.error.corrcoef;
-  json["rmse_per_100_95"] = a.error.rmse_per_100;
-  json["kernel_error_95"] = a.kernel_error_95;
-  json["unseen_entries"] = a.unseen;
-  json["full_trials"] = a.trials;
-  json["first_runs"] = a.first_runs;
-  json["direct_seconds"] = std::isfinite(a.direct_seconds) ? Json(a.direct_seconds) : Json();
-}
-
-std::string table_of(const lattice::StartAnswer& a, const ShownField& shown) {
-  const markov::FinalDistribution& f = a.final;
-  const bool known = std::isfinite(a.error.total_variation);
-  std::string table = endings_text(shown_endings(a.endings, f),
-                                   known ? "of all bodies, 95 % intervals that count everything"
-                                         : "of all bodies, without intervals") +
-                      limits_text(shown) + map_of(f.final_cells) +
-                      map_of_trapped(markov::trapped_cells(f)) + "departed " +
-                      percent(f.left_field, 1.0, 2) + "\n" +
-                      cli::table_of(shown_exits(a.exits, f), shown);
-  if (known)
-    table += "error: at most " + fixed(a.error.total_variation, 4) +
-             " in total variation of the final gates, corrcoef at least " +
-             fixed(a.error.corrcoef, 4) + ", RMSE at most " + fixed(a.error.rmse_per_100, 3) +
-             " per 100, each 95 times in 100 (sampling, states and memory)\n";
-  if (a.from_trials) table += "the trials' own shares: they are more certain here than the chain\n";
-  if (!a.from_trials && a.unseen > 0.0)
-    table += "the error counts " + percent(a.unseen, 1.0, 2) +
-             " that enter the second gate where no gate run did: what becomes of them is a guess\n";
-  return table + rest_text(rest_of(f));
-}
-
-Start start_of(const lattice::StartAnswer& a) { return a.as_seen ? Start() : Start(a.start); }
 
 double worst_error(const lattice::PooledPrediction& p) {
   double worst = 0.0;
@@ -73,13 +24,117 @@ double worst_error(const lattice::PooledPrediction& p) {
   return worst;
 }
 
-Json direct_seconds(const lattice::PooledPrediction& p) {
+double direct_seconds(const lattice::PooledPrediction& p) {
   double sum = 0.0;
   for (const lattice::StartAnswer& a : p.starts) sum += a.direct_seconds;
-  return std::isfinite(sum) ? Json(sum) : Json();
+  return sum;
+}
+
+void describe_error(Fields& out, double error_95) {
+  out.number({"error_95", "1",
+              "total variation of the final gates from the truth: 95 of 100 answers have no more "
+              "(of several starts the largest); null where nothing can be told"},
+             error_95);
+}
+void describe_direct_seconds(Fields& out, double seconds) {
+  out.number({"direct_seconds", "s", "time of direct simulation for the same error bar"}, seconds);
 }
 
 }  // namespace
+
+void describe(Fields& out, const lattice::StartAnswer& a, const ShownField& shown) {
+  const auto ends = ends_of(a.final, a.endings);
+  ends.describe_endings(out);
+  ends.describe_gates(out);
+  ends.describe_sums(out);
+  ends.describe_never_sampled(out);
+  ends.describe_still_walking(out);
+  describe_exits(out, shown_exits(a.exits, a.final), shown);
+  out.object({"final_gates_95", "95 % intervals of the final gates"}, [&](Fields& f) {
+    describe_map(f, {"low", "1", "their lower ends"}, a.gates_95[0]);
+    describe_map(f, {"high", "1", "their upper ends"}, a.gates_95[1]);
+  });
+  out.text(Label("answer_from", "the chain, or the full trials' own shares, which are more certain")
+               .one_of({"chain", "trials"}),
+           a.from_trials ? "trials" : "chain");
+  describe_error(out, a.error.total_variation);
+  out.number(
+      {"corrcoef_95", "1",
+       "correlation of the final gates with the truth: 95 of 100 answers have at least this"},
+      a.error.corrcoef);
+  out.number({"rmse_per_100_95", "trials per 100",
+              "root mean squared difference of the final gates from the truth: 95 of 100 answers "
+              "have no more"},
+             a.error.rmse_per_100);
+  out.number({"kernel_error_95", "1", "what error_95 would be with endlessly many first runs"},
+             a.kernel_error_95);
+  out.number(
+      {"unseen_entries", "1",
+       "share of bodies that enter the second gate where no gate run did; error_95 counts it"},
+      a.unseen);
+  out.count({"full_trials", "1", "trials through the field from this start"}, a.trials);
+  out.count({"first_runs", "1", "runs through the first gate from this start"}, a.first_runs);
+  describe_direct_seconds(out, a.direct_seconds);
+}
+
+void describe(Fields& out, const RunsPrediction& runs, bool given) {
+  const lattice::PooledPrediction& p = runs.prediction;
+  out.number(
+      {"accuracy", "1", "error_95 that was asked for; of a matrix for any start, half of its own"},
+      runs.accuracy);
+  out.flag({"reached", "whether error_95 is as small"}, p.reached);
+  out.optional(given, [&](Fields& f) { describe_error(f, worst_error(p)); });
+  describe_own_trials(out, p.own_trials);
+  out.count({"gate_runs", "1", "gate runs that this command made"}, p.gate_runs);
+  out.count({"states", "1", "states of the chain"}, p.states);
+  out.count({"nonzeros", "1", "chances of the chain that are not 0"}, p.nonzeros);
+  out.number({"seconds", "s", "time of runs, chains and error bars"}, p.seconds);
+  out.number({"run_seconds", "s", "time of the runs alone"}, p.run_seconds);
+  out.optional(given, [&](Fields& f) { describe_direct_seconds(f, direct_seconds(p)); });
+  describe_status(out, p.health);
+  describe_method(out, runs.method);
+  out.optional(runs.recorded.has_value(), [&](Fields& f) {
+    f.object({"recorded", "the recorded runs"}, [&](Fields& r) {
+      const RecordedRuns recorded = runs.recorded.value_or(RecordedRuns());
+      describe(r, recorded.counts);
+      describe_lost_bounds(r, recorded.bounds);
+    });
+  });
+}
+
+std::string table_of(const lattice::StartAnswer& a, const ShownField& shown) {
+  const bool known = std::isfinite(a.error.total_variation);
+  std::string text = ends_of(a.final, a.endings)
+                         .table(known ? "of all bodies, 95 % intervals that count everything"
+                                      : "of all bodies, without intervals",
+                                limits_text(shown)) +
+                     table_of(shown_exits(a.exits, a.final), shown);
+  if (known)
+    text += fmt::format(
+        "error: at most {} in total variation of the final gates, corrcoef at least {}, RMSE at "
+        "most {} per 100, each 95 times in 100 (sampling, states and memory)\n",
+        fixed(a.error.total_variation, 4), fixed(a.error.corrcoef, 4),
+        fixed(a.error.rmse_per_100, 3));
+  if (a.from_trials)
+    text += "the trials' own shares: they are more certain here than the chain\n";
+  else if (a.unseen > 0.0)
+    text += fmt::format(
+        "the error counts {} that enter the second gate where no gate run did: what becomes of "
+        "them is a guess\n",
+        percent(a.unseen, 1.0, 2));
+  return text + rest_text(rest_of(a.final));
+}
+
+std::string table_of(const RunsPrediction& runs) {
+  const lattice::PooledPrediction& p = runs.prediction;
+  std::string text = fmt::format("{}{} gate runs, {} states, {} s", own_trials_text(p.own_trials),
+                                 p.gate_runs, p.states, fixed(p.seconds, 2));
+  if (const double direct = direct_seconds(p); std::isfinite(direct))
+    text += fmt::format("; direct simulation would take some {} s", fixed(direct, 2));
+  text += "\n" + method_line(runs.method);
+  return runs.recorded ? text + table_of(runs.recorded->counts) + table_of(runs.recorded->bounds)
+                       : text;
+}
 
 void describe_own_trials(Fields& out, const std::optional<lattice::OwnTrials>& own) {
   out.maybe(Label("own_trials",
@@ -108,45 +163,6 @@ std::string own_trials_text(const std::optional<lattice::OwnTrials>& own) {
                      own->trials, fixed(own->total_variation, 4),
                      fixed(own->chance_total_variation, 4), p_words(own->p),
                      own->differs() ? ": the chain errs" : "");
-}
-
-Json to_json(const lattice::PooledPrediction& p, const ShownField& shown, double accuracy,
-             bool given) {
-  Json json;
-  if (!given) add_to(json, p.starts.front(), shown);
-  for (std::size_t k = 0; given && k < p.starts.size(); ++k) {
-    Json one;
-    one["start"] = to_json(shown.map.section, start_of(p.starts[k]));
-    add_to(one, p.starts[k], shown);
-    json["starts"].push_back(std::move(one));
-  }
-  json["accuracy"] = accuracy;
-  json["reached"] = p.reached;
-  json["error_95"] = worst_error(p);
-  json["own_trials"] = to_json(p.own_trials);
-  json["gate_runs"] = p.gate_runs;
-  json["states"] = p.states;
-  json["nonzeros"] = p.nonzeros;
-  json["seconds"] = p.seconds;
-  json["run_seconds"] = p.run_seconds;
-  json["direct_seconds"] = direct_seconds(p);
-  json["status"] = to_json(p.health);
-  return json;
-}
-
-std::string table_of(const lattice::PooledPrediction& p, const ShownField& shown, bool given) {
-  std::string table;
-  for (std::size_t k = 0; k < p.starts.size(); ++k)
-    table += (k > 0 ? "\n" : "") +
-             (given ? title_of(shown.map.section, start_of(p.starts[k])) + "\n" : "") +
-             table_of(p.starts[k], shown);
-  table += own_trials_text(p.own_trials);
-  const Json direct = direct_seconds(p);
-  table += std::to_string(p.gate_runs) + " gate runs, " + std::to_string(p.states) + " states, " +
-           fixed(p.seconds, 2) + " s";
-  if (!direct.is_null())
-    table += "; direct simulation would take some " + fixed(direct.get<double>(), 2) + " s";
-  return table + "\n";
 }
 
 }  // namespace gatewalk::cli

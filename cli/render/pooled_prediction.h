@@ -1,24 +1,38 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Predictions as accurate as was asked for, as JSON and as tables.
+/// Predictions as accurate as was asked for, as results and as tables.
 
+#include <cstddef>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "cli/render/fields.h"
 #include "cli/render/json_fwd.h"
+#include "cli/render/recorded.h"
 #include "cli/render/shown_field.h"
+#include "lattice/cells/recorded_pool.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {
 
-/// Of the scene's start (`given` false: its keys stand alone), or of given ones (in "starts").
-/// Without "made_by".
-[[nodiscard]] Json to_json(const lattice::PooledPrediction& prediction, const ShownField& shown,
-                           double accuracy, bool given);
-[[nodiscard]] std::string table_of(const lattice::PooledPrediction& prediction,
-                                   const ShownField& shown, bool given);
+/// Recorded runs, and what those lost from sight leave open.
+struct RecordedRuns {
+  RecordedCounts counts{};
+  lattice::LostBounds bounds{};
+};
+/// What gate runs say.
+struct RunsPrediction {
+  lattice::PooledPrediction prediction{};
+  double accuracy = 0.0;  // that was asked for
+  std::optional<lattice::Settled> method{};
+  std::optional<RecordedRuns> recorded{};
+};
+/// The keys of one start, and those of all together; `given`: the starts stand in a list.
+void describe(Fields& out, const lattice::StartAnswer& answer, const ShownField& shown);
+void describe(Fields& out, const RunsPrediction& runs, bool given);
+[[nodiscard]] std::string table_of(const lattice::StartAnswer& answer, const ShownField& shown);
+[[nodiscard]] std::string table_of(const RunsPrediction& runs);
 
 /// The key "own_trials": what a chain's own full trials say of it; null where there are none.
 void describe_own_trials(Fields& out, const std::optional<lattice::OwnTrials>& own);

@@ -1,111 +1,153 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/prediction.h"
 
-#include <algorithm>
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "cli/render/exits.h"
+#include "cli/render/field_ends.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
-#include "cli/render/matrix.h"
+#include "cli/render/health.h"
 #include "cli/render/scene.h"
-#include "cli/render/start.h"
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
 
-/// What is predicted for one start.
-void add_to(Json& json, const lattice::StartPrediction& s, const ShownField& shown_field) {
+/// Of one start.
+void describe(Fields& out, const lattice::StartPrediction& s, const ShownField& shown) {
   const markov::FinalDistribution& f = s.final;
-  const lattice::EndingShares shown = shown_endings(s.shares, f);
-  json["endings"] = endings(shown.share);
-  json["endings_95"] = endings_95(shown);
-  json["matrix_sampling"] = {{"replicates", s.replicates},
-                             {"total_variation_mean", s.mean_total_variation},
-                             {"total_variation_95", s.total_variation_95}};
-  json.update(json_of([&](Fields& out) { describe_final_gates(out, f); }));
-  json["exits"] = cli::to_json(shown_exits(s.exits, f), shown_field);
-  json["still_walking"] = f.remainder;
-  json["rounding_at_most"] = f.rounding;
-  json["error_at_most"] = f.remainder + f.rounding;
-  json["steps"] = f.steps;
+  const auto ends = ends_of(f, s.shares);
+  ends.describe_endings(out);
+  out.object({"matrix_sampling", "what the sampling of the matrix makes"}, [&](Fields& m) {
+    m.count({"replicates", "1", "predictions from resampled matrices"}, s.replicates);
+    m.number({"total_variation_mean", "1", "mean total variation of theirs from this one"},
+             s.mean_total_variation);
+    m.number({"total_variation_95", "1", "95 of 100 of them have no more"}, s.total_variation_95);
+  });
+  ends.describe_gates(out);
+  ends.describe_sums(out);
+  ends.describe_never_sampled(out);
+  describe_exits(out, shown_exits(s.exits, f), shown);
+  ends.describe_still_walking(out);
+  out.number({"rounding_at_most", "1", "what rounding changes in all shares together, at most"},
+             f.rounding);
+  out.number({"error_at_most", "1", "what rounding and walks not finished change, at most"},
+             f.remainder + f.rounding);
+  out.count({"steps", "1", "steps of propagation; 0: the chain was solved"}, f.steps);
 }
 
-std::string table_of(const lattice::StartPrediction& s, const PredictedField& of) {
+std::string table_of(const lattice::StartPrediction& s, const std::string& bin,
+                     const MatrixPrediction& of, const ShownField& shown) {
   const markov::FinalDistribution& f = s.final;
-  const lattice::EndingShares shares = shown_endings(s.shares, f);
-  const bool intervals = !std::isnan(shares.interval.front().front());
-  const dynamics::StateSpace& space = of.matrix.transitions.space;
-  std::string table =
-      endings_text(shares,
-                   intervals && s.replicates == 0
-                       ? "of all walks, and what they may be, as some were not followed to an end"
-                   : intervals ? "of all walks, 95 % intervals for the sampling of the matrix"
-                   : of.probabilities
-                       ? "of all walks; no intervals: the matrix holds probabilities, not counts"
-                       : "of all walks; no intervals: the field is too large for many predictions, "
-                         "rows have few runs each, "
-                         "or resampled matrices fail") +
-      limits_text(of.shown) + map_of(f.final_cells) + map_of_trapped(markov::trapped_cells(f)) +
-      "departed " + percent(f.left_field, 1.0, 2) + "\n" +
-      cli::table_of(shown_exits(s.exits, f), of.shown) +
-      "start: " + text_of(space.section(), space.range(s.start.start.input)) + "\n";
-  return table + rest_text(rest_of(f)) +
-         (of.foreign
-              ? ""
-              : "The chain's own error (bins, memory, and with bins from a pilot where its rows "
-                "start) is not in the intervals:\n"
-                "gatewalk validate measures it.\n") +
-         "Rounding and walks not finished, which are not the error of the prediction: at most " +
-         digits(f.remainder + f.rounding, 2) + " in all shares together\n";
+  const auto ends = ends_of(f, s.shares);
+  const bool intervals = !std::isnan(ends.shares.interval.front().front());
+  return ends.table(
+             intervals && s.replicates == 0
+                 ? "of all walks, and what they may be, as some were not followed to an end"
+             : intervals ? "of all walks, 95 % intervals for the sampling of the matrix"
+             : of.probabilities
+                 ? "of all walks; no intervals: the matrix holds probabilities, not counts"
+                 : "of all walks; no intervals: the field is too large for many predictions, "
+                   "rows have few runs each, or resampled matrices fail",
+             limits_text(shown)) +
+         cli::table_of(shown_exits(s.exits, f), shown) +
+         fmt::format(
+             "start: {}\n{}{}Rounding and walks not finished, which are not the error of the "
+             "prediction: at most {} in all shares together\n",
+             bin, rest_text(rest_of(f)),
+             of.foreign ? ""
+                        : "The chain's own error (bins, memory, and with bins from a pilot where "
+                          "its rows start) is not in the intervals:\n"
+                          "gatewalk validate measures it.\n",
+             digits(f.remainder + f.rounding, 2));
+}
+
+/// `describe_one` takes the number of a start.
+template <class Describe>
+void describe_starts(Fields& out, const PredictResult& r, Describe describe_one) {
+  out.optional(r.given.empty(), [&](Fields& f) { describe_one(f, 0); });
+  out.optional(!r.given.empty(), [&](Fields& f) {
+    f.list_of({"starts", "what is predicted for each start that was given"}, r.given.size(),
+              [&](Fields& one, std::size_t k) {
+                describe_start(one, r.shown.map.section, r.given[k]);
+                describe_one(one, k);
+              });
+  });
+}
+
+void describe_status_of_matrix(Fields& out, const std::optional<dynamics::Health>& status) {
+  out.maybe(
+      Label("matrix_status", "numerical faults of the runs behind the matrix; null: not on record")
+          .shared("status"),
+      status, [](Fields& f, const dynamics::Health& h) { cli::describe(f, h); });
+}
+
+void describe(Fields& out, const MatrixPrediction& m, const PredictResult& r) {
+  const bool given = !r.given.empty();
+  const auto state_in_list = [&](Fields& f, std::size_t k) {
+    f.optional(given, [&](Fields& s) { describe_start_state(s, m.states[k]); });
+  };
+  out.count({"left_out_matrices", "1",
+             "resampled matrices that the intervals leave out, as bodies circle too long in them"},
+            m.prediction.left_out.matrices);
+  describe_starts(out, r, [&](Fields& f, std::size_t k) {
+    describe(f, m.prediction.starts[k], r.shown);
+    state_in_list(f, k);
+  });
+  out.text({"solver", "how the sum over all walks was found (--solver)"}, m.solver);
+  out.optional(!given, [&](Fields& f) { describe_start_state(f, m.states.front()); });
+  describe_status_of_matrix(out, m.status);
+  out.optional(!m.rows.empty(), [&](Fields& f) {
+    f.list({"rows", "rows of gates with another matrix"}, m.rows,
+           [](Fields& row, const OtherRows& o) {
+             row.count({"first", "1", "i_y of the first row"}, o.first);
+             row.count({"last", "1", "i_y of the last row"}, o.last);
+             row.text({"matrix", "its file"}, o.matrix);
+             describe_status_of_matrix(row, o.status);
+             row.text({"scene", "its scene, as TOML"}, o.scene);
+           });
+  });
 }
 
 }  // namespace
 
-Json to_json(const lattice::Prediction& prediction, const PredictedField& of,
-             const std::string& solver) {
-  const dynamics::StateSpace& space = of.matrix.transitions.space;
-  Json json;
-  json["left_out_matrices"] = prediction.left_out.matrices;
-  if (of.starts.empty()) add_to(json, prediction.starts.front(), of.shown);
-  for (std::size_t k = 0; k < of.starts.size(); ++k) {
-    Json one;
-    one["start"] = to_json(space.section(), of.starts[k]);
-    add_to(one, prediction.starts[k], of.shown);
-    one["start_state"] = to_json(prediction.starts[k].start, space);
-    json["starts"].push_back(std::move(one));
-  }
-  json["solver"] = solver;
-  if (of.starts.empty()) json["start_state"] = to_json(prediction.starts.front().start, space);
-  json["matrix_status"] = recorded_status(of.matrix);
-  for (const lattice::RowMatrix& o : of.other_rows)
-    json["rows"].push_back({{"first", o.first},
-                            {"last", o.last},
-                            {"matrix", o.path},
-                            {"matrix_status", recorded_status(*o.matrix.file)},
-                            {"scene", lattice::to_toml(o.matrix.scene)}});
-  return json;
+void describe(Fields& out, const PredictResult& r) {
+  out.either(
+      r.of_matrix.has_value(), [&](Fields& f) { describe(f, *r.of_matrix, r); },
+      [&](Fields& f) {
+        describe_starts(f, r, [&](Fields& one, std::size_t k) {
+          describe(one, r.of_runs->prediction.starts[k], r.shown);
+        });
+        describe(f, *r.of_runs, !r.given.empty());
+      });
+  describe_left_out(out, r.shown.field.columns, r.shown.field.rows);
+  describe_made_by(out, r.made_by);
 }
 
-std::string table_of(const lattice::Prediction& prediction, const PredictedField& of) {
-  std::string table;
-  if (of.starts.empty()) table = table_of(prediction.starts.front(), of);
-  for (std::size_t k = 0; k < of.starts.size(); ++k)
-    table += (k > 0 ? "\n" : "") + title_of(of.matrix.transitions.space.section(), of.starts[k]) +
-             "\n" + table_of(prediction.starts[k], of);
-  for (const lattice::RowMatrix& o : of.other_rows)
-    table += "rows " + std::to_string(o.first) + " to " + std::to_string(o.last) + ": gates of " +
-             o.path + "\n";
-  return table;
+std::string table_of(const PredictResult& r) {
+  std::string text;
+  const std::size_t starts = std::max<std::size_t>(1, r.given.size());
+  for (std::size_t k = 0; k < starts; ++k) {
+    if (!r.given.empty())
+      text += (k > 0 ? "\n" : "") + title_of(r.shown.map.section, r.given[k]) + "\n";
+    text += r.of_runs ? table_of(r.of_runs->prediction.starts[k], r.shown)
+                      : table_of(r.of_matrix->prediction.starts[k], r.of_matrix->states[k].bin,
+                                 *r.of_matrix, r.shown);
+  }
+  if (r.of_runs) return text + table_of(*r.of_runs);
+  for (const OtherRows& o : r.of_matrix->rows)
+    text += fmt::format("rows {} to {}: gates of {}\n", o.first, o.last, o.matrix);
+  return text;
 }
 
 std::string text_of(const lattice::LeftOut& left_out) {
   if (left_out.matrices == 0) return "";
-  return (left_out.too_many() ? "no interval counts the sampling of the matrix: failed "
-                              : "intervals leave out ") +
-         std::to_string(left_out.matrices) + " of " + std::to_string(left_out.of) +
-         " resampled matrices: " + left_out.why;
+  return fmt::format("{}{} of {} resampled matrices: {}",
+                     left_out.too_many() ? "no interval counts the sampling of the matrix: failed "
+                                         : "intervals leave out ",
+                     left_out.matrices, left_out.of, left_out.why);
 }
 
 }  // namespace gatewalk::cli

@@ -1,33 +1,49 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Exact predictions as JSON and as tables.
+/// Predictions of where bodies end, from a matrix as it is or as accurate as was asked for, as
+/// results and as tables.
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "cli/render/json_fwd.h"
+#include "cli/render/fields.h"
+#include "cli/render/pooled_prediction.h"
+#include "cli/render/provenance.h"
 #include "cli/render/shown_field.h"
 #include "cli/render/start.h"
-#include "lattice/scene/row_matrices.h"
 #include "lattice/study/prediction.h"
 
 namespace gatewalk::cli {
 
-/// What was predicted: the field of a matrix, from these starts (none: the scene's own), with rows
-/// of other matrices.
-struct PredictedField {
-  const lattice::MatrixFile& matrix;
-  const ShownField& shown;
-  const std::vector<Start>& starts;
-  const std::vector<lattice::RowMatrix>& other_rows;
+/// Rows of gates that have another matrix.
+struct OtherRows {
+  int first = 0, last = 0;  // i_y
+  std::string matrix{};     // its path
+  std::optional<dynamics::Health> status{};
+  std::string scene{};  // as TOML
+};
+/// What a matrix says as it is.
+struct MatrixPrediction {
+  lattice::Prediction prediction{};
+  std::vector<ShownState> states{};  // in which bodies start, by start
+  std::string solver{};
+  std::optional<dynamics::Health> status{};  // of the matrix
+  std::vector<OtherRows> rows{};
   bool probabilities = false;  // the matrix was given so, not counted
   bool foreign = false;        // a chain that was made elsewhere, which has no trials beside it
 };
 
-/// Without "made_by".
-[[nodiscard]] Json to_json(const lattice::Prediction& prediction, const PredictedField& of,
-                           const std::string& solver);
-[[nodiscard]] std::string table_of(const lattice::Prediction& prediction, const PredictedField& of);
+/// The result of `predict`: of one of two kinds.
+struct PredictResult {
+  ShownField shown;
+  std::vector<Start> given{};  // starts that were asked for; none: the scene's own
+  std::optional<MatrixPrediction> of_matrix{};
+  std::optional<RunsPrediction> of_runs{};
+  Provenance made_by{};
+};
+void describe(Fields& out, const PredictResult& result);
+[[nodiscard]] std::string table_of(const PredictResult& result);
 
 /// Empty if none is.
 [[nodiscard]] std::string text_of(const lattice::LeftOut& left_out);

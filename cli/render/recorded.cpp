@@ -52,8 +52,9 @@ Json to_json(const lattice::RunPool& pool) {
   return json_of([&](Fields& out) { describe(out, counts_of(pool)); });
 }
 
-std::string table_of(const lattice::RunPool& pool) {
-  const RecordedCounts counts = counts_of(pool);
+std::string table_of(const lattice::RunPool& pool) { return table_of(counts_of(pool)); }
+
+std::string table_of(const RecordedCounts& counts) {
   return fmt::format("{} bodies, {} trials, {} passages: {} left, {} trapped, {} lost\n",
                      counts.bodies, counts.trials, counts.passages, counts.left, counts.trapped,
                      counts.lost);
@@ -87,10 +88,17 @@ std::vector<std::string> doubts(const lattice::RunPool& pool, const lattice::Pro
   return said;
 }
 
-Json to_json(const lattice::LostBounds& bounds) {
-  return {{"lost_share", bounds.lost},
-          {"if_trapped", endings(bounds.final[0].endings)},
-          {"if_left", endings(bounds.final[1].endings)}};
+void describe_lost_bounds(Fields& out, const lattice::LostBounds& bounds) {
+  out.optional(bounds.lost > 0.0, [&](Fields& f) {
+    f.object({"lost_bounds", "the endings if all of the lost bodies had met one fate"}, [&](Fields&
+                                                                                                b) {
+      b.number({"lost_share", "1", "share of the passages that were lost from sight"}, bounds.lost);
+      describe_endings(b, {"if_trapped", "shares by ending if all had been trapped"},
+                       bounds.final[0].endings);
+      describe_endings(b, {"if_left", "shares by ending if all had left their cell"},
+                       bounds.final[1].endings);
+    });
+  });
 }
 
 std::string table_of(const lattice::LostBounds& bounds) {

@@ -22,6 +22,7 @@ void describe(Fields& out, const RecordedCounts& counts);
 /// The key "recorded", of results that recorded runs are behind.
 void describe_recorded(Fields& out, const RecordedCounts& counts);
 [[nodiscard]] Json to_json(const lattice::RunPool& pool);
+[[nodiscard]] std::string table_of(const RecordedCounts& counts);
 [[nodiscard]] std::string table_of(const lattice::RunPool& pool);
 /// What they cannot tell, a sentence each: few bodies, faces that nobody entered by.
 /// Whether places on the faces are farther off than a cell is large. Empty: none is.
@@ -30,7 +31,8 @@ void describe_recorded(Fields& out, const RecordedCounts& counts);
 [[nodiscard]] std::vector<std::string> doubts(const lattice::RunPool& pool,
                                               const lattice::Problem& problem);
 
-[[nodiscard]] Json to_json(const lattice::LostBounds& bounds);
+/// The key "lost_bounds", where anybody was lost.
+void describe_lost_bounds(Fields& out, const lattice::LostBounds& bounds);
 /// Empty where nobody was lost.
 [[nodiscard]] std::string table_of(const lattice::LostBounds& bounds);
 

@@ -2,9 +2,11 @@
 #include <utility>
 
 #include "cli/render/cut_tracks.h"
+#include "cli/render/field_runs.h"
 #include "cli/render/files.h"
 #include "cli/render/gate_runs.h"
 #include "cli/render/matrix.h"
+#include "cli/render/prediction.h"
 #include "cli/render/rare.h"
 #include "cli/render/schema.h"
 #include "cli/render/stability.h"
@@ -43,14 +45,31 @@ void describe_build(Fields& out) {
 CutResult cut_tracks() {
   CutResult example{{}, {}};
   example.cell.map.section = dynamics::disc_section();
-  return example;
-}
 
-RareResult rare() {
-  RareResult example;
-  example.event = {.splitting = {.rows = {{}}, .health = {}}, .chain = {0.0}};
-  return example;
-}
+  FieldRun trials() {
+    const lattice::Scene scene;
+    return {ShownField(scene),
+            dynamics::Entry(),
+            Provenance(),
+            lattice::FieldCosts(1.0),
+            lattice::ExitCounts(scene.field),
+            std::nullopt,
+            lattice::FieldTally(scene.field)};
+  }
+
+  PredictResult prediction() {
+    const lattice::EndingShares shares{std::array<double, markov::kEndings>{}};
+    PredictResult example{.shown = ShownField(lattice::Scene()), .given = {Start()}};
+    example.of_matrix = {.prediction = {.starts = {{.shares = shares}}}, .states = {{}}};
+    example.of_runs = {.prediction = {.starts = {{}}}};
+    return example;
+  }
+
+  RareResult rare() {
+    RareResult example;
+    example.event = {.splitting = {.rows = {{}}, .health = {}}, .chain = {0.0}};
+    return example;
+  }
 
 }  // namespace
 
@@ -62,11 +81,14 @@ const std::vector<ResultOf>& results() {
       of<ExportResult>("export"),
       of<GateResult>("gate"),
       of("import", ImportedMatrix{shown_matrix(), {}, {}}),
+      of("lattice", trials()),
       of("passages", cut_tracks()),
+      of("predict", prediction()),
       of("rare", rare()),
       of("sample", SampleResult{}),
       of("show", shown_matrix()),
       of<StabilityResult>("stability"),
+      of("walk", WalkResult{.shown = ShownField(lattice::Scene())}),
   };
   return all;
 }

@@ -26,6 +26,9 @@ struct Node {
   std::vector<std::unique_ptr<Node>> keys{};
   std::vector<std::string> either{};  // keys of which the results with `either_or` have none
   std::vector<std::string> either_or{};
+  // Keys that only some of several descriptions of an object have are not always there.
+  int described = 0;     // how often what stands in it was described, ...
+  int described_in = 0;  // ... and the last time that of its object had this key
 
   Node* find(std::string_view name) {
     const auto found =
@@ -61,6 +64,7 @@ class SchemaFields final : public Fields {
       inside = defined.get();
       inside->form = node.form;
     }
+    ++inside->described;
     scopes_.push_back({inside, 0, {}});
   }
   void next() override {}
@@ -69,6 +73,8 @@ class SchemaFields final : public Fields {
     if (closed.keys.empty())
       throw std::logic_error("what stands in " + closed.key +
                              " is not described: the example of the result has none");
+    for (const auto& key : closed.keys)
+      if (key->described_in != closed.described) key->is_always_there = false;
     scopes_.pop_back();
   }
   void begin_optional() override { ++scopes_.back().optional; }
@@ -107,12 +113,17 @@ class SchemaFields final : public Fields {
     if (key.meaning.empty())
       throw std::logic_error("the key " + std::string(key.key) + " says nothing of its meaning");
     Scope& scope = scopes_.back();
-    const bool is_always_there = scope.optional == 0 && key.varies.empty();
+    const bool is_always_there =
+        scope.optional == 0 && key.varies.empty() && scope.node->described <= 1;
     const std::string_view name = key.varies.empty() ? key.key : key.varies;
     if (scope.keys && scope.optional == 1) scope.keys->emplace_back(name);
-    if (Node* known = scope.node->find(name)) return *known;
+    if (Node* known = scope.node->find(name)) {
+      known->described_in = scope.node->described;
+      return *known;
+    }
     auto node = std::make_unique<Node>();
     node->key = name;
+    node->described_in = scope.node->described;
     node->unit = key.unit;
     node->meaning = key.meaning;
     node->varies = key.varies;

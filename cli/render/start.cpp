@@ -99,24 +99,22 @@ StartTexts::StartTexts(const dynamics::Section& section, const std::vector<dynam
         });
 }
 
-void describe_start_state(Fields& out, const lattice::ChainStart& start,
-                          const dynamics::StateSpace& space) {
-  out.object(
-      Label("start_state", "the state of the chain in which bodies start").shared(),
-      [&](Fields& f) {
-        const int state = start.start.input;
-        f.count({"input", "1", "number of the state"},
-                f.is_schema() ? 1 : lattice::shown_number(space, state) + 1);
-        f.count(Field("counted_from", "1", "the first state's number").at_least(1).at_most(1), 1);
-        f.text({"bin", "the entries that the state stands for"},
-               f.is_schema() ? "" : text_of(space.section(), space.range(state)));
-        f.flag({"clamped", "the start lies outside all bins: the nearest one is taken"},
-               start.clamped);
-      });
+ShownState shown_state(const lattice::ChainStart& start, const dynamics::StateSpace& space) {
+  const int state = start.start.input;
+  return {lattice::shown_number(space, state) + 1, text_of(space.section(), space.range(state)),
+          start.clamped};
 }
 
-Json to_json(const lattice::ChainStart& start, const dynamics::StateSpace& space) {
-  return json_of([&](Fields& out) { describe_start_state(out, start, space); })["start_state"];
+void describe(Fields& out, const ShownState& state) {
+  out.count({"input", "1", "number of the state"}, state.number);
+  out.count(Field("counted_from", "1", "the first state's number").at_least(1).at_most(1), 1);
+  out.text({"bin", "the entries that the state stands for"}, state.bin);
+  out.flag({"clamped", "the start lies outside all bins: the nearest one is taken"}, state.clamped);
+}
+
+void describe_start_state(Fields& out, const ShownState& state) {
+  out.object(Label("start_state", "the state of the chain in which bodies start").shared(),
+             [&](Fields& f) { describe(f, state); });
 }
 
 std::string start_text(const dynamics::Section& section, const dynamics::Entry& start) {

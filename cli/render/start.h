@@ -36,9 +36,16 @@ struct StartTexts {
 };
 [[nodiscard]] std::string start_text(const dynamics::Section& section,
                                      const dynamics::Entry& start);
-/// The key "start_state": the state of a chain in which a body starts.
-void describe_start_state(Fields& out, const lattice::ChainStart& start,
-                          const dynamics::StateSpace& space);
-[[nodiscard]] Json to_json(const lattice::ChainStart& start, const dynamics::StateSpace& space);
+/// The state of a chain in which bodies start, as it is shown.
+struct ShownState {
+  int number = 1;   // from 1
+  std::string bin;  // the entries that it stands for
+  bool clamped = false;
+};
+[[nodiscard]] ShownState shown_state(const lattice::ChainStart& start,
+                                     const dynamics::StateSpace& space);
+/// Its keys, and the key "start_state" with these.
+void describe(Fields& out, const ShownState& state);
+void describe_start_state(Fields& out, const ShownState& state);
 
 }  // namespace gatewalk::cli

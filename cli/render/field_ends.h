@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// Where and how bodies end in a field, by trials, by walks or as predicted: what their results and
+/// tables say alike.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "cli/render/fields.h"
+#include "cli/render/shown_field.h"
+#include "lattice/reference.h"
+#include "lattice/statistics/ending_shares.h"
+#include "markov/predict.h"
+#include "markov/walk.h"
+
+namespace gatewalk::cli {
+
+/// Numbers of trials or walks (Cells: markov::CellCounts), or shares of all bodies as predicted
+/// (markov::CellProbabilities).
+template <class Cells>
+struct FieldEnds {
+  using Number = typename Cells::Scalar;
+
+  double bodies = 1.0;                             // that the numbers are of; shares are of 1
+  std::array<Number, markov::kEndings> endings{};  // by markov::Ending
+  lattice::EndingShares shares;                    // of the endings, as they are shown
+  Cells final_gates{}, trapped_gates{}, departed_gates{};  // (rows x columns)
+  Number trapped{}, departed{}, cut_off{};
+  Number never_sampled{}, still_walking{};  // which the endings leave out
+
+  /// Cells as shares of all bodies.
+  [[nodiscard]] markov::CellProbabilities share_of(const Cells& cells) const {
+    return cells.template cast<double>() / bodies;
+  }
+  /// The keys "endings" and "endings_95".
+  void describe_endings(Fields& out) const;
+  /// The maps "final_gates", "trapped_gates" and "departed_gates".
+  void describe_gates(Fields& out) const;
+  /// The keys "trapped", "departed" and "cut_off"; their intervals in "intervals_95", if asked for.
+  void describe_sums(Fields& out, bool with_intervals = false) const;
+  void describe_never_sampled(Fields& out) const;
+  void describe_still_walking(Fields& out) const;
+  /// Endings (`of` says of what), `about` the field, maps and who departed.
+  [[nodiscard]] std::string table(const std::string& of, const std::string& about) const;
+};
+
+[[nodiscard]] FieldEnds<markov::CellCounts> ends_of(const lattice::FieldTally& tally,
+                                                    const lattice::FieldParams& field);
+[[nodiscard]] FieldEnds<markov::CellCounts> ends_of(const markov::WalkTally& tally,
+                                                    const lattice::FieldParams& field);
+/// `shares`: of the prediction's endings, with intervals.
+[[nodiscard]] FieldEnds<markov::CellProbabilities> ends_of(const markov::FinalDistribution& f,
+                                                           const lattice::EndingShares& shares);
+
+}  // namespace gatewalk::cli
