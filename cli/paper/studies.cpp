@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "cli/paper/studies.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include "cli/render/json.h"
 #include "cli/web/embedded.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {
 
-std::string set(const char* key, double value) {
-  Json number = value;
-  if (value == std::floor(value)) number = static_cast<std::int64_t>(value);
-  return std::string(key) + "=" + number.dump();
-}
+std::string set(const char* key, double value) { return fmt::format("{}={}", key, value); }
 
 std::string Study::text() const {
   std::string text = "gatewalk " + command;
