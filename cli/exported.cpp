@@ -130,7 +130,7 @@ Exported export_field(const Options& options, ExportForm form) {
            .first_ending = chain.ends(),
            .made_by = s.provenance(options)},
           fmt::format("{} states, {} transitions; state 0 is {}, the last {} are endings\n",
-                      chain.size(), chain.target.size(), walked.start_text, kEndingLabels.size())};
+                      chain.size(), chain.target.size(), walked.from.text, kEndingLabels.size())};
 }
 
 Exported export_gate(const Options& options, ExportForm form) {

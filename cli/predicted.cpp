@@ -5,6 +5,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 
 #include "cli/answered.h"
 #include "cli/arguments.h"
@@ -63,9 +64,10 @@ PredictResult empty_result(const Options& options, const Subject& s) {
 
 int predict_from_runs(const Options& options, Subject& s) {
   const auto of_file = runs_of_file(options, s);
-  const lattice::PooledPrediction prediction = predict(options, s);
+  lattice::PooledPrediction made = predict(options, s);
   PredictResult result = empty_result(options, s);
-  result.of_runs = {.prediction = prediction, .accuracy = s.how.accuracy, .method = s.settled};
+  result.of_runs = {.prediction = std::move(made), .accuracy = s.how.accuracy, .method = s.settled};
+  const lattice::PooledPrediction& prediction = result.of_runs->prediction;
   if (s.is_recorded())
     result.of_runs->recorded = {
         counts_of(*s.pool),
@@ -91,16 +93,17 @@ int predict_from_matrix(const Options& options, const Subject& s,
   if ((solver == "klu" || solver == "march") && field.max_gates != 0)
     throw UsageError(fmt::format("--solver {} needs field.max_gates = 0 (no limit), it is {}",
                                  solver, field.max_gates));
-  const auto prediction = lattice::predict(gates, field, starts, {.solver = solver_of(options)},
-                                           options.seed(), options.work());
-  options.warn(text_of(prediction.left_out));
+  auto made = lattice::predict(gates, field, starts, {.solver = solver_of(options)}, options.seed(),
+                               options.work());
+  options.warn(text_of(made.left_out));
   PredictResult result = empty_result(options, s);
   MatrixPrediction& of = result.of_matrix.emplace();
-  of = {.prediction = prediction,
+  of = {.prediction = std::move(made),
         .solver = solver,
         .status = recorded_health(*s.file),
         .probabilities = gates.exact,
         .foreign = s.foreign};
+  const lattice::Prediction& prediction = of.prediction;
   for (const lattice::ChainStart& start : starts)
     of.states.push_back(shown_state(start, s.file->transitions.space));
   for (const auto& [first, last, path, matrix] : others)

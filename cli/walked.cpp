@@ -16,7 +16,7 @@ Walked walked_chain(const Options& options, Subject& s) {
                 {lattice::first_row(kernel, s.problem.map(), *s.pool,
                                     s.pool->begin(s.starts.front()), s.problem.start_type())}),
             {s.problem.field.start_column(), 0, row},
-            std::nullopt,
+            {std::nullopt, s.starts.front(), title_of(s.problem.map().section, s.starts.front())},
             true,
             std::move(kernel.space)};
   }
@@ -29,8 +29,12 @@ Walked walked_chain(const Options& options, Subject& s) {
   const dynamics::StateSpace& space = matrices.front().space;
   const lattice::ChainStart start =
       ready_start(options, matrices, s.problem, s.entries().front(), "the start");
-  return {lattice::make_chain(s.problem.map(), matrices), start.start, shown_state(start, space),
-          s.file->transitions.health.clean(), space};
+  const ShownState state = shown_state(start, space);
+  return {lattice::make_chain(s.problem.map(), matrices),
+          start.start,
+          {state, {}, state.bin},
+          s.file->transitions.health.clean(),
+          space};
 }
 
 }  // namespace gatewalk::cli

@@ -2,8 +2,6 @@
 #pragma once
 /// The chain that walks through a field draw from.
 
-#include <optional>
-
 #include "cli/render/start.h"
 #include "cli/subject.h"
 #include "markov/chain.h"
@@ -13,9 +11,9 @@ namespace gatewalk::cli {
 struct Walked {
   markov::FieldChain chain;
   markov::Start start;
-  std::optional<ShownState> state;  // none: recorded runs have a row for their start
-  bool clean;                       // the runs behind it
-  dynamics::StateSpace space;       // of the chain's states; a start of its own is behind them
+  WalkStart from;
+  bool clean;                  // the runs behind it
+  dynamics::StateSpace space;  // of the chain's states; a start of its own is behind them
 };
 
 /// Of a matrix: of a scene, in which the start becomes a state (trials are added for one that it

@@ -41,8 +41,7 @@ int run_walk(const Arguments& arguments) {
 
   const WalkResult result{.shown = shown,
                           .tally = tally,
-                          .state = walked.state,
-                          .start = walked.state ? Start() : s.starts.front(),
+                          .start = walked.from,
                           .foreign = s.foreign,
                           .matrix_status = recorded_health(*s.file),
                           .made_by = s.provenance(options)};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/exits.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,6 +11,7 @@
 #include "cli/render/json.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -106,7 +109,7 @@ Json to_json(const FieldExits& dynamics, const FieldExits& chain, const ShownFie
 
 std::string table_of(const FieldExits& exits, const ShownField& shown) {
   constexpr std::size_t kMost = 15;
-  std::string text;
+  TextTable table({{"", -11}, {"", -2}, {"", -18}, {"", 0, 0, "", " "}});
   for (std::size_t side = 0; side < kSides.size(); ++side) {
     const SideExits& e = exits[side];
     if (e.share.size() > kMost) return "";
@@ -114,14 +117,14 @@ std::string table_of(const FieldExits& exits, const ShownField& shown) {
     const Sized metre = readable_unit("m", std::max(-bounds.front(), bounds.back()));
     for (std::size_t i = 0; i < e.share.size(); ++i) {
       if (e.share[i] == 0.0) continue;
-      text += padded(name_of_side(side).name, -11) + (side == lattice::kFarSide ? "x " : "y ") +
-              padded(digits(bounds[i] / metre.size) + " to " + digits(bounds[i + 1] / metre.size) +
-                         " " + metre.name,
-                     -18) +
-              " " + with_interval(e.share[i], e.interval[i]) + "\n";
+      table.row({name_of_side(side).name, side == lattice::kFarSide ? "x" : "y",
+                 fmt::format("{} to {} {}", digits(bounds[i] / metre.size),
+                             digits(bounds[i + 1] / metre.size), metre.name),
+                 with_interval(e.share[i], e.interval[i])});
     }
   }
-  return text.empty() ? "" : "where they leave along each side, % of all\n" + text;
+  const std::string rows = table.text();
+  return rows.empty() ? "" : "where they leave along each side, % of all\n" + rows;
 }
 
 std::string places_outside(const FieldExits& dynamics, const FieldExits& chain) {
@@ -132,7 +135,7 @@ std::string places_outside(const FieldExits& dynamics, const FieldExits& chain) 
       outside += chain[side].share[i] < low || chain[side].share[i] > high;
       ++places;
     }
-  return std::to_string(outside) + " of " + std::to_string(places);
+  return fmt::format("{} of {}", outside, places);
 }
 
 double height_of_exits() { return 214.0; }

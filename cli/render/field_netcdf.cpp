@@ -50,7 +50,8 @@ std::string netcdf_of(const std::vector<FieldPicture>& fields, const dynamics::S
   Image nc;
   nc.create();
   put_text(nc, NC_GLOBAL, "format", "gatewalk final gates");
-  for (const auto& [key, value] : to_json(made_by).items())
+  const Json made = to_json(made_by);
+  for (const auto& [key, value] : made.items())
     put_text(nc, NC_GLOBAL, key, value.is_string() ? value.get<std::string>() : text_of(value, -1));
   const int start = define_dimension(nc, "start", fields.size()),
             i_y = define_dimension(nc, "i_y", static_cast<std::size_t>(rows)),

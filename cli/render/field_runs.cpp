@@ -98,14 +98,15 @@ void describe(Fields& out, const WalkResult& r) {
   out.interval({"still_walking_95", "1", "95 % interval of the share that is still walking"},
                still_walking_95(r.tally, r.shown.field));
   out.count({"gates_visited", "1", "gates that all walks visited together"}, r.tally.steps);
-  const bool as_seen = !r.state && !r.start;
+  const bool as_seen = !r.start.state && !r.start.entry;
   out.object_or_text(
       {"start_state", "the state in which walks start; of recorded runs the way they start"},
       as_seen ? std::optional<std::string>("as seen") : std::nullopt, [&](Fields& f) {
-        f.optional(r.state.has_value(),
-                   [&](Fields& of_chain) { describe(of_chain, r.state.value_or(ShownState())); });
-        f.optional(r.start.has_value(), [&](Fields& recorded) {
-          describe(recorded, r.shown.map.section, r.start.value_or(dynamics::Entry()));
+        f.optional(r.start.state.has_value(), [&](Fields& of_chain) {
+          describe(of_chain, r.start.state.value_or(ShownState()));
+        });
+        f.optional(r.start.entry.has_value(), [&](Fields& recorded) {
+          describe(recorded, r.shown.map.section, r.start.entry.value_or(dynamics::Entry()));
         });
       });
   out.maybe(Label("matrix_status",
@@ -123,10 +124,9 @@ std::string table_of(const WalkResult& r) {
       ends_of(tally, r.shown.field)
           .table(fmt::format("of {} walks, 95 % intervals", tally.walks), limits_text(r.shown));
   text += fmt::format(
-      "start: {}\nThe intervals count chance in the walks alone: that of the matrix gatewalk "
-      "predict "
-      "has{}\n",
-      r.state ? r.state->bin : title_of(r.shown.map.section, r.start),
+      "start: {}\n"
+      "The intervals count chance in the walks alone: that of the matrix gatewalk predict has{}\n",
+      r.start.text,
       r.foreign ? "." : ", the chain's own error (bins, memory) gatewalk validate measures.");
   if (tally.unsampled > 0)
     text += fmt::format("reach a state never sampled: {}\n",

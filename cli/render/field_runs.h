@@ -42,9 +42,8 @@ void describe(Fields& out, const FieldRun& run);
 struct WalkResult {
   ShownField shown;
   markov::WalkTally tally{};
-  std::optional<ShownState> state{};  // in which they start; none: in a row of their own
-  Start start{};                      // for this entry (none: as seen)
-  bool foreign = false;               // the chain was made elsewhere: it has no trials beside it
+  WalkStart start{};
+  bool foreign = false;  // the chain was made elsewhere: it has no trials beside it
   std::optional<dynamics::Health> matrix_status{};
   Provenance made_by{};
 };

@@ -8,6 +8,7 @@
 
 #include "cli/render/json.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 #include "lattice/statistics/compare.h"
 
 namespace gatewalk::cli {
@@ -142,9 +143,8 @@ markov::CellProbabilities FieldMap::blocks_of(const markov::CellProbabilities& s
 
 std::string elsewhere_text(const FieldMap& map, const markov::CellProbabilities& shares) {
   if (map.rows.count >= shares.rows() && map.columns.count >= shares.cols()) return "";
-  return "elsewhere in the " + std::to_string(shares.cols()) + " x " +
-         std::to_string(shares.rows()) +
-         " gates: " + percent(std::max(0.0, shares.sum() - map.blocks_of(shares).sum()), 1.0, 4);
+  return fmt::format("elsewhere in the {} x {} gates: {}", shares.cols(), shares.rows(),
+                     percent(std::max(0.0, shares.sum() - map.blocks_of(shares).sum()), 1.0, 4));
 }
 
 std::string short_percent(double share) {
@@ -156,10 +156,10 @@ std::string short_percent(double share) {
 std::string map_of(const markov::CellProbabilities& shares, const std::string& what,
                    const std::string& unit) {
   const FieldMap map(shares, 40, 15);
-  std::string text = what + ", " + unit + " (i_y upwards, i_x to the right";
+  std::string text = fmt::format("{}, {} (i_y upwards, i_x to the right", what, unit);
   if (map.rows.block > 1 || map.columns.block > 1)
-    text += "; blocks of " + std::to_string(map.columns.block) + " x " +
-            std::to_string(map.rows.block) + " gates: i_x in their middle, i_y at their lower end";
+    text += fmt::format("; blocks of {} x {} gates: i_x in their middle, i_y at their lower end",
+                        map.columns.block, map.rows.block);
   text += ")\n";
   const markov::CellProbabilities blocks = map.blocks_of(shares);
   int width = 7;  // shares take six places at most, and a blank; visits may take more
@@ -283,9 +283,10 @@ Rest rest_of(const markov::FinalDistribution& f) {
 std::string rest_text(const Rest& rest) {
   std::string text;
   if (rest.never_sampled > 0.0)
-    text += "reach a state never sampled: " + percent(rest.never_sampled, 1.0, 4) + "\n";
+    text += fmt::format("reach a state never sampled: {}\n", percent(rest.never_sampled, 1.0, 4));
   if (rest.still_walking > 1e-8)
-    text += "still walking " + rest.stopped + ": " + percent(rest.still_walking, 1.0, 6) + "\n";
+    text +=
+        fmt::format("still walking {}: {}\n", rest.stopped, percent(rest.still_walking, 1.0, 6));
   return text;
 }
 
@@ -299,29 +300,29 @@ std::string rest_warning(const Rest& rest, const std::string& where) {
   };
   add(rest.never_sampled, "reach a state that was never sampled");
   add(rest.still_walking, "were still walking " + rest.stopped);
-  return where + "the endings add up to " + percents(1.0 - all) + " %: " + what +
-         "; how these end is not known, each share may be larger by as much";
+  return fmt::format(
+      "{}the endings add up to {} %: {}; how these end is not known, each share may be larger by "
+      "as much",
+      where, percents(1.0 - all), what);
 }
 
 std::string with_interval(double share, const std::array<double, 2>& interval) {
   if (std::isnan(interval[0])) return percents(share);
-  return percents(share) + " [" + percents(interval[0]) + ", " + percents(interval[1]) + "]";
+  return fmt::format("{} [{}, {}]", percents(share), percents(interval[0]), percents(interval[1]));
 }
 
 std::string endings_text(const lattice::EndingShares& shares, const std::string& of) {
-  std::string text;
+  TextTable table({{"", -11}, {"", 7}, {"", 0, 0, "", " %"}, {}});
   std::vector<EndingName> names(kEndingNames.begin(), kEndingNames.end());
   if (shares.share[kBack] > 0.0) names.push_back(lattice::kWentBack);
   for (const EndingName& e : names) {
     const auto at = static_cast<std::size_t>(e.ending);
-    text += padded(e.name, -11) + padded(percents(shares.share[at]), 7) + " %";
-    if (!std::isnan(shares.interval[at][0]))
-      text +=
-          "  [" + percents(shares.interval[at][0]) + ", " + percents(shares.interval[at][1]) + "]";
-    if (at == static_cast<std::size_t>(kEndingNames.front().ending)) text += "  " + of;
-    text += "\n";
+    const auto& [low, high] = shares.interval[at];
+    table.row({e.name, percents(shares.share[at]),
+               std::isnan(low) ? "" : fmt::format("  [{}, {}]", percents(low), percents(high)),
+               e.ending == kEndingNames.front().ending ? "  " + of : ""});
   }
-  return text;
+  return table.text();
 }
 
 std::string map_of_trapped(const markov::CellProbabilities& shares) {

@@ -9,6 +9,7 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 #include "lattice/pool/pooled_prediction.h"
 
 namespace gatewalk::cli {
@@ -103,15 +104,16 @@ void describe_lost_bounds(Fields& out, const lattice::LostBounds& bounds) {
 
 std::string table_of(const lattice::LostBounds& bounds) {
   if (!(bounds.lost > 0.0)) return "";
-  std::string text = percent(bounds.lost, 1.0, 2) +
-                     " of the passages were lost from sight and are left out, which no interval "
-                     "counts. If all of these bodies had been trapped, or all had left:\n";
+  TextTable table({{"", -11}, {"", 7}, {"", 7, 0, "", " %, "}, {}});
   for (const EndingName& e : kEndingNames) {
     const auto at = static_cast<std::size_t>(e.ending);
-    text += padded(e.name, -11) + padded(percents(bounds.final[0].endings[at]), 7) + " %, " +
-            padded(percents(bounds.final[1].endings[at]), 7) + " %\n";
+    table.row({e.name, percents(bounds.final[0].endings[at]), percents(bounds.final[1].endings[at]),
+               " %"});
   }
-  return text;
+  return fmt::format(
+      "{} of the passages were lost from sight and are left out, which no interval counts. If all "
+      "of these bodies had been trapped, or all had left:\n{}",
+      percent(bounds.lost, 1.0, 2), table.text());
 }
 
 }  // namespace gatewalk::cli

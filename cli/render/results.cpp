@@ -45,31 +45,33 @@ void describe_build(Fields& out) {
 CutResult cut_tracks() {
   CutResult example{{}, {}};
   example.cell.map.section = dynamics::disc_section();
+  return example;
+}
 
-  FieldRun trials() {
-    const lattice::Scene scene;
-    return {ShownField(scene),
-            dynamics::Entry(),
-            Provenance(),
-            lattice::FieldCosts(1.0),
-            lattice::ExitCounts(scene.field),
-            std::nullopt,
-            lattice::FieldTally(scene.field)};
-  }
+FieldRun trials() {
+  const lattice::Scene scene;
+  return {ShownField(scene),
+          dynamics::Entry(),
+          Provenance(),
+          lattice::FieldCosts(1.0),
+          lattice::ExitCounts(scene.field),
+          std::nullopt,
+          lattice::FieldTally(scene.field)};
+}
 
-  PredictResult prediction() {
-    const lattice::EndingShares shares{std::array<double, markov::kEndings>{}};
-    PredictResult example{.shown = ShownField(lattice::Scene()), .given = {Start()}};
-    example.of_matrix = {.prediction = {.starts = {{.shares = shares}}}, .states = {{}}};
-    example.of_runs = {.prediction = {.starts = {{}}}};
-    return example;
-  }
+PredictResult prediction() {
+  const lattice::EndingShares shares{std::array<double, markov::kEndings>{}};
+  PredictResult example{.shown = ShownField(lattice::Scene()), .given = {Start()}};
+  example.of_matrix = {.prediction = {.starts = {{.shares = shares}}}, .states = {{}}};
+  example.of_runs = {.prediction = {.starts = {{}}}};
+  return example;
+}
 
-  RareResult rare() {
-    RareResult example;
-    example.event = {.splitting = {.rows = {{}}, .health = {}}, .chain = {0.0}};
-    return example;
-  }
+RareResult rare() {
+  RareResult example;
+  example.event = {.splitting = {.rows = {{}}, .health = {}}, .chain = {0.0}};
+  return example;
+}
 
 }  // namespace
 

@@ -48,4 +48,11 @@ struct ShownState {
 void describe(Fields& out, const ShownState& state);
 void describe_start_state(Fields& out, const ShownState& state);
 
+/// Where walks of a chain start: in a state, or (none) in a row of their own, for this entry.
+struct WalkStart {
+  std::optional<ShownState> state{};
+  Start entry{};
+  std::string text{};
+};
+
 }  // namespace gatewalk::cli

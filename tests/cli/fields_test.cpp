@@ -71,6 +71,10 @@ Description all_parts(bool is_full) {
     out.list({"items", "some"}, items, [](Fields& f, int i) {
       f.count({"n", "1", "its number"}, i);
     });
+    out.list(Label("more", "some, or none").shared("things"),
+             is_full ? std::optional(items) : std::nullopt, [](Fields& f, int i) {
+               f.count({"n", "1", "its number"}, i);
+             });
     out.optional(is_full, [](Fields& f) { f.flag({"extra", "only there"}, true); });
     out.maybe({"part", "or none"}, is_full ? std::optional(3) : std::nullopt, [](Fields& f, int i) {
       f.count({"n", "1", "its number"}, i);
@@ -83,9 +87,17 @@ Description all_parts(bool is_full) {
         is_full,
         [](Fields& f) {
           f.count({"one", "1", "of two"}, 1);
+          f.object({"both", "of either"}, [](Fields& b) {
+            b.count({"first", "1", "of one"}, 1);
+            b.count({"last", "1", "of both"}, 2);
+          });
         },
         [](Fields& f) {
           f.count({"other", "1", "of two"}, 2);
+          f.object({"both", "of either"}, [](Fields& b) {
+            b.count({"last", "1", "of both"}, 2);
+            b.count({"new", "1", "of the other"}, 3);
+          });
         });
     out.object({"by", "of each cost"},
                [](Fields& f) { f.number(Field("work_J", "J", "of it").varying("<cost>"), 4.0); });
@@ -97,10 +109,11 @@ Description all_parts(bool is_full) {
 
 TEST(Fields, PartsThatMayBeMissing) {
   EXPECT_EQ(json_text_of(all_parts(true)),
-            R"({"items":[{"n":1},{"n":2}],"extra":true,"part":{"n":3},"or":{"below":5.0},"one":1,)"
+            R"({"items":[{"n":1},{"n":2}],"more":[{"n":1},{"n":2}],"extra":true,"part":{"n":3},)"
+            R"("or":{"below":5.0},"one":1,"both":{"first":1,"last":2},)"
             R"("by":{"work_J":4.0},"seen":7,"intervals_95":{"seen":[0.25,0.75]}})");
   EXPECT_EQ(json_text_of(all_parts(false)),
-            R"({"items":[],"part":null,"or":2.0,"other":2,)"
+            R"({"items":[],"more":null,"part":null,"or":2.0,"other":2,"both":{"last":2,"new":3},)"
             R"("by":{"work_J":4.0},"seen":7,"intervals_95":{"seen":[0.25,0.75]}})");
 }
 
@@ -109,9 +122,13 @@ TEST(Fields, TheSchemaIsThatOfAllResultsWhateverTheExampleHas) {
   EXPECT_EQ(full, schema_of({"x", all_parts(false)}));
   const Json schema = parsed_json(full), &keys = schema["properties"];
   EXPECT_EQ(schema["required"].dump(),
-            R"(["format_version","items","part","or","by","seen","intervals_95"])");
+            R"(["format_version","items","more","part","or","both","by","seen","intervals_95"])");
   EXPECT_EQ(schema["oneOf"].dump(), R"([{"required":["one"]},{"required":["other"]}])");
   EXPECT_EQ(keys["items"]["items"]["required"].dump(), R"(["n"])");
+  EXPECT_EQ(keys["more"]["anyOf"].dump(), R"([{"type":"null"},{"$ref":"#/$defs/things"}])");
+  EXPECT_EQ(schema["$defs"]["things"]["items"]["required"].dump(), R"(["n"])");
+  EXPECT_EQ(keys["both"]["required"].dump(), R"(["last"])");
+  EXPECT_EQ(keys["both"]["properties"].size(), 3);
   EXPECT_EQ(keys["part"]["type"].dump(), R"(["object","null"])");
   EXPECT_EQ(keys["or"]["type"].dump(), R"(["object","number","null"])");
   EXPECT_EQ(keys["by"]["additionalProperties"]["unit"], "J");
