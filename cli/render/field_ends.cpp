@@ -28,9 +28,10 @@ constexpr std::string_view kOf = std::integral<Number> ? "number of" : "share of
 
 template <class Cells>
 void FieldEnds<Cells>::describe_endings(Fields& out) const {
-  cli::describe_endings(
-      out, {"endings", fmt::format("how bodies end: the {} them by ending", kOf<Number>)}, endings);
-  describe_endings_95(out, {"endings_95", "95 % intervals of the shares by ending"}, shares);
+  if constexpr (std::integral<Number>)
+    cli::describe_endings(out, endings, shares);
+  else
+    cli::describe_endings(out, shares);
 }
 
 template <class Cells>

@@ -82,23 +82,23 @@ std::string netcdf_of(const std::vector<FieldPicture>& fields, const dynamics::S
   const auto maps = [&](const char* name, const char* meaning, const auto& map_of) {
     put_maps(nc, dimensions, name, meaning, fields, map_of);
   };
-  using Arrays = FieldPicture;
   maps(
       "final_gates", "share of all that ended in this gate, however",
-      [](const Arrays& f) -> const auto& { return f.final_gates; });
+      [](const FieldPicture& f) -> const auto& { return f.final_gates; });
   maps(
       "trapped_gates", "share of all that was trapped in this gate",
-      [](const Arrays& f) -> const auto& { return f.trapped; });
+      [](const FieldPicture& f) -> const auto& { return f.trapped; });
   maps(
       "departed_gates", "share of all that departed from this gate",
-      [](const Arrays& f) -> const auto& { return f.departed; });
-  if (std::all_of(fields.begin(), fields.end(), [](const Arrays& f) { return !!f.gates_95; })) {
+      [](const FieldPicture& f) -> const auto& { return f.departed; });
+  if (std::all_of(fields.begin(), fields.end(),
+                  [](const FieldPicture& f) { return !!f.gates_95; })) {
     maps(
         "final_gates_low", "95 % interval of final_gates, lower end",
-        [](const Arrays& f) -> const auto& { return (*f.gates_95)[0]; });
+        [](const FieldPicture& f) -> const auto& { return (*f.gates_95)[0]; });
     maps(
         "final_gates_high", "95 % interval of final_gates, upper end",
-        [](const Arrays& f) -> const auto& { return (*f.gates_95)[1]; });
+        [](const FieldPicture& f) -> const auto& { return (*f.gates_95)[1]; });
   }
   const std::vector<char> bytes = nc.close_image();
   return {bytes.begin(), bytes.end()};

@@ -10,7 +10,6 @@
 #include "cli/render/field_ends.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
 
@@ -151,10 +150,6 @@ void describe_own_trials(Fields& out, const std::optional<lattice::OwnTrials>& o
               f.number({"p", "1", "of final gates and endings together"}, o.p);
               f.flag({"differs", "p is at most 1 %: the chain errs"}, o.differs());
             });
-}
-
-Json to_json(const std::optional<lattice::OwnTrials>& own) {
-  return json_of([&](Fields& out) { describe_own_trials(out, own); })["own_trials"];
 }
 
 std::string own_trials_text(const std::optional<lattice::OwnTrials>& own) {

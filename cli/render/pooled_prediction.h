@@ -2,12 +2,10 @@
 #pragma once
 /// Predictions as accurate as was asked for, as results and as tables.
 
-#include <cstddef>
 #include <optional>
 #include <string>
 
 #include "cli/render/fields.h"
-#include "cli/render/json_fwd.h"
 #include "cli/render/recorded.h"
 #include "cli/render/shown_field.h"
 #include "lattice/cells/recorded_pool.h"
@@ -36,7 +34,6 @@ void describe(Fields& out, const RunsPrediction& runs, bool given);
 
 /// The key "own_trials": what a chain's own full trials say of it; null where there are none.
 void describe_own_trials(Fields& out, const std::optional<lattice::OwnTrials>& own);
-[[nodiscard]] Json to_json(const std::optional<lattice::OwnTrials>& own);
 /// The same as a line; empty where there are none.
 [[nodiscard]] std::string own_trials_text(const std::optional<lattice::OwnTrials>& own);
 
