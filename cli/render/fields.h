@@ -5,6 +5,7 @@
 /// (json.h) or the schema of all such results (schema.h).
 
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <functional>
@@ -24,6 +25,10 @@ namespace gatewalk::cli {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  // null
 using Interval = std::array<double, 2>;  // 95 %, from and to; NaN: there is none
+/// None where it is NaN.
+[[nodiscard]] inline std::optional<Interval> known(const Interval& limits) {
+  return std::isfinite(limits[0]) ? std::optional(limits) : std::nullopt;
+}
 
 /// A key of a result with what its readers must know of it. It is used in the call that it is made
 /// for: texts are not copied.
@@ -79,12 +84,18 @@ struct Label : ResultKey {
 
 using TextRows = std::vector<std::vector<std::optional<std::string>>>;  // none: null
 
+/// As many numbers for each gate, one gate behind another, row by row from the start's side on.
+struct GateNumbers {
+  std::size_t rows, columns;
+  std::vector<double> numbers;
+};
+
 /// A value that takes fields; none: null.
 using Value =
     std::variant<std::monostate, double, std::int64_t, std::uint64_t, bool, std::string_view,
                  Interval, const std::vector<double>*, const std::vector<std::int64_t>*,
                  const std::vector<std::string>*, const TextRows*, const std::vector<Interval>*,
-                 const markov::CellProbabilities*, const markov::CellCounts*>;
+                 const markov::CellProbabilities*, const markov::CellCounts*, const GateNumbers*>;
 
 /// What a value may be, whatever it is in one result.
 enum class ValueKind {
@@ -92,16 +103,17 @@ enum class ValueKind {
   count,   // whole
   flag,
   text,
-  interval,   // or null
-  numbers,    // a list, of numbers or null
-  counts,     // a list
-  texts,      // a list
-  text_rows,  // a list of lists, of texts or null
-  given,      // a number, or else a text
-  givens,     // a list of these
-  intervals,  // a list
-  points,     // a list
-  grid,       // of numbers: rows and columns; or null
+  interval,      // or null
+  numbers,       // a list, of numbers or null
+  counts,        // a list
+  texts,         // a list
+  text_rows,     // a list of lists, of texts or null
+  given,         // a number, or else a text
+  givens,        // a list of these
+  intervals,     // a list
+  points,        // a list
+  grid,          // of numbers: rows and columns; or null
+  gate_numbers,  // rows and columns of lists
 };
 
 class Fields {
@@ -140,11 +152,21 @@ class Fields {
   void numbers(const Field& f, const std::vector<double>& x) {
     leaf(f, ValueKind::numbers, false, &x);
   }
+  /// None: null.
+  template <std::same_as<std::optional<std::vector<double>>> Numbers>
+  void numbers(const Field& f, const Numbers& x) {
+    leaf(f, ValueKind::numbers, true, x ? Value(&*x) : Value());
+  }
   void counts(const Field& f, const std::vector<std::int64_t>& n) {
     leaf(f, ValueKind::counts, false, &n);
   }
   void texts(const Label& l, const std::vector<std::string>& t) {
     leaf(l, ValueKind::texts, false, &t);
+  }
+  /// None: null.
+  template <std::same_as<std::optional<std::vector<std::string>>> Texts>
+  void texts(const Label& l, const Texts& t) {
+    leaf(l, ValueKind::texts, true, t ? Value(&*t) : Value());
   }
   /// A text for each gate, row by row from the start's side on.
   void text_rows(const Label& l, const TextRows& rows) {
@@ -167,6 +189,14 @@ class Fields {
   }
   void grid(const Field& f, const markov::CellCounts& n) { leaf(f, ValueKind::grid, true, &n); }
   void no_grid(const Field& f) { leaf(f, ValueKind::grid, true, {}); }
+  void gate_numbers(const Field& f, const GateNumbers& n) {
+    leaf(f, ValueKind::gate_numbers, false, &n);
+  }
+  /// None: null.
+  template <std::same_as<std::optional<GateNumbers>> Numbers>
+  void gate_numbers(const Field& f, const Numbers& n) {
+    leaf(f, ValueKind::gate_numbers, true, n ? Value(&*n) : Value());
+  }
   /// A number and behind it its 95 % interval (none: null), as `bar`: key_95 if that is empty.
   void estimate(const Field& f, double x, const std::optional<Interval>& limits,
                 std::string_view bar = {}) {

@@ -222,6 +222,22 @@ std::string_view meaning_of(const EndingName& e) {
   return "reach a state whose row has no run";
 }
 
+const EndingName& ending_name(markov::Ending ending) {
+  return *std::ranges::find(kAllEndingNames, ending, &EndingName::ending);
+}
+
+std::vector<std::string> ending_keys() {
+  std::vector<std::string> keys;
+  for (const EndingName& e : kAllEndingNames) keys.emplace_back(e.key);
+  return keys;
+}
+
+void describe_answer_from(Fields& out, bool from_trials) {
+  out.text(Label("answer_from", "the chain, or the full trials' own shares, which are more certain")
+               .one_of({"chain", "trials"}),
+           from_trials ? "trials" : "chain");
+}
+
 void describe_endings(Fields& out, const Label& l, const EndingCounts& counts) {
   by_ending(out, l, counts[kBack] > 0, "number of",
             [&](Fields& f, const Field& e, std::size_t at) { f.count(e, counts[at]); });
@@ -278,6 +294,16 @@ Rest rest_of(const markov::FinalDistribution& f) {
   Rest rest{f.unsampled, f.remainder};
   if (f.endless > 0.0) rest.stopped = "in states without a way out";
   return rest;
+}
+
+void describe(Fields& out, const Rest& rest) {
+  out.number({"never_sampled", "1",
+              "share that the endings leave out: it reaches a state whose row has no run"},
+             rest.never_sampled);
+  out.number({"still_walking", "1",
+              "share that the endings leave out: it was under way when the sum or the walks were "
+              "stopped"},
+             rest.still_walking);
 }
 
 std::string rest_text(const Rest& rest) {

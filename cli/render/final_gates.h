@@ -85,6 +85,11 @@ using lattice::kEndingNames;
 [[nodiscard]] std::string_view meaning_of(const EndingName& ending);
 using EndingCounts = std::array<std::int64_t, markov::kEndings>;
 using EndingChances = std::array<double, markov::kEndings>;
+[[nodiscard]] const EndingName& ending_name(markov::Ending ending);
+/// All of their keys.
+[[nodiscard]] std::vector<std::string> ending_keys();
+/// The key "answer_from".
+void describe_answer_from(Fields& out, bool from_trials);
 /// An object with a key for each ending: counts, shares of all bodies, or 95 % intervals of these.
 void describe_endings(Fields& out, const Label& l, const EndingCounts& counts);
 void describe_endings(Fields& out, const Label& l, const EndingChances& shares);
@@ -107,6 +112,8 @@ struct Rest {
   std::string stopped = "when the sum was stopped";
 };
 [[nodiscard]] Rest rest_of(const markov::FinalDistribution& f);
+/// The keys "never_sampled" and "still_walking".
+void describe(Fields& out, const Rest& rest);
 /// A line for each of them; empty where nothing is left out.
 [[nodiscard]] std::string rest_text(const Rest& rest);
 /// A warning of a rest that counts, `where` first: "the endings add up to 25.00 %: ..."; else

@@ -21,6 +21,11 @@ void describe_status(Fields& out, const dynamics::Health& health) {
              [&](Fields& status) { describe(status, health); });
 }
 
+void describe_status(Fields& out, const std::optional<dynamics::Health>& health) {
+  out.maybe(Label("status", "numerical faults of the runs; null: no record of them").shared(),
+            health, [](Fields& status, const dynamics::Health& h) { describe(status, h); });
+}
+
 Json to_json(const dynamics::Health& health) {
   return json_of([&](Fields& out) { describe(out, health); });
 }

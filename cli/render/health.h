@@ -2,6 +2,7 @@
 #pragma once
 /// The record of numerical faults, as JSON and in words.
 
+#include <optional>
 #include <string>
 
 #include "cli/render/fields.h"
@@ -14,6 +15,8 @@ namespace gatewalk::cli {
 void describe(Fields& out, const dynamics::Health& health);
 /// The key "status", which most results have.
 void describe_status(Fields& out, const dynamics::Health& health);
+/// The same of a result whose record of faults may be missing; none: null.
+void describe_status(Fields& out, const std::optional<dynamics::Health>& health);
 [[nodiscard]] Json to_json(const dynamics::Health& health);
 /// Its inverse. Throws nlohmann::json::exception when a count is missing.
 [[nodiscard]] dynamics::Health health_from(const Json& j);

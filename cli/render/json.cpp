@@ -91,6 +91,19 @@ class JsonFields final : public Fields {
     }
     return rows;
   }
+  static Json json_of_value(const GateNumbers* all) {
+    const std::size_t gates = all->rows * all->columns,
+                      each = gates > 0 ? all->numbers.size() / gates : 0;
+    auto from = all->numbers.begin();
+    Json rows = Json::array();
+    for (std::size_t r = 0; r < all->rows; ++r) {
+      Json row = Json::array();
+      for (std::size_t c = 0; c < all->columns; ++c, from += static_cast<std::ptrdiff_t>(each))
+        row.push_back(std::vector(from, from + static_cast<std::ptrdiff_t>(each)));
+      rows.push_back(std::move(row));
+    }
+    return rows;
+  }
 
   Json& put(const ResultKey& key, Json value) {
     Json& object = open_.empty() ? result_ : *open_.back();

@@ -29,17 +29,18 @@ double direct_seconds(const lattice::PooledPrediction& p) {
   return sum;
 }
 
+void describe_direct_seconds(Fields& out, double seconds) {
+  out.number({"direct_seconds", "s", "time of direct simulation for the same error bar"}, seconds);
+}
+
+}  // namespace
+
 void describe_error(Fields& out, double error_95) {
   out.number({"error_95", "1",
               "total variation of the final gates from the truth: 95 of 100 answers have no more "
               "(of several starts the largest); null where nothing can be told"},
              error_95);
 }
-void describe_direct_seconds(Fields& out, double seconds) {
-  out.number({"direct_seconds", "s", "time of direct simulation for the same error bar"}, seconds);
-}
-
-}  // namespace
 
 void describe(Fields& out, const lattice::StartAnswer& a, const ShownField& shown) {
   const auto ends = ends_of(a.final, a.endings);
@@ -53,9 +54,7 @@ void describe(Fields& out, const lattice::StartAnswer& a, const ShownField& show
     describe_map(f, {"low", "1", "their lower ends"}, a.gates_95[0]);
     describe_map(f, {"high", "1", "their upper ends"}, a.gates_95[1]);
   });
-  out.text(Label("answer_from", "the chain, or the full trials' own shares, which are more certain")
-               .one_of({"chain", "trials"}),
-           a.from_trials ? "trials" : "chain");
+  describe_answer_from(out, a.from_trials);
   describe_error(out, a.error.total_variation);
   out.number(
       {"corrcoef_95", "1",

@@ -32,6 +32,8 @@ void describe(Fields& out, const RunsPrediction& runs, bool given);
 [[nodiscard]] std::string table_of(const lattice::StartAnswer& answer, const ShownField& shown);
 [[nodiscard]] std::string table_of(const RunsPrediction& runs);
 
+/// The key "error_95".
+void describe_error(Fields& out, double error_95);
 /// The key "own_trials": what a chain's own full trials say of it; null where there are none.
 void describe_own_trials(Fields& out, const std::optional<lattice::OwnTrials>& own);
 /// The same as a line; empty where there are none.

@@ -152,8 +152,9 @@ std::string list_of(const std::vector<std::string>& texts) {
 std::string type_of(const Node& node) {
   const char* const kNumber = R"("type": ["number", "null"])";
   const char* const kGiven = R"("type": ["number", "string"])";
-  const auto list = [](const std::string& items) {
-    return R"("type": "array", "items": {)" + items + "}";
+  const auto list = [](const std::string& items, bool or_null = false) {
+    return fmt::format(R"("type": {}, "items": {{{}}})",
+                       or_null ? R"(["array", "null"])" : R"("array")", items);
   };
   const auto type = [&](const char* name) {
     return node.may_be_null ? fmt::format(R"("type": ["{}", "null"])", name)
@@ -176,11 +177,11 @@ std::string type_of(const Node& node) {
     case ValueKind::interval:
       return R"("$ref": "#/$defs/interval")";
     case ValueKind::numbers:
-      return list(kNumber);
+      return list(kNumber, node.may_be_null);
     case ValueKind::counts:
       return list(R"("type": "integer")");
     case ValueKind::texts:
-      return list(R"("type": "string")");
+      return list(R"("type": "string")", node.may_be_null);
     case ValueKind::text_rows:
       return list(list(R"("type": ["string", "null"])"));
     case ValueKind::given:
@@ -193,6 +194,8 @@ std::string type_of(const Node& node) {
       return list(list(kNumber) + R"(, "minItems": 2, "maxItems": 2)");
     case ValueKind::grid:
       return R"("$ref": "#/$defs/grid")";
+    case ValueKind::gate_numbers:
+      return list(list(list(kNumber)), node.may_be_null);
   }
   if (node.least && node.least == node.most) return "\"const\": " + digits(*node.least);
   if (node.least) text += ", \"minimum\": " + digits(*node.least);
@@ -201,18 +204,26 @@ std::string type_of(const Node& node) {
   return text;
 }
 
-/// "mean_<cost>" as a regular expression.
-std::string pattern_of(const std::string& shown) {
-  std::string pattern = "^";
-  bool inside = false;
-  for (const char c : shown) {
-    if (c == '<') pattern += ".+";
-    if (c == '<' || c == '>')
-      inside = c == '<';
-    else if (!inside)
-      pattern += c;
+/// The key, or "mean_<cost>" as a regular expression: "mean_.+".
+std::string expression_of(const Node& node) {
+  if (node.varies.empty()) return node.key;
+  const std::size_t from = node.varies.find('<'), to = node.varies.find('>');
+  return node.varies.substr(0, from) + ".+" + node.varies.substr(to + 1);
+}
+/// The keys of `object` that vary so as a regular expression: without those of another kind that it
+/// would match, such as "mean_<cost>_95".
+std::string pattern_of(const Node& node, const Node& object) {
+  const std::size_t from = node.varies.find('<'), to = node.varies.find('>');
+  const std::string before = node.varies.substr(0, from), behind = node.varies.substr(to + 1);
+  std::string others;
+  for (const auto& other : object.keys) {
+    const std::string shown = other->varies.empty() ? other->key : other->varies;
+    if ((other->form != node.form || other->kind != node.kind) &&
+        shown.size() > before.size() + behind.size() && shown.starts_with(before) &&
+        shown.ends_with(behind))
+      others += (others.empty() ? "" : "|") + expression_of(*other) + "$";
   }
-  return pattern + "$";
+  return "^" + (others.empty() ? "" : "(?!" + others + ")") + expression_of(node) + "$";
 }
 /// Whether any key is meant: "<cost>".
 bool is_any(const Node& node) {
@@ -234,7 +245,7 @@ std::string keys_text(const Node& node, const std::string& indent) {
     else if (is_any(*key))
       others = schema_text(*key, indent + " ", true);
     else
-      patterns += (patterns.empty() ? "" : ",\n") + line(pattern_of(key->varies));
+      patterns += (patterns.empty() ? "" : ",\n") + line(pattern_of(*key, node));
     if (key->is_always_there) required.push_back(key->key);
   }
   std::string text;
@@ -289,11 +300,11 @@ std::string type_words(const Node& node) {
     case ValueKind::interval:
       return "interval";
     case ValueKind::numbers:
-      return "numbers";
+      return "numbers" + or_null;
     case ValueKind::counts:
       return "counts";
     case ValueKind::texts:
-      return "texts";
+      return "texts" + or_null;
     case ValueKind::text_rows:
       return "rows of texts";
     case ValueKind::given:
@@ -306,6 +317,8 @@ std::string type_words(const Node& node) {
       return "points";
     case ValueKind::grid:
       return "grid";
+    case ValueKind::gate_numbers:
+      return "grid of lists" + or_null;
   }
   return "";
 }

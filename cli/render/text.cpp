@@ -20,6 +20,14 @@ std::string percent(double part, double whole, int digits) {
   return fixed(whole > 0.0 ? 100.0 * part / whole : std::nan(""), digits) + " %";
 }
 
+std::string with_limits(double x, const std::array<double, 2>& limits, int decimals,
+                        std::string_view unit) {
+  const auto& [low, high] = limits;
+  return fmt::format(
+      "{}{}{}", fixed(x, decimals), unit,
+      std::isnan(low) ? "" : fmt::format(" [{}, {}]", fixed(low, decimals), fixed(high, decimals)));
+}
+
 std::string p_text(double p) { return p < 0.001 ? "<0.001" : fixed(p, 3); }
 
 std::string p_words(double p) {

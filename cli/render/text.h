@@ -2,6 +2,7 @@
 #pragma once
 /// Numbers and words of tables.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -13,6 +14,9 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string fixed(double x, int digits);
 /// "12.3 %"
 [[nodiscard]] std::string percent(double part, double whole, int digits = 1);
+/// "1.20 s [1.10, 1.30]": a number with its limits; without them (NaN) the number alone.
+[[nodiscard]] std::string with_limits(double x, const std::array<double, 2>& limits, int decimals,
+                                      std::string_view unit = {});
 /// A p-value with 3 decimals, or "<0.001".
 [[nodiscard]] std::string p_text(double p);
 /// "p = 0.034", "p = 0.34", "p < 0.001"
