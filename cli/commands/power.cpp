@@ -2,12 +2,8 @@
 #include "cli/render/power.h"
 #include "cli/arguments.h"
 #include "cli/parsers.h"
-#include "cli/render/choice.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/scene.h"
-#include "cli/render/text.h"
 #include "cli/subject.h"
 #include "lattice/scene/map_file.h"
 
@@ -73,30 +69,28 @@ int run_power(const Arguments& arguments) {
   }
   const auto first = predict(options, s);
   const auto second = other ? std::optional(predict(options, *other)) : std::nullopt;
-  const lattice::StartAnswer& answer = first.starts.front();
   const dynamics::Work work = options.work();
   work.tell("power of experiments", 0, 1);
-  const lattice::ExperimentPlan plan = lattice::plan_experiment(answer, how);
-  PlannedExperiment planned{how, answer, plan};
-  dynamics::Health health = first.health;
+  const lattice::StartAnswer& answer = first.starts.front();
+  PowerResult result{.options = how,
+                     .prediction = answer,
+                     .plan = lattice::plan_experiment(answer, how),
+                     .health = first.health,
+                     .method = s.settled,
+                     .made_by = s.provenance(options)};
   if (second) {
-    planned.versus = options.texts("versus");
-    planned.other_scene = other->scene;
-    planned.other = second->starts.front();
-    planned.apart = lattice::tell_apart(answer, *planned.other, how);
-    health += second->health;
+    const lattice::StartAnswer& versus = second->starts.front();
+    result.versus = {options.texts("versus"), versus, lattice::tell_apart(answer, versus, how),
+                     other->scene};
+    result.health += second->health;
   }
   work.tell("power of experiments", 1, 1);
-
-  Json json = to_json(planned);
-  json["status"] = to_json(health);
-  if (s.settled) json["method"] = to_json(*s.settled);
-  json["made_by"] = s.made_by(options);
-  options.give_out(json, table_of(planned) + method_line(s.settled));
+  options.give_out(result, table_of(result));
   options.warn(too_few_gates(s.shown()));
   options.warn(rest_warning(rest_of(answer.final)));
-  if (planned.other) options.warn(rest_warning(rest_of(planned.other->final), "with --versus "));
-  return status_of(options, health);
+  if (result.versus)
+    options.warn(rest_warning(rest_of(result.versus->prediction.final), "with --versus "));
+  return status_of(options, result.health);
 }
 
 }  // namespace gatewalk::cli

@@ -1,55 +1,148 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/power.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "cli/render/choice.h"
 #include "cli/render/final_gates.h"
+#include "cli/render/health.h"
 #include "cli/render/json.h"
+#include "cli/render/pooled_prediction.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
+#include "lattice/scene/map_file.h"
 
 namespace gatewalk::cli {
 namespace {
 
 using lattice::Effect;
+using lattice::EndingPlan;
 using lattice::ExperimentOptions;
 
-std::size_t place(const EndingName& e) { return static_cast<std::size_t>(e.ending); }
-
-Json to_json(const lattice::StartAnswer& a) {
-  Json json;
-  const lattice::EndingShares shown = shown_endings(a.endings, a.final);
-  json["endings"] = endings(shown.share);
-  json["endings_95"] = endings_95(shown);
-  json["never_sampled"] = a.final.unsampled;
-  json["still_walking"] = a.final.remainder;
-  json["final_gates"] = grid(a.final.final_cells);
-  json["answer_from"] = a.from_trials ? "trials" : "chain";
-  json["error_95"] = a.error.total_variation;
-  return json;
+/// Endings of this prediction alone; of both.
+std::vector<std::size_t> looked_at(const PowerResult& p) {
+  return lattice::endings_to_look_at(p.prediction, p.prediction);
+}
+std::vector<std::size_t> looked_at_apart(const PowerResult& p) {
+  return lattice::endings_to_look_at(p.prediction, p.versus->prediction);
 }
 
-/// `of_ending`: endings are looked at by themselves or all together.
-Json to_json(const Effect& effect, const ExperimentOptions& options, bool of_ending) {
-  Json json;
-  json[of_ending ? "percentage_points" : "total_variation"] =
-      (of_ending ? 100.0 : 1.0) * effect.difference;
-  json["trials"] = or_null(effect.trials);
-  if (of_ending) json["trials_if_all_are_looked_at"] = or_null(effect.trials_of_all);
-  if (options.trials) json["power"] = or_null(effect.power);
-  json["within_error_of_prediction"] = effect.within_error;
-  return json;
+// ---- As a result ----
+
+/// Where bodies end by a prediction.
+void describe(Fields& out, const lattice::StartAnswer& a) {
+  describe_endings(out, shown_endings(a.endings, a.final));
+  describe(out, rest_of(a.final));
+  out.grid({"final_gates", "1", "share of all bodies by the gate in which they end"},
+           a.final.final_cells);
+  describe_answer_from(out, a.from_trials);
+  describe_error(out, a.error.total_variation);
 }
+
+/// What differs: an ending from the prediction, or between two groups; final gates.
+enum class Differs { ending, ending_of_groups, final_gates };
+
+void describe(Fields& out, const Effect& effect, const ExperimentOptions& options, Differs what) {
+  if (what == Differs::final_gates)
+    out.number({"total_variation", "1", "between the final gates"}, effect.difference);
+  else
+    out.number({"percentage_points", "%", "by how much the ending is more or less frequent"},
+               100.0 * effect.difference);
+  out.count({"trials", "1",
+             "trials of each experiment that show the difference; null: more than 100 000, or "
+             "there is no such difference"},
+            effect.trials);
+  if (what != Differs::final_gates)
+    out.count({"trials_if_all_are_looked_at", "1", "the same where all endings are looked at"},
+              effect.trials_of_all);
+  out.optional(options.trials.has_value(), [&](Fields& f) {
+    f.number({"power", "1", "how often the trials that are planned show the difference"},
+             effect.power.value_or(kUnknown));
+  });
+  if (what != Differs::ending_of_groups)
+    out.flag({"within_error_of_prediction", "whether the prediction itself may be as far off"},
+             effect.within_error);
+}
+
+/// An object with a key for each of these endings; `kind`: the name of what stands there.
+template <class Describe>
+void by_ending(Fields& out, const Label& label, const std::vector<std::size_t>& endings,
+               std::string_view kind, Describe describe) {
+  out.object(label, [&](Fields& f) {
+    for (std::size_t e = 0; e < kAllEndingNames.size(); ++e)
+      f.optional(std::ranges::count(endings, e) > 0, [&](Fields& o) {
+        const EndingName& name = kAllEndingNames[e];
+        describe(o, Label(name.key, fmt::format("bodies that {}", meaning_of(name))).shared(kind),
+                 e);
+      });
+  });
+}
+
+template <std::size_t n>
+void describe_plans(Fields& out, const PowerResult& p, std::array<Effect, n> EndingPlan::*effects,
+                    Differs what) {
+  by_ending(out, {"endings", "differences of each ending"}, looked_at(p),
+            what == Differs::ending ? "differences" : "differences_of_groups",
+            [&](Fields& f, const Label& ending, std::size_t e) {
+              f.list(ending, p.plan.endings[e].*effects, [&](Fields& item, const Effect& effect) {
+                describe(item, effect, p.options, what);
+              });
+            });
+}
+
+void describe_smallest(Fields& out, const PowerResult& p) {
+  const auto points = [&](const Label& label, lattice::SmallestDifference EndingPlan::*least) {
+    by_ending(out, label, looked_at(p), "smallest_difference",
+              [&](Fields& f, const Label& ending, std::size_t e) {
+                f.object(ending, [&](Fields& d) { describe(d, p.plan.endings[e].*least); });
+              });
+  };
+  points({"endings_percentage_points", "of an ending that alone is looked at"}, &EndingPlan::least);
+  points({"endings_percentage_points_if_all_are_looked_at", "the same where all endings are"},
+         &EndingPlan::least_of_all);
+  out.number({"final_gates_total_variation", "1", "of the final gates; null: none is found"},
+             p.plan.least_total_variation.value_or(kUnknown));
+}
+
+void describe(Fields& out, const PowerResult::Versus& versus, const PowerResult& p) {
+  out.texts({"set", "what --versus gives: keys of the other scene, or a matrix"}, versus.set);
+  describe(out, versus.prediction);
+  out.object({"apart", "what tells the two apart"}, [&](Fields& apart) {
+    by_ending(apart, {"endings", "by each ending"},
+              lattice::endings_to_look_at(p.prediction, versus.prediction), "difference",
+              [&](Fields& f, const Label& ending, std::size_t e) {
+                f.object(ending, [&](Fields& effect) {
+                  describe(effect, versus.apart.endings[e], p.options, Differs::ending);
+                });
+              });
+    apart.object({"final_gates", "by the final gates"}, [&](Fields& f) {
+      describe(f, versus.apart.final_gates, p.options, Differs::final_gates);
+    });
+  });
+  out.optional(versus.scene.has_value(), [&](Fields& f) {
+    f.text({"scene", "the other scene, as TOML; not of another group's matrix"},
+           versus.scene ? lattice::to_toml(*versus.scene) : "");
+  });
+}
+
+// ---- As tables ----
 
 std::string trials_text(const std::optional<std::int64_t>& trials) {
-  return trials ? std::to_string(*trials) : ">" + std::to_string(lattice::kMostPlanned);
+  return trials ? std::to_string(*trials) : fmt::format(">{}", lattice::kMostPlanned);
 }
 
 /// "29 (41)", with ? where the prediction may be as much off.
 std::string effect_text(const Effect& effect) {
-  return trials_text(effect.trials) + " (" + trials_text(effect.trials_of_all) + ")" +
-         (effect.within_error ? "?" : " ");
+  return fmt::format("{} ({}){}", trials_text(effect.trials), trials_text(effect.trials_of_all),
+                     effect.within_error ? "?" : " ");
+}
+/// "29", with the same mark.
+std::string gates_text(const Effect& effect) {
+  return trials_text(effect.trials) + (effect.within_error ? "?" : " ");
 }
 
 std::string power_text(const Effect& effect) {
@@ -60,20 +153,12 @@ constexpr int kName = -12, kShare = 10, kCell = 20;
 
 std::string share_text(const lattice::StartAnswer& a, std::size_t e) {
   const lattice::EndingShares shown = shown_endings(a.endings, a.final);
-  return padded(percents(shown.share[place(kAllEndingNames[e])]), kShare);
+  return percents(shown.share[static_cast<std::size_t>(kAllEndingNames[e].ending)]);
 }
 
 std::string sureness(const ExperimentOptions& options) {
-  return digits(100.0 * options.goal.power) + " % power at a level of " +
-         digits(100.0 * options.goal.level) + " %";
-}
-
-/// In this prediction alone; and in both.
-std::vector<std::size_t> looked_at(const PlannedExperiment& p) {
-  return lattice::endings_to_look_at(p.prediction, p.prediction);
-}
-std::vector<std::size_t> looked_at_apart(const PlannedExperiment& p) {
-  return lattice::endings_to_look_at(p.prediction, *p.other);
+  return fmt::format("{} % power at a level of {} %", digits(100.0 * options.goal.power),
+                     digits(100.0 * options.goal.level));
 }
 
 /// A line under a table: its brackets and columns, and the marks that its rows have.
@@ -83,8 +168,7 @@ std::string legend(const std::string& rows, const std::string& always) {
     if (rows.find(mark) != rows.npos) text += (text.empty() ? "" : ";\n") + what;
   };
   explain("?", "?: the prediction may itself be as far off, a smaller --accuracy makes it better");
-  explain(">",
-          ">" + std::to_string(lattice::kMostPlanned) + ": more, or there is no such difference");
+  explain(">", fmt::format(">{}: more, or there is no such difference", lattice::kMostPlanned));
   explain("none", "none: no difference is found so often");
   explain(" - ", "-: there is no such difference");
   return text.empty() ? text : text + ".\n";
@@ -92,125 +176,137 @@ std::string legend(const std::string& rows, const std::string& always) {
 
 constexpr const char* kBrackets = "29 (41): 29 if this ending alone is looked at, 41 if all are";
 
-std::string needed_table(const PlannedExperiment& p) {
-  std::string text = "\nOne experiment against the model: trials needed, for " +
-                     sureness(p.options) +
-                     ",\nto see that an ending is so many percentage points more or less often "
-                     "than predicted (the worse of both):\n\n" +
-                     padded("", kName) + padded("predicted", kShare);
-  for (const double d : lattice::kShareDifferences)
-    text += padded(digits(100.0 * d) + " points ", kCell);
-  std::string rows = "\n";
-  for (const std::size_t e : looked_at(p)) {
-    rows += padded(kAllEndingNames[e].name, kName) + share_text(p.prediction, e);
-    for (const Effect& effect : p.plan.endings[e].effects)
-      rows += padded(effect_text(effect), kCell);
-    rows += "\n";
-  }
-  text += rows + legend(rows, kBrackets) +
-          "\nThe same, to see that the final gates differ by a total variation of so much, spread "
-          "over all of them\n(the hardest to see):\n\n" +
-          padded("", kName) + padded("", kShare);
-  for (const double d : lattice::kTotalVariations) text += padded(digits(d) + " ", kCell);
-  rows = "\n" + padded("final gates", kName) + padded("", kShare);
-  for (const Effect& effect : p.plan.final_gates)
-    rows += padded(trials_text(effect.trials) + (effect.within_error ? "?" : " "), kCell);
-  return text + rows + "\n" + legend(rows, "");
+/// A table of endings: names, predicted shares, and a column of this width for each difference,
+/// `scale` times as large in its heading and with `behind` it; then `more`.
+template <std::size_t n>
+TextTable table_of_endings(const std::array<double, n>& differences, int width, const char* behind,
+                           std::vector<TextColumn> more = {}, const char* share = "predicted",
+                           double scale = 100.0) {
+  std::vector<TextColumn> columns{{"", kName}, {share, kShare}};
+  for (const double d : differences) columns.push_back({digits(scale * d) + behind, width});
+  columns.insert(columns.end(), more.begin(), more.end());
+  return TextTable(std::move(columns));
 }
 
-std::string groups_table(const PlannedExperiment& p) {
-  std::string text =
+/// A line of such a table.
+template <std::size_t n>
+std::vector<TextCell> line_of(const std::string& name, const std::string& share,
+                              const std::array<Effect, n>& effects,
+                              std::string (*text)(const Effect&)) {
+  std::vector<TextCell> cells{name, share};
+  for (const Effect& effect : effects) cells.emplace_back(text(effect));
+  return cells;
+}
+
+/// The lines of all endings that are looked at.
+template <std::size_t n>
+void add_lines(TextTable& table, const PowerResult& p, std::array<Effect, n> EndingPlan::*effects) {
+  for (const std::size_t e : looked_at(p))
+    table.row(line_of(kAllEndingNames[e].name, share_text(p.prediction, e),
+                      p.plan.endings[e].*effects, effect_text));
+}
+
+std::string needed_table(const PowerResult& p) {
+  TextTable endings = table_of_endings(lattice::kShareDifferences, kCell, " points "),
+            gates = table_of_endings(lattice::kTotalVariations, kCell, " ", {}, "", 1.0);
+  add_lines(endings, p, &EndingPlan::effects);
+  gates.row(line_of("final gates", "", p.plan.final_gates, gates_text));
+  return fmt::format(
+      "\nOne experiment against the model: trials needed, for {},\nto see that an ending is so "
+      "many percentage points more or less often than predicted (the worse of both):\n\n{}{}\nThe "
+      "same, to see that the final gates differ by a total variation of so much, spread over all "
+      "of them\n(the hardest to see):\n\n{}{}",
+      sureness(p.options), endings.text(), legend(endings.rows(), kBrackets), gates.text(),
+      legend(gates.rows(), ""));
+}
+
+std::string groups_table(const PowerResult& p) {
+  TextTable table = table_of_endings(lattice::kGroupDifferences, kCell, " points ");
+  add_lines(table, p, &EndingPlan::of_groups);
+  return fmt::format(
       "\nTwo groups, such as animals with and without a treatment, one of which ends as predicted: "
-      "trials of each group,\nfor " +
-      sureness(p.options) +
-      ", to see that an ending is so many points more or less often in the other\n(the worse of "
-      "both):\n\n" +
-      padded("", kName) + padded("predicted", kShare);
-  for (const double d : lattice::kGroupDifferences)
-    text += padded(digits(100.0 * d) + " points ", kCell);
-  std::string rows = "\n";
-  for (const std::size_t e : looked_at(p)) {
-    rows += padded(kAllEndingNames[e].name, kName) + share_text(p.prediction, e);
-    for (const Effect& effect : p.plan.endings[e].of_groups)
-      rows += padded(effect_text(effect), kCell);
-    rows += "\n";
-  }
-  return text + rows +
-         legend(rows, std::string(kBrackets) +
-                          ". Trials are those of different animals: m trials of one animal\ncount "
-                          "for m / (1 + (m - 1) r), where r is the correlation between them");
+      "trials of each group,\nfor {}, to see that an ending is so many points more or less often "
+      "in the other\n(the worse of both):\n\n{}{}",
+      sureness(p.options), table.text(),
+      legend(table.rows(), std::string(kBrackets) +
+                               ". Trials are those of different animals: m trials of one "
+                               "animal\ncount for m / (1 + (m - 1) r), where r is the correlation "
+                               "between them"));
 }
 
-std::string power_table(const PlannedExperiment& p) {
-  const std::string n = std::to_string(*p.options.trials),
-                    often = digits(100.0 * p.options.goal.power) + " %";
-  std::string text = "\nOne experiment of " + n + (n == "1" ? " trial" : " trials") +
-                     " against the model: how likely a difference of so many points is found, "
-                     "and\nthe smallest that is found in " +
-                     often + " of such experiments:\n\n" + padded("", kName) +
-                     padded("predicted", kShare);
-  for (const double d : lattice::kShareDifferences)
-    text += padded(digits(100.0 * d) + " points", 11);
-  text += padded("smallest", 16);
-  std::string rows = "\n";
+std::string power_table(const PowerResult& p) {
+  TextTable table = table_of_endings(lattice::kShareDifferences, 11, " points", {{"smallest", 16}});
   for (const std::size_t e : looked_at(p)) {
-    const lattice::EndingPlan& plan = p.plan.endings[e];
-    rows += padded(kAllEndingNames[e].name, kName) + share_text(p.prediction, e);
-    for (const Effect& effect : plan.effects) rows += padded(power_text(effect), 11);
-    rows += padded(text_of(plan.least), 16) + "  (" + text_of(plan.least_of_all) + ")\n";
+    const EndingPlan& plan = p.plan.endings[e];
+    auto cells =
+        line_of(kAllEndingNames[e].name, share_text(p.prediction, e), plan.effects, power_text);
+    cells.emplace_back(
+        fmt::format("{:>16}  ({})", text_of(plan.least), text_of(plan.least_of_all)));
+    table.row(cells);
   }
-  rows += padded("final gates", kName) + padded("", kShare);
+  std::string gates;
   for (std::size_t k = 0; k < p.plan.final_gates.size(); ++k)
-    rows +=
-        "  TV " + digits(lattice::kTotalVariations[k]) + ": " + power_text(p.plan.final_gates[k]);
-  rows += "  smallest TV " +
-          (p.plan.least_total_variation ? fixed(*p.plan.least_total_variation, 3) : "none") + "\n";
-  return text + rows +
-         legend(rows,
-                "+5.0 / -4.0: 5 points more, or 4 fewer, than predicted; in brackets: if all "
-                "endings are looked at;\nTV: total variation");
+    gates += fmt::format("  TV {}: {}", digits(lattice::kTotalVariations[k]),
+                         power_text(p.plan.final_gates[k]));
+  const auto& least = p.plan.least_total_variation;
+  table.row({"final gates", "",
+             fmt::format("{}  smallest TV {}", gates, least ? fixed(*least, 3) : "none")});
+  return fmt::format(
+      "\nOne experiment of {} against the model: how likely a difference of so many points is "
+      "found, and\nthe smallest that is found in {} % of such experiments:\n\n{}{}",
+      counted(*p.options.trials, "trial", "trials"), digits(100.0 * p.options.goal.power),
+      table.text(),
+      legend(table.rows(),
+             "+5.0 / -4.0: 5 points more, or 4 fewer, than predicted; in brackets: if all endings "
+             "are looked at;\nTV: total variation"));
 }
 
-std::string versus_table(const PlannedExperiment& p) {
-  std::string keys;
-  for (const std::string& key : p.versus) keys += (keys.empty() ? "" : ", ") + key;
+std::string versus_table(const PowerResult& p) {
+  const auto& [set, other, apart, scene] = *p.versus;
   const std::string n = p.options.trials ? std::to_string(*p.options.trials) : "";
-  std::string text = "\nTwo experiments" + (n.empty() ? "" : " of " + n + " trials each") +
-                     (p.other_scene ? ", one of this scene, one with\n"
-                                    : ", one with this group, one with that of\n") +
-                     keys + ":\ntrials of each that tell them apart, for " + sureness(p.options) +
-                     ":\n\n" + padded("", kName) + padded("predicted", kShare) +
-                     padded("versus", kShare) + padded("trials of each ", kCell);
-  if (p.options.trials) text += padded("power of " + n + " each", 20);
-  const auto power = [&](const Effect& effect) {
-    return p.options.trials ? padded(power_text(effect), 20) : "";
-  };
-  std::string rows = "\n";
-  for (const std::size_t e : looked_at_apart(p)) {
-    const Effect& effect = p.apart->endings[e];
-    rows += padded(kAllEndingNames[e].name, kName) + share_text(p.prediction, e) +
-            share_text(*p.other, e) + padded(effect_text(effect), kCell) + power(effect) + "\n";
+  std::vector<TextColumn> columns{
+      {"", kName}, {"predicted", kShare}, {"versus", kShare}, {"trials of each ", kCell}},
+      of_gates{{"", kName}, {"", 2 * kShare}, {"", kCell}};
+  if (p.options.trials) {
+    columns.push_back({fmt::format("power of {} each", n), 20});
+    of_gates.push_back(columns.back());
   }
-  const Effect& gates = p.apart->final_gates;
-  rows += padded("final gates", kName) +
-          padded("total variation " + fixed(gates.difference, 3), 2 * kShare) +
-          padded(trials_text(gates.trials) + (gates.within_error ? "?" : " "), kCell) +
-          power(gates) + "\n";
-  return text + rows + legend(rows, kBrackets);
+  TextTable endings(columns), gates(of_gates);
+  const auto add = [&](TextTable& table, std::vector<TextCell> cells, const Effect& effect) {
+    if (p.options.trials) cells.emplace_back(power_text(effect));
+    table.row(cells);
+  };
+  for (const std::size_t e : looked_at_apart(p))
+    add(endings,
+        {kAllEndingNames[e].name, share_text(p.prediction, e), share_text(other, e),
+         effect_text(apart.endings[e])},
+        apart.endings[e]);
+  add(gates,
+      {"final gates", "total variation " + fixed(apart.final_gates.difference, 3),
+       gates_text(apart.final_gates)},
+      apart.final_gates);
+  return fmt::format(
+      "\nTwo experiments{}{}{}:\ntrials of each that tell them apart, for {}:\n\n"
+      "{}{}{}",
+      n.empty() ? "" : fmt::format(" of {} trials each", n),
+      scene ? ", one of this scene, one with\n" : ", one with this group, one with that of\n",
+      fmt::join(set, ", "), sureness(p.options), endings.text(), gates.rows(),
+      legend(endings.rows() + gates.rows(), kBrackets));
 }
+
+// ---- In sentences ----
 
 /// "12 to 15"
 std::string from_to(std::optional<double> least, std::optional<double> most) {
   const std::string low = fixed(100.0 * least.value_or(0.0), 0),
                     high = fixed(100.0 * most.value_or(0.0), 0);
-  return low == high ? low : low + " to " + high;
+  return low == high ? low : fmt::format("{} to {}", low, high);
 }
 
 /// What so many trials show.
-std::string shown_by(const PlannedExperiment& p) {
-  const std::string n = std::to_string(*p.options.trials);
-  const std::string begin =
-      "In " + digits(100.0 * p.options.goal.power) + " of 100 experiments " + n + " trials show ";
+std::string shown_by(const PowerResult& p) {
+  const std::string begin = fmt::format("In {} of 100 experiments {} trials show ",
+                                        digits(100.0 * p.options.goal.power), *p.options.trials);
   std::optional<double> least, most;
   for (const std::size_t e : looked_at(p)) {
     const lattice::SmallestDifference& all = p.plan.endings[e].least_of_all;
@@ -225,13 +321,14 @@ std::string shown_by(const PlannedExperiment& p) {
                                       fixed(*p.plan.least_total_variation, 2)
                                 : "";
   if (!least && gates.empty()) return begin + "no difference from this prediction.";
-  return begin +
-         (least ? "an ending that is " + from_to(least, most) + " points off, by ending" : "") +
-         (least && !gates.empty() ? ", or " : "") + gates + ".";
+  return fmt::format(
+      "{}{}{}{}.", begin,
+      least ? fmt::format("an ending that is {} points off, by ending", from_to(least, most)) : "",
+      least && !gates.empty() ? ", or " : "", gates);
 }
 
 /// The most trials that any ending takes to be seen `at` kShareDifferences off.
-std::string trials_of_endings(const PlannedExperiment& p, std::size_t at) {
+std::string trials_of_endings(const PowerResult& p, std::size_t at) {
   std::int64_t most = 0;
   for (const std::size_t e : looked_at(p))
     most = std::max(
@@ -240,53 +337,60 @@ std::string trials_of_endings(const PlannedExperiment& p, std::size_t at) {
 }
 
 /// What it takes to tell the scene from the other one.
-std::string told_apart(const PlannedExperiment& p) {
+std::string told_apart(const PowerResult& p) {
+  const auto& [set, other, apart, scene] = *p.versus;
   std::optional<std::int64_t> by_ending;
   std::string name;
   for (const std::size_t e : looked_at_apart(p))
-    if (const auto& n = p.apart->endings[e].trials_of_all; n && (!by_ending || *n < *by_ending)) {
+    if (const auto& n = apart.endings[e].trials_of_all; n && (!by_ending || *n < *by_ending)) {
       by_ending = n;
-      name = kAllEndingNames[e].name;
+      name = fmt::format(" ({})", kAllEndingNames[e].name);
     }
-  std::string keys;
-  for (const std::string& key : p.versus) keys += (keys.empty() ? "" : ", ") + key;
-  const Effect& gates = p.apart->final_gates;
-  std::string text = (p.other_scene ? "To tell this scene from " : "To tell this group from ") +
-                     keys + " so often takes " + trials_text(gates.trials) +
-                     " trials of each by their final gates, " + trials_text(by_ending) +
-                     " by their endings" + (by_ending ? " (" + name + ")" : "");
+  const Effect& gates = apart.final_gates;
+  std::string text = fmt::format(
+      "To tell this {} from {} so often takes {} trials of each by their final gates, {} by their "
+      "endings{}",
+      scene ? "scene" : "group", fmt::join(set, ", "), trials_text(gates.trials),
+      trials_text(by_ending), name);
   if (p.options.trials && gates.power)
-    text += "; " + std::to_string(*p.options.trials) + " of each do in " +
-            fixed(100.0 * *gates.power, 0) + " of 100 experiments by their final gates";
+    text += fmt::format("; {} of each do in {} of 100 experiments by their final gates",
+                        *p.options.trials, fixed(100.0 * *gates.power, 0));
   return text + ".";
 }
 
 /// What these trials show, and what it takes.
-std::array<std::string, 2> summary_of(const PlannedExperiment& p) {
+std::array<std::string, 2> summary_of(const PowerResult& p) {
   constexpr std::size_t kPoints = 2, kGates = 2;  // 10 points, a total variation of 0.2
-  const std::string often = " in " + digits(100.0 * p.options.goal.power) + " of 100 experiments";
-  const std::string of_endings = "To see any one ending " +
-                                 digits(100.0 * lattice::kShareDifferences[kPoints]) +
-                                 " points more or less often" + often + " takes up to " +
-                                 trials_of_endings(p, kPoints) + " trials",
-                    of_gates = "final gates a total variation of " +
-                               digits(lattice::kTotalVariations[kGates]) + " off " +
-                               trials_text(p.plan.final_gates[kGates].trials);
-  if (p.options.trials)
-    return {shown_by(p), p.apart ? told_apart(p) : of_endings + ", " + of_gates + "."};
-  if (p.apart) return {of_endings + ", " + of_gates + ".", told_apart(p)};
-  return {of_endings + ".", "To see " + of_gates.substr(0, of_gates.rfind(' ')) + often + " takes" +
-                                of_gates.substr(of_gates.rfind(' ')) + "."};
+  const std::string often =
+      fmt::format(" in {} of 100 experiments", digits(100.0 * p.options.goal.power));
+  const std::string of_endings = fmt::format(
+      "To see any one ending {} points more or less often{} takes up to {} trials",
+      digits(100.0 * lattice::kShareDifferences[kPoints]), often, trials_of_endings(p, kPoints));
+  const std::string off = digits(lattice::kTotalVariations[kGates]),
+                    trials = trials_text(p.plan.final_gates[kGates].trials);
+  const std::string of_both =
+      fmt::format("{}, final gates a total variation of {} off {}.", of_endings, off, trials);
+  if (p.options.trials) return {shown_by(p), p.versus ? told_apart(p) : of_both};
+  if (p.versus) return {of_both, told_apart(p)};
+  return {of_endings + ".",
+          fmt::format("To see final gates a total variation of {} off{} takes {}.", off, often,
+                      trials)};
 }
 
 }  // namespace
 
 Json or_null(const std::optional<double>& x) { return x ? Json(*x) : Json(); }
-Json or_null(const std::optional<std::int64_t>& x) { return x ? Json(*x) : Json(); }
+
+void describe(Fields& out, const lattice::SmallestDifference& d) {
+  const auto points = [&](const Field& field, const std::optional<double>& x) {
+    out.number(field, x ? 100.0 * *x : kUnknown);
+  };
+  points({"more", "%", "percentage points more that are found; null: none"}, d.more);
+  points({"fewer", "%", "percentage points fewer that are found; null: none"}, d.fewer);
+}
 
 Json to_json(const lattice::SmallestDifference& d) {
-  const auto points = [](const std::optional<double>& x) { return x ? Json(100.0 * *x) : Json(); };
-  return {{"more", points(d.more)}, {"fewer", points(d.fewer)}};
+  return json_of([&](Fields& out) { describe(out, d); });
 }
 
 std::string text_of(const lattice::SmallestDifference& d) {
@@ -296,58 +400,52 @@ std::string text_of(const lattice::SmallestDifference& d) {
   return text("+", d.more) + " / " + text("-", d.fewer);
 }
 
-Json to_json(const PlannedExperiment& p) {
-  Json json = to_json(p.prediction);
-  json["summary"] = summary_of(p);
-  json["power"] = p.options.goal.power;
-  json["level"] = p.options.goal.level;
-  if (p.options.trials) json["trials"] = *p.options.trials;
-  Json& off = json["from_prediction"];
-  for (const std::size_t e : looked_at(p))
-    for (const Effect& effect : p.plan.endings[e].effects)
-      off["endings"][kAllEndingNames[e].key].push_back(to_json(effect, p.options, true));
-  for (const Effect& effect : p.plan.final_gates)
-    off["final_gates"].push_back(to_json(effect, p.options, false));
-  for (const std::size_t e : looked_at(p))
-    for (const Effect& effect : p.plan.endings[e].of_groups) {
-      Json of_groups = to_json(effect, p.options, true);
-      of_groups.erase("within_error_of_prediction");  // it is of the two groups alone
-      json["two_groups"]["endings"][kAllEndingNames[e].key].push_back(std::move(of_groups));
-    }
-  if (p.options.trials) {
-    Json& least = json["smallest_difference"];
-    for (const std::size_t e : looked_at(p)) {
-      const lattice::EndingPlan& plan = p.plan.endings[e];
-      least["endings_percentage_points"][kAllEndingNames[e].key] = to_json(plan.least);
-      least["endings_percentage_points_if_all_are_looked_at"][kAllEndingNames[e].key] =
-          to_json(plan.least_of_all);
-    }
-    least["final_gates_total_variation"] = or_null(p.plan.least_total_variation);
-  }
-  if (!p.apart) return json;
-  Json& versus = json["versus"];
-  versus["set"] = p.versus;
-  versus.update(to_json(*p.other));
-  for (const std::size_t e : looked_at_apart(p))
-    versus["apart"]["endings"][kAllEndingNames[e].key] =
-        to_json(p.apart->endings[e], p.options, true);
-  versus["apart"]["final_gates"] = to_json(p.apart->final_gates, p.options, false);
-  if (p.other_scene) versus["scene"] = lattice::to_toml(*p.other_scene);
-  return json;
+void describe(Fields& out, const PowerResult& p) {
+  describe(out, p.prediction);
+  const auto sentences = summary_of(p);
+  out.texts({"summary", "what these trials show and what it takes, in two sentences"},
+            {sentences.begin(), sentences.end()});
+  out.number({"power", "1", "how often a difference is to be found"}, p.options.goal.power);
+  out.number({"level", "1", "how often one may be found where there is none"},
+             p.options.goal.level);
+  out.optional(p.options.trials.has_value(), [&](Fields& f) {
+    f.count({"trials", "1", "trials that are planned, of each experiment"},
+            p.options.trials.value_or(0));
+  });
+  out.object({"from_prediction", "one experiment against the prediction"}, [&](Fields& f) {
+    describe_plans(f, p, &EndingPlan::effects, Differs::ending);
+    f.list({"final_gates", "differences of the final gates, spread over all of them"},
+           p.plan.final_gates, [&](Fields& item, const Effect& effect) {
+             describe(item, effect, p.options, Differs::final_gates);
+           });
+  });
+  out.object({"two_groups", "two groups, one of which ends as predicted"}, [&](Fields& f) {
+    describe_plans(f, p, &EndingPlan::of_groups, Differs::ending_of_groups);
+  });
+  out.optional(p.options.trials.has_value(), [&](Fields& f) {
+    f.object({"smallest_difference", "the smallest difference that the trials planned show"},
+             [&](Fields& least) { describe_smallest(least, p); });
+  });
+  out.optional(p.versus.has_value(), [&](Fields& f) {
+    f.object({"versus", "the other scene or group, and what tells the two apart"},
+             [&](Fields& other) { describe(other, p.versus.value_or(PowerResult::Versus()), p); });
+  });
+  describe_status(out, p.health);
+  describe_method(out, p.method);
+  describe_made_by(out, p.made_by);
 }
 
-std::string table_of(const PlannedExperiment& p) {
+std::string table_of(const PowerResult& p) {
   const auto sentences = summary_of(p);
-  std::string text = sentences[0] + "\n" + sentences[1] + "\n\n" +
-                     endings_text(shown_endings(p.prediction.endings, p.prediction.final),
-                                  "of all bodies as predicted, 95 % intervals") +
-                     rest_text(rest_of(p.prediction.final)) + "error: at most " +
-                     fixed(p.prediction.error.total_variation, 4) +
-                     " in total variation of the final gates, 95 times in 100\n" + needed_table(p) +
-                     groups_table(p);
-  if (p.options.trials) text += power_table(p);
-  if (p.apart) text += versus_table(p);
-  return text;
+  return fmt::format(
+      "{}\n{}\n\n{}{}error: at most {} in total variation of the final gates, 95 times in "
+      "100\n{}{}{}{}{}",
+      sentences[0], sentences[1],
+      endings_text(shown_endings(p.prediction.endings, p.prediction.final),
+                   "of all bodies as predicted, 95 % intervals"),
+      rest_text(rest_of(p.prediction.final)), fixed(p.prediction.error.total_variation, 4),
+      needed_table(p), groups_table(p), p.options.trials ? power_table(p) : "",
+      p.versus ? versus_table(p) : "", method_line(p.method));
 }
 
 }  // namespace gatewalk::cli

@@ -1,40 +1,47 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How many trials an experiment needs, as JSON and as tables.
+/// How many trials an experiment needs, as a result and as tables.
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
+#include "dynamics/cells/health.h"
 #include "lattice/scene/scene.h"
+#include "lattice/scene/settle.h"
 #include "lattice/study/experiment.h"
 
 namespace gatewalk::cli {
 
 /// null for none.
 [[nodiscard]] Json or_null(const std::optional<double>& x);
-[[nodiscard]] Json or_null(const std::optional<std::int64_t>& x);
-/// In percentage points: {"more", "fewer"}, null for none.
+/// The keys "more" and "fewer", in percentage points.
+void describe(Fields& out, const lattice::SmallestDifference& d);
 [[nodiscard]] Json to_json(const lattice::SmallestDifference& d);
 /// "+17.1 / -8.2"
 [[nodiscard]] std::string text_of(const lattice::SmallestDifference& d);
 
-/// A plan, and what it was made for.
-struct PlannedExperiment {
-  const lattice::ExperimentOptions& options;
-  const lattice::StartAnswer& prediction;
-  const lattice::ExperimentPlan& plan;
-  /// The other scene of --versus, or another group's recorded runs, if there is one.
-  std::vector<std::string> versus{};
-  std::optional<lattice::Scene> other_scene{};
-  std::optional<lattice::StartAnswer> other{};
-  std::optional<lattice::TwoScenesPlan> apart{};
+/// The result of `power`.
+struct PowerResult {
+  lattice::ExperimentOptions options{};
+  lattice::StartAnswer prediction{};
+  lattice::ExperimentPlan plan{};
+  /// What the prediction is to be told apart from.
+  struct Versus {
+    std::vector<std::string> set{};  // what --versus gives
+    lattice::StartAnswer prediction{};
+    lattice::TwoScenesPlan apart{};
+    std::optional<lattice::Scene> scene{};  // none of another group's recorded runs
+  };
+  std::optional<Versus> versus{};
+  dynamics::Health health{};
+  std::optional<lattice::Settled> method{};
+  Provenance made_by{};
 };
-
-/// Without "made_by".
-[[nodiscard]] Json to_json(const PlannedExperiment& e);
-[[nodiscard]] std::string table_of(const PlannedExperiment& e);
+void describe(Fields& out, const PowerResult& result);
+[[nodiscard]] std::string table_of(const PowerResult& result);
 
 }  // namespace gatewalk::cli

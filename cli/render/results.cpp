@@ -6,6 +6,7 @@
 #include "cli/render/files.h"
 #include "cli/render/gate_runs.h"
 #include "cli/render/matrix.h"
+#include "cli/render/power.h"
 #include "cli/render/prediction.h"
 #include "cli/render/rare.h"
 #include "cli/render/schema.h"
@@ -85,6 +86,7 @@ const std::vector<ResultOf>& results() {
       of("import", ImportedMatrix{shown_matrix(), {}, {}}),
       of("lattice", trials()),
       of("passages", cut_tracks()),
+      of<PowerResult>("power"),
       of("predict", prediction()),
       of("rare", rare()),
       of("sample", SampleResult{}),
