@@ -11,10 +11,7 @@
 #include "cli/arguments.h"
 #include "cli/exchange/imported.h"
 #include "cli/ranged.h"
-#include "cli/render/choice.h"
-#include "cli/render/health.h"
 #include "cli/render/matrix.h"
-#include "cli/render/variance_shares.h"
 #include "lattice/gate_chain.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/study/prediction.h"
@@ -42,16 +39,16 @@ AnalysedSubject chain_of_runs(const Options& options, Subject& s) {
       lattice::leaf_of_analysis(s.problem, *s.pool, s.how.per_leaf, prediction.states);
   AnalysedSubject c{.chain = lattice::analysed_chain(s.problem, *s.pool,
                                                      s.pool->begin(s.starts.front()), per_leaf),
-                    .endings = answer.endings,
-                    .rest = rest_of(answer.final),
-                    .status = cli::to_json(prediction.health),
-                    .method = s.settled ? cli::to_json(*s.settled) : Json(),
-                    .clean = status_of(options, prediction.health) == kFine,
-                    .from_trials = answer.from_trials,
-                    .reached = prediction.reached,
-                    .gate_runs = prediction.gate_runs,
-                    .states = prediction.states,
-                    .seconds = prediction.seconds};
+                    .answer = {.endings = answer.endings,
+                               .rest = rest_of(answer.final),
+                               .from_trials = answer.from_trials,
+                               .reached = prediction.reached,
+                               .gate_runs = prediction.gate_runs,
+                               .states = prediction.states,
+                               .seconds = prediction.seconds,
+                               .health = prediction.health,
+                               .method = s.settled},
+                    .clean = status_of(options, prediction.health) == kFine};
   if (per_leaf != s.how.per_leaf)
     options.warn(
         fmt::format("the analysis has {} states, not {}, so that it takes no more than 8 GiB: what "
@@ -70,15 +67,15 @@ AnalysedSubject chain_of_bins(const Options& options, const Subject& s) {
   const auto start = ready_start(options, matrices, s.problem, *s.starts.front(), s.name_of(0));
   auto prediction =
       lattice::predict(s.counted(), s.problem.field, {start}, {}, options.seed(), options.work());
-  const Json status = recorded_status(*s.file);
+  const auto health = recorded_health(*s.file);
   AnalysedSubject c{.chain = lattice::analysed_chain(s.problem, matrices, start.start),
-                    .endings = prediction.starts.front().shares,
-                    .rest = rest_of(prediction.starts.front().final),
-                    .status = status,
-                    .method = recorded(*s.file, s.path, "method"),
-                    .clean = faults_recorded(status).empty(),
-                    .states = s.file->transitions.space.size(),
-                    .seconds = prediction.seconds};
+                    .answer = {.endings = prediction.starts.front().shares,
+                               .rest = rest_of(prediction.starts.front().final),
+                               .states = s.file->transitions.space.size(),
+                               .seconds = prediction.seconds,
+                               .health = health,
+                               .method = recorded_method(*s.file, s.path)},
+                    .clean = faults_recorded(health).empty()};
   c.of_bins = std::move(prediction);
   return c;
 }
@@ -100,7 +97,7 @@ lattice::ParameterEffects effects_of(const lattice::ParameterOptions& how, Subje
   }
   if (!s.pool) return lattice::parameter_effects(s.problem, *c.chain, analysis.target, how, work);
   return lattice::parameter_effects(s.problem, *s.pool, analysis.target, how, s.how.per_leaf,
-                                    s.how.most_runs - c.gate_runs, work);
+                                    s.how.most_runs - c.answer.gate_runs, work);
 }
 
 namespace {
@@ -176,8 +173,9 @@ std::optional<PassageAsked> first_passage_asked(const Options& options, const Su
              : "; states are those of a matrix: gatewalk build"));
 }
 
-PassageAnswer first_passage_of(const Options& options, const std::optional<PassageAsked>& asked,
-                               const Subject& s, const AnalysedSubject& c) {
+std::optional<PassageResult> first_passage_of(const Options& options,
+                                              const std::optional<PassageAsked>& asked,
+                                              const Subject& s, const AnalysedSubject& c) {
   if (!asked) return {};
   const dynamics::StateSpace& space = c.chain->space;
   const bool same_states = !s.file || (space.trees() == s.file->transitions.space.trees() &&
@@ -187,18 +185,17 @@ PassageAnswer first_passage_of(const Options& options, const std::optional<Passa
         fmt::format("--first-passage {}: runs were added to keep the accuracy, and the states are "
                     "others now: build the matrix for this accuracy, field and start first",
                     asked->text));
-  lattice::FirstPassage found = lattice::first_passage(s.problem.field, *c.chain, asked->target);
+  PassageResult result{*asked, lattice::first_passage(s.problem.field, *c.chain, asked->target),
+                       s.foreign ? lattice::state_names(*s.file) : lattice::state_names(space),
+                       lattice::shown_order(s.foreign ? s.file->transitions.space : space)};
   if (asked->target.ending)  // one number has one interval
-    found.chance.interval = c.endings.interval[static_cast<std::size_t>(*asked->target.ending)];
-  const std::vector<std::string> names =
-      s.foreign ? lattice::state_names(*s.file) : lattice::state_names(space);
-  const std::vector<int> order =
-      lattice::shown_order(s.foreign ? s.file->transitions.space : space);
-  if (!has_tables(found.all, order.size()))
+    result.found.chance.interval =
+        c.answer.endings.interval[static_cast<std::size_t>(*asked->target.ending)];
+  if (!result.has_tables())
     options.warn(
         "--first-passage: the tables of all states are left out, they would have more "
         "than 2 million lines: ask for fewer gates");
-  return {cli::to_json(found, *asked, names, order), text_of(found, *asked)};
+  return result;
 }
 
 void add_ranges(Options& options) {
@@ -221,21 +218,15 @@ std::optional<Ranged> over_of(const Options& options, const Subject& s) {
   return ranged;
 }
 
-SharesAnswer shares_of(const Options& options, const std::optional<Ranged>& ranged,
-                       const Subject& s, markov::Ending target) {
+std::optional<RangedShares> shares_of(const Options& options, const std::optional<Ranged>& ranged,
+                                      const Subject& s, markov::Ending target) {
   if (!ranged) return {};
   lattice::VarianceSharesOptions how{.seed = options.seed()};
   if (options.has("over-trials")) how.trials = options.count("over-trials");
-  RangedShares shares{
+  return RangedShares{
       ranged->ranges, target,
       lattice::variance_shares(static_cast<int>(ranged->ranges.size()), problem_at(*ranged, s),
                                target, how, options.work())};
-  SharesAnswer answer{{},
-                      cli::to_json(shares),
-                      table_of(shares),
-                      status_of(options, shares.found.health, "at the points of --over ") == kFine};
-  answer.shares = std::move(shares);
-  return answer;
 }
 
 }  // namespace gatewalk::cli

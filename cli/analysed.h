@@ -2,19 +2,12 @@
 #pragma once
 /// What gatewalk analyze looks at: the chain of a subject, and what its cells' numbers change.
 
-#include <cstdint>
 #include <optional>
-#include <string>
 
 #include "cli/ranged.h"
-#include "cli/render/final_gates.h"
-#include "cli/render/first_passage.h"
-#include "cli/render/json.h"
-#include "cli/render/variance_shares.h"
+#include "cli/render/analysis.h"
 #include "cli/subject.h"
 #include "lattice/pool/costed_chain.h"
-#include "lattice/study/analysis.h"
-#include "lattice/study/parameter_effects.h"
 #include "lattice/study/prediction.h"
 
 namespace gatewalk::cli {
@@ -24,13 +17,8 @@ struct AnalysedSubject {
   std::optional<lattice::AnalysedChain> chain;
   std::optional<lattice::PooledPrediction> of_runs{};  // one of these two says where bodies end
   std::optional<lattice::Prediction> of_bins{};
-  lattice::EndingShares endings;
-  Rest rest{};  // what these leave out
-  Json status, method;
-  bool clean = true, from_trials = false, reached = true;
-  std::int64_t gate_runs = 0;
-  int states = 0;
-  double seconds = 0.0;
+  AnalysedAnswer answer{};
+  bool clean = true;
 };
 
 /// From gate runs, to which more are added until the error bar says enough; from a matrix of bins.
@@ -45,28 +33,19 @@ struct AnalysedSubject {
 /// What --first-passage asks for; none without it. Throws UsageError naming what is allowed.
 [[nodiscard]] std::optional<PassageAsked> first_passage_asked(const Options& options,
                                                               const Subject& s);
-/// Its answer by the chain: `json` of the result and a line, and a warning where tables are left
-/// out. Null and nothing without. Throws UsageError for a state of a chain that has others now.
-struct PassageAnswer {
-  Json json;
-  std::string text;
-};
-[[nodiscard]] PassageAnswer first_passage_of(const Options& options,
-                                             const std::optional<PassageAsked>& asked,
-                                             const Subject& s, const AnalysedSubject& c);
+/// Its answer by the chain, and a warning where tables are left out; none without. Throws
+/// UsageError for a state of a chain that has others now.
+[[nodiscard]] std::optional<PassageResult> first_passage_of(
+    const Options& options, const std::optional<PassageAsked>& asked, const Subject& s,
+    const AnalysedSubject& c);
 
 /// Declares --over and --over-trials.
 void add_ranges(Options& options);
 /// The scene over the ranges of --over; none without them. Throws UsageError and SceneError.
 [[nodiscard]] std::optional<Ranged> over_of(const Options& options, const Subject& s);
-/// How much of the variance of the target's chance over them each number makes; null without them.
-struct SharesAnswer {
-  std::optional<RangedShares> shares;
-  Json json;
-  std::string table;
-  bool clean = true;
-};
-[[nodiscard]] SharesAnswer shares_of(const Options& options, const std::optional<Ranged>& ranged,
-                                     const Subject& s, markov::Ending target);
+/// How much of the variance of the target's chance over them each number makes; none without them.
+[[nodiscard]] std::optional<RangedShares> shares_of(const Options& options,
+                                                    const std::optional<Ranged>& ranged,
+                                                    const Subject& s, markov::Ending target);
 
 }  // namespace gatewalk::cli

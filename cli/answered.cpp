@@ -99,30 +99,18 @@ PageStates states_of(const Options& options, const Subject& s,
 }
 
 /// What gatewalk analyze says of this chain.
-Json analysis_of(const Options& options, const Subject& s, const lattice::AnalysedChain& chain,
-                 const PageStart& start) {
-  const lattice::Analysis analysis = lattice::analyze(
-      s.problem, chain,
-      {.lumping = lattice::LumpingParts(s.problem.map().section.coordinates.size(), 1),
-       .seed = options.seed()},
-      options.work());
-  const ShownField shown = s.shown();
-  const std::optional<DirectTrials> direct;
-  return to_json(AnalysedField{shown, start.start, start.endings, analysis, {}, direct});
+AnalysedField analysis_of(const Options& options, const Subject& s,
+                          const lattice::AnalysedChain& chain) {
+  return {.shown = s.shown(),
+          .analysis = lattice::analyze(
+              s.problem, chain,
+              {.lumping = lattice::LumpingParts(s.problem.map().section.coordinates.size(), 1),
+               .seed = options.seed()},
+              options.work())};
 }
 
-/// What of an analysis is shown.
-Json shown_of(const Json& analysis) {
-  Json json;
-  for (const auto& [key, value] : analysis.items())
-    if (key.starts_with("expected_") || key == "why_no_interval" || key == "by_ending" ||
-        key == "target" || key == "paths" || key == "paths_complete" || key == "types")
-      json[key] = value;
-  for (const Json& effect : analysis["sensitivities"]["parameters"])
-    json["parameters"].push_back({{"key", effect["key"]},
-                                  {"elasticity", effect["elasticity"]},
-                                  {"interval_95", effect["interval_95"]}});
-  return json;
+Json json_for_page(const AnalysedField& analysis) {
+  return json_of([&](Fields& out) { describe_for_page(out, analysis); });
 }
 
 std::string name_of_field(const Subject& s) {
@@ -195,13 +183,12 @@ std::vector<PageStart> page_starts(const AnalysedSubject& analysed, const Subjec
 
 void write_page(const Options& options, const Subject& s,
                 const std::optional<lattice::RunPool>& of_file,
-                const std::vector<PageStart>& starts, Json analysis) {
+                const std::vector<PageStart>& starts, const AnalysedField* analysis) {
   if (!options.has("page")) return;
   const lattice::AnalysedChain chain = chain_from(s);
   const lattice::ChainOutcomes outcomes =
       lattice::chain_outcomes(chain, s.problem.field, options.work());
   const PageStates states = states_of(options, s, of_file, chain, outcomes);
-  if (analysis.is_null()) analysis = analysis_of(options, s, chain, starts.front());
   const std::int64_t bodies = s.pool ? s.pool->bodies() : 0,
                      gate_runs = s.pool ? s.pool->gate_runs() : states.gate_runs;
   const ShownField shown = s.shown();
@@ -220,7 +207,8 @@ void write_page(const Options& options, const Subject& s,
                             {"asked", s.path},
                             {"is_matrix", s.file != nullptr},
                             {"can_run", !s.is_recorded() && s.pool.has_value()}},
-                  .analysis = shown_of(analysis)};
+                  .analysis = analysis ? json_for_page(*analysis)
+                                       : json_for_page(analysis_of(options, s, chain))};
   const Json made_by = s.made_by(options);
   const std::string words =
       endings_text(shown_endings(starts.front().endings, starts.front().final),

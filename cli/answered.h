@@ -33,6 +33,6 @@ void check_page(const Options& options, const Subject& s);
 /// null. Throws std::runtime_error for what is larger than 2 MB even without what can be left out.
 void write_page(const Options& options, const Subject& s,
                 const std::optional<lattice::RunPool>& of_file,
-                const std::vector<PageStart>& starts, Json analysis = {});
+                const std::vector<PageStart>& starts, const AnalysedField* analysis = nullptr);
 
 }  // namespace gatewalk::cli

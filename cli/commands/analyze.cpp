@@ -3,11 +3,7 @@
 #include "cli/answered.h"
 #include "cli/arguments.h"
 #include "cli/parsers.h"
-#include "cli/render/analysis.h"
-#include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/subject.h"
-#include "lattice/study/analysis.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
@@ -82,42 +78,37 @@ int run_analyze(const Arguments& arguments) {
   const auto of_file = runs_of_file(options, s);
   AnalysedSubject c = analysed(options, s);
   const dynamics::Work work = options.work();
-  const auto analysis = lattice::analyze(s.problem, *c.chain, how, work);
-  const PassageAnswer passages = first_passage_of(options, passage, s, c);
+  AnalysedField result{.shown = s.shown(),
+                       .start = s.starts.front(),
+                       .answer = c.answer,
+                       .analysis = lattice::analyze(s.problem, *c.chain, how, work),
+                       .step = parameters.relative_step};
+  const lattice::Analysis& analysis = result.analysis;
+  result.passage = first_passage_of(options, passage, s, c);
   if (s.pool) c.chain.reset();  // that for parameters is larger
-  const auto effects = effects_of(parameters, s, c, analysis, work);
-  std::optional<DirectTrials> direct;
+  result.parameters = effects_of(parameters, s, c, analysis, work);
   if (options.has("trials")) {
     lattice::FieldCosts costs(s.bin_of_durations(options));
     auto tally = lattice::field_trials(s.problem, {0, options.trials()}, options.seed(), work,
                                        [&](const lattice::FieldTrials& each) { costs.add(each); });
-    direct = DirectTrials{std::move(tally), std::move(costs)};
+    result.direct = DirectTrials{std::move(tally), std::move(costs)};
   }
-  const ShownField field = s.shown();
-  AnalysedField shown{field,       s.starts.front(), c.endings,     analysis,
-                      effects,     direct,           c.from_trials, c.reached,
-                      c.gate_runs, c.states,         c.seconds,     parameters.relative_step,
-                      c.rest};
-  Json json = to_json(shown);
-  json["status"] = c.status;
-  json["sensitivities"]["status"] = to_json(effects.health);
-  if (!c.method.is_null()) json["method"] = c.method;
-  const SharesAnswer shares = shares_of(options, ranged, s, how.target);
-  if (shares.shares) shown.shares = &*shares.shares;
-  json["variance_shares"] = shares.json;
-  if (passage) json["first_passage"] = passages.json;
-  json["made_by"] = s.made_by(options);
-  options.give_out(json, passages.text + table_of(shown) + shares.table);
-  options.warn(rest_warning(c.rest));
+  result.shares = shares_of(options, ranged, s, how.target);
+  bool clean = c.clean;
+  const auto look_at = [&](const dynamics::Health& health, const std::string& where) {
+    clean = status_of(options, health, where) == kFine && clean;
+  };
+  if (result.shares) look_at(result.shares->found.health, "at the points of --over ");
+  result.made_by = s.provenance(options);
+  options.give_out(result, table_of(result));
+  options.warn(rest_warning(c.answer.rest));
   if (const std::string why = analysis.why_unfinished(); !why.empty())
     options.warn("gates visited, visits, times and costs are not known: " + why);
-  const bool clean_effects =
-      status_of(options, effects.health, "in gates with changed numbers ") == kFine;
-  const bool clean =
-      clean_effects && (!direct || status_of(options, direct->tally.health) == kFine);
-  write_page(options, s, of_file, page_starts(c, s), json);
-  options.draw([&] { return figure_of(shown); });
-  return exit_status(options, c.clean && clean && shares.clean);
+  look_at(result.parameters.health, "in gates with changed numbers ");
+  if (result.direct) look_at(result.direct->tally.health, "");
+  write_page(options, s, of_file, page_starts(c, s), &result);
+  options.draw([&] { return figure_of(result); });
+  return exit_status(options, clean);
 }
 
 }  // namespace gatewalk::cli

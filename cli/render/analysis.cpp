@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/analysis.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <span>
 
+#include "cli/render/choice.h"
 #include "cli/render/costs.h"
-#include "cli/render/final_gates.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
-#include "cli/render/scene.h"
-#include "cli/render/start.h"
-#include "cli/render/text.h"
 #include "dynamics/disc/gate.h"
 
 namespace gatewalk::cli {
@@ -19,14 +17,14 @@ namespace {
 
 using dynamics::Cost;
 using lattice::FieldCosts;
-using lattice::Mean95;
+using lattice::Mean95OfRuns;
 
 constexpr std::int64_t kFew = 50;  // walks or trials
 
-Json interval(const std::array<double, 2>& i) { return std::isfinite(i[0]) ? Json(i) : Json(); }
+std::size_t place(markov::Ending ending) { return static_cast<std::size_t>(ending); }
 
-const std::vector<dynamics::CostInfo>& costs_of(const ShownField& shown) {
-  return shown.map.section.costs;
+const std::vector<dynamics::CostInfo>& costs_of(const AnalysedField& f) {
+  return f.shown.map.section.costs;
 }
 
 /// Durations of walks with these endings, ascending; none where they are too few to say much.
@@ -40,17 +38,19 @@ std::vector<double> durations_of(const lattice::Analysis& a, std::optional<marko
 }
 
 double quantile(const std::vector<double>& sorted, double level) {
-  if (sorted.empty()) return std::nan("");
+  if (sorted.empty()) return kUnknown;
   const auto at = static_cast<std::size_t>(level * static_cast<double>(sorted.size()));
   return sorted[std::min(at, sorted.size() - 1)];
 }
+
+}  // namespace
 
 Spent spent(const lattice::Analysis& a, std::optional<markov::Ending> ending) {
   Spent s;
   for (std::size_t c = 0; c < a.totals.totals.size(); ++c) {
     const auto& by_ending = a.totals.totals[c];
     const markov::Moments m =
-        ending ? by_ending[static_cast<std::size_t>(*ending)] : markov::WalkTotals::all(by_ending);
+        ending ? by_ending[place(*ending)] : markov::WalkTotals::all(by_ending);
     s.share = m.share;
     s.mean[c] = m.mean();
     s.sd[c] = m.sd();
@@ -61,61 +61,423 @@ Spent spent(const lattice::Analysis& a, std::optional<markov::Ending> ending) {
   return s;
 }
 
-std::string with_interval(const Mean95& m, int decimals) {
-  if (std::isnan(m.interval[0])) return fixed(m.mean, decimals);
-  return fixed(m.mean, decimals) + " [" + fixed(m.interval[0], decimals) + ", " +
-         fixed(m.interval[1], decimals) + "]";
-}
-
-const char* target_word(markov::Ending ending) {
-  return std::find_if(kAllEndingNames.begin(), kAllEndingNames.end(),
-                      [&](const EndingName& e) { return e.ending == ending; })
-      ->name;
-}
-const char* key_of(markov::Ending ending) {
-  return std::find_if(kAllEndingNames.begin(), kAllEndingNames.end(),
-                      [&](const EndingName& e) { return e.ending == ending; })
-      ->key;
-}
-
-/// ". 1.20, s 0.44"
-template <class Number>
-std::string by_type(const std::vector<std::string>& names, Number number) {
-  std::string text;
-  for (std::size_t t = 0; t < names.size(); ++t)
-    text += (t == 0 ? "" : ", ") + names[t] + " " + fixed(number(t), 2);
-  return text;
-}
-
-/// Endings whose mean time has no interval, and why: such a mean is to be read with care.
-std::string few_runs_text(const lattice::Analysis& a) {
-  std::string text;
-  for (const EndingName& e : kAllEndingNames) {
-    const auto& costs = a.costs_of[static_cast<std::size_t>(e.ending)];
-    if (costs.empty() || costs.front().why_none.empty() || !std::isfinite(costs.front().mean))
-      continue;
-    text += (text.empty() ? "(means without an interval: " : "; ") + std::string(e.name) + ", " +
-            costs.front().why_none;
+KolmogorovDistance duration_distance(const lattice::Analysis& a, const FieldCosts& costs,
+                                     std::optional<markov::Ending> ending) {
+  const std::vector<double> walks = durations_of(a, ending);
+  const auto steps = ending ? costs.durations(*ending) : costs.durations();
+  if (walks.empty() || steps.empty() || steps.back().trials < kFew) return {};
+  // Trials are known to a bin, by its middle: walks are counted to the same. Between two bins the
+  // trials' function stays, and the walks' grows.
+  const double half = 0.5 * costs.bin();
+  const auto n = static_cast<double>(steps.back().trials), m = static_cast<double>(walks.size());
+  const auto walks_until = [&](double seconds) {
+    return static_cast<double>(std::upper_bound(walks.begin(), walks.end(), seconds) -
+                               walks.begin()) /
+           m;
+  };
+  double distance = 0.0, before = 0.0;
+  for (const FieldCosts::Step& s : steps) {
+    const double trials = static_cast<double>(s.trials) / n;
+    distance = std::max({distance, std::abs(before - walks_until(s.seconds - half)),
+                         std::abs(trials - walks_until(s.seconds + half))});
+    before = trials;
   }
-  return text.empty() ? "" : text + ")\n";
+  constexpr double kSmirnov95 = 1.358;  // of the distance times sqrt(n m / (n + m))
+  return {distance, kSmirnov95 * std::sqrt(1.0 / n + 1.0 / m)};
 }
 
-/// "5.55, 1.99, 1.20"
-std::string time_scales_text(const markov::QuasiStationary& q) {
-  std::string text;
-  for (const double modulus : q.moduli)
-    text += (text.empty() ? "" : ", ") + fixed(markov::implied_time_scale(modulus), 2);
-  return text;
+namespace {
+
+// ---- As a result ----
+
+/// A list that may be empty, as an object or null.
+template <class T>
+const std::vector<T>* if_any(const std::vector<T>& list) {
+  return list.empty() ? nullptr : &list;
 }
 
-/// {"i_x": ..., "i_y": ...}
-Json gate_json(std::int64_t cell, const lattice::FieldParams& field) {
-  return {{"i_x", cell % field.columns - field.start_column()}, {"i_y", cell / field.columns}};
+/// A mean with a key of its own; `varies`: how that is shown where it differs among results.
+struct NamedMean {
+  std::string key, varies, unit, meaning;
+  const Mean95OfRuns* mean;
+
+  [[nodiscard]] bool says_why() const { return !mean->why_none.empty(); }
+  void describe(Fields& out) const {
+    out.estimate(Field(key, unit, meaning).varying(varies), mean->mean, known(mean->interval));
+  }
+};
+
+/// The key "why_no_interval", which stands behind `mean` if that is the first one with a reason.
+void describe_reasons(Fields& out, const std::vector<NamedMean>& means, const NamedMean& mean) {
+  const auto first = std::ranges::find_if(means, &NamedMean::says_why);
+  out.optional(first != means.end() && &*first == &mean, [&](Fields& f) {
+    f.object(
+        {"why_no_interval", "by mean: why it has no interval, though there are groups of trials"},
+        [&](Fields& why) {
+          for (const NamedMean& m : means)
+            if (m.says_why() || why.is_schema())
+              why.text(Label(m.key, "the reason").varying("<mean>"), m.mean->why_none);
+        });
+  });
+}
+
+struct MeanOfDiscs {
+  Cost cost;
+  const char *key, *unit, *meaning;
+};
+constexpr MeanOfDiscs kMeansOfDiscs[] = {
+    {Cost::seconds, "expected_seconds", "s", "mean time"},
+    {Cost::propulsion_work, "expected_work_J", "J", "mean work of the propulsion"},
+    {Cost::random_work, "expected_random_work_J", "J", "mean work of the random force"},
+    {Cost::lost, "expected_lost_J", "J",
+     "mean energy lost to hits, dampers and drag, and left in the beams"}};
+
+/// Gates visited, and what bodies take, whatever becomes of them.
+void describe_means(Fields& out, const AnalysedField& f) {
+  const lattice::Analysis& a = f.analysis;
+  std::vector<NamedMean> means{
+      {"expected_gates", "", "1", "mean number of gates visited", &a.gates}};
+  if (f.shown.mass)
+    for (const auto& [cost, key, unit, meaning] : kMeansOfDiscs)
+      means.push_back({key, "", unit, meaning, &a.costs[static_cast<std::size_t>(cost)]});
+  if (!f.shown.mass || out.is_schema())
+    for (std::size_t c = 0; c < a.costs.size(); ++c)
+      means.push_back({"expected_" + costs_of(f)[c].key, "expected_<cost>", "its own",
+                       "mean of a cost of the cells", &a.costs[c]});
+  for (const NamedMean& m : means) {
+    if (&m == &means.front())
+      m.describe(out);
+    else
+      out.optional(true, [&](Fields& o) { m.describe(o); });
+    describe_reasons(out, means, m);
+  }
+}
+
+void describe_by_ending(Fields& out, const AnalysedField& f) {
+  const lattice::Analysis& a = f.analysis;
+  const auto intervals = [&](Fields& out_of_ending, markov::Ending ending) {
+    std::vector<NamedMean> means;
+    for (std::size_t c = 0; c < costs_of(f).size(); ++c)
+      means.push_back({"mean_" + costs_of(f)[c].key, "", "", "", &a.costs_of[place(ending)][c]});
+    for (const NamedMean& m : means) {
+      out_of_ending.interval(
+          Field(m.key + "_95", "its own", "95 % interval of this mean").varying("mean_<cost>_95"),
+          known(m.mean->interval));
+      describe_reasons(out_of_ending, means, m);
+    }
+  };
+  const auto add = [&](Fields& endings, const char* key, const std::string& who,
+                       std::optional<markov::Ending> ending) {
+    const Spent s = spent(a, ending);
+    endings.optional(s.share > 0.0, [&](Fields& o) {
+      o.object(Label(key, who).shared("costs_of_bodies"), [&](Fields& one) {
+        describe(one, s, f.shown);
+        one.number({"probability", "1", "share of all bodies that these are, by the chain"},
+                   s.share);
+        if (ending) intervals(one, *ending);
+        one.optional(f.direct.has_value(), [&](Fields& d) {
+          const auto [distance, chance_95] = duration_distance(a, f.direct->costs, ending);
+          d.number({"kolmogorov_distance", "1",
+                    "largest difference of the distributions of time, of the chain and of trials"},
+                   distance);
+          d.number({"kolmogorov_chance_95", "1",
+                    "by chance alone, 95 of 100 such differences are at most this"},
+                   chance_95);
+        });
+      });
+    });
+  };
+  out.object({"by_ending", "what bodies take by the chain: all of them, and by how they end"},
+             [&](Fields& endings) {
+               add(endings, "all", "of all bodies", {});
+               for (const EndingName& e : kAllEndingNames)
+                 add(endings, e.key, fmt::format("of bodies that {}", meaning_of(e)), e.ending);
+             });
+}
+
+void describe_endless(Fields& out, const lattice::Analysis& a) {
+  out.maybe(
+      {"quasi_stationary", "bodies that go on for ever, in an endless field"}, a.endless,
+      [&](Fields& q, const markov::QuasiStationary& endless) {
+        q.number({"survival_per_gate", "1", "share that gets through or out of each further gate"},
+                 endless.survival);
+        q.number({"second_eigenvalue", "1", "modulus of the second eigenvalue"}, endless.second);
+        q.number({"spectral_gap", "1", "survival less the second eigenvalue"},
+                 endless.spectral_gap());
+        q.number({"kept_per_gate", "1",
+                  "what is left of the memory of the start from one gate to the next: the second "
+                  "eigenvalue by the first"},
+                 endless.second / endless.survival);
+        q.number({"rows_per_gate", "1", "rows that a body gets ahead in each gate"},
+                 endless.rows_per_cell);
+        q.numbers({"eigenvalues", "1",
+                   "moduli of the largest eigenvalues of a gate's kernel, at most six"},
+                  endless.moduli);
+        std::vector<double> scales;
+        for (const double modulus : endless.moduli)
+          scales.push_back(markov::implied_time_scale(modulus));
+        q.numbers({"time_scales_gates", "1",
+                   "implied time scales in gates: -1 / ln of each of these, survival's first; "
+                   "null: endless"},
+                  scales);
+        q.object({"boundaries", "how bodies enter gates"}, [&](Fields& b) {
+          for (std::size_t face = 0; face < a.endless_boundaries.size(); ++face)
+            b.number(
+                Field(a.space.section().faces[face].name, "1", "share that enters by this boundary")
+                    .varying("<boundary>"),
+                a.endless_boundaries[face]);
+        });
+        std::vector<double> states;
+        for (const int s : lattice::shown_order(a.space))
+          states.push_back(endless.states[static_cast<std::size_t>(s)]);
+        q.numbers({"states", "1", "share in each state of the chain, as gatewalk show lists them"},
+                  states);
+      });
+  out.optional(!a.endless, [&](Fields& f) {
+    f.text({"why_not_quasi_stationary", "why there is none"}, a.why_not_endless);
+  });
+}
+
+void describe_lumping(Fields& out, const lattice::Analysis& a) {
+  out.maybe(
+      {"lumping", "what so few states as --lump asks for would cost; null: walks circle too long"},
+      a.lumped, [&](Fields& l, const lattice::LumpedChain& lumped) {
+        const char *const one = "one for each boundary", *const parts = "parts of each boundary";
+        l.text(Label("states", "what they are").one_of({one, parts}),
+               std::ranges::all_of(a.lumping, [](int n) { return n == 1; }) ? one : parts);
+        l.counts({"parts", "1", "parts that each coordinate is cut into"},
+                 {a.lumping.begin(), a.lumping.end()});
+        l.count({"count", "1", "number of these states"}, lumped.states);
+        l.number({"largest_difference", "1",
+                  "largest total variation between the rows of two states that become one"},
+                 lumped.largest);
+        l.object({"error", "total variation to the whole chain"}, [&](Fields& error) {
+          error.number({"endings", "1", "of the endings"}, lumped.endings);
+          error.number({"final_gates", "1", "of the final gates"}, lumped.final_gates);
+        });
+      });
+}
+
+void describe_visits(Fields& out, const lattice::Analysis& a) {
+  out.grid({"expected_visits", "1", "mean number of visits of each gate"}, a.totals.visits);
+}
+
+void describe_target(Fields& out, const lattice::Analysis& a) {
+  out.text(
+      Label("target", "the ending that starts, ways and influences are of").one_of(ending_keys()),
+      ending_name(a.target).key);
+}
+
+void describe_starts(Fields& out, const lattice::Analysis& a) {
+  out.list(
+      {"starts",
+       "the chance of the target by the way to enter the first gate: all of these ways, or "
+       "those 300 that were entered most; in a field that is its own mirror image the mean "
+       "with the image's"},
+      std::span(a.starts).first(static_cast<std::size_t>(a.told_starts())),
+      [&](Fields& start, const lattice::StartChance& s) {
+        describe(start, a.space.section(), s.range);
+        start.estimate({"probability", "1", "chance of the target"}, s.chance.mean,
+                       known(s.chance.interval), "interval_95");
+        start.count({"runs", "1", "gate runs that entered so; with those of the image"}, s.runs);
+      });
+  out.count({"starts_in_all", "1", "how many ways to enter the first gate there are"},
+            a.starts.size());
+}
+
+void describe_paths(Fields& out, const AnalysedField& f) {
+  const lattice::FieldParams& field = f.shown.field;
+  out.list({"paths", "the most frequent ways to the target"}, f.analysis.paths.paths,
+           [&](Fields& way, const markov::CellPath& path) {
+             way.number({"probability", "1", "share of all bodies that go this way"}, path.share);
+             way.list({"gates", "its gates, from the start on"}, path.cells,
+                      [&](Fields& gate, std::int64_t cell) {
+                        gate.count({"i_x", "1", "column, the start's is 0"},
+                                   cell % field.columns - field.start_column());
+                        gate.count({"i_y", "1", "row, the start's is 0"}, cell / field.columns);
+                      });
+           });
+  out.flag({"paths_complete", "false: the search for more ways was given up"},
+           !f.analysis.paths.gave_up);
+}
+
+void describe_types(Fields& out, const AnalysedField& f) {
+  const std::vector<std::string>& types = f.shown.types;
+  out.maybe(
+      {"types", "gates by type, in mixed fields"}, if_any(types), [&](Fields& o, const auto&) {
+        for (std::size_t t = 0; t < types.size(); ++t)
+          o.object(Label(types[t], "gates of this type").varying("<type>"), [&](Fields& type) {
+            const auto& [visits, trapped] = f.analysis.types[t];
+            type.number({"visits", "1", "mean number of visits of a body"}, visits);
+            type.number({"trapped", "1", "share of all bodies that are trapped there"}, trapped);
+            type.number({"trapped_per_visit", "1", "share of the visits that end trapped"},
+                        trapped / visits);
+          });
+      });
+}
+
+/// An elasticity by type of gate; null where all gates are alike.
+template <class Items, class Describe>
+void by_type(Fields& out, const Label& label, const AnalysedField& f, const Items& items,
+             Describe describe) {
+  const std::vector<std::string>& types = f.shown.types;
+  out.maybe(label, types.empty() ? nullptr : if_any(items), [&](Fields& o, const auto&) {
+    for (std::size_t t = 0; t < items.size(); ++t)
+      describe(o, std::string_view(types[t]), items[t]);
+  });
+}
+
+void describe_elasticity(Fields& out, const lattice::Mean95& m) {
+  out.estimate({"elasticity", "1",
+                "per cent that the chance of the target changes for one per cent more of the "
+                "number"},
+               m.mean, known(m.interval), "interval_95");
+}
+
+void describe_effect(Fields& out, const AnalysedField& f, const lattice::ParameterEffect& e) {
+  const double unit = f.parameters.chance / e.value;
+  const auto& [low, high] = e.elasticity.interval;
+  out.text({"key", "the number's key"}, e.key);
+  out.number({"value", "its own", "its value; null: types of gates differ in it"}, e.value);
+  describe_elasticity(out, e.elasticity);
+  out.number({"with_more", "1", "the elasticity with more of the number alone"}, e.more);
+  out.number({"with_less", "1", "the elasticity with less of the number alone"}, e.less);
+  out.flag({"bends", "whether these two differ by more than chance"}, e.bends);
+  out.number(
+      {"left_out", "1", "share of the places where bodies cannot enter a gate that is changed so"},
+      e.left_out);
+  by_type(out, {"of_type", "the elasticity in gates of one type alone"}, f, e.of_type,
+          [&](Fields& o, std::string_view type, const lattice::Mean95& m) {
+            o.object(Label(type, "gates of this type").varying("<type>"),
+                     [&](Fields& one) { describe_elasticity(one, m); });
+          });
+  out.estimate({"derivative", "its own", "change of the chance for one unit more of the number"},
+               e.elasticity.mean * unit, known({low * unit, high * unit}));
+}
+
+void describe_sensitivities(Fields& out, const AnalysedField& f) {
+  const lattice::Analysis& a = f.analysis;
+  out.text(Label("of", "the target").one_of(ending_keys()), ending_name(a.target).key);
+  out.grid({"passed_gates", "1", "visits of bodies that end in the target, per body of these"},
+           a.passed);
+  const Field trapping(
+      "less_trapping", "1",
+      "per cent that the chance of the target grows were one per cent fewer "
+      "trapped in the gate; null: the target is \"trapped\", or nobody gets there");
+  if (a.trapping.size() > 0)
+    out.grid(trapping, a.trapping);
+  else
+    out.no_grid(trapping);
+  out.numbers({"less_trapping_by_state", "1",
+               "the same by state, in all gates together, as gatewalk show lists them"},
+              a.state_trapping.empty() ? std::nullopt : std::optional(a.state_trapping));
+  by_type(out, {"less_trapping_by_type", "the same by type of gate"}, f, a.type_trapping,
+          [](Fields& o, std::string_view type, double x) {
+            o.number(Field(type, "1", "gates of this type").varying("<type>"), x);
+          });
+  out.list({"parameters", "the numbers of the scene, those that matter most first"},
+           sorted_effects(f),
+           [&](Fields& o, const lattice::ParameterEffect& e) { describe_effect(o, f, e); });
+  out.number({"probability", "1", "chance of the target, by the chain behind these numbers"},
+             f.parameters.chance);
+  out.count({"gate_runs", "1", "gate runs with changed numbers"}, f.parameters.health.runs);
+  out.count({"chain_gate_runs", "1", "gate runs of the chain behind these numbers"},
+            f.parameters.pool_runs);
+  out.number({"seconds", "s", "time that these numbers took"}, f.parameters.seconds);
+  out.count({"added_gate_runs", "1", "gate runs that were added to the chain for them"},
+            f.parameters.added_runs);
+  describe_status(out, f.parameters.health);
+}
+
+void describe_chances(Fields& out, const lattice::EndingShares& shares) {
+  out.object({"endings", "how bodies end"}, [&](Fields& endings) {
+    const auto add = [&](const EndingName& e) {
+      endings.object(Label(e.key, fmt::format("bodies that {}", meaning_of(e))).shared("ending"),
+                     [&](Fields& one) {
+                       one.estimate({"probability", "1", "share of all bodies"},
+                                    shares.share[place(e.ending)],
+                                    known(shares.interval[place(e.ending)]), "interval_95");
+                     });
+    };
+    for (const EndingName& e : kEndingNames) add(e);
+    endings.optional(!shares.rules_out(lattice::kWentBack.ending),
+                     [&](Fields&) { add(lattice::kWentBack); });
+  });
 }
 
 }  // namespace
 
-const char* target_name(const AnalysedField& f) { return target_word(f.analysis.target); }
+void describe(Fields& out, const AnalysedField& f) {
+  const auto& [shown, start, answer, a, parameters, step, direct, shares, passage, made_by] = f;
+  describe_chances(out, answer.endings);
+  describe_means(out, f);
+  out.optional(shown.mass.has_value(), [&](Fields& o) {
+    o.number({"cost_of_transport_J_per_kg_m", "J/(kg m)",
+              "work of both forces per mass and way forward"},
+             spent(a, {}).cost_of_transport(*shown.mass));
+  });
+  describe_visits(out, a);
+  describe(out, answer.rest);
+  out.count({"drawn_walks", "1",
+             "walks with the chain behind times and works in a large field without limit; 0: "
+             "these are exact"},
+            a.totals.drawn_walks);
+  describe_by_ending(out, f);
+  describe_endless(out, a);
+  describe_answer_from(out, answer.from_trials);
+  describe_lumping(out, a);
+  describe_target(out, a);
+  out.number({"target_probability", "1",
+              "its chance by the chain; the answer, which may be the trials' own, stands in "
+              "endings"},
+             a.target_chance);
+  describe_starts(out, a);
+  describe_paths(out, f);
+  out.object({"sensitivities", "what would change the chance of the target most"},
+             [&](Fields& o) { describe_sensitivities(o, f); });
+  describe_types(out, f);
+  out.optional(direct.has_value(), [&](Fields& o) {
+    o.object({"direct", "the same field by trials of the full dynamics"}, [&](Fields& d) {
+      d.count({"trials", "1", "number of trials"}, direct->tally.trials);
+      describe_endings(d, {"endings", "how they ended"}, direct->tally.endings);
+      describe_costs(d, direct->costs, shown);
+    });
+  });
+  out.count({"states", "1", "states of the chain"}, answer.states);
+  out.count({"gate_runs", "1", "gate runs, of the chain and with changed numbers"}, f.gate_runs());
+  out.flag({"accuracy_reached", "whether the accuracy that was asked for was reached"},
+           answer.reached);
+  out.number({"seconds", "s", "time in all"}, f.seconds());
+  describe_status(out, answer.health);
+  describe_method(out, answer.method);
+  out.maybe({"variance_shares",
+             "of --over: how much of the variance of the target's chance each number makes"},
+            shares, [](Fields& o, const RangedShares& s) { describe(o, s); });
+  out.optional(passage.has_value(), [&](Fields& o) {
+    o.object({"first_passage",
+              "of --first-passage: bodies from the start, then from every state of every gate"},
+             [&](Fields& p) { describe(p, *passage); });
+  });
+  describe_made_by(out, made_by);
+}
+
+void describe_for_page(Fields& out, const AnalysedField& f) {
+  describe_means(out, f);
+  describe_visits(out, f.analysis);
+  describe_by_ending(out, f);
+  describe_target(out, f.analysis);
+  describe_paths(out, f);
+  describe_types(out, f);
+  out.optional(!f.parameters.effects.empty(), [&](Fields& o) {
+    o.list({"parameters", "the numbers of the scene, those that matter most first"},
+           sorted_effects(f), [](Fields& number, const lattice::ParameterEffect& e) {
+             number.text({"key", "the number's key"}, e.key);
+             describe_elasticity(number, e.elasticity);
+           });
+  });
+}
+
+const char* target_name(const AnalysedField& f) { return ending_name(f.analysis.target).name; }
 
 DurationCurve duration_curve(const lattice::Analysis& a, markov::Ending ending) {
   constexpr std::size_t kPoints = 200;
@@ -139,326 +501,9 @@ double most_of_starts(const lattice::Analysis& a) {
 
 std::vector<lattice::ParameterEffect> sorted_effects(const AnalysedField& f) {
   std::vector<lattice::ParameterEffect> effects = f.parameters.effects;
-  std::stable_sort(effects.begin(), effects.end(), [](const auto& x, const auto& y) {
-    return std::abs(x.elasticity.mean) > std::abs(y.elasticity.mean);
-  });
+  std::ranges::stable_sort(effects, std::ranges::greater{},
+                           [](const auto& e) { return std::abs(e.elasticity.mean); });
   return effects;
-}
-
-KolmogorovDistance duration_distance(const lattice::Analysis& a, const FieldCosts& costs,
-                                     std::optional<markov::Ending> ending) {
-  const std::vector<double> walks = durations_of(a, ending);
-  const auto steps = ending ? costs.durations(*ending) : costs.durations();
-  if (walks.empty() || steps.empty() || steps.back().trials < kFew)
-    return {std::nan(""), std::nan("")};
-  // Trials are known to a bin, by its middle: walks are counted to the same. Between two bins the
-  // trials' function stays, and the walks' grows.
-  const double half = 0.5 * costs.bin();
-  const auto n = static_cast<double>(steps.back().trials), m = static_cast<double>(walks.size());
-  const auto walks_until = [&](double seconds) {
-    return static_cast<double>(std::upper_bound(walks.begin(), walks.end(), seconds) -
-                               walks.begin()) /
-           m;
-  };
-  double distance = 0.0, before = 0.0;
-  for (const FieldCosts::Step& s : steps) {
-    const double trials = static_cast<double>(s.trials) / n;
-    distance = std::max({distance, std::abs(before - walks_until(s.seconds - half)),
-                         std::abs(trials - walks_until(s.seconds + half))});
-    before = trials;
-  }
-  constexpr double kSmirnov95 = 1.358;  // of the distance times sqrt(n m / (n + m))
-  return {distance, kSmirnov95 * std::sqrt(1.0 / n + 1.0 / m)};
-}
-
-Json to_json(const AnalysedField& f) {
-  const lattice::Analysis& a = f.analysis;
-  Json json;
-  for (const EndingName& e : kAllEndingNames) {
-    const auto at = static_cast<std::size_t>(e.ending);
-    if (e.ending == lattice::kWentBack.ending && f.endings.rules_out(e.ending)) continue;
-    json["endings"][e.key] = {{"probability", f.endings.share[at]},
-                              {"interval_95", interval(f.endings.interval[at])}};
-  }
-  const auto add_interval = [](Json& to, const std::string& key, const lattice::Mean95OfRuns& m) {
-    to[key + "_95"] = interval(m.interval);
-    if (!m.why_none.empty()) to["why_no_interval"][key] = m.why_none;
-  };
-  json["expected_gates"] = a.gates.mean;
-  add_interval(json, "expected_gates", a.gates);
-  const auto expected = [&](const std::string& key, std::size_t cost) {
-    json["expected_" + key] = or_null(a.costs[cost].mean);
-    add_interval(json, "expected_" + key, a.costs[cost]);
-  };
-  if (f.shown.mass) {
-    expected("seconds", static_cast<std::size_t>(Cost::seconds));
-    expected("work_J", static_cast<std::size_t>(Cost::propulsion_work));
-    expected("random_work_J", static_cast<std::size_t>(Cost::random_work));
-    expected("lost_J", static_cast<std::size_t>(Cost::lost));
-    json["cost_of_transport_J_per_kg_m"] = or_null(spent(a, {}).cost_of_transport(*f.shown.mass));
-  } else {
-    for (std::size_t c = 0; c < a.costs.size(); ++c) expected(costs_of(f.shown)[c].key, c);
-  }
-  json["expected_visits"] = grid(a.totals.visits);
-  json["never_sampled"] = f.rest.never_sampled;
-  json["still_walking"] = f.rest.still_walking;
-  json["drawn_walks"] = a.totals.drawn_walks;
-  json["by_ending"] = Json::object();
-  const auto add = [&](const char* key, std::optional<markov::Ending> ending) {
-    const Spent s = spent(a, ending);
-    if (!(s.share > 0.0)) return;
-    json["by_ending"][key] = json_of([&](Fields& out) { describe(out, s, f.shown); });
-    json["by_ending"][key]["probability"] = s.share;
-    for (std::size_t c = 0; c < costs_of(f.shown).size() && ending; ++c)
-      add_interval(json["by_ending"][key], "mean_" + costs_of(f.shown)[c].key,
-                   a.costs_of[static_cast<std::size_t>(*ending)][c]);
-    if (!f.direct) return;
-    const KolmogorovDistance d = duration_distance(a, f.direct->costs, ending);
-    json["by_ending"][key]["kolmogorov_distance"] = or_null(d.distance);
-    json["by_ending"][key]["kolmogorov_chance_95"] = or_null(d.chance_95);
-  };
-  add("all", {});
-  for (const EndingName& e : kAllEndingNames) add(e.key, e.ending);
-
-  json["quasi_stationary"] = Json();
-  if (!a.endless) json["why_not_quasi_stationary"] = a.why_not_endless;
-  if (a.endless) {
-    Json& q = json["quasi_stationary"] = Json::object();
-    q["survival_per_gate"] = a.endless->survival;
-    q["second_eigenvalue"] = a.endless->second;
-    q["spectral_gap"] = a.endless->spectral_gap();
-    q["kept_per_gate"] = a.endless->second / a.endless->survival;
-    q["rows_per_gate"] = a.endless->rows_per_cell;
-    q["eigenvalues"] = a.endless->moduli;
-    for (const double modulus : a.endless->moduli)
-      q["time_scales_gates"].push_back(or_null(markov::implied_time_scale(modulus)));
-    for (std::size_t b = 0; b < a.endless_boundaries.size(); ++b)
-      q["boundaries"][a.space.section().faces[b].name] = a.endless_boundaries[b];
-    for (const int s : lattice::shown_order(a.space))
-      q["states"].push_back(a.endless->states[static_cast<std::size_t>(s)]);
-  }
-  json["answer_from"] = f.from_trials ? "trials" : "chain";
-  json["lumping"] = Json();
-  if (a.lumped)
-    json["lumping"] = {
-        {"states",
-         std::all_of(a.lumping.begin(), a.lumping.end(), [](int parts) { return parts == 1; })
-             ? Json("one for each boundary")
-             : Json("parts of each boundary")},
-        {"parts", a.lumping},
-        {"count", a.lumped->states},
-        {"largest_difference", a.lumped->largest},
-        {"error", {{"endings", a.lumped->endings}, {"final_gates", a.lumped->final_gates}}}};
-  json["target"] = key_of(a.target);
-  json["target_probability"] = a.target_chance;
-  json["starts"] = Json::array();
-  json["starts_in_all"] = a.starts.size();
-  for (const lattice::StartChance& s :
-       std::span(a.starts).first(static_cast<std::size_t>(a.told_starts()))) {
-    Json one = to_json(a.space.section(), s.range);
-    one["probability"] = or_null(s.chance.mean);
-    one["interval_95"] = interval(s.chance.interval);
-    one["runs"] = s.runs;
-    json["starts"].push_back(std::move(one));
-  }
-  json["paths"] = Json::array();
-  for (const markov::CellPath& path : a.paths.paths) {
-    Json gates = Json::array();
-    for (const std::int64_t cell : path.cells) gates.push_back(gate_json(cell, f.shown.field));
-    json["paths"].push_back({{"probability", path.share}, {"gates", std::move(gates)}});
-  }
-  json["paths_complete"] = !a.paths.gave_up;
-  Json& s = json["sensitivities"] = Json::object();
-  s["of"] = key_of(a.target);
-  s["passed_gates"] = grid(a.passed);
-  s["less_trapping"] = a.trapping.size() > 0 ? grid(a.trapping) : Json();
-  s["less_trapping_by_state"] = a.state_trapping.empty() ? Json() : Json(a.state_trapping);
-  const std::vector<std::string>& types = f.shown.types;
-  s["less_trapping_by_type"] = Json();
-  for (std::size_t t = 0; t < types.size() && !a.type_trapping.empty(); ++t)
-    s["less_trapping_by_type"][types[t]] = a.type_trapping[t];
-  json["types"] = Json();
-  for (std::size_t t = 0; t < types.size(); ++t)
-    json["types"][types[t]] = {
-        {"visits", a.types[t].visits},
-        {"trapped", a.types[t].trapped},
-        {"trapped_per_visit", or_null(a.types[t].trapped / a.types[t].visits)}};
-  s["parameters"] = Json::array();
-  for (const lattice::ParameterEffect& e : sorted_effects(f)) {
-    const double unit = f.parameters.chance / e.value;
-    Json of_type;
-    for (std::size_t t = 0; t < e.of_type.size(); ++t)
-      of_type[types[t]] = {{"elasticity", e.of_type[t].mean},
-                           {"interval_95", interval(e.of_type[t].interval)}};
-    s["parameters"].push_back({{"key", e.key},
-                               {"value", or_null(e.value)},
-                               {"elasticity", e.elasticity.mean},
-                               {"interval_95", interval(e.elasticity.interval)},
-                               {"with_more", or_null(e.more)},
-                               {"with_less", or_null(e.less)},
-                               {"bends", e.bends},
-                               {"left_out", e.left_out},
-                               {"of_type", std::move(of_type)},
-                               {"derivative", or_null(e.elasticity.mean * unit)},
-                               {"derivative_95", interval({e.elasticity.interval[0] * unit,
-                                                           e.elasticity.interval[1] * unit})}});
-  }
-  s["probability"] = f.parameters.chance;
-  s["gate_runs"] = f.parameters.health.runs;
-  s["chain_gate_runs"] = f.parameters.pool_runs;
-  s["seconds"] = f.parameters.seconds;
-  s["added_gate_runs"] = f.parameters.added_runs;
-  if (f.direct) {
-    json["direct"] = {{"trials", f.direct->tally.trials},
-                      {"endings", endings(f.direct->tally.endings)},
-                      {"costs", to_json(f.direct->costs, f.shown)}};
-  }
-  json["states"] = f.states;
-  json["gate_runs"] = f.gate_runs + f.parameters.health.runs;
-  json["accuracy_reached"] = f.reached;
-  json["seconds"] = f.seconds + a.seconds + f.parameters.seconds;
-  return json;
-}
-
-std::string table_of(const AnalysedField& f) {
-  const lattice::Analysis& a = f.analysis;
-  const lattice::FieldParams& field = f.shown.field;
-  std::string table =
-      endings_text(f.endings,
-                   f.analysis.by_groups ? "of all bodies, 95 % intervals that count everything"
-                   : std::isnan(f.endings.interval.front().front())
-                       ? "of all bodies; no intervals"
-                       : "of all bodies; 95 % intervals that count the sampling of the matrix") +
-      limits_text(f.shown) + rest_text(f.rest) + "\ngates visited  " +
-      (std::isnan(a.gates.mean) ? "-" : with_interval(a.gates, 3)) +
-      (a.gates.why_none.empty()   ? ""
-       : std::isnan(a.gates.mean) ? " (nor visits, times and costs: " + a.gates.why_none + ")"
-                                  : " (no interval: " + a.gates.why_none + ")") +
-      "\n\nby the chain\n";
-  CostTable costs(f.shown);
-  const auto add = [&](const char* name, std::optional<markov::Ending> ending) {
-    const Spent s = spent(a, ending);
-    if (s.share > 0.0) costs.add(name, s);
-  };
-  add("all", {});
-  for (const EndingName& e : kAllEndingNames) add(e.name, e.ending);
-  table += costs.text() + few_runs_text(a);
-  if (!std::isfinite(a.costs.front().mean) && !std::isnan(a.gates.mean))
-    table += f.shown.mass
-                 ? "(the file is of an older version, which kept no durations: build it again)\n"
-                 : "(the durations of some passages are not known)\n";
-  if (a.totals.drawn_walks > 0)
-    table += "(a large field: times and work by ending are those of " +
-             std::to_string(a.totals.drawn_walks) +
-             " walks with the chain; none of them: no line)\n";
-  if (f.direct) {
-    const KolmogorovDistance d = duration_distance(a, f.direct->costs, {});
-    table += "by " + std::to_string(f.direct->tally.trials) + " trials of the full dynamics\n" +
-             table_of(f.direct->costs, f.shown) +
-             "largest difference of the two distributions of time: " + fixed(d.distance, 4) +
-             " (chance: " + fixed(d.chance_95, 4) + ", 95 %)\n";
-  }
-  if (f.shown.mass)
-    table +=
-        "work: of the propulsion and of the random force; lost: to hits, dampers and drag, and "
-        "left "
-        "in the beams;\nJ/(kg m): cost of transport, work of both forces per mass and way "
-        "forward\n";
-  if (!std::isnan(a.gates.mean))
-    table += "\n" + map_of(a.totals.visits, "visits of each gate", "per 100 bodies");
-  if (a.endless)
-    table += "\nbodies that go on for ever: " + percent(a.endless->survival, 1.0) +
-             " of them get through or out of each further gate; " +
-             fixed(a.endless->rows_per_cell, 2) + " rows a gate; from gate to gate " +
-             percent(a.endless->second / a.endless->survival, 1.0) +
-             " is left of what tells where they started\nimplied time scales (gates): " +
-             time_scales_text(*a.endless) + "\n";
-  const std::string target = std::string("\"") + target_word(a.target) + "\"";
-  const std::vector<std::string>& types = f.shown.types;
-  if (f.from_trials)
-    table +=
-        "\nthe endings above are the trials' own shares, which are more certain here; the chain's "
-        "are behind all else (" +
-        target + ": " + percents(a.target_chance) + " %)\n";
-  table += "\nmost frequent ways to " + target +
-           ", by the columns i_x of their gates (>: in the same row)\n";
-  for (const markov::CellPath& path : a.paths.paths) {
-    table += padded(percents(path.share) + " %", 11) + " ";
-    std::int64_t row = -1;
-    for (const std::int64_t cell : path.cells) {
-      table += cell / field.columns == row ? ">" : " ";
-      row = cell / field.columns;
-      table += std::to_string(cell % field.columns - field.start_column());
-    }
-    table += "\n";
-  }
-  if (a.paths.gave_up)
-    table += "  (the search for more was given up: there are very many ways)\n";
-  else if (a.paths.paths.empty())
-    table += "  (none)\n";
-  if (std::ssize(a.starts) > a.told_starts())
-    table += "other starts: --json has the " + std::to_string(a.told_starts()) + " of " +
-             std::to_string(a.starts.size()) +
-             " ways to enter that were entered most; --figure draws all\n";
-  if (a.is_certain() && f.parameters.effects.empty())
-    table += std::string(a.target_chance > 0.5 ? "everybody" : "nobody") +
-             " ends so in these runs: they cannot tell what a little more or less of a number "
-             "changes; --set KEY=VALUE tries more\n";
-  if (!f.parameters.effects.empty()) {
-    // The chain behind these has more runs than that behind the endings above.
-    const std::string chance = percents(f.parameters.chance),
-                      answer = percents(f.endings.share[static_cast<std::size_t>(a.target)]);
-    table +=
-        "\nper cent that the chance of " + target + " (" + chance + " %" +
-        (chance == answer || f.parameters.pool_runs == 0
-             ? ""
-             : " by the chain of " + std::to_string(f.parameters.pool_runs) +
-                   " gate runs behind these numbers; the answer is the " + answer + " % above") +
-        ") grows for 1 % more of each number, 95 %\n";
-    const bool of_bins = !a.by_groups;
-    for (const lattice::ParameterEffect& e : sorted_effects(f))
-      table +=
-          padded(std::string(e.key), -34) + with_interval(e.elasticity, 2) +
-          (std::isnan(e.elasticity.interval[0]) && !of_bins ? " (no interval: too few runs make it)"
-                                                            : "") +
-          (e.of_type.empty()
-               ? ""
-               : "  of it: " + by_type(types, [&](std::size_t t) { return e.of_type[t].mean; })) +
-          (e.bends
-               ? " (with more of it " + fixed(e.more, 2) + ", with less " + fixed(e.less, 2) + ")"
-               : "") +
-          "\n";
-    table += of_bins
-                 ? "a matrix of bins does not tell how far off these are, and its states are "
-                   "coarse: a scene tells more\n"
-                 : "one number at a time, in gates of all types; intervals count chance and the "
-                   "chain's own error; --set KEY=VALUE\nsays what a large change does\n";
-    const double largest = std::abs(sorted_effects(f).front().elasticity.mean) * f.step;
-    constexpr double kSmall = 0.3;
-    if (largest > kSmall)
-      table += "the chance changes by " + percent(largest, 1.0, 0) + " in a step of " +
-               percent(f.step, 1.0) + ", so the first are rough: a smaller --step is more exact\n";
-  }
-  if (!types.empty() && !std::isnan(a.gates.mean)) {
-    table += "\nby type of the gate: visits per body " +
-             by_type(types, [&](std::size_t t) { return a.types[t].visits; }) +
-             "; trapped there, % of these visits " + by_type(types, [&](std::size_t t) {
-               return 100.0 * a.types[t].trapped / a.types[t].visits;
-             });
-    if (!a.type_trapping.empty())
-      table += ";\nper cent that \"" + std::string(target_word(a.target)) +
-               "\" grows for 1 % fewer of these " +
-               by_type(types, [&](std::size_t t) { return a.type_trapping[t]; });
-    table += "\n";
-  }
-  if (a.lumped)
-    table += "\nwith " + std::to_string(a.lumped->states) +
-             " states (--lump), total variation to this chain: endings " +
-             fixed(a.lumped->endings, 4) + ", final gates " + fixed(a.lumped->final_gates, 4) +
-             "\n";
-  return table + std::to_string(f.gate_runs + f.parameters.health.runs) + " gate runs, " +
-         std::to_string(f.states) + " states, " +
-         fixed(f.seconds + a.seconds + f.parameters.seconds, 2) + " s\n";
 }
 
 }  // namespace gatewalk::cli

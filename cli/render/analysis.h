@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What a chain says beyond the final gates, as JSON, as a table and as a picture.
+/// What a chain says beyond the final gates, as a result, as a table and as a picture.
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "cli/render/costs.h"
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/first_passage.h"
+#include "cli/render/provenance.h"
 #include "cli/render/shown_field.h"
+#include "cli/render/start.h"
 #include "cli/render/variance_shares.h"
 #include "lattice/field_costs.h"
+#include "lattice/scene/settle.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/study/analysis.h"
 #include "lattice/study/parameter_effects.h"
@@ -23,28 +30,51 @@ struct DirectTrials {
   lattice::FieldCosts costs;
 };
 
-struct AnalysedField {
-  const ShownField& shown;
-  const std::optional<dynamics::Entry>& start;  // none: as bodies were seen to enter first
-  const lattice::EndingShares& endings;
-  const lattice::Analysis& analysis;
-  const lattice::ParameterEffects& parameters;
-  const std::optional<DirectTrials>& direct;
-  bool from_trials = false;    // the endings are the trials' own shares
+/// How bodies end, which an analysis goes beyond.
+struct AnalysedAnswer {
+  lattice::EndingShares endings{EndingChances{}};
+  Rest rest{};                 // what these leave out
+  bool from_trials = false;    // they are the trials' own shares
   bool reached = true;         // the accuracy asked for
   std::int64_t gate_runs = 0;  // made for the chain
   int states = 0;
-  double seconds = 0.0;                  // of the prediction behind the endings
-  double step = 0.0;                     // of the parameters
-  Rest rest{};                           // what the endings leave out
-  const RangedShares* shares = nullptr;  // of --over, for the picture
+  double seconds = 0.0;
+  std::optional<dynamics::Health> health{};  // none: the file keeps none
+  std::optional<lattice::Settled> method{};
 };
 
+/// The result of `analyze`.
+struct AnalysedField {
+  ShownField shown;
+  Start start{};
+  AnalysedAnswer answer{};
+  lattice::Analysis analysis;
+  lattice::ParameterEffects parameters{};
+  double step = 0.0;                     // of the parameters
+  std::optional<DirectTrials> direct{};  // of --trials
+  std::optional<RangedShares> shares{};  // of --over
+  std::optional<PassageResult> passage{};
+  Provenance made_by{};
+
+  /// All gate runs, and the time of all.
+  [[nodiscard]] std::int64_t gate_runs() const { return answer.gate_runs + parameters.health.runs; }
+  [[nodiscard]] double seconds() const {
+    return answer.seconds + analysis.seconds + parameters.seconds;
+  }
+};
+void describe(Fields& out, const AnalysedField& field);
+/// The keys that pages show.
+void describe_for_page(Fields& out, const AnalysedField& field);
+[[nodiscard]] std::string table_of(const AnalysedField& field);
+[[nodiscard]] Figure figure_of(const AnalysedField& field);
+
+/// What bodies take that end so, or all of them, by the chain.
+[[nodiscard]] Spent spent(const lattice::Analysis& analysis, std::optional<markov::Ending> ending);
 /// How far the durations of the chain's walks are from those of trials: the largest difference
 /// between their distribution functions (Kolmogorov), and what 95 % of so many trials of the same
 /// distribution have no more than. Of all, or of one ending; NaN where either has fewer than 50.
 struct KolmogorovDistance {
-  double distance, chance_95;
+  double distance = kUnknown, chance_95 = kUnknown;
 };
 [[nodiscard]] KolmogorovDistance duration_distance(const lattice::Analysis& analysis,
                                                    const lattice::FieldCosts& costs,
@@ -63,10 +93,5 @@ struct DurationCurve {
 [[nodiscard]] double most_of_starts(const lattice::Analysis& analysis);
 /// The parameters, those that matter most first.
 [[nodiscard]] std::vector<lattice::ParameterEffect> sorted_effects(const AnalysedField& field);
-
-/// Without "status" and "made_by".
-[[nodiscard]] Json to_json(const AnalysedField& field);
-[[nodiscard]] std::string table_of(const AnalysedField& field);
-[[nodiscard]] Figure figure_of(const AnalysedField& field);
 
 }  // namespace gatewalk::cli

@@ -1,81 +1,91 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/first_passage.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
 
-Json limits_of(const std::array<double, 2>& i) { return std::isfinite(i[0]) ? Json(i) : Json(); }
-
-/// (rows x columns x states), these in `order`; what is no number is null. A start's own row,
-/// behind these, is not of any gate.
-Json table(const std::vector<double>& values, const markov::FirstPassages& f,
-           const std::vector<int>& order) {
-  Json rows = Json::array();
-  std::size_t at = 0;
-  for (int row = 0; row < f.rows; ++row) {
-    Json columns = Json::array();
-    for (int column = 0; column < f.columns; ++column, at += static_cast<std::size_t>(f.inputs)) {
-      Json cell = Json::array();
-      for (const int s : order) cell.push_back(or_null(values[at + static_cast<std::size_t>(s)]));
-      columns.push_back(std::move(cell));
-    }
-    rows.push_back(std::move(columns));
-  }
-  return rows;
-}
-
-std::string mean_text(const lattice::Mean95OfRuns& m, const char* unit) {
-  const auto shown = [](double x) { return fixed(x, 3); };
-  return shown(m.mean) + unit +
-         (std::isfinite(m.interval[0])
-              ? " [" + shown(m.interval[0]) + ", " + shown(m.interval[1]) + "]"
-              : "");
+/// Numbers of all states of all gates, states in the result's order. A start's own row, behind
+/// these, is not of any gate.
+GateNumbers of_states(const std::vector<double>& values, const PassageResult& result) {
+  const markov::FirstPassages& all = result.found.all;
+  GateNumbers table{static_cast<std::size_t>(all.rows), static_cast<std::size_t>(all.columns), {}};
+  table.numbers.reserve(table.rows * table.columns * result.order.size());
+  for (std::size_t gate = 0; gate < table.rows * table.columns; ++gate)
+    for (const int s : result.order)
+      table.numbers.push_back(
+          values[gate * static_cast<std::size_t>(all.inputs) + static_cast<std::size_t>(s)]);
+  return table;
 }
 
 }  // namespace
 
-bool has_tables(const markov::FirstPassages& all, std::size_t states) {
-  return static_cast<double>(all.columns) * all.rows * static_cast<double>(states) <= kMostOfStates;
+bool PassageResult::has_tables() const {
+  constexpr double kMostNumbers = 2e6;
+  return static_cast<double>(found.all.columns) * found.all.rows *
+             static_cast<double>(order.size()) <=
+         kMostNumbers;
 }
 
-Json to_json(const lattice::FirstPassage& f, const PassageAsked& asked,
-             const std::vector<std::string>& names, const std::vector<int>& order) {
-  Json json{{"target", asked.text},
-            {"probability", f.chance.mean},
-            {"probability_95", limits_of(f.chance.interval)},
-            {"mean_gates", or_null(f.gates.mean)},
-            {"mean_gates_95", limits_of(f.gates.interval)},
-            {"mean_time_s", or_null(f.time.mean)},
-            {"mean_time_s_95", limits_of(f.time.interval)},
-            {"states", nullptr},
-            {"of_states", nullptr}};
-  if (!f.gates.why_none.empty()) json["why_no_interval"] = f.gates.why_none;
-  if (!has_tables(f.all, order.size())) return json;
-  for (const int s : order) json["states"].push_back(names[static_cast<std::size_t>(s)]);
-  json["of_states"] = {
-      {"probability", table(f.all.chance, f.all, order)},
-      {"never_sampled", table(f.all.never_sampled, f.all, order)},
-      {"mean_gates", table(f.all.draws, f.all, order)},
-      {"mean_time_s", f.all.totals.empty() ? Json() : table(f.all.totals.front(), f.all, order)}};
-  return json;
+void describe(Fields& out, const PassageResult& result) {
+  const auto& [asked, f, names, order] = result;
+  out.text({"target", "what bodies are to reach, as it was asked for"}, asked.text);
+  out.estimate({"probability", "1", "share of bodies that get there, or start there"},
+               f.chance.mean, known(f.chance.interval));
+  out.estimate({"mean_gates", "1", "gates visited before, of bodies that get there"}, f.gates.mean,
+               known(f.gates.interval));
+  out.estimate({"mean_time_s", "s", "time until then, of the same; null: nobody measured it"},
+               f.time.mean, known(f.time.interval));
+  std::optional<std::vector<std::string>> states;
+  if (result.has_tables()) states.emplace();
+  for (std::size_t k = 0; states && k < order.size(); ++k)
+    states->push_back(names[static_cast<std::size_t>(order[k])]);
+  out.texts({"states", "names of the states; null: tables would have more than 2 million numbers"},
+            states);
+  out.maybe({"of_states",
+             "of bodies that enter a gate in a state, with all of field.max_gates "
+             "before them: rows x columns x states"},
+            states ? &f.all : nullptr, [&](Fields& of, const markov::FirstPassages& all) {
+              const auto table = [&](const Field& field, const std::vector<double>& values) {
+                of.gate_numbers(field, of_states(values, result));
+              };
+              table({"probability", "1", "share that gets there: the committor"}, all.chance);
+              table({"never_sampled", "1", "share that reaches a state without any run instead"},
+                    all.never_sampled);
+              table({"mean_gates", "1",
+                     "mean first passage time in gates, of those that get there; null: nobody "
+                     "does"},
+                    all.draws);
+              of.gate_numbers({"mean_time_s", "s", "the same in seconds; null: nobody measured it"},
+                              all.totals.empty()
+                                  ? std::nullopt
+                                  : std::optional(of_states(all.totals.front(), result)));
+            });
+  out.optional(!f.gates.why_none.empty(), [&](Fields& o) {
+    o.text({"why_no_interval", "why the means have none, though there are groups of trials"},
+           f.gates.why_none);
+  });
 }
 
-std::string text_of(const lattice::FirstPassage& f, const PassageAsked& asked) {
-  std::string text = "first passage to " + asked.text + ": " + percents(f.chance.mean) + " %";
-  if (std::isfinite(f.chance.interval[0]))
-    text += " [" + percents(f.chance.interval[0]) + ", " + percents(f.chance.interval[1]) + "]";
+std::string text_of(const PassageResult& result) {
+  const lattice::FirstPassage& f = result.found;
+  std::string text =
+      fmt::format("first passage to {}: {} %", result.asked.text, percents(f.chance.mean));
+  if (const auto& [low, high] = f.chance.interval; std::isfinite(low))
+    text += fmt::format(" [{}, {}]", percents(low), percents(high));
   text += " of all bodies get there";
   if (std::isfinite(f.gates.mean)) {
-    text += "; those that do take " + mean_text(f.gates, " gates");
-    if (std::isfinite(f.time.mean)) text += " and " + mean_text(f.time, " s");
+    text += "; those that do take " + with_limits(f.gates.mean, f.gates.interval, 3, " gates");
+    if (std::isfinite(f.time.mean))
+      text += " and " + with_limits(f.time.mean, f.time.interval, 3, " s");
     text += " on average";
-    if (!f.gates.why_none.empty()) text += " (no interval: " + f.gates.why_none + ")";
+    if (!f.gates.why_none.empty()) text += fmt::format(" (no interval: {})", f.gates.why_none);
   }
   return text + "\n\n";
 }

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// First passages to a gate, a state or an ending, as JSON and in words.
+/// First passages to a gate, a state or an ending, as a result and in words.
 
 #include <string>
 #include <vector>
 
-#include "cli/render/json_fwd.h"
-#include "cli/render/shown_field.h"
-#include "dynamics/cells/state_space.h"
+#include "cli/render/fields.h"
 #include "lattice/study/first_passage.h"
 
 namespace gatewalk::cli {
@@ -18,13 +16,15 @@ struct PassageAsked {
   markov::PassageTarget target;
 };
 
-/// Tables of more numbers than this are left out.
-inline constexpr double kMostOfStates = 2e6;
-[[nodiscard]] bool has_tables(const markov::FirstPassages& all, std::size_t states);
-
-/// `names`: of the states; tables are (rows x columns x states) of them, in `order`.
-[[nodiscard]] Json to_json(const lattice::FirstPassage& f, const PassageAsked& asked,
-                           const std::vector<std::string>& names, const std::vector<int>& order);
-[[nodiscard]] std::string text_of(const lattice::FirstPassage& f, const PassageAsked& asked);
+struct PassageResult {
+  PassageAsked asked{};
+  lattice::FirstPassage found{};
+  std::vector<std::string> names{};  // of the chain's states
+  std::vector<int> order{};          // in which tables have these
+  /// Tables of more numbers than 2 million are left out.
+  [[nodiscard]] bool has_tables() const;
+};
+void describe(Fields& out, const PassageResult& result);
+[[nodiscard]] std::string text_of(const PassageResult& result);
 
 }  // namespace gatewalk::cli

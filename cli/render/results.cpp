@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <utility>
 
+#include "cli/render/analysis.h"
 #include "cli/render/cut_tracks.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/files.h"
@@ -74,11 +75,35 @@ RareResult rare() {
   return example;
 }
 
+AnalysedField analyze() {
+  const lattice::Scene scene;
+  const dynamics::StateSpace space = dynamics::table3_space(scene.gate);
+  AnalysedField example{.shown = ShownField(scene), .analysis = {.space = space}};
+  example.shown.types = {"s"};
+  lattice::Analysis& a = example.analysis;
+  a.costs.resize(space.section().costs.size());
+  a.costs_of.fill(a.costs);
+  a.endless.emplace().states.resize(static_cast<std::size_t>(space.size()));
+  a.endless_boundaries.resize(space.section().faces.size());
+  a.type_trapping.resize(1);
+  a.types.resize(1);
+  example.parameters.effects.resize(1);
+  example.parameters.effects.front().of_type.resize(1);
+  example.direct = DirectTrials{lattice::FieldTally(scene.field), lattice::FieldCosts(1.0)};
+  example.passage.emplace();
+  RangedShares& shares = example.shares.emplace();
+  shares.ranges.resize(1);
+  shares.found.indices.first.resize(1);
+  shares.found.indices.total.resize(1);
+  return example;
+}
+
 }  // namespace
 
 const std::vector<ResultOf>& results() {
   static const std::vector<ResultOf> all{
       // One in each line.
+      of("analyze", analyze()),
       {"build", describe_build},
       of("chart", ChartResult{{{}}, {{}}}),
       of<ExportResult>("export"),

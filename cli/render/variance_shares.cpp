@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/variance_shares.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
@@ -15,74 +17,78 @@ namespace {
 
 using lattice::Mean95;
 
-const EndingName& name_of(markov::Ending ending) {
-  return *std::find_if(kAllEndingNames.begin(), kAllEndingNames.end(),
-                       [&](const EndingName& e) { return e.ending == ending; });
-}
-
-void put(Json& json, const std::string& key, const Mean95& m) {
-  const bool known = std::isfinite(m.mean);
-  json[key] = known ? Json(m.mean) : Json();
-  json[key + "_95"] = std::isfinite(m.interval[0]) ? Json(m.interval) : Json();
+void estimate(Fields& out, const Field& field, const Mean95& m) {
+  out.estimate(field, m.mean, known(m.interval));
 }
 
 std::string with_interval(const Mean95& m) {
-  return fixed(m.mean, 2) + " [" + fixed(m.interval[0], 2) + ", " + fixed(m.interval[1], 2) + "]";
+  return fmt::format("{} [{}, {}]", fixed(m.mean, 2), fixed(m.interval[0], 2),
+                     fixed(m.interval[1], 2));
 }
 
 }  // namespace
 
-Json to_json(const RangedShares& shares) {
+void describe(Fields& out, const RangedShares& shares) {
   const lattice::SobolIndices& i = shares.found.indices;
-  Json json{{"of", name_of(shares.target).key}};
-  put(json, "mean", i.mean);
-  put(json, "variance", i.variance);
-  json["noise_variance"] = i.noise;
-  json["numbers"] = Json::array();
-  for (std::size_t k = 0; k < shares.ranges.size(); ++k) {
-    const lattice::NumberRange& r = shares.ranges[k];
-    Json number{{"key", r.key}, {"low", r.low}, {"high", r.high}};
-    put(number, "first", i.first[k]);
-    put(number, "total", i.total[k]);
-    json["numbers"].push_back(std::move(number));
-  }
-  json["points"] = shares.found.points;
-  json["trials"] = shares.found.trials;
-  json["seconds"] = shares.found.seconds;
-  json["status"] = to_json(shares.found.health);
-  return json;
+  out.text(Label("of", "the ending whose chance varies").one_of(ending_keys()),
+           ending_name(shares.target).key);
+  estimate(out, {"mean", "1", "mean of the chance over the ranges"}, i.mean);
+  estimate(out, {"variance", "1", "variance of the chance over the ranges"}, i.variance);
+  out.number({"noise_variance", "1",
+              "variance of one answer, of 16 trials, about the chance at its point"},
+             i.noise);
+  out.list_of({"numbers", "the numbers that vary"}, shares.ranges.size(),
+              [&](Fields& number, std::size_t k) {
+                const lattice::NumberRange& r = shares.ranges[k];
+                number.text({"key", "the number's key"}, r.key);
+                number.number({"low", "its own", "the range's lower end"}, r.low);
+                number.number({"high", "its own", "the range's upper end"}, r.high);
+                estimate(number,
+                         {"first", "1",
+                          "Sobol's first-order index: share of the variance that the number makes "
+                          "by itself; null: the chance varies by no more than noise"},
+                         i.first[k]);
+                estimate(number,
+                         {"total", "1", "total index: the share that it makes with all others"},
+                         i.total[k]);
+              });
+  out.count({"points", "1", "points of the ranges at which trials were run"}, shares.found.points);
+  out.count({"trials", "1", "trials at all points together"}, shares.found.trials);
+  out.number({"seconds", "s", "time that they took"}, shares.found.seconds);
+  describe_status(out, shares.found.health);
 }
 
 std::string table_of(const RangedShares& shares) {
-  const lattice::SobolIndices& i = shares.found.indices;
+  const auto& [ranges, target, found] = shares;
+  const lattice::SobolIndices& i = found.indices;
   const auto points = [](double share) { return fixed(100.0 * share, 2); };
-  if (shares.found.ended == 0 || shares.found.ended == shares.found.trials)
-    return "\nat all points of these ranges " +
-           std::string(shares.found.ended > 0 ? "all" : "none") + " of " +
-           std::to_string(shares.found.trials) + " trials ended as \"" +
-           name_of(shares.target).name + "\": these cannot\ntell what the chance depends on\n";
-  std::string table = "\nover these ranges the chance of \"" +
-                      std::string(name_of(shares.target).name) + "\" is " + points(i.mean.mean) +
-                      " [" + points(i.mean.interval[0]) + ", " + points(i.mean.interval[1]) +
-                      "] % on average; ";
-  const double half = 0.5 * (i.variance.interval[1] - i.variance.interval[0]);
-  const double most = std::sqrt(std::max(half, i.variance.interval[1]));
-  if (std::isnan(i.first.front().mean))
-    table += "it does not vary\nby more than chance: its standard deviation is at most " +
-             points(most) + " points (more --over-trials see less)\n";
-  else
-    table += "its standard deviation is " + points(std::sqrt(i.variance.mean)) +
-             " points;\nof its variance each number makes\n" + padded("", 34) +
-             padded("range", 20) + padded("alone", 20) + padded("with others, 95 %", 22) + "\n";
-  for (std::size_t k = 0; k < shares.ranges.size() && std::isfinite(i.first[k].mean); ++k) {
-    const lattice::NumberRange& r = shares.ranges[k];
-    table += padded(r.key, -34) +
-             padded(lattice::shortest(r.low) + " to " + lattice::shortest(r.high), 20) +
-             padded(with_interval(i.first[k]), 20) + padded(with_interval(i.total[k]), 22) + "\n";
-  }
-  return table + "by " + std::to_string(shares.found.trials) + " trials at " +
-         std::to_string(shares.found.points) + " points; the chance in the trials of a point is " +
-         "left out, " + fixed(shares.found.seconds, 1) + " s\n";
+  const char* const ending = ending_name(target).name;
+  if (found.ended == 0 || found.ended == found.trials)
+    return fmt::format(
+        "\nat all points of these ranges {} of {} trials ended as \"{}\": these cannot\ntell what "
+        "the chance depends on\n",
+        found.ended > 0 ? "all" : "none", found.trials, ending);
+  const auto& [low, high] = i.variance.interval;
+  TextTable table({{"", -34}, {"range", 20}, {"alone", 20}, {"with others, 95 %", 22}});
+  for (std::size_t k = 0; k < ranges.size() && std::isfinite(i.first[k].mean); ++k)
+    table.row({ranges[k].key,
+               fmt::format("{} to {}", lattice::shortest(ranges[k].low),
+                           lattice::shortest(ranges[k].high)),
+               with_interval(i.first[k]), with_interval(i.total[k])});
+  const std::string varies =
+      std::isnan(i.first.front().mean)
+          ? fmt::format(
+                "it does not vary\nby more than chance: its standard deviation is at most "
+                "{} points (more --over-trials see less)\n",
+                points(std::sqrt(std::max(0.5 * (high - low), high))))
+          : fmt::format("its standard deviation is {} points;\nof its variance each number makes\n",
+                        points(std::sqrt(i.variance.mean))) +
+                table.text();
+  return fmt::format(
+      "\nover these ranges the chance of \"{}\" is {} [{}, {}] % on average; {}by {} trials at {} "
+      "points; the chance in the trials of a point is left out, {} s\n",
+      ending, points(i.mean.mean), points(i.mean.interval[0]), points(i.mean.interval[1]), varies,
+      found.trials, found.points, fixed(found.seconds, 1));
 }
 
 }  // namespace gatewalk::cli

@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How much of the variance of a chance each number makes, as JSON and as a table.
+/// How much of the variance of a chance each number makes, as a result and as a table.
 
 #include <string>
 #include <vector>
 
-#include "cli/render/json_fwd.h"
+#include "cli/render/fields.h"
 #include "lattice/scene/ranges.h"
 #include "lattice/study/variance_shares.h"
 
 namespace gatewalk::cli {
 
 struct RangedShares {
-  std::vector<lattice::NumberRange> ranges;
+  std::vector<lattice::NumberRange> ranges{};
   markov::Ending target{};
-  lattice::VarianceShares found;
+  lattice::VarianceShares found{};
 };
-
-[[nodiscard]] Json to_json(const RangedShares& shares);
+void describe(Fields& out, const RangedShares& shares);
 [[nodiscard]] std::string table_of(const RangedShares& shares);
 
 }  // namespace gatewalk::cli

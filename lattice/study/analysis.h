@@ -50,41 +50,41 @@ struct Analysis {
     constexpr double kRounding = 1e-9;
     return !(target_chance > 0.0 && target_chance < 1.0 - kRounding);
   }
-  bool by_groups = false;     // of trials, which make the intervals; none of bins
-  markov::WalkTotals totals;  // quantities by Section::costs
+  bool by_groups = false;       // of trials, which make the intervals; none of bins
+  markov::WalkTotals totals{};  // quantities by Section::costs
   /// Gates visited, and what bodies took, of all of them. Intervals: sampling, and what smaller
   /// states would change; none without groups, nor from few runs that end so (mean_95).
   /// Why visits, gates, times and costs are no numbers: the sums were stopped with walks under way.
   /// Empty where they are.
   [[nodiscard]] std::string why_unfinished() const;
-  Mean95OfRuns gates;
-  std::vector<Mean95OfRuns> costs;                                   // by Section::costs
-  std::array<std::vector<Mean95OfRuns>, markov::kEndings> costs_of;  // by ending
-  std::vector<markov::TimedWalk> walks;                              // seconds
-  std::optional<markov::QuasiStationary> endless;                    // none: see below
-  std::string why_not_endless;
-  std::vector<double> endless_boundaries;  // its states by face
+  Mean95OfRuns gates{};
+  std::vector<Mean95OfRuns> costs{};                                   // by Section::costs
+  std::array<std::vector<Mean95OfRuns>, markov::kEndings> costs_of{};  // by ending
+  std::vector<markov::TimedWalk> walks{};                              // seconds
+  std::optional<markov::QuasiStationary> endless{};                    // none: see below
+  std::string why_not_endless{};
+  std::vector<double> endless_boundaries{};  // its states by face
   /// All of them; if they are more than kToldStarts, those that have intervals come first.
-  std::vector<StartChance> starts;
+  std::vector<StartChance> starts{};
   [[nodiscard]] std::ptrdiff_t told_starts() const {
     return std::min(std::ssize(starts), kToldStarts);
   }
-  markov::FrequentPaths paths;
+  markov::FrequentPaths paths{};
   /// (rows x columns) visits of bodies that end in the target, per body of these; and per cent that
   /// the chance of the target would grow were one per cent fewer trapped in the gate (d ln P / d
   /// -ln of the share trapped, the others going on as the rest does). Of the target "trapped", and
   /// of one that nobody ends in, the latter is empty.
-  markov::CellProbabilities passed, trapping;
+  markov::CellProbabilities passed{}, trapping{};
   std::vector<double>
-      state_trapping;                 // the latter by shown_number of states, in all gates together
-  std::vector<double> type_trapping;  // and by type of cell
+      state_trapping{};  // the latter by shown_number of states, in all gates together
+  std::vector<double> type_trapping{};  // and by type of cell
   struct Type {
     double visits = 0.0, trapped = 0.0;  // expected, of a body
   };
-  std::vector<Type> types;     // of cells
+  std::vector<Type> types{};   // of cells
   dynamics::StateSpace space;  // of the chain
-  LumpingParts lumping;
-  std::optional<LumpedChain> lumped;  // none where it cannot be made
+  LumpingParts lumping{};
+  std::optional<LumpedChain> lumped{};  // none where it cannot be made
   double seconds = 0.0;
 };
 
