@@ -19,12 +19,13 @@ void Fields::limits_of(const Field& f, const std::optional<Interval>& limits,
   interval(Field(key, f.unit, meaning).varying(bar.empty() ? varies : ""), limits);
 }
 
-void Fields::put_intervals(const Label& l) {
+void Fields::put_intervals(const Label& l, const Description& more) {
   const std::vector<Limits> all = std::move(intervals_.back());
   intervals_.pop_back();
   object(l, [&](Fields& out) {
     for (const Limits& i : all)
       out.interval(Field(i.key, i.unit, i.meaning).varying(i.varies), i.limits);
+    if (more) more(out);
   });
 }
 

@@ -116,6 +116,9 @@ enum class ValueKind {
   gate_numbers,  // rows and columns of lists
 };
 
+class Fields;
+using Description = std::function<void(Fields&)>;
+
 class Fields {
  public:
   Fields() = default;
@@ -285,12 +288,12 @@ class Fields {
     end_either();
   }
   /// The intervals of the numbers that `describe` gives stand behind these, in an object of their
-  /// own with the same keys.
+  /// own with the same keys; behind them those that `more` gives.
   template <class Describe>
-  void with_intervals_in(const Label& l, Describe describe) {
+  void with_intervals_in(const Label& l, Describe describe, const Description& more = {}) {
     intervals_.emplace_back();
     describe(*this);
-    put_intervals(l);
+    put_intervals(l, more);
   }
   /// An object whose numbers have their intervals in a second one, behind it.
   template <class Describe>
@@ -342,11 +345,9 @@ class Fields {
       return static_cast<std::int64_t>(n);
   }
   void limits_of(const Field& f, const std::optional<Interval>& limits, std::string_view bar);
-  void put_intervals(const Label& l);
+  void put_intervals(const Label& l, const Description& more);
 
   std::vector<std::vector<Limits>> intervals_;  // those that are still to be put, innermost last
 };
-
-using Description = std::function<void(Fields&)>;
 
 }  // namespace gatewalk::cli

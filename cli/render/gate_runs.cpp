@@ -14,9 +14,9 @@ namespace gatewalk::cli {
 
 using dynamics::Outcome;
 
-void describe(Fields& out, const dynamics::GateTally& tally) {
+void describe(Fields& out, const dynamics::GateTally& tally, const Description& more) {
   out.count({"trials", "1", "runs of the gate"}, tally.trials);
-  out.with_intervals_in({"intervals_95", "95 % intervals of the shares"}, [&](Fields& f) {
+  const auto all = [&](Fields& f) {
     const auto counted = [&](const Field& field, std::int64_t n) {
       f.counted(field, n, dynamics::share_interval(n, tally.trials));
     };
@@ -30,7 +30,8 @@ void describe(Fields& out, const dynamics::GateTally& tally) {
       else
         f.count(field, tally[outcome]);
     }
-  });
+  };
+  out.with_intervals_in({"intervals_95", "95 % intervals of the shares"}, all, more);
 }
 
 void describe(Fields& out, const GateResult& result) {

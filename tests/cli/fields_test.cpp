@@ -134,6 +134,34 @@ TEST(Fields, TheSchemaIsThatOfAllResultsWhateverTheExampleHas) {
   EXPECT_EQ(keys["by"]["additionalProperties"]["unit"], "J");
 }
 
+/// What is no number, or a list of lists.
+void describe_others(Fields& out) {
+  out.text_rows({"best", "in each gate"}, {{"a", std::nullopt}, {"b", "a"}});
+  out.given({"step", "its own", "as it was given"}, "0.5");
+  out.givens({"values", "its own", "as they were given"}, {"6", "6.0", "1e400", "auto"});
+  out.points({"way_m", "m", "places"}, {{0.0, 1.5}, {kUnknown, 2.0}});
+  out.with_intervals_in(
+      {"intervals_95", "of these"},
+      [](Fields& f) {
+        f.counted({"seen", "1", "that were seen"}, 7, Interval{0.25, 0.75});
+      },
+      [](Fields& f) {
+        f.interval({"right", "1", "of what has no count"}, Interval{0.5, kUnknown});
+      });
+}
+
+TEST(Fields, TextsOfGatesWhatAUserGavePlacesAndMoreIntervals) {
+  EXPECT_EQ(json_text_of(describe_others),
+            R"({"best":[["a",null],["b","a"]],"step":0.5,"values":[6,6.0,"1e400","auto"],)"
+            R"("way_m":[[0.0,1.5],[null,2.0]],"seen":7,)"
+            R"("intervals_95":{"seen":[0.25,0.75],"right":[0.5,null]}})");
+  const Json schema = parsed_json(schema_of({"x", describe_others})), &keys = schema["properties"];
+  EXPECT_EQ(keys["best"]["items"]["items"]["type"].dump(), R"(["string","null"])");
+  EXPECT_EQ(keys["values"]["items"]["type"].dump(), R"(["number","string"])");
+  EXPECT_EQ(keys["way_m"]["items"]["maxItems"], 2);
+  EXPECT_EQ(keys["intervals_95"]["required"].dump(), R"(["seen","right"])");
+}
+
 TEST(Fields, AKeyWithoutMeaningOrAListWithoutItemIsAMistakeOfTheProgram) {
   EXPECT_THROW((void)schema_of({"x",
                                 [](Fields& out) {
