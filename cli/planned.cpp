@@ -12,7 +12,6 @@
 #include "cli/render/best_start.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/plan.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
@@ -143,12 +142,9 @@ int plan_start(const Options& options, Subject s) {
   s.settle(options);
   const dynamics::Stopwatch watch;
   lattice::BestStart found = lattice::best_start(s.problem, how, options.work());
-  const FoundStart shown{s.shown(),   s.problem.start,  how.ranges,
-                         how.columns, std::move(found), watch.seconds()};
-  Json json = to_json(shown);
-  if (s.settled) json["method"] = to_json(*s.settled);
-  json["made_by"] = s.made_by(options);
-  options.give_out(json, table_of(shown) + method_line(s.settled));
+  const FoundStart shown{s.shown(),        s.problem.start, how.ranges, how.columns,
+                         std::move(found), watch.seconds(), s.settled,  s.provenance(options)};
+  options.give_out(shown, table_of(shown) + method_line(s.settled));
   options.warn(few_crossings(shown.found.crossings));
   warn_of_choosing(options, shown.found.settled, shown.found.gate_runs);
   options.warn(too_few_gates(s.shown()));

@@ -9,7 +9,6 @@
 #include "cli/exchange/policy_file.h"
 #include "cli/planned.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "dynamics/base/work.h"
@@ -65,11 +64,9 @@ int run_plan(const Arguments& arguments) {
   Actions all = actions_of(options, s);
   const dynamics::Stopwatch watch;
   lattice::Plan plan = lattice::make_plan(all.actions, how, options.work());
-  const PlannedField planned{s.shown(),       all.names(),     std::move(all.methods),
-                             std::move(plan), watch.seconds(), how.thrift};
-  Json json = to_json(planned);
-  json["made_by"] = s.made_by(options);
-  options.give_out(json, table_of(planned));
+  const PlannedField planned{s.shown(),       all.names(), std::move(all.methods), std::move(plan),
+                             watch.seconds(), how.thrift,  s.provenance(options)};
+  options.give_out(planned, table_of(planned));
   if (options.has("policy"))
     options.write(options.text("policy"), policy_text(chosen_policy(planned), all.made_for));
   if (options.has("gate-policy")) {

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/best_start.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <utility>
 
+#include "cli/render/choice.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/panel.h"
 #include "cli/render/plan.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -18,7 +20,7 @@ namespace {
 constexpr int kParts = 40;  // of each range in a map
 
 std::string column_text(const FoundStart& f, int column) {
-  return "i_x " + std::to_string(column - f.shown.field.start_column());
+  return fmt::format("i_x {}", column - f.shown.field.start_column());
 }
 
 /// The start of a column that the chain takes for the best, on the map.
@@ -31,9 +33,37 @@ std::string verdict(const FoundStart& f) {
   if (f.found.own)
     return "no start was found that is better than the own one by more than chance\n";
   const std::string gain = gain_text(f.found.gain);
-  if (f.found.gain.interval_95[0] > 0.0) return "it gains " + gain + " points over the own start\n";
-  return "it is not shown to gain anything over the own start: " + gain +
-         " points; a smaller --accuracy\nshows a smaller gain, if there is one\n";
+  if (f.found.gain.interval_95[0] > 0.0)
+    return fmt::format("it gains {} points over the own start\n", gain);
+  return fmt::format(
+      "it is not shown to gain anything over the own start: {} points; a smaller --accuracy\nshows "
+      "a smaller gain, if there is one\n",
+      gain);
+}
+
+void describe_column(Fields& out, const FoundStart& f, int column) {
+  out.count({"i_x", "1", "the column, counted from that of the field's start"},
+            column - f.shown.field.start_column());
+}
+
+/// What the map of a column shows.
+void describe_map(Fields& out, const FoundStart& f, int column) {
+  const StartMap map = map_of(f, column);
+  describe_column(out, f, column);
+  const auto middles = [&](std::size_t range, const std::vector<double>& numbers) {
+    const dynamics::Coordinate& c = f.shown.map.section.coordinates[f.ranges[range].coordinate];
+    out.numbers(Field(c.key, "its own", "numbers of the start at which its chance is given")
+                    .varying("<coordinate>"),
+                numbers);
+  };
+  middles(0, map.across);
+  if (f.ranges.size() > 1) middles(1, map.up);
+  const markov::CellProbabilities chance = Eigen::Map<const markov::CellProbabilities>(
+      map.chance.data(), std::ssize(map.up), std::ssize(map.across));
+  out.grid({"chance", "1",
+            "chance to cross by the chain: columns by the first range, rows by the second, if "
+            "there is one; other numbers are those of the best start"},
+           chance);
 }
 
 }  // namespace
@@ -59,71 +89,57 @@ StartMap map_of(const FoundStart& f, int column) {
   return map;
 }
 
-Json to_json(const FoundStart& f) {
-  const dynamics::Section& section = f.shown.map.section;
+void describe(Fields& out, const FoundStart& f) {
   const lattice::BestStart& found = f.found;
-  Json json;
-  json["crossed"] = found.crossings.share();
-  json["interval_95"] = found.crossings.interval_95();
-  json["trials"] = found.crossings.trials;
-  json["chain"] = found.chance(found.best);
-  json["start"] = to_json(section, Start(found.best.entry));
-  json["start"]["i_x"] = found.best.column - f.shown.field.start_column();
-  json["is_own"] = found.own;
-  json["own"] = {{"start", to_json(section, Start(f.own))},
-                 {"crossed", found.crossings_of_own.share()},
-                 {"interval_95", found.crossings_of_own.interval_95()}};
-  json["gain"] = found.gain.difference;
-  json["gain_95"] = gain_95(found.gain);
-  for (const lattice::CoordinateRange& range : f.ranges)
-    json["ranges"][section.coordinates[range.coordinate].key] = {range.low, range.high};
-  for (const int column : f.columns) {
-    const StartMap map = map_of(f, column);
-    Json of{{"i_x", column - f.shown.field.start_column()}};
-    const auto name = [&](std::size_t r) {
-      return section.coordinates[f.ranges[r].coordinate].key;
-    };
-    of[name(0)] = map.across;
-    if (f.ranges.size() > 1) of[name(1)] = map.up;
-    for (std::size_t row = 0; row < map.up.size(); ++row)
-      of["chance"].push_back(std::vector<double>(
-          map.chance.begin() + static_cast<std::ptrdiff_t>(row * kParts),
-          map.chance.begin() + static_cast<std::ptrdiff_t>((row + 1) * kParts)));
-    json["starts"].push_back(std::move(of));
-  }
-  json["rounds"] = found.rounds;
-  json["settled"] = found.settled;
-  json["gate_runs"] = found.gate_runs;
-  json["seconds"] = f.seconds;
-  json["status"] = to_json(found.health);
-  return json;
+  const dynamics::Section& section = f.shown.map.section;
+  describe_chance(out, found.crossings, found.chance(found.best));
+  out.object({"start", "the best start"}, [&](Fields& start) {
+    describe(start, section, found.best.entry);
+    describe_column(start, f, found.best.column);
+  });
+  out.flag({"is_own", "whether no start was better than the own one by more than a standard error"},
+           found.own);
+  out.object({"own", "the start of the scene, or of --start"}, [&](Fields& own) {
+    describe_start(own, {"start", "where it is"}, section, f.own);
+    describe_crossed(own, "share of trials from it that crossed", found.crossings_of_own);
+  });
+  describe_gain(out, "of the best start over the own one, of new trials of both", found.gain);
+  out.object({"ranges", "where bodies may start, by the keys of start"}, [&](Fields& ranges) {
+    for (const lattice::CoordinateRange& range : f.ranges) {
+      const dynamics::Coordinate& c = section.coordinates[range.coordinate];
+      ranges.numbers(Field(c.key, "its own", "from and to").varying("<coordinate>"),
+                     {range.low, range.high});
+    }
+  });
+  out.list({"starts", "by column: the chance to cross by start"}, f.columns,
+           [&](Fields& map, int column) { describe_map(map, f, column); });
+  describe_search(out, found, f.seconds);
+  describe_method(out, f.method);
+  describe_made_by(out, f.made_by);
 }
 
 std::string table_of(const FoundStart& f) {
-  const dynamics::Section& section = f.shown.map.section;
   const lattice::BestStart& found = f.found;
   const bool several = f.columns.size() > 1;
-  const auto line = [&](const std::string& name, const lattice::TrialStart& start,
+  TextTable table({{"", -8}, {"crossed, %", 22}, {}});
+  const auto line = [&](const char* name, const lattice::TrialStart& start,
                         const lattice::Crossings& crossings) {
-    return "  " + padded(name, -6) +
-           padded(with_interval(crossings.share(), crossings.interval_95()), 22) + "   " +
-           title_of(section, start.entry) + (several ? ", " + column_text(f, start.column) : "") +
-           "\n";
+    table.row({name, with_interval(crossings.share(), crossings.interval_95()),
+               "   " + title_of(f.shown.map.section, start.entry) +
+                   (several ? ", " + column_text(f, start.column) : "")});
   };
-  std::string table =
-      "chance to cross: " + with_interval(found.crossings.share(), found.crossings.interval_95()) +
-      " % of " + std::to_string(found.crossings.trials) + " trials by which nothing was chosen\n" +
-      verdict(f) + "\n" + padded("crossed, %", 30) + "\n" +
-      line("best", found.best, found.crossings) +
-      line("own", {f.shown.field.start_column(), f.own}, found.crossings_of_own);
+  line("  best", found.best, found.crossings);
+  line("  own", {f.shown.field.start_column(), f.own}, found.crossings_of_own);
+  std::string text = chance_text(found.crossings) + trials_text(found.crossings) + verdict(f) +
+                     "\n" + table.text();
   if (several) {
-    table += "\nthe best start of each column, by the chain:\n";
+    text += "\nthe best start of each column, by the chain:\n";
+    TextTable columns({{"", 10}, {"", 12, 2, "%"}});
     for (const int column : f.columns)
-      table += padded(column_text(f, column), 10) +
-               padded(fixed(100.0 * best_in(f, column), 2) + " %", 12) + "\n";
+      columns.row({column_text(f, column), 100.0 * best_in(f, column)});
+    text += columns.text();
   }
-  return table + std::to_string(found.gate_runs) + " gate runs in " + std::to_string(found.rounds) +
-         (found.rounds == 1 ? " round, " : " rounds, ") + fixed(f.seconds, 1) + " s\n";
+  return text + rounds_text(found.gate_runs, found.rounds) + fixed(f.seconds, 1) + " s\n";
 }
 
 Figure figure_of(const FoundStart& f) {

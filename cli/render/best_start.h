@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The best start of a body as JSON, as a table and as a picture.
+/// The best start of a body as a result, as a table and as a picture.
 
-#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 #include "cli/render/shown_field.h"
 #include "dynamics/cells/section.h"
+#include "lattice/scene/settle.h"
 #include "lattice/study/best_start.h"
 
 namespace gatewalk::cli {
 
-/// A best start, what it was looked for in, and the scene's own.
+/// The result of `plan` for a scene without actions: a best start, what it was looked for in, and
+/// the scene's own.
 struct FoundStart {
   ShownField shown;
   dynamics::Entry own;
@@ -22,9 +25,10 @@ struct FoundStart {
   std::vector<int> columns;
   lattice::BestStart found;
   double seconds = 0.0;
+  std::optional<lattice::Settled> method{};
+  Provenance made_by{};
 };
-
-[[nodiscard]] Json to_json(const FoundStart& f);
+void describe(Fields& out, const FoundStart& f);
 [[nodiscard]] std::string table_of(const FoundStart& f);
 /// The chance to cross by start in the best column, and in full from the best and the own one.
 [[nodiscard]] Figure figure_of(const FoundStart& f);

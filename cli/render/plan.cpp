@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/plan.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "cli/render/choice.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -25,11 +25,8 @@ std::size_t cells_in(const PlannedField& p) {
 
 /// How often an action is taken, per trial: (rows x columns).
 markov::CellProbabilities usage_of(const PlannedField& p, std::size_t action) {
-  markov::CellProbabilities usage(p.shown.field.rows, p.shown.field.columns);
-  const double* from = p.plan.usage.data() + action * cells_in(p);
-  for (Eigen::Index r = 0; r < usage.rows(); ++r)
-    for (Eigen::Index c = 0; c < usage.cols(); ++c) usage(r, c) = *from++;
-  return usage;
+  return Eigen::Map<const markov::CellProbabilities>(p.plan.usage.data() + action * cells_in(p),
+                                                     p.shown.field.rows, p.shown.field.columns);
 }
 
 /// What stands for an action in a map.
@@ -41,11 +38,12 @@ std::string map_text(const PlannedField& p) {
   const int columns = p.shown.field.columns, rows = p.shown.field.rows;
   if (columns > kMostPrinted || rows > kMostPrinted || p.actions.size() > kMarks.size()) return "";
   const std::vector<MostTaken> most = most_taken(p);
-  std::string text = "\nthe action that is taken most in each gate (.: fewer than " +
-                     std::to_string(kFewVisits) + " of " + std::to_string(p.plan.crossings.trials) +
-                     " bodies came), far row first:\n";
+  std::string text = fmt::format(
+      "\nthe action that is taken most in each gate (.: fewer than {} of {} bodies came), far row "
+      "first:\n",
+      kFewVisits, p.plan.crossings.trials);
   for (int r = rows; r-- > 0;) {
-    text += padded(std::to_string(r), 4) + " ";
+    text += fmt::format("{:>4} ", r);
     for (int c = 0; c < columns; ++c) {
       const MostTaken& here = most[static_cast<std::size_t>(r * columns + c)];
       text += {' ', here.shown ? mark_of(static_cast<std::size_t>(here.action)) : '.'};
@@ -59,89 +57,117 @@ std::string map_text(const PlannedField& p) {
 std::string verdict(const PlannedField& p) {
   const std::size_t best = best_alone(p.plan);
   const lattice::Gain& gain = p.plan.gains[best];
-  const std::string& name = p.actions[best];
+  const std::string &name = p.actions[best], points = gain_text(gain);
   if (const auto& always = p.plan.policy.always)
-    return "the best that was found is to take " + p.actions[static_cast<std::size_t>(*always)] +
-           " all the time\n";
+    return fmt::format("the best that was found is to take {} all the time\n",
+                       p.actions[static_cast<std::size_t>(*always)]);
   if (gain.interval_95[1] < 0.0)
-    return "the plan is worse than " + name + " all the time, " + gain_text(gain) +
-           " points: chosen by chance; a smaller --accuracy helps\n";
+    return fmt::format(
+        "the plan is worse than {} all the time, {} points: chosen by chance; a smaller --accuracy "
+        "helps\n",
+        name, points);
   if (gain.interval_95[0] > 0.0)
-    return "choosing by the way in gains " + gain_text(gain) + " points over " + name +
-           " all the time\n";
-  return "choosing by the way in is not shown to gain anything over " + name +
-         " all the time: " + gain_text(gain) +
-         " points; a smaller --accuracy\nshows a smaller gain, if there is one\n";
+    return fmt::format("choosing by the way in gains {} points over {} all the time\n", points,
+                       name);
+  return fmt::format(
+      "choosing by the way in is not shown to gain anything over {} all the time: {} points; a "
+      "smaller --accuracy\nshows a smaller gain, if there is one\n",
+      name, points);
 }
 
 std::string worst_text(const lattice::Plan& plan) {
   if (!plan.worst_case) return "";
-  return "with each row 1.96 standard errors worse than counted: " +
-         fixed(100.0 * *plan.worst_case, 2) + " %\n";
+  return fmt::format("with each row 1.96 standard errors worse than counted: {} %\n",
+                     fixed(100.0 * *plan.worst_case, 2));
 }
 
-/// The action that a policy of gates alone takes in each: (rows x columns).
-Json by_gate_of(const PlannedField& p) {
-  if (!p.plan.by_cell) return {};
-  const auto& [policy, crossings, worth, searched] = *p.plan.by_cell;
-  Json json{{"crossed", crossings.share()},
-            {"interval_95", crossings.interval_95()},
-            {"gain", worth.difference},
-            {"gain_95", gain_95(worth)},
-            {"searched", searched}};
-  const markov::Decisions& d = policy.decisions;
-  for (int r = 0; r < d.field.rows; ++r) {
-    Json row;
-    for (int c = 0; c < d.field.columns; ++c) row.push_back(p.actions[d.action[d.at(c, r, 0)]]);
-    json["action"].push_back(std::move(row));
-  }
-  return json;
+const dynamics::CostInfo& cost_of(const PlannedField& p) {
+  return p.shown.map.section.costs[p.thrift->cost];
 }
 
-Json interval_of(const std::array<double, 2>& interval) {
-  return {or_null(interval[0]), or_null(interval[1])};
-}
-Json front_of(const PlannedField& p) {
-  Json json = Json::array();
-  const std::optional<std::size_t> chosen = cheapest(p);
-  for (std::size_t i = 0; i < p.plan.front.size(); ++i) {
-    const lattice::FrontPoint& point = p.plan.front[i];
-    json.push_back(
-        {{"price", point.price},
-         {"crossed", point.crossings.share()},
-         {"interval_95", point.crossings.interval_95()},
-         {"mean", point.spent.mean},
-         {"mean_95", std::isfinite(point.spent.mean_95[0]) ? Json(point.spent.mean_95) : Json()},
-         {"per_crossing", or_null(point.spent.per_crossing)},
-         {"per_crossing_95", interval_of(point.spent.per_crossing_95)},
-         {"chosen", chosen == i}});
-  }
-  return json;
-}
 std::string front_text(const PlannedField& p) {
   if (!p.thrift) return "";
-  const dynamics::CostInfo& cost = p.shown.map.section.costs[p.thrift->cost];
+  const dynamics::CostInfo& cost = cost_of(p);
   const auto amount = [&](double x) {
     return std::isinf(x) ? std::string("no end") : quantity(x, cost.unit, 3);
   };
   const auto between = [&](double mean, const std::array<double, 2>& interval) {
     if (std::isnan(interval[0]) && std::isfinite(mean)) return amount(mean) + " (few trials)";
-    return amount(mean) + " [" + amount(interval[0]) + ", " + amount(interval[1]) + "]";
+    return fmt::format("{} [{}, {}]", amount(mean), amount(interval[0]), amount(interval[1]));
   };
   if (p.plan.front.size() < 2)
-    return "\nno policy was found that takes less for each crossing (" + cost.words + ")\n";
-  std::string text = "\npolicies that take less (" + cost.words + "), under the same noise:\n\n" +
-                     padded("crossed, %", 24) + padded("a trial takes", 32) +
-                     padded("each crossing takes", 32) + "\n";
+    return fmt::format("\nno policy was found that takes less for each crossing ({})\n",
+                       cost.words);
+  TextTable table(
+      {{"", -2}, {"crossed, %", 22}, {"a trial takes", 32}, {"each crossing takes", 32}});
   const std::optional<std::size_t> chosen = cheapest(p);
   for (std::size_t i = 0; i < p.plan.front.size(); ++i) {
-    const lattice::FrontPoint& point = p.plan.front[i];
-    text += (chosen == i ? "* " : "  ") +
-            padded(with_interval(point.crossings.share(), point.crossings.interval_95()), 22) +
-            padded(between(point.spent.mean, point.spent.mean_95), 32) +
-            padded(between(point.spent.per_crossing, point.spent.per_crossing_95), 32) + "\n";
+    const auto& [price, policy, crossings, spent] = p.plan.front[i];
+    table.row({chosen == i ? "*" : "", with_interval(crossings.share(), crossings.interval_95()),
+               between(spent.mean, spent.mean_95),
+               between(spent.per_crossing, spent.per_crossing_95)});
   }
-  return text;
+  return fmt::format("\npolicies that take less ({}), under the same noise:\n\n{}", cost.words,
+                     table.text());
+}
+
+/// The action that is taken most in each gate; none where nobody came.
+TextRows most_taken_rows(const PlannedField& p) {
+  const std::vector<MostTaken> most = most_taken(p);
+  TextRows rows(static_cast<std::size_t>(p.shown.field.rows));
+  for (std::size_t cell = 0; cell < most.size(); ++cell) {
+    auto& row = rows[cell / static_cast<std::size_t>(p.shown.field.columns)];
+    row.emplace_back();
+    if (const int action = most[cell].action; action >= 0)
+      row.back() = p.actions[static_cast<std::size_t>(action)];
+  }
+  return rows;
+}
+
+/// The action that a policy of gates alone takes in each.
+TextRows action_rows(const PlannedField& p, const markov::Decisions& d) {
+  TextRows rows(static_cast<std::size_t>(d.field.rows));
+  for (int r = 0; r < d.field.rows; ++r)
+    for (int c = 0; c < d.field.columns; ++c)
+      rows[static_cast<std::size_t>(r)].emplace_back(p.actions[d.action[d.at(c, r, 0)]]);
+  return rows;
+}
+
+void describe_action(Fields& out, const PlannedField& p, std::size_t a) {
+  out.text({"name", "of the action"}, p.actions[a]);
+  describe_crossed(out, "share of trials that crossed with this action all the time",
+                   p.plan.alone[a]);
+  describe_gain(out, "of the plan over this action all the time, under the same noise",
+                p.plan.gains[a]);
+  out.grid({"taken", "1", "how often the plan takes it in each gate, per trial"}, usage_of(p, a));
+  describe_method(out, p.methods[a]);
+}
+
+void describe_front(Fields& out, const PlannedField& p) {
+  const dynamics::CostInfo& cost = cost_of(p);
+  out.text({"least", "the cost of which the policies of front take less"}, cost.key);
+  out.list_of(
+      {"front", "policies from the plan's own to that which takes least for each crossing"},
+      p.plan.front.size(), [&](Fields& policy, std::size_t i) {
+        const auto& [price, does, crossings, spent] = p.plan.front[i];
+        policy.number({"price", "its own", "chance to cross that a unit of the cost was worth"},
+                      price);
+        describe_crossed(policy, "share of trials that crossed under this policy", crossings);
+        policy.estimate(
+            {"mean", cost.unit, "what a trial takes, however it ends"}, spent.mean,
+            std::isfinite(spent.mean_95[0]) ? std::optional(spent.mean_95) : std::nullopt);
+        policy.estimate({"per_crossing", cost.unit,
+                         "what all trials take for each that crosses; null: none crossed"},
+                        spent.per_crossing, spent.per_crossing_95);
+        policy.flag({"chosen",
+                     "whether it takes least of those that cross as often as --chance "
+                     "asks"},
+                    cheapest(p) == i);
+      });
+  out.flag({"front_finished",
+            "whether nothing was found that takes less for each crossing than the last of front; "
+            "no: there were no more runs, or points"},
+           p.plan.front_finished);
 }
 
 }  // namespace
@@ -160,26 +186,55 @@ const lattice::Policy& chosen_policy(const PlannedField& p) {
   return best ? p.plan.front[*best].policy : p.plan.policy;
 }
 
-Json gain_95(const lattice::Gain& gain) {
-  return std::isnan(gain.interval_95[0]) ? Json() : Json(gain.interval_95);
+void describe_crossed(Fields& out, std::string_view meaning, const lattice::Crossings& c) {
+  out.estimate({"crossed", "1", meaning}, c.share(), c.interval_95(), "interval_95");
+}
+
+void describe_chance(Fields& out, const lattice::Crossings& c, double chain) {
+  describe_crossed(out, "share of new trials that crossed, none of which was used to choose", c);
+  out.count({"trials", "1", "new trials, as many of each action or start that is compared"},
+            c.trials);
+  out.number({"chain", "1",
+              "the chance to cross by the chain that chose; null: one action all the time, or "
+              "--robust"},
+             chain);
+}
+
+void describe_gain(Fields& out, std::string_view meaning, const lattice::Gain& gain) {
+  out.estimate({"gain", "1", meaning}, gain.difference,
+               std::isnan(gain.interval_95[0]) ? std::nullopt : std::optional(gain.interval_95));
+}
+
+std::string chance_text(const lattice::Crossings& c) {
+  return fmt::format("chance to cross: {} %", with_interval(c.share(), c.interval_95()));
+}
+
+std::string trials_text(const lattice::Crossings& c) {
+  return fmt::format(" of {} trials by which nothing was chosen\n", c.trials);
 }
 
 std::string gain_text(const lattice::Gain& gain) {
   const auto points = [](double x) { return fixed(100.0 * x, 2); };
   if (std::isnan(gain.interval_95[0])) return points(gain.difference);
-  return (gain.difference > 0.0 ? "+" : "") + points(gain.difference) + " [" +
-         points(gain.interval_95[0]) + ", " + points(gain.interval_95[1]) + "]";
+  return fmt::format("{}{} [{}, {}]", gain.difference > 0.0 ? "+" : "", points(gain.difference),
+                     points(gain.interval_95[0]), points(gain.interval_95[1]));
+}
+
+std::string rounds_text(std::int64_t gate_runs, int rounds) {
+  return fmt::format("{} gate runs in {}, ", gate_runs, counted(rounds, "round", "rounds"));
 }
 
 std::string few_crossings(const lattice::Crossings& c) {
   constexpr std::int64_t kFew = 30;
   if (c.crossed >= kFew) return "";
   if (c.crossed == 0)
-    return "none of " + std::to_string(c.trials) +
-           " trials crossed: too rare to choose by; a smaller field.rows asks for less, gatewalk "
-           "rare says how rare it is";
-  return "only " + std::to_string(c.crossed) + " of " + std::to_string(c.trials) +
-         " trials crossed: few show what helps; a smaller --accuracy runs more";
+    return fmt::format(
+        "none of {} trials crossed: too rare to choose by; a smaller field.rows asks for less, "
+        "gatewalk rare says how rare it is",
+        c.trials);
+  return fmt::format(
+      "only {} of {} trials crossed: few show what helps; a smaller --accuracy runs more",
+      c.crossed, c.trials);
 }
 
 std::vector<MostTaken> most_taken(const PlannedField& p) {
@@ -213,78 +268,75 @@ std::size_t best_alone(const lattice::Plan& plan) {
   return static_cast<std::size_t>(most - plan.alone.begin());
 }
 
-Json to_json(const PlannedField& p) {
+void describe(Fields& out, const PlannedField& p) {
   const lattice::Plan& plan = p.plan;
-  Json json;
-  json["crossed"] = plan.crossings.share();
-  json["interval_95"] = plan.crossings.interval_95();
-  json["trials"] = plan.crossings.trials;
-  json["chain"] = std::isnan(plan.chain_says) ? Json() : Json(plan.chain_says);
-  if (plan.worst_case) json["worst_case"] = *plan.worst_case;
-  json["best_alone"] = p.actions[best_alone(plan)];
-  for (std::size_t a = 0; a < p.actions.size(); ++a) {
-    Json action{{"name", p.actions[a]},
-                {"crossed", plan.alone[a].share()},
-                {"interval_95", plan.alone[a].interval_95()},
-                {"gain", plan.gains[a].difference},
-                {"gain_95", gain_95(plan.gains[a])},
-                {"taken", grid(usage_of(p, a))}};
-    if (p.methods[a]) action["method"] = to_json(*p.methods[a]);
-    json["actions"].push_back(std::move(action));
-  }
-  const std::vector<MostTaken> most = most_taken(p);
-  for (int r = 0; r < p.shown.field.rows; ++r) {
-    Json row;
-    for (int c = 0; c < p.shown.field.columns; ++c) {
-      const int action = most[static_cast<std::size_t>(r * p.shown.field.columns + c)].action;
-      row.push_back(action < 0 ? Json() : Json(p.actions[static_cast<std::size_t>(action)]));
-    }
-    json["most_taken"].push_back(std::move(row));
-  }
-  json["by_gate"] = by_gate_of(p);
-  if (p.thrift) {
-    json["least"] = p.shown.map.section.costs[p.thrift->cost].key;
-    json["front"] = front_of(p);
-    json["front_finished"] = p.plan.front_finished;
-  }
-  json["rounds"] = plan.rounds;
-  json["settled"] = plan.settled;
-  json["gate_runs"] = plan.gate_runs;
-  json["seconds"] = p.seconds;
-  json["status"] = to_json(plan.health);
-  return json;
+  describe_chance(out, plan.crossings, plan.chain_says);
+  out.optional(plan.worst_case.has_value(), [&](Fields& f) {
+    f.number({"worst_case", "1",
+              "with --robust: what that chain says where the mean of each of its rows is 1.96 "
+              "standard errors worse than was counted (in symmetric gates 2.77); of one action all "
+              "the time, the chain of leaves of the middle size"},
+             plan.worst_case.value_or(kUnknown));
+  });
+  out.text({"best_alone", "the action that crosses most often all the time"},
+           p.actions[best_alone(plan)]);
+  out.list_of({"actions", "what a body may do"}, p.actions.size(),
+              [&](Fields& action, std::size_t a) { describe_action(action, p, a); });
+  out.text_rows({"most_taken",
+                 "the action that is taken most in each gate (null: nobody came), rows from the "
+                 "start's side on"},
+                most_taken_rows(p));
+  out.maybe({"by_gate",
+             "the best that was found of policies that know the gate alone, not the way in nor how "
+             "many gates were passed; null: no body crossed"},
+            plan.by_cell, [&](Fields& gates, const lattice::Plan::ByCell& by_cell) {
+              const auto& [policy, crossings, worth, searched] = by_cell;
+              describe_crossed(gates, "share of trials that crossed under it", crossings);
+              describe_gain(gates,
+                            "of the plan over it, under the same noise: what it is worth to know "
+                            "the way in, and how many gates were passed",
+                            worth);
+              gates.flag({"searched",
+                          "no: the field is so large that not all was tried, and there may be a "
+                          "better one"},
+                         searched);
+              gates.text_rows(
+                  {"action", "what it does in each gate, rows from the start's side on"},
+                  action_rows(p, policy.decisions));
+            });
+  out.optional(p.thrift.has_value(), [&](Fields& f) { describe_front(f, p); });
+  describe_search(out, plan, p.seconds);
+  describe_made_by(out, p.made_by);
 }
 
 std::string table_of(const PlannedField& p) {
   const lattice::Plan& plan = p.plan;
-  std::size_t width = plan.by_cell ? 10 : 6;
-  for (const std::string& name : p.actions) width = std::max(width, name.size());
-  const int name_width = -static_cast<int>(width) - 2;
-  std::string table =
-      "chance to cross: " + with_interval(plan.crossings.share(), plan.crossings.interval_95()) +
-      " % of " + std::to_string(plan.crossings.trials) + " trials by which nothing was chosen\n" +
-      worst_text(plan) + verdict(p) + "\neach action all the time, under the same noise:\n\n    " +
-      padded("action", name_width) + padded("crossed, %", 22) +
-      padded("the plan's gain, points", 28) + padded("the plan takes it", 20) + "\n";
+  TextTable table({{"", -4},
+                   {"action", -kFit},
+                   {"crossed, %", 22, 0, "", "  "},
+                   {"the plan's gain, points", 28},
+                   {"the plan takes it", 20, 1, "%"}});
   double all = 0.0;
   for (const double u : plan.usage) all += u;
   for (std::size_t a = 0; a < p.actions.size(); ++a)
-    table += std::string("  ") + mark_of(a) + " " + padded(p.actions[a], name_width) +
-             padded(with_interval(plan.alone[a].share(), plan.alone[a].interval_95()), 22) +
-             padded(gain_text(plan.gains[a]), 28) +
-             padded(fixed(100.0 * usage_of(p, a).sum() / all, 1) + " %", 20) + "\n";
-  if (plan.by_cell)
-    table += "    " + padded("gate alone", name_width) +
-             padded(with_interval(plan.by_cell->crossings.share(),
-                                  plan.by_cell->crossings.interval_95()),
-                    22) +
-             padded(gain_text(plan.by_cell->worth), 28) + "\n";
-  if (plan.by_cell && !plan.by_cell->searched)
-    table +=
-        "gate alone: not all that was to be tried was, in so large a field; there may be better\n";
-  return table + front_text(p) + map_text(p) + std::to_string(plan.gate_runs) + " gate runs in " +
-         std::to_string(plan.rounds) + (plan.rounds == 1 ? " round, " : " rounds, ") +
-         fixed(p.seconds, 1) + " s\n";
+    table.row({fmt::format("  {}", mark_of(a)), p.actions[a],
+               with_interval(plan.alone[a].share(), plan.alone[a].interval_95()),
+               gain_text(plan.gains[a]), 100.0 * usage_of(p, a).sum() / all});
+  std::string not_searched;
+  if (const auto& gates = plan.by_cell) {
+    table.row({"", "gate alone",
+               with_interval(gates->crossings.share(), gates->crossings.interval_95()),
+               gain_text(gates->worth)});
+    if (!gates->searched)
+      not_searched =
+          "gate alone: not all that was to be tried was, in so large a field; there may be "
+          "better\n";
+  }
+  return fmt::format(
+      "{}{}{}{}\neach action all the time, under the same noise:\n\n{}{}{}{}{}{} s\n",
+      chance_text(plan.crossings), trials_text(plan.crossings), worst_text(plan), verdict(p),
+      table.text(), not_searched, front_text(p), map_text(p),
+      rounds_text(plan.gate_runs, plan.rounds), fixed(p.seconds, 1));
 }
 
 }  // namespace gatewalk::cli

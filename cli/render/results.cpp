@@ -2,17 +2,20 @@
 #include <utility>
 
 #include "cli/render/analysis.h"
+#include "cli/render/best_start.h"
 #include "cli/render/cut_tracks.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/files.h"
 #include "cli/render/gate_runs.h"
 #include "cli/render/matrix.h"
 #include "cli/render/power.h"
+#include "cli/render/plan.h"
 #include "cli/render/prediction.h"
 #include "cli/render/rare.h"
 #include "cli/render/schema.h"
 #include "cli/render/stability.h"
 #include "cli/render/work_precision.h"
+#include "dynamics/disc/disc_section.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -23,10 +26,14 @@ ResultOf of(const char* command, Result example = {}) {
   return {command, [example = std::move(example)](Fields& out) { describe(out, example); }};
 }
 
+dynamics::StateSpace states() {
+  const dynamics::Section& section = dynamics::disc_section();
+  return {section, std::vector<dynamics::Tree>(section.faces.size())};
+}
+
 /// With a gate of another type.
 lattice::MatrixFile matrix_file() {
-  const dynamics::Transitions t(dynamics::StateSpace(
-      dynamics::disc_section(), std::vector<dynamics::Tree>(dynamics::kBoundaries), {}));
+  const dynamics::Transitions t(states());
   return {.transitions = t,
           .text = {{"title", ""}},
           .arrays = {},
@@ -67,6 +74,40 @@ PredictResult prediction() {
   example.of_matrix = {.prediction = {.starts = {{.shares = shares}}}, .states = {{}}};
   example.of_runs = {.prediction = {.starts = {{}}}};
   return example;
+}
+
+std::size_t gates_in(const lattice::FieldParams& field) {
+  return static_cast<std::size_t>(field.columns * field.rows);
+}
+
+PlannedField plan() {
+  const lattice::Policy policy{states(), {.field = {0, 0}}};
+  PlannedField example{.shown = lattice::Scene(),
+                       .actions = {""},
+                       .methods = {{}},
+                       .plan = {.policy = policy, .alone = {{}}, .gains = {{}}},
+                       .thrift = lattice::ThriftOptions()};
+  example.plan.usage.resize(gates_in(example.shown.field));
+  example.plan.by_cell = lattice::Plan::ByCell{.policy = policy};
+  example.plan.front.push_back({.policy = policy});
+  return example;
+}
+
+FoundStart found_start() {
+  FoundStart example{.shown = lattice::Scene(),
+                     .own = {},
+                     .ranges = {{0, 0.0, 1.0}},
+                     .columns = {0},
+                     .found = {.best = {}, .space = states(), .chances = {.field = {1, 1}}}};
+  example.found.chances.inputs = example.found.space.size();
+  example.found.chances.value.resize(static_cast<std::size_t>(example.found.space.size()));
+  return example;
+}
+
+/// Of a scene with actions, and of one without.
+void describe_plan(Fields& out) {
+  out.either(
+      true, [](Fields& f) { describe(f, plan()); }, [](Fields& f) { describe(f, found_start()); });
 }
 
 RareResult rare() {
@@ -112,6 +153,7 @@ const std::vector<ResultOf>& results() {
       of("lattice", trials()),
       of("passages", cut_tracks()),
       of<PowerResult>("power"),
+      {"plan", describe_plan},
       of("predict", prediction()),
       of("rare", rare()),
       of("sample", SampleResult{}),
