@@ -6,7 +6,6 @@
 #include "cli/arguments.h"
 #include "cli/choosing.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/plan.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
@@ -74,11 +73,9 @@ int run_design(const Arguments& arguments) {
   lattice::Scene changed = with_gates(*s.scene, design.type_of_cell);
   if (s.given) changed.start = {problem.start.at[0], 0.0, problem.start.at[1], problem.start.at[2]};
   const DesignedScene designed{
-      *s.scene, std::move(changed), problem.map().section, problem.start,
-      how,      s.settled,          std::move(design),     watch.seconds()};
-  Json json = to_json(designed);
-  json["made_by"] = s.made_by(options);
-  options.give_out(json, table_of(designed));
+      *s.scene,  std::move(changed), problem.map().section, problem.start,        how,
+      s.settled, std::move(design),  watch.seconds(),       s.provenance(options)};
+  options.give_out(designed, table_of(designed));
   if (options.has("output"))
     options.write(options.text("output"), lattice::scene_file(designed.after));
   const lattice::Crossings &with = designed.design.crossings, &without = designed.design.before;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/design.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "cli/render/choice.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/plan.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
@@ -24,7 +24,7 @@ const std::string& name_of(const lattice::Scene& scene, int type) {
 
 /// A gate whose type is another than before.
 struct Changed {
-  int x, y, from, to;
+  int x = 0, y = 0, from = 0, to = 0;
 };
 std::vector<Changed> changes_of(const DesignedScene& d, const std::vector<int>& map) {
   const std::vector<int>& before = d.before.terrain->type_of_cell;
@@ -38,37 +38,36 @@ std::vector<Changed> changes_of(const DesignedScene& d, const std::vector<int>& 
   return changes;
 }
 
-Json to_json(const DesignedScene& d, const std::vector<Changed>& changes) {
-  Json json = Json::array();
-  for (const Changed& c : changes)
-    json.push_back({{"gate_x", c.x},
-                    {"gate_y", c.y},
-                    {"from", name_of(d.before, c.from)},
-                    {"to", name_of(d.before, c.to)}});
-  return json;
+void describe_changes(Fields& out, const DesignedScene& d, std::string_view meaning,
+                      const std::vector<int>& map) {
+  out.list({"changes", meaning}, changes_of(d, map), [&](Fields& gate, const Changed& c) {
+    gate.count({"gate_x", "1", "column, counted from the start's"}, c.x);
+    gate.count({"gate_y", "1", "row, counted from the start's"}, c.y);
+    gate.text({"from", "its type as the field is"}, name_of(d.before, c.from));
+    gate.text({"to", "its type then"}, name_of(d.before, c.to));
+  });
 }
 
 /// "(0, 2) . to s, (1, 2) s to ."
 std::string changes_text(const DesignedScene& d, const std::vector<Changed>& changes) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(changes.size(), kMostListed); ++i) {
-    const Changed& c = changes[i];
-    text += (i == 0 ? "(" : ", (") + std::to_string(c.x) + ", " + std::to_string(c.y) + ") " +
-            name_of(d.before, c.from) + " to " + name_of(d.before, c.to);
-  }
-  return changes.size() > kMostListed ? text + ", ..." : text;
+  std::vector<std::string> listed;
+  for (const Changed& c : changes)
+    if (listed.size() < kMostListed)
+      listed.push_back(fmt::format("({}, {}) {} to {}", c.x, c.y, name_of(d.before, c.from),
+                                   name_of(d.before, c.to)));
+  return fmt::format("{}{}", fmt::join(listed, ", "), changes.size() > kMostListed ? ", ..." : "");
 }
 
 std::string verdict(const DesignedScene& d, std::size_t changes) {
   if (changes == 0)
-    return "no change that was tried in full lets bodies cross " +
-           std::string(d.options.least ? "more rarely\n" : "more often\n");
+    return fmt::format("no change that was tried in full lets bodies cross more {}\n",
+                       d.options.least ? "rarely" : "often");
   const lattice::Gain& gain = d.design.gain;
-  const std::string by = gain_text(gain) + " points by " + std::to_string(changes) +
-                         (changes == 1 ? " changed gate" : " changed gates");
   const bool shown = d.options.least ? gain.interval_95[1] < 0.0 : gain.interval_95[0] > 0.0;
-  return by +
-         (shown ? "\n" : ": not shown to be a change; a smaller --accuracy shows a smaller one\n");
+  return fmt::format(
+      "{} points by {}{}\n", gain_text(gain),
+      counted(static_cast<std::int64_t>(changes), "changed gate", "changed gates"),
+      shown ? "" : ": not shown to be a change; a smaller --accuracy shows a smaller one");
 }
 
 }  // namespace
@@ -91,70 +90,81 @@ std::vector<double> best_changes(const DesignedScene& d) {
   return best;
 }
 
-Json to_json(const DesignedScene& d) {
+void describe(Fields& out, const DesignedScene& d) {
   const lattice::DesignedField& design = d.design;
-  Json json;
-  json["crossed"] = design.crossings.share();
-  json["interval_95"] = design.crossings.interval_95();
-  json["before"] = {{"crossed", design.before.share()},
-                    {"interval_95", design.before.interval_95()}};
-  json["gain"] = design.gain.difference;
-  json["gain_95"] = gain_95(design.gain);
-  json["trials"] = design.crossings.trials;
-  json["start"] = to_json(d.section, d.start);
-  json["least"] = d.options.least;
-  json["most_changes"] = d.options.most_changes;
-  json["become"] = Json::array();
-  for (const int type : d.options.become) json["become"].push_back(name_of(d.before, type));
-  json["changes"] = to_json(d, changes_of(d, design.type_of_cell));
-  json["map"] = lattice::map_rows(*d.after.terrain, d.after.field);
-  json["by_chain"] = {{"before", design.by_chain.before}, {"solves", design.by_chain.solves}};
-  json["by_chain"]["optima"] = Json::array();
-  for (const markov::FieldDesign& optimum : design.by_chain.optima)
-    json["by_chain"]["optima"].push_back(
-        {{"crossed", optimum.gain},
-         {"searches", optimum.searches},
-         {"changes", to_json(d, changes_of(d, optimum.type_of_cell))}});
+  describe_crossed(out,
+                   "share of new trials that crossed the changed field, none of which was used to "
+                   "choose",
+                   design.crossings);
+  out.object({"before", "the field as it is, under the same noise"}, [&](Fields& before) {
+    describe_crossed(before, "share of trials that crossed it", design.before);
+  });
+  describe_gain(out, "of the changed field over the field as it is", design.gain);
+  out.count({"trials", "1", "new trials, of each of both fields"}, design.crossings.trials);
+  describe_start(out, d.section, d.start);
+  out.flag({"least", "whether bodies were to cross as rarely as they can"}, d.options.least);
+  out.count({"most_changes", "1", "gates that could be changed"}, d.options.most_changes);
+  std::vector<std::string> become;
+  for (const int type : d.options.become) become.push_back(name_of(d.before, type));
+  out.texts({"become", "types that gates could become; empty: all types"}, become);
+  describe_changes(out, d, "the gates that are changed", design.type_of_cell);
+  out.texts({"map", "terrain.map of the changed field, the far row first"},
+            lattice::map_rows(*d.after.terrain, d.after.field));
   const std::vector<double> best = best_changes(d);
-  markov::CellProbabilities grid_of(d.before.field.rows, d.before.field.columns);
-  for (std::size_t i = 0; i < best.size(); ++i) grid_of.data()[i] = best[i];
-  json["by_chain"]["best_change"] = grid(grid_of);
-  if (d.method) json["method"] = to_json(*d.method);
-  json["rounds"] = design.rounds;
-  json["settled"] = design.settled;
-  json["gate_runs"] = design.gate_runs;
-  json["seconds"] = d.seconds;
-  json["status"] = to_json(design.health);
-  return json;
+  const markov::CellProbabilities best_change = Eigen::Map<const markov::CellProbabilities>(
+      best.data(), d.before.field.rows, d.before.field.columns);
+  out.object({"by_chain",
+              "what the chain that chose the map says, with its own error (of the field as it is: "
+              "the chain with the largest leaves)"},
+             [&](Fields& chain) {
+               const markov::Designs& all = design.by_chain;
+               chain.number({"before", "1", "chance to cross the field as it is"}, all.before);
+               chain.count({"solves", "1", "maps that were solved in all searches"}, all.solves);
+               chain.list(
+                   {"optima", "maps that searches ended at, the best first"}, all.optima,
+                   [&](Fields& map, const markov::FieldDesign& optimum) {
+                     map.number({"crossed", "1",
+                                 "chance to cross it: too good where the chain takes chance "
+                                 "for skill"},
+                                optimum.gain);
+                     map.count({"searches", "1", "searches that ended there"}, optimum.searches);
+                     describe_changes(map, d, "the gates that are changed in this map",
+                                      optimum.type_of_cell);
+                   });
+               chain.grid({"best_change", "1",
+                           "what the best change of each gate alone does to the chance to cross, "
+                           "to first order; 0 also where nobody comes"},
+                          best_change);
+             });
+  describe_method(out, d.method);
+  describe_search(out, design, d.seconds);
+  describe_made_by(out, d.made_by);
 }
 
 std::string table_of(const DesignedScene& d) {
   const lattice::DesignedField& design = d.design;
   const std::vector<Changed> changes = changes_of(d, design.type_of_cell);
-  std::string table = "chance to cross: " +
-                      with_interval(design.crossings.share(), design.crossings.interval_95()) +
-                      " %, " + with_interval(design.before.share(), design.before.interval_95()) +
-                      " % as the field is, of " + std::to_string(design.crossings.trials) +
-                      " trials by which nothing was chosen\n" + verdict(d, changes.size());
-  if (!changes.empty()) table += "gates: " + changes_text(d, changes) + "\n";
   const markov::Designs& chain = design.by_chain;
-  table += "by the chain, with its own error: " + fixed(100.0 * chain.before, 2) +
-           " % as the field is; searches, whose results are too good besides, ended at\n";
+  std::string table = fmt::format("{}, {} % as the field is,{}{}", chance_text(design.crossings),
+                                  with_interval(design.before.share(), design.before.interval_95()),
+                                  trials_text(design.crossings), verdict(d, changes.size()));
+  if (!changes.empty()) table += fmt::format("gates: {}\n", changes_text(d, changes));
+  table += fmt::format(
+      "by the chain, with its own error: {} % as the field is; searches, whose results are too "
+      "good besides, ended at\n",
+      fixed(100.0 * chain.before, 2));
   for (std::size_t i = 0; i < std::min(chain.optima.size(), kMostOptima); ++i) {
     const std::vector<Changed> to = changes_of(d, chain.optima[i].type_of_cell);
-    table += "  " + fixed(100.0 * chain.optima[i].gain, 2) + " %, " +
-             std::to_string(chain.optima[i].searches) +
-             " times: " + (to.empty() ? "the field as it is" : changes_text(d, to)) + "\n";
+    table += fmt::format("  {} %, {} times: {}\n", fixed(100.0 * chain.optima[i].gain, 2),
+                         chain.optima[i].searches,
+                         to.empty() ? "the field as it is" : changes_text(d, to));
   }
   const std::vector<std::string> rows = lattice::map_rows(*d.after.terrain, d.after.field);
-  if (rows.size() <= kMostListed && d.after.field.columns <= static_cast<int>(kMostListed)) {
-    table += "\nthe gates, far row first:\n";
-    for (const std::string& row : rows) table += "  " + row + "\n";
-  }
-  return table + method_line(d.method) + std::to_string(design.gate_runs) + " gate runs in " +
-         std::to_string(design.rounds) + (design.rounds == 1 ? " round, " : " rounds, ") +
-         std::to_string(design.by_chain.solves) + " maps solved in all, " + fixed(d.seconds, 1) +
-         " s\n";
+  if (rows.size() <= kMostListed && d.after.field.columns <= static_cast<int>(kMostListed))
+    table += fmt::format("\nthe gates, far row first:\n  {}\n", fmt::join(rows, "\n  "));
+  return fmt::format("{}{}{}{} maps solved in all, {} s\n", table, method_line(d.method),
+                     rounds_text(design.gate_runs, design.rounds), chain.solves,
+                     fixed(d.seconds, 1));
 }
 
 }  // namespace gatewalk::cli

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A field whose gates were changed as JSON, as a table and as a picture.
+/// A field whose gates were changed as a result, as a table and as a picture.
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/settle.h"
 #include "lattice/study/design.h"
 
 namespace gatewalk::cli {
 
+/// The result of `design`.
 struct DesignedScene {
   lattice::Scene before, after;
   dynamics::Section section;
@@ -22,12 +24,13 @@ struct DesignedScene {
   std::optional<lattice::Settled> method;  // that was chosen
   lattice::DesignedField design;
   double seconds = 0.0;
+  Provenance made_by;
 };
+void describe(Fields& out, const DesignedScene& d);
 
 /// The scene with gates of these types of its terrain: (rows x columns), the near row first.
 [[nodiscard]] lattice::Scene with_gates(lattice::Scene scene, std::vector<int> type_of_cell);
 
-[[nodiscard]] Json to_json(const DesignedScene& d);
 [[nodiscard]] std::string table_of(const DesignedScene& d);
 /// What the best change of each gate alone does, which are changed, and how often bodies cross.
 [[nodiscard]] Figure figure_of(const DesignedScene& d);

@@ -4,6 +4,7 @@
 #include "cli/render/analysis.h"
 #include "cli/render/best_start.h"
 #include "cli/render/cut_tracks.h"
+#include "cli/render/design.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/files.h"
 #include "cli/render/gate_runs.h"
@@ -80,6 +81,18 @@ std::size_t gates_in(const lattice::FieldParams& field) {
   return static_cast<std::size_t>(field.columns * field.rows);
 }
 
+lattice::Scene mixed() {
+  lattice::Scene example;
+  example.terrain.emplace().type_of_cell.resize(gates_in(example.field));
+  return example;
+}
+
+DesignedScene design() {
+  DesignedScene example;
+  example.before = example.after = mixed();
+  return example;
+}
+
 PlannedField plan() {
   const lattice::Policy policy{states(), {.field = {0, 0}}};
   PlannedField example{.shown = lattice::Scene(),
@@ -147,6 +160,7 @@ const std::vector<ResultOf>& results() {
       of("analyze", analyze()),
       {"build", describe_build},
       of("chart", ChartResult{{{}}, {{}}}),
+      of("design", design()),
       of<ExportResult>("export"),
       of<GateResult>("gate"),
       of("import", ImportedMatrix{shown_matrix(), {}, {}}),
