@@ -7,7 +7,6 @@
 #include "cli/choosing.h"
 #include "cli/fitted.h"
 #include "cli/ranged.h"
-#include "cli/render/json.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -85,15 +84,13 @@ int run_fit(const Arguments& arguments) {
   const lattice::FitData data = data_to_fit(options, s, *ranged, at, seen, how.trials);
   s.settle(options);
   const FittedScene fitted{ranged->ranges, s.problem.field, s.settled,
-                           lattice::fit(numbers, at, data, how, options.work())};
+                           lattice::fit(numbers, at, data, how, options.work()),
+                           s.provenance(options)};
   const lattice::Fit& fit = fitted.fit;
-  Json json = to_json(fitted);
-  const Json made_by = s.made_by(options);
-  json["made_by"] = made_by;
-  options.give_out(json, table_of(fitted));
+  options.give_out(fitted, table_of(fitted));
   if (options.has("draws")) options.write(options.text("draws"), draws_csv(fitted));
   if (options.has("inference-data"))
-    options.write(options.text("inference-data"), inference_data(fitted, made_by));
+    options.write(options.text("inference-data"), inference_data(fitted));
   if (const std::string path = options.text("output"); !path.empty()) {
     options.write(path, lattice::scene_file(scene_at(*ranged, s, point_of(fit.draws, fit.best))));
     for (std::size_t i = 0; i < scenes.size(); ++i) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "cli/render/json.h"
 #include "markov/formats/netcdf.h"
 
 namespace gatewalk::cli {
@@ -50,9 +49,7 @@ std::string netcdf_of(const std::vector<FieldPicture>& fields, const dynamics::S
   Image nc;
   nc.create();
   put_text(nc, NC_GLOBAL, "format", "gatewalk final gates");
-  const Json made = to_json(made_by);
-  for (const auto& [key, value] : made.items())
-    put_text(nc, NC_GLOBAL, key, value.is_string() ? value.get<std::string>() : text_of(value, -1));
+  for (const auto& [key, text] : attributes_of(made_by)) put_text(nc, NC_GLOBAL, key, text);
   const int start = define_dimension(nc, "start", fields.size()),
             i_y = define_dimension(nc, "i_y", static_cast<std::size_t>(rows)),
             i_x = define_dimension(nc, "i_x", static_cast<std::size_t>(columns));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/fit.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,9 +10,9 @@
 #include "cli/render/csv.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 #include "lattice/text/digits.h"
 #include "markov/formats/netcdf.h"
 
@@ -35,7 +37,7 @@ std::string time_of(const lattice::FittedOutcomes& of, std::size_t outcome) {
   const auto time = [](double t) { return quantity(t, "s", 3); };
   if (part == 0) return " within " + time(of.times.front());
   if (part == of.times.size()) return " after " + time(of.times.back());
-  return " from " + time(of.times[part - 1]) + " to " + time(of.times[part]);
+  return fmt::format(" from {} to {}", time(of.times[part - 1]), time(of.times[part]));
 }
 
 /// An outcome in words: "trapped in (0, 3)", "crossed", "(0, 3)"; of passages "to RT", "trapped".
@@ -58,8 +60,7 @@ std::string words_of(const FittedScene& f, std::size_t outcome) {
   const auto columns = static_cast<std::size_t>(f.field.columns), gate = outcome % of.gates;
   const int x = static_cast<int>(gate % columns) - f.field.start_column(),
             y = static_cast<int>(gate / columns);
-  return words + (words.empty() ? "(" : " (") + std::to_string(x) + ", " + std::to_string(y) + ")" +
-         time;
+  return fmt::format("{}{}({}, {}){}", words, words.empty() ? "" : " ", x, y, time);
 }
 std::string words_of(const FittedScene& f, const lattice::OutcomeGroup& group) {
   const std::size_t front = group.outcomes.front(), back = group.outcomes.back();
@@ -68,8 +69,8 @@ std::string words_of(const FittedScene& f, const lattice::OutcomeGroup& group) {
   if (!of.is_of_passages()) return first == last ? first : first + " to " + last;
   const std::string &begin = of.begins[front / of.together()],
                     &other = of.begins[back / of.together()];
-  if (front == back) return begin + ": " + first;
-  return begin + ": " + first + " ... " + (begin == other ? "" : other + ": ") + last;
+  if (front == back) return fmt::format("{}: {}", begin, first);
+  return fmt::format("{}: {} ... {}{}", begin, first, begin == other ? "" : other + ": ", last);
 }
 
 /// How far a count lies from what is expected, by chance alone.
@@ -86,114 +87,142 @@ std::string in_range(const FittedScene& f, std::size_t k, double at) {
                                        : fixed(f.ranges[k].at(at), std::max(0, decimals));
 }
 
+void describe_number(Fields& out, const lattice::NumberRange& r, const lattice::FittedNumber& n) {
+  out.text({"key", "of the scene, or of the program"}, r.key);
+  out.number({"low", "its own", "low end of its range, all of which is as likely before the data"},
+             r.low);
+  out.number({"high", "its own", "high end of its range"}, r.high);
+  out.number({"best", "its own", "its value in the draw in which the counts are likeliest"},
+             r.at(n.best));
+  out.number({"median", "its own", "median of the posterior"}, r.at(n.median));
+  out.number({"mean", "its own", "mean of the posterior"}, r.at(n.mean));
+  out.number({"sd", "its own", "standard deviation of the posterior"}, n.sd * (r.high - r.low));
+  out.interval({"interval_95", "its own", "95 % interval of the posterior"},
+               Interval{r.at(n.interval[0]), r.at(n.interval[1])});
+  out.flag({"told",
+            "whether the data say more than the range: the Kolmogorov distance of the posterior "
+            "from it is above 0.15, and above what chance in the trials makes"},
+           n.told);
+  out.flag({"goes_on_below",
+            "whether one draw in twenty or more lies in the lowest fiftieth of the range"},
+           n.goes_on[0]);
+  out.flag({"goes_on_above",
+            "whether one draw in twenty or more lies in the highest fiftieth of the range"},
+           n.goes_on[1]);
+  out.number({"variance_by_trials", "1",
+              "share of the posterior's variance that more trials would take away"},
+             n.by_runs);
+}
+
 }  // namespace
 
 std::string counted(const FittedScene& f) {
   return f.fit.outcomes.is_of_passages() ? "passages" : "trials";
 }
 
-Json to_json(const FittedScene& f) {
+void describe(Fields& out, const FittedScene& f) {
   const lattice::Fit& fit = f.fit;
-  Json json;
-  json["numbers"] = Json::array();
-  for (std::size_t k = 0; k < f.ranges.size(); ++k) {
-    const lattice::FittedNumber& n = fit.numbers[k];
-    const lattice::NumberRange& r = f.ranges[k];
-    const auto at = [&](double x) { return f.ranges[k].at(x); };
-    json["numbers"].push_back({{"key", r.key},
-                               {"low", r.low},
-                               {"high", r.high},
-                               {"best", at(n.best)},
-                               {"median", at(n.median)},
-                               {"mean", at(n.mean)},
-                               {"sd", n.sd * (r.high - r.low)},
-                               {"interval_95", {at(n.interval[0]), at(n.interval[1])}},
-                               {"told", n.told},
-                               {"goes_on_below", n.goes_on[0]},
-                               {"goes_on_above", n.goes_on[1]},
-                               {"variance_by_trials", n.by_runs}});
-  }
-  json["correlation"] = Json::array();
-  for (const auto row : fit.correlation.rowwise())
-    json["correlation"].push_back(std::vector<double>(row.begin(), row.end()));
-  json["p"] = fit.p;
-  json["observed"] = fit.observed;
-  json["of"] = counted(f);
-  json["outcomes"] = Json::array();
-  for (const lattice::OutcomeGroup& g : fit.groups)
-    json["outcomes"].push_back({{"outcomes", words_of(f, g)},
-                                {"observed", g.observed},
-                                {"expected", seven_digits(g.expected, 1.0)},
-                                {"interval_95", g.interval}});
-  json["draws"] = fit.draws.rows();
-  json["settled"] = fit.settled();
-  json["misfit_nats"] = fit.misfit;
-  json["mixing"] = fit.mixing;
-  json["near_bounds"] = fit.near_bounds;
-  json["outside"] = fit.outside;
-  json["never"] = fit.never;
-  json["rounds"] = fit.rounds;
-  json["degree"] = fit.degree;
-  json["parts"] = fit.parts;
-  json["points"] = fit.points;
-  json["volume"] = fit.volume;
-  json["trials"] = fit.trials;
-  if (f.method) json["method"] = to_json(*f.method);
-  json["seconds"] = fit.seconds;
-  json["status"] = to_json(fit.health);
-  return json;
+  out.list_of(
+      {"numbers", "those of --free, in the units of their keys"}, f.ranges.size(),
+      [&](Fields& number, std::size_t k) { describe_number(number, f.ranges[k], fit.numbers[k]); });
+  out.grid({"correlation", "1", "of each two numbers over the posterior"},
+           markov::CellProbabilities(fit.correlation.array()));
+  out.number({"p", "1",
+              "share of experiments drawn from the posterior that lie further from what is "
+              "expected (chi-squared) than the observed one"},
+             fit.p);
+  out.count({"observed", "1", "observed trials, or passages"}, fit.observed);
+  out.text(Label("of",
+                 "what was seen: trials through the field, or passages through a cell, whose "
+                 "beginnings are given")
+               .one_of({"trials", "passages"}),
+           counted(f));
+  out.list(
+      {"outcomes",
+       "final gates and endings that are counted together; of passages faces from and to, "
+       "and times"},
+      fit.groups, [&](Fields& group, const lattice::OutcomeGroup& g) {
+        group.text({"outcomes", "first and last of those that are counted together"},
+                   words_of(f, g));
+        group.count({"observed", "1", "observed trials, or passages, that ended so"}, g.observed);
+        group.estimate({"expected", "1", "mean over the posterior, of as many trials"},
+                       seven_digits(g.expected, 1.0), g.interval, "interval_95");
+      });
+  out.count({"draws", "1", "draws from the posterior that all this is from"}, fit.draws.rows());
+  out.flag({"settled",
+            "whether misfit_nats is at most 0.5, mixing at most 1.05, near_bounds and outside at "
+            "most 0.01, and each variance_by_trials at most 0.2"},
+           fit.settled());
+  out.number({"misfit_nats", "nat",
+              "by how much the log likelihood may be off, as chances between the points are no "
+              "polynomial"},
+             fit.misfit);
+  out.number(
+      {"mixing", "1", "R of Gelman and Rubin, of the halves of the walks; of the worst number"},
+      fit.mixing);
+  out.number({"near_bounds", "1",
+              "share of the draws at the edge of where the points of the last round lie"},
+             fit.near_bounds);
+  out.number({"outside", "1",
+              "share of the posterior that lies where earlier rounds cut the ranges off, by new "
+              "points there and all others, when it was last looked at"},
+             fit.outside);
+  out.count({"never", "1", "observed trials that ended as none did at the last round's points"},
+            fit.never);
+  out.count({"rounds", "1", "rounds before the last"}, fit.rounds);
+  out.count({"degree", "1", "the highest of the polynomials"}, fit.degree);
+  out.count({"parts", "1", "parts of the ranges, each with polynomials of its own"}, fit.parts);
+  out.count({"points", "1", "points that the chances are from"}, fit.points);
+  out.number({"volume", "1", "share of the ranges where these points lie, about"}, fit.volume);
+  out.count({"trials", "1", "full trials, or passages, of all rounds"}, fit.trials);
+  describe_method(out, f.method);
+  out.number({"seconds", "s", "time in all"}, fit.seconds);
+  describe_status(out, fit.health);
+  describe_made_by(out, f.made_by);
 }
 
 std::string table_of(const FittedScene& f) {
   const lattice::Fit& fit = f.fit;
-  std::string table = padded("", 34) + padded("range", 18) + padded("best", 12) +
-                      padded("median", 12) + padded("95 % interval", 26) + "\n";
+  TextTable numbers(
+      {{"", -34}, {"range", 18}, {"best", 12}, {"median", 12}, {"95 % interval", 26}});
+  std::string told;
   for (std::size_t k = 0; k < f.ranges.size(); ++k) {
-    const lattice::NumberRange& r = f.ranges[k];
+    const auto& [key, low, high] = f.ranges[k];
     const lattice::FittedNumber& n = fit.numbers[k];
-    table +=
-        padded(r.key, -34) +
-        padded(lattice::shortest(r.low) + " to " + lattice::shortest(r.high), 18) +
-        padded(in_range(f, k, n.best), 12) + padded(in_range(f, k, n.median), 12) +
-        padded("[" + in_range(f, k, n.interval[0]) + ", " + in_range(f, k, n.interval[1]) + "]",
-               26) +
-        "\n";
-  }
-  for (std::size_t k = 0; k < f.ranges.size(); ++k) {
-    const lattice::FittedNumber& n = fit.numbers[k];
-    const std::string& key = f.ranges[k].key;
+    const auto at = [&](double x) { return in_range(f, k, x); };
+    numbers.row({key, fmt::format("{} to {}", lattice::shortest(low), lattice::shortest(high)),
+                 at(n.best), at(n.median),
+                 fmt::format("[{}, {}]", at(n.interval[0]), at(n.interval[1]))});
     if (!n.told)
-      table += "these data cannot tell " + key + ": they leave it anywhere in its range\n";
+      told += fmt::format("these data cannot tell {}: they leave it anywhere in its range\n", key);
     for (std::size_t other = 0; other < k; ++other)
       if (const double c =
               fit.correlation(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(other));
           std::abs(c) > kTogether)
-        table += "these data tell " + f.ranges[other].key + " and " + key +
-                 " only together: correlation " + fixed(c, 2) + "\n";
+        told += fmt::format("these data tell {} and {} only together: correlation {}\n",
+                            f.ranges[other].key, key, fixed(c, 2));
   }
-  table += std::to_string(fit.observed) + " observed " + counted(f) +
-           "; of experiments like this one " + percent(fit.p, 1.0) +
-           " are further from what is expected (" + p_words(fit.p) + ")\n";
+  std::string unexplained;
   if (fit.p < kUnexplained) {
     std::vector<lattice::OutcomeGroup> sorted = fit.groups;
     std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
       return std::abs(surprise(a)) > std::abs(surprise(b));
     });
-    table += "no numbers in these ranges explain the counts" +
-             std::string(fit.outcomes.is_of_passages() ? " (of cells of other lengths?)" : "") +
-             "; furthest off, expected and observed:\n";
+    unexplained = fmt::format(
+        "no numbers in these ranges explain the counts{}; furthest off, expected and observed:\n",
+        fit.outcomes.is_of_passages() ? " (of cells of other lengths?)" : "");
     for (std::size_t i = 0; i < std::min(kMostShown, sorted.size()); ++i)
-      table += "  " + words_of(f, sorted[i]) + ": " + fixed(sorted[i].expected, 1) + ", " +
-               std::to_string(sorted[i].observed) + "\n";
+      unexplained += fmt::format("  {}: {}, {}\n", words_of(f, sorted[i]),
+                                 fixed(sorted[i].expected, 1), sorted[i].observed);
   }
-  return table + method_line(f.method) + std::to_string(fit.trials) + " " + counted(f) +
-         ", in the last of " + std::to_string(fit.rounds + 1) + " rounds at " +
-         std::to_string(fit.points) + " points of " +
-         percent(fit.volume, 1.0, fit.volume < 0.01 ? 3 : 1) +
-         " of the ranges; chances between them by polynomials of degree " +
-         std::to_string(fit.degree) +
-         (fit.parts > 1 ? " in " + std::to_string(fit.parts) + " parts of these" : "") + ", " +
-         fixed(fit.seconds, 1) + " s\n";
+  return fmt::format(
+      "{}{}{} observed {}; of experiments like this one {} are further from what is expected "
+      "({})\n{}{}{} {}, in the last of {} rounds at {} points of {} of the ranges; chances between "
+      "them by polynomials of degree {}{}, {} s\n",
+      numbers.text(), told, fit.observed, counted(f), percent(fit.p, 1.0), p_words(fit.p),
+      unexplained, method_line(f.method), fit.trials, counted(f), fit.rounds + 1, fit.points,
+      percent(fit.volume, 1.0, fit.volume < 0.01 ? 3 : 1), fit.degree,
+      fit.parts > 1 ? fmt::format(" in {} parts of these", fit.parts) : "", fixed(fit.seconds, 1));
 }
 
 bool is_clean(const FittedScene& f) {
@@ -210,29 +239,33 @@ std::vector<std::string> warnings_of(const FittedScene& f) {
     const lattice::FittedNumber& n = fit.numbers[k];
     for (const std::size_t end : {0U, 1U})
       if (n.goes_on[end])
-        warn(f.ranges[k].key + " is likely to lie beyond " +
-             lattice::shortest(end == 0 ? f.ranges[k].low : f.ranges[k].high) +
-             ", where its range ends: a wider one tells, if that is permitted");
+        warn(fmt::format(
+            "{} is likely to lie beyond {}, where its range ends: a wider one tells, if that is "
+            "permitted",
+            f.ranges[k].key, lattice::shortest(end == 0 ? f.ranges[k].low : f.ranges[k].high)));
   }
   if (fit.never > 0)
-    warn(std::to_string(fit.never) + " of " + std::to_string(fit.observed) + " observed " +
-         counted(f) +
-         " ended as none of the model did where their numbers are likeliest: they "
-         "are counted with their neighbours");
+    warn(fmt::format(
+        "{} of {} observed {} ended as none of the model did where their numbers are likeliest: "
+        "they are counted with their neighbours",
+        fit.never, fit.observed, counted(f)));
   for (std::size_t k = 0; k < f.ranges.size(); ++k)
     if (const lattice::FittedNumber& n = fit.numbers[k];
         !n.goes_on[0] && !n.goes_on[1] && (n.best < n.interval[0] || n.best > n.interval[1]))
-      warn("the counts are likeliest outside the interval of " + f.ranges[k].key +
-           ": many other values fit nearly as well, and the ranges decide how many");
+      warn(fmt::format(
+          "the counts are likeliest outside the interval of {}: many other values fit nearly as "
+          "well, and the ranges decide how many",
+          f.ranges[k].key));
   if (fit.settled()) return all;
   double by_trials = 0.0;
   for (const lattice::FittedNumber& n : fit.numbers) by_trials = std::max(by_trials, n.by_runs);
-  warn("the posterior is rough: chances between the points change the log likelihood by " +
-       fixed(fit.misfit, 2) + ", trials make " + percent(by_trials, 1.0, 0) +
-       " of a variance (which is counted), R of the walks is " + fixed(fit.mixing, 2) + ", " +
-       percent(fit.near_bounds, 1.0) + " of the draws lie at the edge of the points, " +
-       percent(fit.outside, 1.0) + " of the posterior may lie where there are none; more --trials" +
-       (goes_on ? " help" : ", or narrower ranges, help"));
+  warn(fmt::format(
+      "the posterior is rough: chances between the points change the log likelihood by {}, trials "
+      "make {} of a variance (which is counted), R of the walks is {}, {} of the draws lie at the "
+      "edge of the points, {} of the posterior may lie where there are none; more --trials{}",
+      fixed(fit.misfit, 2), percent(by_trials, 1.0, 0), fixed(fit.mixing, 2),
+      percent(fit.near_bounds, 1.0), percent(fit.outside, 1.0),
+      goes_on ? " help" : ", or narrower ranges, help"));
   return all;
 }
 
@@ -248,7 +281,7 @@ std::string draws_csv(const FittedScene& f) {
   return text;
 }
 
-std::string inference_data(const FittedScene& f, const Json& made_by) {
+std::string inference_data(const FittedScene& f) {
   using namespace markov::netcdf;
   const lattice::Fit& fit = f.fit;
   const auto chains = static_cast<std::size_t>(fit.walks.back() + 1),
@@ -256,8 +289,7 @@ std::string inference_data(const FittedScene& f, const Json& made_by) {
              outcomes = fit.groups.size();
   Image nc;
   nc.create();
-  for (const auto& [key, value] : made_by.items())
-    put_text(nc, NC_GLOBAL, key, value.is_string() ? value.get<std::string>() : text_of(value, -1));
+  for (const auto& [key, text] : attributes_of(f.made_by)) put_text(nc, NC_GLOBAL, key, text);
   const auto numbers_to = [](std::size_t count) {
     std::vector<std::int32_t> all(count);
     for (std::size_t i = 0; i < count; ++i) all[i] = static_cast<std::int32_t>(i);

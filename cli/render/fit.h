@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A posterior as JSON, as a table, as CSV, as a picture, and as InferenceData.
+/// A posterior as a result, as a table, as CSV, as a picture, and as InferenceData.
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 #include "lattice/field.h"
 #include "lattice/scene/ranges.h"
 #include "lattice/scene/settle.h"
@@ -15,16 +16,18 @@
 
 namespace gatewalk::cli {
 
+/// The result of `fit`.
 struct FittedScene {
   std::vector<lattice::NumberRange> ranges;
   lattice::FieldParams field;
   std::optional<lattice::Settled> method;  // that was chosen
   lattice::Fit fit;
+  Provenance made_by;
 };
+void describe(Fields& out, const FittedScene& f);
 
 /// What was seen and run: "trials", or "passages".
 [[nodiscard]] std::string counted(const FittedScene& f);
-[[nodiscard]] Json to_json(const FittedScene& f);
 [[nodiscard]] std::string table_of(const FittedScene& f);
 /// A line for each draw: the numbers in their units, and the log likelihood.
 [[nodiscard]] std::string draws_csv(const FittedScene& f);
@@ -32,7 +35,7 @@ struct FittedScene {
 [[nodiscard]] Figure figure_of(const FittedScene& f);
 /// ArviZ's InferenceData as a NetCDF-4 file: posterior and sample_stats (chain, draw),
 /// posterior_predictive (chain, draw, outcome), observed_data (outcome).
-[[nodiscard]] std::string inference_data(const FittedScene& f, const Json& made_by);
+[[nodiscard]] std::string inference_data(const FittedScene& f);
 
 /// Nothing went wrong in the runs, the posterior is settled, and it explains the counts.
 [[nodiscard]] bool is_clean(const FittedScene& f);

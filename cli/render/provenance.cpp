@@ -44,6 +44,14 @@ Json to_json(const Provenance& provenance) {
   return json_of([&](Fields& out) { describe(out, provenance); });
 }
 
+std::vector<std::pair<std::string, std::string>> attributes_of(const Provenance& provenance) {
+  std::vector<std::pair<std::string, std::string>> all;
+  const Json made_by = to_json(provenance);
+  for (const auto& [key, value] : made_by.items())
+    all.emplace_back(key, value.is_string() ? value.get<std::string>() : text_of(value, -1));
+  return all;
+}
+
 std::string machine() {
   std::ifstream info("/proc/cpuinfo");
   std::string model = "unknown processor";

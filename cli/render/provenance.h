@@ -30,6 +30,9 @@ void describe(Fields& out, const Provenance& provenance);
 /// The key "made_by", which all results have.
 void describe_made_by(Fields& out, const Provenance& provenance);
 [[nodiscard]] Json to_json(const Provenance& provenance);
+/// The same keys with their values as text: attributes of NetCDF files.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> attributes_of(
+    const Provenance& provenance);
 
 /// "AMD EPYC, 2 cores": what times were measured on.
 [[nodiscard]] std::string machine();

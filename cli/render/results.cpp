@@ -7,6 +7,7 @@
 #include "cli/render/design.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/files.h"
+#include "cli/render/fit.h"
 #include "cli/render/gate_runs.h"
 #include "cli/render/matrix.h"
 #include "cli/render/power.h"
@@ -93,6 +94,16 @@ DesignedScene design() {
   return example;
 }
 
+FittedScene fit() {
+  FittedScene example;
+  example.ranges.resize(1);
+  example.fit.numbers.resize(1);
+  example.fit.outcomes.endings = true;
+  example.fit.groups.resize(1);
+  example.fit.groups[0].outcomes = {0};
+  return example;
+}
+
 PlannedField plan() {
   const lattice::Policy policy{states(), {.field = {0, 0}}};
   PlannedField example{.shown = lattice::Scene(),
@@ -162,6 +173,7 @@ const std::vector<ResultOf>& results() {
       of("chart", ChartResult{{{}}, {{}}}),
       of("design", design()),
       of<ExportResult>("export"),
+      of("fit", fit()),
       of<GateResult>("gate"),
       of("import", ImportedMatrix{shown_matrix(), {}, {}}),
       of("lattice", trials()),
