@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/scene.h"
 #include "cli/command.h"
-#include "cli/render/json.h"
 #include "cli/render/meaning.h"
 #include "cli/render/scene_figure.h"
 #include "cli/terminal/output.h"
@@ -51,29 +50,9 @@ int run_scene(const Arguments& arguments) {
     options.write(options.has("output") ? options.text("output") : "-", commented(scene));
     return kFine;
   }
-  const std::vector<lattice::KeyInfo> keys = lattice::describe(scene);
-  const dynamics::Meaning meaning = dynamics::meaning_of(scene.gate, scene.start);
-  const auto deciding = dynamics::deciding_numbers(scene.gate, scene.start);
-  Json json;
-  json["keys"] = to_json(keys);
-  json["meaning"] = to_json(meaning, scene);
-  json["remarks"] = remarks(meaning, deciding, scene);
-  json["scene"] = lattice::to_toml(scene);
-  std::string map;
-  if (scene.terrain) {
-    const std::vector<std::string> rows = lattice::map_rows(*scene.terrain, scene.field);
-    json["map"] = rows;
-    map = "\nmap, the far side first:\n";
-    for (const std::string& row : rows) map += row + "\n";
-  }
-  std::string actions;
-  for (const lattice::Terrain::Type& action : scene.actions) {
-    json["actions"].push_back(action.name);
-    actions += (actions.empty() ? "\nactions: " : ", ") + action.name +
-               (action.keys.empty() ? " (the scene as it is)" : "");
-  }
-  if (!actions.empty()) actions += "\n";
-  options.give_out(json, table_of(keys) + meaning_text(meaning, deciding, scene) + map + actions);
+  const SceneResult result{scene, dynamics::meaning_of(scene.gate, scene.start),
+                           dynamics::deciding_numbers(scene.gate, scene.start)};
+  options.give_out(result, table_of(result));
   options.draw([&] { return figure_of(scene); });
   return kFine;
 }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/meaning.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
 
-#include "cli/render/json.h"
 #include "cli/render/quantity.h"
+#include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "lattice/scene/settle.h"
 
@@ -36,11 +38,12 @@ std::string degrees(double angle) {
 
 std::string ringing(const dynamics::RingDown& r) {
   if (std::isfinite(r.period))
-    return "swings once in " + quantity(r.period, "s", 3) + ", each swing " + three_digits(r.kept) +
-           " of the one before";
-  return std::isfinite(r.half) ? "creeps back without a swing, in the end half of its angle in " +
-                                     quantity(r.half, "s", 3)
-                               : "does not come back";
+    return fmt::format("swings once in {}, each swing {} of the one before",
+                       quantity(r.period, "s", 3), three_digits(r.kept));
+  return std::isfinite(r.half)
+             ? fmt::format("creeps back without a swing, in the end half of its angle in {}",
+                           quantity(r.half, "s", 3))
+             : "does not come back";
 }
 
 std::string_view words_of(dynamics::GateFate fate) {
@@ -66,11 +69,153 @@ std::string steps_text(std::vector<dynamics::Deciding> left) {
       if (alike) names += (names.empty() ? "" : ", or ") + std::string(d.words);
       return alike;
     });
-    text += (text.empty() ? "  on a step 1 % less of " : "            1 % less of ") + names +
-            ": the body " + std::string(words_of(first.less)) + "; 1 % more: it " +
-            std::string(words_of(first.more)) + "\n";
+    text += fmt::format("  {:<10}1 % less of {}: the body {}; 1 % more: it {}\n",
+                        text.empty() ? "on a step" : "", names, words_of(first.less),
+                        words_of(first.more));
   }
   return text;
+}
+
+/// What the numbers mean, a paragraph below the table of keys.
+std::string meaning_text(const SceneResult& result) {
+  const auto& [scene, m, deciding] = result;
+  const auto& gate = scene.gate;
+  const std::string push = quantity(gate.forces.propulsion, "N", 3);
+  const bool passes = std::isfinite(m.passage), pushes = gate.forces.propulsion > 0.0;
+  std::string text = fmt::format("\nwhat these numbers mean{}:\n  speed     ",
+                                 scene.terrain ? ", in the scene's own gate" : "");
+  if (std::isfinite(m.top_speed))
+    text += fmt::format(
+        "at most {} in the open, {} body lengths per second (95 % of it {} after a start from "
+        "rest); ",
+        quantity(m.top_speed, "m/s", 3), three_digits(m.top_speed / (2.0 * gate.body.radius)),
+        quantity(m.top_speed_time, "s", 3));
+  else
+    text += "without drag no top speed; ";
+  text += passes ? fmt::format("from the start through a gate without beams in {}, {} at its end\n",
+                               quantity(m.passage, "s", 3), quantity(m.passage_speed, "m/s", 3))
+                 : "it never gets through a gate, even without beams\n";
+  text += fmt::format(
+      "  sideways  noise shakes the body by {} (standard deviation) in {}, {} of the way to a "
+      "joint",
+      quantity(m.shaken, "m", 3), quantity(std::min(m.passage, gate.run.time_limit), "s", 3),
+      three_digits(m.shaken / gate.beams.joint_x));
+  if (pushes)
+    text += fmt::format("; the random force is {} the push",
+                        times_as(gate.forces.random / gate.forces.propulsion));
+  if (passes) text += fmt::format(", drawn {} per body length", times_as(m.draws_per_length));
+  text += "\n  beams     ";
+  const std::string resistance = quantity(m.beams.resistance, "N", 3),
+                    angle = degrees(m.beams.angle);
+  if (m.beams.resistance == 0.0)
+    text += "a body on the middle line gets past them without resistance\n";
+  else if (!pushes)
+    text += "there is no push\n";
+  else if (std::isnan(m.beams.held_angle))
+    text += fmt::format(
+        "on the middle line they resist with at most {} (at {}); the push of {} bends them aside\n",
+        resistance, angle, push);
+  else
+    text += fmt::format(
+        "on the middle line they hold the push of {} at {}; {}\n", push,
+        degrees(m.beams.held_angle),
+        std::isfinite(m.beams.resistance)
+            ? fmt::format("at {} they would hold {}, the most: only speed or noise takes the body "
+                          "on",
+                          angle, resistance)
+            : "there the body covers their joints and cannot get past");
+  const std::string left = ringing(m.ring_down[dynamics::kLeft]);
+  text += gate.beams.stiffness_left == gate.beams.stiffness_right
+              ? fmt::format("            let go, a beam {}\n", left)
+              : fmt::format("            let go, the left one {}; the right one {}\n", left,
+                            ringing(m.ring_down[dynamics::kRight]));
+  text += fmt::format(
+      "  trapped   is who is still in a gate after {}{}\n", quantity(gate.run.time_limit, "s", 3),
+      passes ? fmt::format(", {} what a gate without beams takes", times_as(m.passages_waited))
+             : "");
+  text += steps_text(deciding);
+  const auto all = far_from_walkers(m, scene);
+  if (!all.empty()) text += "far from any animal or robot that walks:\n";
+  for (const FarFromWalkers& far : all) text += fmt::format("  {}: {}\n", far.what, far.reason);
+  return text;
+}
+
+/// Its sentences, each behind what it is about: "sideways: noise shakes the body by ...".
+std::vector<std::string> remarks(const SceneResult& result) {
+  constexpr std::size_t kText = 12;  // where sentences begin
+  std::vector<std::string> all;
+  std::istringstream lines(meaning_text(result));
+  lines.exceptions(std::ios_base::badbit);
+  std::string about;
+  std::getline(lines, about);  // an empty line, and the heading
+  std::getline(lines, about);
+  for (std::string line; std::getline(lines, line) && line.starts_with("  ");) {
+    std::string name = line.substr(2, kText - 2);
+    name.erase(name.find_last_not_of(' ') + 1);
+    if (!name.empty()) about = name;
+    all.push_back(fmt::format("{}: {}", about, line.substr(kText)));
+  }
+  for (const FarFromWalkers& far : far_from_walkers(result.meaning, result.scene))
+    all.push_back(fmt::format("far from what walks: {}: {}", far.what, far.reason));
+  return all;
+}
+
+void describe(Fields& out, const dynamics::RingDown& r) {
+  out.number({"period_s", "s",
+              "from swing to swing on the same side; null: it creeps back without a swing"},
+             r.period);
+  out.number({"kept_per_swing", "1", "share of a swing's angle that the next one has"}, r.kept);
+  out.number({"half_s", "s",
+              "time in which its angle, or that of its swings, halves in the long run; null: "
+              "nothing brings it back or stops it"},
+             r.half);
+}
+
+void describe_meaning(Fields& out, const Meaning& m, const lattice::Scene& scene) {
+  out.number({"top_speed_m_per_s", "m/s", "top speed in the open; null: there is no drag"},
+             m.top_speed);
+  out.number({"top_speed_time_s", "s", "time from rest to 95 % of the top speed"},
+             m.top_speed_time);
+  out.number({"passage_s", "s", "time from the start through a gate without beams; null: never"},
+             m.passage);
+  out.number({"passage_speed_m_per_s", "m/s", "speed at the end of this passage"}, m.passage_speed);
+  out.number({"shaken_sideways_m", "m",
+              "standard deviation of the place sideways that noise makes in this passage, or in "
+              "the time limit if that is less"},
+             m.shaken);
+  out.number({"draws_per_body_length", "1",
+              "draws of the random force while the body goes its own length"},
+             m.draws_per_length);
+  out.number(
+      {"froude", "1",
+       "v^2/(g R), with the radius for a leg: of the top speed, else of passage_speed_m_per_s"},
+      m.froude);
+  out.number({"push_per_weight", "1", "propulsion over the body's weight on Earth"},
+             m.push_per_weight);
+  out.number({"random_per_weight", "1", "random force over the body's weight on Earth"},
+             m.random_per_weight);
+  out.number({"passages_waited", "1", "run.time_limit_s over passage_s"}, m.passages_waited);
+  out.number({"resistance_N", "N",
+              "the most with which both beams resist a body on the middle line; null: it covers "
+              "their joints"},
+             m.beams.resistance);
+  out.number({"resistance_angle_rad", "rad", "angle of a beam where they resist most"},
+             m.beams.angle);
+  out.number({"held_angle_rad", "rad",
+              "angle of a beam where they hold the propulsion; null: the body gets past"},
+             m.beams.held_angle);
+  out.object({"ring_down", "how a beam that is let go comes to rest"}, [&](Fields& beams) {
+    beams.object({"left", "the left beam"},
+                 [&](Fields& f) { describe(f, m.ring_down[dynamics::kLeft]); });
+    beams.object({"right", "the right beam"},
+                 [&](Fields& f) { describe(f, m.ring_down[dynamics::kRight]); });
+  });
+  out.list({"far_from_walkers", "what no animal and no robot that walks has"},
+           far_from_walkers(m, scene), [](Fields& f, const FarFromWalkers& far) {
+             f.text({"name", "a key of meaning"}, far.name);
+             f.text({"what", "in words"}, far.what);
+             f.text({"reason", "why that is far"}, far.reason);
+           });
 }
 
 }  // namespace
@@ -80,32 +225,34 @@ std::vector<FarFromWalkers> far_from_walkers(const Meaning& m, const lattice::Sc
   const bool has_top = std::isfinite(m.top_speed);
   const double fastest = has_top ? m.top_speed : m.passage_speed;
   if (m.froude > kFastestRun)
-    all.push_back({"froude",
-                   quantity(fastest, "m/s", 3) +
-                       (has_top ? " at most in the open, " : " at the end of an open gate, ") +
-                       three_digits(fastest / (2.0 * scene.gate.body.radius)) +
-                       " body lengths per second",
-                   "v^2/(g R) = " + three_digits(m.froude) +
-                       ", with the radius for a leg: nothing walks above 1, and fast runners reach "
-                       "10 to 30"});
+    all.push_back(
+        {"froude",
+         fmt::format("{} {}, {} body lengths per second", quantity(fastest, "m/s", 3),
+                     has_top ? "at most in the open" : "at the end of an open gate",
+                     three_digits(fastest / (2.0 * scene.gate.body.radius))),
+         fmt::format("v^2/(g R) = {}, with the radius for a leg: nothing walks above 1, and fast "
+                     "runners reach 10 to 30",
+                     three_digits(m.froude))});
   if (m.push_per_weight > kMostGrip)
     all.push_back({"push_per_weight",
-                   "a push of " + times_as(m.push_per_weight) + " the body's weight",
+                   fmt::format("a push of {} the body's weight", times_as(m.push_per_weight)),
                    "feet hold by friction, which is seldom more than the weight"});
   if (m.random_per_weight > kMostGrip)
-    all.push_back({"random_per_weight",
-                   "a random force of " + times_as(m.random_per_weight) + " the body's weight",
-                   "feet hold by friction, which is seldom more than the weight"});
+    all.push_back(
+        {"random_per_weight",
+         fmt::format("a random force of {} the body's weight", times_as(m.random_per_weight)),
+         "feet hold by friction, which is seldom more than the weight"});
   if (m.draws_per_length > kMostSteps)
     all.push_back({"draws_per_length",
                    three_digits(m.draws_per_length) + " draws of the random force per body length",
                    "legs step a few times while the body goes its own length"});
   if (m.passages_waited < kLeastPatience)
-    all.push_back({"passages_waited",
-                   "trapped after " + quantity(scene.gate.run.time_limit, "s", 3) + ", " +
-                       times_as(m.passages_waited) + " what an open gate takes",
-                   "who is slow, or tries again, counts like who is stuck: run.time_limit_s is how "
-                   "long you would watch"});
+    all.push_back(
+        {"passages_waited",
+         fmt::format("trapped after {}, {} what an open gate takes",
+                     quantity(scene.gate.run.time_limit, "s", 3), times_as(m.passages_waited)),
+         "who is slow, or tries again, counts like who is stuck: run.time_limit_s is how "
+         "long you would watch"});
   return all;
 }
 
@@ -116,112 +263,51 @@ std::string far_from_walkers_line(const lattice::Scene& scene) {
        far_from_walkers(dynamics::meaning_of(scene.gate, scene.start), scene))
     all += (all.empty() ? "" : "; ") + far.what;
   if (all.empty()) return all;
-  return "that is far from any animal or robot that walks: " + all + " (gatewalk scene " +
-         scene.source + " says why)";
+  return fmt::format(
+      "that is far from any animal or robot that walks: {} (gatewalk scene {} says why)", all,
+      scene.source);
 }
 
-Json to_json(const Meaning& m, const lattice::Scene& scene) {
-  const auto of_beam = [](const dynamics::RingDown& r) {
-    return Json{
-        {"period_s", or_null(r.period)}, {"kept_per_swing", r.kept}, {"half_s", or_null(r.half)}};
-  };
-  Json json{{"top_speed_m_per_s", or_null(m.top_speed)},
-            {"top_speed_time_s", or_null(m.top_speed_time)},
-            {"passage_s", or_null(m.passage)},
-            {"passage_speed_m_per_s", or_null(m.passage_speed)},
-            {"shaken_sideways_m", m.shaken},
-            {"draws_per_body_length", or_null(m.draws_per_length)},
-            {"froude", or_null(m.froude)},
-            {"push_per_weight", m.push_per_weight},
-            {"random_per_weight", m.random_per_weight},
-            {"passages_waited", m.passages_waited},
-            {"resistance_N", or_null(m.beams.resistance)},
-            {"resistance_angle_rad", or_null(m.beams.angle)},
-            {"held_angle_rad", or_null(m.beams.held_angle)},
-            {"ring_down",
-             {{"left", of_beam(m.ring_down[dynamics::kLeft])},
-              {"right", of_beam(m.ring_down[dynamics::kRight])}}}};
-  json["far_from_walkers"] = Json::array();
-  for (const FarFromWalkers& far : far_from_walkers(m, scene))
-    json["far_from_walkers"].push_back(
-        {{"name", far.name}, {"what", far.what}, {"reason", far.reason}});
-  return json;
+void describe(Fields& out, const SceneResult& result) {
+  const lattice::Scene& scene = result.scene;
+  out.list({"keys", "every key of the scene"}, lattice::describe(scene),
+           [](Fields& f, const lattice::KeyInfo& k) {
+             f.text({"key", "its name"}, k.key);
+             f.text({"value", "as TOML has it"}, k.value);
+             f.text({"unit", "of the value; empty: a pure number, or a text"}, k.unit);
+             f.text({"range", "that the value must lie in"}, k.range);
+             f.text({"meaning", "what it is"}, k.meaning);
+             f.text({"source",
+                     "where the value comes from: a line of the file, --set, \"paper\", or "
+                     "\"derived\" from other keys"},
+                    k.source);
+           });
+  out.object({"meaning", "what these numbers amount to"},
+             [&](Fields& f) { describe_meaning(f, result.meaning, scene); });
+  out.texts({"remarks", "the same in sentences"}, remarks(result));
+  out.text({"scene", "the whole scene, as TOML"}, lattice::to_toml(scene));
+  out.optional(scene.terrain.has_value(), [&](Fields& f) {
+    f.texts({"map", "types of the field's gates, a row each, the far row first"},
+            lattice::map_rows(*scene.terrain, scene.field));
+  });
+  out.optional(!scene.actions.empty(), [&](Fields& f) {
+    std::vector<std::string> names;
+    for (const lattice::Terrain::Type& action : scene.actions) names.push_back(action.name);
+    f.texts({"actions", "names of what a body may do, in the order of their numbers"}, names);
+  });
 }
 
-std::string meaning_text(const Meaning& m, const std::vector<dynamics::Deciding>& deciding,
-                         const lattice::Scene& scene) {
-  const auto& gate = scene.gate;
-  const double body_length = 2.0 * gate.body.radius;
-  const bool passes = std::isfinite(m.passage);
-  std::string text = scene.terrain ? "\nwhat these numbers mean, in the scene's own gate:\n"
-                                   : "\nwhat these numbers mean:\n";
-  text += "  speed     ";
-  if (std::isfinite(m.top_speed))
-    text += "at most " + quantity(m.top_speed, "m/s", 3) + " in the open, " +
-            three_digits(m.top_speed / body_length) + " body lengths per second (95 % of it " +
-            quantity(m.top_speed_time, "s", 3) + " after a start from rest); ";
-  else
-    text += "without drag no top speed; ";
-  text += passes ? "from the start through a gate without beams in " + quantity(m.passage, "s", 3) +
-                       ", " + quantity(m.passage_speed, "m/s", 3) + " at its end\n"
-                 : "it never gets through a gate, even without beams\n";
-  text += "  sideways  noise shakes the body by " + quantity(m.shaken, "m", 3) +
-          " (standard deviation) in " + quantity(std::min(m.passage, gate.run.time_limit), "s", 3) +
-          ", " + three_digits(m.shaken / gate.beams.joint_x) + " of the way to a joint";
-  if (gate.forces.propulsion > 0.0)
-    text += "; the random force is " + times_as(gate.forces.random / gate.forces.propulsion) +
-            " the push";
-  if (passes) text += ", drawn " + times_as(m.draws_per_length) + " per body length";
-  text += "\n  beams     ";
-  if (m.beams.resistance == 0.0)
-    text += "a body on the middle line gets past them without resistance\n";
-  else if (std::isnan(m.beams.held_angle) && gate.forces.propulsion > 0.0)
-    text += "on the middle line they resist with at most " + quantity(m.beams.resistance, "N", 3) +
-            " (at " + degrees(m.beams.angle) + "); the push of " +
-            quantity(gate.forces.propulsion, "N", 3) + " bends them aside\n";
-  else if (gate.forces.propulsion > 0.0)
-    text += "on the middle line they hold the push of " + quantity(gate.forces.propulsion, "N", 3) +
-            " at " + degrees(m.beams.held_angle) +
-            (std::isfinite(m.beams.resistance)
-                 ? "; at " + degrees(m.beams.angle) + " they would hold " +
-                       quantity(m.beams.resistance, "N", 3) +
-                       ", the most: only speed or noise "
-                       "takes the body on\n"
-                 : "; there the body covers their joints and cannot get past\n");
-  else
-    text += "there is no push\n";
-  const bool alike = gate.beams.stiffness_left == gate.beams.stiffness_right;
-  text += std::string("            let go, ") + (alike ? "a beam " : "the left one ") +
-          ringing(m.ring_down[dynamics::kLeft]) +
-          (alike ? "" : "; the right one " + ringing(m.ring_down[dynamics::kRight])) + "\n";
-  text += "  trapped   is who is still in a gate after " + quantity(gate.run.time_limit, "s", 3);
-  if (passes) text += ", " + times_as(m.passages_waited) + " what a gate without beams takes";
-  text += "\n";
-  text += steps_text(deciding);
-  const auto all = far_from_walkers(m, scene);
-  if (!all.empty()) text += "far from any animal or robot that walks:\n";
-  for (const FarFromWalkers& far : all) text += "  " + far.what + ": " + far.reason + "\n";
+std::string table_of(const SceneResult& result) {
+  const lattice::Scene& scene = result.scene;
+  std::string text = table_of(lattice::describe(scene)) + meaning_text(result);
+  if (scene.terrain)
+    text += fmt::format("\nmap, the far side first:\n{}\n",
+                        fmt::join(lattice::map_rows(*scene.terrain, scene.field), "\n"));
+  std::vector<std::string> actions;
+  for (const lattice::Terrain::Type& action : scene.actions)
+    actions.push_back(action.name + (action.keys.empty() ? " (the scene as it is)" : ""));
+  if (!actions.empty()) text += fmt::format("\nactions: {}\n", fmt::join(actions, ", "));
   return text;
-}
-
-std::vector<std::string> remarks(const Meaning& m, const std::vector<dynamics::Deciding>& deciding,
-                                 const lattice::Scene& scene) {
-  constexpr std::size_t kText = 12;  // where sentences begin
-  std::vector<std::string> all;
-  std::istringstream lines(meaning_text(m, deciding, scene));
-  lines.exceptions(std::ios_base::badbit);
-  std::string about;
-  std::getline(lines, about);  // an empty line, and the heading
-  std::getline(lines, about);
-  for (std::string line; std::getline(lines, line) && line.starts_with("  ");) {
-    std::string name = line.substr(2, kText - 2);
-    name.erase(name.find_last_not_of(' ') + 1);
-    if (!name.empty()) about = name;
-    all.push_back(about + ": " + line.substr(kText));
-  }
-  for (const FarFromWalkers& far : far_from_walkers(m, scene))
-    all.push_back("far from what walks: " + far.what + ": " + far.reason);
-  return all;
 }
 
 }  // namespace gatewalk::cli

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/json_fwd.h"
+#include "cli/render/fields.h"
 #include "dynamics/disc/study/deciding.h"
 #include "dynamics/disc/study/meaning.h"
 #include "lattice/scene/scene.h"
@@ -23,15 +23,14 @@ struct FarFromWalkers {
 /// The same in a line, for a scene that leaves out keys which have a unit; else empty.
 [[nodiscard]] std::string far_from_walkers_line(const lattice::Scene& scene);
 
-/// Numbers in the units of the scene, null for what is infinite or is not; with the remarks.
-[[nodiscard]] Json to_json(const dynamics::Meaning& meaning, const lattice::Scene& scene);
-/// A paragraph below the table of keys.
-[[nodiscard]] std::string meaning_text(const dynamics::Meaning& meaning,
-                                       const std::vector<dynamics::Deciding>& deciding,
-                                       const lattice::Scene& scene);
-/// Its sentences, each behind what it is about: "sideways: noise shakes the body by ...".
-[[nodiscard]] std::vector<std::string> remarks(const dynamics::Meaning& meaning,
-                                               const std::vector<dynamics::Deciding>& deciding,
-                                               const lattice::Scene& scene);
+/// The result of `scene`.
+struct SceneResult {
+  lattice::Scene scene;
+  dynamics::Meaning meaning;
+  std::vector<dynamics::Deciding> deciding;
+};
+void describe(Fields& out, const SceneResult& result);
+/// Every key, and what the numbers mean; below it the map and the actions, if there are.
+[[nodiscard]] std::string table_of(const SceneResult& result);
 
 }  // namespace gatewalk::cli

@@ -11,6 +11,7 @@
 #include "cli/render/gate_runs.h"
 #include "cli/render/matrix.h"
 #include "cli/render/power.h"
+#include "cli/render/meaning.h"
 #include "cli/render/plan.h"
 #include "cli/render/prediction.h"
 #include "cli/render/rare.h"
@@ -183,6 +184,7 @@ const std::vector<ResultOf>& results() {
       of("predict", prediction()),
       of("rare", rare()),
       of("sample", SampleResult{}),
+      of("scene", SceneResult{mixed(), {}, {}}),
       of("show", shown_matrix()),
       of<StabilityResult>("stability"),
       of("walk", WalkResult{.shown = ShownField(lattice::Scene())}),

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include "cli/render/json.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 #include "lattice/scene/scene_bins.h"
 #include "lattice/text/digits.h"
 
@@ -32,8 +34,8 @@ std::string shown_range(const lattice::KeyInfo& k) {
   const std::size_t comma = k.range.find(", ");
   if (comma == k.range.npos) return k.range;
   const std::size_t high = comma + 2, end = k.range.size() - 1;
-  return k.range.front() + shortened(k.range.substr(1, comma - 1)) + ", " +
-         shortened(k.range.substr(high, end - high)) + k.range.back();
+  return fmt::format("{}{}, {}{}", k.range.front(), shortened(k.range.substr(1, comma - 1)),
+                     shortened(k.range.substr(high, end - high)), k.range.back());
 }
 
 }  // namespace
@@ -41,11 +43,12 @@ std::string shown_range(const lattice::KeyInfo& k) {
 std::string limits_text(const ShownField& shown) {
   std::string text = std::isnan(shown.time_limit)
                          ? "(trapped: as the runs say"
-                         : "(trapped: still in the same gate " + quantity(shown.time_limit, "s") +
-                               " after entering it";
+                         : fmt::format("(trapped: still in the same gate {} after entering it",
+                                       quantity(shown.time_limit, "s"));
   if (shown.field.max_gates > 0)
-    text += "; cut off: would go on from gate number " + std::to_string(shown.field.max_gates) +
-            ", the limit field.max_gates, 0 for none";
+    text += fmt::format(
+        "; cut off: would go on from gate number {}, the limit field.max_gates, 0 for none",
+        shown.field.max_gates);
   return text + ")\n";
 }
 
@@ -54,8 +57,8 @@ std::string too_few_gates(const ShownField& shown) {
   int longest = 1;  // rows in one move
   for (const dynamics::Face& face : shown.map.section.faces) longest = std::max(longest, face.di_y);
   if (field.max_gates == 0 || field.max_gates >= (field.rows + longest - 1) / longest) return "";
-  return "nobody can cross: field.max_gates = " + std::to_string(field.max_gates) +
-         " is less than field.rows = " + std::to_string(field.rows);
+  return fmt::format("nobody can cross: field.max_gates = {} is less than field.rows = {}",
+                     field.max_gates, field.rows);
 }
 
 std::string scene_line(const lattice::Scene& scene, const std::vector<std::string>& actions) {
@@ -65,56 +68,30 @@ std::string scene_line(const lattice::Scene& scene, const std::vector<std::strin
   // Two numbers with one unit, that of the larger.
   const Sized place = readable_unit("m", std::max(std::abs(start.x), std::abs(start.y)));
   const Sized speed = readable_unit("m/s", std::max(std::abs(start.vx), std::abs(start.vy)));
-  const std::string text = scene.source + ": start x " + number(start.x / place.size) + ", y " +
-                           number(start.y / place.size) + " " + place.name + ", v (" +
-                           number(start.vx / speed.size) + ", " + number(start.vy / speed.size) +
-                           ") " + speed.name + "; disc " + quantity(gate.body.mass, "kg", 6) +
-                           ", R " + quantity(gate.body.radius, "m", 6) + "; ";
-  if (!actions.empty()) {
-    std::string all;
-    for (const std::string& action : actions) all += (all.empty() ? "" : ", ") + action;
-    return text + "actions " + all + "\n";
-  }
-  return text + "F " + quantity(gate.forces.propulsion, "N", 6) + ", Rm " +
-         quantity(gate.forces.random, "N", 6) + "; beams k " + number(gate.beams.stiffness_left) +
-         " / " + number(gate.beams.stiffness_right) + ", d " + number(gate.beams.damping) + "; " +
-         gate.run.method + " " +
-         (gate.run.method == "event" ? quantity(gate.run.event_tolerance, "m", 6)
-                                     : quantity(gate.run.step, "s", 6)) +
-         "\n";
-}
-
-Json to_json(const std::vector<lattice::KeyInfo>& keys) {
-  Json json;
-  for (const lattice::KeyInfo& k : keys)
-    json.push_back({{"key", k.key},
-                    {"value", k.value},
-                    {"unit", k.unit},
-                    {"range", k.range},
-                    {"meaning", k.meaning},
-                    {"source", k.source}});
-  return json;
+  const std::string text =
+      fmt::format("{}: start x {}, y {} {}, v ({}, {}) {}; disc {}, R {}; ", scene.source,
+                  number(start.x / place.size), number(start.y / place.size), place.name,
+                  number(start.vx / speed.size), number(start.vy / speed.size), speed.name,
+                  quantity(gate.body.mass, "kg", 6), quantity(gate.body.radius, "m", 6));
+  if (!actions.empty()) return fmt::format("{}actions {}\n", text, fmt::join(actions, ", "));
+  return fmt::format("{}F {}, Rm {}; beams k {} / {}, d {}; {} {}\n", text,
+                     quantity(gate.forces.propulsion, "N", 6), quantity(gate.forces.random, "N", 6),
+                     number(gate.beams.stiffness_left), number(gate.beams.stiffness_right),
+                     number(gate.beams.damping), gate.run.method,
+                     gate.run.method == "event" ? quantity(gate.run.event_tolerance, "m", 6)
+                                                : quantity(gate.run.step, "s", 6));
 }
 
 std::string table_of(const std::vector<lattice::KeyInfo>& keys) {
-  std::size_t key_width = 0, value_width = 0, unit_width = 0, source_width = 0;
-  for (const lattice::KeyInfo& k : keys) {
-    key_width = std::max(key_width, k.key.size());
-    value_width = std::max(value_width, shown_value(k).size());
-    unit_width = std::max(unit_width, k.unit.size());
-    source_width = std::max(source_width, k.source.size());
-  }
-  const auto column = [](const std::string& text, std::size_t width) {
-    return padded(text, -static_cast<int>(width + 2));
-  };
-  std::string table = column("key", key_width) + column("value", value_width) +
-                      column("unit", unit_width) + column("from", source_width) +
-                      "meaning; range\n";
+  TextTable table({{"key", -kFit},
+                   {"value", -kFit, 0, "", "  "},
+                   {"unit", -kFit, 0, "", "  "},
+                   {"from", -kFit, 0, "", "  "},
+                   {"meaning; range", 0, 0, "", "  "}});
   for (const lattice::KeyInfo& k : keys)
-    table += column(k.key, key_width) + column(shown_value(k), value_width) +
-             column(k.unit, unit_width) + column(k.source, source_width) + k.meaning +
-             (k.range.empty() ? "" : "; " + shown_range(k)) + "\n";
-  return table;
+    table.row({k.key, shown_value(k), k.unit, k.source,
+               k.meaning + (k.range.empty() ? "" : "; " + shown_range(k))});
+  return table.text();
 }
 
 std::string commented(const lattice::Scene& scene) {
@@ -142,8 +119,9 @@ std::string commented(const lattice::Scene& scene) {
     if (const std::string own = k.key.substr(0, k.key.find('.')); own != table)
       text += "\n[" + (table = own) + "]\n";
     const bool follows = k.source == "derived";
-    text += padded((follows ? "# " : "") + leaf(k) + " = " + k.value, -static_cast<int>(width)) +
-            "  # " + k.meaning;
+    text +=
+        fmt::format("{:<{}}  # {}", fmt::format("{}{} = {}", follows ? "# " : "", leaf(k), k.value),
+                    width, k.meaning);
     if (!k.range.empty()) text += ", in " + shown_range(k) + (k.unit.empty() ? "" : " " + k.unit);
     if (follows || k.source == "paper") text += "; " + k.source;
     text += "\n";
@@ -153,7 +131,7 @@ std::string commented(const lattice::Scene& scene) {
   text += lattice::gates_toml("actions", scene.actions);
   if (!scene.sweep.empty()) text += "\n[sweep]\n";
   for (const lattice::Variation& v : scene.sweep)
-    text += "\"" + v.key + "\" = \"" + v.values + "\"\n";
+    text += fmt::format("\"{}\" = \"{}\"\n", v.key, v.values);
   return text;
 }
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/json_fwd.h"
 #include "cli/render/shown_field.h"
 
 namespace gatewalk::cli {
@@ -19,7 +18,6 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string too_few_gates(const ShownField& shown);
 
 /// Every key with its value, unit, range, meaning and source.
-[[nodiscard]] Json to_json(const std::vector<lattice::KeyInfo>& keys);
 [[nodiscard]] std::string table_of(const std::vector<lattice::KeyInfo>& keys);
 /// The scene as a file to edit: every key with its value, unit, range and meaning.
 [[nodiscard]] std::string commented(const lattice::Scene& scene);
