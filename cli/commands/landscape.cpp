@@ -2,8 +2,6 @@
 #include "cli/render/landscape.h"
 
 #include "cli/arguments.h"
-#include "cli/render/choice.h"
-#include "cli/render/gate_runs.h"
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/scene.h"
@@ -59,26 +57,21 @@ int run_landscape(const Arguments& arguments) {
   const ResultFolder folder(options, files);
   if (trials == 0) options.warn(lattice::terrain_without_effect(scene));
 
-  const dynamics::Passes passes = dynamics::passes(scene.gate, scene.start, spacing, beams);
-  Json json = to_json(passes);
-  std::string table = scene_line(scene) + table_of(passes, scene.gate);
-  dynamics::Health health;
+  LandscapeResult result{.passes = dynamics::passes(scene.gate, scene.start, spacing, beams)};
+  const std::string line = scene_line(scene);
   if (trials > 0) {
-    const auto settled = settle_method(options, scene, lattice::RunsFrom::start);
-    const auto tally = dynamics::run_checked_trials(scene.gate, scene.start, options.seed(),
-                                                    {"gate runs", {0, trials}}, options.work());
-    json["measured"] = json_of([&](Fields& out) { describe(out, tally); });
-    if (settled) json["measured"]["method"] = to_json(*settled);
-    json["measured"]["status"] = to_json(tally.health);
-    table += measured_line(tally);
-    health = tally.health;
+    result.method = settle_method(options, scene, lattice::RunsFrom::start);
+    result.measured = dynamics::run_checked_trials(scene.gate, scene.start, options.seed(),
+                                                   {"gate runs", {0, trials}}, options.work());
   }
-  json["made_by"] = to_json(options.provenance(scene));
-  folder.write("landscape.csv", csv_of(passes.coarse.landscape), "landscape.json", json);
-  folder.draw("landscape.svg", figure_of(passes));
-  options.give_out(json, table);
-  const int exit = status_of(options, health);
-  options.draw([&] { return figure_of(passes); });
+  result.made_by = options.provenance(scene);
+  folder.write("landscape.csv", csv_of(result.passes.coarse.landscape), "landscape.json",
+               json_of([&](Fields& out) { describe(out, result); }));
+  folder.draw("landscape.svg", figure_of(result.passes));
+  options.give_out(result, line + table_of(result, scene.gate));
+  const int exit =
+      status_of(options, result.measured ? result.measured->health : dynamics::Health());
+  options.draw([&] { return figure_of(result.passes); });
   return exit;
 }
 

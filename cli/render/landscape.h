@@ -1,26 +1,33 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The lowest way through a gate over its energy landscape, as JSON, CSV, a table and a figure.
+/// The lowest way through a gate over its energy landscape, as a result, CSV, a table and a figure.
 
+#include <optional>
 #include <string>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 #include "cli/render/quantity.h"
 #include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/landscape.h"
+#include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {
 
-/// Without "made_by": {"spacing_m", "beams", "start_kinetic_energy_J", "passes": one for each grid}
-[[nodiscard]] Json to_json(const dynamics::Passes& passes);
+/// The result of `landscape`.
+struct LandscapeResult {
+  dynamics::Passes passes;
+  std::optional<dynamics::GateTally> measured{};  // whom the landscape is held against
+  std::optional<lattice::Settled> method{};       // of these runs
+  Provenance made_by{};
+};
+void describe(Fields& out, const LandscapeResult& result);
 /// A line for each point of the grid.
 [[nodiscard]] std::string csv_of(const dynamics::Landscape& landscape);
 /// A line for each grid, and whether the start's own energy would do; lengths and energies to what
-/// counts in such a gate.
-[[nodiscard]] std::string table_of(const dynamics::Passes& passes, const dynamics::GateParams& p);
-/// Whom the landscape is held against: "measured: 5.1 % of 1000 trials traverse, 95 % [3.9, 6.6]".
-[[nodiscard]] std::string measured_line(const dynamics::GateTally& tally);
+/// counts in such a gate. Then how many passed, if the gate was run.
+[[nodiscard]] std::string table_of(const LandscapeResult& result, const dynamics::GateParams& p);
 /// The coarse grid as two maps, elastic energy and with the propulsion, the latter with the lowest
 /// way through of the fine one; and the energy along it.
 [[nodiscard]] Figure figure_of(const dynamics::Passes& passes);

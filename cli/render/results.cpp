@@ -9,6 +9,7 @@
 #include "cli/render/files.h"
 #include "cli/render/fit.h"
 #include "cli/render/gate_runs.h"
+#include "cli/render/landscape.h"
 #include "cli/render/matrix.h"
 #include "cli/render/power.h"
 #include "cli/render/meaning.h"
@@ -177,6 +178,7 @@ const std::vector<ResultOf>& results() {
       of("fit", fit()),
       of<GateResult>("gate"),
       of("import", ImportedMatrix{shown_matrix(), {}, {}}),
+      of<LandscapeResult>("landscape"),
       of("lattice", trials()),
       of("passages", cut_tracks()),
       of<PowerResult>("power"),
