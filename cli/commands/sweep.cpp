@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "cli/arguments.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/sweep.h"
 #include "cli/terminal/output.h"
 #include "dynamics/base/work.h"
@@ -79,22 +79,21 @@ int run_sweep(const Arguments& arguments) {
                      [&](const auto& p) { options.warn(complaint(*p.settled)); });
   options.work().end_part();
 
-  Json json = to_json(axes, points);
-  json["made_by"] = to_json(options.provenance(scene));
+  const SweepResult result{axes, std::move(points), options.provenance(scene)};
   if (csv == "-") {
-    write_text_atomically("-", csv_of(axes, points));
-    if (!options.text("json").empty()) options.give_out(json, "");
+    write_text_atomically("-", csv_of(result));
+    if (!options.text("json").empty()) options.give_out(result, "");
   } else {
-    if (!csv.empty()) options.write(csv, csv_of(axes, points));
-    options.give_out(json, table_of(scene, axes, points));
+    if (!csv.empty()) options.write(csv, csv_of(result));
+    options.give_out(result, table_of(result, scene));
   }
   dynamics::Health health;
-  for (const lattice::SweepPoint& p : points) health += p.tally.health;
+  for (const lattice::SweepPoint& p : result.points) health += p.tally.health;
   options.warn(complaint(health));
   const int status =
-      exit_status(options, std::all_of(points.begin(), points.end(),
+      exit_status(options, std::all_of(result.points.begin(), result.points.end(),
                                        [](const auto& p) { return p.tally.health.clean(); }));
-  options.draw([&] { return figure_of(axes, points); });
+  options.draw([&] { return figure_of(axes, result.points); });
   return status;
 }
 

@@ -18,6 +18,7 @@
 #include "cli/render/rare.h"
 #include "cli/render/schema.h"
 #include "cli/render/stability.h"
+#include "cli/render/sweep.h"
 #include "cli/render/work_precision.h"
 #include "dynamics/disc/disc_section.h"
 
@@ -162,6 +163,10 @@ AnalysedField analyze() {
   shares.ranges.resize(1);
   shares.found.indices.first.resize(1);
   shares.found.indices.total.resize(1);
+SweepResult sweep() {
+  SweepResult example;
+  example.axes.push_back({"", {""}});
+  example.points.emplace_back().values = {""};
   return example;
 }
 
@@ -189,6 +194,7 @@ const std::vector<ResultOf>& results() {
       of("scene", SceneResult{mixed(), {}, {}}),
       of("show", shown_matrix()),
       of<StabilityResult>("stability"),
+      of("sweep", sweep()),
       of("walk", WalkResult{.shown = ShownField(lattice::Scene())}),
   };
   return all;

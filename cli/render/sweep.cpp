@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/sweep.h"
 
-#include <algorithm>
+#include <fmt/core.h>
 
 #include "cli/render/choice.h"
 #include "cli/render/csv.h"
 #include "cli/render/gate_runs.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/scene.h"
+#include "cli/render/text_table.h"
 #include "dynamics/base/share.h"
 #include "lattice/text/text_stream.h"
 
@@ -36,43 +36,57 @@ std::vector<Share> shares_of(const dynamics::GateTally& t) {
            t[Outcome::traversed_left] + t[Outcome::traversed_right]}};
 }
 
-}  // namespace
-
-Json to_json(const std::vector<SweepAxis>& axes, const std::vector<SweepPoint>& points) {
-  const auto value = [](const std::string& given) {
-    const Json number = parsed_json(given);
-    return number.is_number() ? number : Json(given);
-  };
-  Json json;
-  json["vary"] = Json::array();
-  for (const SweepAxis& axis : axes) {
-    json["vary"].push_back({{"key", axis.key}, {"values", Json::array()}});
-    for (const std::string& v : axis.values) json["vary"].back()["values"].push_back(value(v));
-  }
-  json["points"] = Json::array();
-  for (const SweepPoint& p : points) {
-    Json point;
-    for (std::size_t i = 0; i < axes.size(); ++i) point["at"][axes[i].key] = value(p.values[i]);
-    point.update(json_of([&](Fields& out) { describe(out, p.tally); }));
-    const Share right = shares_of(p.tally).back();
-    if (right.whole > 0)
-      point["intervals_95"][right.name] = share_interval(right.part, right.whole);
-    if (p.settled) point["method"] = to_json(*p.settled);
-    point["status"] = to_json(p.tally.health);
-    json["points"].push_back(std::move(point));
-  }
-  return json;
+/// "  5.1 [3.9, 6.6]    ", in %
+std::string share_text(const Share& s) {
+  if (s.whole == 0) return fmt::format("{:>6}{:16}", "-", "");
+  const auto [low, high] = share_interval(s.part, s.whole);
+  return fmt::format("{:>6}{:16}",
+                     fixed(100.0 * static_cast<double>(s.part) / static_cast<double>(s.whole), 1),
+                     fmt::format(" [{}, {}]", fixed(100.0 * low, 1), fixed(100.0 * high, 1)));
 }
 
-std::string csv_of(const std::vector<SweepAxis>& axes, const std::vector<SweepPoint>& points) {
+void describe(Fields& out, const std::vector<SweepAxis>& axes, const SweepPoint& p) {
+  out.object({"at", "values of the varied keys"}, [&](Fields& at) {
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      at.given(Field(axes[i].key, "its own", "value of this key of the scene").varying("<key>"),
+               p.values[i]);
+  });
+  const Share right = shares_of(p.tally).back();
+  describe(out, p.tally, [&](Fields& intervals) {
+    intervals.optional(right.whole > 0, [&](Fields& f) {
+      f.interval({right.name, "1",
+                  "95 % interval of the share of traversed_right in traversed_left and "
+                  "traversed_right"},
+                 share_interval(right.part, right.whole));
+    });
+  });
+  describe_method(out, p.settled);
+  describe_status(out, p.tally.health);
+}
+
+}  // namespace
+
+void describe(Fields& out, const SweepResult& result) {
+  out.list({"vary", "the keys of the scene that are varied"}, result.axes,
+           [](Fields& f, const SweepAxis& axis) {
+             f.text({"key", "of the scene"}, axis.key);
+             f.givens({"values", "its own", "its values, in this order"}, axis.values);
+           });
+  out.list({"points", "every combination of the values, the last key varying fastest"},
+           result.points,
+           [&](Fields& f, const SweepPoint& point) { describe(f, result.axes, point); });
+  describe_made_by(out, result.made_by);
+}
+
+std::string csv_of(const SweepResult& result) {
   lattice::TextStream out;
-  for (const SweepAxis& axis : axes) out << axis.key << ',';
+  for (const SweepAxis& axis : result.axes) out << axis.key << ',';
   out << "method,trials";
   for (const auto& [outcome, key, words] : dynamics::kOutcomeNames) out << ',' << key << "_count";
   for (const Share& s : shares_of({}))
     out << ',' << s.name << ',' << s.name << "_low," << s.name << "_high";
   out << ",clean\n";
-  for (const SweepPoint& p : points) {
+  for (const SweepPoint& p : result.points) {
     const dynamics::GateTally& t = p.tally;
     for (const std::string& value : p.values) out << csv_text(value) << ',';
     out << p.scene.gate.run.method << ',' << t.trials;
@@ -91,39 +105,26 @@ std::string csv_of(const std::vector<SweepAxis>& axes, const std::vector<SweepPo
   return out.str();
 }
 
-std::string table_of(const lattice::Scene& scene, const std::vector<SweepAxis>& axes,
-                     const std::vector<SweepPoint>& points) {
-  std::string text = scene_line(scene) + "but for the keys varied. " +
-                     std::to_string(points.size()) + " points of " +
-                     std::to_string(points.front().tally.trials) +
-                     " trials, all under the same noise; % of them with 95 % intervals.\n\n";
-  std::vector<int> widths;
-  for (const SweepAxis& axis : axes) {
-    std::size_t width = axis.key.size();
-    for (const std::string& v : axis.values) width = std::max(width, v.size());
-    widths.push_back(static_cast<int>(width) + 2);
-    text += padded(axis.key, widths.back());
-  }
-  text += "   traversed             right of those        exited   trapped\n";
-  for (const SweepPoint& p : points) {
-    for (std::size_t i = 0; i < axes.size(); ++i) text += padded(p.values[i], widths[i]);
+std::string table_of(const SweepResult& result, const lattice::Scene& scene) {
+  std::vector<TextColumn> columns;
+  for (const SweepAxis& axis : result.axes) columns.push_back({axis.key, kFit, 0, "", "  "});
+  columns.push_back({"   traversed             right of those        exited   trapped"});
+  TextTable table(columns);
+  for (const SweepPoint& p : result.points) {
+    std::vector<TextCell> cells(p.values.begin(), p.values.end());
     const auto shares = shares_of(p.tally);
-    const auto with_interval = [](const Share& s) {
-      if (s.whole == 0) return padded("-", 6) + std::string(16, ' ');
-      const auto [low, high] = share_interval(s.part, s.whole);
-      return padded(fixed(100.0 * static_cast<double>(s.part) / static_cast<double>(s.whole), 1),
-                    6) +
-             padded(" [" + fixed(100.0 * low, 1) + ", " + fixed(100.0 * high, 1) + "]", -16);
+    const auto share = [&](std::size_t i) {
+      return percent(static_cast<double>(shares[i].part), static_cast<double>(shares[i].whole));
     };
-    text +=
-        "    " + with_interval(shares[0]) + with_interval(shares[5]) +
-        padded(percent(static_cast<double>(shares[3].part), static_cast<double>(shares[3].whole)),
-               8) +
-        padded(percent(static_cast<double>(shares[4].part), static_cast<double>(shares[4].whole)),
-               10) +
-        (p.tally.health.clean() ? "\n" : "  faults\n");
+    cells.emplace_back(fmt::format("    {}{}{:>8}{:>10}{}", share_text(shares[0]),
+                                   share_text(shares[5]), share(3), share(4),
+                                   p.tally.health.clean() ? "" : "  faults"));
+    table.row(cells);
   }
-  return text;
+  return fmt::format(
+      "{}but for the keys varied. {} points of {} trials, all under the same noise; % of them with "
+      "95 % intervals.\n\n{}",
+      scene_line(scene), result.points.size(), result.points.front().tally.trials, table.text());
 }
 
 }  // namespace gatewalk::cli

@@ -1,24 +1,26 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A sweep as JSON, CSV and table.
+/// A sweep as a result, CSV and table.
 
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 #include "lattice/scene/sweep.h"
 
 namespace gatewalk::cli {
 
-/// Without "made_by".
-[[nodiscard]] Json to_json(const std::vector<lattice::SweepAxis>& axes,
-                           const std::vector<lattice::SweepPoint>& points);
-[[nodiscard]] std::string csv_of(const std::vector<lattice::SweepAxis>& axes,
-                                 const std::vector<lattice::SweepPoint>& points);
-[[nodiscard]] std::string table_of(const lattice::Scene& scene,
-                                   const std::vector<lattice::SweepAxis>& axes,
-                                   const std::vector<lattice::SweepPoint>& points);
+/// The result of `sweep`.
+struct SweepResult {
+  std::vector<lattice::SweepAxis> axes;
+  std::vector<lattice::SweepPoint> points;
+  Provenance made_by;
+};
+void describe(Fields& out, const SweepResult& result);
+[[nodiscard]] std::string csv_of(const SweepResult& result);
+[[nodiscard]] std::string table_of(const SweepResult& result, const lattice::Scene& scene);
 
 /// Of one key: shares over its values; of two: a map of the traversed. Throws std::invalid_argument
 /// for more.
