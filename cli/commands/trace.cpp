@@ -11,9 +11,7 @@
 #include "cli/film/replay.h"
 #include "cli/film/video.h"
 #include "cli/parsers.h"
-#include "cli/render/choice.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/recording.h"
 #include "cli/render/text.h"
 
@@ -83,41 +81,31 @@ int run_trace(const Arguments& arguments) {
         options, scene,
         wanted.across_field ? lattice::RunsFrom::everywhere : lattice::RunsFrom::start);
   }
-  const lattice::Recordings recordings = lattice::record_trials(scene, wanted, options.work());
+  TraceResult result{.recordings = lattice::record_trials(scene, wanted, options.work()),
+                     .method = settled,
+                     .may_do = std::move(may_do),
+                     .made_by = options.provenance(scene)};
+  const lattice::Recordings& recordings = result.recordings;
 
-  const Json made_by = to_json(options.provenance(scene));
   if (options.has("csv")) options.write(options.text("csv"), csv_of(recordings));
-  if (options.has("netcdf")) options.write(options.text("netcdf"), netcdf_of(recordings, made_by));
-  Json json = Json::object();
-  if (options.has("replay") || options.has("video") || options.has("json")) {
-    const Film film = film_of(scene, recordings);
-    if (options.has("replay") || options.has("json")) json = to_json(film);
-    if (options.has("replay")) options.write(options.text("replay"), replay_page(json));
-    if (options.has("video")) {
-      options.keep_old(options.text("video"));
-      write_video(options.text("video"), film, {.speed = speed}, options.work());
-    }
-    if (options.has("json"))
-      for (std::size_t i = 0; i < recordings.runs.size(); ++i)
-        json["runs"][i].update(details_of(scene, recordings, recordings.runs[i]));
-  }
+  if (options.has("netcdf"))
+    options.write(options.text("netcdf"), netcdf_of(recordings, result.made_by));
+  if (options.has("replay") || options.has("video") || options.has("json"))
+    result.film = film_of(scene, recordings);
+  if (options.has("replay")) options.write(options.text("replay"), replay_page(result.film));
   std::string film_line;
   if (options.has("video")) {
-    const double times_real = speed.value_or(dynamics::scale_of(scene.gate).time);
-    json["video_speed"] = times_real;
-    film_line = fmt::format("{}: plays {}\n", options.text("video"), speed_words(times_real));
+    const std::string file = options.text("video");
+    options.keep_old(file);
+    write_video(file, result.film, {.speed = speed}, options.work());
+    result.film_speed = speed.value_or(dynamics::scale_of(scene.gate).time);
+    film_line = fmt::format("{}: plays {}\n", file, speed_words(*result.film_speed));
   }
-  json["recorded"] = recordings.runs.size();
-  json["trials"] = recordings.trials;
-  if (settled) json["method"] = to_json(*settled);
-  if (!may_do.actions.empty()) json["methods"] = to_json(may_do);
-  json["status"] = to_json(recordings.health);
-  json["made_by"] = made_by;
   const bool to_stdout = options.text("csv") == "-" || options.text("replay") == "-";
-  options.give_out(json,
+  options.give_out(result,
                    to_stdout ? ""
-                             : table_of(scene, recordings) + method_line(settled) +
-                                   method_lines(may_do) + film_line,
+                             : table_of(scene, recordings) + method_line(result.method) +
+                                   method_lines(result.may_do) + film_line,
                    -1);
   const int exit = status_of(options, recordings.health);
   options.draw([&] { return figure_of(scene, recordings); });

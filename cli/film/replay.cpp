@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "cli/film/replay.h"
 
+#include "cli/render/health.h"
+#include "cli/render/json.h"
+#include "cli/render/recording.h"
 #include "cli/web/embedded.h"
 #include "cli/web/html.h"
-
-#include "cli/render/json.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -13,66 +14,117 @@ using dynamics::kLeft;
 using dynamics::kRight;
 using Step = const FilmStep&;
 
+/// An array of a run, with an entry for each step.
 struct Array {
-  const char* name;
+  const char *name, *unit, *meaning;
   double (*value)(Step);
 };
 constexpr Array kArrays[] = {
-    {"t", [](Step s) { return s.time; }},
-    {"gx", [](Step s) { return static_cast<double>(s.i_x); }},
-    {"gy", [](Step s) { return static_cast<double>(s.i_y); }},
-    {"x", [](Step s) { return s.body.x; }},
-    {"y", [](Step s) { return s.body.y; }},
-    {"vx", [](Step s) { return s.body.vx; }},
-    {"vy", [](Step s) { return s.body.vy; }},
-    {"left", [](Step s) { return s.angle[kLeft]; }},
-    {"right", [](Step s) { return s.angle[kRight]; }},
-    {"contact_left", [](Step s) { return static_cast<double>(s.contact[kLeft]); }},
-    {"contact_right", [](Step s) { return static_cast<double>(s.contact[kRight]); }},
-    {"random_N", [](Step s) { return s.random_force; }},
-    {"body_J", [](Step s) { return s.body_energy; }},
-    {"beams_J", [](Step s) { return s.beams_energy; }},
-    {"elastic_J", [](Step s) { return s.elastic; }},
-    {"work_J", [](Step s) { return s.work; }},
-    {"lost_J", [](Step s) { return s.lost; }},
-    {"lost_in_hits_J", [](Step s) { return s.lost_in_hits; }},
+    {"t", "s", "time at the end of each step", [](Step s) { return s.time; }},
+    {"gx", "1", "column i_x of the gate that the body is in",
+     [](Step s) { return static_cast<double>(s.i_x); }},
+    {"gy", "1", "row i_y of this gate", [](Step s) { return static_cast<double>(s.i_y); }},
+    {"x", "m", "place in this gate", [](Step s) { return s.body.x; }},
+    {"y", "m", "place in this gate, forward", [](Step s) { return s.body.y; }},
+    {"vx", "m/s", "velocity sideways", [](Step s) { return s.body.vx; }},
+    {"vy", "m/s", "velocity forward", [](Step s) { return s.body.vy; }},
+    {"left", "rad", "angle of the left beam, forward", [](Step s) { return s.angle[kLeft]; }},
+    {"right", "rad", "angle of the right beam, forward", [](Step s) { return s.angle[kRight]; }},
+    {"contact_left", "1", "contact with the left beam: 0 free, 1 hit, 2 held",
+     [](Step s) { return static_cast<double>(s.contact[kLeft]); }},
+    {"contact_right", "1", "contact with the right beam: 0 free, 1 hit, 2 held",
+     [](Step s) { return static_cast<double>(s.contact[kRight]); }},
+    {"random_N", "N", "random force, until the next step", [](Step s) { return s.random_force; }},
+    {"body_J", "J", "kinetic energy of the body", [](Step s) { return s.body_energy; }},
+    {"beams_J", "J", "kinetic energy of the beams", [](Step s) { return s.beams_energy; }},
+    {"elastic_J", "J", "elastic energy of the beams", [](Step s) { return s.elastic; }},
+    {"work_J", "J", "work of propulsion and random force so far", [](Step s) { return s.work; }},
+    {"lost_J", "J", "energy that was lost so far", [](Step s) { return s.lost; }},
+    {"lost_in_hits_J", "J", "of it in hits", [](Step s) { return s.lost_in_hits; }},
 };
+
+/// `more`: what else is told of each run, by its number.
+template <class More>
+void describe(Fields& out, const Film& film, More more) {
+  const dynamics::GateParams& p = film.gate;
+  out.text({"title", "the scene in a line"}, film.title);
+  out.object({"scale", "the scene's own units, in which pictures of it are drawn"},
+             [scale = dynamics::scale_of(p)](Fields& own) {
+               own.number({"length_m", "m", "unit of length"}, scale.length);
+               own.number({"mass_kg", "kg", "unit of mass"}, scale.mass);
+               own.number({"time_s", "s", "unit of time"}, scale.time);
+             });
+  out.number({"radius_m", "m", "radius of the body"}, p.body.radius);
+  out.number({"beam_m", "m", "length of a beam"}, p.beams.length);
+  out.number({"joint_x_m", "m", "place of the right joint in a gate; the left one is at -x"},
+             p.beams.joint_x);
+  out.number({"joint_y_m", "m", "place of both joints in a gate"}, p.beams.joint_y);
+  out.numbers({"gate_m", "m", "width and depth of a gate"}, {film.width(), film.depth()});
+  out.count({"columns", "1", "gates side by side"}, film.field.columns);
+  out.count({"rows", "1", "gates one behind the other"}, film.field.rows);
+  out.count({"start_column", "1", "number of the column in which bodies start, from 0"},
+            film.field.start_column());
+  out.list_of({"runs", "the runs that are kept, as arrays with an entry for each step"},
+              film.runs.size(), [&](Fields& f, std::size_t i) {
+                const FilmRun& run = film.runs[i];
+                f.text({"label", "the run in a line"}, run.label);
+                f.text({"ending", "how it ended"}, run.ending);
+                f.number({"propulsion_N", "N", "propulsion of the scene; types have their own"},
+                         p.forces.propulsion);
+                for (const auto& [name, unit, meaning, value] : kArrays) {
+                  std::vector<double> values;
+                  for (const FilmStep& step : run.steps) values.push_back(value(step));
+                  f.numbers({name, unit, meaning}, values);
+                }
+                f.optional(!film.actions.empty(), [&](Fields& policy) {
+                  std::vector<std::int64_t> types;
+                  for (const FilmStep& step : run.steps) types.push_back(step.type);
+                  policy.counts({"type", "1",
+                                 "under a policy: the gate's place in types, which is type of gate "
+                                 "* actions + action"},
+                                types);
+                });
+                more(f, i);
+              });
+  out.optional(film.types.has_value(), [&](Fields& f) {
+    const lattice::FieldGates gates = film.types.value_or(p);
+    f.list({"types", "types of gates in mixed fields, and under a policy"}, gates.types(),
+           [](Fields& type, const dynamics::GateParams& of) {
+             type.number({"beam_m", "m", "length of a beam"}, of.beams.length);
+             type.number({"propulsion_N", "N", "propulsion"}, of.forces.propulsion);
+           });
+    f.counts({"type_of_gate", "1", "place in types of each gate, row by row from the start's side"},
+             {gates.type_of_cell().begin(), gates.type_of_cell().end()});
+  });
+  out.optional(!film.actions.empty(), [&](Fields& f) {
+    f.texts({"actions", "under a policy: names of what a body may do"}, film.actions);
+  });
+}
 
 }  // namespace
 
+void describe(Fields& out, const TraceResult& result) {
+  const lattice::Recordings& recordings = result.recordings;
+  const double joule = dynamics::scale_of(result.film.gate).energy();
+  describe(out, result.film, [&](Fields& run, std::size_t i) {
+    describe_details(run, recordings, recordings.runs[i], joule);
+  });
+  out.optional(result.film_speed.has_value(), [&](Fields& f) {
+    f.number({"video_speed", "1",
+              "with --video: seconds of the run in a second of the film, 1 is real time"},
+             result.film_speed.value_or(kUnknown));
+  });
+  out.count({"recorded", "1", "runs that are kept"}, recordings.runs.size());
+  out.count({"trials", "1", "trials that were run"}, recordings.trials);
+  describe_method(out, result.method);
+  out.optional(!result.may_do.actions.empty(),
+               [&](Fields& f) { describe_methods(f, result.may_do); });
+  describe_status(out, recordings.health);
+  describe_made_by(out, result.made_by);
+}
+
 Json to_json(const Film& film) {
-  const dynamics::GateParams& p = film.gate;
-  const dynamics::Scale scale = dynamics::scale_of(p);
-  Json json{
-      {"title", film.title},
-      {"scale", {{"length_m", scale.length}, {"mass_kg", scale.mass}, {"time_s", scale.time}}},
-      {"radius_m", p.body.radius},
-      {"beam_m", p.beams.length},
-      {"joint_x_m", p.beams.joint_x},
-      {"joint_y_m", p.beams.joint_y},
-      {"gate_m", {film.width(), film.depth()}},
-      {"columns", film.field.columns},
-      {"rows", film.field.rows},
-      {"start_column", film.field.start_column()},
-      {"runs", Json::array()}};
-  if (film.types) {
-    for (const dynamics::GateParams& type : film.types->types())
-      json["types"].push_back(
-          {{"beam_m", type.beams.length}, {"propulsion_N", type.forces.propulsion}});
-    json["type_of_gate"] = film.types->type_of_cell();
-  }
-  if (!film.actions.empty()) json["actions"] = film.actions;
-  for (const FilmRun& run : film.runs) {
-    Json of{{"label", run.label}, {"ending", run.ending}, {"propulsion_N", p.forces.propulsion}};
-    for (const auto& [name, value] : kArrays) {
-      Json& values = of[name] = Json::array();
-      for (const FilmStep& step : run.steps) values.push_back(value(step));
-    }
-    if (!film.actions.empty())
-      for (const FilmStep& step : run.steps) of["type"].push_back(step.type);
-    json["runs"].push_back(std::move(of));
-  }
-  return json;
+  return json_of([&](Fields& out) { describe(out, film, [](Fields&, std::size_t) {}); });
 }
 
 std::string replay_page(const Json& film) {
@@ -86,5 +138,7 @@ std::string replay_page(const Json& film) {
                                               {"script", std::string(carried_file("replay.js"))},
                                               {"film", script_json(film)}});
 }
+
+std::string replay_page(const Film& film) { return replay_page(to_json(film)); }
 
 }  // namespace gatewalk::cli

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // clang-format off
-/// A single run to be watched: a page with an animation, made of a film.
+/// The result of `trace`; and runs to be watched: a page with an animation, made of a film.
 ///
 /// The page reads the film as JSON:
 ///   {"title": text, "radius_m", "beam_m", "joint_x_m", "joint_y_m": of the body and the beams,
@@ -18,10 +18,26 @@
 
 #include <string>
 
+#include <optional>
+
 #include "cli/film/film.h"
+#include "cli/render/choice.h"
+#include "cli/render/fields.h"
 #include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 
 namespace gatewalk::cli {
+
+/// The result of `trace`.
+struct TraceResult {
+  lattice::Recordings recordings;
+  Film film{};                         // of these
+  std::optional<double> film_speed{};  // of a video: seconds of a run in one of it
+  std::optional<lattice::Settled> method{};
+  ActionMethods may_do{};  // under a policy
+  Provenance made_by{};
+};
+void describe(Fields& out, const TraceResult& result);
 
 /// The film as above, with lost_in_hits_J.
 [[nodiscard]] Json to_json(const Film& film);
@@ -29,5 +45,6 @@ namespace gatewalk::cli {
 /// A whole page with the animation of all runs of a film; it loads nothing from anywhere. A film
 /// that is not as above makes a page that says so.
 [[nodiscard]] std::string replay_page(const Json& film);
+[[nodiscard]] std::string replay_page(const Film& film);
 
 }  // namespace gatewalk::cli

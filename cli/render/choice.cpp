@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/choice.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -124,16 +126,14 @@ std::string complaint(const lattice::Settled& settled) {
 std::string method_line(const std::optional<lattice::Settled>& settled) {
   if (!settled) return "";
   const dynamics::Choice& choice = settled->choice;
-  std::string text = setting_text(choice.params.run) + ": chosen on " +
-                     std::to_string(choice.trials) + " pilot trials";
+  std::string shown = "not shown to meet run.tolerance";
   if (choice.met) {
     const auto& last = choice.tried.back();
-    text += ", outcomes off by " + fixed(last.error.total_variation, 4) + " +- " +
-            fixed(last.uncertainty, 4) + " (total variation)";
-  } else {
-    text += ", not shown to meet run.tolerance";
+    shown = fmt::format("outcomes off by {} +- {} (total variation)",
+                        fixed(last.error.total_variation, 4), fixed(last.uncertainty, 4));
   }
-  return text + "\n";
+  return fmt::format("{}: chosen on {} pilot trials, {}\n", setting_text(choice.params.run),
+                     choice.trials, shown);
 }
 
 void describe_methods(Fields& out, const ActionMethods& all) {
@@ -154,14 +154,10 @@ void describe_methods(Fields& out, const ActionMethods& all) {
            });
 }
 
-Json to_json(const ActionMethods& all) {
-  return json_of([&](Fields& out) { describe_methods(out, all); })["methods"];
-}
-
 std::string method_lines(const ActionMethods& all) {
   std::string text;
   for (std::size_t a = 0; a < all.actions.size(); ++a)
-    if (all.methods[a]) text += all.actions[a] + ": " + method_line(all.methods[a]);
+    if (all.methods[a]) text += fmt::format("{}: {}", all.actions[a], method_line(all.methods[a]));
   return text;
 }
 

@@ -29,7 +29,6 @@ struct ActionMethods {
 };
 /// The key "methods": of the actions for which one was chosen; null: of none.
 void describe_methods(Fields& out, const ActionMethods& all);
-[[nodiscard]] Json to_json(const ActionMethods& all);
 /// A line for each of these.
 [[nodiscard]] std::string method_lines(const ActionMethods& all);
 

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/recording.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/quantity.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 #include "markov/formats/netcdf.h"
 
 namespace gatewalk::cli {
@@ -106,26 +108,31 @@ std::string table_of(const lattice::Scene& scene, const Recordings& recordings) 
   std::size_t longest_ending = 14;
   for (std::size_t i = 0; i < shown; ++i)
     longest_ending = std::max(longest_ending, runs[i].ending.size());
-  const int ending_width = static_cast<int>(longest_ending) + 2;
-  std::string text = scene_line(scene, recordings.actions) + "   trial  " +
-                     padded("ending", -ending_width) + "      time  steps   hits" +
-                     (recordings.across_field ? "  gates" : "") +
-                     "        work        lost  of it in hits   left over\n";
+  std::vector<TextColumn> columns{{"trial", 8},
+                                  {"ending", -static_cast<int>(longest_ending) - 2, 0, "", "  "},
+                                  {"time", 10},
+                                  {"steps", 7},
+                                  {"hits", 7}};
+  if (recordings.across_field) columns.push_back({"gates", 7});
+  for (const TextColumn& energy : {TextColumn{"work", 12}, TextColumn{"lost", 12},
+                                   TextColumn{"of it in hits", 15}, TextColumn{"left over", 12}})
+    columns.push_back(energy);
+  TextTable table(columns);
   const Readings show(scene, runs);
   for (std::size_t i = 0; i < shown; ++i) {
     const Recording& r = runs[i];
     const dynamics::Energies& e = r.moments.back().energy;
-    text += padded(std::to_string(r.trial), 8) + "  " + padded(r.ending, -ending_width) +
-            padded(show.seconds(r.seconds), 10) + padded(std::to_string(r.health.steps), 7) +
-            padded(std::to_string(r.health.impacts), 7) +
-            (recordings.across_field ? padded(std::to_string(r.gates), 7) : "") +
-            padded(show.joules(e.propulsion_work + e.random_work), 12) +
-            padded(show.joules(e.lost), 12) + padded(show.joules(e.hit_loss), 15) +
-            padded(show.joules(e.mechanical()), 12) + "\n";
+    std::vector<TextCell> cells{r.trial, r.ending, show.seconds(r.seconds), r.health.steps,
+                                r.health.impacts};
+    if (recordings.across_field) cells.emplace_back(r.gates);
+    for (const double energy :
+         {e.propulsion_work + e.random_work, e.lost, e.hit_loss, e.mechanical()})
+      cells.emplace_back(show.joules(energy));
+    table.row(cells);
   }
-  if (runs.size() > kMostLines)
-    text += "   ... and " + std::to_string(runs.size() - kMostLines) + " more\n";
-  return text;
+  const std::size_t more = runs.size() - shown;
+  return scene_line(scene, recordings.actions) + table.text() +
+         (more > 0 ? fmt::format("   ... and {} more\n", more) : "");
 }
 
 std::string csv_of(const Recordings& recordings) {
@@ -150,13 +157,12 @@ std::string csv_of(const Recordings& recordings) {
   return text;
 }
 
-std::string netcdf_of(const Recordings& recordings, const Json& made_by) {
+std::string netcdf_of(const Recordings& recordings, const Provenance& made_by) {
   using namespace markov::netcdf;
   Image nc;
   nc.create();
   put_text(nc, NC_GLOBAL, "format", "gatewalk traces");
-  for (const auto& [key, value] : made_by.items())
-    put_text(nc, NC_GLOBAL, key, value.is_string() ? value.get<std::string>() : text_of(value, -1));
+  for (const auto& [key, text] : attributes_of(made_by)) put_text(nc, NC_GLOBAL, key, text);
   std::size_t samples = 0;
   for (const Recording& r : recordings.runs) samples += r.moments.size();
   const int sample = define_dimension(nc, "sample", samples);
@@ -166,17 +172,18 @@ std::string netcdf_of(const Recordings& recordings, const Json& made_by) {
   return {bytes.begin(), bytes.end()};
 }
 
-Json details_of(const lattice::Scene& scene, const Recordings& recordings, const Recording& run) {
-  const double joule = dynamics::scale_of(scene.gate).energy();
-  Json details{{"trial", run.trial}, {"hits", run.health.impacts}};
+void describe_details(Fields& out, const Recordings& recordings, const Recording& run,
+                      double joule) {
+  out.count({"trial", "1", "number of the trial"}, run.trial);
+  out.count({"hits", "1", "hits on beams"}, run.health.impacts);
   for (const char* name : {"potential_J", "elastic_left_J", "elastic_right_J", "landscape_J",
                            "landscape_left_J", "landscape_right_J"}) {
     const Column& c = lattice::column(name);
-    Json& values = details[name] = Json::array();
+    std::vector<double> values;
     for (const Moment& m : run.moments)
       values.push_back(seven_digits(c.value({recordings.of(m), run.trial, m}), joule));
+    out.numbers({name, c.unit, c.meaning}, values);
   }
-  return details;
 }
 
 }  // namespace gatewalk::cli

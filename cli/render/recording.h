@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Recordings as a table to read, as CSV, NetCDF and JSON.
+/// Recordings as a table to read, as CSV, NetCDF and what results have of them.
 
 #include <string>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 #include "lattice/scene/recording.h"
 
 namespace gatewalk::cli {
@@ -18,19 +19,18 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string csv_of(const lattice::Recordings& recordings);
 
 /// NetCDF-4: dimension sample, all runs one after the other, and run (trial, ending, samples of
-/// each: a contiguous ragged array). The entries of `made_by` are text
-/// attributes.
-[[nodiscard]] std::string netcdf_of(const lattice::Recordings& recordings, const Json& made_by);
+/// each: a contiguous ragged array). The entries of `made_by` are text attributes.
+[[nodiscard]] std::string netcdf_of(const lattice::Recordings& recordings,
+                                    const Provenance& made_by);
 
 /// The ways of the runs, of at most kMostDrawn: over the landscape of their gate, Eq. (15), or
 /// through the field.
 inline constexpr std::size_t kMostDrawn = 20;
 [[nodiscard]] Figure figure_of(const lattice::Scene& scene, const lattice::Recordings& recordings);
 
-/// What a film does not show of one of these runs: trial, hits, and the arrays potential_J,
-/// elastic_left_J, elastic_right_J, landscape_J, landscape_left_J, landscape_right_J (null where
-/// there is no way to stand), with seven digits in the scene's own units.
-[[nodiscard]] Json details_of(const lattice::Scene& scene, const lattice::Recordings& recordings,
-                              const lattice::Recording& run);
+/// What a film does not show of one of these runs: the keys "trial", "hits", and arrays of energies
+/// (null where there is no way to stand), with seven digits in units of `joule`.
+void describe_details(Fields& out, const lattice::Recordings& recordings,
+                      const lattice::Recording& run, double joule);
 
 }  // namespace gatewalk::cli

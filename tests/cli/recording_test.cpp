@@ -92,6 +92,13 @@ TEST(Recording, CsvHasALineForEachMomentAndFitsTheLandscape) {
 }
 
 // A film's force holds until the next step; a sample's acted before it.
+/// Of the first run.
+Json details_of(const lattice::Scene& s, const Recordings& recordings) {
+  return json_of([&](Fields& out) {
+    describe_details(out, recordings, recordings.runs[0], dynamics::scale_of(s.gate).energy());
+  });
+}
+
 TEST(Recording, FilmHasTheForceThatComes) {
   const lattice::Scene s = scene();
   const Recordings recordings = trials(s, {0}, 1);
@@ -104,7 +111,7 @@ TEST(Recording, FilmHasTheForceThatComes) {
   const Json json = to_json(film)["runs"][0];
   EXPECT_EQ(json["random_N"].size(), moments.size());
   EXPECT_FALSE(json.contains("landscape_J"));
-  const Json details = details_of(s, recordings, recordings.runs[0]);
+  const Json details = details_of(s, recordings);
   EXPECT_EQ(details["landscape_J"].size(), moments.size());
   EXPECT_EQ(details["hits"], recordings.runs[0].health.impacts);
 }
@@ -187,11 +194,11 @@ TEST(Recording, InOtherUnitsHasTheSameNumbers) {
       there.gates = across ? lattice::gates_of(other) : lattice::FieldGates(other.gate);
       EXPECT_TRUE(without_words(film_of(other, there)) ==
                   without_words(in_other_units(film_of(s, here), twin)));
-      Json details = details_of(s, here, here.runs[0]);
+      Json details = details_of(s, here);
       for (auto& [name, values] : details.items())
         for (Json& value : values)
           if (value.is_number_float()) value = value.get<double>() * twin.of(name);
-      EXPECT_TRUE(details_of(other, there, there.runs[0]).dump() == details.dump());
+      EXPECT_TRUE(details_of(other, there).dump() == details.dump());
       expect_same_numbers(table(csv_of(here)), table(csv_of(there)), twin);
     }
   }

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "cli/render/analysis.h"
+#include "cli/film/replay.h"
 #include "cli/render/best_start.h"
 #include "cli/render/cut_tracks.h"
 #include "cli/render/design.h"
@@ -170,6 +171,12 @@ SweepResult sweep() {
   return example;
 }
 
+TraceResult trace() {
+  TraceResult example{.recordings = {.gates = dynamics::GateParams(), .runs = {{}}, .health = {}}};
+  example.film.runs.resize(1);
+  return example;
+}
+
 }  // namespace
 
 const std::vector<ResultOf>& results() {
@@ -195,6 +202,7 @@ const std::vector<ResultOf>& results() {
       of("show", shown_matrix()),
       of<StabilityResult>("stability"),
       of("sweep", sweep()),
+      of("trace", trace()),
       of("walk", WalkResult{.shown = ShownField(lattice::Scene())}),
   };
   return all;
