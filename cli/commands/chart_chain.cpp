@@ -5,8 +5,7 @@
 
 #include "cli/arguments.h"
 #include "cli/render/chain_error.h"
-#include "cli/render/choice.h"
-#include "cli/render/json.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -25,7 +24,7 @@ std::vector<double> factors_of(const Options& options, lattice::BinsChoice::Kind
     try {
       if (kind == lattice::BinsChoice::Kind::automatic) (void)lattice::states_for(factor);
     } catch (const std::invalid_argument& e) {
-      throw UsageError(fmt::format("--bins {}: {}", Json(factor).dump(), e.what()));
+      throw UsageError(fmt::format("--bins {}: {}", lattice::toml_float(factor), e.what()));
     }
   }
   return factors;
@@ -67,7 +66,7 @@ int run_chart_chain(const Arguments& arguments) {
   const auto bins = lattice::usual_bins(scene).kind;
   if (bins != lattice::BinsChoice::Kind::automatic)
     require_inside_bins(options, starts, scene, lattice::fixed_space(scene));
-  const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
+  auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
   lattice::ChainErrorOptions chosen{.starts = starts,
                                     .truth_trials = options.count("truth-trials", 100),
                                     .runs_limit = options.count("runs-limit"),
@@ -82,12 +81,11 @@ int run_chart_chain(const Arguments& arguments) {
   const ResultFolder folder(options, files);
 
   options.remark("measuring the cost of a trial and of a gate run");
-  const auto chart = lattice::chart_chain_error(scene, std::move(plan), options.work());
-  Json json = to_json(chart);
-  if (settled) json["method"] = to_json(*settled);
-  json["made_by"] = to_json(options.provenance(scene));
-  folder.write("chain.csv", csv_of(chart), "chain.json", json);
-  options.give_out(json, table_of(chart));
+  const ChainErrorResult result{lattice::chart_chain_error(scene, std::move(plan), options.work()),
+                                std::move(settled), options.provenance(scene)};
+  const auto& chart = result.chart;
+  folder.write("chain.csv", csv_of(chart), "chain.json", result);
+  options.give_out(result, table_of(chart));
   folder.draw("chain.svg", figure_of(chart));
   const int exit = status_of(options, chart.health);
   options.draw([&] { return figure_of(chart); });

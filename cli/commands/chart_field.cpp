@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/arguments.h"
 #include "cli/render/fidelity.h"
-#include "cli/render/json.h"
 
 namespace gatewalk::cli {
 
@@ -37,11 +36,11 @@ int run_chart_field(const Arguments& arguments) {
   const lattice::FidelityOptions how{starts, options.trials(), options.seed()};
   const ResultFolder folder(options, files);
 
-  const lattice::FidelityStudy study = lattice::compare_fidelities(variants, how, options.work());
-  Json json = to_json(study);
-  json["made_by"] = to_json(options.provenance(scene));
-  folder.write("fidelity.csv", csv_of(study), "fidelity.json", json);
-  options.give_out(json, table_of(study));
+  const FidelityResult result{lattice::compare_fidelities(variants, how, options.work()),
+                              options.provenance(scene)};
+  const lattice::FidelityStudy& study = result.study;
+  folder.write("fidelity.csv", csv_of(study), "fidelity.json", result);
+  options.give_out(result, table_of(study));
   for (const std::string& text : complaints(study)) options.warn(text);
   folder.draw("fidelity.svg", figure_of(study));
   const int exit = exit_status(options, study.clean());

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/chain_error.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "cli/render/choice.h"
 #include "cli/render/csv.h"
+#include "cli/render/field_ends.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
-#include "cli/render/provenance.h"
 #include "cli/render/quantity.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
-#include "lattice/text/text_stream.h"
+#include "cli/render/text_table.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -30,106 +31,130 @@ using lattice::kChainWalks;
 
 std::string seconds_text(double s) { return fixed(s, s < 1 ? 3 : s < 100 ? 1 : 0); }
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // an empty field
-
 const char* row_starts(const ChainCurve& c) { return c.entries.empty() ? "uniform" : "visited"; }
 
-// ---- JSON ----
+// ---- Result ----
 
-Json json_of(const FinalGateError& e) {
-  return {{"total_variation", e.total_variation}, {"corrcoef", e.corrcoef}};
+void describe(Fields& out, const FinalGateError& e) {
+  out.number({"total_variation", "1", "total variation of the final gates from the truth"},
+             e.total_variation);
+  out.number({"corrcoef", "1", "correlation of the final gates with the truth"}, e.corrcoef);
 }
 
-/// Infinity, which JSON has not, as null.
-Json finite(double x) { return std::isfinite(x) ? Json(x) : Json(); }
-
-Json json_of(const ChainAnswer& a) {
-  Json j{{"exact", json_of(a.exact)}, {"exact_s", a.exact_seconds}};
-  j["exact"]["total_variation_sd"] = finite(a.exact_sd);
+void describe(Fields& out, const ChainAnswer& a) {
+  out.object({"exact", "error of the exact prediction, mean over the matrices"}, [&](Fields& f) {
+    describe(f, a.exact);
+    f.number({"total_variation_sd", "1",
+              "standard deviation over the matrices; null where there is only one"},
+             a.exact_sd);
+  });
+  out.number({"exact_s", "s", "time of one exact prediction"}, a.exact_seconds);
   for (std::size_t w = 0; w < kChainWalks.size(); ++w) {
-    const std::string name = "walks_" + std::to_string(kChainWalks[w]);
-    j[name] = json_of(a.walks[w]);
-    j[name + "_s"] = a.walk_seconds[w];
+    const std::string name = fmt::format("walks_{}", kChainWalks[w]);
+    out.object({name, fmt::format("error of {} walks, mean over the matrices", kChainWalks[w])},
+               [&](Fields& f) { describe(f, a.walks[w]); });
+    out.number({name + "_s", "s", "time of these walks"}, a.walk_seconds[w]);
   }
-  j["sampling_total_variation"] = a.sampling;
-  j["bins_total_variation"] = a.bins;
-  j["never_sampled_share"] = a.never_sampled;
-  return j;
+  out.number({"sampling_total_variation", "1",
+              "total variation that the sampling of the matrix alone makes"},
+             a.sampling);
+  out.number({"bins_total_variation", "1",
+              "what is left: states are too coarse, or bodies remember more than their state"},
+             a.bins);
+  out.number({"never_sampled_share", "1", "share of the walks that end in a row without trials"},
+             a.never_sampled);
 }
 
-Json json_of(const ChainCurve& c) {
-  return {{"bins", c.factor},
-          {"states", c.space.size()},
-          {"row_starts", row_starts(c)},
-          {"one_thread_s_per_gate_run", c.seconds_per_run},
-          {"points", c.trials.size()}};
+/// Of a curve and of its points.
+void describe_bins(Fields& out, const ChainCurve& c) {
+  out.number({"bins", "1", "bins per axis, as a multiple of the usual ones"}, c.factor);
+  out.count({"states", "1", "states of the chain"}, c.space.size());
+  out.text(Label("row_starts",
+                 "where the trials of a row start: anywhere in its bin, or where "
+                 "bodies were seen to enter")
+               .one_of({"uniform", "visited"}),
+           row_starts(c));
 }
 
-Json json_of(const ChainErrorChart& chart, const ChainPoint& p) {
-  const ChainCurve& curve = chart.curves[p.curve];
-  Json j{{"bins", curve.factor},
-         {"states", curve.space.size()},
-         {"row_starts", row_starts(curve)},
-         {"trials_per_row", p.trials},
-         {"gate_runs", p.runs},
-         {"matrices", p.matrices},
-         {"build_s", p.build_seconds},
-         {"clamped_share", p.clamped_share},
-         {"rows_never_sampled", p.rows_never_sampled},
-         {"starts", Json::array()}};
-  for (const ChainAnswer& a : p.answers) j["starts"].push_back(json_of(a));
-  return j;
+void describe(Fields& out, const ChainPoint& p, const ChainErrorChart& chart) {
+  describe_bins(out, chart.curves[p.curve]);
+  out.count({"trials_per_row", "1", "trials of each row"}, p.trials);
+  out.count({"gate_runs", "1", "gate runs behind one matrix"}, p.runs);
+  out.count({"matrices", "1", "matrices, each from trials of its own"}, p.matrices);
+  out.number({"build_s", "s", "time to make one matrix"}, p.build_seconds);
+  out.number({"clamped_share", "1", "share of crossings outside the bins"}, p.clamped_share);
+  out.number({"rows_never_sampled", "1", "rows without a trial, mean over the matrices"},
+             p.rows_never_sampled);
+  out.list({"starts", "one for each start"}, p.answers,
+           [](Fields& f, const ChainAnswer& a) { describe(f, a); });
 }
 
-Json summary_json(const ChainErrorChart& chart, std::size_t s) {
-  const ChainSummary summary = summary_of(chart, s);
-  const auto place = [&](std::size_t i) {
+void describe(Fields& out, const ChainSummary& summary, const ChainErrorChart& chart,
+              std::size_t s) {
+  const auto place = [&](const Label& label, std::size_t i) {
     const ChainPoint& p = chart.points[i];
-    return Json{{"bins", chart.curves[p.curve].factor},
-                {"trials_per_row", p.trials},
-                {"seconds", p.seconds(s)},
-                {"total_variation", p.error(s)}};
+    out.object(label, [&](Fields& f) {
+      f.number({"bins", "1", "bins per axis, as a multiple of the usual ones"},
+               chart.curves[p.curve].factor);
+      f.count({"trials_per_row", "1", "trials of each row"}, p.trials);
+      f.number({"seconds", "s", "time of one matrix and one prediction"}, p.seconds(s));
+      f.number({"total_variation", "1", "error of the exact prediction"}, p.error(s));
+    });
   };
-  Json j{{"best", place(summary.best)},
-         {"cheapest_near_best", place(summary.cheapest)},
-         {"chain_pays_from_s", finite(summary.pays_from)},
-         {"chain_pays_until_s", finite(summary.pays_until)},
-         {"starts_to_pay", finite(summary.starts_to_pay)}};
-  if (summary.best_visited) j["best_visited"] = place(*summary.best_visited);
-  return j;
+  place({"best", "the point with the smallest error"}, summary.best);
+  place({"cheapest_near_best", "the cheapest point within 1.5 times the smallest error"},
+        summary.cheapest);
+  out.number({"chain_pays_from_s", "s",
+              "from this time on, points have smaller errors than direct simulation; null: none"},
+             summary.pays_from);
+  out.number({"chain_pays_until_s", "s",
+              "from this time on, direct simulation has a smaller error than any point; null: "
+              "longer than this truth can tell"},
+             summary.pays_until);
+  out.number({"starts_to_pay", "1",
+              "number of starts from which on the cheapest point costs less than direct "
+              "simulation; null: it never does"},
+             summary.starts_to_pay);
+  out.optional(summary.best_visited.has_value(), [&](Fields&) {
+    place({"best_visited", "the best of those with rows started where bodies enter"},
+          summary.best_visited.value_or(summary.best));
+  });
 }
 
-Json start_json(const ChainErrorChart& chart, std::size_t s) {
+void describe_start_of(Fields& out, const ChainErrorChart& chart, std::size_t s) {
   const FieldTruth& t = chart.truths[s];
-  const auto n = static_cast<double>(t.tally.trials);
-  Json j;
-  j["start"] = to_json(dynamics::disc_section(), t.start.entry());
-  j["truth"] = {{"trials", t.tally.trials},
-                {"one_thread_s_per_trial", t.seconds_per_trial},
-                {"floor", json_of(t.floor)},
-                {"trapped", static_cast<double>(t.tally.trapped) / n},
-                {"departed", static_cast<double>(t.tally.left_field) / n},
-                {"cut_off", static_cast<double>(t.tally.cut_off) / n},
-                {"final_gates", grid(t.tally.final_gates)}};
-  j["direct_simulation"] = Json::array();
-  for (const DirectSimulation& d : chart.direct[s])
-    j["direct_simulation"].push_back({{"trials", d.trials},
-                                      {"seconds", d.seconds},
-                                      {"drawn", json_of(d.drawn)},
-                                      {"formula", json_of(d.formula)}});
-  j["trees"] = Json::array();
-  for (const lattice::TreePoint& p : chart.trees[s]) {
-    Json tree = json_of(p.error);
-    tree["accuracy"] = p.accuracy;
-    tree["error_95"] = p.error_95;
-    tree["predictions"] = lattice::kTreePredictions;
-    tree["gate_runs"] = p.gate_runs;
-    tree["states"] = p.states;
-    tree["seconds"] = p.seconds;
-    j["trees"].push_back(std::move(tree));
-  }
-  j["summary"] = summary_json(chart, s);
-  return j;
+  describe_start(out, dynamics::disc_section(), t.start.entry());
+  out.object({"truth", "full dynamics, against which errors are taken"}, [&](Fields& f) {
+    f.count({"trials", "1", "trials of the full dynamics"}, t.tally.trials);
+    f.number({"one_thread_s_per_trial", "s", "time of a trial on one thread"}, t.seconds_per_trial);
+    f.object({"floor", "what a perfect prediction would show, by the noise of these trials"},
+             [&](Fields& floor) { describe(floor, t.floor); });
+    describe_fates(f, t.tally);
+    f.grid({"final_gates", "1", "trials by the gate in which they end"}, t.tally.final_gates);
+  });
+  out.list({"direct_simulation", "the error of fewer trials"}, chart.direct[s],
+           [](Fields& f, const DirectSimulation& d) {
+             f.count({"trials", "1", "trials of the full dynamics"}, d.trials);
+             f.number({"seconds", "s", "time that they take on one thread"}, d.seconds);
+             f.object({"drawn", "mean error of many draws from the truth"},
+                      [&](Fields& drawn) { describe(drawn, d.drawn); });
+             f.object({"formula", "error that is expected of them"},
+                      [&](Fields& formula) { describe(formula, d.formula); });
+           });
+  out.list({"trees", "predictions by trees of so much accuracy; means"}, chart.trees[s],
+           [](Fields& f, const lattice::TreePoint& p) {
+             describe(f, p.error);
+             f.number({"accuracy", "1", "total variation that was asked for"}, p.accuracy);
+             f.number({"error_95", "1", "total variation that the predictions promise, 95 %"},
+                      p.error_95);
+             f.count({"predictions", "1", "predictions, each from trials of its own"},
+                     lattice::kTreePredictions);
+             f.number({"gate_runs", "1", "gate runs behind a prediction"}, p.gate_runs);
+             f.number({"states", "1", "states of the chain"}, p.states);
+             f.number({"seconds", "s", "time of a prediction on one thread"}, p.seconds);
+           });
+  out.object({"summary", "what it comes to"},
+             [&](Fields& f) { describe(f, summary_of(chart, s), chart, s); });
 }
 
 // ---- Table ----
@@ -137,38 +162,42 @@ Json start_json(const ChainErrorChart& chart, std::size_t s) {
 /// Until when the chain is better than direct simulation, for one start and for many.
 std::string when_it_pays(const ChainErrorChart& chart, const ChainSummary& summary, std::size_t s) {
   const FieldTruth& truth = chart.truths[s];
-  std::string text;
-  if (summary.pays_from == ChainSummary::kNever) {
-    text = "For one start direct simulation is better than bins at every cost charted";
-  } else {
-    text = "For one start bins are better from " + seconds_text(summary.pays_from) + " s";
-    text += summary.pays_until == ChainSummary::kNever
-                ? " on, as far as this truth can tell"
-                : "; from " + seconds_text(summary.pays_until) + " s (" +
-                      digits(std::round(summary.pays_until / truth.seconds_per_trial)) +
-                      " trials) on direct simulation is better than any matrix charted";
-  }
+  std::string text = "For one start ";
+  if (summary.pays_from == ChainSummary::kNever)
+    text += "direct simulation is better than bins at every cost charted";
+  else if (summary.pays_until == ChainSummary::kNever)
+    text += fmt::format("bins are better from {} s on, as far as this truth can tell",
+                        seconds_text(summary.pays_from));
+  else
+    text += fmt::format(
+        "bins are better from {} s; from {} s ({} trials) on direct simulation is better than any "
+        "matrix charted",
+        seconds_text(summary.pays_from), seconds_text(summary.pays_until),
+        digits(std::round(summary.pays_until / truth.seconds_per_trial)));
   if (summary.starts_to_pay == ChainSummary::kNever)
     return text + ". Its error costs direct simulation less than one prediction: it never pays.\n";
   const double direct = truth.seconds_for(chart.points[summary.cheapest].error(s));
-  return text + ". For many starts, at that cheapest point, it pays from " +
-         digits(summary.starts_to_pay) + (summary.starts_to_pay == 1.0 ? " start" : " starts") +
-         " on (" + seconds_text(direct) + " s of direct simulation each).\n";
+  return fmt::format(
+      "{}. For many starts, at that cheapest point, it pays from {} {} on ({} s of direct "
+      "simulation each).\n",
+      text, digits(summary.starts_to_pay), summary.starts_to_pay == 1.0 ? "start" : "starts",
+      seconds_text(direct));
+}
+
+/// What direct simulation shows of the same truth in so many seconds.
+std::string direct_text(const FieldTruth& truth, double seconds) {
+  const auto trials = std::max<std::int64_t>(1, std::llround(seconds / truth.seconds_per_trial));
+  return fixed(lattice::expected_total_variation(truth.p, truth.as_against_exact(trials)), 3);
 }
 
 /// "Trees: TV 0.045 in 0.03 s (direct simulation 0.103), 0.023 in 0.1 s (0.052)."
 std::string trees_text(const ChainErrorChart& chart, std::size_t s) {
-  const FieldTruth& truth = chart.truths[s];
   std::string text;
-  for (const lattice::TreePoint& p : chart.trees[s]) {
-    const auto trials =
-        std::max<std::int64_t>(1, std::llround(p.seconds / truth.seconds_per_trial));
-    text += (text.empty() ? "Trees (predict --accuracy): TV " : ", ") +
-            fixed(p.error.total_variation, 3) + " in " + seconds_text(p.seconds) + " s (" +
-            (text.empty() ? "direct simulation then has " : "") +
-            fixed(lattice::expected_total_variation(truth.p, truth.as_against_exact(trials)), 3) +
-            ")";
-  }
+  for (const lattice::TreePoint& p : chart.trees[s])
+    text += fmt::format(
+        "{}{} in {} s ({}{})", text.empty() ? "Trees (predict --accuracy): TV " : ", ",
+        fixed(p.error.total_variation, 3), seconds_text(p.seconds),
+        text.empty() ? "direct simulation then has " : "", direct_text(chart.truths[s], p.seconds));
   return text.empty() ? "Trees: no prediction within --runs-limit.\n" : text + ".\n";
 }
 
@@ -176,53 +205,56 @@ std::string trees_text(const ChainErrorChart& chart, std::size_t s) {
 std::string words_of(const ChainErrorChart& chart, std::size_t s) {
   const ChainSummary summary = summary_of(chart, s);
   const auto place = [&](const ChainPoint& p) {
-    return name_of(chart.curves[p.curve]) + ", " + std::to_string(p.trials) + " trials a row, " +
-           seconds_text(p.seconds(s)) + " s";
+    return fmt::format("{}, {} trials a row, {} s", name_of(chart.curves[p.curve]), p.trials,
+                       seconds_text(p.seconds(s)));
   };
   const ChainPoint &best = chart.points[summary.best], &cheapest = chart.points[summary.cheapest];
-  std::string text =
-      "The best error of bins is TV " + fixed(best.error(s), 3) + " (" + place(best) +
-      "; the truth's noise: " + fixed(chart.truths[s].floor.total_variation, 3) + "); ";
-  text += summary.cheapest == summary.best
-              ? "nothing cheaper comes within 1.5 times of it.\n"
-              : "the cheapest within 1.5 times of it is TV " + fixed(cheapest.error(s), 3) + " (" +
-                    place(cheapest) + ").\n";
+  std::string text = fmt::format("The best error of bins is TV {} ({}; the truth's noise: {}); ",
+                                 fixed(best.error(s), 3), place(best),
+                                 fixed(chart.truths[s].floor.total_variation, 3));
+  if (summary.cheapest == summary.best)
+    text += "nothing cheaper comes within 1.5 times of it.\n";
+  else
+    text += fmt::format("the cheapest within 1.5 times of it is TV {} ({}).\n",
+                        fixed(cheapest.error(s), 3), place(cheapest));
   text += when_it_pays(chart, summary, s);
   const ChainAnswer& a = best.answers[s];
-  text += std::string("At their best bins are limited by ") +
-          (a.bins > a.sampling ? "what they forget (TV " + fixed(a.bins, 3) + "; sampling makes " +
-                                     fixed(a.sampling, 3) + "): more trials would not help.\n"
-                               : "the sampling of its matrix (TV " + fixed(a.sampling, 3) +
-                                     "; bins and what they forget make " + fixed(a.bins, 3) +
-                                     "): more trials would help.\n");
+  const std::string bins = fixed(a.bins, 3), sampling = fixed(a.sampling, 3);
+  if (a.bins > a.sampling)
+    text += fmt::format(
+        "At their best bins are limited by what they forget (TV {}; sampling makes {}): more "
+        "trials would not help.\n",
+        bins, sampling);
+  else
+    text += fmt::format(
+        "At their best bins are limited by the sampling of its matrix (TV {}; bins and what they "
+        "forget make {}): more trials would help.\n",
+        sampling, bins);
   if (summary.best_visited) {
     const ChainPoint& visited = chart.points[*summary.best_visited];
-    text += "With rows started where bodies were seen to enter its best is TV " +
-            fixed(visited.error(s), 3) + " (" + place(visited) +
-            ", the trials that saw them included).\n";
+    text += fmt::format(
+        "With rows started where bodies were seen to enter its best is TV {} ({}, the trials that "
+        "saw them included).\n",
+        fixed(visited.error(s), 3), place(visited));
   }
   return text + trees_text(chart, s);
 }
 
-/// Seconds, total variation of the chain, that of direct simulation at this cost.
-std::string cell_of(const ChainPoint& p, const FieldTruth& truth, std::size_t s) {
-  const double seconds = p.seconds(s);
-  const auto direct = std::max<std::int64_t>(1, std::llround(seconds / truth.seconds_per_trial));
-  return padded(seconds_text(seconds), 8) + padded(fixed(p.error(s), 3), 10) +
-         padded(
-             fixed(lattice::expected_total_variation(truth.p, truth.as_against_exact(direct)), 3),
-             8);
-}
-
-/// Curves [first, beyond) side by side, for one start: a line for each number of trials a row, and
-/// the parts of the last one's error.
+/// Curves [first, beyond) side by side, for one start: a line for each number of trials a row, with
+/// seconds, total variation of the chain and that of direct simulation at this cost; and the parts
+/// of the last one's error.
 std::string block_of(const ChainErrorChart& chart, std::size_t s, std::size_t first,
                      std::size_t beyond) {
-  std::string out = "\n";
+  std::vector<TextColumn> columns{{"trials/row", 12}};
+  for (std::size_t c = first; c < beyond; ++c)
+    columns.push_back(
+        {fmt::format("{} ({})", name_of(chart.curves[c]), chart.curves[c].space.size()), -29, 0, "",
+         c == first ? " |" : "|"});
+  TextTable table(columns);
   const auto row = [&](const std::string& name, const auto& cell) {
-    out += padded(name, 12) + " ";
-    for (std::size_t c = first; c < beyond; ++c) out += "|" + padded(cell(c), -29);
-    out += "\n";
+    std::vector<TextCell> cells{name};
+    for (std::size_t c = first; c < beyond; ++c) cells.emplace_back(cell(c));
+    table.row(cells);
   };
   const auto point = [&](std::size_t curve, std::int64_t trials) {
     const auto at =
@@ -230,25 +262,24 @@ std::string block_of(const ChainErrorChart& chart, std::size_t s, std::size_t fi
                      [&](const ChainPoint& p) { return p.curve == curve && p.trials == trials; });
     return at == chart.points.end() ? nullptr : &*at;
   };
-  row("trials/row", [&](std::size_t c) {
-    const ChainCurve& curve = chart.curves[c];
-    return name_of(curve) + " (" + std::to_string(curve.space.size()) + ")";
-  });
   for (const std::int64_t trials : lattice::kChainTrials) {
     bool any = false;
     for (std::size_t c = first; c < beyond; ++c) any |= point(c, trials) != nullptr;
     if (any)
       row(std::to_string(trials), [&](std::size_t c) {
         const ChainPoint* p = point(c, trials);
-        return p == nullptr ? std::string() : cell_of(*p, chart.truths[s], s);
+        return p ? fmt::format("{:>8}{:>10}{:>8}", seconds_text(p->seconds(s)),
+                               fixed(p->error(s), 3), direct_text(chart.truths[s], p->seconds(s)))
+                 : std::string();
       });
   }
   for (const auto part : {&ChainAnswer::sampling, &ChainAnswer::bins})
     row(part == &ChainAnswer::sampling ? "sampling" : "bins", [&](std::size_t c) {
-      if (chart.curves[c].trials.empty()) return padded("-", 18);
-      return padded(fixed(point(c, chart.curves[c].trials.back())->answers[s].*part, 3), 18);
+      const std::vector<std::int64_t>& trials = chart.curves[c].trials;
+      return fmt::format(
+          "{:>18}", trials.empty() ? "-" : fixed(point(c, trials.back())->answers[s].*part, 3));
     });
-  return out;
+  return "\n" + table.text();
 }
 
 }  // namespace
@@ -256,32 +287,43 @@ std::string block_of(const ChainErrorChart& chart, std::size_t s, std::size_t fi
 std::string name_of(const FieldTruth& truth) {
   const lattice::PaperStart& start = truth.start;
   const Sized speed = readable_unit("m/s", std::max(std::abs(start.vx), std::abs(start.vy)));
-  return "start d = " + quantity(start.d, "m") + ", v = (" + digits(start.vx / speed.size) + ", " +
-         digits(start.vy / speed.size) + ") " + speed.name;
+  return fmt::format("start d = {}, v = ({}, {}) {}", quantity(start.d, "m"),
+                     digits(start.vx / speed.size), digits(start.vy / speed.size), speed.name);
 }
 
 std::string name_of(const ChainCurve& curve) {
-  return "bins x " + digits(curve.factor) + (curve.visited ? ", visited" : "");
+  return fmt::format("bins x {}{}", digits(curve.factor), curve.visited ? ", visited" : "");
 }
 
-Json to_json(const ChainErrorChart& chart) {
-  Json json;
-  json["machine"] = machine();
-  json["seconds_are"] = "CPU time of one thread";
-  json["truth_trials"] = chart.options.truth_trials;
-  json["runs_limit"] = chart.options.runs_limit;
-  json["pilot_trials"] = chart.pilot_trials;
-  json["bins"] = chart.bins.name();
-  json["matrices_drawn_anew"] = lattice::kMatricesDrawnAnew;
-  json["starts"] = Json::array();
-  for (std::size_t s = 0; s < chart.truths.size(); ++s)
-    json["starts"].push_back(start_json(chart, s));
-  json["curves"] = Json::array();
-  for (const ChainCurve& c : chart.curves) json["curves"].push_back(json_of(c));
-  json["points"] = Json::array();
-  for (const ChainPoint& p : chart.points) json["points"].push_back(json_of(chart, p));
-  json["status"] = to_json(chart.health);
-  return json;
+void describe(Fields& out, const ChainErrorResult& result) {
+  const auto& [chart, method, made_by] = result;
+  out.text({"machine", "the processor on which times were taken"}, machine());
+  out.text({"seconds_are", "what all times are"}, "CPU time of one thread");
+  out.count({"truth_trials", "1", "trials of the full dynamics from each start"},
+            chart.options.truth_trials);
+  out.count({"runs_limit", "1", "gate runs that one matrix or tree may take"},
+            chart.options.runs_limit);
+  out.count({"pilot_trials", "1",
+             "full trials from each start that saw where bodies enter; 0: none were made"},
+            chart.pilot_trials);
+  out.text({"bins", "what the bins of a factor 1 are"}, chart.bins.name());
+  out.count({"matrices_drawn_anew", "1",
+             "matrices drawn anew, which show what the sampling of a matrix makes"},
+            lattice::kMatricesDrawnAnew);
+  out.list_of({"starts", "one for each start"}, chart.truths.size(),
+              [&](Fields& f, std::size_t s) { describe_start_of(f, chart, s); });
+  out.list({"curves", "one for each way to make states and to start rows"}, chart.curves,
+           [](Fields& f, const ChainCurve& c) {
+             describe_bins(f, c);
+             f.number({"one_thread_s_per_gate_run", "s", "time of a gate run on one thread"},
+                      c.seconds_per_run);
+             f.count({"points", "1", "points of the curve"}, c.trials.size());
+           });
+  out.list({"points", "one for each matrix: states and trials of each row"}, chart.points,
+           [&](Fields& f, const ChainPoint& p) { describe(f, p, chart); });
+  describe_status(out, chart.health);
+  describe_method(out, method);
+  describe_made_by(out, made_by);
 }
 
 std::string csv_of(const ChainErrorChart& chart) {
@@ -300,51 +342,54 @@ std::string csv_of(const ChainErrorChart& chart) {
                             double sd, double sampling, double bins) {
         csv.row(start.d, start.vx, start.vy, answer, curve.factor, curve.space.size(),
                 row_starts(curve), p.trials, p.runs, p.matrices, p.build_seconds, seconds,
-                p.build_seconds + seconds, e.total_variation, sd, e.corrcoef, sampling, bins, kNone,
-                kNone, floor.total_variation, floor.corrcoef, p.clamped_share, p.rows_never_sampled,
-                a.never_sampled);
+                p.build_seconds + seconds, e.total_variation, sd, e.corrcoef, sampling, bins,
+                kUnknown, kUnknown, floor.total_variation, floor.corrcoef, p.clamped_share,
+                p.rows_never_sampled, a.never_sampled);
       };
       line("exact", a.exact_seconds, a.exact, a.exact_sd, a.sampling, a.bins);
       for (std::size_t w = 0; w < kChainWalks.size(); ++w)
-        line(std::to_string(kChainWalks[w]) + " walks", a.walk_seconds[w], a.walks[w], kNone, kNone,
-             kNone);
+        line(std::to_string(kChainWalks[w]) + " walks", a.walk_seconds[w], a.walks[w], kUnknown,
+             kUnknown, kUnknown);
     }
     for (const lattice::TreePoint& p : chart.trees[s])
-      csv.row(start.d, start.vx, start.vy, "tree", kNone, p.states, "visited", kNone, p.gate_runs,
-              lattice::kTreePredictions, kNone, kNone, p.seconds, p.error.total_variation, kNone,
-              p.error.corrcoef, kNone, kNone, kNone, kNone, floor.total_variation, floor.corrcoef,
-              kNone, kNone, kNone);
+      csv.row(start.d, start.vx, start.vy, "tree", kUnknown, p.states, "visited", kUnknown,
+              p.gate_runs, lattice::kTreePredictions, kUnknown, kUnknown, p.seconds,
+              p.error.total_variation, kUnknown, p.error.corrcoef, kUnknown, kUnknown, kUnknown,
+              kUnknown, floor.total_variation, floor.corrcoef, kUnknown, kUnknown, kUnknown);
     for (const DirectSimulation& d : chart.direct[s])
-      csv.row(start.d, start.vx, start.vy, "direct simulation", kNone, kNone, kNone, d.trials,
-              kNone, kNone, kNone, d.seconds, d.seconds, d.drawn.total_variation, kNone,
-              d.drawn.corrcoef, kNone, kNone, d.formula.total_variation, d.formula.corrcoef,
-              floor.total_variation, floor.corrcoef, kNone, kNone, kNone);
+      csv.row(start.d, start.vx, start.vy, "direct simulation", kUnknown, kUnknown, kUnknown,
+              d.trials, kUnknown, kUnknown, kUnknown, d.seconds, d.seconds, d.drawn.total_variation,
+              kUnknown, d.drawn.corrcoef, kUnknown, kUnknown, d.formula.total_variation,
+              d.formula.corrcoef, floor.total_variation, floor.corrcoef, kUnknown, kUnknown,
+              kUnknown);
   }
   return csv.text();
 }
 
 std::string table_of(const ChainErrorChart& chart) {
-  lattice::TextStream out;
+  std::string out;
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
     const FieldTruth& truth = chart.truths[s];
-    out << (s == 0 ? "" : "\n") << "S" << name_of(truth).substr(1) << ": " << truth.tally.trials
-        << " full trials, " << fixed(1e3 * truth.seconds_per_trial, 2)
-        << " ms each; seconds, TV of the exact chain, TV of direct simulation at that cost\n";
+    out += fmt::format(
+        "{}S{}: {} full trials, {} ms each; seconds, TV of the exact chain, TV of direct "
+        "simulation at that cost\n",
+        s == 0 ? "" : "\n", name_of(truth).substr(1), truth.tally.trials,
+        fixed(1e3 * truth.seconds_per_trial, 2));
     for (std::size_t first = 0; first < chart.curves.size(); first += 4)  // as many fit in a line
-      out << block_of(chart, s, first, std::min(first + 4, chart.curves.size()));
-    out << "\n" << words_of(chart, s);
+      out += block_of(chart, s, first, std::min(first + 4, chart.curves.size()));
+    out += "\n" + words_of(chart, s);
   }
-  out << "\nSampling, bins: the parts of the last line's TV that come from the matrix's trials and "
-         "from its\n"
-         "states. Seconds: CPU time of one thread, one matrix and one prediction. TV: against the "
-         "full trials,\n"
-         "whose noise both share; the chain's a mean over up to 8 matrices of different trials.\n";
+  out +=
+      "\nSampling, bins: the parts of the last line's TV that come from the matrix's trials and "
+      "from its\n"
+      "states. Seconds: CPU time of one thread, one matrix and one prediction. TV: against the "
+      "full trials,\n"
+      "whose noise both share; the chain's a mean over up to 8 matrices of different trials.\n";
   for (const ChainCurve& c : chart.curves)
     if (c.trials.empty())
-      out << name_of(c) << ": no point, " << c.space.size() << " rows of "
-          << lattice::kChainTrials.front() << " trials exceed --runs-limit "
-          << chart.options.runs_limit << ".\n";
-  return out.str();
+      out += fmt::format("{}: no point, {} rows of {} trials exceed --runs-limit {}.\n", name_of(c),
+                         c.space.size(), lattice::kChainTrials.front(), chart.options.runs_limit);
+  return out;
 }
 
 }  // namespace gatewalk::cli

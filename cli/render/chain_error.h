@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The chain's error against its cost, as JSON, CSV, a table and a figure.
+/// The chain's error against its cost, as a result, CSV, a table and a figure.
 
+#include <optional>
 #include <string>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 #include "lattice/scene/chain_error.h"
+#include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {
 
-/// {"machine", ..., "starts": truth, direct simulation and summary of each, "curves", "points"}
-[[nodiscard]] Json to_json(const lattice::ChainErrorChart& chart);
+/// The result of `chart-chain`.
+struct ChainErrorResult {
+  lattice::ChainErrorChart chart;
+  std::optional<lattice::Settled> method;
+  Provenance made_by;
+};
+void describe(Fields& out, const ChainErrorResult& result);
 /// For each start a line for each answer of each point (exact, walks), then direct simulation.
 [[nodiscard]] std::string csv_of(const lattice::ChainErrorChart& chart);
 /// For each start a table of points, trials a row by bins, and what it comes to in words.

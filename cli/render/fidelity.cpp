@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/fidelity.h"
 
-#include <limits>
+#include <fmt/core.h>
 
 #include "cli/render/csv.h"
+#include "cli/render/field_ends.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
-#include "cli/render/provenance.h"
 #include "cli/render/quantity.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
-#include "lattice/text/text_stream.h"
+#include "cli/render/text_table.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -33,83 +32,69 @@ double share(std::int64_t part, const FieldTally& of) {
 /// "Start 0, 0, 15: active is enough: ..."
 std::string sentence(const FidelityOfStart& s) {
   const auto about = [](const char* name, const PairedChange& c) {
-    return std::string(name) + " has TV " + fixed(c.apart.total_variation, 4) + " +- " +
-           fixed(c.uncertainty(), 4) + " where chance makes " +
-           fixed(c.in_pairs.floor_total_variation, 4) + " (p " +
-           p_text(c.in_pairs.p_total_variation) + ")";
+    return fmt::format("{} has TV {} +- {} where chance makes {} (p {})", name,
+                       fixed(c.apart.total_variation, 4), fixed(c.uncertainty(), 4),
+                       fixed(c.in_pairs.floor_total_variation, 4),
+                       p_text(c.in_pairs.p_total_variation));
   };
   const std::string words[] = {
       "active is enough",
-      std::to_string(s.runs[0].tally.trials) + " trials cannot tell whether active is enough",
+      fmt::format("{} trials cannot tell whether active is enough", s.runs[0].tally.trials),
       "active is not enough"};
-  return "Start " + digits(s.start.d) + ", " + digits(s.start.vx) + ", " + digits(s.start.vy) +
-         ": " + words[static_cast<int>(s.active_is())] + ": " +
-         about("remember", *s.runs[1].change) + ", " + about("all", *s.runs[2].change) + ".";
+  return fmt::format("Start {}, {}, {}: {}: {}, {}.", digits(s.start.d), digits(s.start.vx),
+                     digits(s.start.vy), words[static_cast<int>(s.active_is())],
+                     about("remember", *s.runs[1].change), about("all", *s.runs[2].change));
 }
 
-Json to_json(const FidelityVariant& v, const FidelityRun& run) {
+void describe(Fields& out, const FidelityVariant& v, const FidelityRun& run) {
   const FieldTally& t = run.tally;
-  Json j;
-  j["fidelity"] = name_of(v.scene.field.fidelity);
-  j["method"] = v.scene.gate.run.method;
-  j["step_s"] = v.scene.gate.run.step;
-  j["seconds_per_trial"] = run.seconds_per_trial;
-  j["fates"] = {{"trapped", share(t.trapped, t)},
-                {"departed", share(t.left_field, t)},
-                {"cut_off", share(t.cut_off, t)},
-                {"not_finite", share(t.broken, t)}};
-  if (run.change) {
-    j["changed_share"] = run.change->changed;
-    j["total_variation_uncertainty"] = run.change->uncertainty();
-    j["as_independent_samples"] = cli::to_json(run.change->apart);
-    j["in_pairs"] = cli::to_json(run.change->in_pairs);
-  }
-  j["final_gates"] = grid(t.final_gates);
-  j["status"] = cli::to_json(t.health);
-  return j;
-}
-
-/// "  4  5  10  | active (moreau)  ..."
-std::string line_of(const FidelityOfStart& s, const FidelityVariant& v, const FidelityRun& run) {
-  const auto shown = [&](std::int64_t n, int width) {
-    return padded(percent(static_cast<double>(n), static_cast<double>(run.tally.trials), 2), width);
-  };
-  std::string line = start_text(dynamics::disc_section(), dynamics::entry_of(s.start.body())) +
-                     "  | " + padded(v.name(), -18) +
-                     padded(fixed(1e3 * run.seconds_per_trial, 2), 7) +
-                     shown(run.tally.trapped, 9) + shown(run.tally.left_field, 10) +
-                     shown(run.tally.cut_off, 9) + " |";
-  if (!run.change) return line;
-  const lattice::Comparison &a = run.change->apart, &p = run.change->in_pairs;
-  return line + padded(percent(run.change->changed, 1.0), 8) +
-         padded(fixed(a.total_variation, 4), 8) + padded(fixed(a.floor_total_variation, 4), 8) +
-         padded(fixed(p.floor_total_variation, 4), 8) + padded(p_text(a.p_total_variation), 8) +
-         padded(p_text(p.p_total_variation), 8) + padded(fixed(a.corrcoef, 4), 10) +
-         padded(fixed(a.rmse_per_100, 3), 8);
+  out.text({"fidelity", "field.fidelity"}, name_of(v.scene.field.fidelity));
+  out.text({"method", "run.method"}, v.scene.gate.run.method);
+  out.number({"step_s", "s", "run.step_s"}, v.scene.gate.run.step);
+  out.number({"seconds_per_trial", "s", "wall clock: least of interleaved repeats"},
+             run.seconds_per_trial);
+  out.object({"fates", "how trials ended, as shares"}, [&](Fields& f) {
+    describe_fates(f, t);
+    f.number({"not_finite", "1", "share of trials that stopped being finite numbers"},
+             share(t.broken, t));
+  });
+  out.optional(run.change.has_value(), [&](Fields& f) {
+    const PairedChange change = run.change.value_or(PairedChange());
+    describe_change(f, change);
+    f.object(Label("as_independent_samples",
+                   "final gates against the first run's, as if the noise were not shared"),
+             [&](Fields& apart) { cli::describe(apart, change.apart); });
+    f.object(Label("in_pairs", "the same, trial by trial"),
+             [&](Fields& pairs) { cli::describe(pairs, change.in_pairs); });
+  });
+  out.grid({"final_gates", "1", "trials by the gate in which they end"}, t.final_gates);
+  describe_status(out, t.health);
 }
 
 }  // namespace
 
-Json to_json(const FidelityStudy& study) {
-  Json j;
-  j["machine"] = machine();
-  j["trials"] = study.trials;
-  j["threads"] = study.threads;
-  j["bound"] = lattice::kSmallChange;
-  j["starts"] = Json::array();
-  for (const FidelityOfStart& s : study.starts) {
-    Json one;
-    one["start"] = to_json(dynamics::disc_section(), dynamics::entry_of(s.start.body()));
+void describe(Fields& out, const FidelityResult& result) {
+  const auto& [study, made_by] = result;
+  out.text({"machine", "the processor on which times were taken"}, machine());
+  out.count({"trials", "1", "trials of each run"}, study.trials);
+  out.count({"threads", "1", "threads on which times were taken"}, study.threads);
+  out.number({"bound", "1", "total variation up to which a change is small enough"},
+             lattice::kSmallChange);
+  out.list_of({"starts", "one for each start"}, study.starts.size(), [&](Fields& f, std::size_t i) {
+    const FidelityOfStart& s = study.starts[i];
+    describe_start(f, dynamics::disc_section(), dynamics::entry_of(s.start.body()));
     const Sufficiency active = s.active_is();
-    one["active_is_enough"] =
-        active == Sufficiency::cannot_tell ? Json() : Json(active == Sufficiency::enough);
-    one["sentence"] = sentence(s);
-    one["runs"] = Json::array();
-    for (std::size_t v = 0; v < study.variants.size(); ++v)
-      one["runs"].push_back(to_json(study.variants[v], s.runs[v]));
-    j["starts"].push_back(std::move(one));
-  }
-  return j;
+    f.flag(
+        {"active_is_enough",
+         "whether the final gates are the same with field.fidelity active as with remember and "
+         "all; null: so many trials cannot tell"},
+        active == Sufficiency::cannot_tell ? std::optional<bool>() : active == Sufficiency::enough);
+    f.text({"sentence", "the same in a sentence"}, sentence(s));
+    f.list_of({"runs", "one for each fidelity and method; the others are compared with the first"},
+              s.runs.size(),
+              [&](Fields& run, std::size_t v) { describe(run, study.variants[v], s.runs[v]); });
+  });
+  describe_made_by(out, made_by);
 }
 
 std::string csv_of(const FidelityStudy& study) {
@@ -126,7 +111,7 @@ std::string csv_of(const FidelityStudy& study) {
       const FieldTally& t = run.tally;
       const PairedChange c = run.change.value_or(PairedChange{});
       const auto changed = [&](double x) {
-        return run.change ? x : std::numeric_limits<double>::quiet_NaN();  // an empty field
+        return run.change ? x : kUnknown;  // an empty field
       };
       const lattice::Comparison &a = c.apart, &p = c.in_pairs;
       csv.row(s.start.d, s.start.vx, s.start.vy, std::string(name_of(scene.field.fidelity)),
@@ -144,40 +129,67 @@ std::string csv_of(const FidelityStudy& study) {
 }
 
 std::string table_of(const FidelityStudy& study) {
-  lattice::TextStream out;
-  const auto step = [](const FidelityVariant& v) {
-    return step_text(v) + " (" + v.scene.gate.run.method + ")";
-  };
-  out << study.trials << " trials per start and line, the same noise in all of them; step "
-      << step(study.variants.front()) << ", " << step(study.variants.back()) << ".\n"
-      << "Against the first line: share of trials that end in another gate; total variation (TV),\n"
-         "what chance gives between independent samples (floor) and between samples that share "
-         "their\n"
-         "noise (pairs), with p-values; corrcoef and RMSE (trials per 100). ms: wall clock per "
-         "trial, "
-      << study.threads << (study.threads == 1 ? " thread" : " threads") << ",\nleast of "
-      << lattice::kFidelityRepeats << " interleaved repeats.\n\n"
-      << "   d   vx   vy  | fidelity (method)      ms  trapped  departed  cut off | changed      "
-         "TV   "
-         "floor   pairs"
-         "       p p pairs  corrcoef    RMSE\n";
+  TextTable table({{"   d   vx   vy"},
+                   {"fidelity (method)", -18, 0, "", "  | "},
+                   {"ms", 7, 2},
+                   {"trapped", 9, 2, "%"},
+                   {"departed", 10, 2, "%"},
+                   {"cut off |", 11, 2, "% |"},
+                   {"changed", 8, 1, "%"},
+                   {"TV", 8, 4},
+                   {"floor", 8, 4},
+                   {"pairs", 8, 4},
+                   {"p", 8},
+                   {"p pairs", 8},
+                   {"corrcoef", 10, 4},
+                   {"RMSE", 8, 3}});
   for (const FidelityOfStart& s : study.starts)
-    for (std::size_t v = 0; v < study.variants.size(); ++v)
-      out << line_of(s, study.variants[v], s.runs[v]) << "\n";
-  out << "\nActive is enough where TV is at most " << digits(lattice::kSmallChange)
-      << " with its uncertainty (+-) added, and\n"
-      << "not enough where it is more with that taken off: what chance makes of pairs 95 times in\n"
-      << "100, and 3 trials of " << study.trials << " that may yet show what none did.\n";
-  for (const FidelityOfStart& s : study.starts) out << sentence(s) << "\n";
-  return out.str();
+    for (std::size_t v = 0; v < study.variants.size(); ++v) {
+      const FidelityRun& run = s.runs[v];
+      const FieldTally& t = run.tally;
+      std::vector<TextCell> cells{
+          start_text(dynamics::disc_section(), dynamics::entry_of(s.start.body())),
+          study.variants[v].name(),
+          1e3 * run.seconds_per_trial,
+          100.0 * share(t.trapped, t),
+          100.0 * share(t.left_field, t),
+          100.0 * share(t.cut_off, t)};
+      if (run.change) {
+        const lattice::Comparison &a = run.change->apart, &p = run.change->in_pairs;
+        cells.insert(cells.end(),
+                     {100.0 * run.change->changed, a.total_variation, a.floor_total_variation,
+                      p.floor_total_variation, p_text(a.p_total_variation),
+                      p_text(p.p_total_variation), a.corrcoef, a.rmse_per_100});
+      }
+      table.row(cells);
+    }
+  const auto step = [](const FidelityVariant& v) {
+    return fmt::format("{} ({})", step_text(v), v.scene.gate.run.method);
+  };
+  std::string out = fmt::format(
+      "{} trials per start and line, the same noise in all of them; step {}, {}.\n"
+      "Against the first line: share of trials that end in another gate; total variation (TV),\n"
+      "what chance gives between independent samples (floor) and between samples that share their\n"
+      "noise (pairs), with p-values; corrcoef and RMSE (trials per 100). ms: wall clock per trial, "
+      "{},\n"
+      "least of {} interleaved repeats.\n\n"
+      "{}\n"
+      "Active is enough where TV is at most {} with its uncertainty (+-) added, and\n"
+      "not enough where it is more with that taken off: what chance makes of pairs 95 times in\n"
+      "100, and 3 trials of {} that may yet show what none did.\n",
+      study.trials, step(study.variants.front()), step(study.variants.back()),
+      counted(study.threads, "thread", "threads"), lattice::kFidelityRepeats, table.text(),
+      digits(lattice::kSmallChange), study.trials);
+  for (const FidelityOfStart& s : study.starts) out += sentence(s) + "\n";
+  return out;
 }
 
 std::vector<std::string> complaints(const FidelityStudy& study) {
   std::vector<std::string> all;
   for (std::size_t v = 0; v < study.variants.size(); ++v)
     if (const dynamics::Health health = study.health(v); !health.clean())
-      all.push_back(study.variants[v].name() + ", step " + step_text(study.variants[v]) + ": " +
-                    complaint(health));
+      all.push_back(fmt::format("{}, step {}: {}", study.variants[v].name(),
+                                step_text(study.variants[v]), complaint(health)));
   return all;
 }
 

@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What memory and neighbours change in the final gates, as JSON, CSV, a table and a figure.
+/// What memory and neighbours change in the final gates, as a result, CSV, a table and a figure.
 
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
+#include "cli/render/provenance.h"
 #include "lattice/scene/fidelity.h"
 
 namespace gatewalk::cli {
 
-/// {"machine", "trials", "threads", "bound", "starts": one each, with "runs" by variant}
-[[nodiscard]] Json to_json(const lattice::FidelityStudy& study);
+/// The result of `chart-field`.
+struct FidelityResult {
+  lattice::FidelityStudy study;
+  Provenance made_by;
+};
+void describe(Fields& out, const FidelityResult& result);
 /// A line for each start and variant.
 [[nodiscard]] std::string csv_of(const lattice::FidelityStudy& study);
 /// A line for each start and variant, and a sentence for each start: whether active is enough.

@@ -89,6 +89,29 @@ std::string FieldEnds<Cells>::table(const std::string& of, const std::string& ab
                      percent(static_cast<double>(departed), bodies, 2));
 }
 
+namespace {
+
+void describe_shares(Fields& out, double trapped, double departed, double cut_off) {
+  FieldEnds<CellProbabilities>{
+      .shares = lattice::EndingShares(std::array<double, markov::kEndings>{}),
+      .trapped = trapped,
+      .departed = departed,
+      .cut_off = cut_off}
+      .describe_sums(out);
+}
+
+}  // namespace
+
+void describe_fates(Fields& out, const lattice::FieldTally& tally) {
+  const auto share = [&](std::int64_t n) {
+    return static_cast<double>(n) / static_cast<double>(tally.trials);
+  };
+  describe_shares(out, share(tally.trapped), share(tally.left_field), share(tally.cut_off));
+}
+void describe_fates(Fields& out, const markov::FinalDistribution& f) {
+  describe_shares(out, f.trapped, f.left_field, f.cut_off);
+}
+
 template struct FieldEnds<CellCounts>;
 template struct FieldEnds<CellProbabilities>;
 

@@ -46,6 +46,10 @@ struct FieldEnds {
   [[nodiscard]] std::string table(const std::string& of, const std::string& about) const;
 };
 
+/// The keys "trapped", "departed" and "cut_off": shares of trials, or as predicted.
+void describe_fates(Fields& out, const lattice::FieldTally& tally);
+void describe_fates(Fields& out, const markov::FinalDistribution& f);
+
 [[nodiscard]] FieldEnds<markov::CellCounts> ends_of(const lattice::FieldTally& tally,
                                                     const lattice::FieldParams& field);
 [[nodiscard]] FieldEnds<markov::CellCounts> ends_of(const markov::WalkTally& tally,

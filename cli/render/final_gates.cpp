@@ -10,6 +10,7 @@
 #include "cli/render/text.h"
 #include "cli/render/text_table.h"
 #include "lattice/statistics/compare.h"
+#include "lattice/statistics/paired_change.h"
 
 namespace gatewalk::cli {
 
@@ -44,6 +45,22 @@ Json to_json(const lattice::Comparison& c) {
   return json_of([&](Fields& out) { describe(out, c); });
 }
 
+void describe_change(Fields& out, const lattice::PairedChange& change) {
+  out.number({"changed_share", "1", "share of the trials that end in another gate"},
+             change.changed);
+  out.number({"total_variation_uncertainty", "1",
+              "how far the total variation of the final gates may be from that of infinitely many "
+              "trials, 95 %"},
+             change.uncertainty());
+}
+
+void describe_by_chance(Fields& out, double mean, double at_95) {
+  out.object({"total_variation_by_chance", "total variation by chance alone"}, [&](Fields& f) {
+    f.number({"mean", "1", "mean of the random draws"}, mean);
+    f.number({"at_95", "1", "95 of 100 draws have no more"}, at_95);
+  });
+}
+
 void describe(Fields& out, const lattice::Judgement& j) {
   out.flag({"differs", "whether p is at most the level"}, j.differs());
   out.number({"p", "1", "how often chance makes as large a difference in any of the statistics"},
@@ -64,12 +81,7 @@ void describe(Fields& out, const lattice::Judgement& j) {
                    j.endings[static_cast<std::size_t>(markov::Ending::unsampled)].p_adjusted);
         });
       });
-  out.object(
-      {"total_variation_by_chance", "total variation of the final gates by chance alone"},
-      [&](Fields& f) {
-        f.number({"mean", "1", "mean of the random draws"}, j.chance_total_variation);
-        f.number({"at_95", "1", "95 of 100 draws have no more"}, j.chance_total_variation_95);
-      });
+  describe_by_chance(out, j.chance_total_variation, j.chance_total_variation_95);
   out.count({"null_draws", "1", "random draws behind these numbers"}, j.null_draws);
 }
 

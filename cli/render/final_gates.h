@@ -15,6 +15,7 @@
 namespace gatewalk::lattice {
 struct Comparison;
 struct Judgement;
+struct PairedChange;
 }  // namespace gatewalk::lattice
 
 namespace gatewalk::cli {
@@ -22,6 +23,8 @@ namespace gatewalk::cli {
 /// The keys of a comparison of two maps of final gates.
 void describe(Fields& out, const lattice::Comparison& c);
 [[nodiscard]] Json to_json(const lattice::Comparison& c);
+/// The keys of what a change makes of the final gates of the same trials.
+void describe_change(Fields& out, const lattice::PairedChange& change);
 /// The keys of one test of all statistics.
 void describe(Fields& out, const lattice::Judgement& j);
 [[nodiscard]] Json to_json(const lattice::Judgement& j);
@@ -37,6 +40,8 @@ void describe_map(Fields& out, const Field& f, const Cells& cells) {
   else
     out.grid(f, cells);
 }
+/// The key "total_variation_by_chance": what is between two maps of final gates.
+void describe_by_chance(Fields& out, double mean, double at_95);
 /// The key "left_out" where a field has so many gates that its maps are null.
 void describe_left_out(Fields& out, int columns, int rows);
 
