@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: MIT
 #include <utility>
 
-#include "cli/render/analysis.h"
 #include "cli/film/replay.h"
+#include "cli/render/analysis.h"
 #include "cli/render/best_start.h"
+#include "cli/render/chain_error.h"
 #include "cli/render/cut_tracks.h"
 #include "cli/render/design.h"
+#include "cli/render/fidelity.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/files.h"
 #include "cli/render/fit.h"
 #include "cli/render/gate_runs.h"
+#include "cli/render/halves.h"
 #include "cli/render/landscape.h"
 #include "cli/render/matrix.h"
-#include "cli/render/power.h"
 #include "cli/render/meaning.h"
 #include "cli/render/plan.h"
+#include "cli/render/power.h"
 #include "cli/render/prediction.h"
 #include "cli/render/rare.h"
 #include "cli/render/schema.h"
 #include "cli/render/stability.h"
 #include "cli/render/sweep.h"
+#include "cli/render/validation.h"
 #include "cli/render/work_precision.h"
 #include "dynamics/disc/disc_section.h"
 
@@ -177,6 +181,60 @@ TraceResult trace() {
   return example;
 }
 
+lattice::FieldTally no_trials() { return lattice::FieldTally(lattice::FieldParams()); }
+
+/// With one point, the best of its start.
+ChainErrorResult chain_error() {
+  ChainErrorResult example;
+  example.chart.curves.push_back({.space = matrix_file().transitions.space});
+  example.chart.truths.push_back({.tally = no_trials()});
+  example.chart.points.resize(1);
+  example.chart.points[0].answers = {{.exact = {.total_variation = 1.0}}};
+  example.chart.trees.resize(1);
+  example.chart.direct.resize(1);
+  return example;
+}
+
+FidelityResult fidelity() {
+  const lattice::FidelityRun run{
+      .tally = no_trials(), .final_gates = {}, .change = lattice::PairedChange()};
+  FidelityResult example;
+  example.study.variants.resize(3);
+  example.study.starts = {{.start = {}, .runs = {run, run, run}}};
+  return example;
+}
+
+/// Of a scene, or of recorded runs.
+void describe_validate(Fields& out) {
+  const lattice::EndingShares none{std::array<double, markov::kEndings>{}};
+  ValidateResult of_scene{.shown = lattice::Scene()};
+  of_scene.validation.starts.push_back({.start = {},
+                                        .chain_start = {},
+                                        .dynamics = no_trials(),
+                                        .walks = {},
+                                        .exact = {},
+                                        .walks_against = {},
+                                        .exact_against = {},
+                                        .paper_sized = {},
+                                        .floor_100_exact = {},
+                                        .floor_100_walks = {},
+                                        .judgement = {},
+                                        .dynamics_endings = none,
+                                        .walks_endings = none,
+                                        .exact_endings = none,
+                                        .dynamics_exits = {},
+                                        .exact_exits = {}});
+  lattice::MemoryStudy& memory = of_scene.validation.memory;
+  memory.outcomes = {"way", "trapped"};
+  lattice::GatesAhead::Step& step = memory.ahead.steps.emplace_back();
+  step.seen = step.predicted = {0.0, 0.0};
+  step.excess_95.resize(2);
+  HalvesResult of_runs;
+  of_runs.section = dynamics::disc_section();
+  out.either(
+      true, [&](Fields& f) { describe(f, of_scene); }, [&](Fields& f) { describe(f, of_runs); });
+}
+
 }  // namespace
 
 const std::vector<ResultOf>& results() {
@@ -185,6 +243,8 @@ const std::vector<ResultOf>& results() {
       of("analyze", analyze()),
       {"build", describe_build},
       of("chart", ChartResult{{{}}, {{}}}),
+      of("chart-chain", chain_error()),
+      of("chart-field", fidelity()),
       of("design", design()),
       of<ExportResult>("export"),
       of("fit", fit()),
@@ -193,8 +253,8 @@ const std::vector<ResultOf>& results() {
       of<LandscapeResult>("landscape"),
       of("lattice", trials()),
       of("passages", cut_tracks()),
-      of<PowerResult>("power"),
       {"plan", describe_plan},
+      of<PowerResult>("power"),
       of("predict", prediction()),
       of("rare", rare()),
       of("sample", SampleResult{}),
@@ -203,6 +263,7 @@ const std::vector<ResultOf>& results() {
       of<StabilityResult>("stability"),
       of("sweep", sweep()),
       of("trace", trace()),
+      {"validate", describe_validate},
       of("walk", WalkResult{.shown = ShownField(lattice::Scene())}),
   };
   return all;

@@ -8,10 +8,7 @@
 #include <utility>
 
 #include "cli/arguments.h"
-#include "cli/render/choice.h"
-#include "cli/render/health.h"
 #include "cli/render/matrix.h"
-#include "cli/render/observed.h"
 #include "cli/subject.h"
 
 namespace gatewalk::cli {
@@ -22,14 +19,13 @@ namespace {
 constexpr std::int64_t kTrialsPerObserved = 20, kLeastBesideObserved = 10'000;
 
 Validated of_scene(const Options& options, lattice::Scene scene,
-                   std::vector<lattice::PaperStart> papers,
-                   std::vector<dynamics::Transitions> matrices) {
+                   std::vector<lattice::PaperStart> papers) {
   Validated v{.problem = lattice::problem_of(scene),
-              .matrices = std::move(matrices),
               .starts = lattice::entries_at(papers),
-              .papers = std::move(papers),
-              .shown = ShownField(scene),
-              .made_by = cli::to_json(options.provenance(scene))};
+              .result = {.shown = scene,
+                         .papers = std::move(papers),
+                         .like_table4 = lattice::like_table4(scene),
+                         .made_by = options.provenance(scene)}};
   v.scene = std::move(scene);
   return v;
 }
@@ -68,6 +64,11 @@ std::optional<lattice::Observed> experiment_of(const Options& options,
   return observed;
 }
 
+void put_observed(Validated& v, const Options& options, std::optional<lattice::Observed> observed) {
+  if (observed) v.result.observed = {options.texts("observed"), observed->went_back};
+  v.observed = std::move(observed);
+}
+
 Validated read_subject(const Options& options) {
   const std::string path = options.text("matrix");
   lattice::SceneMatrix m = read_matrix(options, path, options.text("scene"), options.overrides());
@@ -77,12 +78,13 @@ Validated read_subject(const Options& options) {
   auto observed = experiment_of(options, m.scene.field);
   add_starts_to(m, path, options, starts);
   require_inside_bins(options, papers, m.scene, m.file->transitions.space);
-  Validated v =
-      of_scene(options, m.scene, std::move(papers), lattice::matrices_of(*m.file, m.scene));
-  v.observed = std::move(observed);
-  v.status = recorded_status(*m.file);
-  v.settled = recorded(*m.file, path, "method");
-  v.states = recorded_states(*m.file, path);
+  Validated v = of_scene(options, m.scene, std::move(papers));
+  put_observed(v, options, std::move(observed));
+  v.result.matrix = {.matrices = lattice::matrices_of(*m.file, m.scene),
+                     .path = path,
+                     .health = recorded_health(*m.file),
+                     .method = recorded_method(*m.file, path),
+                     .states = recorded_states(*m.file, path)};
   return v;
 }
 
@@ -91,9 +93,10 @@ void put_tree(Validated& v, const Options& options) {
   const lattice::TreeOptions how{.accuracy = accuracy_of(options), .starts = v.starts};
   lattice::TreeChain chain = lattice::make_tree_chain(v.problem, how, options.work());
   warn_of(options, *chain.prediction, how.accuracy.accuracy);
-  v.status = cli::to_json(chain.transitions.front().health);
-  v.states = record_of(chain, how.accuracy.accuracy);
-  v.matrices = std::move(chain.transitions);
+  ValidatedMatrix& matrix = v.result.matrix;
+  matrix.health = chain.transitions.front().health;
+  matrix.states = record_of(chain, how.accuracy.accuracy);
+  matrix.matrices = std::move(chain.transitions);
 }
 
 Validated build_subject(const Options& options) {
@@ -111,20 +114,21 @@ Validated build_subject(const Options& options) {
   if (!tree) refuse(options, {"accuracy", "gate-runs"}, "for bins: it is for --bins tree");
   if (!tree && choice.kind != lattice::BinsChoice::Kind::automatic)
     require_inside_bins(options, papers, scene, lattice::fixed_space(scene));
-  const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
-  Validated v = of_scene(options, std::move(scene), std::move(papers), {});
-  v.observed = std::move(observed);
-  v.settled = settled ? cli::to_json(*settled) : Json();
+  auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
+  Validated v = of_scene(options, std::move(scene), std::move(papers));
+  put_observed(v, options, std::move(observed));
+  ValidatedMatrix& matrix = v.result.matrix;
+  matrix.method = std::move(settled);
   if (tree) {
     put_tree(v, options);
     return v;
   }
   const lattice::States states = states_of(options, *v.scene, choice, bodies);
   for (const std::string& text : complaints(states)) options.warn(text);
-  v.matrices =
+  matrix.matrices =
       lattice::build_matrices(*v.scene, states, {0, trials}, options.seed(), options.work());
-  v.status = cli::to_json(v.matrices.front().health);
-  v.states = record_of(states);
+  matrix.health = matrix.matrices.front().health;
+  matrix.states = record_of(states);
   return v;
 }
 
@@ -135,11 +139,10 @@ Validated program_subject(const Options& options) {
   Subject s = open_program(options, options.text("scene"));
   Validated v{.problem = s.problem,
               .starts = s.entries(),
-              .shown = s.shown(),
-              .made_by = s.made_by(options)};
+              .result = {.shown = s.shown(), .made_by = s.provenance(options)}};
   if (options.has("observed") && v.starts.size() > 1)
     throw UsageError("--observed: the counts belong to one start");
-  v.observed = experiment_of(options, v.problem.field);
+  put_observed(v, options, experiment_of(options, v.problem.field));
   put_tree(v, options);
   return v;
 }

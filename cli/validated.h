@@ -6,29 +6,20 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/render/json.h"
-#include "cli/render/shown_field.h"
-#include "cli/render/states.h"
-#include "dynamics/cells/transitions.h"
+#include "cli/render/validation.h"
 #include "lattice/problem.h"
 #include "lattice/scene/scene.h"
-#include "lattice/scene/table4.h"
 #include "lattice/study/observed.h"
 
 namespace gatewalk::cli {
 
-/// Matrices to validate, by type of cell, and what their file or their making says of them.
+/// Matrices to validate, by type of cell, in a result that is complete but for the validation.
 struct Validated {
   lattice::Problem problem;
-  std::vector<dynamics::Transitions> matrices{};
   std::vector<dynamics::Entry> starts{};
   std::optional<lattice::Observed> observed{};
-  Json status{}, settled{};
-  std::optional<StateRecord> states{};
-  std::optional<lattice::Scene> scene{};      // of gates, and ...
-  std::vector<lattice::PaperStart> papers{};  // ... the starts with what the paper prints of them
-  std::optional<ShownField> shown{};
-  Json made_by{};
+  std::optional<lattice::Scene> scene{};  // of gates
+  ValidateResult result;
 };
 
 /// Of --matrix, of the cells of --cell-program, or built from the scene. Throws UsageError and as

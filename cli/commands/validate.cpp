@@ -4,10 +4,7 @@
 #include "cli/arguments.h"
 #include "cli/commands/recorded.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
-#include "cli/render/observed.h"
 #include "cli/render/prediction.h"
-#include "cli/render/validation.h"
 #include "cli/subject.h"
 #include "cli/validated.h"
 #include "dynamics/base/work.h"
@@ -82,40 +79,26 @@ int run_validate(const Arguments& arguments) {
            "beside --matrix: that one is built already");
   }
   const dynamics::Stopwatch watch;
-  const Validated subject = validated(options);
+  Validated subject = validated(options);
+  ValidateResult& result = subject.result;
+  result.matrix.seconds = watch.seconds();
   if (const auto& observed = subject.observed) {
     how.observed = observed->seen;
     if (!options.has("trials")) how.trials = trials_beside(*observed);
   }
-  const ValidatedMatrix matrix{subject.matrices,
-                               subject.papers,
-                               subject.scene && lattice::like_table4(*subject.scene),
-                               options.text("matrix"),
-                               watch.seconds(),
-                               subject.status,
-                               subject.settled,
-                               subject.states};
-  const auto result = lattice::validate_chain(subject.problem, subject.matrices, subject.starts,
-                                              how, options.work());
-
-  Json json = to_json(result, *subject.shown, matrix);
-  std::string table = table_of(result, *subject.shown, matrix);
-  if (const auto& experiment = result.starts.front().observed) {
-    json["observed"] = to_json(*experiment, result.starts.front(), options.texts("observed"));
-    json["observed"]["went_back"] = subject.observed->went_back;
-    table = table_of(*experiment, result.starts.front());
-  }
-  json["made_by"] = subject.made_by;
-  options.give_out(json, table);
-  options.warn(text_of(result.left_out));
-  for (const lattice::StartValidation& start : result.starts)
+  result.validation = lattice::validate_chain(subject.problem, result.matrix.matrices,
+                                              subject.starts, how, options.work());
+  const lattice::Validation& v = result.validation;
+  options.give_out(result, table_of(result));
+  options.warn(text_of(v.left_out));
+  for (const lattice::StartValidation& start : v.starts)
     options.warn(rest_warning(rest_of(start.exact), "by the chain "));
-  if (subject.observed) options.warn(endings_not_listed(*subject.observed, result.starts.front()));
-  const int exit = status_of(options, result.health);
+  if (subject.observed) options.warn(endings_not_listed(*subject.observed, v.starts.front()));
+  const int exit = status_of(options, v.health);
   options.draw([&] {
-    const lattice::StartValidation& first = result.starts.front();
-    return first.observed ? figure_of(*first.observed, first, subject.shown->field)
-                          : figure_of(result, *subject.shown);
+    const lattice::StartValidation& first = v.starts.front();
+    return first.observed ? figure_of(*first.observed, first, result.shown.field)
+                          : figure_of(v, result.shown);
   });
   return exit;
 }

@@ -4,8 +4,6 @@
 #include "cli/arguments.h"
 #include "cli/commands/recorded.h"
 #include "cli/render/halves.h"
-#include "cli/render/json.h"
-#include "cli/render/recorded.h"
 #include "cli/subject.h"
 
 namespace gatewalk::cli {
@@ -25,23 +23,20 @@ int validate_recorded(const Options& options) {
     throw UsageError(path + ": its runs were not recorded: --cell-program says who makes more");
   lattice::HalvesOptions how{.null_draws = {}, .seed = options.seed(), .per_leaf = s.how.per_leaf};
   if (options.has("null-draws")) how.null_draws = options.count("null-draws", 1, 100'000);
-  const auto halves = lattice::validate_halves(s.problem, *s.pool, how, options.work());
-  const auto memory = lattice::body_memory(s.problem, *s.pool, how.per_leaf,
-                                           how.null_draws.value_or(999), how.seed);
+  const HalvesResult result{
+      .halves = lattice::validate_halves(s.problem, *s.pool, how, options.work()),
+      .memory = lattice::body_memory(s.problem, *s.pool, how.per_leaf, how.null_draws.value_or(999),
+                                     how.seed),
+      .section = s.problem.map().section,
+      .recorded = counts_of(*s.pool),
+      .made_by = s.provenance(options)};
   constexpr std::int64_t kChecked = 200;  // results/tracks
   if (s.pool->bodies() < kChecked)
     options.warn(fmt::format("these are {} bodies: of fewer than {} p may come out too small",
                              s.pool->bodies(), kChecked));
-  const ShownField shown = s.shown();
-  const dynamics::Section& section = shown.map.section;
-  Json json = to_json(halves);
-  json["memory"] = to_json(memory, section);
-  json["recorded"] = to_json(*s.pool);
-  json["made_by"] = s.made_by(options);
-  options.give_out(
-      json, table_of(halves) + "Memory: " + verdict(memory, section) + ".\n" + table_of(*s.pool));
-  for (const std::string& rest : rest_warnings(halves)) options.warn(rest);
-  options.draw([&] { return figure_of(halves, shown); });
+  options.give_out(result, table_of(result) + table_of(*s.pool));
+  for (const std::string& rest : rest_warnings(result.halves)) options.warn(rest);
+  options.draw([&] { return figure_of(result.halves, s.shown()); });
   return kFine;
 }
 

@@ -99,10 +99,6 @@ void describe_exits(Fields& out, const FieldExits& dynamics, const FieldExits& c
   });
 }
 
-Json to_json(const FieldExits& dynamics, const FieldExits& chain, const ShownField& shown) {
-  return json_of([&](Fields& out) { describe_exits(out, dynamics, chain, shown); })["exits"];
-}
-
 std::string table_of(const FieldExits& exits, const ShownField& shown) {
   constexpr std::size_t kMost = 15;
   TextTable table({{"", -11}, {"", -2}, {"", -18}, {"", 0, 0, "", " "}});

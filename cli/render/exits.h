@@ -20,8 +20,6 @@ void describe_exits(Fields& out, const lattice::FieldExits& exits, const ShownFi
 /// The same of the dynamics beside a chain.
 void describe_exits(Fields& out, const lattice::FieldExits& dynamics,
                     const lattice::FieldExits& chain, const ShownField& shown);
-[[nodiscard]] Json to_json(const lattice::FieldExits& dynamics, const lattice::FieldExits& chain,
-                           const ShownField& shown);
 /// A line for each place that bodies leave at; empty if none does, and for fields too large to
 /// print.
 [[nodiscard]] std::string table_of(const lattice::FieldExits& exits, const ShownField& shown);

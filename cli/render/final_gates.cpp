@@ -41,10 +41,6 @@ void describe(Fields& out, const lattice::Comparison& c) {
              });
 }
 
-Json to_json(const lattice::Comparison& c) {
-  return json_of([&](Fields& out) { describe(out, c); });
-}
-
 void describe_change(Fields& out, const lattice::PairedChange& change) {
   out.number({"changed_share", "1", "share of the trials that end in another gate"},
              change.changed);
@@ -83,10 +79,6 @@ void describe(Fields& out, const lattice::Judgement& j) {
       });
   describe_by_chance(out, j.chance_total_variation, j.chance_total_variation_95);
   out.count({"null_draws", "1", "random draws behind these numbers"}, j.null_draws);
-}
-
-Json to_json(const lattice::Judgement& j) {
-  return json_of([&](Fields& out) { describe(out, j); });
 }
 
 Json grid(const markov::CellCounts& cells) {

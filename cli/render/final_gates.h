@@ -22,12 +22,10 @@ namespace gatewalk::cli {
 
 /// The keys of a comparison of two maps of final gates.
 void describe(Fields& out, const lattice::Comparison& c);
-[[nodiscard]] Json to_json(const lattice::Comparison& c);
 /// The keys of what a change makes of the final gates of the same trials.
 void describe_change(Fields& out, const lattice::PairedChange& change);
 /// The keys of one test of all statistics.
 void describe(Fields& out, const lattice::Judgement& j);
-[[nodiscard]] Json to_json(const lattice::Judgement& j);
 [[nodiscard]] Json grid(const markov::CellCounts& cells);
 [[nodiscard]] Json grid(const markov::CellProbabilities& cells);
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/halves.h"
 
-#include <algorithm>
-#include <vector>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "cli/render/field_ends.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
 #include "cli/render/memory.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 #include "cli/render/validation.h"
 
 namespace gatewalk::cli {
@@ -27,46 +30,66 @@ std::vector<EndingName> shown_endings_of(const HalvesValidation& v) {
   return names;
 }
 
-Json to_json(const HalfAgainstHalf& way) {
-  const lattice::SeenSoFar& s = way.seen_so_far;
-  Json tests = Json::object();
-  const auto add = [&](const EndingName& e) {
-    const auto at = static_cast<std::size_t>(e.ending);
-    tests[e.key] = cli::to_json(way.endings[at]);
-    tests[e.key]["chance_95"] = way.chance_95[at];
-  };
-  for (const EndingName& e : kEndingNames) add(e);
-  add(lattice::kWentBack);
-  return {{"bodies", way.bodies},
-          {"chain_bodies", way.chain_bodies},
-          {"states", way.states},
-          {"trials",
-           {{"compared", s.trials},
-            {"seen_to_their_end", s.to_end},
-            {"unwatched", s.unwatched},
-            {"lost", s.lost},
-            {"in_a_cell_of_another_type", s.other_type},
-            {"left_out", s.left_out}}},
-          {"seen",
-           {{"endings", cli::endings(way.seen.share)},
-            {"endings_95", endings_95(way.seen)},
-            {"final_gates", grid(way.seen_gates)}}},
-          {"chain",
-           {{"endings", cli::endings(way.chain_endings.share)},
-            {"endings_95", endings_95(way.chain_endings)},
-            {"never_sampled", way.chain.unsampled},
-            {"still_walking", way.chain.remainder},
-            {"error_95", way.chain_error.total_variation},
-            {"final_gates", grid(way.chain.final_cells)}}},
-          {"final_gates",
-           {{"total_variation", cli::to_json(way.total_variation)},
-            {"total_variation_chance", way.chance_total_variation},
-            {"total_variation_chance_95", way.chance_total_variation_95},
-            {"corrcoef", way.corrcoef},
-            {"corrcoef_chance", way.chance_corrcoef},
-            {"rmse_per_100", way.rmse_per_100},
-            {"rmse_per_100_chance", way.chance_rmse_per_100}}},
-          {"differences", std::move(tests)}};
+void describe(Fields& out, const HalfAgainstHalf& way) {
+  const lattice::SeenSoFar& so_far = way.seen_so_far;
+  out.count({"bodies", "1", "bodies of the half that is predicted"}, way.bodies);
+  out.count({"chain_bodies", "1", "bodies of the other half, of which the chain is made"},
+            way.chain_bodies);
+  out.count({"states", "1", "states of the chain"}, way.states);
+  out.object({"trials", "how far the trials that are predicted were seen"}, [&](Fields& f) {
+    f.count({"compared", "1", "trials of which one passage is known at least"}, so_far.trials);
+    f.count({"seen_to_their_end", "1", "of these: seen until they end"}, so_far.to_end);
+    f.count({"unwatched", "1", "of these: seen until nobody looked"}, so_far.unwatched);
+    f.count({"lost", "1", "of these: seen until they were lost"}, so_far.lost);
+    f.count({"in_a_cell_of_another_type", "1",
+             "of these: seen until they were in a cell whose type is not the field's there"},
+            so_far.other_type);
+    f.count({"left_out", "1", "trials of which no passage can be compared"}, so_far.left_out);
+  });
+  out.object({"seen", "where these trials ended"}, [&](Fields& f) {
+    describe_endings(f, way.seen);
+    f.grid({"final_gates", "1", "share of trials by the gate where they end"}, way.seen_gates);
+  });
+  out.object({"chain", "where they end by the chain, from the same starts"}, [&](Fields& f) {
+    describe_endings(f, way.chain_endings);
+    const FieldEnds<markov::CellProbabilities> ends = ends_of(way.chain, way.chain_endings);
+    ends.describe_never_sampled(f);
+    ends.describe_still_walking(f);
+    f.number({"error_95", "1",
+              "total variation of the final gates from the truth: 95 of 100 answers have no more"},
+             way.chain_error.total_variation);
+    f.grid({"final_gates", "1", "share of trials by the gate where they end"},
+           way.chain.final_cells);
+  });
+  out.object({"final_gates", "final gates as seen against the chain"}, [&](Fields& f) {
+    f.object({"total_variation", "total variation of the two maps"},
+             [&](Fields& of) { describe(of, way.total_variation); });
+    f.number({"total_variation_chance", "1", "mean of what chance in the bodies makes of it"},
+             way.chance_total_variation);
+    f.number({"total_variation_chance_95", "1", "95 % of the draws of chance have no more"},
+             way.chance_total_variation_95);
+    f.number({"corrcoef", "1", "Pearson correlation of the two maps, over the gates"},
+             way.corrcoef);
+    f.number({"corrcoef_chance", "1", "mean of what chance in the bodies makes of it"},
+             way.chance_corrcoef);
+    f.number({"rmse_per_100", "trials per 100", "root mean squared difference, over the gates"},
+             way.rmse_per_100);
+    f.number(
+        {"rmse_per_100_chance", "trials per 100", "mean of what chance in the bodies makes of it"},
+        way.chance_rmse_per_100);
+  });
+  out.object({"differences", "how far the share of each ending is off"}, [&](Fields& f) {
+    for (const EndingName& e : kAllEndingNames) {
+      const auto at = static_cast<std::size_t>(e.ending);
+      f.object(
+          {e.key, fmt::format("share of trials that {}: as seen against the chain", meaning_of(e))},
+          [&](Fields& of) {
+            describe(of, way.endings[at]);
+            of.number({"chance_95", "1", "95 % of the draws of chance have no more"},
+                      way.chance_95[at]);
+          });
+    }
+  });
 }
 
 std::string half_name(std::size_t half) { return half == 0 ? "half 1" : "half 2"; }
@@ -74,141 +97,156 @@ std::string half_name(std::size_t half) { return half == 0 ? "half 1" : "half 2"
 std::string seen_name(std::size_t way) { return half_name(1 - way); }
 std::string chain_name(std::size_t way) { return half_name(way); }
 
+std::string total_variation_text(const HalfAgainstHalf& way) {
+  return fmt::format("total variation {} (chance: {})", fixed(way.total_variation.seen, 3),
+                     fixed(way.chance_total_variation, 3));
+}
+
 std::string endings_table(const HalvesValidation& v) {
   const std::vector<EndingName> names = shown_endings_of(v);
-  std::vector<std::vector<std::string>> lines{{""}};
-  for (const EndingName& e : names) lines[0].push_back(std::string(e.name) + " ");
+  std::vector<TextColumn> columns{{"", -kFit}};
+  for (const EndingName& e : names)
+    columns.push_back(
+        {fmt::format("{} ", e.name), kFit, 0, "", columns.size() == 1 ? "  |  " : "  "});
+  TextTable table(columns);
+  const auto row = [&](const std::string& name, const auto& text_of) {
+    std::vector<TextCell> cells{name};
+    for (const EndingName& e : names)
+      cells.emplace_back(text_of(static_cast<std::size_t>(e.ending)));
+    table.row(cells);
+  };
   for (std::size_t w = 0; w < 2; ++w) {
     const HalfAgainstHalf& way = v.ways[w];
-    std::vector<std::string> seen{seen_name(w) + " as seen"}, chain{"chain of " + chain_name(w)},
-        chance{"chance"};
-    for (const EndingName& e : names) {
-      const auto at = static_cast<std::size_t>(e.ending);
-      seen.push_back(cli::with_interval(way.seen.share[at], way.seen.interval[at]) + " ");
-      chain.push_back(
-          cli::with_interval(way.chain_endings.share[at], way.chain_endings.interval[at]) +
-          (way.differs(e.ending) ? "*" : " "));
-      chance.push_back("+-" + percents(way.chance_95[at]) + " ");
-    }
-    lines.insert(lines.end(), {seen, chain, chance});
+    const auto shares = [&](const lattice::EndingShares& of, std::size_t at) {
+      return with_interval(of.share[at], of.interval[at]);
+    };
+    row(seen_name(w) + " as seen", [&](std::size_t at) { return shares(way.seen, at) + " "; });
+    row("chain of " + chain_name(w), [&](std::size_t at) {
+      return shares(way.chain_endings, at) +
+             (way.differs(static_cast<markov::Ending>(at)) ? "*" : " ");
+    });
+    row("chance",
+        [&](std::size_t at) { return fmt::format("+-{} ", percents(way.chance_95[at])); });
   }
-  std::string text;
-  for (const auto& line : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      std::size_t width = 0;
-      for (const auto& other : lines) width = std::max(width, other[i].size());
-      text += i == 0 ? padded(line[i], -static_cast<int>(width)) + "  |"
-                     : "  " + padded(line[i], static_cast<int>(width));
-    }
-    text += "\n";
-  }
-  return text;
+  return table.text();
 }
 
 std::string seen_text(const HalfAgainstHalf& way, const std::string& name) {
   const lattice::SeenSoFar& s = way.seen_so_far;
-  const auto of = static_cast<double>(s.trials);
-  std::string text = name + ": " + std::to_string(way.bodies) + " bodies, " +
-                     std::to_string(s.trials) + " trials, of which " +
-                     percent(static_cast<double>(s.to_end), of) + " were seen to their end, " +
-                     percent(static_cast<double>(s.unwatched), of) + " until nobody looked, " +
-                     percent(static_cast<double>(s.lost), of) + " until they were lost";
+  const auto share = [&](std::int64_t n) {
+    return percent(static_cast<double>(n), static_cast<double>(s.trials));
+  };
+  std::string text = fmt::format(
+      "{}: {} bodies, {} trials, of which {} were seen to their end, {} until nobody looked, {} "
+      "until they were lost",
+      name, way.bodies, s.trials, share(s.to_end), share(s.unwatched), share(s.lost));
   if (s.other_type > 0)
-    text += ", " + percent(static_cast<double>(s.other_type), of) +
-            " until their cell's type was not the field's";
-  if (s.left_out > 0)
-    text += "; " + std::to_string(s.left_out) + " trials without a passage are left out";
+    text += fmt::format(", {} until their cell's type was not the field's", share(s.other_type));
+  if (s.left_out > 0) text += fmt::format("; {} trials without a passage are left out", s.left_out);
   return text + "\n";
 }
 
-}  // namespace
-
 std::string verdict(const HalvesValidation& v) {
   if (!v.differs())
-    return "One half of the bodies predicts the other: nothing that these runs could show is "
-           "missing (" +
-           p_words(v.p) + ")";
-  std::string text = "One half of the bodies does not predict the other (" + p_words(v.p) + "):";
-  const char* separator = " ";
+    return fmt::format(
+        "One half of the bodies predicts the other: nothing that these runs could show is missing "
+        "({})",
+        p_words(v.p));
+  std::vector<std::string> said;
   for (std::size_t w = 0; w < 2; ++w) {
     const HalfAgainstHalf& way = v.ways[w];
     for (const EndingName& e : shown_endings_of(v)) {
-      if (!way.differs(e.ending)) continue;
       const auto at = static_cast<std::size_t>(e.ending);
-      text += separator + std::string(e.name) + " " + percents(way.seen.share[at]) + " % in " +
-              seen_name(w) + ", " + percents(way.chain_endings.share[at]) + " % by the chain of " +
-              chain_name(w) + " (chance: +-" + percents(way.chance_95[at]) + ")";
-      separator = "; ";
+      if (way.differs(e.ending))
+        said.push_back(fmt::format("{} {} % in {}, {} % by the chain of {} (chance: +-{})", e.name,
+                                   percents(way.seen.share[at]), seen_name(w),
+                                   percents(way.chain_endings.share[at]), chain_name(w),
+                                   percents(way.chance_95[at])));
     }
-    if (way.differs(markov::Ending::unsampled)) {
-      text += separator + percents(way.chain.unsampled) + " % of " + seen_name(w) +
-              " reach states that the chain of " + chain_name(w) + " does not know";
-      separator = "; ";
-    }
-    if (way.total_variation.p_adjusted <= HalfAgainstHalf::kLevel) {
-      text += separator + std::string("final gates of ") + seen_name(w) + ", total variation " +
-              fixed(way.total_variation.seen, 3) +
-              " (chance: " + fixed(way.chance_total_variation, 3) + ")";
-      separator = "; ";
-    }
+    if (way.differs(markov::Ending::unsampled))
+      said.push_back(fmt::format("{} % of {} reach states that the chain of {} does not know",
+                                 percents(way.chain.unsampled), seen_name(w), chain_name(w)));
+    if (way.total_variation.p_adjusted <= HalfAgainstHalf::kLevel)
+      said.push_back(fmt::format("final gates of {}, {}", seen_name(w), total_variation_text(way)));
   }
-  return text;
+  return fmt::format("One half of the bodies does not predict the other ({}): {}", p_words(v.p),
+                     fmt::join(said, "; "));
 }
 
 std::string verdict(const lattice::BodyMemory& m, const dynamics::Section& section) {
   if (m.face < 0)
     return "no state shows two faces before and two outcomes: memory cannot be asked for";
   if (!m.remembers())
-    return "the face of the cell before tells nothing that these runs could show (" + p_words(m.p) +
-           ")";
+    return fmt::format("the face of the cell before tells nothing that these runs could show ({})",
+                       p_words(m.p));
   const auto& faces = section.faces;
   const auto outcome = static_cast<std::size_t>(m.outcome);
-  return "the face of the cell before tells more than the state (" + p_words(m.p) +
-         "): most of all, after " + faces[static_cast<std::size_t>(m.face)].name + " " +
-         (outcome < faces.size() ? "bodies go on by " + faces[outcome].name
-                                 : std::string("bodies are trapped")) +
-         (m.more > 0.0 ? " more" : " less") + " often than other bodies of the same state, by " +
-         percent(std::abs(m.more), 1.0) + ". What that does to predictions the halves show";
+  return fmt::format(
+      "the face of the cell before tells more than the state ({}): most of all, after {} bodies {} "
+      "{} often than other bodies of the same state, by {}. What that does to predictions the "
+      "halves show",
+      p_words(m.p), faces[static_cast<std::size_t>(m.face)].name,
+      outcome < faces.size() ? "go on by " + faces[outcome].name : "are trapped",
+      m.more > 0.0 ? "more" : "less", percent(std::abs(m.more), 1.0));
 }
 
-Json to_json(const HalvesValidation& v) {
-  return {{"halves", {to_json(v.ways[0]), to_json(v.ways[1])}},
-          {"p", v.p},
-          {"level", HalfAgainstHalf::kLevel},
-          {"differs", v.differs()},
-          {"null_draws", v.null_draws},
-          {"verdict", verdict(v)}};
-}
-
-Json to_json(const lattice::BodyMemory& m, const dynamics::Section& section) {
+void describe(Fields& out, const lattice::BodyMemory& m, const dynamics::Section& section) {
   const auto& faces = section.faces;
-  Json json{{"runs", m.runs},
-            {"states", m.states},
-            {"together", to_json(m.together)},
-            {"strongest", to_json(m.strongest)},
-            {"p", m.p},
-            {"remembers", m.remembers()},
-            {"null_draws", m.null_draws},
-            {"verdict", verdict(m, section)}};
-  if (m.face < 0) return json;
-  const auto outcome = static_cast<std::size_t>(m.outcome);
-  json["strongest"]["face_before"] = faces[static_cast<std::size_t>(m.face)].name;
-  json["strongest"]["outcome"] = outcome < faces.size() ? faces[outcome].name : "trapped";
-  json["strongest"]["more"] = m.more;
-  return json;
+  out.count(
+      {"runs", "1", "passages that can tell: in states with several faces before and outcomes"},
+      m.runs);
+  out.count({"states", "1", "states of these passages"}, m.states);
+  out.object({"together", "differences of all faces and outcomes"},
+             [&](Fields& f) { describe(f, m.together); });
+  out.object({"strongest", "the largest of these, over its standard deviation"}, [&](Fields& f) {
+    describe(f, m.strongest);
+    f.optional(m.face >= 0, [&](Fields& whose) {
+      const std::size_t face = m.face < 0 ? 0 : static_cast<std::size_t>(m.face),
+                        outcome = m.face < 0 ? 0 : static_cast<std::size_t>(m.outcome);
+      whose.text({"face_before", "the face of the cell before"}, faces[face].name);
+      whose.text({"outcome", "the face by which bodies go on, or trapped"},
+                 outcome < faces.size() ? faces[outcome].name : "trapped");
+      whose.number({"more", "1", "share of these passages by which this outcome is more frequent"},
+                   m.more);
+    });
+  });
+  out.number({"p", "1", "how often chance makes as large a difference in any of the two"}, m.p);
+  out.flag({"remembers", "whether the face before tells more than the state"}, m.remembers());
+  out.count({"null_draws", "1", "random draws behind p"}, m.null_draws);
+  out.text({"verdict", "the answer in words"}, verdict(m, section));
+}
+
+}  // namespace
+
+void describe(Fields& out, const HalvesResult& result) {
+  const auto& [halves, memory, section, recorded, made_by] = result;
+  out.list({"halves", "the second half as seen against the chain of the first, and the other way"},
+           halves.ways, [](Fields& f, const HalfAgainstHalf& way) { describe(f, way); });
+  out.number({"p", "1", "how often chance makes as large a difference in any of the statistics"},
+             halves.p);
+  out.number({"level", "1", "level of significance"}, HalfAgainstHalf::kLevel);
+  out.flag({"differs", "whether p is at most the level: one half does not predict the other"},
+           halves.differs());
+  out.count({"null_draws", "1", "random draws behind p"}, halves.null_draws);
+  out.text({"verdict", "the answer in words"}, verdict(halves));
+  out.object({"memory", "does the face of the cell before tell more than the state?"},
+             [&](Fields& f) { describe(f, memory, section); });
+  describe_recorded(out, recorded);
+  describe_made_by(out, made_by);
 }
 
 std::vector<std::string> rest_warnings(const HalvesValidation& v) {
   std::vector<std::string> all;
   for (std::size_t w = 0; w < 2; ++w)
-    if (std::string rest =
-            rest_warning(rest_of(v.ways[w].chain), "by the chain of " + chain_name(w) + " ");
+    if (std::string rest = rest_warning(rest_of(v.ways[w].chain),
+                                        fmt::format("by the chain of {} ", chain_name(w)));
         !rest.empty())
       all.push_back(std::move(rest));
   return all;
 }
 
-std::string table_of(const HalvesValidation& v) {
+std::string table_of(const HalvesResult& result) {
+  const HalvesValidation& v = result.halves;
   std::string text =
       "Does one half of the bodies predict the other? Endings in % with 95 % intervals: chance in "
       "the\n"
@@ -225,27 +263,27 @@ std::string table_of(const HalvesValidation& v) {
       "total\nvariation also what 95 % do not exceed).\n\n";
   for (std::size_t w = 0; w < 2; ++w) {
     const HalfAgainstHalf& way = v.ways[w];
-    text += seen_name(w) + "  | corrcoef " + fixed(way.corrcoef, 3) + " (" +
-            fixed(way.chance_corrcoef, 3) + "), RMSE " + fixed(way.rmse_per_100, 2) + " (" +
-            fixed(way.chance_rmse_per_100, 2) + ") per 100, total variation " +
-            fixed(way.total_variation.seen, 3) + " (" + fixed(way.chance_total_variation, 3) +
-            ", " + fixed(way.chance_total_variation_95, 3) + ")\n";
+    text += fmt::format(
+        "{}  | corrcoef {} ({}), RMSE {} ({}) per 100, total variation {} ({}, {})\n", seen_name(w),
+        fixed(way.corrcoef, 3), fixed(way.chance_corrcoef, 3), fixed(way.rmse_per_100, 2),
+        fixed(way.chance_rmse_per_100, 2), fixed(way.total_variation.seen, 3),
+        fixed(way.chance_total_variation, 3), fixed(way.chance_total_variation_95, 3));
   }
-  return text + "\n" + verdict(v) + ".\n";
+  return text +
+         fmt::format("\n{}.\nMemory: {}.\n", verdict(v), verdict(result.memory, result.section));
 }
 
 Figure figure_of(const HalvesValidation& v, const ShownField& shown) {
   std::vector<ComparedGates> compared;
   for (std::size_t w = 0; w < 2; ++w) {
     const HalfAgainstHalf& way = v.ways[w];
-    compared.push_back({seen_name(w) + ", chain of " + chain_name(w) + ": total variation " +
-                            fixed(way.total_variation.seen, 3) +
-                            " (chance: " + fixed(way.chance_total_variation, 3) + ")",
-                        way.seen_gates, way.chain.final_cells});
+    compared.push_back(
+        {fmt::format("{}, chain of {}: {}", seen_name(w), chain_name(w), total_variation_text(way)),
+         way.seen_gates, way.chain.final_cells});
   }
   return figure_of(compared,
-                   std::string("final gates: halves ") +
-                       (v.differs() ? "differ" : "do not differ") + " (" + p_words(v.p) + ")",
+                   fmt::format("final gates: halves {} ({})",
+                               v.differs() ? "differ" : "do not differ", p_words(v.p)),
                    "as seen, %", shown);
 }
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/memory.h"
 
+#include <fmt/core.h>
+
 #include <array>
 #include <cmath>
 #include <string_view>
 #include <vector>
 
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
 #include "cli/render/text.h"
-#include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -31,9 +31,9 @@ const std::string& outcome_name(const MemoryStudy& study, int outcome) {
 std::string label_name(const MemoryStudy& study, Question q, int label) {
   if (q == Question::gate_before) return study.origins[static_cast<std::size_t>(label)];
   if (q == Question::visit)
-    return "gate number " + std::to_string(label + 1) +
-           (label + 1 == lattice::kVisits ? " or later" : "");
-  return "i_y = " + std::to_string(label) + (label + 1 == lattice::kRows ? " or more" : "");
+    return fmt::format("gate number {}{}", label + 1,
+                       label + 1 == lattice::kVisits ? " or later" : "");
+  return fmt::format("i_y = {}{}", label, label + 1 == lattice::kRows ? " or more" : "");
 }
 
 // ---- Independence ----
@@ -41,57 +41,80 @@ std::string label_name(const MemoryStudy& study, Question q, int label) {
 std::string power_words(const Independence& i) {
   if (i.runs == 0) return "no state shows two of them";
   if (!std::isfinite(i.seen_at_90)) return "too few runs to see any memory";
-  return "a memory of total variation " + fixed(i.seen_at_90, 3) +
-         " would have been seen with probability 0.9";
+  return fmt::format("a memory of total variation {} would have been seen with probability 0.9",
+                     fixed(i.seen_at_90, 3));
 }
 
 /// "a memory of total variation 0.031 [0.025, 0.038]; most of all ..."
 std::string size_words(const MemoryStudy& study, Question q) {
   const Independence& i = study.independence(q);
-  std::string text;
+  std::string text = "not the same way in all states";
   if (i.memory_low > 0.0)
-    text = "a memory of total variation " + fixed(i.memory, 3) + " [" + fixed(i.memory_low, 3) +
-           ", " + fixed(i.memory_high, 3) + "]";
-  else
-    text = "not the same way in all states";
+    text = fmt::format("a memory of total variation {} [{}, {}]", fixed(i.memory, 3),
+                       fixed(i.memory_low, 3), fixed(i.memory_high, 3));
   if (i.label >= 0)
-    text += "; most of all " + label_name(study, q, i.label) + ": " +
-            outcome_name(study, i.outcome) + " by " + fixed(100.0 * std::abs(i.more), 1) +
-            " % of its runs more " + (i.more > 0.0 ? "often" : "seldom");
+    text += fmt::format("; most of all {}: {} by {} % of its runs more {}",
+                        label_name(study, q, i.label), outcome_name(study, i.outcome),
+                        fixed(100.0 * std::abs(i.more), 1), i.more > 0.0 ? "often" : "seldom");
   return text;
 }
 
 std::string sentence(const MemoryStudy& study, Question q) {
   const Independence& i = study.independence(q);
-  const std::string asked(kAsked[static_cast<std::size_t>(q)]), p = p_words(study.p_adjusted(q));
+  const std::string_view asked = kAsked[static_cast<std::size_t>(q)];
+  const std::string p = p_words(study.p_adjusted(q));
   return study.remembers(q)
-             ? asked + " tells more than the state (" + p + "): " + size_words(study, q)
-             : asked + " tells nothing more than the state (" + p + "; " + power_words(i) + ")";
+             ? fmt::format("{} tells more than the state ({}): {}", asked, p, size_words(study, q))
+             : fmt::format("{} tells nothing more than the state ({}; {})", asked, p,
+                           power_words(i));
 }
 
-Json to_json(const MemoryStudy& study, Question q) {
+void describe_p(Fields& out, const MemoryStudy& study, Question q) {
+  out.number({"p", "1", "how often chance makes as large a difference"}, study.p(q));
+  out.number({"p_adjusted", "1", "p, corrected for asking all questions"}, study.p_adjusted(q));
+}
+
+void describe(Fields& out, const MemoryStudy& study, Question q) {
   const Independence& i = study.independence(q);
-  Json j;
-  j["p"] = i.p;
-  j["p_adjusted"] = study.p_adjusted(q);
-  j["runs"] = i.runs;
-  j["states"] = i.states;
-  j["statistics"] = {{"pooled", cli::to_json(i.pooled)},
-                     {"strongest", cli::to_json(i.strongest)},
-                     {"state_by_state", cli::to_json(i.state_by_state)}};
-  j["statistics"]["pooled"]["degrees"] = i.degrees;
-  j["statistics"]["pooled"]["p_chi_squared"] = i.p_chi_squared;
-  if (i.label >= 0) {
-    j["statistics"]["strongest"]["label"] = label_name(study, q, i.label);
-    j["statistics"]["strongest"]["outcome"] = outcome_name(study, i.outcome);
-    j["statistics"]["strongest"]["excess"] = i.more;
-  }
-  j["total_variation"] = i.memory;
-  j["total_variation_95"] = {i.memory_low, i.memory_high};
-  j["seen_with_probability_90"] = i.seen_at_90;
-  j["power"] = power_words(i);
-  j["sentence"] = sentence(study, q);
-  return j;
+  describe_p(out, study, q);
+  out.count({"runs", "1", "gate runs that can tell: in states with several labels and outcomes"},
+            i.runs);
+  out.count({"states", "1", "states of these runs"}, i.states);
+  out.object(
+      {"statistics", "what was looked at: does the label tell more than the state does?"},
+      [&](Fields& f) {
+        f.object({"pooled", "differences that go the same way in all states"}, [&](Fields& pooled) {
+          cli::describe(pooled, i.pooled);
+          pooled.count({"degrees", "1", "degrees of freedom of the statistic"}, i.degrees);
+          pooled.number({"p_chi_squared", "1", "p by the chi-squared distribution"},
+                        i.p_chi_squared);
+        });
+        f.object({"strongest", "the largest of these, over its standard deviation"},
+                 [&](Fields& strongest) {
+                   cli::describe(strongest, i.strongest);
+                   strongest.optional(i.label >= 0, [&](Fields& whose) {
+                     const bool any = i.label >= 0;
+                     whose.text({"label", "the label whose runs differ most"},
+                                any ? label_name(study, q, i.label) : "");
+                     whose.text({"outcome", "the way on that differs, or trapped"},
+                                any ? outcome_name(study, i.outcome) : "");
+                     whose.number(
+                         {"excess", "1", "share of these runs by which this is more frequent"},
+                         i.more);
+                   });
+                 });
+        f.object({"state_by_state", "differences that go another way in each state"},
+                 [&](Fields& each) { cli::describe(each, i.state_by_state); });
+      });
+  out.estimate({"total_variation", "1",
+                "size of the memory: by how much outcomes differ after one half of the labels and "
+                "after the other"},
+               i.memory, Interval{i.memory_low, i.memory_high});
+  out.number({"seen_with_probability_90", "1",
+              "a memory of this total variation is found with a probability of 0.9; null: none is"},
+             i.seen_at_90);
+  out.text({"power", "the same in words"}, power_words(i));
+  out.text({"sentence", "the answer in words"}, sentence(study, q));
 }
 
 // ---- Gates ahead ----
@@ -104,53 +127,69 @@ std::string sentence_ahead(const MemoryStudy& study) {
   const std::string p = p_words(study.p_adjusted(Question::gates_ahead)),
                     seen = fixed(s.total_variation.seen, 4), chance = fixed(s.chance_95, 4);
   if (study.remembers(Question::gates_ahead))
-    return std::to_string(s.gates) +
-           " gates ahead bodies are elsewhere than the kernel's powers put them (" + p +
-           "): by a total variation of " + seen + ", where chance makes up to " + chance;
-  return "up to " + std::to_string(study.ahead.steps.back().gates) +
-         " gates ahead bodies are where the kernel's powers put them (" + p +
-         "; nearest to an excess " + std::to_string(s.gates) + " gates ahead: total variation " +
-         seen + ", chance makes up to " + chance + ")";
+    return fmt::format(
+        "{} gates ahead bodies are elsewhere than the kernel's powers put them ({}): by a total "
+        "variation of {}, where chance makes up to {}",
+        s.gates, p, seen, chance);
+  return fmt::format(
+      "up to {} gates ahead bodies are where the kernel's powers put them ({}; nearest to an "
+      "excess {} gates ahead: total variation {}, chance makes up to {})",
+      study.ahead.steps.back().gates, p, s.gates, seen, chance);
 }
 
 /// By the way now and the way then: {"EN": {"EN": ..., "trapped": ...}, ...}
-template <class Value>
-Json by_ways(const MemoryStudy& study, const std::vector<Value>& values) {
-  Json j;
-  std::size_t at = 0;
-  const std::vector<std::string>& names = study.outcomes;  // the last one: trapped
-  for (std::size_t from = 0; from + 1 < names.size(); ++from)
-    for (const std::string& to : names) j[names[from]][to] = values[at++];
-  return j;
+template <class Value, class Put>
+void describe_ways(Fields& out, const MemoryStudy& study, const Label& label,
+                   const std::vector<Value>& values, Put put) {
+  out.object(label, [&](Fields& f) {
+    std::size_t at = 0;
+    const std::vector<std::string>& names = study.outcomes;  // the last one: trapped
+    for (std::size_t from = 0; from + 1 < names.size(); ++from)
+      f.object(Label(names[from], "of bodies that entered this way").varying("<way>"),
+               [&](Fields& ways) {
+                 for (const std::string& to : names)
+                   put(ways,
+                       Field(to, "1", "of those that then enter this way, or are trapped")
+                           .varying("<way>"),
+                       values[at++]);
+               });
+  });
 }
 
-/// The longest first; those that are endless are null.
-Json scales(const std::vector<double>& gates) {
-  Json all = Json::array();
-  for (const double scale : gates) all.push_back(or_null(scale));
-  return all;
+void describe(Fields& out, const MemoryStudy& study, const GatesAhead::Step& s) {
+  out.count({"gates", "1", "how many gates ahead"}, s.gates);
+  out.object({"total_variation", "total variation between seen and predicted"},
+             [&](Fields& f) { cli::describe(f, s.total_variation); });
+  describe_by_chance(out, s.chance, s.chance_95);
+  const auto share = [](Fields& f, const Field& key, double x) { f.number(key, x); };
+  describe_ways(out, study,
+                {"seen", "shares of all runs, by the way in and the way in so many gates later"},
+                s.seen, share);
+  describe_ways(out, study, {"predicted", "the same by the chain"}, s.predicted, share);
+  describe_ways(out, study, {"excess_95", "95 % interval of seen less predicted"}, s.excess_95,
+                [](Fields& f, const Field& key, const Interval& x) { f.interval(key, x); });
+  out.numbers({"time_scales_gates", "1",
+               "implied time scales at this lag, in gates: -gates / ln of the eigenvalues of seen "
+               "by way; null: endless"},
+              s.seen_scales);
+  out.numbers({"predicted_time_scales_gates", "1", "the same of predicted"}, s.predicted_scales);
+  out.intervals({"time_scales_chance_95", "1",
+                 "where 95 of 100 time scales lie by chance, by the predicted counts dealt out "
+                 "anew; few walks make them longer"},
+                s.scales_95);
 }
 
-Json to_json(const MemoryStudy& study, const GatesAhead& ahead) {
-  Json j;
-  j["p"] = ahead.p;
-  j["p_adjusted"] = study.p_adjusted(Question::gates_ahead);
-  j["runs"] = ahead.runs;
-  if (!ahead.steps.empty()) j["largest"] = ahead.largest().gates;
-  j["steps"] = Json::array();
-  for (const GatesAhead::Step& s : ahead.steps)
-    j["steps"].push_back(
-        {{"gates", s.gates},
-         {"total_variation", cli::to_json(s.total_variation)},
-         {"total_variation_by_chance", {{"mean", s.chance}, {"at_95", s.chance_95}}},
-         {"seen", by_ways(study, s.seen)},
-         {"predicted", by_ways(study, s.predicted)},
-         {"excess_95", by_ways(study, s.excess_95)},
-         {"time_scales_gates", scales(s.seen_scales)},
-         {"predicted_time_scales_gates", scales(s.predicted_scales)},
-         {"time_scales_chance_95", s.scales_95}});
-  j["sentence"] = sentence_ahead(study);
-  return j;
+void describe(Fields& out, const MemoryStudy& study, const GatesAhead& ahead) {
+  describe_p(out, study, Question::gates_ahead);
+  out.count({"runs", "1", "gate runs from which bodies are followed"}, ahead.runs);
+  out.optional(!ahead.steps.empty(), [&](Fields& f) {
+    f.count({"largest", "1",
+             "the number of gates ahead that differs most from what 95 % of chance makes"},
+            ahead.steps.empty() ? 0 : ahead.largest().gates);
+  });
+  out.list({"steps", "one for each number of gates ahead, from 2 on"}, ahead.steps,
+           [&](Fields& f, const GatesAhead::Step& s) { describe(f, study, s); });
+  out.text({"sentence", "the answer in words"}, sentence_ahead(study));
 }
 
 std::string any_sentence(const MemoryStudy& study, Question q) {
@@ -164,68 +203,84 @@ std::string verdict(const MemoryStudy& study) {
     if (study.remembers(q)) text += (text.empty() ? "" : ". Also, ") + any_sentence(study, q);
   }
   if (!text.empty()) return "the chain forgets: " + text;
-  return "the chain forgets nothing that these " + std::to_string(study.runs) +
-         " runs could show: " + sentence(study, Question::gate_before);
+  return fmt::format("the chain forgets nothing that these {} runs could show: {}", study.runs,
+                     sentence(study, Question::gate_before));
 }
 
 }  // namespace
 
-Json to_json(const lattice::LookedAt::Test& test) {
-  return {{"value", test.seen}, {"p", test.p}, {"p_adjusted", test.p_adjusted}};
+void describe(Fields& out, const lattice::LookedAt::Test& test) {
+  out.number({"value", "1", "the statistic as it was seen"}, test.seen);
+  out.number({"p", "1", "how often chance makes the statistic as large"}, test.p);
+  out.number({"p_adjusted", "1", "p, corrected for looking at all statistics"}, test.p_adjusted);
 }
 
-Json to_json(const MemoryStudy& study) {
-  Json j;
-  j["verdict"] = verdict(study);
-  j["remembers"] = study.remembers();
-  j["level"] = MemoryStudy::kLevel;
-  j["walks"] = study.walks;
-  j["runs"] = study.runs;
-  j["null_draws"] = study.ahead.null_draws;
-  for (int k = 0; k < lattice::kQuestions; ++k) {
+void describe(Fields& out, const MemoryStudy& study) {
+  constexpr std::array kMeanings{
+      "do the powers of the transition matrix put bodies where they are some gates later?",
+      "does the gate before tell more of what comes next than the state does?",
+      "does the number of gates so far tell more of what comes next than the state does?",
+      "does the row of the field tell more of what comes next than the state does?"};
+  out.text({"verdict", "the answer in words"}, verdict(study));
+  out.flag({"remembers", "whether any question finds a memory: the chain forgets what matters"},
+           study.remembers());
+  out.number({"level", "1", "level of significance of all questions together"},
+             MemoryStudy::kLevel);
+  out.count({"walks", "1", "trials of the full dynamics that were asked"}, study.walks);
+  out.count({"runs", "1", "gate runs of these trials"}, study.runs);
+  out.count({"null_draws", "1", "random draws behind each p"}, study.ahead.null_draws);
+  for (std::size_t k = 0; k < kMeanings.size(); ++k) {
     const auto q = static_cast<Question>(k);
-    j[std::string(lattice::kQuestionKeys[static_cast<std::size_t>(k)])] =
-        q == Question::gates_ahead ? to_json(study, study.ahead) : to_json(study, q);
+    Label label(lattice::kQuestionKeys[k], kMeanings[k]);
+    if (q != Question::gates_ahead) label = label.shared("memory_of_label");
+    out.object(label, [&](Fields& f) {
+      q == Question::gates_ahead ? describe(f, study, study.ahead) : describe(f, study, q);
+    });
   }
-  return j;
 }
 
 std::string text_of(const MemoryStudy& study) {
-  lattice::TextStream out;
-  out << "\nIs it Markov? " << study.runs << " gate runs of " << study.walks
-      << " trials from all starts, in the states of the chain; p for four questions together.\n";
+  std::string text = fmt::format(
+      "\nIs it Markov? {} gate runs of {} trials from all starts, in the states of the chain; p "
+      "for four questions together.\n",
+      study.runs, study.walks);
   for (int k = 0; k < lattice::kQuestions; ++k)
-    out << "  " << any_sentence(study, static_cast<Question>(k)) << "\n";
-  out << (study.remembers()
-              ? "So the chain forgets what matters; how much that costs its predictions, the "
-                "verdicts above say.\n"
-              : "So the chain forgets nothing that these runs could show.\n");
-  return out.str();
+    text += fmt::format("  {}\n", any_sentence(study, static_cast<Question>(k)));
+  return text + (study.remembers()
+                     ? "So the chain forgets what matters; how much that costs its predictions, "
+                       "the verdicts above say.\n"
+                     : "So the chain forgets nothing that these runs could show.\n");
 }
 
 std::string text_of(const lattice::ForceMemory& m) {
   const lattice::Comparison &pairs = m.change.in_pairs, &apart = m.change.apart;
-  return std::string("a random force drawn anew at every crossing ") +
-         (m.matters() ? "changes the final gates (" : "changes no more than chance does (") +
-         p_words(pairs.p_total_variation) + "): total variation " +
-         fixed(apart.total_variation, 4) + " +- " + fixed(m.change.uncertainty(), 4) +
-         ", chance makes " + fixed(pairs.floor_total_variation, 4) + "; " +
-         percent(m.change.changed, 1.0) + " of the trials end in another gate";
+  return fmt::format(
+      "a random force drawn anew at every crossing {} ({}): total variation {} +- {}, chance makes "
+      "{}; {} of the trials end in another gate",
+      m.matters() ? "changes the final gates" : "changes no more than chance does",
+      p_words(pairs.p_total_variation), fixed(apart.total_variation, 4),
+      fixed(m.change.uncertainty(), 4), fixed(pairs.floor_total_variation, 4),
+      percent(m.change.changed, 1.0));
 }
 
-Json to_json(const lattice::ForceMemory& m) {
-  Json j;
-  j["verdict"] = text_of(m);
-  j["matters"] = m.matters();
-  j["trials"] = m.change.trials;
-  j["changed_share"] = m.change.changed;
-  j["total_variation_uncertainty"] = m.change.uncertainty();
-  j["in_pairs"] = to_json(m.change.in_pairs);
-  for (const EndingName& e : kEndingNames) {
-    const lattice::PairedDifference& d = m.endings[static_cast<std::size_t>(e.ending)];
-    j["endings"][e.key] = {{"difference", d.difference}, {"interval_95", {d.low, d.high}}};
-  }
-  return j;
+void describe(Fields& out, const lattice::ForceMemory& m) {
+  out.text({"verdict", "the answer in words"}, text_of(m));
+  out.flag({"matters", "whether the final gates change by more than chance makes them"},
+           m.matters());
+  out.count({"trials", "1", "trials that were run both ways"}, m.change.trials);
+  describe_change(out, m.change);
+  out.object({"in_pairs", "final gates against those of the same trials, trial by trial"},
+             [&](Fields& f) { describe(f, m.change.in_pairs); });
+  out.object(
+      {"endings", "how much more often trials end so with the force drawn anew"}, [&](Fields& f) {
+        for (const EndingName& e : kEndingNames) {
+          const lattice::PairedDifference& d = m.endings[static_cast<std::size_t>(e.ending)];
+          f.object({e.key, fmt::format("of trials that {}", meaning_of(e))}, [&](Fields& of) {
+            of.estimate({"difference", "1", "difference of the shares"}, d.difference,
+                        Interval{d.low, d.high}, "interval_95");
+          });
+        }
+      });
 }
 
 }  // namespace gatewalk::cli

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Is it Markov? What the walks of the full dynamics remember, as JSON and in words.
+/// Is it Markov? What the walks of the full dynamics remember, as a result and in words.
 
 #include <functional>
 #include <string>
 
-#include "cli/render/json_fwd.h"
+#include "cli/render/fields.h"
 #include "cli/render/panel.h"
 #include "lattice/study/memory.h"
 
 namespace gatewalk::cli {
 
-/// One of several statistics that were looked at together.
-[[nodiscard]] Json to_json(const lattice::LookedAt::Test& test);
+/// The keys of one of several statistics that were looked at together.
+void describe(Fields& out, const lattice::LookedAt::Test& test);
 
 /// Every question with its p-values, statistics, size and power; the "verdict" of all.
-[[nodiscard]] Json to_json(const lattice::MemoryStudy& study);
-[[nodiscard]] Json to_json(const lattice::ForceMemory& memory);
+void describe(Fields& out, const lattice::MemoryStudy& study);
+void describe(Fields& out, const lattice::ForceMemory& memory);
 
 /// A line per question, then the verdict.
 [[nodiscard]] std::string text_of(const lattice::MemoryStudy& study);

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/observed.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
 #include "cli/render/power.h"
 #include "cli/render/text.h"
+#include "cli/render/text_table.h"
 #include "cli/render/validation.h"
 
 namespace gatewalk::cli {
@@ -25,8 +27,6 @@ std::size_t index_of(const EndingName& e) { return static_cast<std::size_t>(e.en
 constexpr std::array<const char*, kEndingNames.size()> kDo{
     "cross", "leave by the left side", "leave by the right side", "are trapped", "are cut off"};
 
-std::string p_of(const Judgement& j) { return j.p < 0.001 ? "p < 0.001" : "p = " + fixed(j.p, 3); }
-
 /// The smallest adjusted p-value of the final gates; NaN: they were not counted.
 double p_of_gates(const Judgement& j) {
   double least = std::nan("");
@@ -39,151 +39,190 @@ double p_of_gates(const Judgement& j) {
 /// "fewer cross, 10.00 [4.22, 19.07] % of them, 28.10 % by the model; final gates, ..."
 std::string differences(const lattice::ObservedComparison& c, const Judgement& j,
                         const lattice::EndingShares& model) {
-  std::string text;
-  const auto say = [&](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
+  std::vector<std::string> said;
   for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
     const std::size_t at = index_of(kEndingNames[e]);
     if (!j.differs(kEndingNames[e].ending)) continue;
-    say(std::string(c.endings.share[at] < model.share[at] ? "fewer " : "more ") + kDo[e] + ", " +
-        with_interval(c.endings.share[at], c.endings.interval[at]) + " % of them, " +
-        fixed(100.0 * model.share[at], 2) + " % by the model");
+    said.push_back(fmt::format("{} {}, {} % of them, {} % by the model",
+                               c.endings.share[at] < model.share[at] ? "fewer" : "more", kDo[e],
+                               with_interval(c.endings.share[at], c.endings.interval[at]),
+                               fixed(100.0 * model.share[at], 2)));
   }
   if (p_of_gates(j) <= Judgement::kLevel)
-    say("they end in other gates, total variation " + fixed(j.total_variation.seen, 3) +
-        " (chance: " + fixed(j.chance_total_variation, 3) + ")");
-  if (j.differs(markov::Ending::unsampled)) say("states never sampled");
-  return text;
+    said.push_back(fmt::format("they end in other gates, total variation {} (chance: {})",
+                               fixed(j.total_variation.seen, 3),
+                               fixed(j.chance_total_variation, 3)));
+  if (j.differs(markov::Ending::unsampled)) said.emplace_back("states never sampled");
+  return fmt::format("{}", fmt::join(said, "; "));
 }
 
-Json against(const std::optional<lattice::Comparison>& gates, const Judgement& j) {
-  Json json = cli::to_json(j);
-  for (const EndingName& e : kEndingNames) json["p_endings"][e.key] = j.endings[index_of(e)].p;
-  if (gates) json["final_gates"] = cli::to_json(*gates);
-  return json;
+void describe(Fields& out, const Judgement& j, const std::optional<lattice::Comparison>& gates) {
+  describe(out, j);
+  out.object({"p_endings", "p of each ending by itself"}, [&](Fields& f) {
+    for (const EndingName& e : kEndingNames)
+      f.number({e.key, "1", fmt::format("of bodies that {}", meaning_of(e))},
+               j.endings[index_of(e)].p);
+  });
+  out.optional(gates.has_value(), [&](Fields& f) {
+    f.object({"final_gates", "final gates as observed against the model's"},
+             [&](Fields& of) { describe(of, gates.value_or(lattice::Comparison())); });
+  });
 }
 
-Json least_differences(const lattice::ObservedComparison& c) {
-  const lattice::LeastDifferences& least = c.least;
-  Json json = {{"power", least.goal.power}, {"level", least.goal.level}};
-  if (c.seen.has_gates()) json["final_gates_total_variation"] = or_null(least.final_gates);
-  if (!c.seen.has_endings()) return json;
-  json["endings_total_variation"] = or_null(least.endings);
-  for (const EndingName& e : kEndingNames)
-    if (!c.endings.rules_out(e.ending))
-      json["endings_percentage_points"][e.key] = cli::to_json(c.least.by_ending[index_of(e)]);
-  return json;
+/// `c`: what such differences are looked for in.
+void describe(Fields& out, const lattice::LeastDifferences& least,
+              const lattice::ObservedComparison& c) {
+  out.number({"power", "1", "how often experiments of so many trials show the difference"},
+             least.goal.power);
+  out.number({"level", "1", "how often experiments may find what is not there"}, least.goal.level);
+  out.optional(c.seen.has_gates(), [&](Fields& f) {
+    f.number({"final_gates_total_variation", "1",
+              "of the final gates, of the kind that is hardest to see; null: not even the largest"},
+             least.final_gates.value_or(kUnknown));
+  });
+  out.optional(c.seen.has_endings(), [&](Fields& f) {
+    f.number({"endings_total_variation", "1",
+              "of the endings, of the kind that is hardest to see; null: not even the largest"},
+             least.endings.value_or(kUnknown));
+    f.object({"endings_percentage_points", "of each ending that bodies may have"}, [&](Fields& of) {
+      for (const EndingName& e : kEndingNames)
+        of.optional(!c.endings.rules_out(e.ending), [&](Fields& there) {
+          there.object({e.key, fmt::format("of bodies that {}", meaning_of(e))},
+                       [&](Fields& d) { describe(d, least.by_ending[index_of(e)]); });
+        });
+    });
+  });
 }
 
-std::string gates_line(const char* name, const lattice::Comparison& c, const Judgement& j) {
-  return "  " + padded(name, -12) + padded(fixed(c.corrcoef, 3), 8) + " (" +
-         fixed(c.floor.corrcoef, 3) + ")" + padded(fixed(c.rmse_per_100, 3), 9) + " (" +
-         fixed(c.floor.rmse_per_100, 3) + ")" + padded(fixed(c.total_variation, 3), 9) + " (" +
-         fixed(j.chance_total_variation, 3) + ", " + fixed(j.chance_total_variation_95, 3) + ")" +
-         padded(p_text(p_of_gates(j)), 9) + "\n";
+std::string gates_part(const lattice::ObservedComparison& c) {
+  TextTable table(
+      {{"", -14}, {"", 8, 3}, {"", 0}, {"", 9, 3}, {"", 0}, {"", 9, 3}, {"", 0}, {"", 9}});
+  const auto row = [&](const char* name, const lattice::Comparison& k, const Judgement& j) {
+    table.row({name, k.corrcoef, fmt::format(" ({})", fixed(k.floor.corrcoef, 3)), k.rmse_per_100,
+               fmt::format(" ({})", fixed(k.floor.rmse_per_100, 3)), k.total_variation,
+               fmt::format(" ({}, {})", fixed(j.chance_total_variation, 3),
+                           fixed(j.chance_total_variation_95, 3)),
+               p_text(p_of_gates(j))});
+  };
+  row("  dynamics", *c.dynamics_gates, c.against_dynamics);
+  row("  chain", *c.chain_gates, c.against_chain);
+  return "Final gates     corrcoef (floor)   RMSE (floor)      TV (chance, at 95 %)        p\n" +
+         table.rows();
 }
 
 std::string endings_part(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
-  const auto column = [&](const std::string& header, const lattice::EndingShares& shares) {
-    std::vector<std::string> cells{header};
-    for (const EndingName& e : kEndingNames)
-      cells.push_back(with_interval(shares.share[index_of(e)], shares.interval[index_of(e)]));
-    std::size_t width = 0;
-    for (const std::string& cell : cells) width = std::max(width, cell.size());
-    for (std::string& cell : cells) cell = padded(cell, static_cast<int>(width) + 2);
-    return cells;
+  const auto text = [](const lattice::EndingShares& of, const EndingName& e) {
+    return with_interval(of.share[index_of(e)], of.interval[index_of(e)]);
   };
-  const auto observed = column("observed", c.endings),
-             dynamics = column("dynamics", v.dynamics_endings),
-             chain = column("chain", v.exact_endings);
-  std::string text = padded("", 10) + observed[0] + dynamics[0] + chain[0] +
-                     "  p: dynamics   chain    seen from, points\n";
-  for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
-    const std::size_t at = index_of(kEndingNames[e]);
-    if (c.endings.rules_out(kEndingNames[e].ending)) continue;
-    text += padded(kEndingNames[e].name, -10) + observed[e + 1] + dynamics[e + 1] + chain[e + 1] +
-            padded(p_text(c.against_dynamics.endings[at].p_adjusted), 13) +
-            padded(p_text(c.against_chain.endings[at].p_adjusted), 8) + "      " +
-            text_of(c.least.by_ending[at]) + "\n";
+  const auto column = [&](const std::string& heading, const lattice::EndingShares& of) {
+    std::size_t width = heading.size();
+    for (const EndingName& e : kEndingNames) width = std::max(width, text(of, e).size());
+    return TextColumn{heading, static_cast<int>(width) + 2};
+  };
+  TextTable table({{"", -10},
+                   column("observed", c.endings),
+                   column("dynamics", v.dynamics_endings),
+                   column("chain", v.exact_endings),
+                   {"p: dynamics", 13},
+                   {"chain", 8},
+                   {"seen from, points", 0, 0, "", "    "}});
+  for (const EndingName& e : kEndingNames) {
+    if (c.endings.rules_out(e.ending)) continue;
+    const std::size_t at = index_of(e);
+    table.row({e.name, text(c.endings, e), text(v.dynamics_endings, e), text(v.exact_endings, e),
+               p_text(c.against_dynamics.endings[at].p_adjusted),
+               p_text(c.against_chain.endings[at].p_adjusted),
+               "  " + text_of(c.least.by_ending[at])});
   }
-  return text;
+  return table.text();
 }
 
 std::string from_on(const std::optional<double>& total_variation) {
-  return total_variation ? "from " + fixed(*total_variation, 2) + " on"
+  return total_variation ? fmt::format("from {} on", fixed(*total_variation, 2))
                          : "not at all (none of this kind is large enough)";
 }
 
 /// One sentence; p-values belong to the differences that it names.
 std::string verdict_of(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
   const Judgement &d = c.against_dynamics, &k = c.against_chain;
-  const std::string these = "these " + std::to_string(c.seen.trials()) + " trials ",
-                    in_dynamics = "the dynamics by more than chance (" + p_of(d) + ")",
-                    in_chain = "the chain (" + p_of(k) + ")";
+  const std::string these = fmt::format("these {} trials ", c.seen.trials()),
+                    in_dynamics = fmt::format("the dynamics by more than chance ({})", p_of(d)),
+                    in_chain = fmt::format("the chain ({})", p_of(k));
   if (d.differs())
-    return these + "differ from " + in_dynamics + ": " + differences(c, d, v.dynamics_endings) +
-           (k.differs() ? "; and so they do from " : "; but not from ") + in_chain;
+    return fmt::format("{}differ from {}: {}; {} {}", these, in_dynamics,
+                       differences(c, d, v.dynamics_endings),
+                       k.differs() ? "and so they do from" : "but not from", in_chain);
   if (k.differs())
-    return these + "do not differ from " + in_dynamics + ", but from " + in_chain + ": " +
-           differences(c, k, v.exact_endings) +
-           "; the dynamics is the model, the chain its approximation";
-  return these + "do not differ from " + in_dynamics + ", nor from " + in_chain +
-         "; that does not say that they are equal";
+    return fmt::format(
+        "{}do not differ from {}, but from {}: {}; the dynamics is the model, the chain its "
+        "approximation",
+        these, in_dynamics, in_chain, differences(c, k, v.exact_endings));
+  return fmt::format("{}do not differ from {}, nor from {}; that does not say that they are equal",
+                     these, in_dynamics, in_chain);
 }
 
 }  // namespace
 
-Json to_json(const lattice::ObservedComparison& c, const lattice::StartValidation& v,
-             const std::vector<std::string>& files) {
-  Json json;
-  json["verdict"] = verdict_of(c, v);
-  json["files"] = files;
-  json["trials"] = c.seen.trials();
-  if (c.seen.has_endings()) {
-    json["endings"] = endings(c.seen.endings);
-    json["endings_95"] = endings_95(c.endings);
-  }
-  if (c.seen.has_gates()) json["final_gates"] = grid(c.seen.final_gates);
-  json["against_dynamics"] = against(c.dynamics_gates, c.against_dynamics);
-  json["against_chain"] = against(c.chain_gates, c.against_chain);
-  json["smallest_difference"] = least_differences(c);
-  return json;
+void describe_observed(Fields& out, const lattice::ObservedComparison& c,
+                       const lattice::StartValidation& v, const ObservedFiles& files) {
+  out.object({"observed", "counts of an experiment, held against dynamics and chain"}, [&](Fields&
+                                                                                               f) {
+    f.text({"verdict", "do the counts differ from the model, in what, how sure"}, verdict_of(c, v));
+    f.texts({"files", "the tables of counts"}, files.paths);
+    f.count({"trials", "1", "trials that were observed"}, c.seen.trials());
+    f.optional(c.seen.has_endings(),
+               [&](Fields& seen) { describe_endings(seen, c.seen.endings, c.endings); });
+    f.optional(c.seen.has_gates(), [&](Fields& seen) {
+      seen.grid({"final_gates", "1", "number of trials by the gate where they end"},
+                c.seen.final_gates);
+    });
+    f.object({"against_dynamics", "whether they differ from the full dynamics"},
+             [&](Fields& of) { describe(of, c.against_dynamics, c.dynamics_gates); });
+    f.object({"against_chain", "whether they differ from the chain"},
+             [&](Fields& of) { describe(of, c.against_chain, c.chain_gates); });
+    f.object({"smallest_difference", "the least differences that so many trials show"},
+             [&](Fields& of) { describe(of, c.least, c); });
+    f.count({"went_back", "1", "trials that went back: they are left out"}, files.went_back);
+  });
 }
 
 std::string table_of(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
-  const std::int64_t n = c.seen.trials();
-  std::string text = "Observed: " + std::to_string(n) + (n == 1 ? " trial" : " trials") +
-                     ", beside " + std::to_string(v.dynamics.trials) +
-                     " of the full dynamics and the exact chain. p: how often chance makes as "
-                     "large a\ndifference in anything that is looked at.\n\n";
+  const std::string trials = counted(c.seen.trials(), "trial", "trials");
+  std::string text = fmt::format(
+      "Observed: {}, beside {} of the full dynamics and the exact chain. p: how often chance makes "
+      "as large a\ndifference in anything that is looked at.\n\n",
+      trials, v.dynamics.trials);
   if (c.seen.has_endings())
-    text += "Endings, % with 95 % intervals\n" + endings_part(c, v) +
-            "Seen from: so many points more (+) or fewer (-) than the model are seen in " +
-            fixed(100.0 * c.least.goal.power, 0) + " of 100 experiments of " + std::to_string(n) +
-            (n == 1 ? " trial" : " trials") + "; none: no difference is.\n";
+    text += fmt::format(
+        "Endings, % with 95 % intervals\n{}"
+        "Seen from: so many points more (+) or fewer (-) than the model are seen in {} of 100 "
+        "experiments of {}; none: no difference is.\n",
+        endings_part(c, v), fixed(100.0 * c.least.goal.power, 0), trials);
   if (c.seen.has_endings() && c.seen.has_gates()) text += "\n";
-  if (c.seen.has_gates()) {
-    text += "Final gates     corrcoef (floor)   RMSE (floor)      TV (chance, at 95 %)        p\n" +
-            gates_line("dynamics", *c.dynamics_gates, c.against_dynamics) +
-            gates_line("chain", *c.chain_gates, c.against_chain) +
-            "A total variation (TV) of the final gates is seen " + from_on(c.least.final_gates) +
-            " if it is spread over all gates, the hardest to see.\n";
-  }
+  if (c.seen.has_gates())
+    text += fmt::format(
+        "{}A total variation (TV) of the final gates is seen {} if it is spread over all gates, "
+        "the "
+        "hardest to see.\n",
+        gates_part(c), from_on(c.least.final_gates));
   std::string said = verdict_of(c, v);
   for (std::size_t at = 0; (at = said.find("; ", at)) != said.npos;) said.replace(at, 2, ";\n  ");
-  return text + "\n" + said +
-         "\n\nThe p to quote is that against the dynamics in this sentence, the smallest of "
-         "those above: it counts that all is\nlooked at. The dynamics is the model, the chain its "
-         "approximation.\n\nWhether the chain is to be trusted: " +
-         verdict(v) + ".\n(More of that without --observed, and in --json.)\n";
+  return fmt::format(
+      "{}\n{}\n\n"
+      "The p to quote is that against the dynamics in this sentence, the smallest of those above: "
+      "it counts that all is\nlooked at. The dynamics is the model, the chain its approximation.\n"
+      "\nWhether the chain is to be trusted: {}.\n"
+      "(More of that without --observed, and in --json.)\n",
+      text, said, verdict(v));
 }
 
 std::string who_went_back(const lattice::Observed& observed) {
   if (observed.went_back == 0) return "";
-  return std::to_string(observed.went_back) + " of " +
-         std::to_string(observed.went_back + observed.seen.trials()) +
-         " trials went back, which no body of the model does: they are left out, and the other " +
-         std::to_string(observed.seen.trials()) +
-         " used. Who gave up in front of a gate is trapped there";
+  const std::int64_t others = observed.seen.trials();
+  return fmt::format(
+      "{} of {} trials went back, which no body of the model does: they are left out, and the "
+      "other {} used. Who gave up in front of a gate is trapped there",
+      observed.went_back, observed.went_back + others, others);
 }
 
 std::string too_few_observed(const lattice::Observed& observed) {
@@ -191,11 +230,11 @@ std::string too_few_observed(const lattice::Observed& observed) {
   const lattice::PowerGoal goal;
   const auto least = lattice::smallest_difference(n, 0.5, goal);
   if (least.more && *least.more <= kFewAreEnough) return "";
-  return std::to_string(n) + (n == 1 ? " trial shows" : " trials show") +
-         " little: an ending of 50 % must be " +
-         (least.more ? fixed(100.0 * *least.more, 0) + " points off" : "more than 50 points off") +
-         " to be seen in " + fixed(100.0 * goal.power, 0) +
-         " of 100 such experiments; gatewalk power says how many trials it takes";
+  return fmt::format(
+      "{} little: an ending of 50 % must be {} points off to be seen in {} of 100 such "
+      "experiments; gatewalk power says how many trials it takes",
+      counted(n, "trial shows", "trials show"),
+      least.more ? fixed(100.0 * *least.more, 0) : "more than 50", fixed(100.0 * goal.power, 0));
 }
 
 std::string endings_not_listed(const lattice::Observed& observed,
@@ -206,8 +245,9 @@ std::string endings_not_listed(const lattice::Observed& observed,
   for (const EndingName& e : kEndingNames) {
     const double share = v.dynamics_endings.share[index_of(e)];
     if (observed.listed[index_of(e)] || share < kWorthASentence) continue;
-    text += (text.empty() ? "the table of endings has no row for " : ", ") + std::string(e.name) +
-            ", which counts as 0 (dynamics: " + percent(share, 1.0) + ")";
+    text += fmt::format("{}{}, which counts as 0 (dynamics: {})",
+                        text.empty() ? "the table of endings has no row for " : ", ", e.name,
+                        percent(share, 1.0));
     if (e.ending == markov::Ending::cut_off)
       text += "; field.max_gates = 0 cuts off nobody, if nothing stopped your trials";
   }

@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// An experiment's counts beside the model, as JSON and as a table.
+/// An experiment's counts beside the model, as a part of a result and as a table.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
 #include "lattice/study/observed.h"
 #include "lattice/study/validation.h"
 
 namespace gatewalk::cli {
 
-/// `v`: the model's side of it. `files`: that it was read from. Its "verdict" is one sentence: does
-/// it differ, in what, how sure.
-[[nodiscard]] Json to_json(const lattice::ObservedComparison& c, const lattice::StartValidation& v,
-                           const std::vector<std::string>& files);
+/// Which counts are held against the model.
+struct ObservedFiles {
+  std::vector<std::string> paths;
+  std::int64_t went_back = 0;  // trials that are left out
+};
+/// The key "observed". `v`: the model's side of it.
+void describe_observed(Fields& out, const lattice::ObservedComparison& c,
+                       const lattice::StartValidation& v, const ObservedFiles& files);
 [[nodiscard]] std::string table_of(const lattice::ObservedComparison& c,
                                    const lattice::StartValidation& v);
 

@@ -1,257 +1,68 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/validation.h"
 
-#include <algorithm>
-#include <array>
+#include <fmt/format.h>
 
+#include <algorithm>
+
+#include "cli/render/choice.h"
 #include "cli/render/exits.h"
+#include "cli/render/field_ends.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
-#include "cli/render/memory.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
-#include "lattice/text/text_stream.h"
+#include "cli/render/text_table.h"
 
 namespace gatewalk::cli {
 
+std::string p_of(const lattice::Judgement& j) {
+  return j.p < 0.001 ? "p < 0.001" : "p = " + fixed(j.p, 3);
+}
+
 std::string verdict(const lattice::StartValidation& r) {
   const lattice::Judgement& j = r.judgement;
-  const std::string p = j.p < 0.001 ? "p < 0.001" : "p = " + fixed(j.p, 3);
   if (r.finding() != lattice::Finding::own_error)
-    return "the chain agrees with the dynamics as far as these trials and this matrix can tell (" +
-           p + ")";
-  std::string text =
-      "the chain differs from the dynamics by more than chance in trials and matrix makes (" + p +
-      "):";
-  const char* separator = " ";
-  const auto say = [&](const std::string& what) {
-    text += separator + what;
-    separator = "; ";
-  };
+    return fmt::format(
+        "the chain agrees with the dynamics as far as these trials and this matrix can tell ({})",
+        p_of(j));
+  std::vector<std::string> said;
   for (const EndingName& e : kEndingNames) {
     if (!j.differs(e.ending)) continue;
     const auto at = static_cast<std::size_t>(e.ending);
-    say(std::string(e.name) + " " +
-        with_interval(r.dynamics_endings.share[at], r.dynamics_endings.interval[at]) +
-        " % in the dynamics, " +
-        with_interval(r.exact_endings.share[at], r.exact_endings.interval[at]) + " % by the chain");
+    said.push_back(
+        fmt::format("{} {} % in the dynamics, {} % by the chain", e.name,
+                    with_interval(r.dynamics_endings.share[at], r.dynamics_endings.interval[at]),
+                    with_interval(r.exact_endings.share[at], r.exact_endings.interval[at])));
   }
   if (j.differs(markov::Ending::unsampled))
-    say("states never sampled, " + percent(r.exact.unsampled, 1.0, 2) + " by the chain");
+    said.push_back(
+        fmt::format("states never sampled, {} by the chain", percent(r.exact.unsampled, 1.0, 2)));
   const auto gates = {j.total_variation.p_adjusted, j.energy.p_adjusted, j.chi_squared.p_adjusted};
   if (std::any_of(gates.begin(), gates.end(),
                   [](double x) { return x <= lattice::Judgement::kLevel; }))
-    say("final gates, total variation " + fixed(j.total_variation.seen, 3) +
-        " (chance: " + fixed(j.chance_total_variation, 3) + ")");
-  return text;
+    said.push_back(fmt::format("final gates, total variation {} (chance: {})",
+                               fixed(j.total_variation.seen, 3),
+                               fixed(j.chance_total_variation, 3)));
+  return fmt::format(
+      "the chain differs from the dynamics by more than chance in trials and matrix makes "
+      "({}):{}{}",
+      p_of(j), said.empty() ? "" : " ", fmt::join(said, "; "));
 }
 
 namespace {
 
-Json to_json(const lattice::MeanAndSd& m) { return {{"mean", m.mean()}, {"sd", m.sd()}}; }
-
-Json to_json(const lattice::StartValidation& r, const lattice::PaperStart* paper,
-             const ShownField& shown) {
-  Json j;
-  j["verdict"] = cli::verdict(r);
-  j["trials_and_matrix"] = cli::to_json(r.judgement);
-  j["trials_and_matrix"]["resampled_matrices"] = r.resampled;
-  j["start"] = cli::to_json(shown.map.section, r.start);
-  j["start"]["clamped"] = r.chain_start.clamped;
-  if (paper && paper->corrcoef)
-    j["paper"] = {{"corrcoef", *paper->corrcoef}, {"rmse_per_100", *paper->rmse}};
-  j["exact"] = cli::to_json(r.exact_against);
-  j["exact"]["total_variation_of_matrix_sampling"] = {{"mean", r.matrix_noise_mean},
-                                                      {"sd", r.matrix_noise_sd}};
-  j["walks"] = cli::to_json(r.walks_against);
-  const lattice::PaperSized& p = r.paper_sized;
-  j["at_100_trials"] = {{"repeats", p.exact_rmse.n},
-                        {"exact_corrcoef", to_json(p.exact_corrcoef)},
-                        {"exact_corrcoef_floor", r.floor_100_exact.corrcoef},
-                        {"exact_rmse_per_100", to_json(p.exact_rmse)},
-                        {"exact_rmse_per_100_floor", r.floor_100_exact.rmse_per_100},
-                        {"exact_corrcoef_rmse_correlation", p.exact_correlation()},
-                        {"walks_corrcoef", to_json(p.walks_corrcoef)},
-                        {"walks_corrcoef_floor", r.floor_100_walks.corrcoef},
-                        {"walks_rmse_per_100", to_json(p.walks_rmse)},
-                        {"walks_rmse_per_100_floor", r.floor_100_walks.rmse_per_100}};
-  j["seconds"] = {
-      {"dynamics", r.dynamics_seconds}, {"walks", r.walks_seconds}, {"exact", r.exact_seconds}};
-  const double per_trial = r.dynamics_seconds / static_cast<double>(r.dynamics.trials);
-  const double per_walk = r.walks_seconds / static_cast<double>(r.walks.walks);
-  j["speed_ratio"] = {{"dynamics_trial_over_walk", per_trial / per_walk},
-                      {"dynamics_over_exact", r.dynamics_seconds / r.exact_seconds}};
-  j["endings"] = {{"dynamics", endings(r.dynamics.endings)},
-                  {"walks", endings(r.walks.endings)},
-                  {"exact", endings(r.exact.endings)}};
-  j["endings_95"] = {{"dynamics", endings_95(r.dynamics_endings)},
-                     {"walks", endings_95(r.walks_endings)},
-                     {"exact", endings_95(r.exact_endings)}};
-  const auto fates = [](double trapped, double left, double cut) {
-    return Json{{"trapped", trapped}, {"departed", left}, {"cut_off", cut}};
-  };
-  const auto n = static_cast<double>(r.dynamics.trials);
-  j["fates"] = {{"dynamics", fates(static_cast<double>(r.dynamics.trapped) / n,
-                                   static_cast<double>(r.dynamics.left_field) / n,
-                                   static_cast<double>(r.dynamics.cut_off) / n)},
-                {"exact", fates(r.exact.trapped, r.exact.left_field, r.exact.cut_off)}};
-  j["final_gates"] = {{"dynamics", grid(r.dynamics.final_gates)},
-                      {"walks", grid(r.walks.final_cells)},
-                      {"exact", grid(r.exact.final_cells)}};
-  j["trapped_gates"] = {{"dynamics", grid(r.dynamics.trapped_gates)},
-                        {"walks", grid(r.walks.trapped_cells)},
-                        {"exact", grid(markov::trapped_cells(r.exact))}};
-  j["departed_gates"] = {{"dynamics", grid(r.dynamics.departed_gates)},
-                         {"walks", grid(r.walks.departed_cells)},
-                         {"exact", grid(markov::departed_cells(r.exact))}};
-  j["exits"] = cli::to_json(r.dynamics_exits, r.exact_exits, shown);
-  j["never_sampled"] = r.exact.unsampled;
-  j["still_walking"] = r.exact.remainder;
-  if (r.force) j["force_memory"] = cli::to_json(*r.force);
-  return j;
-}
-
-std::string with_sd(const lattice::MeanAndSd& m) {
-  return fixed(m.mean(), 3) + " (" + fixed(m.sd(), 3) + ")";
-}
-
-/// How trials ended, by the dynamics and by the chain, and the verdicts.
-std::string endings_table(const lattice::Validation& v, const StartTexts& labels) {
-  lattice::TextStream out;
-  // Each column as wide as its widest cell: "17.61 [16.87, 18.37]*".
-  std::vector<EndingName> names(kEndingNames.begin(), kEndingNames.end());
-  for (const lattice::StartValidation& r : v.starts)
-    if (names.size() == kEndingNames.size() &&
-        !(r.dynamics_endings.rules_out(lattice::kWentBack.ending) &&
-          r.exact_endings.rules_out(lattice::kWentBack.ending)))
-      names.push_back(lattice::kWentBack);
-  std::vector<std::size_t> width(names.size());
-  const auto cell = [](const lattice::StartValidation& r, const lattice::EndingShares& shares,
-                       const EndingName& e) {
-    const auto at = static_cast<std::size_t>(e.ending);
-    const bool marked = &shares == &r.exact_endings && r.judgement.differs(e.ending);
-    return with_interval(shares.share[at], shares.interval[at]) + (marked ? "*" : " ");
-  };
-  for (const lattice::StartValidation& r : v.starts)
-    for (std::size_t e = 0; e < width.size(); ++e)
-      width[e] = std::max({width[e], cell(r, r.dynamics_endings, names[e]).size(),
-                           cell(r, r.exact_endings, names[e]).size()});
-  const auto line = [&](const auto& text_of) {
-    std::string text;
-    for (std::size_t e = 0; e < width.size(); ++e)
-      text += "  " + padded(text_of(names[e]), static_cast<int>(width[e]));
-    return text;
-  };
-  out << "Endings, % of " << v.trials
-      << " trials of the full dynamics and by the exact chain, with 95 % intervals: chance in the\n"
-         "trials, in the sampling of the matrix. p: how often chance in both together would make "
-         "any ending\n"
-         "or the final gates look as different; *: this ending differs.\n\n"
-      << labels.header << "  |         ";
-  out << line([](const EndingName& e) { return std::string(e.name) + " "; }) << "       p\n";
-  for (std::size_t k = 0; k < v.starts.size(); ++k) {
-    const lattice::StartValidation& r = v.starts[k];
-    out << labels.texts[k] << "  | dynamics"
-        << line([&](const EndingName& e) { return cell(r, r.dynamics_endings, e); }) << "\n"
-        << labels.texts[k] << "  | chain   "
-        << line([&](const EndingName& e) { return cell(r, r.exact_endings, e); })
-        << padded(p_text(r.judgement.p), 8) << "\n";
-  }
-  out << "\n";
-  for (std::size_t k = 0; k < v.starts.size(); ++k)
-    out << labels.texts[k] << "  | " << cli::verdict(v.starts[k]) << "\n";
-  for (std::size_t k = 0; k < v.starts.size(); ++k)
-    if (const std::string rest = rest_warning(rest_of(v.starts[k].exact), "by the chain ");
-        !rest.empty())
-      out << labels.texts[k] << "  | " << rest << "\n";
-  return out.str();
-}
-
-/// Beside what the paper prints, where these are its starts.
-std::string table4_table(const lattice::Validation& v,
-                         const std::vector<lattice::PaperStart>& starts, const StartTexts& labels,
-                         bool like_table4) {
-  lattice::TextStream out;
-  const std::string blank(labels.header.size(), ' ');
-  out << "\nAs in the paper's Table IV: 100 trials of the full dynamics against the chain, mean "
-         "(sd) over\n"
-         "repeats. Floor: what chance alone gives if the chain were perfect.\n\n"
-      << blank << "  |            corrcoef                      |        RMSE, trials per 100\n"
-      << labels.header
-      << "  | paper  exact chain    floor  100 walks   | paper  exact chain    floor  100 walks\n";
-  for (std::size_t k = 0; k < v.starts.size(); ++k) {
-    const lattice::StartValidation& r = v.starts[k];
-    const lattice::PaperSized& p = r.paper_sized;
-    const auto printed = [&](std::optional<double> lattice::PaperStart::*x) {
-      return padded(like_table4 && starts[k].*x ? fixed(*(starts[k].*x), 3) : "-", 6);
-    };
-    out << labels.texts[k] << "  |" << printed(&lattice::PaperStart::corrcoef) << "  "
-        << padded(with_sd(p.exact_corrcoef), -15) << padded(fixed(r.floor_100_exact.corrcoef, 3), 5)
-        << "  " << padded(with_sd(p.walks_corrcoef), -15) << "|"
-        << printed(&lattice::PaperStart::rmse) << "  " << padded(with_sd(p.exact_rmse), -15)
-        << padded(fixed(r.floor_100_exact.rmse_per_100, 3), 5) << "  " << with_sd(p.walks_rmse)
-        << "\n";
-  }
-  return out.str();
-}
-
-/// Of all trials.
-std::string final_gates_table(const lattice::Validation& v, const StartTexts& labels) {
-  lattice::TextStream out;
-  out << "\nFinal gates of all " << v.trials
-      << " trials per start. Floor: chance in these trials (and walks) alone; matrix:\n"
-         "total variation (TV) that the sampling of the matrix alone makes; chance: that both "
-         "together make.\n\n"
-      << labels.header
-      << "  | against         corrcoef  floor    RMSE   floor      TV   floor  matrix  chance\n";
-  for (std::size_t k = 0; k < v.starts.size(); ++k) {
-    const lattice::StartValidation& r = v.starts[k];
-    const auto compared = [&](const std::string& name, const lattice::Comparison& c,
-                              const std::string& chance) {
-      out << labels.texts[k] << "  | " << padded(name, -15) << padded(fixed(c.corrcoef, 4), 9)
-          << padded(fixed(c.floor.corrcoef, 4), 8) << padded(fixed(c.rmse_per_100, 3), 8)
-          << padded(fixed(c.floor.rmse_per_100, 3), 8) << padded(fixed(c.total_variation, 3), 8)
-          << padded(fixed(c.floor_total_variation, 3), 8)
-          << padded(fixed(r.matrix_noise_mean, 3), 8) << padded(chance, 8) << "\n";
-    };
-    compared("exact chain", r.exact_against, fixed(r.judgement.chance_total_variation, 3));
-    compared(std::to_string(v.walks) + " walks", r.walks_against, "-");
-  }
-  return out.str();
-}
-
-std::string exits_table(const lattice::Validation& v, const StartTexts& labels) {
-  std::string text =
-      "\nPlaces along the sides at which the chain lets more or fewer leave than the 95 % "
-      "intervals of\nthe dynamics have (chance alone: one in 20):\n\n";
-  for (std::size_t k = 0; k < v.starts.size(); ++k)
-    text += labels.texts[k] + "  | " +
-            places_outside(v.starts[k].dynamics_exits, v.starts[k].exact_exits) + "\n";
-  return text;
-}
-
-std::string seconds_table(const lattice::Validation& v, const StartTexts& labels) {
-  lattice::TextStream out;
-  out << "\nSeconds: " << v.trials << " trials and " << v.walks << " walks on " << v.threads
-      << (v.threads == 1 ? " thread" : " threads") << ", one exact prediction on one.\n"
-      << "\n"
-      << labels.header
-      << "  |           dynamics      walks      exact | dynamics/exact  trial/walk\n";
-  for (std::size_t k = 0; k < v.starts.size(); ++k) {
-    const lattice::StartValidation& r = v.starts[k];
-    const double per_trial = r.dynamics_seconds / static_cast<double>(r.dynamics.trials);
-    const double per_walk = r.walks_seconds / static_cast<double>(r.walks.walks);
-    out << labels.texts[k] << "  |" << padded(fixed(r.dynamics_seconds, 2), 19)
-        << padded(fixed(r.walks_seconds, 4), 11) << padded(fixed(r.exact_seconds, 6), 11) << " |"
-        << padded(fixed(r.dynamics_seconds / r.exact_seconds, 0), 15)
-        << padded(fixed(per_trial / per_walk, 0), 12) << "\n";
-  }
-  return out.str();
-}
+// ---- Result ----
 
 double share(std::int64_t part, std::int64_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+}
+
+double seconds_per_trial(const lattice::StartValidation& r) {
+  return r.dynamics_seconds / static_cast<double>(r.dynamics.trials);
+}
+double seconds_per_walk(const lattice::StartValidation& r) {
+  return r.walks_seconds / static_cast<double>(r.walks.walks);
 }
 
 /// Of all types. Leaves of trees share runs and hold mirror images: then the runs are those of the
@@ -269,71 +80,360 @@ std::int64_t traverse_sides(const lattice::Validation& v) {
          v.entries_by[dynamics::Boundary::left_traverse];
 }
 
+/// Mean and standard deviation.
+void describe_spread(Fields& out, const Field& of, std::string_view over, double mean, double sd) {
+  out.object(Label(of.key, of.meaning), [&](Fields& f) {
+    f.number({"mean", of.unit, fmt::format("mean over {}", over)}, mean);
+    f.number({"sd", of.unit, fmt::format("standard deviation over {}", over)}, sd);
+  });
+}
+
+/// What the paper did: 100 trials of the full dynamics, over and over.
+void describe_paper_sized(Fields& out, const lattice::StartValidation& r) {
+  const lattice::PaperSized& p = r.paper_sized;
+  const auto with_floor = [&](const Field& of, const lattice::MeanAndSd& m, std::string_view key,
+                              double floor) {
+    describe_spread(out, of, "parts of 100 trials", m.mean(), m.sd());
+    out.number({key, of.unit, "the same if the chain were perfect: what chance alone gives"},
+               floor);
+  };
+  out.count({"repeats", "1", "parts of 100 trials"}, p.exact_rmse.n);
+  with_floor({"exact_corrcoef", "1", "correlation of final gates with the exact chain's"},
+             p.exact_corrcoef, "exact_corrcoef_floor", r.floor_100_exact.corrcoef);
+  with_floor({"exact_rmse_per_100", "trials per 100", "RMSE of final gates from the exact chain's"},
+             p.exact_rmse, "exact_rmse_per_100_floor", r.floor_100_exact.rmse_per_100);
+  out.number({"exact_corrcoef_rmse_correlation", "1", "correlation of these two over the parts"},
+             p.exact_correlation());
+  with_floor({"walks_corrcoef", "1", "correlation of final gates with those of 100 walks"},
+             p.walks_corrcoef, "walks_corrcoef_floor", r.floor_100_walks.corrcoef);
+  with_floor(
+      {"walks_rmse_per_100", "trials per 100", "RMSE of final gates from those of 100 walks"},
+      p.walks_rmse, "walks_rmse_per_100_floor", r.floor_100_walks.rmse_per_100);
+}
+
+/// A map of each: dynamics, walks, exact chain.
+void describe_maps(Fields& out, const Label& label, const markov::CellCounts& dynamics,
+                   const markov::CellCounts& walks, const markov::CellProbabilities& exact) {
+  out.object(label, [&](Fields& f) {
+    f.grid({"dynamics", "1", "number of trials"}, dynamics);
+    f.grid({"walks", "1", "number of walks"}, walks);
+    f.grid({"exact", "1", "share by the exact chain"}, exact);
+  });
+}
+
+void describe(Fields& out, const lattice::StartValidation& r, const lattice::PaperStart& paper,
+              const ShownField& shown) {
+  out.text({"verdict", "does the chain agree with the dynamics, by chance in trials and matrix"},
+           verdict(r));
+  out.object(
+      {"trials_and_matrix", "one test by chance in the trials and in the matrix's runs"},
+      [&](Fields& f) {
+        describe(f, r.judgement);
+        f.count({"resampled_matrices", "1", "matrices drawn anew behind the test"}, r.resampled);
+      });
+  out.object({"start", "how bodies enter the field"}, [&](Fields& f) {
+    describe(f, shown.map.section, r.start);
+    f.flag({"clamped", "the start lies outside all bins: the nearest one is taken"},
+           r.chain_start.clamped);
+  });
+  out.optional(paper.corrcoef.has_value(), [&](Fields& f) {
+    f.object({"paper", "what the paper prints of this start, in Table IV"}, [&](Fields& printed) {
+      printed.number({"corrcoef", "1", "correlation of final gates"},
+                     paper.corrcoef.value_or(kUnknown));
+      printed.number({"rmse_per_100", "trials per 100", "RMSE of final gates"},
+                     paper.rmse.value_or(kUnknown));
+    });
+  });
+  out.object({"exact", "final gates of the dynamics against the exact chain"}, [&](Fields& f) {
+    describe(f, r.exact_against);
+    describe_spread(f,
+                    {"total_variation_of_matrix_sampling", "1",
+                     "total variation that the sampling of the matrix alone makes"},
+                    "resampled matrices", r.matrix_noise_mean, r.matrix_noise_sd);
+  });
+  out.object({"walks", "final gates of the dynamics against walks through the chain"},
+             [&](Fields& f) { describe(f, r.walks_against); });
+  out.object({"at_100_trials", "as in the paper: 100 trials against the chain, over and over"},
+             [&](Fields& f) { describe_paper_sized(f, r); });
+  out.object({"seconds", "time that it took"}, [&](Fields& f) {
+    f.number({"dynamics", "s", "time of all trials"}, r.dynamics_seconds);
+    f.number({"walks", "s", "time of all walks"}, r.walks_seconds);
+    f.number({"exact", "s", "time of one exact prediction"}, r.exact_seconds);
+  });
+  out.object({"speed_ratio", "how much faster the chain is"}, [&](Fields& f) {
+    f.number({"dynamics_trial_over_walk", "1", "time of a trial over that of a walk"},
+             seconds_per_trial(r) / seconds_per_walk(r));
+    f.number({"dynamics_over_exact", "1", "time of all trials over that of an exact prediction"},
+             r.dynamics_seconds / r.exact_seconds);
+  });
+  out.object({"endings", "how bodies end: number of trials, number of walks, share of all"},
+             [&](Fields& f) {
+               describe_endings(f, {"dynamics", "number of trials by ending"}, r.dynamics.endings);
+               describe_endings(f, {"walks", "number of walks by ending"}, r.walks.endings);
+               describe_endings(f, {"exact", "share by ending"}, r.exact.endings);
+             });
+  out.object({"endings_95", "95 % intervals of the shares by ending"}, [&](Fields& f) {
+    describe_endings_95(f, {"dynamics", "by chance in the trials"}, r.dynamics_endings);
+    describe_endings_95(f, {"walks", "by chance in the walks and in the matrix's runs"},
+                        r.walks_endings);
+    describe_endings_95(f, {"exact", "by chance in the matrix's runs"}, r.exact_endings);
+  });
+  out.object({"fates", "how bodies end, as shares"}, [&](Fields& f) {
+    f.object({"dynamics", "in the trials"}, [&](Fields& of) { describe_fates(of, r.dynamics); });
+    f.object({"exact", "by the exact chain"}, [&](Fields& of) { describe_fates(of, r.exact); });
+  });
+  describe_maps(out, {"final_gates", "bodies by the gate where they end"}, r.dynamics.final_gates,
+                r.walks.final_cells, r.exact.final_cells);
+  describe_maps(out, {"trapped_gates", "those that are trapped, by the gate where they end"},
+                r.dynamics.trapped_gates, r.walks.trapped_cells, markov::trapped_cells(r.exact));
+  describe_maps(out, {"departed_gates", "those that leave the field, by the gate where they end"},
+                r.dynamics.departed_gates, r.walks.departed_cells, markov::departed_cells(r.exact));
+  describe_exits(out, r.dynamics_exits, r.exact_exits, shown);
+  const FieldEnds<markov::CellProbabilities> ends = ends_of(r.exact, r.exact_endings);
+  ends.describe_never_sampled(out);
+  ends.describe_still_walking(out);
+  out.optional(r.force.has_value(), [&](Fields& f) {
+    f.object({"force_memory", "the same trials with the random force drawn anew at each crossing"},
+             [&](Fields& force) { describe(force, r.force.value_or(lattice::ForceMemory())); });
+  });
+}
+
+// ---- Tables ----
+
+std::string with_sd(const lattice::MeanAndSd& m) {
+  return fmt::format("{} ({})", fixed(m.mean(), 3), fixed(m.sd(), 3));
+}
+
+/// How trials ended, by the dynamics and by the chain, and the verdicts.
+std::string endings_table(const lattice::Validation& v, const StartTexts& labels) {
+  std::vector<EndingName> names(kEndingNames.begin(), kEndingNames.end());
+  if (std::any_of(v.starts.begin(), v.starts.end(), [](const lattice::StartValidation& r) {
+        return !r.dynamics_endings.rules_out(lattice::kWentBack.ending) ||
+               !r.exact_endings.rules_out(lattice::kWentBack.ending);
+      }))
+    names.push_back(lattice::kWentBack);
+  std::vector<TextColumn> columns{{labels.header}, {"", -8, 0, "", "  | "}};
+  for (const EndingName& e : names)
+    columns.push_back({fmt::format("{} ", e.name), kFit, 0, "", "  "});
+  columns.push_back({"p", 8});
+  TextTable table(columns);
+  std::string verdicts, rests;
+  for (std::size_t k = 0; k < v.starts.size(); ++k) {
+    const lattice::StartValidation& r = v.starts[k];
+    const auto cells = [&](const char* name, const lattice::EndingShares& shares, bool marked) {
+      std::vector<TextCell> line{labels.texts[k], name};
+      for (const EndingName& e : names) {
+        const auto at = static_cast<std::size_t>(e.ending);
+        line.emplace_back(with_interval(shares.share[at], shares.interval[at]) +
+                          (marked && r.judgement.differs(e.ending) ? "*" : " "));
+      }
+      return line;
+    };
+    table.row(cells("dynamics", r.dynamics_endings, false));
+    std::vector<TextCell> chain = cells("chain", r.exact_endings, true);
+    chain.emplace_back(p_text(r.judgement.p));
+    table.row(chain);
+    verdicts += fmt::format("{}  | {}\n", labels.texts[k], verdict(r));
+    if (const std::string rest = rest_warning(rest_of(r.exact), "by the chain "); !rest.empty())
+      rests += fmt::format("{}  | {}\n", labels.texts[k], rest);
+  }
+  return fmt::format(
+      "Endings, % of {} trials of the full dynamics and by the exact chain, with 95 % intervals: "
+      "chance in the\n"
+      "trials, in the sampling of the matrix. p: how often chance in both together would make any "
+      "ending\n"
+      "or the final gates look as different; *: this ending differs.\n\n"
+      "{}\n{}{}",
+      v.trials, table.text(), verdicts, rests);
+}
+
+/// Beside what the paper prints, where these are its starts.
+std::string table4_table(const ValidateResult& result, const StartTexts& labels) {
+  TextTable table({{},
+                   {"", 6, 3, "", "  |"},
+                   {"", -15, 0, "", "  "},
+                   {"", 5, 3},
+                   {"", -15, 0, "", "  "},
+                   {"", 6, 3, "", "|"},
+                   {"", -15, 0, "", "  "},
+                   {"", 5, 3},
+                   {"", 0, 0, "", "  "}});
+  for (std::size_t k = 0; k < result.validation.starts.size(); ++k) {
+    const lattice::StartValidation& r = result.validation.starts[k];
+    const lattice::PaperSized& p = r.paper_sized;
+    const auto printed = [&](std::optional<double> lattice::PaperStart::*x) {
+      return (result.like_table4 ? result.papers[k].*x : std::nullopt).value_or(kUnknown);
+    };
+    table.row({labels.texts[k], printed(&lattice::PaperStart::corrcoef), with_sd(p.exact_corrcoef),
+               r.floor_100_exact.corrcoef, with_sd(p.walks_corrcoef),
+               printed(&lattice::PaperStart::rmse), with_sd(p.exact_rmse),
+               r.floor_100_exact.rmse_per_100, with_sd(p.walks_rmse)});
+  }
+  return fmt::format(
+      "\nAs in the paper's Table IV: 100 trials of the full dynamics against the chain, mean (sd) "
+      "over\n"
+      "repeats. Floor: what chance alone gives if the chain were perfect.\n\n"
+      "{}  |            corrcoef                      |        RMSE, trials per 100\n"
+      "{}  | paper  exact chain    floor  100 walks   | paper  exact chain    floor  100 walks\n"
+      "{}",
+      std::string(labels.header.size(), ' '), labels.header, table.rows());
+}
+
+/// Of all trials.
+std::string final_gates_table(const lattice::Validation& v, const StartTexts& labels) {
+  TextTable table({{},
+                   {"", -15, 0, "", "  | "},
+                   {"", 9, 4},
+                   {"", 8, 4},
+                   {"", 8, 3},
+                   {"", 8, 3},
+                   {"", 8, 3},
+                   {"", 8, 3},
+                   {"", 8, 3},
+                   {"", 8, 3}});
+  for (std::size_t k = 0; k < v.starts.size(); ++k) {
+    const lattice::StartValidation& r = v.starts[k];
+    const auto row = [&](const std::string& name, const lattice::Comparison& c, double chance) {
+      table.row({labels.texts[k], name, c.corrcoef, c.floor.corrcoef, c.rmse_per_100,
+                 c.floor.rmse_per_100, c.total_variation, c.floor_total_variation,
+                 r.matrix_noise_mean, chance});
+    };
+    row("exact chain", r.exact_against, r.judgement.chance_total_variation);
+    row(fmt::format("{} walks", v.walks), r.walks_against, kUnknown);
+  }
+  return fmt::format(
+      "\nFinal gates of all {} trials per start. Floor: chance in these trials (and walks) alone; "
+      "matrix:\n"
+      "total variation (TV) that the sampling of the matrix alone makes; chance: that both "
+      "together "
+      "make.\n\n"
+      "{}  | against         corrcoef  floor    RMSE   floor      TV   floor  matrix  chance\n{}",
+      v.trials, labels.header, table.rows());
+}
+
+std::string exits_table(const lattice::Validation& v, const StartTexts& labels) {
+  std::string text =
+      "\nPlaces along the sides at which the chain lets more or fewer leave than the 95 % "
+      "intervals of\nthe dynamics have (chance alone: one in 20):\n\n";
+  for (std::size_t k = 0; k < v.starts.size(); ++k)
+    text += fmt::format("{}  | {}\n", labels.texts[k],
+                        places_outside(v.starts[k].dynamics_exits, v.starts[k].exact_exits));
+  return text;
+}
+
+std::string seconds_table(const lattice::Validation& v, const StartTexts& labels) {
+  TextTable table({{labels.header},
+                   {"dynamics", 19, 2, "", "  |"},
+                   {"walks", 11, 4},
+                   {"exact", 11, 6},
+                   {"dynamics/exact", 15, 0, "", " |"},
+                   {"trial/walk", 12, 0}});
+  for (std::size_t k = 0; k < v.starts.size(); ++k) {
+    const lattice::StartValidation& r = v.starts[k];
+    table.row({labels.texts[k], r.dynamics_seconds, r.walks_seconds, r.exact_seconds,
+               r.dynamics_seconds / r.exact_seconds, seconds_per_trial(r) / seconds_per_walk(r)});
+  }
+  return fmt::format(
+      "\nSeconds: {} trials and {} walks on {}, one exact prediction on one.\n\n{}", v.trials,
+      v.walks, counted(static_cast<std::int64_t>(v.threads), "thread", "threads"), table.text());
+}
+
 /// By which faces bodies went on: "S 61.2 %, W 19.4 %".
 std::string by_face(const lattice::Validation& v, const dynamics::Section& section) {
-  std::string text;
+  std::vector<std::string> faces;
   for (std::size_t f = 0; f < section.faces.size(); ++f)
-    text += (f > 0 ? ", " : "") + section.faces[f].name + " " +
-            percent(static_cast<double>(v.entries_by[f]), static_cast<double>(v.entries));
-  return text;
+    faces.push_back(
+        fmt::format("{} {}", section.faces[f].name,
+                    percent(static_cast<double>(v.entries_by[f]), static_cast<double>(v.entries))));
+  return fmt::format("{}", fmt::join(faces, ", "));
 }
 
 }  // namespace
 
-Json to_json(const lattice::Validation& v, const ShownField& shown, const ValidatedMatrix& matrix) {
-  Json json;
-  json["trials"] = v.trials;
-  json["walks"] = v.walks;
-  json["left_out_matrices"] = v.left_out.matrices;
-  json["starts"] = Json::array();
-  for (std::size_t k = 0; k < v.starts.size(); ++k)
-    json["starts"].push_back(
-        to_json(v.starts[k], matrix.papers.empty() ? nullptr : &matrix.papers[k], shown));
-  const auto& faces = shown.map.section.faces;
-  Json& crossings = json["crossings"] = {{"between_gates", v.entries}};
-  if (shown.mass)
-    crossings["RT_and_LT_share"] = share(traverse_sides(v), v.entries);
-  else
-    for (std::size_t f = 0; f < faces.size(); ++f)
-      crossings["by_face"][faces[f].name] = v.entries_by[f];
-  crossings["clamped_share"] = share(v.clamped, v.entries);
-  const auto total = totals_of(matrix);
-  json["matrix"] = {{"gate_runs", total.runs},
-                    {"clamped_share", total.clamped_share()},
-                    {"rows_never_sampled", total.empty_rows},
-                    {"status", matrix.status},
-                    {"seconds", matrix.seconds}};
-  if (matrix.states)
-    json["state_space"] = json_of([&](Fields& out) { describe(out, *matrix.states); });
-  json["markov"] = to_json(v.memory);
-  json["threads"] = v.threads;
-  json["status"] = to_json(v.health);
-  if (!matrix.settled.is_null()) json["method"] = matrix.settled;
-  return json;
+void describe(Fields& out, const ValidateResult& result) {
+  const lattice::Validation& v = result.validation;
+  const ValidatedMatrix& matrix = result.matrix;
+  out.count({"trials", "1", "trials of the full dynamics from each start"}, v.trials);
+  out.count({"walks", "1", "walks through the chain from each start"}, v.walks);
+  out.count({"left_out_matrices", "1",
+             "resampled matrices in which bodies circle too long to be solved: the intervals leave "
+             "them out"},
+            v.left_out.matrices);
+  out.list_of({"starts", "one for each start"}, v.starts.size(), [&](Fields& f, std::size_t k) {
+    describe(f, v.starts[k], result.papers.empty() ? lattice::PaperStart() : result.papers[k],
+             result.shown);
+  });
+  out.object({"crossings", "crossings from gate to gate in all trials"}, [&](Fields& f) {
+    f.count({"between_gates", "1", "number of crossings"}, v.entries);
+    f.optional(result.shown.mass.has_value(), [&](Fields& of) {
+      of.number({"RT_and_LT_share", "1", "share of these through the sides above the joints"},
+                share(traverse_sides(v), v.entries));
+    });
+    f.optional(!result.shown.mass.has_value(), [&](Fields& of) {
+      of.object({"by_face", "number of these by face, of cells other than the paper's gate"},
+                [&](Fields& faces) {
+                  const auto& names = result.shown.map.section.faces;
+                  for (std::size_t i = 0; i < names.size(); ++i)
+                    faces.count(Field(names[i].name, "1", "by this face").varying("<face>"),
+                                v.entries_by[i]);
+                });
+    });
+    f.number({"clamped_share", "1", "share of these outside the bins"},
+             share(v.clamped, v.entries));
+  });
+  out.object({"matrix", "the matrix that is validated"}, [&](Fields& f) {
+    const dynamics::Transitions::Totals total = totals_of(matrix);
+    f.count({"gate_runs", "1", "gate runs behind the matrix"}, total.runs);
+    f.number({"clamped_share", "1", "share of the runs' crossings outside the bins"},
+             total.clamped_share());
+    f.count({"rows_never_sampled", "1", "rows without a run"}, total.empty_rows);
+    f.maybe(Label("status", "numerical faults of these runs; null: the file does not say").shared(),
+            matrix.health, [](Fields& of, const dynamics::Health& h) { describe(of, h); });
+    f.number({"seconds", "s", "time to make the matrix, or to read it"}, matrix.seconds);
+  });
+  out.optional(matrix.states.has_value(),
+               [&](Fields& f) { describe_state_space(f, matrix.states.value_or(StateRecord())); });
+  out.object({"markov", "is it Markov? what the trials remember beyond the chain's states"},
+             [&](Fields& f) { describe(f, v.memory); });
+  out.count({"threads", "1", "threads on which times were taken"}, v.threads);
+  describe_status(out, v.health);
+  describe_method(out, matrix.method);
+  out.optional(!v.starts.empty() && v.starts.front().observed.has_value(), [&](Fields& f) {
+    const lattice::StartValidation& first = v.starts.front();
+    describe_observed(f, first.observed.value_or(lattice::ObservedComparison()), first,
+                      result.observed);
+  });
+  describe_made_by(out, result.made_by);
 }
 
-std::string table_of(const lattice::Validation& v, const ShownField& shown,
-                     const ValidatedMatrix& matrix) {
+std::string table_of(const ValidateResult& result) {
+  const lattice::Validation& v = result.validation;
+  const ValidatedMatrix& matrix = result.matrix;
+  if (const auto& experiment = v.starts.front().observed)
+    return table_of(*experiment, v.starts.front());
   std::vector<dynamics::Entry> starts;
   for (const lattice::StartValidation& r : v.starts) starts.push_back(r.start);
-  const StartTexts labels(shown.map.section, starts);
-  const auto crossings = static_cast<double>(v.entries);
-  std::string table =
-      endings_table(v, labels) +
-      (matrix.papers.empty() ? "" : table4_table(v, matrix.papers, labels, matrix.like_table4)) +
-      final_gates_table(v, labels) + exits_table(v, labels) + seconds_table(v, labels);
-  table +=
-      "\nMatrix: " + std::to_string(totals_of(matrix).runs) + " gate runs, " +
-      (matrix.path.empty() ? fixed(matrix.seconds, 2) + " s" : "read from " + matrix.path) +
-      ". Crossings between gates in the dynamics: " +
-      (shown.mass ? percent(static_cast<double>(traverse_sides(v)), crossings) +
-                        " through RT or LT" + (matrix.like_table4 ? " (paper: fewer than 4 %)" : "")
-                  : by_face(v, shown.map.section)) +
-      ", " + percent(static_cast<double>(v.clamped), crossings) + " outside the bins.\n" +
-      (matrix.states ? states_line(*matrix.states) : "");
+  const StartTexts labels(result.shown.map.section, starts);
+  const auto of_crossings = [&](std::int64_t n) {
+    return percent(static_cast<double>(n), static_cast<double>(v.entries));
+  };
+  std::string table = endings_table(v, labels);
+  if (!result.papers.empty()) table += table4_table(result, labels);
+  table += final_gates_table(v, labels) + exits_table(v, labels) + seconds_table(v, labels);
+  table += fmt::format(
+      "\nMatrix: {} gate runs, {}. Crossings between gates in the dynamics: {}, {} outside the "
+      "bins.\n",
+      totals_of(matrix).runs,
+      matrix.path.empty() ? fixed(matrix.seconds, 2) + " s" : "read from " + matrix.path,
+      result.shown.mass ? fmt::format("{} through RT or LT{}", of_crossings(traverse_sides(v)),
+                                      result.like_table4 ? " (paper: fewer than 4 %)" : "")
+                        : by_face(v, result.shown.map.section),
+      of_crossings(v.clamped));
+  if (matrix.states) table += states_line(*matrix.states);
   table += text_of(v.memory);
   for (std::size_t k = 0; k < v.starts.size(); ++k)
-    if (v.starts[k].force) table += labels.texts[k] + "  | " + text_of(*v.starts[k].force) + "\n";
+    if (v.starts[k].force)
+      table += fmt::format("{}  | {}\n", labels.texts[k], text_of(*v.starts[k].force));
   if (v.entries == 0) table += "No trial ever reached a second gate.\n";
   return table;
 }

@@ -1,42 +1,54 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The chain against the full dynamics, as JSON and as tables.
+/// The chain against the full dynamics, as a result, as tables and as a figure.
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
 #include "cli/render/memory.h"
+#include "cli/render/observed.h"
+#include "cli/render/provenance.h"
 #include "cli/render/shown_field.h"
 #include "cli/render/states.h"
 #include "dynamics/cells/transitions.h"
+#include "lattice/scene/settle.h"
 #include "lattice/scene/table4.h"
 #include "lattice/study/validation.h"
 
 namespace gatewalk::cli {
 
-/// The matrices whose chain was validated, one for each type of gate, with what its file or its
+/// The matrices whose chain is validated, one for each type of gate, with what its file or its
 /// making says of it.
 struct ValidatedMatrix {
-  const std::vector<dynamics::Transitions>& matrices;
-  /// The validation's starts with what the paper prints of them; none of other cells than its gate.
-  const std::vector<lattice::PaperStart>& papers;
-  bool like_table4 = false;      // the scene is the paper's: its figures belong beside ours
-  std::string path;              // empty: it was built for this
-  double seconds = 0.0;          // to build or read it
-  const Json &status, &settled;  // null where there is none
-  const std::optional<StateRecord>& states;
+  std::vector<dynamics::Transitions> matrices{};
+  std::string path{};    // empty: it was built for this
+  double seconds = 0.0;  // to build or read it
+  std::optional<dynamics::Health> health{};
+  std::optional<lattice::Settled> method{};
+  std::optional<StateRecord> states{};
 };
+
+/// The result of `validate`.
+struct ValidateResult {
+  lattice::Validation validation{};
+  ValidatedMatrix matrix{};
+  ShownField shown;
+  /// The validation's starts with what the paper prints of them; none of other cells than its gate.
+  std::vector<lattice::PaperStart> papers{};
+  bool like_table4 = false;  // the scene is the paper's: its figures belong beside ours
+  ObservedFiles observed{};
+  Provenance made_by{};
+};
+void describe(Fields& out, const ValidateResult& result);
+[[nodiscard]] std::string table_of(const ValidateResult& result);
 
 /// One sentence: whether the chain agrees with the dynamics from one start.
 [[nodiscard]] std::string verdict(const lattice::StartValidation& r);
-
-/// Without "made_by".
-[[nodiscard]] Json to_json(const lattice::Validation& v, const ShownField& shown,
-                           const ValidatedMatrix& matrix);
-[[nodiscard]] std::string table_of(const lattice::Validation& v, const ShownField& shown,
-                                   const ValidatedMatrix& matrix);
+/// "p = 0.034", "p < 0.001"
+[[nodiscard]] std::string p_of(const lattice::Judgement& j);
 
 /// Maps of the final gates: dynamics, chain, and their difference, a row per start; below them the
 /// Chapman-Kolmogorov test. Throws
