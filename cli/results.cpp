@@ -168,6 +168,9 @@ AnalysedField analyze() {
   shares.ranges.resize(1);
   shares.found.indices.first.resize(1);
   shares.found.indices.total.resize(1);
+  return example;
+}
+
 SweepResult sweep() {
   SweepResult example;
   example.axes.push_back({"", {""}});

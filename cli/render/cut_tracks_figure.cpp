@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "cli/render/cut_tracks.h"
+#include "cli/render/panel.h"
 #include "cli/render/quantity.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -46,46 +46,30 @@ Span span_of(const CutTracks& cut, const lattice::CellFile& cell) {
   return {across[0], across[1], along[0], along[1]};
 }
 
-std::string place(double x, double y, const Sized& metre) {
-  return digits(x / metre.size) + " " + digits(y / metre.size) + "\n";
-}
-
-/// Ways, a blank line between two.
-std::string ways_of(const CutTracks& cut, const Sized& metre) {
+/// Ways with a gap between two.
+void add_ways(Rows& rows, const CutTracks& cut, const Sized& metre) {
   std::size_t all = 0;
   for (const lattice::TrackPiece& p : cut.pieces) all += p.size();
   const std::size_t stride = all / kMostPlaces + 1;
-  std::string rows;
   for (const lattice::TrackPiece& p : cut.pieces) {
-    for (std::size_t i = p.begin; i < p.end; i += stride)
-      rows += place(p.track->x[i], p.track->y[i], metre);
-    rows += place(p.track->x[p.end - 1], p.track->y[p.end - 1], metre) + "\n";
+    const auto add = [&](std::size_t i) {
+      rows.add(p.track->x[i] / metre.size, p.track->y[i] / metre.size);
+    };
+    for (std::size_t i = p.begin; i < p.end; i += stride) add(i);
+    add(p.end - 1);
+    rows.gap();
   }
-  return rows;
-}
-
-/// The places of those marks that are drawn: no more than can be told apart.
-std::string some_of(const std::vector<std::array<double, 2>>& marks, const Sized& metre) {
-  std::string rows;
-  for (std::size_t i = 0; i < marks.size(); i += marks.size() / kMostMarks + 1)
-    rows += place(marks[i][0], marks[i][1], metre);
-  return rows;
 }
 
 /// The borders of the cells: "x y dx dy".
-std::string borders_of(const Span& span, const lattice::CellFile& cell, const Sized& metre) {
+void add_borders(Rows& rows, const Span& span, const lattice::CellFile& cell, const Sized& metre) {
   const double w = cell.width / metre.size, l = cell.length / metre.size;
   const double wide = w * static_cast<double>(span.right - span.left),
                tall = l * static_cast<double>(span.top - span.bottom);
-  const auto line = [](double x, double y, double dx, double dy) {
-    return digits(x) + " " + digits(y) + " " + digits(dx) + " " + digits(dy) + "\n";
-  };
-  std::string rows;
   for (long i = span.left; i <= span.right; ++i)
-    rows += line(w * static_cast<double>(i), l * static_cast<double>(span.bottom), 0.0, tall);
+    rows.add(w * static_cast<double>(i), l * static_cast<double>(span.bottom), 0, tall);
   for (long i = span.bottom; i <= span.top; ++i)
-    rows += line(w * static_cast<double>(span.left), l * static_cast<double>(i), wide, 0.0);
-  return rows;
+    rows.add(w * static_cast<double>(span.left), l * static_cast<double>(i), wide, 0);
 }
 
 }  // namespace
@@ -97,7 +81,6 @@ Figure figure_of(const CutTracks& cut, const lattice::CellFile& cell) {
                bottom = cell.length * static_cast<double>(span.bottom),
                top = cell.length * static_cast<double>(span.top);
   const Sized metre = readable_unit("m", std::max({-left, right, -bottom, top}));
-  const auto length = [&](double x) { return digits(x / metre.size); };
   std::vector<std::array<double, 2>> crossed, lost, trapped;
   for (std::size_t i = 0; i < cut.passages.size(); ++i) {
     const CutPassage& p = cut.passages[i];
@@ -108,47 +91,44 @@ Figure figure_of(const CutTracks& cut, const lattice::CellFile& cell) {
   }
   const double scale = std::min(414.0 / (right - left), 520.0 / (top - bottom));
   const Box box{78, 78 + scale * (right - left), 44, 44 + scale * (top - bottom)};
-  const Sheet sheet{static_cast<int>(box.bottom + 88)};
   const bool with_borders =
       span.right - span.left <= kMostBorders && span.top - span.bottom <= kMostBorders;
-  const auto dot = [](const char* mark) { return std::string("with points ") + mark; };
-  const std::string at_crossed = dot("pt 7 ps 0.3 lc rgb '#000000'"),
-                    at_lost = dot("pt 2 ps 0.8 lw 1.5 lc rgb '") + kSecondColour + "'",
-                    at_trapped = dot("pt 5 ps 0.6 lc rgb '") + kThirdColour + "'";
-  std::string data = data_block("$ways", ways_of(cut, metre)), plot, keys;
+  const std::size_t most = std::max({crossed.size(), lost.size(), trapped.size()});
+  Panels out;
+  Rows& ways = out.data("$ways");
+  add_ways(ways, cut, metre);
+  Panel& panel = out.add(box);
+  panel.say(std::to_string(cut.passages.size()) + " passages of " +
+                std::to_string(cut.pieces.size()) + " pieces of track" +
+                (most > kMostMarks ? "; not all marks are drawn" : "") +
+                (with_borders ? "" : "; too many borders to be drawn"),
+            8, 18);
+  panel.border = 15;
+  panel.x = {"x (" + metre.name + ")", left / metre.size, right / metre.size,
+             digits(tic_step((right - left) / metre.size, std::max(1.0, box.width() / 70.0)))};
+  panel.y = {"y (" + metre.name + ")", bottom / metre.size, top / metre.size};
   if (with_borders) {
-    data += data_block("$borders", borders_of(span.within(cut.columns, cut.rows), cell, metre));
-    plot += "$borders using 1:2:3:4 with vectors nohead lw 0.6 lc rgb '#999999', ";
+    Rows& borders = out.data("$borders");
+    add_borders(borders, span.within(cut.columns, cut.rows), cell, metre);
+    panel.draw(borders, "1:2:3:4", "vectors nohead", {"#999999", 0.6});
   }
-  plot += std::string("$ways using 1:2 with lines lw 0.7 lc rgb '") + kFirstColour + "'";
+  panel.draw(ways, "1:2", "lines", {kFirstColour, 0.7});
   double at = 8.0;
   const auto add = [&](const char* name, const std::vector<std::array<double, 2>>& marks,
-                       const std::string& style, const std::string& word) {
+                       const Pen& pen, const std::string& word) {
     if (marks.empty()) return;
-    data += data_block(name, some_of(marks, metre));
-    plot += std::string(", ") + name + " using 1:2 " + style;
-    keys += sheet.key(at, box.bottom + 62,
-                      {style + " title '" + word + " " + std::to_string(marks.size()) + "'"});
+    Rows& rows = out.data(name);  // no more than can be told apart
+    for (std::size_t i = 0; i < marks.size(); i += marks.size() / kMostMarks + 1)
+      rows.add(marks[i][0] / metre.size, marks[i][1] / metre.size);
+    panel.draw(rows, "1:2", "points", pen);
+    out.add_key(at, box.bottom + 62,
+                {entry("points", pen, word + " " + std::to_string(marks.size()))});
     at += 166.0;
   };
-  add("$crossed", crossed, at_crossed, "border crossed");
-  add("$trapped", trapped, at_trapped, "trapped");
-  add("$lost", lost, at_lost, "lost");
-  const std::size_t most = std::max({crossed.size(), lost.size(), trapped.size()});
-  const std::string title = std::to_string(cut.passages.size()) + " passages of " +
-                            std::to_string(cut.pieces.size()) + " pieces of track" +
-                            (most > kMostMarks ? "; not all marks are drawn" : "") +
-                            (with_borders ? "" : "; too many borders to be drawn");
-  return {Sheet::kWidth, sheet.height,
-          data + "set multiplot\n" + sheet.margins(box) + sheet.text(title, 8, 18) + kFrame +
-              "set border 15\n" +
-              Sheet::axes("'x (" + metre.name + ")'", "'y (" + metre.name + ")'") + "set xrange [" +
-              length(left) + ":" + length(right) + "]\nset yrange [" + length(bottom) + ":" +
-              length(top) + "]\nset xtics " +
-              digits(tic_step((right - left) / metre.size,
-                              std::max(1.0, (box.right - box.left) / 70.0))) +
-              "\nplot " + plot + "\nunset label\n" + keys + "unset multiplot\n",
-          kFont};
+  add("$crossed", crossed, {.colour = "#000000", .mark = 7, .size = 0.3}, "border crossed");
+  add("$trapped", trapped, {.colour = kThirdColour, .mark = 5, .size = 0.6}, "trapped");
+  add("$lost", lost, {kSecondColour, 1.5, 2, 0.8}, "lost");
+  return out.figure(static_cast<int>(box.bottom + 88));
 }
 
 }  // namespace gatewalk::cli

@@ -89,10 +89,19 @@ Figure figure_of(const FittedScene& f) {
   std::vector<std::array<double, 2>> ranges;
   for (std::size_t k = 0; k < numbers; ++k) ranges.push_back(shown_range(f, k));
   const auto axis = [&](std::size_t k, bool named) {
-    return Axis{named ? axis_name(f, k) : "", ranges[k][0], ranges[k][1],
-                tics_of(ranges[k], side),     "%g",         named};
+    return Axis{named ? verbatim(axis_name(f, k)) : Caption(),
+                ranges[k][0],
+                ranges[k][1],
+                tics_of(ranges[k], side),
+                "%g",
+                named};
   };
   Panels out;
+  out.say("posterior after " + std::to_string(f.fit.observed) + " " + counted(f) + "; dashed: 95 %",
+          8, 18);
+  for (std::size_t k = 0; k < numbers && numbers > 2; ++k)
+    out.say(axis_name(f, k) + ": " + f.ranges[k].key, kLeft + side + kGap,
+            kTop + 10 + 20 * static_cast<double>(k), kSmallFont);
   for (std::size_t down = 0; down < numbers; ++down)
     for (std::size_t right = 0; right <= down; ++right) {
       const double left = kLeft + static_cast<double>(right) * (side + kGap),
@@ -121,13 +130,6 @@ Figure figure_of(const FittedScene& f) {
         p.colours = Colours{};
         p.draw_cells(rows, half(ranges[right]), half(ranges[down]));
       }
-      if (down > 0) continue;
-      p.say(
-          "posterior after " + std::to_string(f.fit.observed) + " " + counted(f) + "; dashed: 95 %",
-          8, 18);
-      for (std::size_t k = 0; k < numbers && numbers > 2; ++k)
-        p.say(axis_name(f, k) + ": " + f.ranges[k].key, kLeft + side + kGap,
-              kTop + 10 + 20 * static_cast<double>(k), kSmallFont);
     }
   return out.figure(static_cast<int>(kTop + static_cast<double>(numbers) * (side + kGap) + 60));
 }

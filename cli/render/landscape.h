@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cli/render/fields.h"
-#include "cli/render/figure.h"
+#include "cli/render/panel.h"
 #include "cli/render/provenance.h"
 #include "cli/render/quantity.h"
 #include "dynamics/disc/ensemble.h"
@@ -39,8 +39,8 @@ void describe(Fields& out, const LandscapeResult& result);
 inline constexpr char kHole[] = "the disc would cover a joint";
 /// "346 J": an energy as a note gives it.
 [[nodiscard]] std::string short_energy(double joules, const Sized& unit);
-/// Rows of "x y elastic total" up to that ceiling, an empty one between two values of y.
-[[nodiscard]] std::string rows_of(const dynamics::Landscape& l, const Sized& metre,
-                                  const Sized& joule, double ceiling);
+/// Adds "x y elastic total" up to that ceiling, with a gap between two values of y.
+void add_rows(Rows& rows, const dynamics::Landscape& l, const Sized& metre, const Sized& joule,
+              double ceiling);
 
 }  // namespace gatewalk::cli

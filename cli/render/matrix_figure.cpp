@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "cli/render/figure.h"
 #include "cli/render/matrix.h"
-#include "cli/render/text.h"
+#include "cli/render/panel.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -97,16 +98,18 @@ Figure figure_of(const Transitions& t) {
   const auto rows = groups_of(t.space, per_block, false),
              columns = groups_of(t.space, per_block, true);
   constexpr double kLeft = 84, kTop = 44;
-  const Box box{kLeft, kLeft + kSide, kTop, kTop + kSide};
-  const Sheet sheet{static_cast<int>(box.bottom + 112)};
-  std::string cells, ground, labels;
+  Panels out("unset key\n");
+  Rows& cells = out.data("$cells");
+  Panel& panel = out.add({kLeft, kLeft + kSide, kTop, kTop + kSide});
   double most = 0.0;
   int object = 0;
   const auto rectangle = [&](const StateGroup& r, int begin, int end, const StateGroup& c,
                              const char* colour) {
-    ground += "set object " + std::to_string(++object) + " rectangle from " + digits(c.from) + "," +
-              digits(r.edge(begin)) + " to " + digits(c.from + c.size) + "," + digits(r.edge(end)) +
-              " behind fillcolor rgb '" + colour + "' fillstyle solid noborder\n";
+    panel.more += fmt::format(
+        "set object {} rectangle from {},{} to {},{} behind fillcolor rgb '{}' fillstyle solid "
+        "noborder\n",
+        ++object, digits(c.from), digits(r.edge(begin)), digits(c.from + c.size),
+        digits(r.edge(end)), colour);
   };
   for (const StateGroup& r : rows)
     for (const StateGroup& c : columns) {
@@ -118,43 +121,34 @@ Figure figure_of(const Transitions& t) {
           if (share < 0.0 && k == 0) rectangle(r, i, i + 1, c, "#ffffff");
           if (share <= 0.0) continue;
           most = std::max(most, share);
-          cells += digits(0.5 * (c.edge(k) + c.edge(k + 1))) + " " +
-                   digits(0.5 * (r.edge(i) + r.edge(i + 1))) + " " + digits(c.edge(k)) + " " +
-                   digits(c.edge(k + 1)) + " " + digits(r.edge(i)) + " " + digits(r.edge(i + 1)) +
-                   " " + digits(std::sqrt(share)) + "\n";
+          cells.add(0.5 * (c.edge(k) + c.edge(k + 1)), 0.5 * (r.edge(i) + r.edge(i + 1)), c.edge(k),
+                    c.edge(k + 1), r.edge(i), r.edge(i + 1), std::sqrt(share));
         }
     }
-  const auto label = [&](const std::string& text, const std::string& place) {
-    labels += "set label " + literal(text) + " at " + place + " font '," +
-              std::to_string(kSmallFont) + "'\n";
+  const auto name = [&](const std::string& text, double x, double y, const char* how) {
+    panel.texts.push_back({text, x, y, kSmallFont, how, true});
   };
   for (const StateGroup& r : rows)
-    label(r.name + (r.states > 1 ? " " + std::to_string(r.states) : ""),
-          "-6," + digits(r.from + 0.5 * r.size) + " right");
+    name(r.name + (r.states > 1 ? " " + std::to_string(r.states) : ""), -6, r.from + 0.5 * r.size,
+         "right");
   for (const StateGroup& c : columns)
-    label(c.name, digits(c.from + 0.5 * c.size) + "," + digits(kSide + 8) +
-                      (c.size > 8.0 * static_cast<double>(c.name.size()) ? " center offset 0,-0.3"
-                                                                         : " right rotate by 90"));
-  const RootScale scale(most);
-  const auto totals = t.totals();
-  return {Sheet::kWidth, sheet.height,
-          std::string(kSequential) + data_block("$cells", cells) + sheet.margins(box) + ground +
-              labels +
-              sheet.text("transition matrix: " + std::to_string(t.space.size()) + " states, " +
-                             std::to_string(totals.runs) + " counts" +
-                             (per_block > 1 ? ", blocks of " + std::to_string(per_block) : ""),
-                         8, 18) +
-              sheet.text("down: how a gate is entered; across: how the next one is, or trapped", 8,
-                         box.bottom + 76, kSmallFont) +
-              sheet.text("grey: no run ended here; white: none began here", 8, box.bottom + 96,
-                         kSmallFont) +
-              "unset key\nunset border\nunset tics\n" +
-              scale.colours(sheet, {box.right + 14, box.right + 26, box.top, box.bottom}) +
-              "set cbrange " + scale.range() + "\nset xrange [0:" + digits(kSide) +
-              "]\nset yrange [" + digits(kSide) +
-              ":0]\nset style fill solid noborder\nplot $cells using 1:2:3:4:5:6:7 with boxxyerror "
-              "lc palette\n",
-          kFont};
+    name(c.name, c.from + 0.5 * c.size, kSide + 8,
+         c.size > 8.0 * static_cast<double>(c.name.size()) ? "center offset 0,-0.3"
+                                                           : "right rotate by 90");
+  panel.say("transition matrix: " + std::to_string(t.space.size()) + " states, " +
+                std::to_string(t.totals().runs) + " counts" +
+                (per_block > 1 ? ", blocks of " + std::to_string(per_block) : ""),
+            8, 18);
+  panel.say("down: how a gate is entered; across: how the next one is, or trapped", 8,
+            panel.box.bottom + 76, kSmallFont);
+  panel.say("grey: no run ended here; white: none began here", 8, panel.box.bottom + 96,
+            kSmallFont);
+  panel.border = 0;
+  panel.x = {"", 0, kSide, kNoTics};
+  panel.y = {"", kSide, 0, kNoTics};
+  add_colours(panel, RootScale(most), panel.box.beside(14, 12));
+  panel.draw(cells, "1:2:3:4:5:6:7", kBars, {kByPalette});
+  return out.figure(static_cast<int>(panel.box.bottom + 112));
 }
 
 }  // namespace gatewalk::cli

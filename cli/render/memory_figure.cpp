@@ -78,6 +78,12 @@ void add_ways(Panels& out, const MemoryStudy& study, double top) {
   columns.push_back(ways);
   const double pitch = (kPanelsRight - kPanelsLeft) / static_cast<double>(columns.size());
   const auto left_of = [&](std::size_t i) { return kPanelsLeft + static_cast<double>(i) * pitch; };
+  out.say("Chapman-Kolmogorov test: % of those who enter as at the left, some gates later", 8,
+          top + 14, kSmallFont);
+  out.say("line: powers of the kernel, with 95 % of chance; points: trials", 8, top + 28,
+          kSmallFont);
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    out.say(names[columns[i]], left_of(i) + 4, top + kPanelsHead - 6, kSmallFont);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double above =
         top + kPanelsHead + static_cast<double>(k) * (kMemoryPanelHeight + kPanelGap);
@@ -87,14 +93,6 @@ void add_ways(Panels& out, const MemoryStudy& study, double top) {
                             "$ahead" + std::to_string(k) + "_" + std::to_string(i));
       Panel& panel =
           out.add({left_of(i), left_of(i) + pitch - 30, above, above + kMemoryPanelHeight});
-      if (k == 0 && i == 0) {
-        panel.say("Chapman-Kolmogorov test: % of those who enter as at the left, some gates later",
-                  8, top + 14, kSmallFont);
-        panel.say("line: powers of the kernel, with 95 % of chance; points: trials", 8, top + 28,
-                  kSmallFont);
-        for (std::size_t j = 0; j < columns.size(); ++j)
-          panel.say(names[columns[j]], left_of(j) + 4, top + kPanelsHead - 6, kSmallFont);
-      }
       if (i == 0) panel.say(names[rows[k]], 8, above + 0.5 * kMemoryPanelHeight, kSmallFont);
       panel.tics_font = kSmallFont;
       panel.x = {lowest && i == columns.size() / 2 ? "gates" : "", ahead.steps.front().gates - 0.5,

@@ -3,10 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "cli/render/figure.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/observed.h"
-#include "cli/render/text.h"
+#include "cli/render/panel.h"
 #include "dynamics/base/share.h"
 
 namespace gatewalk::cli {
@@ -92,17 +91,15 @@ std::vector<ComparedShare> compared_gates(const lattice::ObservedComparison& c,
   return rows;
 }
 
-/// A panel with three marks in each row; where the next one begins.
-double add_compared(std::string& out, const Sheet& sheet, double top, const std::string& title,
-                    const std::string& kind, double row_height,
-                    const std::vector<ComparedShare>& rows) {
+/// A panel with three marks in each row, from `top` on; where the next one begins.
+double add_compared(Panels& out, double top, const std::string& title, const std::string& kind,
+                    double row_height, const std::vector<ComparedShare>& rows) {
   const auto count = static_cast<double>(rows.size());
-  const Box box{110, 372, top + 36, top + 36 + row_height * count};
-  std::string data, plot, tics;
-  std::vector<std::string> key;
+  Panel& panel = out.add({110, 372, top + 36, top + 36 + row_height * count});
+  std::vector<Layer> key;
   double most = 0.0;
   for (std::size_t k = 0; k < kCompared.size(); ++k) {
-    std::string lines;
+    Rows& data = out.data(std::string("$") + kCompared[k] + "_" + kind);
     bool has_intervals = false;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const DrawnShare& s = rows[i].shares[k];
@@ -110,26 +107,21 @@ double add_compared(std::string& out, const Sheet& sheet, double top, const std:
       has_intervals = has_intervals || s.low < s.high;
       // One below the other, so that they do not hide each other.
       const double at = static_cast<double>(i) + 0.25 * (static_cast<double>(k) - 1.0);
-      lines += digits(100.0 * s.share) + " " + digits(at) + " " + digits(100.0 * s.low) + " " +
-               digits(100.0 * s.high) + "\n";
+      data.add(100.0 * s.share, at, 100.0 * s.low, 100.0 * s.high);
     }
-    const std::string name = std::string("$") + kCompared[k] + "_" + kind,
-                      style = " pt " + std::to_string(kSymbols[k]) + " ps 0.6 lw 1.2 lc rgb '" +
-                              kInks[k] + "'";
-    data += data_block(name, lines);
-    plot += (plot.empty() ? "plot " : ", ") + name +
-            (has_intervals ? " using 1:2:3:4 with xerrorbars" : " using 1:2 with points") + style;
-    key.push_back("with points" + style + " title '" + kCompared[k] + "'");
+    const Pen pen{kInks[k], 1.2, kSymbols[k], 0.6};
+    panel.draw(data, has_intervals ? "1:2:3:4" : "1:2", has_intervals ? "xerrorbars" : "points",
+               pen);
+    key.push_back(entry("points", pen, kCompared[k]));
   }
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    tics += (i == 0 ? "'" : ", '") + rows[i].name + "' " + std::to_string(i);
+  std::vector<std::string> names;
+  for (const ComparedShare& row : rows) names.push_back(row.name);
   most = most > 0.0 ? std::min(100.0, 1.05 * most) : 100.0;
-  out += data + kFrame + sheet.text(title, 8, top + 18) + sheet.margins(box) +
-         "set xrange [0:" + digits(most) + "]\nset yrange [" + digits(count - 0.5) +
-         ":-0.5]\nset xtics " + digits(tic_step(most, 5)) + "\nset ytics (" + tics +
-         ") scale 0 font '," + std::to_string(kSmallFont) + "'\n" +
-         Sheet::x_axis("'% of trials, 95 %'") + "unset ylabel\n" + plot + "\nunset label\n" +
-         sheet.key(388, box.top, key);
+  panel.say(title, 8, top + 18);
+  panel.x = {"% of trials, 95 %", 0, most, digits(tic_step(most, 5))};
+  panel.y = {"", count - 0.5, -0.5, tics_of(names) + " scale 0 font ',12'"};
+  const Box box = panel.box;
+  out.add_key(388, box.top, std::move(key));
   return box.bottom + 54;
 }
 
@@ -137,26 +129,20 @@ double add_compared(std::string& out, const Sheet& sheet, double top, const std:
 
 Figure figure_of(const lattice::ObservedComparison& c, const lattice::StartValidation& v,
                  const lattice::FieldParams& field) {
-  const auto drawn_on = [&](const Sheet& sheet, double& end) {
-    std::string out = "set multiplot\n" +
-                      sheet.text(std::to_string(c.seen.trials()) + " trials observed, " +
-                                     std::to_string(v.dynamics.trials) + " of the dynamics",
-                                 8, 16) +
-                      sheet.text("against the dynamics " + p_words(c.against_dynamics.p) +
-                                     ", against the chain " + p_words(c.against_chain.p),
-                                 8, 36, kSmallFont);
-    end = 46.0;
-    if (c.seen.has_endings())
-      end = add_compared(out, sheet, end, "endings", "endings", 28.0, compared_endings(c, v));
-    if (c.seen.has_gates())
-      end = add_compared(out, sheet, end, "final gates: column i_x, row i_y", "gates", 22.0,
-                         compared_gates(c, v, field));
-    return out + "unset multiplot\n";
-  };
-  double height = 0.0;  // places are parts of the sheet's height, which its panels make
-  (void)drawn_on(Sheet{1000}, height);
-  const Sheet sheet{static_cast<int>(std::ceil(height))};
-  return {Sheet::kWidth, sheet.height, drawn_on(sheet, height), kFont};
+  Panels out;
+  out.say(std::to_string(c.seen.trials()) + " trials observed, " +
+              std::to_string(v.dynamics.trials) + " of the dynamics",
+          8, 16);
+  out.say("against the dynamics " + p_words(c.against_dynamics.p) + ", against the chain " +
+              p_words(c.against_chain.p),
+          8, 36, kSmallFont);
+  double end = 46.0;
+  if (c.seen.has_endings())
+    end = add_compared(out, end, "endings", "endings", 28.0, compared_endings(c, v));
+  if (c.seen.has_gates())
+    end = add_compared(out, end, "final gates: column i_x, row i_y", "gates", 22.0,
+                       compared_gates(c, v, field));
+  return out.figure(static_cast<int>(std::ceil(end)));
 }
 
 }  // namespace gatewalk::cli

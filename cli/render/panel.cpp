@@ -151,6 +151,12 @@ void Panel::draw_outlined(const Rows& rows, const std::string& columns, const st
   for (const Pen& pen : {below, above}) draw(rows, columns, with, pen);
 }
 
+Panel& Panels::add(Panel panel) {
+  panel.texts.insert(panel.texts.begin(), texts_.begin(), texts_.end());
+  texts_.clear();
+  return panels_.emplace_back(std::move(panel));
+}
+
 void Panels::add_key(double left, double top, std::vector<Layer> entries) {
   Panel& panel = add(kWholeSheet);
   panel.x = panel.y = {"", 0, 1, kNoTics};

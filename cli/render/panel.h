@@ -203,7 +203,11 @@ class Panels {
   Rows& data(std::string name) { return data(Rows(std::move(name))); }
   Rows& data(Rows rows) { return data_.emplace_back(std::move(rows)); }
   Panel& add(const Box& box) { return add(Panel(box)); }
-  Panel& add(Panel panel) { return panels_.emplace_back(std::move(panel)); }
+  Panel& add(Panel panel);
+  /// A text that the next panel shows before its own.
+  void say(Caption text, double left, double middle, int font = kFont) {
+    texts_.push_back({std::move(text), left, middle, font});
+  }
   /// A column of a key by itself, with this corner; of `entries` only how they look and their
   /// titles count.
   void add_key(double left, double top, std::vector<Layer> entries);
@@ -214,6 +218,7 @@ class Panels {
   std::string frame_;
   std::deque<Rows> data_;
   std::deque<Panel> panels_;
+  std::vector<Text> texts_;
 };
 
 /// An entry of Panels::add_key.

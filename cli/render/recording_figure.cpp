@@ -96,7 +96,9 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
         dynamics::landscape(scene.gate, std::min(0.0, w.bottom), scene.gate.run.traverse_y / 120.0);
     const double highest = ceiling_of(l);
     const Sized joule = readable_unit("J", highest);
-    data += data_block("$ground", rows_of(l, metre, joule, highest));
+    Rows ground("$ground");
+    add_rows(ground, l, metre, joule, highest);
+    data += data_block("$ground", ground.text());
     out += std::string(kSequential) + "set cbrange [*:" + digits(highest / joule.size) +
            "]\nset cblabel 'potential energy (" + joule.name +
            ")'\nset colorbox user origin screen " + sheet.at(box.right + 14, box.bottom) +

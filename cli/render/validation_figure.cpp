@@ -72,6 +72,8 @@ Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& 
                     heads[] = {seen_head, "chain, %", "difference, points"};
   bool marked = false;
   Panels out;
+  out.say(title, 8, 16);
+  for (int i = 0; i < 3; ++i) out.say(heads[i], left_of(i), kHead - 4, kSmallFont);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto& [map, top, height] = rows[k];
     const bool last = k + 1 == rows.size();
@@ -80,10 +82,6 @@ Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& 
       panel.border = 15;
       if (!last) panel.x.name = "";
       if (i > 0) panel.y = {"", panel.y.low, panel.y.high, kNoTics};
-      if (k == 0 && i == 0) {
-        panel.say(title, 8, 16);
-        for (int j = 0; j < 3; ++j) panel.say(heads[j], left_of(j), kHead - 4, kSmallFont);
-      }
       if (i == 0) panel.say(compared[k].summary, 8, top - 10, kSmallFont);
       Rows& data = out.data(names[i] + std::to_string(k));
       if (i < 2)
