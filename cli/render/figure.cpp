@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "cli/render/final_gates.h"
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
@@ -73,28 +72,6 @@ std::string bar_below(const Sheet& sheet, double left, double right, double top)
   return "set colorbox horizontal user origin screen " + sheet.at(left, top + 10) +
          " size screen " + digits((right - left) / Sheet::kWidth) + "," +
          digits(10.0 / sheet.height) + "\n";
-}
-
-std::string share_bars(const Sheet& sheet, const Box& box, const std::string& data,
-                       const std::vector<ShareBar>& bars) {
-  std::string rows, tics;
-  for (std::size_t i = 0; i < bars.size(); ++i) {
-    const auto& [name, share, interval] = bars[i];
-    const bool has_interval = std::isfinite(interval[0]);
-    rows += std::to_string(i) + " " + digits(100 * share) + " " +
-            digits(100 * (has_interval ? interval[0] : share)) + " " +
-            digits(100 * (has_interval ? interval[1] : share)) + " \"" +
-            with_interval(share, interval) + " %\"\n";
-    tics += (i ? ", '" : "'") + name + "' " + std::to_string(i);
-  }
-  return data_block(data, rows) + sheet.margins(box) +
-         "unset xtics\nunset xlabel\nunset ylabel\nset border 0\nset xrange [0:100]\nset yrange [" +
-         std::to_string(bars.size()) + "-0.4:-0.6]\nset ytics (" + tics +
-         ") scale 0\nset style fill solid noborder\nplot " + data +
-         " using ($2/2):1:($2/2):(0.36) with boxxyerror lc rgb '" + kFirstColour +
-         "', '' using 3:1:($4-$3):(0)" + kInterval +
-         ", '' using ($4 > 98 ? 100 : $4 + 2):1:5 with labels left font '," +
-         std::to_string(kSmallFont) + "'\nset ytics scale 0.5\n";
 }
 
 std::string literal(std::string_view text) {

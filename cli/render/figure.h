@@ -62,12 +62,6 @@ struct Sheet {
   [[nodiscard]] static std::string x_axis(const std::string& x) {
     return "set xlabel " + x + " offset 0,0.9\n";
   }
-  /// Those of a map of so many rows of gates: the fewer digits its ticks have the further from
-  /// them.
-  [[nodiscard]] static std::string map_axes(std::int64_t rows, bool with_columns = true) {
-    return x_axis(with_columns ? "'column i_x'" : "''") + "set ylabel 'row i_y' offset " +
-           (rows > 10 ? "0.8" : "0.2") + ",0\n";
-  }
   /// A text that begins at this place, its middle at this height; until "unset label".
   [[nodiscard]] std::string text(const std::string& text, double left, double middle,
                                  int font = kFont) const;
@@ -101,18 +95,12 @@ class RootScale {
 /// The colours as a horizontal bar below maps.
 [[nodiscard]] std::string bar_below(const Sheet& sheet, double left, double right, double top);
 
-/// Of such lines between the ends of an interval, with bars across: gnuplot's own error bars have a
-/// white disc in the middle in a PNG.
-inline constexpr char kInterval[] = " with vectors heads size screen 0.006,90 lw 1.2 lt -1";
-
-/// Horizontal bars of shares of all, each with its 95 % interval (NaN: none) and its number.
+/// A share of all with its 95 % interval (NaN: none), for a horizontal bar.
 struct ShareBar {
   std::string name;
   double share;
   std::array<double, 2> interval;
 };
-[[nodiscard]] std::string share_bars(const Sheet& sheet, const Box& box, const std::string& data,
-                                     const std::vector<ShareBar>& bars);
 /// Height that so many bars want.
 [[nodiscard]] constexpr double height_of_bars(std::size_t bars) {
   return 24.0 * static_cast<double>(bars);

@@ -3,11 +3,10 @@
 #include <array>
 #include <cmath>
 
-#include "cli/render/figure.h"
 #include "cli/render/landscape.h"
+#include "cli/render/panel.h"
 #include "cli/render/quantity.h"
 #include "cli/render/recording.h"
-#include "cli/render/text.h"
 #include "dynamics/disc/landscape.h"
 
 namespace gatewalk::cli {
@@ -42,10 +41,9 @@ Window window_of(const Scene& scene, const std::vector<const Recording*>& runs) 
 }
 
 /// Beams at rest of every gate in the window: "x y dx dy" from joint to tip.
-std::string beams_of(const Scene& scene, const lattice::FieldGates& gates, const Window& w,
-                     double metre) {
+void add_beams(Rows& beams, const Scene& scene, const lattice::FieldGates& gates, const Window& w,
+               double metre) {
   const auto& b = scene.gate.beams;  // joints, which all gates have in common
-  std::string out;
   const auto columns = std::lround((w.right - w.left) / (2.0 * b.joint_x)),
              rows = std::lround(w.top / scene.gate.run.traverse_y);
   const long first = std::lround(w.left / (2.0 * b.joint_x) + 0.5);  // i_x
@@ -57,10 +55,8 @@ std::string beams_of(const Scene& scene, const lattice::FieldGates& gates, const
       const double middle = w.left + static_cast<double>(2 * c + 1) * b.joint_x,
                    y = b.joint_y + static_cast<double>(r) * scene.gate.run.traverse_y;
       for (const double side : {-1.0, 1.0})
-        out += digits((middle + side * b.joint_x) / metre) + " " + digits(y / metre) + " " +
-               digits(-side * beam / metre) + " 0\n";
+        beams.add((middle + side * b.joint_x) / metre, y / metre, -side * beam / metre, 0);
     }
-  return out;
 }
 
 }  // namespace
@@ -71,50 +67,26 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
     if (runs.size() < kMostDrawn) runs.push_back(&r);
   const Window w = window_of(scene, runs);
   const Sized metre = readable_unit("m", std::max({w.top, w.right, -w.left}));
-  const auto length = [&](double x) { return digits(x / metre.size); };
-  std::string data, lines, ends;
+  Panels out;
+  std::vector<const Rows*> ways;
+  Rows ends("$ends");
   for (const Recording* run : runs) {
-    std::string way;
+    Rows& way = out.data("$way" + std::to_string(run->trial));
     const std::size_t stride = run->moments.size() / 4000 + 1;  // no more than can be seen
     for (std::size_t i = 0; i < run->moments.size(); i += stride) {
       const auto [x, y] = place(scene, run->moments[i]);
-      way += length(x) + " " + length(y) + "\n";
+      way.add(x / metre.size, y / metre.size);
     }
     const auto [x, y] = place(scene, run->moments.back());
-    way += length(x) + " " + length(y) + "\n";
-    data += data_block("$way" + std::to_string(run->trial), way);
-    ends += length(x) + " " + length(y) + " " + length(scene.gate.body.radius) + "\n";
+    way.add(x / metre.size, y / metre.size);
+    ends.add(x / metre.size, y / metre.size, scene.gate.body.radius / metre.size);
+    ways.push_back(&way);
   }
   const bool over_landscape = !recordings.across_field;
   const double wide = w.right - w.left, tall = w.top - w.bottom;
   const double room = over_landscape ? 320.0 : 414.0, scale = std::min(room / wide, 560.0 / tall);
-  const Box box{78, 78 + scale * wide, 44, 44 + scale * tall};
-  const Sheet sheet{static_cast<int>(box.bottom + (over_landscape ? 84 : 62))};
-  std::string out, notes, plot = "plot ";
-  if (over_landscape) {
-    const dynamics::Landscape l =
-        dynamics::landscape(scene.gate, std::min(0.0, w.bottom), scene.gate.run.traverse_y / 120.0);
-    const double highest = ceiling_of(l);
-    const Sized joule = readable_unit("J", highest);
-    Rows ground("$ground");
-    add_rows(ground, l, metre, joule, highest);
-    data += data_block("$ground", ground.text());
-    out += std::string(kSequential) + "set cbrange [*:" + digits(highest / joule.size) +
-           "]\nset cblabel 'potential energy (" + joule.name +
-           ")'\nset colorbox user origin screen " + sheet.at(box.right + 14, box.bottom) +
-           " size screen " + digits(12.0 / Sheet::kWidth) + "," +
-           digits((box.bottom - box.top) / sheet.height) + "\n";
-    notes = sheet.text("cut at " + short_energy(highest, joule) + "; no colour: " + kHole, 8,
-                       sheet.height - 12, kSmallFont);
-    plot += "$ground using 1:2:4 with image pixels, ";
-  }
-  for (const Recording* run : runs) {
-    const std::string way = "$way" + std::to_string(run->trial) + " using 1:2 with lines ";
-    plot += over_landscape ? way + "lw 3 lc rgb '#000000', " + way + "lw 1.2 lc rgb '#ffffff', "
-                           : way + "lw 1.5 lc rgb '" + kFirstColour + "', ";
-  }
-  plot +=
-      std::string("$beams using 1:2:3:4 with vectors nohead lw 2 lc rgb '") + kSecondColour + "', ";
+  Panel& panel = out.add({78, 78 + scale * wide, 44, 44 + scale * tall});
+  const int height = static_cast<int>(panel.box.bottom + (over_landscape ? 84 : 62));
   const std::string title =
       runs.size() == 1
           ? "trial " + std::to_string(runs.front()->trial) + ": " + runs.front()->ending
@@ -122,18 +94,36 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
                 (runs.size() < recordings.runs.size()
                      ? " of " + std::to_string(recordings.runs.size())
                      : "");
-  return {Sheet::kWidth, sheet.height,
-          data + data_block("$ends", ends) +
-              data_block("$beams", beams_of(scene, recordings.gates, w, metre.size)) + out +
-              sheet.margins(box) + sheet.text(title + "; disc: where it ended", 8, 18) + notes +
-              kFrame + "set border 15\n" +
-              Sheet::axes("'x (" + metre.name + ")'", "'y (" + metre.name + ")'") + "set xrange [" +
-              length(w.left) + ":" + length(w.right) + "]\nset yrange [" + length(w.bottom) + ":" +
-              length(w.top) + "]\nset xtics " +
-              digits(tic_step(wide / metre.size, std::max(1.0, (box.right - box.left) / 70.0))) +
-              "\n" + plot + "$ends using 1:2:3 with circles " +
-              (over_landscape ? "lc rgb '#ffffff'" : "lt -1") + " fs empty border\n",
-          kFont};
+  panel.say(title + "; disc: where it ended", 8, 18);
+  panel.border = 15;
+  panel.x = {"x (" + metre.name + ")", w.left / metre.size, w.right / metre.size,
+             digits(tic_step(wide / metre.size, std::max(1.0, panel.box.width() / 70.0)))};
+  panel.y = {"y (" + metre.name + ")", w.bottom / metre.size, w.top / metre.size};
+  if (over_landscape) {
+    const dynamics::Landscape l =
+        dynamics::landscape(scene.gate, std::min(0.0, w.bottom), scene.gate.run.traverse_y / 120.0);
+    const double highest = ceiling_of(l);
+    const Sized joule = readable_unit("J", highest);
+    Rows& ground = out.data("$ground");
+    add_rows(ground, l, metre, joule, highest);
+    panel.colours = {kFree, highest / joule.size, panel.box.beside(14, 12), "",
+                     "potential energy (" + joule.name + ")"};
+    panel.say("cut at " + short_energy(highest, joule) + "; no colour: " + kHole, 8, height - 12,
+              kSmallFont);
+    panel.draw(ground, "1:2:4", "image pixels");
+  }
+  for (const Rows* way : ways)
+    if (over_landscape)
+      panel.draw_outlined(*way, "1:2", "lines", {"#000000", 3}, {"#ffffff", 1.2});
+    else
+      panel.draw(*way, "1:2", "lines", {kFirstColour, 1.5});
+  const Rows& discs = out.data(std::move(ends));
+  Rows& beams = out.data("$beams");
+  add_beams(beams, scene, recordings.gates, w, metre.size);
+  panel.draw(beams, "1:2:3:4", "vectors nohead", {kSecondColour, 2});
+  panel.more = "set style fill empty border\n";
+  panel.draw(discs, "1:2:3", "circles", {over_landscape ? "#ffffff" : kInk});
+  return out.figure(height);
 }
 
 }  // namespace gatewalk::cli

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "cli/render/figure.h"
+#include "cli/render/panel.h"
 #include "cli/render/stability.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -54,7 +53,7 @@ struct DrawnAxis {
     if (zero_first) at[0] = 2 * at[1] - at[2];
     set_edges(at);
     if (by_number || zero_first)
-      tics = "(" + tics_by_hand(v, at) + ")";
+      tics = tics_by_hand(v, at);
     else if (logarithmic)
       tics = digits(std::pow(10.0, std::ceil(std::log10(high.back() / low.front()) / 3.5)));
     else
@@ -77,9 +76,9 @@ struct DrawnAxis {
   /// middle.
   [[nodiscard]] std::string tics_by_hand(const std::vector<double>& v,
                                          const std::vector<double>& at) const {
-    std::string list;
+    std::vector<Tic> list;
     const auto tic = [&](double place, const std::string& text) {
-      list += (list.empty() ? "'" : ", '") + text + "' " + digits(drawn(place));
+      list.push_back({text, drawn(place)});
     };
     for (std::size_t i = 0; i < v.size(); ++i) {
       const double decade = std::log10(std::abs(v[i]));
@@ -91,21 +90,23 @@ struct DrawnAxis {
         tic(at[i], (v[i] < 0 ? "-10^{" : "10^{") + std::to_string(whole) + "}");
     }
     if (by_number) tic(0.5 * (at.front() + at.back()), "0");
-    return list;
+    return tics_of(list);
+  }
+
+  [[nodiscard]] Axis axis(std::string_view name) const {
+    return {verbatim(std::string(name)),    low.front(), high.back(), tics,
+            logarithmic ? "10^{%L}" : "%g", true,        logarithmic};
   }
 };
 
 /// A box for each point, for boxxyerror.
-std::string cells_of(const FinishedMap& m, const DrawnAxis& x, const DrawnAxis& y) {
-  std::string cells;
+void add_boxes(Rows& rows, const FinishedMap& m, const DrawnAxis& x, const DrawnAxis& y) {
   for (std::size_t iy = 0; iy < m.map.y.values.size(); ++iy)
     for (std::size_t ix = 0; ix < m.map.x.values.size(); ++ix) {
       const char* colour = kColours[static_cast<std::size_t>(m.at(ix, iy).verdict)];
-      cells += digits(std::sqrt(x.low[ix]) * std::sqrt(x.high[ix])) + " 0 " + digits(x.low[ix]) +
-               " " + digits(x.high[ix]) + " " + digits(y.low[iy]) + " " + digits(y.high[iy]) +
-               " 0x" + (colour + 1) + "\n";
+      rows.add(std::sqrt(x.low[ix]) * std::sqrt(x.high[ix]), 0, x.low[ix], x.high[ix], y.low[iy],
+               y.high[iy], std::string("0x") + (colour + 1));
     }
-  return cells;
 }
 
 /// The maps of one kind, three methods in a row, and a key in the place of the sixth.
@@ -123,25 +124,22 @@ class PanelGroup {
     return row_of(1) + kPanelHeight + 70 + 20 * static_cast<double>((borders_.size() + 1) / 2);
   }
 
-  [[nodiscard]] std::string drawn_on(const Sheet& sheet) const {
+  void draw_on(Panels& out) const {
     const dynamics::StabilityMap& map = maps_.front().map;
-    std::string out = sheet.text(std::string(map.title), 8, top_ + 14) + "set label " +
-                      literal(map.y.label) + " at screen " + sheet.at(10, row_of(1) - 20) +
-                      " center rotate by 90\n";
-    for (std::size_t i = 0; i < maps_.size(); ++i) out += panel(i, sheet);
-    std::vector<std::string> verdicts;
+    out.say(std::string(map.title), 8, top_ + 14);
+    for (std::size_t i = 0; i < maps_.size(); ++i) add_panel(out, i);
+    std::vector<Layer> verdicts;
     for (std::size_t v = 0; v < kColours.size(); ++v)
       if (std::any_of(maps_.begin(), maps_.end(),
                       [v](const FinishedMap& m) { return m.count(static_cast<Verdict>(v)) > 0; }))
-        verdicts.push_back(std::string("with points pt 5 ps 1.4 lc rgb '") + kColours[v] +
-                           "' title " + literal(dynamics::kVerdictNames[v]));
-    out += sheet.key(left_of(2), row_of(1), verdicts);
+        verdicts.push_back(entry("points", {.colour = kColours[v], .mark = 5, .size = 1.4},
+                                 verbatim(std::string(dynamics::kVerdictNames[v]))));
+    out.add_key(left_of(2), row_of(1), std::move(verdicts));
     for (std::size_t i = 0; i < borders_.size(); ++i)
-      out += sheet.key(i % 2 == 0 ? 70 : 270,
-                       end() - 8 - 20 * static_cast<double>((borders_.size() + 1) / 2 - i / 2),
-                       {"with lines lt -1 lw 1.5 dt " + std::to_string(i + 1) + " title " +
-                        literal(borders_[i])});
-    return out;
+      out.add_key(i % 2 == 0 ? 70 : 270,
+                  end() - 8 - 20 * static_cast<double>((borders_.size() + 1) / 2 - i / 2),
+                  {entry("lines", {.colour = kInk, .width = 1.5, .dashes = static_cast<int>(i + 1)},
+                         verbatim(borders_[i]))});
   }
 
  private:
@@ -153,44 +151,36 @@ class PanelGroup {
   }
 
   /// Known borders of a map, the same one in the same dashes everywhere, seen on every colour.
-  [[nodiscard]] std::string lines_of(const dynamics::StabilityMap& map, const std::string& tag,
-                                     std::string& blocks) const {
-    std::string plot;
+  void draw_borders(Panels& out, Panel& panel, const dynamics::StabilityMap& map,
+                    const std::string& tag) const {
     for (const dynamics::Border& border : dynamics::borders(map)) {
-      std::string rows;
-      for (std::size_t k = 0; k < border.x.size(); ++k)
-        rows += digits(border.x[k]) + " " + digits(border.y[k]) + "\n";
       const auto place = std::find(borders_.begin(), borders_.end(), border.label);
-      const std::string dash = std::to_string(place - borders_.begin() + 1),
-                        name = tag + "B" + dash;
-      blocks += data_block(name, rows);
-      plot += ", " + name + " using 1:2 with lines lw 3.5 lc rgb '#ffffff', " + name +
-              " using 1:2 with lines lw 1.5 lc rgb '#000000' dt " + dash;
+      const int dash = static_cast<int>(place - borders_.begin()) + 1;
+      Rows& rows = out.data(tag + "B" + std::to_string(dash));
+      for (std::size_t k = 0; k < border.x.size(); ++k) rows.add(border.x[k], border.y[k]);
+      panel.draw_outlined(rows, "1:2", "lines", {"#ffffff", 3.5},
+                          {.colour = "#000000", .width = 1.5, .dashes = dash});
     }
-    return plot;
   }
 
-  [[nodiscard]] std::string panel(std::size_t i, const Sheet& sheet) const {
+  void add_panel(Panels& out, std::size_t i) const {
     const dynamics::StabilityMap& map = maps_[i].map;
     const DrawnAxis x(map.x), y(map.y);
-    const std::string name = tag_ + std::to_string(i);
     const double left = left_of(i % 3), top = row_of(i / 3);
     // A label under the middle one serves its whole row, but for one that has another axis.
     const bool named = i % 3 == 1 || (i == 3 && map.x.label != maps_.back().map.x.label);
-    std::string blocks = data_block(name, cells_of(maps_[i], x, y));
-    const std::string lines = lines_of(map, name, blocks);
-    const auto axis = [](const std::string& n, const DrawnAxis& drawn) {
-      return (drawn.logarithmic ? "set logscale " : "unset logscale ") + n + "\nset format " + n +
-             (drawn.logarithmic ? " '10^{%L}'" : " '%g'") + "\nset " + n + "tics " + drawn.tics +
-             "\nset " + n + "range [" + digits(drawn.low.front()) + ":" +
-             digits(drawn.high.back()) + "]\n";
-    };
-    return blocks + kFrame + "set style fill solid noborder\n" +
-           sheet.margins({left, left + kPanelWidth, top, top + kPanelHeight}) +
-           sheet.text(map.method, left, top - 12) + axis("x", x) + axis("y", y) +
-           (i % 3 == 0 ? "" : "unset ytics\n") +
-           Sheet::x_axis(named ? literal(map.x.label) : std::string("''")) + "plot " + name +
-           " using 1:2:3:4:5:6:7 with boxxyerror lc rgb variable" + lines + "\nunset label\n";
+    Rows& rows = out.data(tag_ + std::to_string(i));
+    add_boxes(rows, maps_[i], x, y);
+    Panel& panel = out.add({left, left + kPanelWidth, top, top + kPanelHeight});
+    if (i == 0)
+      panel.texts.push_back(
+          {verbatim(std::string(map.y.label)), 10, row_of(1) - 20, kFont, "center rotate by 90"});
+    panel.say(map.method, left, top - 12);
+    panel.x = x.axis(named ? map.x.label : "");
+    panel.y = y.axis("");
+    if (i % 3 != 0) panel.y.tics = kNoTics;
+    panel.draw(rows, "1:2:3:4:5:6:7", kBars, {kOwnColour});
+    draw_borders(out, panel, map, rows.name());
   }
 
   std::span<const FinishedMap> maps_;
@@ -210,10 +200,9 @@ Figure figure_of(std::span<const FinishedMap> maps) {
                         "$map" + std::to_string(groups.size()) + "_");
     height = groups.back().end();
   }
-  const Sheet sheet{static_cast<int>(height)};
-  std::string out = "set multiplot\nunset ylabel\n";
-  for (PanelGroup& group : groups) out += group.drawn_on(sheet);
-  return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
+  Panels out;
+  for (const PanelGroup& group : groups) group.draw_on(out);
+  return out.figure(static_cast<int>(height));
 }
 
 }  // namespace gatewalk::cli

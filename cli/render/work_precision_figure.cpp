@@ -5,8 +5,7 @@
 #include <functional>
 #include <limits>
 
-#include "cli/render/figure.h"
-#include "cli/render/text.h"
+#include "cli/render/panel.h"
 #include "cli/render/work_precision.h"
 
 namespace gatewalk::cli {
@@ -16,31 +15,20 @@ using dynamics::ChartPoint;
 using dynamics::Verdict;
 using dynamics::WorkPrecision;
 
-/// Colour and marker (gnuplot's number, filled) of a method.
-struct Look {
-  const char* colour;
-  int marker;
-};
-Look look_of(const std::string& method) {
-  if (method == "paper") return {kSecondColour, 5};
-  if (method == "stable") return {kFirstColour, 7};
-  if (method == "moreau") return {kThirdColour, 9};
-  if (method == "penalty") return {kFifthColour, 13};
-  return {kFourthColour, 15};
+/// Colour and marker (filled) of a method.
+Pen pen_of(const std::string& method) {
+  if (method == "paper") return {.colour = kSecondColour, .mark = 5, .size = 0.7};
+  if (method == "stable") return {.colour = kFirstColour, .mark = 7, .size = 0.7};
+  if (method == "moreau") return {.colour = kThirdColour, .mark = 9, .size = 0.7};
+  if (method == "penalty") return {.colour = kFifthColour, .mark = 13, .size = 0.7};
+  return {.colour = kFourthColour, .mark = 15, .size = 0.7};
 }
 
-/// "lc rgb '...'", for all that is of the method.
-std::string colour_of(const std::string& method) {
-  return std::string(" lc rgb '") + look_of(method).colour + "'";
-}
-
-// What is marked, in the panels and in the key.
-constexpr char kUsual[] = "points pt 6 ps 1.2 lw 1.2";
-constexpr char kFault[] = "points pt 2 ps 0.7 lw 2";
-constexpr char kLess[] = "points pt 10 ps 0.9 lw 1.2";
-constexpr char kParted[] = "points pt 8 ps 0.9 lw 1.2";
-constexpr char kLimit[] = "lines lw 0.8 dt 2";
-constexpr char kOwn[] = "lines lw 0.8 dt 3";
+// What is marked, in the panels, there in the colour of a method, and in the key.
+constexpr Pen kUsual{kInk, 1.2, 6, 1.2}, kFault{kInk, 2, 2, 0.7}, kLess{kInk, 1.2, 10, 0.9},
+    kParted{kInk, 1.2, 8, 0.9};
+constexpr Pen kLimit{.colour = kInk, .width = 0.8, .dashes = 2},
+    kOwn{.colour = kInk, .width = 0.8, .dashes = 3};
 
 /// A point's error (infinite: half of the trials or more parted; NaN: none), its standard error,
 /// and what it must reach to be told from no error.
@@ -86,7 +74,6 @@ struct Range {
   [[nodiscard]] Range wider(double below, double above) const {
     return high > 0.0 ? Range{low / below, high * above} : Range{0.1, 1.0};
   }
-  [[nodiscard]] std::string text() const { return "[" + digits(low) + ":" + digits(high) + "]"; }
 };
 
 /// The same for all scenes: they can be compared.
@@ -112,64 +99,55 @@ struct Ranges {
 
 /// Least time per trial against error, all methods. What is below its bound is drawn there, as
 /// less than that; what has parted, on top.
-std::string panel(const WorkPrecision& chart, const OutcomeKind& kind, const Range& range,
-                  const std::string& tag) {
-  std::string blocks, plot = "plot ";
-  const auto element = [&](const std::string& text) {
-    plot += (plot == "plot " ? "" : ", ") + text;
-  };
-  const auto level = [&](double at, const char* look) {
-    if (at > range.low && std::isfinite(at)) element(digits(at) + " with " + look + " lt -1");
+void draw_methods(Panels& out, Panel& panel, const WorkPrecision& chart, const OutcomeKind& kind,
+                  const Range& range, const std::string& tag) {
+  const auto level = [&](double at, const Pen& pen) {
+    if (at > range.low && std::isfinite(at)) panel.draw_level(at, pen);
   };
   level(kind.limit, kLimit);
   level(kind.own, kOwn);
+  bool compared = false;
   for (std::size_t begin = 0, end = 0; begin < chart.points.size(); begin = end) {
     const std::string& method = chart.points[begin].setting.method;
-    std::string line, good, bars, fault, less, parted, usual;
+    const auto rows_of = [&](const char* what) { return Rows("$" + tag + method + what); };
+    Rows line = rows_of("line"), bars = rows_of("bars"), good = rows_of("good"),
+         fault = rows_of("fault"), less = rows_of("less"), parted = rows_of("parted"),
+         usual = rows_of("usual");
     for (; end < chart.points.size() && chart.points[end].setting.method == method; ++end) {
       const ChartPoint& p = chart.points[end];
       if (!p.ran()) continue;
       const Drawn drawn = kind.value(p);
       const auto [error, spread, bound] = drawn;
       if (std::isnan(error)) continue;
-      const std::string time = digits(p.least_microseconds()) + " ",
-                        x_y = time + digits(drawn.parted() ? range.high / 1.6 : drawn.height()) +
-                              "\n";
-      if (p.setting.usual) usual += x_y;
+      const double time = p.least_microseconds(),
+                   at = drawn.parted() ? range.high / 1.6 : drawn.height();
+      if (p.setting.usual) usual.add(time, at);
       if (drawn.parted()) {
-        parted += x_y;
+        parted.add(time, at);
         continue;
       }
-      line += x_y;
-      (error < bound ? less : p.verdict == Verdict::fine ? good : fault) += x_y;
+      line.add(time, at);
+      (error < bound ? less : p.verdict == Verdict::fine ? good : fault).add(time, at);
       if (error >= bound && std::isfinite(spread))
-        bars += time + digits(std::max(error - 2 * spread, 0.1 * error)) + " " +
-                digits(error + 2 * spread) + "\n";
+        bars.add(time, std::max(error - 2 * spread, 0.1 * error), error + 2 * spread);
     }
-    const Look look = look_of(method);
-    const auto draw = [&](const char* what, const std::string& rows, const std::string& with) {
+    const Pen own = pen_of(method);
+    const auto draw = [&](Rows& rows, const char* columns, const char* with, Pen pen,
+                          const char* colour) {
       if (rows.empty()) return;
-      const std::string name = "$" + tag + method + what;
-      blocks += data_block(name, rows);
-      element(name + with);
+      compared = true;
+      pen.colour = colour;
+      panel.draw(out.data(std::move(rows)), columns, with, pen);
     };
-    const std::string colour = colour_of(method), points = " using 1:2 with ";
-    draw("line", line, points + "lines lw 1" + colour);
-    draw("bars", bars,
-         " using 1:2:(0):($3-$2) with vectors heads size graph 0.015,90 lw 0.8" + colour);
-    draw("good", good, points + "points ps 0.7 pt " + std::to_string(look.marker) + colour);
-    draw("fault", fault, points + kFault + colour);
-    draw("less", less, points + kLess + colour);
-    draw("parted", parted, points + kParted + colour);
-    draw("usual", usual, points + kUsual + " lt -1");
+    draw(line, "1:2", "lines", {.width = 1}, own.colour);
+    draw(bars, "1:2:(0):($3-$2)", "vectors heads size graph 0.015,90", {.width = 0.8}, own.colour);
+    draw(good, "1:2", "points", own, own.colour);
+    draw(fault, "1:2", "points", kFault, own.colour);
+    draw(less, "1:2", "points", kLess, own.colour);
+    draw(parted, "1:2", "points", kParted, own.colour);
+    draw(usual, "1:2", "points", kUsual, kInk);
   }
-  if (blocks.empty()) {
-    element("NaN");
-    blocks = "set label 'nothing to compare' at graph 0.5,0.5 center\n";
-  }
-  return blocks + "set ytics " +
-         digits(std::pow(10.0, std::ceil(std::log10(range.high / range.low) / 6.0))) +
-         "\nset yrange " + range.text() + "\n" + plot + "\n";
+  if (!compared) panel.more = "set label 'nothing to compare' at graph 0.5,0.5 center\n";
 }
 
 /// Settings that the method refused, in lines as wide as the figure: "refused: penalty 0.02 to
@@ -197,59 +175,60 @@ std::vector<std::string> refused_lines(const WorkPrecision& chart) {
   return lines;
 }
 
-std::string key_of(const std::vector<WorkPrecision>& charts, const Sheet& sheet) {
-  std::vector<std::string> methods;
-  std::string last;
-  for (const ChartPoint& p : charts.front().points) {
-    if (p.setting.method == last) continue;
-    last = p.setting.method;
-    methods.push_back("with linespoints ps 0.7 pt " + std::to_string(look_of(last).marker) +
-                      colour_of(last) + " title '" + last + "'");
-  }
-  const auto entry = [](const char* look, const char* name) {
-    return std::string("with ") + look + " lt -1 title '" + name + "'";
-  };
-  std::vector<std::string> marks{entry(kUsual, "usual setting"), entry(kFault, "shows a fault"),
-                                 entry(kLess, "less than this")};
+void add_keys(Panels& out, const std::vector<WorkPrecision>& charts) {
+  std::vector<Layer> methods;
+  for (const ChartPoint& p : charts.front().points)
+    if (const std::string& method = p.setting.method;
+        methods.empty() || methods.back().title.text != method)
+      methods.push_back(entry("linespoints", pen_of(method), method));
+  std::vector<Layer> marks{entry("points", kUsual, "usual setting"),
+                           entry("points", kFault, "shows a fault"),
+                           entry("points", kLess, "less than this")};
   const bool parted = std::any_of(charts.begin(), charts.end(), [](const WorkPrecision& chart) {
     return std::any_of(chart.points.begin(), chart.points.end(), [&](const ChartPoint& p) {
       return p.ran() && positions_of(chart).value(p).parted();
     });
   });
-  if (parted) marks.push_back(entry(kParted, "half or more parted"));
-  return sheet.key(8, 6, methods) + sheet.key(116, 6, marks) +
-         sheet.key(296, 6, {entry(kLimit, "limit of the reference"), entry(kOwn, "its own error")});
+  if (parted) marks.push_back(entry("points", kParted, "half or more parted"));
+  out.add_key(8, 6, std::move(methods));
+  out.add_key(116, 6, std::move(marks));
+  out.add_key(
+      296, 6,
+      {entry("lines", kLimit, "limit of the reference"), entry("lines", kOwn, "its own error")});
 }
 
 }  // namespace
 
 Figure figure_of(const std::vector<WorkPrecision>& charts) {
   constexpr double kTop = 112, kPanel = 142, kBelow = 30, kLine = 16;
-  double height = kTop;
-  for (const WorkPrecision& chart : charts)
-    height += 30 + kLine * static_cast<double>(refused_lines(chart).size()) + kPanel + kBelow;
-  const Sheet sheet{static_cast<int>(height + 32)};
   const Ranges ranges(charts);
-  std::string out = "set multiplot\n" + key_of(charts, sheet) + kFrame +
-                    "set logscale xy\nset format y '10^{%L}'\nset grid" + kThin + "\nset xrange " +
-                    ranges.time.text() + "\nset xtics (" +
-                    tics_1_2_5(ranges.time.low, ranges.time.high, 160) + ")\n";
+  const std::string tics = "(" + tics_1_2_5(ranges.time.low, ranges.time.high, 160) + ")";
+  Panels out;
+  add_keys(out, charts);
   double top = kTop;
   for (std::size_t i = 0; i < charts.size(); ++i) {
     const WorkPrecision& chart = charts[i];
-    out += sheet.text(chart.label, 8, top + 14);
+    out.say(chart.label, 8, top + 14);
     for (const std::string& line : refused_lines(chart))
-      out += sheet.text(line, 8, (top += kLine) + 14, kSmallFont);
+      out.say(line, 8, (top += kLine) + 14, kSmallFont);
     top += 30;
-    const std::string label = i + 1 == charts.size() ? "'µs per trial'" : "''";
-    const Box left{80, 236, top, top + kPanel}, right{330, 486, top, top + kPanel};
-    out += sheet.margins(left) + Sheet::axes(label, "'total variation'") +
-           panel(chart, outcomes_of(chart), ranges.outcomes, "weak" + std::to_string(i)) +
-           "unset label\n" + sheet.margins(right) + Sheet::axes(label, "'exit off by (m)'") +
-           panel(chart, positions_of(chart), ranges.positions, "strong" + std::to_string(i));
+    const auto add = [&](double left, const char* name, const OutcomeKind& kind, const Range& range,
+                         const char* tag) {
+      Panel& panel = out.add({left, left + 156, top, top + kPanel});
+      panel.x = {i + 1 == charts.size() ? "µs per trial" : "", ranges.time.low, ranges.time.high,
+                 tics};
+      const double decades = std::log10(range.high / range.low);
+      panel.y = {name, range.low, range.high, digits(std::pow(10.0, std::ceil(decades / 6.0))),
+                 "10^{%L}"};
+      panel.x.logarithmic = panel.y.logarithmic = true;
+      panel.grid = kThin;
+      draw_methods(out, panel, chart, kind, range, tag + std::to_string(i));
+    };
+    add(80, "total variation", outcomes_of(chart), ranges.outcomes, "weak");
+    add(330, "exit off by (m)", positions_of(chart), ranges.positions, "strong");
     top += kPanel + kBelow;
   }
-  return {Sheet::kWidth, sheet.height, out + "unset multiplot\n", kFont};
+  return out.figure(static_cast<int>(top + 32));
 }
 
 }  // namespace gatewalk::cli
