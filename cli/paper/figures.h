@@ -10,7 +10,7 @@
 
 #include "cli/paper/findings.h"
 #include "cli/paper/report.h"
-#include "cli/render/figure.h"
+#include "cli/render/panel.h"
 #include "dynamics/disc/landscape.h"
 
 namespace gatewalk::cli {
@@ -53,32 +53,22 @@ struct Section {
 
 // ---- What several of them need (figures_common.cpp)
 
-/// A figure of these panels, which follow each other in gnuplot's multiplot; `data`: what they
-/// read.
-[[nodiscard]] Figure figure_of(const Sheet& sheet, const std::string& data,
-                               const std::string& panels);
+/// No panels yet, with axes as all of the paper's figures have them.
+[[nodiscard]] Panels paper_panels();
 
-/// Text in gnuplot's quotes with the paper's symbols as they are printed: F_prop, k_L, d = 50.
-[[nodiscard]] std::string quoted(const std::string& text);
-/// Such a text on the sheet, its middle at this height; until "unset label".
-[[nodiscard]] std::string words(const Sheet& sheet, const std::string& text, double left,
-                                double middle, int font = kFont);
+/// Text with the paper's symbols as they are printed: F_prop, k_L, d = 50.
+[[nodiscard]] Caption as_printed(const std::string& text);
 
-/// Where the next panel is drawn, and the names of its axes until "unset label" (gnuplot drops
-/// those of its own that it finds too wide); without a y its tics have no numbers.
-/// `room`: from the panel to the middle of its name.
-[[nodiscard]] std::string frame(const Sheet& sheet, const Box& box, const std::string& x,
-                                const std::string& y, double room = 48.0);
-
-/// Numbers as digits with spaces between them, a line of a table of gnuplot.
-[[nodiscard]] std::string line_of(const std::vector<double>& values);
+/// A panel with the names of its axes (gnuplot drops those of its own that it finds too wide);
+/// without a y its tics have no numbers. `room`: from the panel to the middle of its name.
+Panel& add_panel(Panels& out, const Box& box, const std::string& x, const std::string& y,
+                 double room = 48.0);
 
 /// A share or percentage where a root scale has it; and the tics of such an axis, in %.
 [[nodiscard]] inline double root_percent(double share) { return std::sqrt(100.0 * share); }
 [[nodiscard]] std::string root_tics(const std::vector<double>& percents, bool numbers = true);
 
-/// How tics and lines of a grid look.
-inline constexpr char kSmallTics[] = "set tics font ',12'\n";
+/// How lines of a grid look.
 inline constexpr char kGrid[] = " lc rgb '#888888' lt 1 dt 3 lw 0.5";
 
 /// A landscape from above with lines of equal energy (J), `step` apart; what is higher than the
@@ -90,20 +80,22 @@ struct EnergyMap {
   static constexpr double kWidth = 175, kHeight = 227.5;  // px, of 50 m and 65 m
   /// Half of the paper's grid's, m.
   static constexpr double kSpacing = 0.25;
-  /// `energy`: what of the landscape is drawn.
-  [[nodiscard]] std::string data(const dynamics::Landscape& l, const Eigen::ArrayXXd& energy) const;
-  /// With its upper left corner there, and names of its axes; "plot ..." without an end.
-  [[nodiscard]] std::string plot(const Sheet& sheet, double left, double top, const std::string& x,
-                                 const std::string& y) const;
-  /// Its colours, right of a map with its upper left corner there.
-  [[nodiscard]] std::string colours(const Sheet& sheet, double left, double top) const;
+  /// Its data, and those of its lines; `energy`: what of the landscape is drawn.
+  Rows& add_data(Panels& out, const dynamics::Landscape& l, const Eigen::ArrayXXd& energy) const;
+  /// Its panel with its upper left corner there, and names of its axes.
+  Panel& add(Panels& out, const Rows& rows, double left, double top, const std::string& x,
+             const std::string& y) const;
+  /// A bar of its colours, right of a map with its upper left corner there.
+  void add_bar(Panel& panel, double left, double top) const;
 };
-/// A way over such a map: `what` of gnuplot's plot as a line with a dark edge.
-[[nodiscard]] std::string track(const std::string& what, double width, const std::string& colour);
+/// A way over such a map: a line with a dark edge.
+void draw_track(Panel& panel, const Rows& rows, const std::string& columns, double width,
+                const char* colour);
 
 /// Dots with 95 % bars in rows, the rows in groups: shares that vary with one setting at a time.
 struct Series {
-  std::string name, colour;
+  std::string name;
+  const char* colour;
   int marker;
 };
 struct RateRow {
@@ -118,8 +110,8 @@ struct RateGroup {
 };
 [[nodiscard]] Figure rates(const std::vector<std::string>& head, const std::vector<Series>& series,
                            const std::vector<RateGroup>& groups, const std::string& axis);
-/// Tics of rows from above: labels as they are; of a group its name, bold.
-[[nodiscard]] std::string row_tics(const std::vector<std::string>& labels);
+/// An axis of rows from above: labels as they are; of a group its name, bold.
+[[nodiscard]] Axis row_axis(const std::vector<std::string>& labels);
 [[nodiscard]] inline std::string bold(const std::string& text) { return "{/:Bold " + text + "}"; }
 
 }  // namespace gatewalk::cli

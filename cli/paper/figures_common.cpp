@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -23,17 +25,14 @@ constexpr std::pair<const char*, const char*> kSymbols[] = {{"F_prop", "{/:Itali
 
 }  // namespace
 
-Figure figure_of(const Sheet& sheet, const std::string& data, const std::string& panels) {
-  return {Sheet::kWidth, sheet.height,
-          "set encoding utf8\nset minussign\nunset key\nset tics out "
-          "nomirror scale 0.5\n"
-          "set xtics offset 0,0.4\n" +
-              data + "set multiplot\n" + panels + "unset multiplot\n",
-          kFont};
+Panels paper_panels() {
+  return Panels(
+      "set encoding utf8\nset minussign\nunset key\nset tics out nomirror scale 0.5\n"
+      "set xtics offset 0,0.4\n");
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "'";
+Caption as_printed(const std::string& text) {
+  std::string out;
   for (std::size_t i = 0; i < text.size();) {
     const auto* const symbol = std::find_if(std::begin(kSymbols), std::end(kSymbols), [&](auto& s) {
       const std::string_view plain = s.first;
@@ -43,35 +42,23 @@ std::string quoted(const std::string& text) {
       out += symbol->second;
       i += std::string_view(symbol->first).size();
     } else {
-      if (text[i] == '\'') out += '\'';  // doubled
       out += text[i++];
     }
   }
-  return out + "'";
+  return markup(out);
 }
 
-std::string words(const Sheet& sheet, const std::string& text, double left, double middle,
-                  int font) {
-  return "set label " + quoted(text) + " at screen " + sheet.at(left, middle) + " left font '," +
-         std::to_string(font) + "'\n";
-}
-
-std::string frame(const Sheet& sheet, const Box& box, const std::string& x, const std::string& y,
-                  double room) {
-  const auto name = [&](const std::string& text, double left, double top, const char* how) {
-    return text.empty() ? ""
-                        : "set label " + quoted(text) + " at screen " + sheet.at(left, top) +
-                              " center " + how + "\n";
-  };
-  return sheet.margins(box) + "set format y" + (y.empty() ? " ''\n" : "\n") +
-         name(x, 0.5 * (box.left + box.right), box.bottom + 42, "") +
-         name(y, box.left - room, 0.5 * (box.top + box.bottom), "rotate by 90");
-}
-
-std::string line_of(const std::vector<double>& values) {
-  std::string line;
-  for (const double x : values) line += (line.empty() ? "" : " ") + digits(x);
-  return line + "\n";
+Panel& add_panel(Panels& out, const Box& box, const std::string& x, const std::string& y,
+                 double room) {
+  Panel& panel = out.add(box);
+  panel.y.numbers = !y.empty();
+  if (!x.empty())
+    panel.texts.push_back(
+        {as_printed(x), 0.5 * (box.left + box.right), box.bottom + 42, kFont, "center"});
+  if (!y.empty())
+    panel.texts.push_back({as_printed(y), box.left - room, 0.5 * (box.top + box.bottom), kFont,
+                           "center rotate by 90"});
+  return panel;
 }
 
 std::string root_tics(const std::vector<double>& percents, bool numbers) {
@@ -84,55 +71,64 @@ std::string root_tics(const std::vector<double>& percents, bool numbers) {
 
 // ---- Landscapes
 
-std::string EnergyMap::data(const dynamics::Landscape& l, const Eigen::ArrayXXd& energy) const {
-  std::string rows;
+Rows& EnergyMap::add_data(Panels& out, const dynamics::Landscape& l,
+                          const Eigen::ArrayXXd& energy) const {
+  Rows& rows = out.data(name);
   for (std::size_t i = 0; i < l.y.size(); ++i) {
     for (std::size_t j = 0; j < l.x.size(); ++j) {
       const double e = energy(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-      rows += digits(l.x[j]) + " " + digits(l.y[i]) + " " +
-              (std::isfinite(e) ? digits(std::min(e, ceiling)) : "NaN") + "\n";
+      rows.add(l.x[j], l.y[i], std::isfinite(e) ? digits(std::min(e, ceiling)) : "NaN");
     }
-    rows += "\n";
+    rows.gap();
   }
-  return data_block(name, rows) +
-         "set contour base\nunset surface\nset cntrparam levels incremental " + digits(step) + "," +
-         digits(step) + "," + digits(ceiling - step) + "\nset table " + name + "_lines\nsplot " +
-         name + " using 1:2:3 with lines\nunset table\nunset contour\nset surface\n";
+  rows.derived = fmt::format(
+      "set contour base\nunset surface\nset cntrparam levels incremental {0},{0},{1}\n"
+      "set table {2}_lines\nsplot {2} using 1:2:3 with lines\nunset table\nunset contour\n"
+      "set surface\n",
+      digits(step), digits(ceiling - step), name);
+  return rows;
 }
 
-std::string EnergyMap::plot(const Sheet& sheet, double left, double top, const std::string& x,
-                            const std::string& y) const {
-  return kSequential + frame(sheet, {left, left + kWidth, top, top + kHeight}, x, y) + kSmallTics +
-         "set border 15\nset cbrange [0:" + digits(ceiling) +
-         "]\nset xrange [-25:25]\nset yrange [0:65]\nset xtics 20\nset ytics 20\n"
-         "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb '#999999' "
-         "fillstyle solid noborder\nplot " +
-         name + " using 1:2:3 with image, " + name + "_lines using 1:2:" + ink(ceiling) +
-         " with lines lw 0.5 lc rgb variable";
+Panel& EnergyMap::add(Panels& out, const Rows& rows, double left, double top, const std::string& x,
+                      const std::string& y) const {
+  Panel& panel = add_panel(out, {left, left + kWidth, top, top + kHeight}, x, y);
+  panel.tics_font = kSmallFont;
+  panel.border = 15;
+  panel.x = {"", -25, 25, "20"};
+  panel.y = {"", 0, 65, "20", "", !y.empty()};
+  panel.colours = {0, ceiling};
+  panel.more =
+      "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb '#999999' fillstyle "
+      "solid noborder\n";
+  panel.draw(rows, "1:2:3", "image");
+  panel.layers.push_back({rows.name() + "_lines",
+                          "1:2:" + ink(ceiling),
+                          "lines",
+                          {.colour = kOwnColour, .width = 0.5}});
+  return panel;
 }
 
-std::string EnergyMap::colours(const Sheet& sheet, double left, double top) const {
+void EnergyMap::add_bar(Panel& panel, double left, double top) const {
   const double bar = left + kWidth + 12;
-  return "set cbtics 100 font ',12' offset -0.8,0\nset colorbox user origin screen " +
-         sheet.at(bar, top + kHeight) + " size screen " + digits(12.0 / Sheet::kWidth) + "," +
-         digits(kHeight / sheet.height) + "\n" +
-         words(sheet, "J, cut at", bar, top - 34, kSmallFont) +
-         words(sheet, digits(ceiling) + " J", bar, top - 18, kSmallFont);
+  panel.colours->bar = {bar, bar + 12, top, top + kHeight};
+  panel.colours->tics = "100 font ',12' offset -0.8,0";
+  panel.say(as_printed("J, cut at"), bar, top - 34, kSmallFont);
+  panel.say(as_printed(digits(ceiling) + " J"), bar, top - 18, kSmallFont);
 }
 
-std::string track(const std::string& what, double width, const std::string& colour) {
-  return what + " with lines lw " + digits(width + 0.9) + " lc rgb '#000000', " + what +
-         " with lines lw " + digits(width) + " lc rgb '" + colour + "'";
+void draw_track(Panel& panel, const Rows& rows, const std::string& columns, double width,
+                const char* colour) {
+  panel.draw_outlined(rows, columns, "lines", {"#000000", width + 0.9}, {colour, width});
 }
 
 // ---- Rows of shares
 
-std::string row_tics(const std::vector<std::string>& labels) {
-  std::string list;
-  for (std::size_t i = 0; i < labels.size(); ++i)
-    list += (i ? ", " : "(") + quoted(labels[i]) + " " + std::to_string(i);
-  return "set ytics " + list + ") scale 0 font ',12'\nset yrange [" +
-         digits(static_cast<double>(labels.size()) - 0.4) + ":-0.6]\n";
+Axis row_axis(const std::vector<std::string>& labels) {
+  std::vector<std::string> names;
+  for (const std::string& label : labels) names.push_back(as_printed(label).text);
+  return {"",   static_cast<double>(labels.size()) - 0.4,
+          -0.6, tics_of(names) + " scale 0 font ',12'",
+          "",   false};
 }
 
 Figure rates(const std::vector<std::string>& head, const std::vector<Series>& series,
@@ -146,57 +142,57 @@ Figure rates(const std::vector<std::string>& head, const std::vector<Series>& se
   const RootScale scale(most);
   const double end = std::sqrt(scale.most());
   std::vector<std::string> labels;
-  std::vector<std::string> dots(series.size());
-  std::string guides, marks, texts;
+  Panels out = paper_panels();
+  Rows &guides = out.data("$guides"), marks("$marks");
+  std::vector<Rows> dots;
+  for (std::size_t i = 0; i < series.size(); ++i) dots.emplace_back("$series" + std::to_string(i));
+  std::vector<Text> mark_labels;
   for (const RateGroup& g : groups) {
     const auto first = static_cast<double>(labels.size());
     labels.push_back(bold(g.name));
     for (const RateRow& row : g.rows) {
       const auto at = static_cast<double>(labels.size());
       labels.push_back(row.label);
-      guides += line_of({0, at, end, 0});
+      guides.add(0, at, end, 0);
       for (std::size_t i = 0; i < row.shares.size(); ++i) {
         const Share& s = row.shares[i];
         const double beside =
             0.26 * (static_cast<double>(i) - 0.5 * static_cast<double>(series.size() - 1));
         if (!std::isnan(s.value))
-          dots[i] += line_of(
-              {root_percent(s.value), at + beside, root_percent(s.low), root_percent(s.high)});
+          dots[i].add(root_percent(s.value), at + beside, root_percent(s.low),
+                      root_percent(s.high));
       }
     }
     if (std::isnan(g.mark)) continue;
     const double x = std::sqrt(g.mark);
-    marks += line_of({x, first + 0.5, 0, static_cast<double>(g.rows.size())});
+    marks.add(x, first + 0.5, 0, g.rows.size());
     if (!g.mark_label.empty())
-      texts += "set label " + quoted(g.mark_label) + " at " + digits(x) + "," + digits(first) +
-               " center font ',12'\n";
+      mark_labels.push_back({as_printed(g.mark_label), x, first, kSmallFont, "center", true});
   }
   const double top =
       18.0 + 22.0 * static_cast<double>(head.size()) + (series.size() > 1 ? 22.0 : 0.0);
-  const Box box{186, 488, top, top + 19.0 * static_cast<double>(labels.size())};
-  const Sheet sheet{static_cast<int>(box.bottom + 60)};
-  std::string data = data_block("$guides", guides);
-  std::string plot = std::string("plot $guides using 1:2:3:4 notitle with vectors nohead") + kGrid;
+  Panel& panel =
+      add_panel(out, {186, 488, top, top + 19.0 * static_cast<double>(labels.size())}, axis, "");
+  panel.texts.insert(panel.texts.end(), mark_labels.begin(), mark_labels.end());
   for (std::size_t i = 0; i < head.size(); ++i)
-    texts += words(sheet, head[i], 8, 18 + 22.0 * static_cast<double>(i));
-  if (!marks.empty()) {
-    data += data_block("$marks", marks);
-    plot += ", $marks using 1:2:3:4 notitle with vectors nohead lt -1 lw 1.5 dt 2";
-  }
+    panel.say(as_printed(head[i]), 8, 18 + 22.0 * static_cast<double>(i));
+  panel.border = 1;
+  panel.x = {"", 0, 1.02 * end, "(" + scale.tics() + ")"};
+  panel.y = row_axis(labels);
+  panel.more = "set bars 0.4\n";
+  panel.draw(guides, "1:2:3:4", std::string("vectors nohead") + kGrid);
+  if (!marks.empty())
+    panel.draw(out.data(marks), "1:2:3:4", "vectors nohead",
+               {.colour = kInk, .width = 1.5, .dashes = 2});
   for (std::size_t i = 0; i < series.size(); ++i) {
-    const std::string name = "$series" + std::to_string(i);
-    data += data_block(name, dots[i].empty() ? "NaN NaN NaN NaN\n" : dots[i]);
-    plot += ", " + name + " using 1:2:3:4 with xerrorbars lw 1.2 pt " +
-            std::to_string(series[i].marker) + " ps 0.5 lc rgb '" + series[i].colour + "'" +
-            (series.size() > 1 ? " title " + quoted(series[i].name) : "");
+    if (dots[i].empty()) dots[i].add("NaN NaN NaN NaN");
+    panel.draw(out.data(dots[i]), "1:2:3:4", "xerrorbars",
+               {series[i].colour, 1.2, series[i].marker, 0.5},
+               series.size() > 1 ? as_printed(series[i].name) : Caption());
   }
   if (series.size() > 1)
-    texts += "set key at screen " + sheet.at(8, top - 20) +
-             " left center maxrows 1 Left reverse samplen 1.5\n";
-  return figure_of(sheet, data,
-                   frame(sheet, box, axis, "") + texts + row_tics(labels) +
-                       "set border 1\nset xrange [0:" + digits(1.02 * end) + "]\nset xtics (" +
-                       scale.tics() + ")\n" + "set bars 0.4\n" + plot + "\n");
+    panel.key = {"left center maxrows 1 Left reverse samplen 1.5", 8, top - 20};
+  return out.figure(static_cast<int>(panel.box.bottom + 60));
 }
 
 }  // namespace gatewalk::cli

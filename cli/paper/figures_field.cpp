@@ -34,80 +34,75 @@ std::vector<Cell> cells_of(const ValidatedStart& start, std::int64_t trials) {
   return cells;
 }
 
-/// The colours below maps, with these tics.
-std::string bar_below(const Sheet& sheet, double left, double right, double top,
-                      const std::string& tics) {
-  return "set cbtics " + tics + " font ',12' scale 0.5 offset 0,0.4\n" +
-         cli::bar_below(sheet, left, right, top);
-}
-
 Figure drawn_fig11(const std::string& start, std::vector<Cell> cells, std::int64_t trials) {
-  std::string maps[3], pairs;
+  Panels out = paper_panels();
+  Rows* const maps[] = {&out.data("$dynamics"), &out.data("$chain"), &out.data("$difference")};
+  Rows& pairs = out.data("$pairs");
   double most = 0.0, largest = 1e-6, highest = 0.0;  // %, points, root of %
   for (const Cell& c : cells) {
     most = std::max({most, 100.0 * c.chain, 100.0 * c.dynamics});
     largest = std::max(largest, 100.0 * std::abs(c.dynamics - c.chain));
-    const auto row = [&](double shown, double share, double departed) {
-      return line_of({c.i_x, c.i_y, shown, departed > 0.5 * share ? 1.0 : 0.0});
+    const auto add = [&](int i, double shown, double share, double departed) {
+      maps[i]->add(c.i_x, c.i_y, shown, departed > 0.5 * share ? 1 : 0);
     };
-    maps[0] += row(root_percent(c.dynamics), c.dynamics, c.departed_dynamics);
-    maps[1] += row(root_percent(c.chain), c.chain, c.departed_chain);
-    maps[2] += row(100.0 * (c.dynamics - c.chain), 0.0, 0.0);
+    add(0, root_percent(c.dynamics), c.dynamics, c.departed_dynamics);
+    add(1, root_percent(c.chain), c.chain, c.departed_chain);
+    add(2, 100.0 * (c.dynamics - c.chain), 0.0, 0.0);
   }
   std::sort(cells.begin(), cells.end(),
             [](const Cell& a, const Cell& b) { return a.dynamics > b.dynamics; });
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto [low, high] = dynamics::share_interval(cells[i].trials, trials);
     highest = std::max({highest, root_percent(high), root_percent(cells[i].chain)});
-    pairs += std::to_string(i + 1) + " " +
-             line_of({root_percent(low), root_percent(high), root_percent(cells[i].chain)});
+    pairs.add(i + 1, root_percent(low), root_percent(high), root_percent(cells[i].chain));
   }
   constexpr double kLeft = 58, kWide = 132, kGap = 12, kTop = 66;
-  const double bottom = kTop + kWide;
+  const double bottom = kTop + kWide, bar = bottom + 54;
   const auto left_of = [](int i) { return kLeft + i * (kWide + kGap); };
-  const Box below{66, 488, bottom + 200, bottom + 364};
-  const Sheet sheet{static_cast<int>(below.bottom + 60)};
   const RootScale scale(most);
-  const auto map = [&](int i, const char* name, const std::string& head) {
-    return frame(sheet, {left_of(i), left_of(i) + kWide, kTop, bottom}, i == 1 ? "column i_x" : "",
-                 i == 0 ? "row i_y" : "") +
-           words(sheet, head, left_of(i), kTop - 11, kSmallFont) + "plot " + name + cli::cells() +
-           (i < 2 ? ", '' using 1:($4 > 0 ? $2 : NaN):" + ink(std::sqrt(most)) +
-                        " with points pt 6 ps 0.5 lc rgb variable"
-                  : "") +
-           "\nunset label\n";
-  };
   const std::string tic = short_number(0.7 * largest);
-  const double bar = bottom + 54;
-  return figure_of(
-      sheet,
-      data_block("$dynamics", maps[0]) + data_block("$chain", maps[1]) +
-          data_block("$difference", maps[2]) + data_block("$pairs", pairs),
-      words(sheet, "final gates, n = " + std::to_string(trials) + "; start " + start, 8, 18) +
-          kSmallTics +
-          "set border 15\nset xrange [-4.5:4.5]\nset yrange [-0.5:8.5]\nset xtics 4\nset ytics "
-          "4\n" +
-          kSequential + "set cbrange " + scale.range() + "\nunset colorbox\n" +
-          map(0, "$dynamics", "A  dynamics, %") +
-          bar_below(sheet, left_of(0), left_of(1) + kWide, bar, "(" + scale.tics() + ")") +
-          words(sheet, "root scale; circle: most of those departed from this gate", left_of(0),
-                bar + 46, kSmallFont) +
-          map(1, "$chain", "chain, %") + kDiverging + "set cbrange [" + digits(-largest) + ":" +
-          digits(largest) + "]\n" +
-          bar_below(sheet, left_of(2), left_of(2) + kWide, bar,
-                    "('−" + tic + "' -" + tic + ", '0' 0, '+" + tic + "' " + tic + ")") +
-          map(2, "$difference", "dynamics − chain, points") +
-          frame(sheet, below, "gates, as the dynamics rank them", "% of trials (root scale)", 52) +
-          words(sheet, "B  gate by gate", 8, below.top - 62) +
-          "set border 3\nset xtics 10 font ',15'\nset grid ytics" + kGrid +
-          "\nset xrange [0:" + std::to_string(cells.size() + 1) +
-          "]\nset yrange [-0.05:" + digits(1.03 * highest) + "]\nset ytics (" + scale.tics() +
-          ") font ',15'\n" + "set key at screen " + sheet.at(below.left, below.top - 20) +
-          " left center horizontal Left reverse samplen 1.5\nset style fill solid noborder\n"
-          "plot $pairs using 1:2:($1-0.5):($1+0.5):2:3 with boxxyerror lc rgb '" +
-          kFirstColour +
-          "' title 'dynamics, 95 % intervals', '' using 1:4 with points lt -1 pt 7 ps 0.4 title "
-          "'chain'\n");
+  const char* const heads[] = {"A  dynamics, %", "chain, %", "dynamics − chain, points"};
+  out.say(as_printed("final gates, n = " + std::to_string(trials) + "; start " + start), 8, 18);
+  for (int i = 0; i < 3; ++i) {
+    Panel& map = add_panel(out, {left_of(i), left_of(i) + kWide, kTop, bottom},
+                           i == 1 ? "column i_x" : "", i == 0 ? "row i_y" : "");
+    map.tics_font = kSmallFont;
+    map.border = 15;
+    map.x = {"", -4.5, 4.5, "4"};
+    map.y = {"", -0.5, 8.5, "4", "", i == 0};
+    // Where the maps of shares end, below them; and of the difference.
+    const auto bar_with = [&](int first, int last, const std::string& tics) {
+      map.colours->bar = {left_of(first), left_of(last) + kWide, bar, bar + 10};
+      map.colours->tics = tics + " font ',12' scale 0.5 offset 0,0.4";
+    };
+    map.colours = i < 2 ? Colours{0, std::sqrt(scale.most())} : Colours{-largest, largest};
+    if (i == 1) {
+      bar_with(0, 1, "(" + scale.tics() + ")");
+      map.say(as_printed("root scale; circle: most of those departed from this gate"), left_of(0),
+              bar + 46, kSmallFont);
+    }
+    if (i == 2) {
+      map.colours->palette = kDiverging;
+      bar_with(2, 2, "('−" + tic + "' -" + tic + ", '0' 0, '+" + tic + "' " + tic + ")");
+    }
+    map.say(as_printed(heads[i]), left_of(i), kTop - 11, kSmallFont);
+    map.draw_cells(*maps[i]);
+    if (i < 2)
+      map.draw_again("1:($4 > 0 ? $2 : NaN):" + ink(std::sqrt(most)), "points",
+                     {.colour = kOwnColour, .mark = 6, .size = 0.5});
+  }
+  const Box below{66, 488, bottom + 200, bottom + 364};
+  Panel& panel =
+      add_panel(out, below, "gates, as the dynamics rank them", "% of trials (root scale)", 52);
+  panel.say(as_printed("B  gate by gate"), 8, below.top - 62);
+  panel.grid = std::string("ytics") + kGrid;
+  panel.x = {"", 0, static_cast<double>(cells.size() + 1), "10"};
+  panel.y = {"", -0.05, 1.03 * highest, "(" + scale.tics() + ")"};
+  panel.key = {"left center horizontal Left reverse samplen 1.5", below.left, below.top - 20};
+  panel.draw(pairs, "1:2:($1-0.5):($1+0.5):2:3", kBars, {kFirstColour}, "dynamics, 95 % intervals");
+  panel.layers.push_back(
+      {"''", "1:4", "points", {.colour = kInk, .mark = 7, .size = 0.4}, "chain"});
+  return out.figure(static_cast<int>(below.bottom + 60));
 }
 
 }  // namespace
@@ -142,16 +137,15 @@ namespace {
 /// A whole number, negative ones as gnuplot sets them.
 std::string with_minus(double x) { return (x < 0 ? "−" : "") + fixed(std::abs(x), 0); }
 
-/// Four starts: means with bars, floors and the paper's, from column `first` of $rows on.
-std::string table4_panel(int first) {
+/// Four starts: means with bars, floors and the paper's, from column `first` of the rows on.
+void draw_table4(Panel& panel, const Rows& rows, int first) {
   const auto column = [&](int i) { return std::to_string(first + i); };
-  return std::string("plot $rows using ($1-0.12):") + column(0) + ":" + column(1) +
-         " with yerrorlines lw 1.5 pt 7 ps 0.8 lc rgb '" + kFirstColour +
-         "' title 'here, 100 trials: mean, one sd', $rows using ($1+0.12):" + column(3) +
-         " with points pt 5 ps 0.9 lc rgb '" + kSecondColour +
-         "' title 'paper', $rows using ($1-0.3):" + column(2) +
-         ":(0.6):(0) with vectors nohead lt -1 lw 2 title 'floor: a perfect chain, by chance "
-         "alone'\n";
+  panel.draw(rows, "($1-0.12):" + column(0) + ":" + column(1), "yerrorlines",
+             {kFirstColour, 1.5, 7, 0.8}, "here, 100 trials: mean, one sd");
+  panel.draw(rows, "($1+0.12):" + column(3), "points",
+             {.colour = kSecondColour, .mark = 5, .size = 0.9}, "paper");
+  panel.draw(rows, "($1-0.3):" + column(2) + ":(0.6):(0)", "vectors nohead", {kInk, 2},
+             "floor: a perfect chain, by chance alone");
 }
 
 /// From the least to the largest of some numbers, NaN aside.
@@ -183,8 +177,9 @@ Section table4(const Findings& f) {
   Csv csv(
       "start,paper_corrcoef,corrcoef,corrcoef_sd,corrcoef_floor,paper_rmse,rmse,rmse_sd,rmse_floor,"
       "corrcoef_all,rmse_all,total_variation,total_variation_floor");
-  std::string lines, starts;
-  int at = 0;
+  Panels out = paper_panels();
+  Rows& rows = out.data("$rows");
+  std::vector<std::string> starts;
   double upper_end = 1.0;
   AxisRange corrcoef_exact, corrcoef_walks, rmse_exact, rmse_walks;
   Among within, on_exact, on_walks;
@@ -205,15 +200,26 @@ Section table4(const Findings& f) {
     csv.row(s.label(), s.paper_corrcoef, corrcoef.mean, corrcoef.sd, corrcoef_floor, s.paper_rmse,
             rmse.mean, rmse.sd, rmse_floor, s.corrcoef, s.rmse, s.total_variation,
             s.total_variation_floor);
-    starts += (at ? ", '" : "('") + with_minus(s.d) + ", " + with_minus(s.vx) + ", " +
-              with_minus(s.vy) + "' " + std::to_string(at);
-    lines += std::to_string(at++) + " " +
-             line_of({corrcoef.mean, corrcoef.sd, corrcoef_floor, s.paper_corrcoef, rmse.mean,
-                      rmse.sd, rmse_floor, s.paper_rmse}) +
-             "\n";  // nothing joins two starts
+    rows.add(starts.size(), corrcoef.mean, corrcoef.sd, corrcoef_floor, s.paper_corrcoef, rmse.mean,
+             rmse.sd, rmse_floor, s.paper_rmse);
+    rows.gap();  // nothing joins two starts
+    starts.push_back(with_minus(s.d) + ", " + with_minus(s.vx) + ", " + with_minus(s.vy));
   }
-  const Sheet sheet{556};
-  const Box upper{78, 488, 96, 276}, lower{78, 488, 318, 498};
+  const double last = static_cast<double>(starts.size()) - 0.5;
+  const Box above{78, 488, 96, 276}, below{78, 488, 318, 498};
+  Panel& upper = add_panel(out, above, "", "corrcoef", 56);
+  upper.say(as_printed("higher is better"), above.left + 6, above.top - 10, kSmallFont);
+  upper.x = {"", -0.5, last, "0,1", "", false};
+  upper.y = {"", kFree, upper_end, "0.1", "%.1f"};
+  upper.key = {"left top Left reverse samplen 2", above.left, 8};
+  Panel& lower =
+      add_panel(out, below, "start: {/:Italic d} (m), v_x, v_y (m/s)", "RMSE (trials per 100)", 56);
+  lower.say(as_printed("lower is better"), below.left + 6, below.top - 10, kSmallFont);
+  lower.x = {"", -0.5, last, tics_of(starts), "", false};
+  lower.y = {"", 0, kFree, "0.5", "%.1f"};
+  for (Panel* panel : {&upper, &lower}) panel->grid = std::string("ytics") + kGrid;
+  draw_table4(upper, rows, 2);
+  draw_table4(lower, rows, 6);
   return {
       "table4",
       "Table IV: prediction against dynamics, beside what chance allows",
@@ -231,22 +237,7 @@ Section table4(const Findings& f) {
           within.text() + ".",
       {"field"},
       csv.text(),
-      figure_of(sheet, data_block("$rows", lines),
-                "set border 3\nset grid ytics" + std::string(kGrid) +
-                    "\nset xrange [-0.5:" + digits(at - 0.5) + "]\nset xtics 0,1\n" +
-                    frame(sheet, upper, "", "corrcoef", 56) +
-                    "set format x ''\nset format y '%.1f'\nset yrange [*:" + digits(upper_end) +
-                    "]\nset ytics 0.1\n"
-                    "set key at screen " +
-                    sheet.at(upper.left, 8) + " left top Left reverse samplen 2\n" +
-                    words(sheet, "higher is better", upper.left + 6, upper.top - 10, kSmallFont) +
-                    table4_panel(2) + "unset label\nunset key\n" +
-                    frame(sheet, lower, "start: {/:Italic d} (m), v_x, v_y (m/s)",
-                          "RMSE (trials per 100)", 56) +
-                    words(sheet, "lower is better", lower.left + 6, lower.top - 10, kSmallFont) +
-
-                    "set xtics " + starts +
-                    ")\nset format y '%.1f'\nset yrange [0:*]\nset ytics 0.5\n" + table4_panel(6))};
+      out.figure(556)};
 }
 
 Section crossings(const Findings& f) {
@@ -310,36 +301,37 @@ Section speed(const Findings& f) {
                         {"here", "100 walks", 100 * f.field.seconds_per_walk()},
                         {"here", "one exact prediction", exact}};
   Csv csv("what,seconds");
-  std::string lines, who, list;
+  Panels out = paper_panels();
+  Rows& rows = out.data("$times");
+  std::string who, list;
   std::vector<std::string> labels;
   double least = times[0].seconds;
   for (const Time& t : times) {
     csv.row(t.who + ": " + t.what, t.seconds);
     list += (list.empty() ? "" : "; ") + t.who + ": " + t.what + ", " + t.text;
     if (t.who != who) labels.push_back(bold(who = t.who));
-    lines += digits(t.seconds) + " " + std::to_string(labels.size()) + " \"" + t.text + "\"\n";
+    rows.add(t.seconds, labels.size(), "\"" + t.text + "\"");
     labels.push_back(t.what);
     least = std::min(least, t.seconds);
   }
-  const Box box{250, 432, 20, 20 + 22.0 * static_cast<double>(labels.size())};
-  const Sheet sheet{static_cast<int>(box.bottom + 62)};
-  return {
-      "speed",
-      "Time: dynamics against chain",
-      {"The paper's factor is 100 h of dynamics over 10 s of walks. The matrix costs more than "
-       "the 100 trials of one start, and serves all starts. Measured once on " +
-       machine() + ", all cores; tests/bench/run.sh measures with care."},
-      "Times on a logarithmic axis, with their numbers. " + list + ".",
-      {"field", "field_paper_method"},
-      csv.text(),
-      figure_of(sheet, data_block("$times", lines),
-                frame(sheet, box, "time (s, log scale)", "") + row_tics(labels) +
-                    "set border 1\nset logscale x\nset xrange [" + digits(0.3 * least) +
-                    ":1e6]\nset format x '10^{/=12 %T}'\nset xtics 1000\nset grid xtics" + kGrid +
-                    "\n"
-                    "unset mxtics\nplot $times using 1:2 with points pt 7 ps 0.9 lc rgb '" +
-                    kFirstColour +
-                    "', '' using (1e6):2:3 with labels left offset 0.6,0 font ',12'\n")};
+  Panel& panel = add_panel(out, {250, 432, 20, 20 + 22.0 * static_cast<double>(labels.size())},
+                           "time (s, log scale)", "");
+  panel.border = 1;
+  panel.x = {"", 0.3 * least, 1e6, "1000", "10^{/=12 %T}", true, true};
+  panel.y = row_axis(labels);
+  panel.grid = std::string("xtics") + kGrid;
+  panel.more = "unset mxtics\n";
+  panel.draw(rows, "1:2", "points", {.colour = kFirstColour, .mark = 7, .size = 0.9});
+  panel.draw_again("(1e6):2:3", "labels left offset 0.6,0 font ',12'");
+  return {"speed",
+          "Time: dynamics against chain",
+          {"The paper's factor is 100 h of dynamics over 10 s of walks. The matrix costs more than "
+           "the 100 trials of one start, and serves all starts. Measured once on " +
+           machine() + ", all cores; tests/bench/run.sh measures with care."},
+          "Times on a logarithmic axis, with their numbers. " + list + ".",
+          {"field", "field_paper_method"},
+          csv.text(),
+          out.figure(static_cast<int>(panel.box.bottom + 62))};
 }
 
 Section replay(const Findings& f) {

@@ -16,7 +16,7 @@ Section fig5() {
   const dynamics::Landscape equal = landscape_of({set(kPropulsion, 7)});
   const dynamics::Landscape unequal =
       landscape_of({set(kPropulsion, 7), set(kLeftStiffness, 500), set(kRightStiffness, 250)});
-  struct Panel {
+  struct ShownMap {
     const char *letter, *what, *settings;
     const dynamics::Landscape& landscape;
     const Eigen::ArrayXXd& energy;
@@ -24,42 +24,50 @@ Section fig5() {
     const char* colour;  // of its section
   };
   constexpr double kLeft = 58, kRight = 258, kUpper = 50, kLower = 352;
-  const Panel panels[] = {{"A", "A, B  elastic energy", "k_L = k_R = 400 N m/rad", equal,
-                           equal.elastic, kLeft, kUpper, kFirstColour},
-                          {"C", "C  elastic energy", "k_L = 500, k_R = 250 N m/rad", unequal,
-                           unequal.elastic, kRight, kUpper, kSecondColour},
-                          {"D", "D  with the propulsion", "F_prop = 7 N, k_L = k_R = 400", equal,
-                           equal.total, kLeft, kLower, kThirdColour}};
+  const ShownMap panels[] = {{"A", "A, B  elastic energy", "k_L = k_R = 400 N m/rad", equal,
+                              equal.elastic, kLeft, kUpper, kFirstColour},
+                             {"C", "C  elastic energy", "k_L = 500, k_R = 250 N m/rad", unequal,
+                              unequal.elastic, kRight, kUpper, kSecondColour},
+                             {"D", "D  with the propulsion", "F_prop = 7 N, k_L = k_R = 400", equal,
+                              equal.total, kLeft, kLower, kThirdColour}};
   constexpr double kCeiling = 500.0;  // J
   constexpr std::size_t kStep = 4;    // of what is drawn, that of the numbers
-  const Sheet sheet{662};
+  constexpr int kHigh = 662;
   Csv csv("panel,x_m,y_m,energy_J");
-  std::string data, maps, sections = "plot";
-  for (const Panel& p : panels) {
+  Panels out = paper_panels();
+  const Box box{kRight, kRight + EnergyMap::kWidth, kLower, kLower + EnergyMap::kHeight};
+  Panel sections(box);
+  for (const ShownMap& p : panels) {
     const EnergyMap map{std::string("$") + p.letter, kCeiling, 50.0};
-    std::string section;
+    const Rows& rows = map.add_data(out, p.landscape, p.energy);
+    Rows& section = out.data(map.name + "_middle");
     const auto middle = static_cast<Eigen::Index>(p.landscape.x.size() / 2);
     for (std::size_t i = 0; i < p.landscape.y.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      section += line_of({p.energy(row, middle), p.landscape.y[i]});
+      section.add(p.energy(row, middle), p.landscape.y[i]);
       for (std::size_t j = 0; i % kStep == 0 && j < p.landscape.x.size(); j += kStep) {
         const double e = p.energy(row, static_cast<Eigen::Index>(j));
         csv.row(p.letter, p.landscape.x[j], p.landscape.y[i],
                 std::isfinite(e) ? std::round(10.0 * e) / 10.0 : std::nan(""));
       }
     }
-    data += map.data(p.landscape, p.energy) + data_block(map.name + "_middle", section);
-    maps += words(sheet, p.what, p.left, p.top - 28, kSmallFont) +
-            words(sheet, p.settings, p.left, p.top - 11, kSmallFont) +
-            (&p == panels ? map.colours(sheet, kRight, p.top) : "unset colorbox\n") +
-            map.plot(sheet, p.left, p.top, p.top == kLower ? "x (m)" : "",
-                     p.left == kLeft ? "y (m)" : "") +
-            "\nunset label\n";
-    sections += std::string(&p == panels ? " " : ", ") + map.name +
-                "_middle using 1:2 with lines lw 2 lc rgb '" + p.colour + "' title '" + p.letter +
-                "'";
+    out.say(as_printed(p.what), p.left, p.top - 28, kSmallFont);
+    out.say(as_printed(p.settings), p.left, p.top - 11, kSmallFont);
+    Panel& panel = map.add(out, rows, p.left, p.top, p.top == kLower ? "x (m)" : "",
+                           p.left == kLeft ? "y (m)" : "");
+    if (&p == panels) map.add_bar(panel, kRight, p.top);
+    sections.draw(section, "1:2", "lines", {p.colour, 2}, p.letter);
   }
-  const Box box{kRight, kRight + EnergyMap::kWidth, kLower, kLower + EnergyMap::kHeight};
+  Panel& along = add_panel(out, box, "energy (J)", "");
+  along.layers = sections.layers;
+  along.say(as_printed("sections along x = 0"), box.left, box.top - 11, kSmallFont);
+  along.say(as_printed("lines of equal energy: every 50 J; grey: the disc would cover a joint"), 8,
+            kHigh - 14, kSmallFont);
+  along.tics_font = kSmallFont;
+  along.x = {"", -15, 500, "100"};
+  along.y = {"", 0, 65, "20", "", false};
+  along.grid = kGrid;
+  along.key = {"left top Left reverse samplen 1.5", box.right + 10, box.top};
   return {
       "fig5",
       "Fig. 5: the potential energy landscape",
@@ -80,36 +88,29 @@ Section fig5() {
       "over the barrier.",
       {"fig5_symmetric", "fig5_asymmetric", "steep"},
       csv.text(),
-      figure_of(
-          sheet, data,
-          maps + frame(sheet, box, "energy (J)", "") +
-              words(sheet, "sections along x = 0", box.left, box.top - 11, kSmallFont) +
-              words(sheet, "lines of equal energy: every 50 J; grey: the disc would cover a joint",
-                    8, sheet.height - 14, kSmallFont) +
-              "unset object\nset xrange [-15:500]\nset xtics 100\n"
-              "set border 3\nset grid" +
-              kGrid + "\nset key at screen " + sheet.at(box.right + 10, box.top) +
-              " left top Left reverse samplen 1.5\n" + sections + "\n")};
+      out.figure(kHigh)};
 }
 
 Section barriers(const Findings& f) {
   Csv csv("k_left_Nm_per_rad,damping_Nms_per_rad,above_start_J,above_basin_J,traversed,low,high");
-  std::string heights, none, shares[2], below_start;
+  Panels out = paper_panels();
+  Rows &heights = out.data("$heights"), &none = out.data("$none");
+  Rows* const shares[] = {&out.data("$d50"), &out.data("$d10")};
+  std::string below_start;
   std::vector<std::string> studies;
   double trials = 0.0;
   for (const auto& [k, landscape] : f.barriers) {
     const double start = landscape.fine.above_start(), basin = landscape.fine.from_basin.barrier();
     const bool downhill = landscape.fine.downhill();
-    (downhill ? none : heights) += std::to_string(k) + " " + line_of({basin, start});
+    (downhill ? none : heights).add(k, basin, start);
     for (const int damping : {10, 50}) {
       const Share s =
           f.fig12.at({{kDamping, damping}, {kPropulsion, 7}, {kRandom, 10}, {kLeftStiffness, k}})
               .traversed_share();
       const double nan = std::nan("");
       csv.row(k, damping, downhill ? nan : start, downhill ? nan : basin, s.value, s.low, s.high);
-      shares[damping == 10] +=
-          std::to_string(k) + " " +
-          line_of({root_percent(s.value), root_percent(s.low), root_percent(s.high)});
+      shares[damping == 10]->add(k, root_percent(s.value), root_percent(s.low),
+                                 root_percent(s.high));
       trials = static_cast<double>(s.whole);
       if (damping == 10 && !downhill && start < 0.0 && s.value < 0.05)
         below_start =
@@ -120,13 +121,32 @@ Section barriers(const Findings& f) {
     studies.push_back("barrier_" + std::to_string(k));
   }
   studies.emplace_back("fig12");
-  const std::string crosses = none.empty() ? "NaN NaN NaN\n" : none;
-  const Sheet sheet{594};
-  const Box upper{78, 488, 96, 286}, lower{78, 488, 346, 536};
+  const std::string foot = none.empty() ? "" : ", with a cross at the foot where there is no basin";
+  if (none.empty()) none.add("NaN NaN NaN");
+  const Box above{78, 488, 96, 286}, below{78, 488, 346, 536};
   const auto key = [&](double middle, const char* how) {
-    return "set key at screen " + sheet.at(upper.left, middle) + " left center " + how +
-           " Left reverse samplen 2.5\n";
+    return Legend{std::string("left center ") + how + " Left reverse samplen 2.5", above.left,
+                  middle};
   };
+  out.say(as_printed("F_prop = 7 N, Rm = 10 N, k_R = 500 N m/rad"), 8, 18);
+  Panel& upper = add_panel(out, above, "", "barrier (J)", 64);
+  upper.x = {"", 75, 525, "100,50", "", false};
+  upper.y = {"", -212, 220, "100"};
+  upper.key = key(64, "maxcols 1");
+  upper.draw(heights, "1:2", "linespoints", {kInk, 1.5, 7, 0.8}, "above the basin");
+  upper.layers.push_back({"''", "1:3", "linespoints", {kInk, 1.5, 6, 0.8, 2}, "above the start"});
+  upper.draw(none, "1:(-200)", "points", {.colour = kInk, .mark = 2, .size = 0.8}, "no basin");
+  Panel& lower = add_panel(out, below, "k_L (N m/rad)", "traversed (%, root scale)", 64);
+  lower.say(as_printed("d in N m s/rad"), 330, 314, kSmallFont);
+  lower.say(as_printed("95 % intervals, n = " + digits(trials)), 330, 330, kSmallFont);
+  lower.x = {"", 75, 525, "100,50"};
+  lower.y = {"", -0.3, 10.3, root_tics({0, 1, 5, 20, 50, 100})};
+  lower.key = key(322, "maxrows 1");
+  lower.draw(*shares[0], "1:2:3:4", "yerrorlines", {kFirstColour, 1.5, 7, 0.7},
+             as_printed("d = 50"));
+  lower.draw(*shares[1], "1:2:3:4", "yerrorlines", {kSecondColour, 1.5, 5, 0.7},
+             as_printed("d = 10"));
+  for (Panel* panel : {&upper, &lower}) panel->grid = std::string("ytics") + kGrid;
   return {
       "barriers",
       "Barriers and who passes them",
@@ -139,34 +159,10 @@ Section barriers(const Findings& f) {
        "for it."},
       "Above, over the stiffness of the left beam, the height of the barrier above the basin and "
       "above the start" +
-          std::string(none.empty() ? "" : ", with a cross at the foot where there is no basin") +
-          ". Below, the shares that traverse with 95 % bars, a curve for each damping.",
+          foot + ". Below, the shares that traverse with 95 % bars, a curve for each damping.",
       studies,
       csv.text(),
-      figure_of(
-          sheet,
-          data_block("$heights", heights) + data_block("$none", crosses) +
-              data_block("$d50", shares[0]) + data_block("$d10", shares[1]),
-          words(sheet, "F_prop = 7 N, Rm = 10 N, k_R = 500 N m/rad", 8, 18) +
-              frame(sheet, upper, "", "barrier (J)", 64) + key(64, "maxcols 1") +
-              "set border 3\nset grid ytics" + kGrid +
-              "\nset xrange [75:525]\nset xtics 100,50\n"
-              "set format x ''\nset yrange [-212:220]\nset ytics 100\nplot $heights using 1:2 with "
-              "linespoints lt -1 lw 1.5 pt 7 ps 0.8 title "
-              "'above the basin', '' using 1:3 with linespoints lt -1 lw 1.5 dt 2 pt 6 ps 0.8 "
-              "title 'above the start', $none using 1:(-200) with points lt -1 pt 2 ps 0.8 title "
-              "'no basin'\nunset label\n" +
-              frame(sheet, lower, "k_L (N m/rad)", "traversed (%, root scale)", 64) +
-              key(322, "maxrows 1") +
-              "set format x\n"
-              "set yrange [-0.3:10.3]\nset ytics " +
-              root_tics({0, 1, 5, 20, 50, 100}) + "\n" +
-              words(sheet, "d in N m s/rad", 330, 314, kSmallFont) +
-              words(sheet, "95 % intervals, n = " + digits(trials), 330, 330, kSmallFont) +
-              "plot $d50 using 1:2:3:4 with yerrorlines lw 1.5 pt 7 ps 0.7 lc rgb '" +
-              kFirstColour + "' title " + quoted("d = 50") +
-              ", $d10 using 1:2:3:4 with yerrorlines lw 1.5 pt 5 ps 0.7 lc rgb '" + kSecondColour +
-              "' title " + quoted("d = 10") + "\n")};
+      out.figure(594)};
 }
 
 }  // namespace gatewalk::cli

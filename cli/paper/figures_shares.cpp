@@ -20,16 +20,18 @@ std::string short_share(double share) { return share == 0.0 ? "0" : short_percen
 Section fig8(const Findings& f) {
   Csv csv("damping_Nms_per_rad,propulsion_N,random_N,trials,traversed,low,high,exited,trapped");
   const RootScale scale(100.0);
-  const Sheet sheet{626};
   constexpr double kLeft = 58, kRight = 242, kWide = 168, kTop = 62, kTall = 154;
   constexpr double kSmall = 94, kGap = 14, kDeep = 100, kUnder = 316, kNext = 152;
-  std::string data, panels, curves;
+  Panels out = paper_panels();
   const std::string trials = digits(static_cast<double>(f.fig8.points[0].trials));
+  std::map<int, std::vector<const Rows*>> curves;  // by damping
+  out.say(as_printed("traversed, %; k_L = k_R = 400 N m/rad, n = " + trials), 8, 18);
   for (const int damping : {50, 10}) {
     const std::string name = "$d" + std::to_string(damping);
-    std::string map;
+    Rows map(name);
     for (int random = 0; random <= 60; random += 10) {
-      std::string curve;
+      Rows& curve = out.data(name + "_" + std::to_string(random));
+      curves[damping].push_back(&curve);
       for (int force = 4; force <= 9; ++force) {
         const SweepPoint& p =
             f.fig8.at({{kDamping, damping}, {kPropulsion, force}, {kRandom, random}});
@@ -38,79 +40,70 @@ Section fig8(const Findings& f) {
         csv.row(damping, force, random, n, s.value, s.low, s.high,
                 static_cast<double>(p.exited()) / n,
                 static_cast<double>(p[dynamics::Outcome::trapped]) / n);
-        map += std::to_string(force) + " " + std::to_string(random) + " " +
-               digits(root_percent(s.value)) + " " + short_share(s.value) + "\n";
+        map.add(force, random, root_percent(s.value), short_share(s.value));
         // Without a random force all trials are the same run.
-        curve += line_of({static_cast<double>(force), root_percent(s.value),
-                          root_percent(random == 0 ? s.value : s.low),
-                          root_percent(random == 0 ? s.value : s.high)});
+        curve.add(force, root_percent(s.value), root_percent(random == 0 ? s.value : s.low),
+                  root_percent(random == 0 ? s.value : s.high));
       }
-      data += data_block(name + "_" + std::to_string(random), curve);
     }
-    data += data_block(name, map);
     const bool first = damping == 50;
     const double left = first ? kLeft : kRight;
-    panels += frame(sheet, {left, left + kWide, kTop, kTop + kTall}, "F_prop (N)",
-                    first ? "Rm (N)" : "") +
-              words(sheet, first ? "d = 50 N m s/rad, as printed" : "d = 10 N m s/rad", left,
-                    kTop - 12, kSmallFont) +
-              (first ? scale.colours(
-                           sheet, {kRight + kWide + 12, kRight + kWide + 24, kTop, kTop + kTall}) +
-                           "set cbtics " + root_tics({0, 1, 5, 20, 50, 100}) + " font ',12'\n"
-                     : "unset colorbox\n") +
-              "plot " + name + cells(0.5, 5) + ", '' using 1:2:4:" + ink(std::sqrt(scale.most())) +
-              " with labels tc rgb variable font ',12'\nunset label\n";
+    Panel& panel = add_panel(out, {left, left + kWide, kTop, kTop + kTall}, "F_prop (N)",
+                             first ? "Rm (N)" : "");
+    panel.say(as_printed(first ? "d = 50 N m s/rad, as printed" : "d = 10 N m s/rad"), left,
+              kTop - 12, kSmallFont);
+    panel.tics_font = kSmallFont;
+    panel.x = {"", 3.5, 9.5, "1"};
+    panel.y = {"", -5, 65, "10", "", first};
+    panel.colours = {0, std::sqrt(scale.most())};
+    if (first) {
+      add_colours(panel, scale, {kRight + kWide + 12, kRight + kWide + 24, kTop, kTop + kTall});
+      panel.colours->tics = root_tics({0, 1, 5, 20, 50, 100}) + " font ',12' offset -0.8,0";
+    }
+    panel.draw_cells(out.data(map), 0.5, 5);
+    panel.draw_numbers(std::sqrt(scale.most()));
   }
   for (int i = 0; i <= 6; ++i) {
     const int column = i % 4, row = i / 4;
     const double left = kLeft + column * (kSmall + kGap), top = kUnder + row * kNext;
-    const std::string random = std::to_string(10 * i);
-    curves +=
-        frame(sheet, {left, left + kSmall, top, top + kDeep}, i >= 3 ? "F_prop (N)" : "", "") +
-        words(sheet, "Rm = " + random + " N", left + 4, top - 10, kSmallFont) + "set ytics " +
-        root_tics({0, 2, 10, 30, 60, 100}, column == 0) + "\n";
-    if (i == 0)
-      curves += "set key at screen " + sheet.at(kLeft + 3 * (kSmall + kGap), kUnder + kNext + 6) +
-                " left top Left reverse samplen 2\n" +
-                words(sheet, "95 % intervals", kLeft + 3 * (kSmall + kGap), kUnder + kNext + 68,
-                      kSmallFont) +
-                words(sheet, "n = " + trials, kLeft + 3 * (kSmall + kGap), kUnder + kNext + 86,
-                      kSmallFont);
-    const auto series = [&](const char* name, const char* colour, const char* marker,
-                            const char* title) {
-      return std::string(name) + "_" + random + " using 1:2:3:4 with yerrorlines lw 1.2 pt " +
-             marker + " ps 0.5 lc rgb '" + colour + "' " +
-             (i == 0 ? "title " + quoted(title) : "notitle");
-    };
-    curves += "plot " + series("$d50", kFirstColour, "7", "d = 50") + ", " +
-              series("$d10", kSecondColour, "5", "d = 10") + "\nunset label\nunset key\n";
+    Panel& panel =
+        add_panel(out, {left, left + kSmall, top, top + kDeep}, i >= 3 ? "F_prop (N)" : "", "");
+    panel.say(as_printed("Rm = " + std::to_string(10 * i) + " N"), left + 4, top - 10, kSmallFont);
+    panel.tics_font = kSmallFont;
+    panel.x = {"", 3.7, 9.3, "1"};
+    panel.y = {"", -0.4, 10.4, root_tics({0, 2, 10, 30, 60, 100}, column == 0), "", false};
+    panel.grid = std::string("ytics") + kGrid;
+    panel.more = "set bars 0.5\n";
+    if (i == 0) {
+      const double beside = kLeft + 3 * (kSmall + kGap), under = kUnder + kNext;
+      panel.texts.push_back({"traversed (%, root scale)", 10, kUnder + 0.5 * (kNext + kDeep), kFont,
+                             "center rotate by 90"});
+      panel.key = {"left top Left reverse samplen 2", beside, under + 6};
+      panel.say(as_printed("95 % intervals"), beside, under + 68, kSmallFont);
+      panel.say(as_printed("n = " + trials), beside, under + 86, kSmallFont);
+    }
+    panel.draw(*curves[50][static_cast<std::size_t>(i)], "1:2:3:4", "yerrorlines",
+               {kFirstColour, 1.2, 7, 0.5}, as_printed("d = 50"));
+    panel.draw(*curves[10][static_cast<std::size_t>(i)], "1:2:3:4", "yerrorlines",
+               {kSecondColour, 1.2, 5, 0.5}, as_printed("d = 10"));
   }
-  return {
-      "fig8",
-      "Fig. 8: traversal of equal beams",
-      {"k = 400 N m/rad, from rest, " + trials +
-           " trials a point (paper: 100), Table I's grid and two more rows of random force. "
-           "Where propulsion alone is enough everybody gets through and random force only "
-           "hinders; below that a few do, and only with random force. At Rm = 0 all trials are "
-           "the same run, so those shares are 0 or 1 without an interval.",
-       "Below that threshold traversal need not rise step by step with the propulsion: see the "
-       "claims. Colours and the axes of the curves show the square root of the share, so that "
-       "small ones can be told apart."},
-      "Two maps of the share traversed over propulsion and random force with a number in each "
-      "cell, one for each damping; below, the same as curves over the propulsion, a panel for "
-      "each random force: near zero below 8 or 9 newton of propulsion, near one above it "
-      "without random force, falling with random force there.",
-      {"fig8", "exits"},
-      csv.text(),
-      figure_of(sheet, data,
-                std::string(kSequential) +
-                    words(sheet, "traversed, %; k_L = k_R = 400 N m/rad, n = " + trials, 8, 18) +
-                    kSmallTics + "set border 3\nset cbrange " + scale.range() +
-                    "\nset xrange [3.5:9.5]\nset yrange [-5:65]\nset xtics 1\nset ytics 10\n" +
-                    panels + "set xrange [3.7:9.3]\nset yrange [-0.4:10.4]\nset grid ytics" +
-                    kGrid + "\nset bars 0.5\nset label 'traversed (%, root scale)' at screen " +
-                    sheet.at(10, kUnder + 0.5 * (kNext + kDeep)) + " center rotate by 90\n" +
-                    curves)};
+  return {"fig8",
+          "Fig. 8: traversal of equal beams",
+          {"k = 400 N m/rad, from rest, " + trials +
+               " trials a point (paper: 100), Table I's grid and two more rows of random force. "
+               "Where propulsion alone is enough everybody gets through and random force only "
+               "hinders; below that a few do, and only with random force. At Rm = 0 all trials are "
+               "the same run, so those shares are 0 or 1 without an interval.",
+           "Below that threshold traversal need not rise step by step with the propulsion: see the "
+           "claims. Colours and the axes of the curves show the square root of the share, so that "
+           "small ones can be told apart."},
+          "Two maps of the share traversed over propulsion and random force with a number in each "
+          "cell, one for each damping; below, the same as curves over the propulsion, a panel for "
+          "each random force: near zero below 8 or 9 newton of propulsion, near one above it "
+          "without random force, falling with random force there.",
+          {"fig8", "exits"},
+          csv.text(),
+          out.figure(626)};
 }
 
 Section fig12(const Findings& f) {
@@ -120,14 +113,19 @@ Section fig12(const Findings& f) {
       "damping_Nms_per_rad,propulsion_N,random_N,k_left_Nm_per_rad,trials,successes,right,low,"
       "high");
   constexpr double kLeft = 68, kRight = 256, kWide = 172, kTop = 62, kNext = 232, kTall = 180;
-  const Sheet sheet{static_cast<int>(kTop + kNext + kTall + 86)};
-  const Box bar{kRight + kWide + 12, kRight + kWide + 24, kTop, kTop + kTall};
-  std::string data, panels;
+  const int height = static_cast<int>(kTop + kNext + kTall + 86);
   const std::vector<double> stiffnesses = f.fig12.values(kLeftStiffness);
   const double half = 0.5 * (stiffnesses.at(1) - stiffnesses[0]);  // of a cell
+  Panels out = paper_panels();
+  out.say(as_printed("past the right beam, % of the traversed; k_R = 500 N m/rad"), 8, 18);
+  out.say(
+      as_printed("grey, (3): too few for a share; of " + std::to_string(f.fig12.points[0].trials) +
+                 " trials 3 traversed; d in N m s/rad"),
+      8, height - 14, kSmallFont);
   for (const int damping : {50, 10})
     for (const int force : {7, 8}) {
-      std::string shares, few;
+      const std::string name = "$d" + std::to_string(damping) + "f" + std::to_string(force);
+      Rows &shares = out.data(name), &few = out.data(name + "_few");
       for (const double k : stiffnesses)
         for (int random = 10; random <= 60; random += 10) {
           const SweepPoint& cell = f.fig12.at(
@@ -135,30 +133,35 @@ Section fig12(const Findings& f) {
           const Share s = cell.right_share();
           csv.row(damping, force, random, k, static_cast<double>(cell.trials),
                   static_cast<double>(s.whole), s.value, s.low, s.high);
-          const std::string place = std::to_string(random) + " " + digits(k) + " ";
           grey += s.whole < kFew;
           if (s.whole < kFew)
-            few += place + "(" + std::to_string(s.whole) + ")\n";
+            few.add(random, k, "(" + std::to_string(s.whole) + ")");
           else
-            shares += place + digits(100.0 * s.value) + " " + short_share(s.value) + "\n";
+            shares.add(random, k, 100.0 * s.value, short_share(s.value));
         }
-      const std::string name = "$d" + std::to_string(damping) + "f" + std::to_string(force);
-      data += data_block(name, shares.empty() ? "NaN NaN NaN NaN\n" : shares) +
-              data_block(name + "_few", few.empty() ? "NaN NaN NaN\n" : few);
+      if (shares.empty()) shares.add("NaN NaN NaN NaN");
+      if (few.empty()) few.add("NaN NaN NaN");
       const bool first = force == 7, upper = damping == 50;
       const double left = first ? kLeft : kRight, top = upper ? kTop : kTop + kNext;
-      panels +=
-          frame(sheet, {left, left + kWide, top, top + kTall}, upper ? "" : "Rm (N)",
-                first ? "k_L (N m/rad)" : "", 54) +
-          words(sheet, "F_prop = " + std::to_string(force) + " N, d = " + std::to_string(damping),
-                left, top - 14, kSmallFont) +
-          "plot " + name + cells(5, half) +
-          ", '' using 1:2:4:($3 < 20 || $3 > 80 ? 0xffffff : 0x000000) with "
-          "labels tc rgb variable font ',12', " +
-          name + "_few using 1:2:(5):(" + digits(half) +
-          ") with boxxyerror fillstyle solid noborder lc rgb "
-          "'#a8a8a8', '' using 1:2:3 with labels tc rgb '#000000' font ',12'\nunset label\n"
-          "unset colorbox\n";
+      Panel& panel = add_panel(out, {left, left + kWide, top, top + kTall}, upper ? "" : "Rm (N)",
+                               first ? "k_L (N m/rad)" : "", 54);
+      panel.say(
+          as_printed("F_prop = " + std::to_string(force) + " N, d = " + std::to_string(damping)),
+          left, top - 14, kSmallFont);
+      panel.tics_font = kSmallFont;
+      panel.border = 15;
+      panel.x = {"", 5, 65, "10"};
+      panel.y = {"", stiffnesses.front() - half, stiffnesses.back() + half, "100", "", first};
+      panel.colours = {.low = 0, .high = 100, .palette = kDiverging};
+      if (first && upper) {
+        panel.colours->bar = {kRight + kWide + 12, kRight + kWide + 24, kTop, kTop + kTall};
+        panel.colours->tics = "25 font ',12' offset -0.8,0";
+      }
+      panel.draw_cells(shares, 5, half);
+      panel.draw_again("1:2:4:($3 < 20 || $3 > 80 ? 0xffffff : 0x000000)",
+                       "labels tc rgb variable font ',12'");
+      panel.draw(few, "1:2:(5):(" + digits(half) + ")", kBars, {"#a8a8a8"});
+      panel.draw_again("1:2:3", "labels tc rgb '#000000' font ',12'");
     }
   return {
       "fig12",
@@ -175,23 +178,7 @@ Section fig12(const Findings& f) {
           " cells, grey, a small number in parentheses.",
       {"fig12"},
       csv.text(),
-      figure_of(
-          sheet, data,
-          std::string(kDiverging) +
-              words(sheet, "past the right beam, % of the traversed; k_R = 500 N m/rad", 8, 18) +
-              kSmallTics + "set border 15\nset cbrange [0:100]\nset xrange [5:65]\nset yrange [" +
-              digits(stiffnesses.front() - half) + ":" + digits(stiffnesses.back() + half) +
-              "]\n"
-              "set xtics 10\nset ytics 100\nset cbtics 25 font ',12' offset -0.8,0\n"
-              "set colorbox user origin screen " +
-              sheet.at(bar.left, bar.bottom) + " size screen " + digits(12.0 / Sheet::kWidth) +
-              "," + digits(kTall / sheet.height) + "\n" +
-              words(sheet,
-                    "grey, (3): too few for a share; of " +
-                        std::to_string(f.fig12.points[0].trials) +
-                        " trials 3 traversed; d in N m s/rad",
-                    8, sheet.height - 14, kSmallFont) +
-              panels)};
+      out.figure(height)};
 }
 
 Section thirteen_eight(const Findings& f) {

@@ -20,16 +20,19 @@ double depth_of(const TracedRun& run) {
 }
 
 /// A sample of a trajectory's colour, on one of the maps', with words.
-std::string sample(const Sheet& sheet, const std::string& colour, const std::string& text,
-                   double left, double middle) {
-  const auto line = [&](const char* width, const std::string& ink) {
-    return "set arrow from screen " + sheet.at(left + 3, middle) + " to screen " +
-           sheet.at(left + 33, middle) + " nohead front lw " + width + " lc rgb '" + ink + "'\n";
+void add_sample(Panel& panel, const Sheet& sheet, const char* colour, const std::string& text,
+                double left, double middle) {
+  const auto line = [&](const char* width, const char* ink) {
+    panel.more += "set arrow from screen " + sheet.at(left + 3, middle) + " to screen " +
+                  sheet.at(left + 33, middle) + " nohead front lw " + width + " lc rgb '" + ink +
+                  "'\n";
   };
-  return "set object rectangle from screen " + sheet.at(left, middle + 8) + " to screen " +
-         sheet.at(left + 36, middle - 8) + " fillcolor rgb '#277f8e' fillstyle solid noborder\n" +
-         line("3.4", "#000000") + line("2", colour) +
-         words(sheet, text, left + 44, middle, kSmallFont);
+  panel.more += "set object rectangle from screen " + sheet.at(left, middle + 8) + " to screen " +
+                sheet.at(left + 36, middle - 8) +
+                " fillcolor rgb '#277f8e' fillstyle solid noborder\n";
+  line("3.4", "#000000");
+  line("2", colour);
+  panel.say(as_printed(text), left + 44, middle, kSmallFont);
 }
 
 constexpr char kWay[] = "#ffffff", kOther[] = "#ff9d5c";  // of tracks over maps
@@ -45,11 +48,12 @@ Section fig6(const Findings& f) {
       f.fig6.runs.begin(), f.fig6.runs.end(),
       [](const TracedRun& a, const TracedRun& b) { return depth_of(a) < depth_of(b); });
   Csv csv("time_s,x_m,y_m,potential_J,landscape_J,landscape_right_beam_J");
-  std::string rows;
+  Panels out = paper_panels();
+  Rows& rows = out.data("$run");
   for (std::size_t i = 0; i < run.t.size(); ++i) {
     const double one = run.landscape[i] - run.landscape_left[i];
     csv.row(run.t[i], run.x[i], run.y[i], run.potential[i], run.landscape[i], one);
-    rows += line_of({run.t[i], run.x[i], run.y[i], run.potential[i], run.landscape[i], one});
+    rows.add(run.t[i], run.x[i], run.y[i], run.potential[i], run.landscape[i], one);
   }
   const auto p = gate_of("scenes/single_gate.toml", {set(kPropulsion, 9), set(kRandom, 10)});
   const auto of_both = dynamics::landscape(p, 0.0, EnergyMap::kSpacing),
@@ -59,14 +63,39 @@ Section fig6(const Findings& f) {
   const EnergyMap both{"$both", 600.0, 50.0}, alone{"$alone", 600.0, 50.0};
   const Box time{66, 488, bottom + 162, bottom + 342};
   const Sheet sheet{static_cast<int>(time.bottom + 62)};
-  const auto map_of = [&](const EnergyMap& map, double left, int landscape) {
-    const std::string below = "$run using 2:($4 < $" + std::to_string(landscape) + " - " +
-                              digits(kBelow) + " ? $3 : NaN)";
-    return map.plot(sheet, left, kUpper, "x (m)", left == kLeft ? "y (m)" : "") + ", " +
-           track("$run using 2:3", 1.2, kWay) + ", " + track(below, 2.6, kOther) +
-           "\nunset label\nunset colorbox\n";
+  out.say(as_printed("F_prop = 9 N, Rm = 10 N, k_L = k_R = 400 N m/rad"), 8, 18);
+  out.say(as_printed("B  landscape of both beams"), kLeft, kUpper - 11, kSmallFont);
+  out.say(as_printed("C  of the right beam alone"), kRight, kUpper - 11, kSmallFont);
+  const Rows &of_both_rows = both.add_data(out, of_both, of_both.total),
+             &of_right_rows = alone.add_data(out, of_right, of_right.total);
+  const auto add_map = [&](const EnergyMap& map, const Rows& data, double left,
+                           int landscape) -> Panel& {
+    Panel& panel = map.add(out, data, left, kUpper, "x (m)", left == kLeft ? "y (m)" : "");
+    draw_track(panel, rows, "2:3", 1.2, kWay);
+    draw_track(panel, rows,
+               "2:($4 < $" + std::to_string(landscape) + " - " + digits(kBelow) + " ? $3 : NaN)",
+               2.6, kOther);
+    return panel;
   };
+  both.add_bar(add_map(both, of_both_rows, kLeft, 5), kRight, kUpper);
+  Panel& right = add_map(alone, of_right_rows, kRight, 6);
+  add_sample(right, sheet, kWay, "the body's way", kLeft, bottom + 66);
+  add_sample(right, sheet, kOther, "more than 1 J below the landscape", 210, bottom + 66);
   const double end = run.t.back();
+  Panel& energies = add_panel(out, time, "time (s)", "energy (J)", 54);
+  energies.tics_font = kSmallFont;
+  energies.x = {"", -0.02 * end, 1.02 * end, "1"};
+  energies.y = {"", -40, kFree, "100"};
+  energies.grid = kGrid;
+  energies.key = {"left top Left reverse samplen 3", kLeft, bottom + 86};
+  energies.draw(rows, "1:4", "lines", {kThirdColour, 2.5}, "potential energy of the system");
+  energies.layers.push_back(
+      {"''", "1:5", "lines", {kFirstColour, 1.5}, "landscape of both beams there"});
+  energies.layers.push_back({"''",
+                             "1:6",
+                             "lines",
+                             {.colour = kInk, .width = 1.5, .dashes = 2},
+                             "landscape of the right beam alone there"});
   return {
       "fig6",
       "Fig. 6: a trajectory that dives through the landscape",
@@ -87,33 +116,14 @@ Section fig6(const Findings& f) {
       "then falls below it while it stays at or above that of the right beam alone.",
       {"fig6", "fig9_300"},
       csv.text(),
-      figure_of(
-          sheet,
-          data_block("$run", rows) + both.data(of_both, of_both.total) +
-              alone.data(of_right, of_right.total),
-          words(sheet, "F_prop = 9 N, Rm = 10 N, k_L = k_R = 400 N m/rad", 8, 18) +
-              words(sheet, "B  landscape of both beams", kLeft, kUpper - 11, kSmallFont) +
-              words(sheet, "C  of the right beam alone", kRight, kUpper - 11, kSmallFont) +
-              both.colours(sheet, kRight, kUpper) + map_of(both, kLeft, 5) +
-              sample(sheet, kWay, "the body's way", kLeft, bottom + 66) +
-              sample(sheet, kOther, "more than 1 J below the landscape", 210, bottom + 66) +
-              map_of(alone, kRight, 6) + "unset object\nunset arrow\n" +
-              frame(sheet, time, "time (s)", "energy (J)", 54) + "set border 3\nset grid" + kGrid +
-              "\nset key at screen " + sheet.at(kLeft, bottom + 86) +
-              " left top Left reverse samplen 3\nset xrange [" + digits(-0.02 * end) + ":" +
-              digits(1.02 * end) + "]\nset yrange [-40:*]\nset xtics 1\nset ytics 100\n" +
-              "plot $run using 1:4 with lines lw 2.5 lc rgb '" + kThirdColour +
-              "' title 'potential energy of the system', '' using 1:5 with lines lw 1.5 lc rgb '" +
-              kFirstColour +
-              "' title 'landscape of both beams there', '' using 1:6 with lines lt -1 lw 1.5 dt 2 "
-              "title 'landscape of the right beam alone there'\n")};
+      out.figure(sheet.height)};
 }
 
 namespace {
 
 /// One of Fig. 9's panels: which study, with which beams.
 struct TracedPanel {
-  const Trace& traced;
+  const Trace& study;
   double k_left, damping;
   const char* letter;
   double left, top;  // px
@@ -125,56 +135,51 @@ Section fig9(const Findings& f) {
   constexpr double kLeft = 58, kRight = 258, kUpper = 70, kLower = 384;
   const Sheet sheet{static_cast<int>(kLower + EnergyMap::kHeight + 62)};
   Csv csv("panel,k_left_Nm_per_rad,damping_Nms_per_rad,trial,side,time_s,x_m,y_m,potential_J");
-  std::string data,
-      maps = words(sheet, "traversed; F_prop = 7 N, Rm = 10 N, k_R = 500 N m/rad", 8, 18);
-  for (const TracedPanel& panel : {TracedPanel{f.fig9_500, 500, 50, "A", kLeft, kUpper},
-                                   TracedPanel{f.fig9_300, 300, 10, "B", kRight, kUpper},
-                                   TracedPanel{f.fig9_100, 100, 10, "C", kLeft, kLower}}) {
-    std::string tracks[2];
+  Panels out = paper_panels();
+  out.say(as_printed("traversed; F_prop = 7 N, Rm = 10 N, k_R = 500 N m/rad"), 8, 18);
+  for (const TracedPanel& traced : {TracedPanel{f.fig9_500, 500, 50, "A", kLeft, kUpper},
+                                    TracedPanel{f.fig9_300, 300, 10, "B", kRight, kUpper},
+                                    TracedPanel{f.fig9_100, 100, 10, "C", kLeft, kLower}}) {
+    const EnergyMap map{std::string("$") + traced.letter, 700.0, 50.0};
+    Rows tracks[] = {Rows(map.name + "_left"), Rows(map.name + "_right")};
     std::int64_t count[2] = {0, 0};
-    for (const TracedRun& run : panel.traced.runs) {
+    for (const TracedRun& run : traced.study.runs) {
       const bool right = run.ending == "traversed right";
       ++count[right];
       for (std::size_t i = 0; i < run.t.size(); i += 5) {
-        csv.row(panel.letter, panel.k_left, panel.damping, static_cast<double>(run.trial),
+        csv.row(traced.letter, traced.k_left, traced.damping, static_cast<double>(run.trial),
                 right ? "right" : "left", run.t[i], run.x[i], run.y[i], run.potential[i]);
-        tracks[right] += line_of({run.x[i], run.y[i]});
+        tracks[right].add(run.x[i], run.y[i]);
       }
-      tracks[right] += "\n";
+      tracks[right].gap();
     }
-    const EnergyMap map{std::string("$") + panel.letter, 700.0, 50.0};
     const auto l =
-        dynamics::landscape(gate_of("scenes/soft_left.toml", {set(kLeftStiffness, panel.k_left)}),
+        dynamics::landscape(gate_of("scenes/soft_left.toml", {set(kLeftStiffness, traced.k_left)}),
                             0.0, EnergyMap::kSpacing);
-    data += map.data(l, l.total);
-    std::string plot = map.plot(sheet, panel.left, panel.top, panel.top == kLower ? "x (m)" : "",
-                                panel.left == kLeft ? "y (m)" : "");
-    for (const bool right : {false, true}) {
-      if (tracks[right].empty()) continue;
-      const std::string name = map.name + (right ? "_right" : "_left");
-      data += data_block(name, tracks[right]);
-      plot += ", " + track(name + " using 1:2", 0.5, right ? kOther : kWay);
-    }
     const auto line = [&](const std::string& text, double above) {
-      maps += words(sheet, text, panel.left, panel.top - above, kSmallFont);
+      out.say(as_printed(text), traced.left, traced.top - above, kSmallFont);
     };
-    line(std::string(panel.letter) + "  k_L = " + digits(panel.k_left) +
-             " N m/rad, d = " + digits(panel.damping),
+    line(std::string(traced.letter) + "  k_L = " + digits(traced.k_left) +
+             " N m/rad, d = " + digits(traced.damping),
          28);
     line("left " + std::to_string(count[0]) + ", right " + std::to_string(count[1]) + " of " +
-             std::to_string(panel.traced.trials),
+             std::to_string(traced.study.trials),
          11);
-    maps += panel.left == kRight ? map.colours(sheet, kRight, panel.top) : "unset colorbox\n";
-    if (panel.top == kLower) {
-      maps += sample(sheet, kWay, "left beam deflected most", kRight, kLower + 20) +
-              sample(sheet, kOther, "right beam deflected most", kRight, kLower + 46);
-      double at = kLower + 76;
-      for (const char* text :
-           {"Lines of equal energy: every 50 J;", "grey: the disc would cover a joint.",
-            "A has the damping of Table I,", "B and C have d = 10 N m s/rad."})
-        maps += words(sheet, text, kRight, at += 18, kSmallFont);
-    }
-    maps += plot + "\nunset label\n";
+    Panel& panel =
+        map.add(out, map.add_data(out, l, l.total), traced.left, traced.top,
+                traced.top == kLower ? "x (m)" : "", traced.left == kLeft ? "y (m)" : "");
+    for (const bool right : {false, true})
+      if (!tracks[right].empty())
+        draw_track(panel, out.data(tracks[right]), "1:2", 0.5, right ? kOther : kWay);
+    if (traced.left == kRight) map.add_bar(panel, kRight, traced.top);
+    if (traced.top != kLower) continue;
+    add_sample(panel, sheet, kWay, "left beam deflected most", kRight, kLower + 20);
+    add_sample(panel, sheet, kOther, "right beam deflected most", kRight, kLower + 46);
+    double at = kLower + 76;
+    for (const char* text :
+         {"Lines of equal energy: every 50 J;", "grey: the disc would cover a joint.",
+          "A has the damping of Table I,", "B and C have d = 10 N m s/rad."})
+      panel.say(as_printed(text), kRight, at += 18, kSmallFont);
   }
   return {"fig9",
           "Fig. 9: successful trajectories over the landscape",
@@ -189,6 +194,6 @@ Section fig9(const Findings& f) {
           "left beam and orange past the right one. B and C: many, nearly all past the left beam.",
           {"fig9_500", "fig9_300", "fig9_100", "fig12", "tried_method"},
           csv.text(),
-          figure_of(sheet, data, maps)};
+          out.figure(sheet.height)};
 }
 }  // namespace gatewalk::cli
