@@ -389,14 +389,6 @@ void describe(Fields& out, const lattice::SmallestDifference& d) {
   points({"fewer", "%", "percentage points fewer that are found; null: none"}, d.fewer);
 }
 
-void describe(Fields& out, const lattice::SmallestDifference& d) {
-  const auto points = [&](const Field& field, const std::optional<double>& x) {
-    out.number(field, x ? 100.0 * *x : kUnknown);
-  };
-  points({"more", "%", "percentage points more that are found; null: none"}, d.more);
-  points({"fewer", "%", "percentage points fewer that are found; null: none"}, d.fewer);
-}
-
 Json to_json(const lattice::SmallestDifference& d) {
   return json_of([&](Fields& out) { describe(out, d); });
 }
