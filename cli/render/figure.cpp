@@ -19,25 +19,6 @@ std::string Sheet::at(double left, double top) const {
   return digits(left / kWidth) + "," + digits(1.0 - top / height);
 }
 
-std::string Sheet::text(const std::string& text, double left, double middle, int font) const {
-  return "set label " + literal(text) + " at screen " + at(left, middle) + " left font '," +
-         std::to_string(font) + "'\n";
-}
-
-std::string Sheet::key(double left, double top, const std::vector<std::string>& entries) const {
-  std::string plot;
-  for (const std::string& entry : entries)
-    plot += (plot.empty() ? "plot [0:1] [0:1] NaN " : ", NaN ") + entry;
-  return margins({0, kWidth, 0, static_cast<double>(height)}) +
-         "unset logscale\nunset border\nunset tics\nunset xlabel\nunset ylabel\nset key at "
-         "screen " +
-         at(left, top) +
-         " left top Left reverse vertical maxcols 1 samplen 1.5 spacing 1.1 font '," +
-         std::to_string(kSmallFont) + "'\n" + plot + "\n";
-}
-
-std::string RootScale::range() const { return "[0:" + digits(std::sqrt(most_)) + "]"; }
-
 std::string RootScale::tics() const {
   std::string list = "'0' 0";
   double last = 0.0;
@@ -53,26 +34,7 @@ std::string RootScale::tics() const {
   return list;
 }
 
-std::string RootScale::colours(const Sheet& sheet, const Box& box) const {
-  return "set cbtics (" + tics() + ") offset -0.8,0\nset colorbox user origin screen " +
-         sheet.at(box.left, box.bottom) + " size screen " +
-         digits((box.right - box.left) / Sheet::kWidth) + "," +
-         digits((box.bottom - box.top) / sheet.height) + "\n" +
-         sheet.text("%, root scale", box.left - 4, box.bottom + 18, kSmallFont);
-}
-
-std::string cells(double half_x, double half_y) {
-  return " using 1:2:(" + digits(half_x) + "):(" + digits(half_y) +
-         "):3 with boxxyerror fs solid noborder lc palette";
-}
-
 std::string ink(double most) { return "($3 > " + digits(0.6 * most) + " ? 0x000000 : 0xffffff)"; }
-
-std::string bar_below(const Sheet& sheet, double left, double right, double top) {
-  return "set colorbox horizontal user origin screen " + sheet.at(left, top + 10) +
-         " size screen " + digits((right - left) / Sheet::kWidth) + "," +
-         digits(10.0 / sheet.height) + "\n";
-}
 
 std::string literal(std::string_view text) {
   std::string out = "'";  // single quotes: taken as it stands

@@ -55,20 +55,6 @@ struct Sheet {
   [[nodiscard]] std::string margins(const Box& box) const;
   /// "x,y" in gnuplot's measure of a whole figure.
   [[nodiscard]] std::string at(double left, double top) const;
-  /// Names of the axes, in gnuplot's quotes, near enough for a margin of 60 points.
-  [[nodiscard]] static std::string axes(const std::string& x, const std::string& y) {
-    return x_axis(x) + "set ylabel " + y + " offset 0.8,0\n";
-  }
-  [[nodiscard]] static std::string x_axis(const std::string& x) {
-    return "set xlabel " + x + " offset 0,0.9\n";
-  }
-  /// A text that begins at this place, its middle at this height; until "unset label".
-  [[nodiscard]] std::string text(const std::string& text, double left, double middle,
-                                 int font = kFont) const;
-  /// A column of a key as a panel of its own, from this corner, for the panels of a multiplot:
-  /// `entries` are "with ... title '...'". It takes the frame away: kFrame brings it back.
-  [[nodiscard]] std::string key(double left, double top,
-                                const std::vector<std::string>& entries) const;
 };
 
 /// Shares in %, from 0 to `most`, as colours by their square root: small ones can be told apart.
@@ -76,24 +62,16 @@ class RootScale {
  public:
   explicit RootScale(double most) : most_(most > 0.0 ? most : 1.0) {}
   [[nodiscard]] double most() const { return most_; }
-  [[nodiscard]] std::string range() const;
   /// "'0' 0, '1' 1, '4' 2"
   [[nodiscard]] std::string tics() const;
-  /// The colours with their numbers, and that they are roots.
-  [[nodiscard]] std::string colours(const Sheet& sheet, const Box& box) const;
 
  private:
   double most_;
 };
 
-/// Of a map whose data are "x y value": a rectangle each of such halves (gnuplot's images need four
-/// at least).
-[[nodiscard]] std::string cells(double half_x = 0.5, double half_y = 0.5);
 /// What is written on sequential colours from 0 to `most`, column 3 of the data: black on light
 /// ones, white on dark ones, for gnuplot's "rgb variable".
 [[nodiscard]] std::string ink(double most);
-/// The colours as a horizontal bar below maps.
-[[nodiscard]] std::string bar_below(const Sheet& sheet, double left, double right, double top);
 
 /// A share of all with its 95 % interval (NaN: none), for a horizontal bar.
 struct ShareBar {
