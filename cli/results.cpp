@@ -81,9 +81,10 @@ FieldRun trials() {
 PredictResult prediction() {
   const lattice::EndingShares shares{std::array<double, markov::kEndings>{}};
   PredictResult example{.shown = ShownField(lattice::Scene()), .given = {Start()}};
-  example.of_matrix.states.resize(1);
-  example.of_matrix.prediction.starts.resize(1, {.start = {}, .final = {}, .shares = shares, .exits = {}});
-  example.of_runs.prediction.starts.resize(1);
+  example.of_matrix.emplace().states.resize(1);
+  example.of_matrix->prediction.starts.resize(
+      1, {.start = {}, .final = {}, .shares = shares, .exits = {}});
+  example.of_runs.emplace().prediction.starts.resize(1);
   return example;
 }
 
