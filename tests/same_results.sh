@@ -3,7 +3,8 @@
 # Whether two programs of gatewalk write the same results: JSON, CSV, NetCDF, tables, figures and pages of many command
 # lines, byte by byte, but for what names the program itself (version, commit) and what was timed. The help page of every
 # command and the schemas are compared too. Of figures the data are compared beside the picture: the blocks that gnuplot
-# gets. They are compared for PDF and PNG as well, and where the picture shows times.
+# gets. They are compared for PDF and PNG as well, and where the picture shows times. Of an SVG the words are compared and
+# what is seen: its pixels as gnuplot draws the same script into a PNG.
 #   tests/same_results.sh [--lines PATTERN] [--hashes FILE] [--other-byte-order] OLD NEW [SCENES]
 # OLD, NEW: programs; SCENES: folder of scenes (scenes/); PATTERN: only the lines that this regular expression finds;
 # FILE: gets a hash of what OLD writes for each line. With --other-byte-order NEW reads matrices that it made itself, as
@@ -38,10 +39,15 @@ cat >"$work/bin/gnuplot" <<END
 set -euf
 script=\$(mktemp "$work/script.XXXXXX")
 cat >"\$script"
-if grep -q ' << EOD$' "\$script"; then
+if grep -q -e ' << EOD$' -e '^set terminal svg ' "\$script"; then
   number=1
   until (set -C; : >"figure-\$number.data") 2>/dev/null; do number=\$((number + 1)); done
   sed -n '/ << EOD\$/,/^EOD\$/p' "\$script" >"figure-\$number.data"
+  if grep -q '^set terminal svg ' "\$script" && ! grep -q '^\$times <<' "\$script"; then
+    sed -E 's/^set terminal svg size ([0-9]+),([0-9]+) (.*)/set terminal pngcairo size \1,\2 \3/' "\$script" |
+      '$(command -v gnuplot)' >"figure-\$number.pixels" 2>figure.log || cat figure.log >&2
+    rm -f figure.log
+  fi
 fi
 status=0
 '$(command -v gnuplot)' "\$@" <"\$script" || status=\$?
@@ -306,7 +312,8 @@ plain() {  # COMMAND FILE
     chart*.csv) awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) skip[i] = $i ~ /^microseconds_|^seconds_|(build|answer|total)_s$/ }
       /,direct simulation,/ { next }
       { for (i = 1; i <= NF; ++i) printf "%s,", skip[i] ? "" : $i; print "" }' "$2" ;;
-    chart*.svg | chart-chain:*.txt | *.pdf | *.png) ;;
+    chart*.svg | chart*.pixels | chart-chain:*.txt | *.pdf | *.png) ;;
+    *.svg) grep -oE '>[^<>]+<' "$2" | sort || true ;;
     chart*.txt) sed -E 's/[0-9.]+(e[-+][0-9]+)?/N/g; s/ +/ /g' "$2" ;;
     *.txt) sed -E '/ dynamics\/exact  trial\/walk$/,/^$/d; s/[0-9.]+ s([;,]|$)/... s\1/g' "$2" ;;
     *) cat "$2" ;;
