@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "cli/film/replay.h"
+#include "cli/paper/report.h"
 #include "cli/render/analysis.h"
 #include "cli/render/best_start.h"
 #include "cli/render/chain_error.h"
@@ -150,6 +151,12 @@ RareResult rare() {
   return example;
 }
 
+Report report() {
+  Report example;
+  example.sections.resize(1);
+  return example;
+}
+
 AnalysedField analyze() {
   const lattice::Scene scene;
   const dynamics::StateSpace space = dynamics::table3_space(scene.gate);
@@ -262,6 +269,7 @@ const std::vector<ResultOf>& results() {
       of<PowerResult>("power"),
       of("predict", prediction()),
       of("rare", rare()),
+      of("reproduce", report()),
       of("sample", SampleResult{}),
       of("scene", SceneResult{mixed(), {}, {}}),
       of("show", shown_matrix()),

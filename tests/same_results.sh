@@ -9,8 +9,8 @@
 # OLD, NEW: programs; SCENES: folder of scenes (scenes/); PATTERN: only the lines that this regular expression finds;
 # FILE: gets a hash of what OLD writes for each line. With --other-byte-order NEW reads matrices that it made itself, as
 # netCDF 4.9 reads only those of its own order (netcdf-c, issue 2670), and h5dump, which reads both, shows them.
-# Schemas are those that are installed with a program (../share/gatewalk/schemas beside it) or stand in its build folder,
-# else those of the sources that this folder names.
+# Schemas are those that a program writes (help --write); of older programs those that are installed with it
+# (../share/gatewalk/schemas beside it), else those of the sources that its build folder names.
 # Status 1: some differ; 2: nothing was compared.
 # To see that it finds what it should, change a constant in a copy of the sources, say kQuantile in
 # lattice/statistics/group_spread.cpp, and compare the programs.
@@ -206,11 +206,13 @@ commands() { for side in old new; do "${!side}" help 2>/dev/null | sed -n 's/^  
 
 # The folder of a program's schemas; nothing where there is none.
 schemas_of() {  # PROGRAM
-  local here sources
+  local here sources share
+  share=$(mktemp -d "$work/share.XXXXXX")
+  "$1" help --write "$share" >/dev/null 2>&1 || true
   here=$(dirname "$1")
   sources=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$here/CMakeCache.txt" 2>/dev/null || true)
-  for folder in "$here/../share/gatewalk/schemas" "$here/schemas" "$sources/cli/schemas"; do
-    [ ! -e "$folder/common.schema.json" ] || { realpath "$folder"; return; }
+  for folder in "$share/gatewalk/schemas" "$here/../share/gatewalk/schemas" "$sources/cli/schemas"; do
+    [ ! -e "$folder/gate.schema.json" ] || { realpath "$folder"; return; }
   done
 }
 

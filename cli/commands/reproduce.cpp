@@ -33,7 +33,7 @@ int run_reproduce(const Arguments& arguments) {
                                 .quick = options.has("quick"),
                                 .talk = options.talk(),
                                 .force = options.has("force")});
-    options.give_out(to_json(r),
+    options.give_out(r,
                      options.talk()
                          ? fmt::format("\n{}\n{}. Studies {} s. Open {}/report.{}\n",
                                        table_of(r.claims), r.tally(), fixed(r.made_by.seconds, 0),

@@ -123,8 +123,12 @@ void describe(Fields& out, const TraceResult& result) {
   describe_made_by(out, result.made_by);
 }
 
+void describe(Fields& out, const Film& film) {
+  describe(out, film, [](Fields&, std::size_t) {});
+}
+
 Json to_json(const Film& film) {
-  return json_of([&](Fields& out) { describe(out, film, [](Fields&, std::size_t) {}); });
+  return json_of([&](Fields& out) { describe(out, film); });
 }
 
 std::string replay_page(const Json& film) {

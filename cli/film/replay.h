@@ -40,6 +40,7 @@ struct TraceResult {
 void describe(Fields& out, const TraceResult& result);
 
 /// The film as above, with lost_in_hits_J.
+void describe(Fields& out, const Film& film);
 [[nodiscard]] Json to_json(const Film& film);
 
 /// A whole page with the animation of all runs of a film; it loads nothing from anywhere. A film

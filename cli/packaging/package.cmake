@@ -4,14 +4,13 @@
 include(CMakePackageConfigHelpers)
 
 install(TARGETS gatewalk COMPONENT program)
-# Manual pages and completion are written by the program itself.
+# Manual pages, completion and schemas are written by the program itself.
 install(CODE "
   execute_process(COMMAND \"$<TARGET_FILE:gatewalk>\" help --write \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\"
     COMMAND_ERROR_IS_FATAL ANY)
   file(GLOB pages \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1/gatewalk*.1\")
   execute_process(COMMAND gzip -9nf \${pages} COMMAND_ERROR_IS_FATAL ANY)" COMPONENT program)
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/gatewalk COMPONENT program)
-install(DIRECTORY ${PROJECT_BINARY_DIR}/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/gatewalk COMPONENT program)
 install(DIRECTORY cli/cluster DESTINATION ${CMAKE_INSTALL_DATADIR}/gatewalk COMPONENT program)
 install(TARGETS dynamics markov lattice EXPORT gatewalk COMPONENT dev
   FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gatewalk COMPONENT dev)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "cli/film/replay.h"
 #include "cli/render/json.h"
 
 namespace gatewalk::cli {
@@ -36,6 +37,12 @@ void describe(Fields& out, const Report::Section& s) {
   out.text({"alt", "what the figure shows, in words"}, s.alt);
   out.texts({"commands", "the commands whose results it shows"}, s.commands);
   out.texts({"files", "the figure and its numbers"}, s.files);
+  out.optional(!s.film.is_null(), [&](Fields& f) {
+    f.as_kept({"film", "runs to be played, as trace records them"}, s.film, [](Fields& film) {
+      describe_version(film);
+      describe(film, Film());
+    });
+  });
 }
 
 void describe(Fields& out, const Report::MadeBy& m) {
@@ -66,14 +73,6 @@ void describe(Fields& out, const Report& r) {
   out.list({"sections", "figures with their numbers"}, r.sections, described);
   out.object({"made_by", "where the report comes from"},
              [&](Fields& made_by) { describe(made_by, r.made_by); });
-}
-
-Json to_json(const Report& report) {
-  Json json = json_of([&](Fields& out) { describe(out, report); });
-  for (std::size_t i = 0; i < report.sections.size(); ++i)
-    if (const Json& film = report.sections[i].film; !film.is_null())
-      json["sections"][i]["film"] = film;
-  return json;
 }
 
 std::string Report::tally() const {

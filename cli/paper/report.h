@@ -46,8 +46,7 @@ struct Report {
 };
 inline constexpr int kReportSeed = 1;
 
-/// But for the films.
+/// The result of `reproduce`.
 void describe(Fields& out, const Report& report);
-[[nodiscard]] Json to_json(const Report& report);
 
 }  // namespace gatewalk::cli

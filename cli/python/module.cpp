@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -67,8 +68,13 @@ py::object to_python(const Json& json, bool intervals = false) {
     default:
       break;
   }
-  if (intervals && json.size() == 2 && json[0].is_number() && json[1].is_number())
-    return py::make_tuple(to_python(json[0]), to_python(json[1]));
+  const auto is_limit = [](const Json& x) { return x.is_number() || x.is_null(); };
+  if (intervals && json.size() == 2 && is_limit(json[0]) && is_limit(json[1])) {
+    const auto limit = [](const Json& x) -> py::object {
+      return x.is_null() ? py::float_(std::numeric_limits<double>::quiet_NaN()) : to_python(x);
+    };
+    return py::make_tuple(limit(json[0]), limit(json[1]));
+  }
   const auto as_array = [](const auto& numbers, std::vector<py::ssize_t> shape) {
     py::array_t<double> array(std::move(shape));
     std::copy(numbers.begin(), numbers.end(), array.mutable_data());

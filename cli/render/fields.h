@@ -18,6 +18,7 @@
 #include <variant>
 #include <vector>
 
+#include "cli/render/json_fwd.h"
 #include "markov/predict.h"
 #include "markov/walk.h"
 
@@ -95,7 +96,8 @@ using Value =
     std::variant<std::monostate, double, std::int64_t, std::uint64_t, bool, std::string_view,
                  Interval, const std::vector<double>*, const std::vector<std::int64_t>*,
                  const std::vector<std::string>*, const TextRows*, const std::vector<Interval>*,
-                 const markov::CellProbabilities*, const markov::CellCounts*, const GateNumbers*>;
+                 const Json*, const markov::CellProbabilities*, const markov::CellCounts*,
+                 const GateNumbers*>;
 
 /// What a value may be, whatever it is in one result.
 enum class ValueKind {
@@ -269,6 +271,14 @@ class Fields {
       describe(*this, i);
     }
     close();
+  }
+  /// An object that stands as JSON in a file, such as another result; `describe` tells its schema.
+  template <class Describe>
+  void as_kept(const Label& l, const Json& json, Describe describe) {
+    if (is_schema())
+      object(l, describe);
+    else
+      leaf(l, ValueKind::text, false, &json);
   }
   /// What not every result has: described where it is there. The schema takes it in any case.
   template <class Describe>

@@ -55,6 +55,7 @@ class JsonFields final : public Fields {
 
  private:
   static Json json_of_value(std::monostate) { return {}; }
+  static Json json_of_value(const Json* kept) { return *kept; }
   static Json json_of_value(double x) { return or_null(x); }
   static Json json_of_value(std::string_view words) { return std::string(words); }
   static Json json_of_value(const Interval& limits) {

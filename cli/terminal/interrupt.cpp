@@ -58,11 +58,11 @@ void install_interrupt_handler() {
 void set_kept_file(const std::string& file) {
   is_kept = false;
   if (file.empty()) return;
-  *fmt::format_to_n(kept_text.data(), kept_text.size() - 1,
-                    "gatewalk: stopped before the end; what is done is kept in {}: the same "
-                    "command with --resume goes on\n",
-                    file)
-       .out = '\0';
+  const std::string text = fmt::format(
+      "gatewalk: stopped before the end; what is done is kept in {}: the same command with "
+      "--resume goes on\n",
+      file);
+  kept_text[text.copy(kept_text.data(), kept_text.size() - 1)] = '\0';
   is_kept = true;
 }
 

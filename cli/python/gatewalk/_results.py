@@ -91,20 +91,8 @@ class Result(collections.abc.Mapping):  # type: ignore[type-arg]
 class Prediction(Result):
     """Where bodies end, and how. Of several starts, `starts` has one for each; of one, all is here.
 
-    Of `lattice`: what was seen, numbers of bodies where a prediction has shares.
-
-    Attributes
-    ----------
-    endings, endings_95 : dict
-        Shares of all bodies by ending (lattice: numbers of bodies); 95 % intervals of the shares (`to_frame`: of the numbers).
-    final_gates, trapped_gates, departed_gates : array, shape (rows, columns)
-        Shares (lattice: numbers) by the gate bodies end in, row 0 the one they enter by; of those trapped there, and of those
-        that left the field from there.
-    never_sampled, still_walking : float
-        Shares that the endings leave out: of bodies that reach a state whose row was never sampled, and of those that were
-        under way when the sum or the walks were stopped. Where they count, tables and pictures have them too.
-    error_95 : float or None
-        The bar: total variation of all shares, 95 %; none where nothing could be told.
+    Of `lattice`: what was seen, numbers of bodies where a prediction has shares; intervals are those of the shares, and in
+    `to_frame` those of the numbers.
     """
 
     def __getattr__(self, name: str) -> t.Any:
@@ -225,30 +213,6 @@ class Prediction(Result):
 
 class Analysis(Result):
     """Times (s), work (J), other starts and influences of a field.
-
-    Attributes
-    ----------
-    endings : dict
-        ``probability`` and ``interval_95`` of each.
-    never_sampled, still_walking : float
-        Shares that these leave out, see `Prediction`.
-    expected_gates, expected_seconds, expected_work_J : float
-        Means over all bodies; with ``_95`` their intervals, None of fewer than 100 bodies: ``why_no_interval``.
-    expected_visits : array, shape (rows, columns)
-        Of each gate.
-    by_ending : dict
-        Of ``all`` and of each ending: means, standard deviations and quantiles of times and works. A mean of fewer
-        than 100 bodies has no interval: ``why_no_interval``, by mean.
-    quasi_stationary : dict or None
-        What becomes of those who go on for ever: ``survival_per_gate``, ``kept_per_gate``, ...
-        ``time_scales_gates``: implied time scales, -1 / ln of the ``eigenvalues``.
-    first_passage : dict or None
-        With ``first_passage=TARGET``: see `Matrix.first_passage`.
-    starts, paths : list of dict
-        Chances of the target from other ways in, those 300 that were entered most of ``starts_in_all``; the most
-        frequent ways to it.
-    sensitivities : dict
-        What would change the chance of the target most.
     """
 
 
@@ -291,11 +255,6 @@ class FirstPassage(Result):
 
 class Sweep(Result):
     """Outcomes over a grid of keys.
-
-    Attributes
-    ----------
-    points : list of dict
-        ``at``, the keys' values, and the number of each outcome.
     """
 
     def to_frame(self) -> t.Any:
@@ -337,13 +296,6 @@ class Landscape(Result):
 
 class Trace(Result):
     """Runs in full.
-
-    Attributes
-    ----------
-    runs : list of dict
-        Of each run its ``label`` and arrays, shape (steps,): times (s), places (m), velocities (m/s), energies (J).
-    gate_m : tuple
-        Width and length of a gate, m.
     """
 
     def to_frame(self, run: int = 0) -> t.Any:
