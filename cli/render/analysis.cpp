@@ -111,13 +111,13 @@ struct NamedMean {
 void describe_reasons(Fields& out, const std::vector<NamedMean>& means, const NamedMean& mean) {
   const auto first = std::ranges::find_if(means, &NamedMean::says_why);
   out.optional(first != means.end() && &*first == &mean, [&](Fields& f) {
-    f.object(
-        {"why_no_interval", "by mean: why it has no interval, though there are groups of trials"},
-        [&](Fields& why) {
-          for (const NamedMean& m : means)
-            if (m.says_why() || why.is_schema())
-              why.text(Label(m.key, "the reason").varying("<mean>"), m.mean->why_none);
-        });
+    f.object({"why_no_interval", "by the key of the mean: why the mean has no 95 % interval"},
+             [&](Fields& why) {
+               for (const NamedMean& m : means)
+                 if (m.says_why() || why.is_schema())
+                   why.text(Label(m.key, "why this mean has no 95 % interval").varying("<mean>"),
+                            m.mean->why_none);
+             });
   });
 }
 
@@ -126,24 +126,28 @@ struct MeanOfDiscs {
   const char *key, *unit, *meaning;
 };
 constexpr MeanOfDiscs kMeansOfDiscs[] = {
-    {Cost::seconds, "expected_seconds", "s", "mean time"},
-    {Cost::propulsion_work, "expected_work_J", "J", "mean work of the propulsion"},
-    {Cost::random_work, "expected_random_work_J", "J", "mean work of the random force"},
+    {Cost::seconds, "expected_seconds", "s",
+     "mean duration of a body's way through the field, however it ends"},
+    {Cost::propulsion_work, "expected_work_J", "J",
+     "mean work of the propulsion on a body, however its way ends"},
+    {Cost::random_work, "expected_random_work_J", "J",
+     "mean work of the random force on a body, however its way ends"},
     {Cost::lost, "expected_lost_J", "J",
-     "mean energy lost to hits, dampers and drag, and left in the beams"}};
+     "mean energy that a body loses to hits, dampers and drag, or leaves in the beams"}};
 
 /// Gates visited, and what bodies take, whatever becomes of them.
 void describe_means(Fields& out, const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
-  std::vector<NamedMean> means{
-      {"expected_gates", "", "1", "mean number of gates visited", &a.gates}};
+  std::vector<NamedMean> means{{"expected_gates", "", "1",
+                                "mean number of gate visits of a body, however its way ends",
+                                &a.gates}};
   if (f.shown.mass)
     for (const auto& [cost, key, unit, meaning] : kMeansOfDiscs)
       means.push_back({key, "", unit, meaning, &a.costs[static_cast<std::size_t>(cost)]});
   if (!f.shown.mass || out.is_schema())
     for (std::size_t c = 0; c < a.costs.size(); ++c)
       means.push_back({"expected_" + costs_of(f)[c].key, "expected_<cost>", "its own",
-                       "mean of a cost of the cells", &a.costs[c]});
+                       "mean of this cost over all bodies, in the unit of the cost", &a.costs[c]});
   for (const NamedMean& m : means) {
     if (&m == &means.front())
       m.describe(out);
@@ -161,7 +165,7 @@ void describe_by_ending(Fields& out, const AnalysedField& f) {
       means.push_back({"mean_" + costs_of(f)[c].key, "", "", "", &a.costs_of[place(ending)][c]});
     for (const NamedMean& m : means) {
       out_of_ending.interval(
-          Field(m.key + "_95", "its own", "95 % interval of this mean").varying("mean_<cost>_95"),
+          Field(m.key + "_95", "its own", "95 % interval of mean_<cost>").varying("mean_<cost>_95"),
           known(m.mean->interval));
       describe_reasons(out_of_ending, means, m);
     }
@@ -172,145 +176,194 @@ void describe_by_ending(Fields& out, const AnalysedField& f) {
     endings.optional(s.share > 0.0, [&](Fields& o) {
       o.object(Label(key, who).shared("costs_of_bodies"), [&](Fields& one) {
         describe(one, s, f.shown);
-        one.number({"probability", "1", "share of all bodies that these are, by the chain"},
-                   s.share);
+        one.number(
+            {"probability", "1", "share of all bodies that belong to this group, by the chain"},
+            s.share);
         if (ending) intervals(one, *ending);
         one.optional(f.direct.has_value(), [&](Fields& d) {
           const auto [distance, chance_95] = duration_distance(a, f.direct->costs, ending);
           d.number({"kolmogorov_distance", "1",
-                    "largest difference of the distributions of time, of the chain and of trials"},
+                    "Kolmogorov distance between times of the chain's walks and of the trials; "
+                    "null: fewer than 50 of either"},
                    distance);
           d.number({"kolmogorov_chance_95", "1",
-                    "by chance alone, 95 of 100 such differences are at most this"},
+                    "kolmogorov_distance that chance alone exceeds in 5 % of cases; null: as "
+                    "kolmogorov_distance"},
                    chance_95);
         });
       });
     });
   };
-  out.object({"by_ending", "what bodies take by the chain: all of them, and by how they end"},
-             [&](Fields& endings) {
-               add(endings, "all", "of all bodies", {});
-               for (const EndingName& e : kAllEndingNames)
-                 add(endings, e.key, fmt::format("of bodies that {}", meaning_of(e)), e.ending);
-             });
+  out.object(
+      {"by_ending", "times and costs of bodies by the chain: of all bodies, and by their ending"},
+      [&](Fields& endings) {
+        add(endings, "all", "times and costs of all bodies", {});
+        for (const EndingName& e : kAllEndingNames)
+          add(endings, e.key, fmt::format("times and costs of bodies that {}", meaning_of(e)),
+              e.ending);
+      });
 }
 
 void describe_endless(Fields& out, const lattice::Analysis& a) {
   out.maybe(
-      {"quasi_stationary", "bodies that go on for ever, in an endless field"}, a.endless,
-      [&](Fields& q, const markov::QuasiStationary& endless) {
-        q.number({"survival_per_gate", "1", "share that gets through or out of each further gate"},
+      {"quasi_stationary",
+       "bodies not yet trapped after many gates of an endless field (quasi-stationary "
+       "distribution); null: none"},
+      a.endless, [&](Fields& q, const markov::QuasiStationary& endless) {
+        q.number({"survival_per_gate", "1",
+                  "share of bodies that are not trapped in each further gate: the largest "
+                  "eigenvalue of a gate's kernel"},
                  endless.survival);
-        q.number({"second_eigenvalue", "1", "modulus of the second eigenvalue"}, endless.second);
-        q.number({"spectral_gap", "1", "survival less the second eigenvalue"},
+        q.number({"second_eigenvalue", "1",
+                  "modulus of the second largest eigenvalue of a gate's kernel"},
+                 endless.second);
+        q.number({"spectral_gap", "1", "survival_per_gate minus second_eigenvalue"},
                  endless.spectral_gap());
         q.number({"kept_per_gate", "1",
-                  "what is left of the memory of the start from one gate to the next: the second "
-                  "eigenvalue by the first"},
+                  "part of the memory of the start that one gate leaves: second_eigenvalue / "
+                  "survival_per_gate"},
                  endless.second / endless.survival);
-        q.number({"rows_per_gate", "1", "rows that a body gets ahead in each gate"},
+        q.number({"rows_per_gate", "1",
+                  "mean number of rows that a body advances in each move to the next gate"},
                  endless.rows_per_cell);
-        q.numbers({"eigenvalues", "1",
-                   "moduli of the largest eigenvalues of a gate's kernel, at most six"},
-                  endless.moduli);
+        q.numbers(
+            {"eigenvalues", "1",
+             "moduli of the largest eigenvalues of a gate's kernel, largest first, at most six"},
+            endless.moduli);
         std::vector<double> scales;
         for (const double modulus : endless.moduli)
           scales.push_back(markov::implied_time_scale(modulus));
         q.numbers({"time_scales_gates", "1",
-                   "implied time scales in gates: -1 / ln of each of these, survival's first; "
-                   "null: endless"},
+                   "implied time scale of each of eigenvalues, in gates: -1 / ln(eigenvalue); "
+                   "null: infinite"},
                   scales);
-        q.object({"boundaries", "how bodies enter gates"}, [&](Fields& b) {
-          for (std::size_t face = 0; face < a.endless_boundaries.size(); ++face)
-            b.number(
-                Field(a.space.section().faces[face].name, "1", "share that enters by this boundary")
-                    .varying("<boundary>"),
-                a.endless_boundaries[face]);
-        });
+        q.object(
+            {"boundaries",
+             "quasi-stationary shares of bodies by the boundary through which they enter a gate"},
+            [&](Fields& b) {
+              for (std::size_t face = 0; face < a.endless_boundaries.size(); ++face)
+                b.number(Field(a.space.section().faces[face].name, "1",
+                               "share of bodies that enter a gate through this boundary")
+                             .varying("<boundary>"),
+                         a.endless_boundaries[face]);
+            });
         std::vector<double> states;
         for (const int s : lattice::shown_order(a.space))
           states.push_back(endless.states[static_cast<std::size_t>(s)]);
-        q.numbers({"states", "1", "share in each state of the chain, as gatewalk show lists them"},
+        q.numbers({"states", "1",
+                   "quasi-stationary share of bodies in each state of the chain, in the order of "
+                   "gatewalk show"},
                   states);
       });
   out.optional(!a.endless, [&](Fields& f) {
-    f.text({"why_not_quasi_stationary", "why there is none"}, a.why_not_endless);
+    f.text({"why_not_quasi_stationary", "why there is no quasi-stationary distribution"},
+           a.why_not_endless);
   });
 }
 
 void describe_lumping(Fields& out, const lattice::Analysis& a) {
   out.maybe(
-      {"lumping", "what so few states as --lump asks for would cost; null: walks circle too long"},
+      {"lumping",
+       "error of a chain with merged states (--lump; default: one for each boundary); null: walks "
+       "circle too long"},
       a.lumped, [&](Fields& l, const lattice::LumpedChain& lumped) {
         const char *const one = "one for each boundary", *const parts = "parts of each boundary";
-        l.text(Label("states", "what they are").one_of({one, parts}),
-               std::ranges::all_of(a.lumping, [](int n) { return n == 1; }) ? one : parts);
-        l.counts({"parts", "1", "parts that each coordinate is cut into"},
+        l.text(
+            Label(
+                "states",
+                "how states are merged: into one for each boundary, or into parts of each boundary")
+                .one_of({one, parts}),
+            std::ranges::all_of(a.lumping, [](int n) { return n == 1; }) ? one : parts);
+        l.counts({"parts", "1",
+                  "number of parts into which each coordinate is cut; coordinates without a number "
+                  "are not cut"},
                  {a.lumping.begin(), a.lumping.end()});
-        l.count({"count", "1", "number of these states"}, lumped.states);
+        l.count({"count", "1", "number of states after merging, the start's own state included"},
+                lumped.states);
         l.number({"largest_difference", "1",
-                  "largest total variation between the rows of two states that become one"},
+                  "largest total variation between rows of states that are merged into one: "
+                  "visit-weighted mean over these"},
                  lumped.largest);
-        l.object({"error", "total variation to the whole chain"}, [&](Fields& error) {
-          error.number({"endings", "1", "of the endings"}, lumped.endings);
-          error.number({"final_gates", "1", "of the final gates"}, lumped.final_gates);
-        });
+        l.object(
+            {"error", "total variation between the chain with merged states and the whole chain"},
+            [&](Fields& error) {
+              error.number({"endings", "1", "total variation of the endings"}, lumped.endings);
+              error.number({"final_gates", "1", "total variation of the final gates"},
+                           lumped.final_gates);
+            });
       });
 }
 
 void describe_visits(Fields& out, const lattice::Analysis& a) {
-  out.grid({"expected_visits", "1", "mean number of visits of each gate"}, a.totals.visits);
+  out.grid({"expected_visits", "1", "mean number of visits of a body to each gate"},
+           a.totals.visits);
 }
 
 void describe_target(Fields& out, const lattice::Analysis& a) {
-  out.text(
-      Label("target", "the ending that starts, ways and influences are of").one_of(ending_keys()),
-      ending_name(a.target).key);
+  out.text(Label("target", "the ending to which starts, paths and sensitivities refer")
+               .one_of(ending_keys()),
+           ending_name(a.target).key);
 }
 
 void describe_starts(Fields& out, const lattice::Analysis& a) {
-  out.list(
-      {"starts",
-       "the chance of the target by the way to enter the first gate: all of these ways, or "
-       "those 300 that were entered most; in a field that is its own mirror image the mean "
-       "with the image's"},
-      std::span(a.starts).first(static_cast<std::size_t>(a.told_starts())),
-      [&](Fields& start, const lattice::StartChance& s) {
-        describe(start, a.space.section(), s.range);
-        start.estimate({"probability", "1", "chance of the target"}, s.chance.mean,
-                       known(s.chance.interval), "interval_95");
-        start.count({"runs", "1", "gate runs that entered so; with those of the image"}, s.runs);
-      });
-  out.count({"starts_in_all", "1", "how many ways to enter the first gate there are"},
+  out.list({"starts",
+            "chance of the target by the range of entries into the first gate: all ranges, or the "
+            "300 with most runs"},
+           std::span(a.starts).first(static_cast<std::size_t>(a.told_starts())),
+           [&](Fields& start, const lattice::StartChance& s) {
+             describe(start, a.space.section(), s.range);
+             start.estimate({"probability", "1",
+                             "chance of the target; in a mirror-symmetric field its mean with the "
+                             "mirror image's; null: no run entered"},
+                            s.chance.mean, known(s.chance.interval), "interval_95");
+             start.count({"runs", "1",
+                          "gate runs from the state of this range; in a mirror-symmetric field "
+                          "with those of the mirror image"},
+                         s.runs);
+           });
+  out.count({"starts_in_all", "1",
+             "number of ranges of entries into the first gate, listed in starts or not"},
             a.starts.size());
 }
 
 void describe_paths(Fields& out, const AnalysedField& f) {
   const lattice::FieldParams& field = f.shown.field;
-  out.list({"paths", "the most frequent ways to the target"}, f.analysis.paths.paths,
-           [&](Fields& way, const markov::CellPath& path) {
-             way.number({"probability", "1", "share of all bodies that go this way"}, path.share);
-             way.list({"gates", "its gates, from the start on"}, path.cells,
-                      [&](Fields& gate, std::int64_t cell) {
-                        gate.count({"i_x", "1", "column, the start's is 0"},
-                                   cell % field.columns - field.start_column());
-                        gate.count({"i_y", "1", "row, the start's is 0"}, cell / field.columns);
-                      });
-           });
-  out.flag({"paths_complete", "false: the search for more ways was given up"},
-           !f.analysis.paths.gave_up);
+  out.list(
+      {"paths", "the most frequent sequences of gates that end in the target, most frequent first"},
+      f.analysis.paths.paths, [&](Fields& way, const markov::CellPath& path) {
+        way.number(
+            {"probability", "1",
+             "share of all bodies that visit exactly these gates and then end in the target"},
+            path.share);
+        way.list(
+            {"gates", "gates of the path, from the start on"}, path.cells,
+            [&](Fields& gate, std::int64_t cell) {
+              gate.count({"i_x", "1",
+                          "column of the gate: 0 is the start's, columns to its left are negative"},
+                         cell % field.columns - field.start_column());
+              gate.count({"i_y", "1", "row of the gate: 0 is the start's"}, cell / field.columns);
+            });
+      });
+  out.flag(
+      {"paths_complete", "whether all paths asked for were found; false: the search took too long"},
+      !f.analysis.paths.gave_up);
 }
 
 void describe_types(Fields& out, const AnalysedField& f) {
   const std::vector<std::string>& types = f.shown.types;
   out.maybe(
-      {"types", "gates by type, in mixed fields"}, if_any(types), [&](Fields& o, const auto&) {
+      {"types", "visits and trapping by type of gate; null: all gates are of one type"},
+      if_any(types), [&](Fields& o, const auto&) {
         for (std::size_t t = 0; t < types.size(); ++t)
           o.object(Label(types[t], "gates of this type").varying("<type>"), [&](Fields& type) {
             const auto& [visits, trapped] = f.analysis.types[t];
-            type.number({"visits", "1", "mean number of visits of a body"}, visits);
-            type.number({"trapped", "1", "share of all bodies that are trapped there"}, trapped);
-            type.number({"trapped_per_visit", "1", "share of the visits that end trapped"},
+            type.number({"visits", "1", "mean number of visits of a body to gates of this type"},
+                        visits);
+            type.number(
+                {"trapped", "1", "share of all bodies that are trapped in gates of this type"},
+                trapped);
+            type.number({"trapped_per_visit", "1",
+                         "share of visits to gates of this type that end trapped"},
                         trapped / visits);
           });
       });
@@ -328,76 +381,101 @@ void by_type(Fields& out, const Label& label, const AnalysedField& f, const Item
 }
 
 void describe_elasticity(Fields& out, const lattice::Mean95& m) {
-  out.estimate({"elasticity", "1",
-                "per cent that the chance of the target changes for one per cent more of the "
-                "number"},
-               m.mean, known(m.interval), "interval_95");
+  out.estimate(
+      {"elasticity", "1",
+       "per cent by which the chance of the target changes for one per cent more of the number"},
+      m.mean, known(m.interval), "interval_95");
 }
 
 void describe_effect(Fields& out, const AnalysedField& f, const lattice::ParameterEffect& e) {
   const double unit = f.parameters.chance / e.value;
   const auto& [low, high] = e.elasticity.interval;
-  out.text({"key", "the number's key"}, e.key);
-  out.number({"value", "its own", "its value; null: types of gates differ in it"}, e.value);
+  out.text({"key", "key of the number in the scene"}, e.key);
+  out.number({"value", "its own", "value of the number; null: types of gates differ in it"},
+             e.value);
   describe_elasticity(out, e.elasticity);
-  out.number({"with_more", "1", "the elasticity with more of the number alone"}, e.more);
-  out.number({"with_less", "1", "the elasticity with less of the number alone"}, e.less);
-  out.flag({"bends", "whether these two differ by more than chance"}, e.bends);
-  out.number(
-      {"left_out", "1", "share of the places where bodies cannot enter a gate that is changed so"},
-      e.left_out);
-  by_type(out, {"of_type", "the elasticity in gates of one type alone"}, f, e.of_type,
-          [&](Fields& o, std::string_view type, const lattice::Mean95& m) {
+  out.number({"with_more", "1",
+              "elasticity by an increase of the number alone; null: the scene does not permit the "
+              "increase"},
+             e.more);
+  out.number({"with_less", "1",
+              "elasticity by a decrease of the number alone; null: the scene does not permit the "
+              "decrease"},
+             e.less);
+  out.flag({"bends", "whether with_more and with_less differ by more than chance"}, e.bends);
+  out.number({"left_out", "1",
+              "share of entries left out, as bodies cannot enter the changed gate there or runs "
+              "were not finite"},
+             e.left_out);
+  by_type(out,
+          {"of_type",
+           "elasticity if the number changes in gates of one type only; null: all gates are of one "
+           "type"},
+          f, e.of_type, [&](Fields& o, std::string_view type, const lattice::Mean95& m) {
             o.object(Label(type, "gates of this type").varying("<type>"),
                      [&](Fields& one) { describe_elasticity(one, m); });
           });
-  out.estimate({"derivative", "its own", "change of the chance for one unit more of the number"},
+  out.estimate({"derivative", "1/(unit of the number)",
+                "change of the target's chance per unit of the number; null: types of gates differ "
+                "in the number"},
                e.elasticity.mean * unit, known({low * unit, high * unit}));
 }
 
 void describe_sensitivities(Fields& out, const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
-  out.text(Label("of", "the target").one_of(ending_keys()), ending_name(a.target).key);
-  out.grid({"passed_gates", "1", "visits of bodies that end in the target, per body of these"},
-           a.passed);
-  const Field trapping(
-      "less_trapping", "1",
-      "per cent that the chance of the target grows were one per cent fewer "
-      "trapped in the gate; null: the target is \"trapped\", or nobody gets there");
+  out.text(Label("of", "the ending whose chance is meant").one_of(ending_keys()),
+           ending_name(a.target).key);
+  out.grid(
+      {"passed_gates", "1", "mean number of visits to each gate, of bodies that end in the target"},
+      a.passed);
+  const Field trapping("less_trapping", "1",
+                       "per cent that the target's chance grows if 1 % fewer are trapped in the "
+                       "gate; null: target trapped, or chance 0");
   if (a.trapping.size() > 0)
     out.grid(trapping, a.trapping);
   else
     out.no_grid(trapping);
   out.numbers({"less_trapping_by_state", "1",
-               "the same by state, in all gates together, as gatewalk show lists them"},
+               "less_trapping by state, summed over gates, states in the order of gatewalk show; "
+               "null: as less_trapping"},
               a.state_trapping.empty() ? std::nullopt : std::optional(a.state_trapping));
-  by_type(out, {"less_trapping_by_type", "the same by type of gate"}, f, a.type_trapping,
-          [](Fields& o, std::string_view type, double x) {
+  by_type(out,
+          {"less_trapping_by_type",
+           "less_trapping summed over the gates of each type; null: all gates are of one type, or "
+           "as less_trapping"},
+          f, a.type_trapping, [](Fields& o, std::string_view type, double x) {
             o.number(Field(type, "1", "gates of this type").varying("<type>"), x);
           });
-  out.list({"parameters", "the numbers of the scene, those that matter most first"},
+  out.list({"parameters",
+            "numbers of the scene and their elasticities, the largest (of either sign) first"},
            sorted_effects(f),
            [&](Fields& o, const lattice::ParameterEffect& e) { describe_effect(o, f, e); });
-  out.number({"probability", "1", "chance of the target, by the chain behind these numbers"},
+  out.number({"probability", "1",
+              "chance of the target by the chain from which the elasticities are computed"},
              f.parameters.chance);
-  out.count({"gate_runs", "1", "gate runs with changed numbers"}, f.parameters.health.runs);
-  out.count({"chain_gate_runs", "1", "gate runs of the chain behind these numbers"},
-            f.parameters.pool_runs);
-  out.number({"seconds", "s", "time that these numbers took"}, f.parameters.seconds);
-  out.count({"added_gate_runs", "1", "gate runs that were added to the chain for them"},
+  out.count({"gate_runs", "1",
+             "gate runs made for the elasticities: with changed numbers, and added_gate_runs"},
+            f.parameters.health.runs);
+  out.count(
+      {"chain_gate_runs", "1", "gate runs of the chain from which the elasticities are computed"},
+      f.parameters.pool_runs);
+  out.number({"seconds", "s", "time that the elasticities took to compute"}, f.parameters.seconds);
+  out.count({"added_gate_runs", "1",
+             "gate runs that were added to the chain to make the elasticities precise enough"},
             f.parameters.added_runs);
   describe_status(out, f.parameters.health);
 }
 
 void describe_chances(Fields& out, const lattice::EndingShares& shares) {
-  out.object({"endings", "how bodies end"}, [&](Fields& endings) {
+  out.object({"endings", "share of bodies by ending, with its interval"}, [&](Fields& endings) {
     const auto add = [&](const EndingName& e) {
-      endings.object(Label(e.key, fmt::format("bodies that {}", meaning_of(e))).shared("ending"),
-                     [&](Fields& one) {
-                       one.estimate({"probability", "1", "share of all bodies"},
-                                    shares.share[place(e.ending)],
-                                    known(shares.interval[place(e.ending)]), "interval_95");
-                     });
+      endings.object(
+          Label(e.key, fmt::format("share of bodies that {}", meaning_of(e))).shared("ending"),
+          [&](Fields& one) {
+            one.estimate({"probability", "1", "share of all bodies that end in this way"},
+                         shares.share[place(e.ending)], known(shares.interval[place(e.ending)]),
+                         "interval_95");
+          });
     };
     for (const EndingName& e : kEndingNames) add(e);
     endings.optional(!shares.rules_out(lattice::kWentBack.ending),
@@ -413,49 +491,57 @@ void describe(Fields& out, const AnalysedField& f) {
   describe_means(out, f);
   out.optional(shown.mass.has_value(), [&](Fields& o) {
     o.number({"cost_of_transport_J_per_kg_m", "J/(kg m)",
-              "work of both forces per mass and way forward"},
+              "mean work of both forces / (body mass * mean distance forward); null: no distance "
+              "forward"},
              spent(a, {}).cost_of_transport(*shown.mass));
   });
   describe_visits(out, a);
   describe(out, answer.rest);
   out.count({"drawn_walks", "1",
-             "walks with the chain behind times and works in a large field without limit; 0: "
-             "these are exact"},
+             "chain walks drawn to estimate times and costs (large fields without a limit of "
+             "gates); 0: exact"},
             a.totals.drawn_walks);
   describe_by_ending(out, f);
   describe_endless(out, a);
   describe_answer_from(out, answer.from_trials);
   describe_lumping(out, a);
   describe_target(out, a);
-  out.number({"target_probability", "1",
-              "its chance by the chain; the answer, which may be the trials' own, stands in "
-              "endings"},
-             a.target_chance);
+  out.number(
+      {"target_probability", "1",
+       "chance of the target by the chain; the one in endings may come from trials (answer_from)"},
+      a.target_chance);
   describe_starts(out, a);
   describe_paths(out, f);
-  out.object({"sensitivities", "what would change the chance of the target most"},
-             [&](Fields& o) { describe_sensitivities(o, f); });
+  out.object(
+      {"sensitivities",
+       "how the chance of the target responds to trapping in gates and to numbers of the scene"},
+      [&](Fields& o) { describe_sensitivities(o, f); });
   describe_types(out, f);
   out.optional(direct.has_value(), [&](Fields& o) {
-    o.object({"direct", "the same field by trials of the full dynamics"}, [&](Fields& d) {
-      d.count({"trials", "1", "number of trials"}, direct->tally.trials);
-      describe_endings(d, {"endings", "how they ended"}, direct->tally.endings);
+    o.object({"direct", "full simulation of the same field, for comparison"}, [&](Fields& d) {
+      d.count({"trials", "1", "number of simulated trials"}, direct->tally.trials);
+      describe_endings(d, {"endings", "number of simulated trials by ending"},
+                       direct->tally.endings);
       describe_costs(d, direct->costs, shown);
     });
   });
-  out.count({"states", "1", "states of the chain"}, answer.states);
-  out.count({"gate_runs", "1", "gate runs, of the chain and with changed numbers"}, f.gate_runs());
-  out.flag({"accuracy_reached", "whether the accuracy that was asked for was reached"},
+  out.count({"states", "1", "number of states of the chain"}, answer.states);
+  out.count({"gate_runs", "1",
+             "gate runs that this command made: for the chain, and for the elasticities"},
+            f.gate_runs());
+  out.flag({"accuracy_reached", "whether the prediction reached the accuracy that was asked for"},
            answer.reached);
-  out.number({"seconds", "s", "time in all"}, f.seconds());
+  out.number({"seconds", "s", "time of the whole computation"}, f.seconds());
   describe_status(out, answer.health);
   describe_method(out, answer.method);
   out.maybe({"variance_shares",
-             "of --over: how much of the variance of the target's chance each number makes"},
+             "with --over: share of the variance of the target's chance that each number causes; "
+             "null: without --over"},
             shares, [](Fields& o, const RangedShares& s) { describe(o, s); });
   out.optional(passage.has_value(), [&](Fields& o) {
     o.object({"first_passage",
-              "of --first-passage: bodies from the start, then from every state of every gate"},
+              "with --first-passage: chance and time to reach a target, from the start and from "
+              "each state of each gate"},
              [&](Fields& p) { describe(p, *passage); });
   });
   describe_made_by(out, made_by);
@@ -469,9 +555,10 @@ void describe_for_page(Fields& out, const AnalysedField& f) {
   describe_paths(out, f);
   describe_types(out, f);
   out.optional(!f.parameters.effects.empty(), [&](Fields& o) {
-    o.list({"parameters", "the numbers of the scene, those that matter most first"},
+    o.list({"parameters",
+            "numbers of the scene and their elasticities, the largest (of either sign) first"},
            sorted_effects(f), [](Fields& number, const lattice::ParameterEffect& e) {
-             number.text({"key", "the number's key"}, e.key);
+             number.text({"key", "key of the number in the scene"}, e.key);
              describe_elasticity(number, e.elasticity);
            });
   });

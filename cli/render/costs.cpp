@@ -49,15 +49,23 @@ double Spent::cost_of_transport(double mass) const {
 void describe(Fields& out, const Spent& s, const ShownField& shown) {
   for (std::size_t c = 0; c < costs_of(shown).size(); ++c) {
     const std::string &key = costs_of(shown)[c].key, mean = "mean_" + key, sd = "sd_" + key;
-    out.number(Field(mean, "its own", "mean of what they took").varying("mean_<cost>"), s.mean[c]);
-    out.number(Field(sd, "its own", "standard deviation of the same").varying("sd_<cost>"),
+    out.number(Field(mean, "its own",
+                     "mean of this cost over the bodies of the group; null: nobody measured it")
+                   .varying("mean_<cost>"),
+               s.mean[c]);
+    out.number(Field(sd, "its own",
+                     "standard deviation of this cost over the bodies of the group; null: nobody "
+                     "measured it")
+                   .varying("sd_<cost>"),
                s.sd[c]);
   }
-  out.numbers({"quantiles_time_s", "s", "5, 25, 50, 75 and 95 % took no longer than this"},
-              {s.quantiles.begin(), s.quantiles.end()});
+  out.numbers(
+      {"quantiles_time_s", "s", "5, 25, 50, 75 and 95 % quantiles of time; null: too few bodies"},
+      {s.quantiles.begin(), s.quantiles.end()});
   out.optional(shown.mass.has_value(), [&](Fields& f) {
     f.number({"cost_of_transport_J_per_kg_m", "J/(kg m)",
-              "work of both forces per mass and way forward"},
+              "mean work of both forces / (body mass * mean distance forward); null: no distance "
+              "forward"},
              s.cost_of_transport(shown.mass.value_or(kUnknown)));
   });
 }
@@ -94,7 +102,7 @@ void CostTable::add(const std::string& name, const Spent& s) {
 }
 
 void describe_costs(Fields& out, const FieldCosts& costs, const ShownField& shown) {
-  out.object({"costs", "what trials took: all of them, and by how they ended"},
+  out.object({"costs", "times and costs of trials: of all trials, and by their ending"},
              [&](Fields& endings) {
                const auto add = [&](std::string_view key, std::string_view who,
                                     std::optional<markov::Ending> ending) {
@@ -102,13 +110,14 @@ void describe_costs(Fields& out, const FieldCosts& costs, const ShownField& show
                  endings.optional(spent.trials > 0, [&](Fields& f) {
                    f.object(Label(key, who).shared("costs_of_trials"), [&](Fields& one) {
                      describe(one, spent, shown);
-                     one.count({"trials", "1", "how many these are"}, spent.trials);
+                     one.count({"trials", "1", "number of trials in the group"}, spent.trials);
                    });
                  });
                };
-               add("all", "of all trials", {});
+               add("all", "times and costs of all trials", {});
                for (const EndingName& e : kAllEndingNames)
-                 add(e.key, fmt::format("of trials whose bodies {}", meaning_of(e)), e.ending);
+                 add(e.key, fmt::format("times and costs of trials whose bodies {}", meaning_of(e)),
+                     e.ending);
              });
 }
 

@@ -29,7 +29,9 @@ std::vector<double> place_bounds(const ShownField& shown, std::size_t side) {
   return lattice::exit_bounds(shown.width, shown.length, shown.field, side);
 }
 
-Label exits_label() { return {"exits", "where bodies leave the field along each of its sides"}; }
+Label exits_label() {
+  return {"exits", "share of bodies that leave the field at each place along its sides"};
+}
 
 /// What one or two answers say of it.
 struct Place {
@@ -53,13 +55,14 @@ void describe_places(Fields& out, const Label& l, const std::vector<const FieldE
           places[i].interval[k] = (*exits[k])[side].interval[i];
         }
       }
-      sides.list({name_of_side(side).key,
-                  side == lattice::kFarSide
-                      ? "along x, from the middle of the start's column: each column of gates"
-                      : "along y, from the near end of the field: each row of gates"},
+      sides.list({name_of_side(side).key, side == lattice::kFarSide
+                                              ? "places along the far side, one for each column of "
+                                                "gates; x from the middle of the start's column"
+                                              : "places along this side, one for each row of "
+                                                "gates; y from the near end of the field"},
                  places, [&](Fields& f, const Place& place) {
-                   f.number({"from_m", "m", "where the place begins"}, place.from);
-                   f.number({"to_m", "m", "where the place ends"}, place.to);
+                   f.number({"from_m", "m", "lower end of the place"}, place.from);
+                   f.number({"to_m", "m", "upper end of the place"}, place.to);
                    describe_shares(f, place);
                  });
     }
@@ -85,17 +88,19 @@ FieldExits shown_exits(FieldExits exits, const markov::FinalDistribution& f) {
 
 void describe_exits(Fields& out, const FieldExits& exits, const ShownField& shown) {
   describe_places(out, exits_label().shared(), {&exits}, shown, [](Fields& f, const Place& p) {
-    f.estimate({"share", "1", "share of all bodies that leave there"}, p.share[0], p.interval[0],
-               "interval_95");
+    f.estimate({"share", "1", "share of all bodies that leave the field at this place"}, p.share[0],
+               p.interval[0], "interval_95");
   });
 }
 
 void describe_exits(Fields& out, const FieldExits& dynamics, const FieldExits& chain,
                     const ShownField& shown) {
   describe_places(out, exits_label(), {&dynamics, &chain}, shown, [](Fields& f, const Place& p) {
-    f.estimate({"dynamics", "1", "share of all trials that leave there"}, p.share[0],
-               p.interval[0]);
-    f.estimate({"exact", "1", "the same share by the chain"}, p.share[1], p.interval[1]);
+    f.estimate({"dynamics", "1", "share of all trials that leave the field at this place"},
+               p.share[0], p.interval[0]);
+    f.estimate(
+        {"exact", "1", "share of all bodies that leave the field at this place, by the chain"},
+        p.share[1], p.interval[1]);
   });
 }
 

@@ -37,12 +37,13 @@ void FieldEnds<Cells>::describe_endings(Fields& out) const {
 template <class Cells>
 void FieldEnds<Cells>::describe_gates(Fields& out) const {
   const auto map = [&](std::string_view key, std::string_view who, const Cells& cells) {
-    describe_map(
-        out, {key, "1", fmt::format("{} {}, by the gate where they end", kOf<Number>, who)}, cells);
+    describe_map(out,
+                 {key, "1", fmt::format("{} {}, by the gate in which they end", kOf<Number>, who)},
+                 cells);
   };
-  map("final_gates", "all that end", final_gates);
-  map("trapped_gates", "those that are trapped", trapped_gates);
-  map("departed_gates", "those that leave the field", departed_gates);
+  map("final_gates", "all bodies", final_gates);
+  map("trapped_gates", "bodies that are trapped", trapped_gates);
+  map("departed_gates", "bodies that leave the field", departed_gates);
 }
 
 template <class Cells>
@@ -67,8 +68,9 @@ template <class Cells>
 void FieldEnds<Cells>::describe_never_sampled(Fields& out) const {
   put(out,
       {"never_sampled", "1",
-       fmt::format("{} bodies that the endings leave out: they reach a state whose row has no run",
-                   kOf<Number>)},
+       fmt::format(
+           "{} bodies without an ending: they reach a state from which there is no gate run",
+           kOf<Number>)},
       never_sampled);
 }
 
@@ -76,8 +78,8 @@ template <class Cells>
 void FieldEnds<Cells>::describe_still_walking(Fields& out) const {
   put(out,
       {"still_walking", "1",
-       fmt::format("{} bodies that the endings leave out: they are under way when the sum or the "
-                   "walks are stopped",
+       fmt::format("{} bodies without an ending: they were under way when the sum or the walks "
+                   "were stopped",
                    kOf<Number>)},
       still_walking);
 }

@@ -19,30 +19,36 @@ void describe(Fields& out, const lattice::Comparison& c) {
                               double by_chance) {
     out.number(field, value);
     out.number({floor, field.unit,
-                "floor: the best to expect, which sampling alone gives two maps of one field"},
+                "floor: the value that sampling noise alone gives two samples of the same field"},
                by_chance);
   };
-  with_floor({"corrcoef", "1", "Pearson correlation of the two maps, over the gates"}, c.corrcoef,
-             "corrcoef_floor", c.floor.corrcoef);
-  with_floor({"rmse_per_100", "trials per 100", "root mean squared difference, over the gates"},
+  with_floor(
+      {"corrcoef", "1", "Pearson correlation of the two maps of final gates, over the gates"},
+      c.corrcoef, "corrcoef_floor", c.floor.corrcoef);
+  with_floor({"rmse_per_100", "trials per 100",
+              "root mean squared difference of the two maps of final gates, over the gates"},
              c.rmse_per_100, "rmse_per_100_floor", c.floor.rmse_per_100);
-  with_floor({"total_variation", "1", "half the sum of the absolute differences of the shares"},
-             c.total_variation, "total_variation_floor", c.floor_total_variation);
+  with_floor(
+      {"total_variation", "1",
+       "total variation of the final gates: half the sum of the absolute differences of shares"},
+      c.total_variation, "total_variation_floor", c.floor_total_variation);
   out.number({"total_variation_floor_95", "1",
-              "by sampling alone, 95 of 100 total variations are at most this"},
+              "total variation that sampling noise alone exceeds in 5 % of cases"},
              c.floor_total_variation_95);
-  out.object({"p_values", "how often chance makes two maps of one field at least as different"},
-             [&](Fields& p) {
-               p.number({"chi_squared", "1", "by the chi-squared statistic"}, c.p_chi_squared);
-               p.number({"total_variation", "1", "by the total variation"}, c.p_total_variation);
-               p.number({"energy_distance", "1", "by the energy distance; null: too many gates"},
-                        c.p_energy);
-               p.count({"null_draws", "1", "random draws behind these numbers"}, c.null_draws);
-             });
+  out.object(
+      {"p_values", "p-values: how often two samples of the same field differ at least as much"},
+      [&](Fields& p) {
+        p.number({"chi_squared", "1", "p-value of the chi-squared statistic"}, c.p_chi_squared);
+        p.number({"total_variation", "1", "p-value of the total variation"}, c.p_total_variation);
+        p.number({"energy_distance", "1", "p-value of the energy distance; null: too many gates"},
+                 c.p_energy);
+        p.count({"null_draws", "1", "random draws behind these numbers"}, c.null_draws);
+      });
 }
 
 void describe_change(Fields& out, const lattice::PairedChange& change) {
-  out.number({"changed_share", "1", "share of the trials that end in another gate"},
+  out.number({"changed_share", "1",
+              "share of trials that end in another gate with the change than without it"},
              change.changed);
   out.number({"total_variation_uncertainty", "1",
               "how far the total variation of the final gates may be from that of infinitely many "
@@ -73,7 +79,8 @@ void describe(Fields& out, const lattice::Judgement& j) {
           for (const EndingName& name : kEndingNames)
             e.number({name.key, "1", fmt::format("of bodies that {}", meaning_of(name))},
                      j.endings[static_cast<std::size_t>(name.ending)].p_adjusted);
-          e.number({"never_sampled", "1", "of bodies that reach a state whose row has no run"},
+          e.number({"never_sampled", "1",
+                    "of bodies that reach a state from which there is no gate run"},
                    j.endings[static_cast<std::size_t>(markov::Ending::unsampled)].p_adjusted);
         });
       });
@@ -108,7 +115,7 @@ FieldMap::Span span_of(const Eigen::ArrayXd& shares, Eigen::Index most) {
 
 void describe_left_out(Fields& out, int columns, int rows) {
   out.optional(Eigen::Index{columns} * rows > kMostGatesInJson, [&](Fields& f) {
-    f.text({"left_out", "which maps are null, as they have too many gates"},
+    f.text({"left_out", "which maps are null because the field has too many gates"},
            fmt::format("maps of {} x {} gates (null here; JSON has up to {} gates): --netcdf "
                        "FILE.nc writes them",
                        columns, rows, kMostGatesInJson));
@@ -223,7 +230,7 @@ std::string_view meaning_of(const EndingName& e) {
     case markov::Ending::unsampled:
       break;
   }
-  return "reach a state whose row has no run";
+  return "reach a state from which there is no gate run";
 }
 
 const EndingName& ending_name(markov::Ending ending) {
@@ -237,7 +244,9 @@ std::vector<std::string> ending_keys() {
 }
 
 void describe_answer_from(Fields& out, bool from_trials) {
-  out.text(Label("answer_from", "the chain, or the full trials' own shares, which are more certain")
+  out.text(Label("answer_from",
+                 "source of the answer: the chain, or the shares of full trials where these are "
+                 "more precise")
                .one_of({"chain", "trials"}),
            from_trials ? "trials" : "chain");
 }
@@ -258,18 +267,19 @@ void describe_endings_95(Fields& out, const Label& l, const lattice::EndingShare
 namespace {
 
 void describe_intervals(Fields& out, const lattice::EndingShares& shares) {
-  describe_endings_95(out, {"endings_95", "95 % intervals of the shares by ending"}, shares);
+  describe_endings_95(out, {"endings_95", "95 % intervals of the shares of bodies by ending"},
+                      shares);
 }
 
 }  // namespace
 
 void describe_endings(Fields& out, const EndingCounts& counts,
                       const lattice::EndingShares& shares) {
-  describe_endings(out, {"endings", "how bodies end: the number of them by ending"}, counts);
+  describe_endings(out, {"endings", "number of bodies by ending"}, counts);
   describe_intervals(out, shares);
 }
 void describe_endings(Fields& out, const lattice::EndingShares& shares) {
-  describe_endings(out, {"endings", "how bodies end: the share of them by ending"}, shares.share);
+  describe_endings(out, {"endings", "share of bodies by ending"}, shares.share);
   describe_intervals(out, shares);
 }
 
@@ -301,12 +311,13 @@ Rest rest_of(const markov::FinalDistribution& f) {
 }
 
 void describe(Fields& out, const Rest& rest) {
-  out.number({"never_sampled", "1",
-              "share that the endings leave out: it reaches a state whose row has no run"},
-             rest.never_sampled);
+  out.number(
+      {"never_sampled", "1",
+       "share of bodies without an ending: they reach a state from which there is no gate run"},
+      rest.never_sampled);
   out.number({"still_walking", "1",
-              "share that the endings leave out: it was under way when the sum or the walks were "
-              "stopped"},
+              "share of bodies without an ending: they were under way when the sum or the walks "
+              "were stopped"},
              rest.still_walking);
 }
 

@@ -35,40 +35,52 @@ bool PassageResult::has_tables() const {
 
 void describe(Fields& out, const PassageResult& result) {
   const auto& [asked, f, names, order] = result;
-  out.text({"target", "what bodies are to reach, as it was asked for"}, asked.text);
-  out.estimate({"probability", "1", "share of bodies that get there, or start there"},
+  out.text({"target", "what bodies are to reach, as --first-passage gives it"}, asked.text);
+  out.estimate({"probability", "1",
+                "share of bodies that reach the target; a body that starts there has reached it"},
                f.chance.mean, known(f.chance.interval));
-  out.estimate({"mean_gates", "1", "gates visited before, of bodies that get there"}, f.gates.mean,
-               known(f.gates.interval));
-  out.estimate({"mean_time_s", "s", "time until then, of the same; null: nobody measured it"},
+  out.estimate(
+      {"mean_gates", "1",
+       "mean number of gates visited before the target is reached, of bodies that reach it"},
+      f.gates.mean, known(f.gates.interval));
+  out.estimate({"mean_time_s", "s",
+                "mean time until the target is reached, of bodies that reach it; null: none does, "
+                "or times were not measured"},
                f.time.mean, known(f.time.interval));
   std::optional<std::vector<std::string>> states;
   if (result.has_tables()) states.emplace();
   for (std::size_t k = 0; states && k < order.size(); ++k)
     states->push_back(names[static_cast<std::size_t>(order[k])]);
-  out.texts({"states", "names of the states; null: tables would have more than 2 million numbers"},
+  out.texts({"states",
+             "names of the states, in the order of of_states; null: there would be over 2 million "
+             "numbers"},
             states);
-  out.maybe({"of_states",
-             "of bodies that enter a gate in a state, with all of field.max_gates "
-             "before them: rows x columns x states"},
-            states ? &f.all : nullptr, [&](Fields& of, const markov::FirstPassages& all) {
-              const auto table = [&](const Field& field, const std::vector<double>& values) {
-                of.gate_numbers(field, of_states(values, result));
-              };
-              table({"probability", "1", "share that gets there: the committor"}, all.chance);
-              table({"never_sampled", "1", "share that reaches a state without any run instead"},
-                    all.never_sampled);
-              table({"mean_gates", "1",
-                     "mean first passage time in gates, of those that get there; null: nobody "
-                     "does"},
-                    all.draws);
-              of.gate_numbers({"mean_time_s", "s", "the same in seconds; null: nobody measured it"},
-                              all.totals.empty()
-                                  ? std::nullopt
-                                  : std::optional(of_states(all.totals.front(), result)));
-            });
+  out.maybe(
+      {"of_states",
+       "first passages from each state of each gate, with all of field.max_gates ahead: row, "
+       "column, state"},
+      states ? &f.all : nullptr, [&](Fields& of, const markov::FirstPassages& all) {
+        const auto table = [&](const Field& field, const std::vector<double>& values) {
+          of.gate_numbers(field, of_states(values, result));
+        };
+        table({"probability", "1",
+               "committor: share of bodies from this state that reach the target"},
+              all.chance);
+        table({"never_sampled", "1",
+               "share of bodies that instead reach a state from which there is no gate run"},
+              all.never_sampled);
+        table(
+            {"mean_gates", "1",
+             "mean first passage time in gates, of bodies that reach the target; null: none does"},
+            all.draws);
+        of.gate_numbers({"mean_time_s", "s",
+                         "mean first passage time in seconds, of bodies that reach the target; "
+                         "null: none does, or not measured"},
+                        all.totals.empty() ? std::nullopt
+                                           : std::optional(of_states(all.totals.front(), result)));
+      });
   out.optional(!f.gates.why_none.empty(), [&](Fields& o) {
-    o.text({"why_no_interval", "why the means have none, though there are groups of trials"},
+    o.text({"why_no_interval", "why mean_gates and mean_time_s have no 95 % interval"},
            f.gates.why_none);
   });
 }

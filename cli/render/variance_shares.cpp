@@ -32,29 +32,33 @@ void describe(Fields& out, const RangedShares& shares) {
   const lattice::SobolIndices& i = shares.found.indices;
   out.text(Label("of", "the ending whose chance varies").one_of(ending_keys()),
            ending_name(shares.target).key);
-  estimate(out, {"mean", "1", "mean of the chance over the ranges"}, i.mean);
-  estimate(out, {"variance", "1", "variance of the chance over the ranges"}, i.variance);
+  estimate(out, {"mean", "1", "mean of the chance of this ending over the ranges"}, i.mean);
+  estimate(out, {"variance", "1", "variance of the chance over the ranges, without sampling noise"},
+           i.variance);
   out.number({"noise_variance", "1",
-              "variance of one answer, of 16 trials, about the chance at its point"},
+              "mean sampling variance of the share that 16 trials at one point show"},
              i.noise);
-  out.list_of({"numbers", "the numbers that vary"}, shares.ranges.size(),
+  out.list_of({"numbers", "the numbers that --over varies"}, shares.ranges.size(),
               [&](Fields& number, std::size_t k) {
                 const lattice::NumberRange& r = shares.ranges[k];
-                number.text({"key", "the number's key"}, r.key);
-                number.number({"low", "its own", "the range's lower end"}, r.low);
-                number.number({"high", "its own", "the range's upper end"}, r.high);
+                number.text({"key", "key of the number in the scene"}, r.key);
+                number.number({"low", "its own", "lower end of the number's range"}, r.low);
+                number.number({"high", "its own", "upper end of the number's range"}, r.high);
                 estimate(number,
                          {"first", "1",
-                          "Sobol's first-order index: share of the variance that the number makes "
-                          "by itself; null: the chance varies by no more than noise"},
+                          "Sobol's first-order index: share of the variance by this number alone; "
+                          "null: no variance beyond noise"},
                          i.first[k]);
                 estimate(number,
-                         {"total", "1", "total index: the share that it makes with all others"},
+                         {"total", "1",
+                          "Sobol's total index: share of the variance by this number alone and "
+                          "together with others"},
                          i.total[k]);
               });
-  out.count({"points", "1", "points of the ranges at which trials were run"}, shares.found.points);
-  out.count({"trials", "1", "trials at all points together"}, shares.found.trials);
-  out.number({"seconds", "s", "time that they took"}, shares.found.seconds);
+  out.count({"points", "1", "number of points of the ranges at which trials were run"},
+            shares.found.points);
+  out.count({"trials", "1", "number of trials at all points together"}, shares.found.trials);
+  out.number({"seconds", "s", "time that these trials took"}, shares.found.seconds);
   describe_status(out, shares.found.health);
 }
 
