@@ -38,52 +38,61 @@ const char* row_starts(const ChainCurve& c) { return c.entries.empty() ? "unifor
 void describe(Fields& out, const FinalGateError& e) {
   out.number({"total_variation", "1", "total variation of the final gates from the truth"},
              e.total_variation);
-  out.number({"corrcoef", "1", "correlation of the final gates with the truth"}, e.corrcoef);
+  out.number(
+      {"corrcoef", "1", "Pearson correlation of the final gates with the truth, over the gates"},
+      e.corrcoef);
 }
 
 void describe(Fields& out, const ChainAnswer& a) {
   out.object({"exact", "error of the exact prediction, mean over the matrices"}, [&](Fields& f) {
     describe(f, a.exact);
     f.number({"total_variation_sd", "1",
-              "standard deviation over the matrices; null where there is only one"},
+              "standard deviation of total_variation over the matrices; null: there is only one"},
              a.exact_sd);
   });
-  out.number({"exact_s", "s", "time of one exact prediction"}, a.exact_seconds);
+  out.number({"exact_s", "s", "computing time of one exact prediction"}, a.exact_seconds);
   for (std::size_t w = 0; w < kChainWalks.size(); ++w) {
     const std::string name = fmt::format("walks_{}", kChainWalks[w]);
     out.object({name, fmt::format("error of {} walks, mean over the matrices", kChainWalks[w])},
                [&](Fields& f) { describe(f, a.walks[w]); });
-    out.number({name + "_s", "s", "time of these walks"}, a.walk_seconds[w]);
+    out.number({name + "_s", "s", "computing time of these walks"}, a.walk_seconds[w]);
   }
   out.number({"sampling_total_variation", "1",
-              "total variation that the sampling of the matrix alone makes"},
+              "part of the total variation that the sampling of the matrix alone causes"},
              a.sampling);
   out.number({"bins_total_variation", "1",
-              "what is left: states are too coarse, or bodies remember more than their state"},
+              "rest of the total variation: states are too coarse, or bodies remember more than "
+              "their state"},
              a.bins);
-  out.number({"never_sampled_share", "1", "share of the walks that end in a row without trials"},
+  out.number({"never_sampled_share", "1",
+              "share of walks that reach a state from which there is no gate run"},
              a.never_sampled);
 }
 
 /// Of a curve and of its points.
 void describe_bins(Fields& out, const ChainCurve& c) {
-  out.number({"bins", "1", "bins per axis, as a multiple of the usual ones"}, c.factor);
+  out.number({"bins", "1", "bins per axis, as a multiple of the usual number"}, c.factor);
   out.count({"states", "1", "states of the chain"}, c.space.size());
-  out.text(Label("row_starts",
-                 "where the trials of a row start: anywhere in its bin, or where "
-                 "bodies were seen to enter")
-               .one_of({"uniform", "visited"}),
-           row_starts(c));
+  out.text(
+      Label(
+          "row_starts",
+          "where the runs of a row start: anywhere in its bin, or where bodies were seen to enter")
+          .one_of({"uniform", "visited"}),
+      row_starts(c));
 }
 
 void describe(Fields& out, const ChainPoint& p, const ChainErrorChart& chart) {
   describe_bins(out, chart.curves[p.curve]);
-  out.count({"trials_per_row", "1", "trials of each row"}, p.trials);
-  out.count({"gate_runs", "1", "gate runs behind one matrix"}, p.runs);
-  out.count({"matrices", "1", "matrices, each from trials of its own"}, p.matrices);
-  out.number({"build_s", "s", "time to make one matrix"}, p.build_seconds);
-  out.number({"clamped_share", "1", "share of crossings outside the bins"}, p.clamped_share);
-  out.number({"rows_never_sampled", "1", "rows without a trial, mean over the matrices"},
+  out.count({"trials_per_row", "1", "number of gate runs from each state"}, p.trials);
+  out.count({"gate_runs", "1", "number of gate runs in one matrix"}, p.runs);
+  out.count({"matrices", "1", "number of matrices, each from runs of its own"}, p.matrices);
+  out.number({"build_s", "s",
+              "computing time to make one matrix, with the trials that saw where its rows start"},
+             p.build_seconds);
+  out.number({"clamped_share", "1",
+              "share of crossings that lie outside all bins, mean over the matrices"},
+             p.clamped_share);
+  out.number({"rows_never_sampled", "1", "number of rows without a run, mean over the matrices"},
              p.rows_never_sampled);
   out.list({"starts", "one for each start"}, p.answers,
            [](Fields& f, const ChainAnswer& a) { describe(f, a); });
@@ -94,67 +103,81 @@ void describe(Fields& out, const ChainSummary& summary, const ChainErrorChart& c
   const auto place = [&](const Label& label, std::size_t i) {
     const ChainPoint& p = chart.points[i];
     out.object(label, [&](Fields& f) {
-      f.number({"bins", "1", "bins per axis, as a multiple of the usual ones"},
+      f.number({"bins", "1", "bins per axis, as a multiple of the usual number"},
                chart.curves[p.curve].factor);
-      f.count({"trials_per_row", "1", "trials of each row"}, p.trials);
-      f.number({"seconds", "s", "time of one matrix and one prediction"}, p.seconds(s));
-      f.number({"total_variation", "1", "error of the exact prediction"}, p.error(s));
+      f.count({"trials_per_row", "1", "number of gate runs from each state"}, p.trials);
+      f.number({"seconds", "s", "computing time of one matrix and one prediction"}, p.seconds(s));
+      f.number({"total_variation", "1", "total variation of the exact prediction from the truth"},
+               p.error(s));
     });
   };
-  place({"best", "the point with the smallest error"}, summary.best);
-  place({"cheapest_near_best", "the cheapest point within 1.5 times the smallest error"},
+  place({"best", "point with the smallest error, of all curves but those of best_visited"},
+        summary.best);
+  place({"cheapest_near_best", "cheapest point with an error within 1.5 times that of best"},
         summary.cheapest);
   out.number({"chain_pays_from_s", "s",
-              "from this time on, points have smaller errors than direct simulation; null: none"},
+              "shortest time of a point that has a smaller error than direct simulation in this "
+              "time; null: none"},
              summary.pays_from);
   out.number({"chain_pays_until_s", "s",
-              "from this time on, direct simulation has a smaller error than any point; null: "
-              "longer than this truth can tell"},
+              "time from which on direct simulation beats all points; 0: always; null: longer than "
+              "this truth can tell"},
              summary.pays_until);
   out.number({"starts_to_pay", "1",
-              "number of starts from which on the cheapest point costs less than direct "
-              "simulation; null: it never does"},
+              "number of starts from which on cheapest_near_best takes less time than direct "
+              "simulation; null: never"},
              summary.starts_to_pay);
   out.optional(summary.best_visited.has_value(), [&](Fields&) {
-    place({"best_visited", "the best of those with rows started where bodies enter"},
-          summary.best_visited.value_or(summary.best));
+    place(
+        {"best_visited",
+         "point with the smallest error of those whose rows start where bodies were seen to enter"},
+        summary.best_visited.value_or(summary.best));
   });
 }
 
 void describe_start_of(Fields& out, const ChainErrorChart& chart, std::size_t s) {
   const FieldTruth& t = chart.truths[s];
   describe_start(out, dynamics::disc_section(), t.start.entry());
-  out.object({"truth", "full dynamics, against which errors are taken"}, [&](Fields& f) {
-    f.count({"trials", "1", "trials of the full dynamics"}, t.tally.trials);
-    f.number({"one_thread_s_per_trial", "s", "time of a trial on one thread"}, t.seconds_per_trial);
-    f.object({"floor", "what a perfect prediction would show, by the noise of these trials"},
-             [&](Fields& floor) { describe(floor, t.floor); });
-    describe_fates(f, t.tally);
-    f.grid({"final_gates", "1", "trials by the gate in which they end"}, t.tally.final_gates);
-  });
-  out.list({"direct_simulation", "the error of fewer trials"}, chart.direct[s],
-           [](Fields& f, const DirectSimulation& d) {
+  out.object(
+      {"truth", "trials of the full dynamics, from which errors are measured"}, [&](Fields& f) {
+        f.count({"trials", "1", "trials of the full dynamics"}, t.tally.trials);
+        f.number({"one_thread_s_per_trial", "s", "computing time of a trial on one thread"},
+                 t.seconds_per_trial);
+        f.object(
+            {"floor",
+             "error that a perfect prediction would show, from the sampling noise of these trials"},
+            [&](Fields& floor) { describe(floor, t.floor); });
+        describe_fates(f, t.tally);
+        f.grid({"final_gates", "1", "number of trials by the gate in which they end"},
+               t.tally.final_gates);
+      });
+  out.list({"direct_simulation", "error of direct simulation with fewer trials than the truth"},
+           chart.direct[s], [](Fields& f, const DirectSimulation& d) {
              f.count({"trials", "1", "trials of the full dynamics"}, d.trials);
-             f.number({"seconds", "s", "time that they take on one thread"}, d.seconds);
-             f.object({"drawn", "mean error of many draws from the truth"},
-                      [&](Fields& drawn) { describe(drawn, d.drawn); });
-             f.object({"formula", "error that is expected of them"},
+             f.number({"seconds", "s", "computing time of these trials on one thread"}, d.seconds);
+             f.object(
+                 {"drawn", "mean error of many samples of as many trials, drawn from the truth"},
+                 [&](Fields& drawn) { describe(drawn, d.drawn); });
+             f.object({"formula", "error of as many trials, expected by formula"},
                       [&](Fields& formula) { describe(formula, d.formula); });
            });
-  out.list({"trees", "predictions by trees of so much accuracy; means"}, chart.trees[s],
-           [](Fields& f, const lattice::TreePoint& p) {
-             describe(f, p.error);
-             f.number({"accuracy", "1", "total variation that was asked for"}, p.accuracy);
-             f.number({"error_95", "1", "total variation that the predictions promise, 95 %"},
-                      p.error_95);
-             f.count({"predictions", "1", "predictions, each from trials of its own"},
-                     lattice::kTreePredictions);
-             f.number({"gate_runs", "1", "gate runs behind a prediction"}, p.gate_runs);
-             f.number({"states", "1", "states of the chain"}, p.states);
-             f.number({"seconds", "s", "time of a prediction on one thread"}, p.seconds);
-           });
-  out.object({"summary", "what it comes to"},
-             [&](Fields& f) { describe(f, summary_of(chart, s), chart, s); });
+  out.list(
+      {"trees",
+       "predictions by trees for each accuracy that was asked for, means over predictions"},
+      chart.trees[s], [](Fields& f, const lattice::TreePoint& p) {
+        describe(f, p.error);
+        f.number({"accuracy", "1", "total variation of the final gates that was asked for"},
+                 p.accuracy);
+        f.number({"error_95", "1", "mean of the predictions' own error_95"}, p.error_95);
+        f.count({"predictions", "1", "number of predictions, each from trials of its own"},
+                lattice::kTreePredictions);
+        f.number({"gate_runs", "1", "mean number of gate runs of a prediction"}, p.gate_runs);
+        f.number({"states", "1", "states of the chain"}, p.states);
+        f.number({"seconds", "s", "mean computing time of a prediction on one thread"}, p.seconds);
+      });
+  out.object(
+      {"summary", "the best points, and when the chain takes less time than direct simulation"},
+      [&](Fields& f) { describe(f, summary_of(chart, s), chart, s); });
 }
 
 // ---- Table ----
@@ -297,30 +320,34 @@ std::string name_of(const ChainCurve& curve) {
 
 void describe(Fields& out, const ChainErrorResult& result) {
   const auto& [chart, method, made_by] = result;
-  out.text({"machine", "the processor on which times were taken"}, machine());
-  out.text({"seconds_are", "what all times are"}, "CPU time of one thread");
-  out.count({"truth_trials", "1", "trials of the full dynamics from each start"},
+  out.text({"machine", "processor on which times were taken"}, machine());
+  out.text({"seconds_are", "what kind of time all times are"}, "CPU time of one thread");
+  out.count({"truth_trials", "1", "number of trials of the full dynamics from each start"},
             chart.options.truth_trials);
-  out.count({"runs_limit", "1", "gate runs that one matrix or tree may take"},
+  out.count({"runs_limit", "1", "largest number of gate runs for one matrix or tree"},
             chart.options.runs_limit);
-  out.count({"pilot_trials", "1",
-             "full trials from each start that saw where bodies enter; 0: none were made"},
-            chart.pilot_trials);
-  out.text({"bins", "what the bins of a factor 1 are"}, chart.bins.name());
+  out.count(
+      {"pilot_trials", "1",
+       "number of full trials from each start that saw where bodies enter; 0: none were made"},
+      chart.pilot_trials);
+  out.text(Label("bins", "kind of bins at factor 1, as in state_space.bins")
+               .one_of({"paper", "auto", "scene"}),
+           chart.bins.name());
   out.count({"matrices_drawn_anew", "1",
-             "matrices drawn anew, which show what the sampling of a matrix makes"},
+             "number of matrices drawn anew to find the sampling error of a matrix"},
             lattice::kMatricesDrawnAnew);
   out.list_of({"starts", "one for each start"}, chart.truths.size(),
               [&](Fields& f, std::size_t s) { describe_start_of(f, chart, s); });
-  out.list({"curves", "one for each way to make states and to start rows"}, chart.curves,
-           [](Fields& f, const ChainCurve& c) {
+  out.list({"curves", "one curve for each factor of the bins and each way to start rows"},
+           chart.curves, [](Fields& f, const ChainCurve& c) {
              describe_bins(f, c);
-             f.number({"one_thread_s_per_gate_run", "s", "time of a gate run on one thread"},
-                      c.seconds_per_run);
-             f.count({"points", "1", "points of the curve"}, c.trials.size());
+             f.number(
+                 {"one_thread_s_per_gate_run", "s", "computing time of a gate run on one thread"},
+                 c.seconds_per_run);
+             f.count({"points", "1", "number of points of the curve"}, c.trials.size());
            });
-  out.list({"points", "one for each matrix: states and trials of each row"}, chart.points,
-           [&](Fields& f, const ChainPoint& p) { describe(f, p, chart); });
+  out.list({"points", "one point for each curve and number of gate runs from each state"},
+           chart.points, [&](Fields& f, const ChainPoint& p) { describe(f, p, chart); });
   describe_status(out, chart.health);
   describe_method(out, method);
   describe_made_by(out, made_by);

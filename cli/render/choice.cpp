@@ -20,41 +20,48 @@ std::string setting_text(const dynamics::RunParams& run) {
 
 /// What was tried: a method with the value of the key that sets its accuracy.
 void describe_setting(Fields& out, const dynamics::Setting& setting, dynamics::Verdict verdict) {
-  out.text({"method", "run.method"}, setting.method);
-  out.text({"key", "the key of the scene that sets how exact the method is"}, setting.key);
-  out.number({"value", "its own", "value of this key"}, setting.value);
-  out.text({"verdict", "what its runs showed"}, dynamics::name_of(verdict));
+  out.text({"method", "method of the setting, as in run.method"}, setting.method);
+  out.text({"key", "key of the scene that sets how exact the method is"}, setting.key);
+  out.number({"value", "s or m", "value of this key, in the unit that ends the key's name"},
+             setting.value);
+  out.text(Label("verdict", "ok, or the worst fault that runs with this setting showed")
+               .one_of({dynamics::kVerdictNames.begin(), dynamics::kVerdictNames.end()}),
+           dynamics::name_of(verdict));
 }
 
 void describe(Fields& out, const lattice::Settled& chosen) {
   const dynamics::Choice& choice = chosen.choice;
-  out.text({"asked", "run.method of the scene"}, "auto");
-  out.number({"tolerance", "1", "total variation of outcomes that was asked for (run.tolerance)"},
+  out.text({"asked", "run.method in the scene"}, "auto");
+  out.number({"tolerance", "1",
+              "total variation of the outcomes that may not be exceeded (run.tolerance)"},
              chosen.tolerance);
   out.text({"method", "run.method that was chosen"}, choice.params.run.method);
   out.number({"step_s", "s", "run.step_s that was chosen"}, choice.params.run.step);
   out.number({"event_tolerance_m", "m", "run.event_tolerance_m that was chosen"},
              choice.params.run.event_tolerance);
-  out.flag({"met", "whether the tolerance was shown to be met"}, choice.met);
-  out.count({"pilot_trials", "1", "trials that each setting was tried on"}, choice.trials);
-  out.count({"pilot_starts", "1", "starts of these trials"}, chosen.pilot_starts);
+  out.flag({"met", "whether the chosen setting was shown to meet the tolerance"}, choice.met);
+  out.count({"pilot_trials", "1", "number of trials with which each setting was tried"},
+            choice.trials);
+  out.count({"pilot_starts", "1", "number of different starts of the pilot trials"},
+            chosen.pilot_starts);
   out.object({"reference", "the setting that all others are compared with"},
              [&](Fields& f) { describe_setting(f, choice.reference, choice.reference_verdict); });
-  out.list(
-      {"tried", "the settings that were tried, in this order"}, choice.tried,
-      [](Fields& f, const dynamics::Choice::Tried& t) {
-        describe_setting(f, t.setting, t.verdict);
-        f.number({"outcome_total_variation", "1",
-                  "total variation of the outcomes from those of the reference"},
-                 t.error.total_variation);
-        f.number({"uncertainty", "1", "standard error of this total variation, rather too large"},
-                 t.uncertainty);
-        f.count({"trials_changed", "1", "trials that ended otherwise than by the reference"},
-                t.error.changed);
-        f.number(
-            {"work_per_trial", "us", "time that a trial is expected to take, from its evaluations"},
-            t.work);
-      });
+  out.list({"tried", "the settings that were tried, in this order"}, choice.tried,
+           [](Fields& f, const dynamics::Choice::Tried& t) {
+             describe_setting(f, t.setting, t.verdict);
+             f.number({"outcome_total_variation", "1",
+                       "total variation of the outcomes from those with the reference"},
+                      t.error.total_variation);
+             f.number({"uncertainty", "1",
+                       "upper estimate of the standard error of outcome_total_variation"},
+                      t.uncertainty);
+             f.count({"trials_changed", "1",
+                      "number of trials with another outcome than with the reference"},
+                     t.error.changed);
+             f.number({"work_per_trial", "us",
+                       "expected time of a trial, from its evaluations of the forces"},
+                      t.work);
+           });
 }
 
 dynamics::Setting setting_in(const Json& json) {
@@ -147,9 +154,11 @@ void describe_methods(Fields& out, const ActionMethods& all) {
       if (!chosen) chosen.emplace();
       chosen->push_back({all.actions[a], *all.methods[a]});
     }
-  out.list({"methods", "what run.method = \"auto\" chose for each action; null: nothing"}, chosen,
-           [](Fields& f, const Chosen& c) {
-             f.text({"action", "what bodies do"}, c.action);
+  out.list({"methods",
+            "what run.method = \"auto\" chose for each action; null: no action has run.method = "
+            "\"auto\""},
+           chosen, [](Fields& f, const Chosen& c) {
+             f.text({"action", "name of the action"}, c.action);
              f.object(method_label(), [&](Fields& method) { describe(method, c.method); });
            });
 }

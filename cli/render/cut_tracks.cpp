@@ -80,99 +80,122 @@ std::string lines_of_cut(const CutResult& result) {
 }
 
 void describe(Fields& out, const lattice::TrackFile& file) {
-  out.text({"file", "the file, or the files"}, file.source);
-  out.text({"kind", "what it is: a table, DeepLabCut's, movement's"}, file.kind);
-  out.count({"bodies", "1", "bodies in the file"}, file.tracks.size());
-  out.count({"bodies_never_seen", "1", "bodies without a place that was seen"}, never_seen(file));
+  out.text({"file", "name of the file, or of the files"}, file.source);
+  out.text(Label("kind", "format of the file").one_of({"a table", "DeepLabCut", "movement"}),
+           file.kind);
+  out.count({"bodies", "1", "number of bodies in the file"}, file.tracks.size());
+  out.count({"bodies_never_seen", "1", "number of bodies without any place that was seen"},
+            never_seen(file));
   out.number({"frame_interval_s", "s", "time from frame to frame"}, file.interval);
-  out.count({"places", "1", "lines, or frames, of all bodies, seen there or not"}, file.places);
+  out.count({"places", "1",
+             "number of lines, or frames, of all bodies, whether the body was seen there or not"},
+            file.places);
   out.count({"places_without_number", "1", "places without a number"}, file.no_place);
   out.count({"places_unsure", "1", "places with less confidence than was asked for"}, file.unsure);
   out.count(Field("places_repeated", "1",
-                  "places that stand still exactly for more frames than their noise allows, but "
-                  "for the first: taken as not seen")
+                  "places taken as not seen: exact repeats of the place before, for more frames "
+                  "than noise allows")
                 .at_least(0),
             file.repeated);
   out.count(Field("places_at_zero", "1",
-                  "places that are exactly (0, 0) of the file, far from those before and behind or "
-                  "for more frames than their noise allows: taken as not seen")
+                  "places taken as not seen: exactly (0, 0) in the file, far from other places or "
+                  "for too many frames")
                 .at_least(0),
             file.at_zero);
-  out.count({"lines_of_no_body", "1", "lines of no body, left out"}, file.no_body);
-  out.count({"unit_rows_left_out", "1", "rows of descriptions and units, left out"},
-            file.unit_rows);
-  out.texts({"remarks", "what was taken for what in the file, a sentence each"}, file.remarks);
+  out.count({"lines_of_no_body", "1", "lines without a body, left out"}, file.no_body);
+  out.count({"unit_rows_left_out", "1", "rows of descriptions or units, left out"}, file.unit_rows);
+  out.texts({"remarks", "how the file was understood, a sentence each"}, file.remarks);
 }
 
 }  // namespace
 
 void describe(Fields& out, const CutResult& result) {
   const auto& [file, cell, cut, made_by] = result;
-  out.count({"passages", "1", "passages of a body through one cell"}, cut.passages.size());
-  out.count({"trials", "1", "trials: ways of a body through the lattice"}, cut.trials);
-  out.object({"endings", "the passages by what became of the body"}, [&](Fields& f) {
-    f.count({"left", "1", "it went into the next cell"}, cut.count(CutEnd::left));
-    f.count({"trapped", "1", "it stayed longer than cell.trapped_after_s"},
+  out.count({"passages", "1", "number of passages, each of a body through one cell"},
+            cut.passages.size());
+  out.count({"trials", "1", "number of trials, each the way of a body through the lattice"},
+            cut.trials);
+  out.object({"endings", "number of passages by how they end"}, [&](Fields& f) {
+    f.count({"left", "1", "the body left the cell, into the next one or out of the lattice"},
+            cut.count(CutEnd::left));
+    f.count({"trapped", "1", "the body stayed in the cell for cell.trapped_after_s or longer"},
             cut.count(CutEnd::trapped));
-    f.count({"lost", "1", "it was lost from sight"}, cut.count(CutEnd::lost));
+    f.count({"lost", "1", "the body was lost from sight in the cell"}, cut.count(CutEnd::lost));
   });
-  out.object({"left_by", "the passages that left, by the face of the next cell"}, [&](Fields& f) {
-    const auto counts = left_by(cut, cell);
-    for (std::size_t i = 0; i < counts.size(); ++i)
-      f.count(
-          Field(cell.map.section.faces[i].name, "1", "passages that left by it").varying("<face>"),
-          counts[i]);
-  });
+  out.object(
+      {"left_by",
+       "number of passages that left, by the face through which the body enters the next cell"},
+      [&](Fields& f) {
+        const auto counts = left_by(cut, cell);
+        for (std::size_t i = 0; i < counts.size(); ++i)
+          f.count(Field(cell.map.section.faces[i].name, "1", "passages that left through this face")
+                      .varying("<face>"),
+                  counts[i]);
+      });
   out.number({"lost_share", "1", "share of the passages in which the body was lost from sight"},
              cut.passages.empty() ? 0.0
                                   : static_cast<double>(cut.count(CutEnd::lost)) /
                                         static_cast<double>(cut.passages.size()));
-  out.object({"lost_by", "the passages that were lost, by what lost the body"}, [&](Fields& f) {
-    f.count({"gap", "1", "frames without a place"}, cut.lost(lattice::LostBy::gap));
-    f.count({"jump", "1", "a step faster than bodies are"}, cut.lost(lattice::LostBy::jump));
-    f.count({"end", "1", "the end of its track"}, cut.lost(lattice::LostBy::end));
-  });
-  out.object({"tracks", "what was read"}, [&](Fields& f) { describe(f, file); });
-  out.count({"pieces", "1", "pieces of tracks without a gap or jump"}, cut.pieces.size());
-  out.count({"gaps", "1", "gaps: frames in which a body was not seen"}, cut.gaps);
-  out.count({"jumps", "1", "steps faster than --fastest"}, cut.jumps);
-  out.number({"fastest_step_m_per_s", "m/s", "fastest step that is no jump"}, cut.fastest_step);
+  out.object({"lost_by", "number of passages in which the body was lost from sight, by the reason"},
+             [&](Fields& f) {
+               f.count({"gap", "1", "a gap in the track"}, cut.lost(lattice::LostBy::gap));
+               f.count({"jump", "1", "a jump in the track"}, cut.lost(lattice::LostBy::jump));
+               f.count({"end", "1", "the end of the track"}, cut.lost(lattice::LostBy::end));
+             });
+  out.object({"tracks", "what was read from the file of tracks"},
+             [&](Fields& f) { describe(f, file); });
+  out.count({"pieces", "1", "pieces of tracks without a gap or jump, long enough to be fitted"},
+            cut.pieces.size());
+  out.count(
+      {"gaps", "1", "gaps in tracks: more frames in a row without a place than --bridge allows"},
+      cut.gaps);
+  out.count({"jumps", "1", "jumps in tracks: steps faster than --fastest"}, cut.jumps);
+  out.number({"fastest_step_m_per_s", "m/s", "fastest step that is not a jump"}, cut.fastest_step);
   out.count({"short_pieces", "1", "pieces too short to be fitted, left out"}, cut.short_pieces);
-  out.count({"short_frames", "1", "frames of these pieces"}, cut.short_frames);
-  out.count({"first_stays_left_out", "1", "stays in cells that nobody saw entered, left out"},
-            cut.first_stays);
+  out.count({"short_frames", "1", "frames in pieces that are too short to be fitted"},
+            cut.short_frames);
+  out.count(
+      {"first_stays_left_out", "1", "stays left out because nobody saw the body enter the cell"},
+      cut.first_stays);
   struct Size {
     int columns = 0, rows = 0;
   };
-  out.maybe({"lattice", "the cells that there are, from the origin on; null: without end"},
+  out.maybe({"lattice", "size of the lattice, from its origin on; null: without end"},
             cut.columns > 0 ? std::optional(Size{cut.columns, cut.rows}) : std::nullopt,
             [](Fields& f, const Size& size) {
-              f.count({"columns", "1", "cells from left to right"}, size.columns);
-              f.count({"rows", "1", "cells from the start's side on"}, size.rows);
+              f.count({"columns", "1", "number of columns, from left to right"}, size.columns);
+              f.count({"rows", "1", "number of rows, from the start's side on"}, size.rows);
             });
-  out.count({"places_outside", "1", "places of tracks outside the lattice, where no cell is"},
+  out.count({"places_outside", "1", "places of tracks outside the lattice, where there is no cell"},
             cut.places_outside);
-  out.count({"bodies_outside", "1", "bodies never seen in the lattice"}, cut.bodies_outside);
+  out.count({"bodies_outside", "1", "bodies that were never seen in the lattice"},
+            cut.bodies_outside);
   out.count({"trials_that_came_back", "1",
-             "trials that begin where a body that was in the lattice before comes into it again"},
+             "trials that begin where a body comes back into the lattice that it had left"},
             cut.came_back);
-  out.count({"window_frames", "1", "frames of a local fit"}, cut.noise.window);
-  out.number({"window_s", "s", "duration of a local fit"}, cut.noise.window * file.interval);
-  out.number({"noise_m", "m", "standard deviation of a place, from the residuals of the fits"},
-             cut.noise.place);
+  out.count({"window_frames", "1", "number of frames in each local fit of a track"},
+            cut.noise.window);
+  out.number({"window_s", "s", "duration of each local fit of a track"},
+             cut.noise.window * file.interval);
+  out.number(
+      {"noise_m", "m",
+       "standard deviation of each coordinate of a measured place, from the residuals of the fits"},
+      cut.noise.place);
   out.number({"velocity_noise_m_per_s", "m/s",
-              "root mean square of what the noise makes of velocities at the borders"},
+              "root mean square error of fitted velocities at crossings, from the noise of places"},
              cut.crossing_velocity_noise);
   out.number({"velocity_bias_m_per_s", "m/s",
-              "root mean square of what the fits smooth away of a velocity"},
+              "root mean square error of fitted velocities, from smoothing"},
              cut.noise.velocity_bias);
-  out.number({"hysteresis_m", "m", "how far over a border a body must get to have crossed it"},
-             cut.hysteresis);
-  out.count({"crossings", "1", "crossings of borders"}, cut.crossings);
-  out.count({"crossings_not_counted", "1", "crossings to and fro within the hysteresis"},
+  out.number(
+      {"hysteresis_m", "m", "how far beyond a border a body must get for its crossing to count"},
+      cut.hysteresis);
+  out.count({"crossings", "1", "crossings of borders that count"}, cut.crossings);
+  out.count({"crossings_not_counted", "1",
+             "crossings to and fro within hysteresis_m, which do not count"},
             cut.uncounted);
   out.count({"places_moved_to_face_end", "1",
-             "entries beyond their face's end by no more than the hysteresis, moved to it"},
+             "entries beyond the end of their face by at most hysteresis_m, moved to that end"},
             cut.moved_ends);
   describe_made_by(out, made_by);
 }

@@ -41,10 +41,12 @@ std::vector<Changed> changes_of(const DesignedScene& d, const std::vector<int>& 
 void describe_changes(Fields& out, const DesignedScene& d, std::string_view meaning,
                       const std::vector<int>& map) {
   out.list({"changes", meaning}, changes_of(d, map), [&](Fields& gate, const Changed& c) {
-    gate.count({"gate_x", "1", "column, counted from the start's"}, c.x);
-    gate.count({"gate_y", "1", "row, counted from the start's"}, c.y);
-    gate.text({"from", "its type as the field is"}, name_of(d.before, c.from));
-    gate.text({"to", "its type then"}, name_of(d.before, c.to));
+    gate.count(
+        {"gate_x", "1", "column of the gate: 0 is the start's, columns to its left are negative"},
+        c.x);
+    gate.count({"gate_y", "1", "row of the gate: 0 is the start's"}, c.y);
+    gate.text({"from", "type of the gate before the change"}, name_of(d.before, c.from));
+    gate.text({"to", "type of the gate after the change"}, name_of(d.before, c.to));
   });
 }
 
@@ -93,49 +95,58 @@ std::vector<double> best_changes(const DesignedScene& d) {
 void describe(Fields& out, const DesignedScene& d) {
   const lattice::DesignedField& design = d.design;
   describe_crossed(out,
-                   "share of new trials that crossed the changed field, none of which was used to "
-                   "choose",
+                   "share of new trials, not used in the search, that crossed the changed field",
                    design.crossings);
-  out.object({"before", "the field as it is, under the same noise"}, [&](Fields& before) {
-    describe_crossed(before, "share of trials that crossed it", design.before);
-  });
-  describe_gain(out, "of the changed field over the field as it is", design.gain);
-  out.count({"trials", "1", "new trials, of each of both fields"}, design.crossings.trials);
+  out.object(
+      {"before", "the field before the change, with the same random numbers"}, [&](Fields& before) {
+        describe_crossed(before, "share of new trials that crossed the field before the change",
+                         design.before);
+      });
+  describe_gain(
+      out, "difference of the shares that crossed: changed field minus field before the change",
+      design.gain);
+  out.count({"trials", "1", "number of new trials in each of the two fields"},
+            design.crossings.trials);
   describe_start(out, d.section, d.start);
-  out.flag({"least", "whether bodies were to cross as rarely as they can"}, d.options.least);
-  out.count({"most_changes", "1", "gates that could be changed"}, d.options.most_changes);
+  out.flag({"least", "whether the aim was that as few bodies as possible cross"}, d.options.least);
+  out.count({"most_changes", "1", "largest number of gates that could be changed"},
+            d.options.most_changes);
   std::vector<std::string> become;
   for (const int type : d.options.become) become.push_back(name_of(d.before, type));
-  out.texts({"become", "types that gates could become; empty: all types"}, become);
+  out.texts({"become", "types to which gates could be changed; empty: all types"}, become);
   describe_changes(out, d, "the gates that are changed", design.type_of_cell);
   out.texts({"map", "terrain.map of the changed field, the far row first"},
             lattice::map_rows(*d.after.terrain, d.after.field));
   const std::vector<double> best = best_changes(d);
   const markov::CellProbabilities best_change = Eigen::Map<const markov::CellProbabilities>(
       best.data(), d.before.field.rows, d.before.field.columns);
-  out.object({"by_chain",
-              "what the chain that chose the map says, with its own error (of the field as it is: "
-              "the chain with the largest leaves)"},
-             [&](Fields& chain) {
-               const markov::Designs& all = design.by_chain;
-               chain.number({"before", "1", "chance to cross the field as it is"}, all.before);
-               chain.count({"solves", "1", "maps that were solved in all searches"}, all.solves);
-               chain.list(
-                   {"optima", "maps that searches ended at, the best first"}, all.optima,
+  out.object(
+      {"by_chain", "predictions of the chain that chose the map, which have the chain's own error"},
+      [&](Fields& chain) {
+        const markov::Designs& all = design.by_chain;
+        chain.number(
+            {"before", "1",
+             "chance to cross the field before the change, by the chain with the largest leaves"},
+            all.before);
+        chain.count(
+            {"solves", "1", "number of maps for which the chain was solved in all searches"},
+            all.solves);
+        chain.list({"optima", "maps at which searches ended, the best first"}, all.optima,
                    [&](Fields& map, const markov::FieldDesign& optimum) {
                      map.number({"crossed", "1",
-                                 "chance to cross it: too good where the chain takes chance "
-                                 "for skill"},
+                                 "chance to cross this map by the chain, too good: searches "
+                                 "exploit the chain's sampling error"},
                                 optimum.gain);
-                     map.count({"searches", "1", "searches that ended there"}, optimum.searches);
+                     map.count({"searches", "1", "number of searches that ended at this map"},
+                               optimum.searches);
                      describe_changes(map, d, "the gates that are changed in this map",
                                       optimum.type_of_cell);
                    });
-               chain.grid({"best_change", "1",
-                           "what the best change of each gate alone does to the chance to cross, "
-                           "to first order; 0 also where nobody comes"},
-                          best_change);
-             });
+        chain.grid({"best_change", "1",
+                    "change of the chance to cross by the best change of each gate alone, to first "
+                    "order; 0 if nobody comes"},
+                   best_change);
+      });
   describe_method(out, d.method);
   describe_search(out, design, d.seconds);
   describe_made_by(out, d.made_by);

@@ -48,26 +48,33 @@ std::string sentence(const FidelityOfStart& s) {
 
 void describe(Fields& out, const FidelityVariant& v, const FidelityRun& run) {
   const FieldTally& t = run.tally;
-  out.text({"fidelity", "field.fidelity"}, name_of(v.scene.field.fidelity));
-  out.text({"method", "run.method"}, v.scene.gate.run.method);
-  out.number({"step_s", "s", "run.step_s"}, v.scene.gate.run.step);
-  out.number({"seconds_per_trial", "s", "wall clock: least of interleaved repeats"},
+  out.text(Label("fidelity", "how much of the field moves, as in field.fidelity")
+               .one_of({lattice::kFidelityNames.begin(), lattice::kFidelityNames.end()}),
+           name_of(v.scene.field.fidelity));
+  out.text({"method", "method that was used, as in run.method"}, v.scene.gate.run.method);
+  out.number({"step_s", "s", "time step that was used, as in run.step_s"}, v.scene.gate.run.step);
+  out.number({"seconds_per_trial", "s",
+              "wall-clock time of a trial, the shortest of several interleaved repeats"},
              run.seconds_per_trial);
-  out.object({"fates", "how trials ended, as shares"}, [&](Fields& f) {
+  out.object({"fates", "shares of trials by how they ended"}, [&](Fields& f) {
     describe_fates(f, t);
-    f.number({"not_finite", "1", "share of trials that stopped being finite numbers"},
+    f.number({"not_finite", "1", "share of trials with a run that stopped being finite numbers"},
              share(t.broken, t));
   });
   out.optional(run.change.has_value(), [&](Fields& f) {
     const PairedChange change = run.change.value_or(PairedChange());
     describe_change(f, change);
-    f.object(Label("as_independent_samples",
-                   "final gates against the first run's, as if the noise were not shared"),
-             [&](Fields& apart) { cli::describe(apart, change.apart); });
-    f.object(Label("in_pairs", "the same, trial by trial"),
-             [&](Fields& pairs) { cli::describe(pairs, change.in_pairs); });
+    f.object(
+        Label("as_independent_samples",
+              "final gates compared with the first run's, as if they did not share random numbers"),
+        [&](Fields& apart) { cli::describe(apart, change.apart); });
+    f.object(
+        Label(
+            "in_pairs",
+            "final gates compared with the first run's, trial by trial with shared random numbers"),
+        [&](Fields& pairs) { cli::describe(pairs, change.in_pairs); });
   });
-  out.grid({"final_gates", "1", "trials by the gate in which they end"}, t.final_gates);
+  out.grid({"final_gates", "1", "number of trials by the gate in which they end"}, t.final_gates);
   describe_status(out, t.health);
 }
 
@@ -75,24 +82,26 @@ void describe(Fields& out, const FidelityVariant& v, const FidelityRun& run) {
 
 void describe(Fields& out, const FidelityResult& result) {
   const auto& [study, made_by] = result;
-  out.text({"machine", "the processor on which times were taken"}, machine());
-  out.count({"trials", "1", "trials of each run"}, study.trials);
-  out.count({"threads", "1", "threads on which times were taken"}, study.threads);
-  out.number({"bound", "1", "total variation up to which a change is small enough"},
-             lattice::kSmallChange);
+  out.text({"machine", "processor on which times were taken"}, machine());
+  out.count({"trials", "1", "number of trials in each run"}, study.trials);
+  out.count({"threads", "1", "number of threads on which times were taken"}, study.threads);
+  out.number(
+      {"bound", "1", "largest total variation of the final gates that counts as a small change"},
+      lattice::kSmallChange);
   out.list_of({"starts", "one for each start"}, study.starts.size(), [&](Fields& f, std::size_t i) {
     const FidelityOfStart& s = study.starts[i];
     describe_start(f, dynamics::disc_section(), dynamics::entry_of(s.start.body()));
     const Sufficiency active = s.active_is();
     f.flag(
         {"active_is_enough",
-         "whether the final gates are the same with field.fidelity active as with remember and "
-         "all; null: so many trials cannot tell"},
+         "whether remember and all change active's final gates by at most bound; null: too few "
+         "trials to tell"},
         active == Sufficiency::cannot_tell ? std::optional<bool>() : active == Sufficiency::enough);
-    f.text({"sentence", "the same in a sentence"}, sentence(s));
-    f.list_of({"runs", "one for each fidelity and method; the others are compared with the first"},
-              s.runs.size(),
-              [&](Fields& run, std::size_t v) { describe(run, study.variants[v], s.runs[v]); });
+    f.text({"sentence", "active_is_enough in a sentence"}, sentence(s));
+    f.list_of(
+        {"runs", "one run for each fidelity and method; the others are compared with the first"},
+        s.runs.size(),
+        [&](Fields& run, std::size_t v) { describe(run, study.variants[v], s.runs[v]); });
   });
   describe_made_by(out, made_by);
 }

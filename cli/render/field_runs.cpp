@@ -28,22 +28,27 @@ void describe(Fields& out, const FieldRun& run) {
   ends.describe_endings(out);
   ends.describe_gates(out);
   describe_left_out(out, run.shown.field.columns, run.shown.field.rows);
-  out.count({"trials", "1", "trials through the field"}, tally.trials);
-  out.with_intervals_in({"intervals_95", "95 % intervals of the shares"}, [&](Fields& f) {
-    ends.describe_sums(f, true);
-    f.count({"not_finite", "1", "trials with a run that stopped being finite numbers"},
+  out.count({"trials", "1", "number of trials through the field"}, tally.trials);
+  out.with_intervals_in(
+      {"intervals_95", "95 % intervals of the shares of all trials"}, [&](Fields& f) {
+        ends.describe_sums(f, true);
+        f.count(
+            {"not_finite", "1", "number of trials with a run that stopped being finite numbers"},
             tally.broken);
-  });
+      });
   out.object(
-      {"entries_between_gates", "how bodies enter gates other than the start's"},
+      {"entries_between_gates", "entries into gates after a body's first one, by face"},
       [&](Fields& faces) {
         for (std::size_t f = 0; f < run.shown.map.section.faces.size(); ++f)
           faces.object(
-              Label(run.shown.map.section.faces[f].name, "by this face").varying("<face>"),
+              Label(run.shown.map.section.faces[f].name, "entries through this face")
+                  .varying("<face>"),
               [&](Fields& face) {
-                face.count({"count", "1", "how many enter by it"}, tally.entries[f]);
+                face.count({"count", "1", "number of entries through this face"}, tally.entries[f]);
                 face.optional(run.scene.has_value(), [&](Fields& of_scene) {
-                  of_scene.count({"outside_bins", "1", "those outside all bins"}, tally.clamped[f]);
+                  of_scene.count({"outside_bins", "1",
+                                  "number of entries through this face that lie outside all bins"},
+                                 tally.clamped[f]);
                 });
               });
       });
@@ -57,7 +62,8 @@ void describe(Fields& out, const FieldRun& run) {
   describe_exits(out, exits_of(run.exits), run.shown);
   describe_costs(out, run.costs, run.shown);
   out.optional(!run.may_do.actions.empty(), [&](Fields& f) {
-    f.texts({"actions", "under a policy: what bodies may do"}, run.may_do.actions);
+    f.texts({"actions", "under a policy: names of the actions among which bodies choose"},
+            run.may_do.actions);
     describe_methods(f, run.may_do);
   });
   describe_made_by(out, run.made_by);
@@ -91,16 +97,19 @@ void describe(Fields& out, const WalkResult& r) {
   ends.describe_endings(out);
   ends.describe_gates(out);
   describe_left_out(out, r.shown.field.columns, r.shown.field.rows);
-  out.count({"walks", "1", "walks through the field"}, r.tally.walks);
+  out.count({"walks", "1", "number of walks through the field"}, r.tally.walks);
   ends.describe_sums(out);
   ends.describe_never_sampled(out);
   ends.describe_still_walking(out);
-  out.interval({"still_walking_95", "1", "95 % interval of the share that is still walking"},
-               still_walking_95(r.tally, r.shown.field));
-  out.count({"gates_visited", "1", "gates that all walks visited together"}, r.tally.steps);
+  out.interval(
+      {"still_walking_95", "1",
+       "95 % interval of the share of walks that were still under way when the walks were stopped"},
+      still_walking_95(r.tally, r.shown.field));
+  out.count({"gates_visited", "1", "number of gate visits of all walks together"}, r.tally.steps);
   const bool as_seen = !r.start.state && !r.start.entry;
   out.object_or_text(
-      {"start_state", "the state in which walks start; of recorded runs the way they start"},
+      {"start_state",
+       "the state in which walks start; of a matrix of recorded runs the entry, or \"as seen\""},
       as_seen ? std::optional<std::string>("as seen") : std::nullopt, [&](Fields& f) {
         f.optional(r.start.state.has_value(), [&](Fields& of_chain) {
           describe(of_chain, r.start.state.value_or(ShownState()));

@@ -6,22 +6,25 @@
 namespace gatewalk::cli {
 
 void describe(Fields& out, const ExportResult& result) {
-  out.count({"states", "1", "states of the chain"}, result.states);
+  out.count({"states", "1", "number of states of the exported chain"}, result.states);
   out.optional(result.transitions.has_value(), [&](Fields& f) {
-    f.count({"transitions", "1", "entries of the matrix that are not zero"},
+    f.count({"transitions", "1", "number of transitions with a probability above zero"},
             result.transitions.value_or(0));
   });
   out.optional(result.first_ending.has_value(), [&](Fields& f) {
-    f.count({"initial_state", "1", "number of the state in which walks start"}, 0);
-    f.object({"endings", "by ending: the number of its state, which is never left"},
-             [&](Fields& endings) {
-               std::int64_t state = result.first_ending.value_or(0);
-               for (const char* label : kEndingLabels)
-                 endings.count({label, "1", "number of the state"}, state++);
-             });
+    f.count({"initial_state", "1", "number of the state in which walks start; states count from 0"},
+            0);
+    f.object(
+        {"endings", "number of the absorbing state of each ending; states count from 0"},
+        [&](Fields& endings) {
+          std::int64_t state = result.first_ending.value_or(0);
+          for (const char* label : kEndingLabels)
+            endings.count({label, "1", "number of the absorbing state of this ending"}, state++);
+        });
   });
   out.optional(result.trajectories.has_value(), [&](Fields& f) {
-    f.count({"trajectories", "1", "trials, each as the states that it went through"},
+    f.count({"trajectories", "1",
+             "number of trials that were written, each as the sequence of its states"},
             result.trajectories.value_or(0));
   });
   describe_made_by(out, result.made_by);

@@ -88,11 +88,13 @@ std::string in_range(const FittedScene& f, std::size_t k, double at) {
 }
 
 void describe_number(Fields& out, const lattice::NumberRange& r, const lattice::FittedNumber& n) {
-  out.text({"key", "of the scene, or of the program"}, r.key);
-  out.number({"low", "its own", "low end of its range, all of which is as likely before the data"},
+  out.text({"key", "key of the number in the scene, or of the cell program"}, r.key);
+  out.number({"low", "its own",
+              "lower end of the range, in which all values are equally likely before the data"},
              r.low);
-  out.number({"high", "its own", "high end of its range"}, r.high);
-  out.number({"best", "its own", "its value in the draw in which the counts are likeliest"},
+  out.number({"high", "its own", "upper end of the range"}, r.high);
+  out.number({"best", "its own",
+              "value in the draw from the posterior that makes the observed counts likeliest"},
              r.at(n.best));
   out.number({"median", "its own", "median of the posterior"}, r.at(n.median));
   out.number({"mean", "its own", "mean of the posterior"}, r.at(n.mean));
@@ -100,17 +102,17 @@ void describe_number(Fields& out, const lattice::NumberRange& r, const lattice::
   out.interval({"interval_95", "its own", "95 % interval of the posterior"},
                Interval{r.at(n.interval[0]), r.at(n.interval[1])});
   out.flag({"told",
-            "whether the data say more than the range: the Kolmogorov distance of the posterior "
-            "from it is above 0.15, and above what chance in the trials makes"},
+            "whether the data tell more than the range: Kolmogorov distance of posterior and range "
+            "over 0.15 plus noise"},
            n.told);
   out.flag({"goes_on_below",
-            "whether one draw in twenty or more lies in the lowest fiftieth of the range"},
+            "whether told is true and over 5 % of the draws lie in the lowest 2 % of the range"},
            n.goes_on[0]);
   out.flag({"goes_on_above",
-            "whether one draw in twenty or more lies in the highest fiftieth of the range"},
+            "whether told is true and over 5 % of the draws lie in the highest 2 % of the range"},
            n.goes_on[1]);
   out.number({"variance_by_trials", "1",
-              "share of the posterior's variance that more trials would take away"},
+              "share of the posterior's variance that more simulated trials would remove"},
              n.by_runs);
 }
 
@@ -123,60 +125,70 @@ std::string counted(const FittedScene& f) {
 void describe(Fields& out, const FittedScene& f) {
   const lattice::Fit& fit = f.fit;
   out.list_of(
-      {"numbers", "those of --free, in the units of their keys"}, f.ranges.size(),
+      {"numbers", "the numbers of --free, in the units of their keys"}, f.ranges.size(),
       [&](Fields& number, std::size_t k) { describe_number(number, f.ranges[k], fit.numbers[k]); });
-  out.grid({"correlation", "1", "of each two numbers over the posterior"},
+  out.grid({"correlation", "1",
+            "correlation of each two numbers in the posterior, in the order of numbers"},
            markov::CellProbabilities(fit.correlation.array()));
   out.number({"p", "1",
-              "share of experiments drawn from the posterior that lie further from what is "
-              "expected (chi-squared) than the observed one"},
+              "posterior predictive p-value: share of drawn experiments with at least the observed "
+              "chi-squared distance"},
              fit.p);
-  out.count({"observed", "1", "observed trials, or passages"}, fit.observed);
+  out.count({"observed", "1", "number of observed trials, or passages"}, fit.observed);
   out.text(Label("of",
-                 "what was seen: trials through the field, or passages through a cell, whose "
-                 "beginnings are given")
+                 "what was observed: trials through the field, or passages through a cell, given "
+                 "where they begin")
                .one_of({"trials", "passages"}),
            counted(f));
-  out.list(
-      {"outcomes",
-       "final gates and endings that are counted together; of passages faces from and to, "
-       "and times"},
-      fit.groups, [&](Fields& group, const lattice::OutcomeGroup& g) {
-        group.text({"outcomes", "first and last of those that are counted together"},
-                   words_of(f, g));
-        group.count({"observed", "1", "observed trials, or passages, that ended so"}, g.observed);
-        group.estimate({"expected", "1", "mean over the posterior, of as many trials"},
-                       seven_digits(g.expected, 1.0), g.interval, "interval_95");
-      });
-  out.count({"draws", "1", "draws from the posterior that all this is from"}, fit.draws.rows());
+  out.list({"outcomes",
+            "groups of outcomes counted together: final gates and endings, or of passages faces "
+            "and times"},
+           fit.groups, [&](Fields& group, const lattice::OutcomeGroup& g) {
+             group.text({"outcomes", "first and last outcome of the group"}, words_of(f, g));
+             group.count({"observed", "1",
+                          "number of observed trials, or passages, with an outcome of the group"},
+                         g.observed);
+             group.estimate({"expected", "1",
+                             "number expected, mean over the posterior; interval_95: where 95 % of "
+                             "such experiments lie"},
+                            seven_digits(g.expected, 1.0), g.interval, "interval_95");
+           });
+  out.count({"draws", "1", "number of draws from the posterior"}, fit.draws.rows());
   out.flag({"settled",
-            "whether misfit_nats is at most 0.5, mixing at most 1.05, near_bounds and outside at "
-            "most 0.01, and each variance_by_trials at most 0.2"},
+            "whether misfit_nats <= 0.5, mixing <= 1.05, near_bounds and outside <= 0.01, "
+            "variance_by_trials <= 0.2"},
            fit.settled());
   out.number({"misfit_nats", "nat",
-              "by how much the log likelihood may be off, as chances between the points are no "
-              "polynomial"},
+              "possible error of the log likelihood, as chances between the points are no exact "
+              "polynomials"},
              fit.misfit);
-  out.number(
-      {"mixing", "1", "R of Gelman and Rubin, of the halves of the walks; of the worst number"},
-      fit.mixing);
+  out.number({"mixing", "1",
+              "R of Gelman and Rubin from the halves of the walks, the largest of all numbers"},
+             fit.mixing);
   out.number({"near_bounds", "1",
-              "share of the draws at the edge of where the points of the last round lie"},
+              "share of the draws at the edge of the region in which the last round's points lie"},
              fit.near_bounds);
-  out.number({"outside", "1",
-              "share of the posterior that lies where earlier rounds cut the ranges off, by new "
-              "points there and all others, when it was last looked at"},
-             fit.outside);
-  out.count({"never", "1", "observed trials that ended as none did at the last round's points"},
-            fit.never);
-  out.count({"rounds", "1", "rounds before the last"}, fit.rounds);
-  out.count({"degree", "1", "the highest of the polynomials"}, fit.degree);
-  out.count({"parts", "1", "parts of the ranges, each with polynomials of its own"}, fit.parts);
-  out.count({"points", "1", "points that the chances are from"}, fit.points);
-  out.number({"volume", "1", "share of the ranges where these points lie, about"}, fit.volume);
-  out.count({"trials", "1", "full trials, or passages, of all rounds"}, fit.trials);
+  out.number(
+      {"outside", "1",
+       "share of the posterior in regions that earlier rounds cut off, when it was last checked"},
+      fit.outside);
+  out.count(
+      {"never", "1",
+       "number of observed trials with an outcome that no simulated trial of the last round had"},
+      fit.never);
+  out.count({"rounds", "1", "number of rounds before the last"}, fit.rounds);
+  out.count({"degree", "1", "highest degree of the polynomials for chances between points"},
+            fit.degree);
+  out.count({"parts", "1", "number of parts of the ranges, each with polynomials of its own"},
+            fit.parts);
+  out.count({"points", "1", "number of points at which the chances of outcomes were simulated"},
+            fit.points);
+  out.number({"volume", "1",
+              "approximate share of the ranges' volume in which the last round's points lie"},
+             fit.volume);
+  out.count({"trials", "1", "number of simulated trials, or passages, of all rounds"}, fit.trials);
   describe_method(out, f.method);
-  out.number({"seconds", "s", "time in all"}, fit.seconds);
+  out.number({"seconds", "s", "time of the whole computation"}, fit.seconds);
   describe_status(out, fit.health);
   describe_made_by(out, f.made_by);
 }

@@ -17,13 +17,16 @@ void describe(Fields& out, const dynamics::Health& h) {
 }
 
 void describe_status(Fields& out, const dynamics::Health& health) {
-  out.object(Label("status", "numerical faults of the runs behind a result").shared(),
+  out.object(Label("status", "numerical faults of the runs from which the result is made").shared(),
              [&](Fields& status) { describe(status, health); });
 }
 
 void describe_status(Fields& out, const std::optional<dynamics::Health>& health) {
-  out.maybe(Label("status", "numerical faults of the runs; null: no record of them").shared(),
-            health, [](Fields& status, const dynamics::Health& h) { describe(status, h); });
+  out.maybe(
+      Label("status",
+            "numerical faults of the runs from which the result is made; null: none are on record")
+          .shared(),
+      health, [](Fields& status, const dynamics::Health& h) { describe(status, h); });
 }
 
 Json to_json(const dynamics::Health& health) {

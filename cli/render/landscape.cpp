@@ -20,26 +20,34 @@ namespace {
 
 void describe(Fields& out, const Label& l, const dynamics::Pass& pass) {
   out.object(l, [&](Fields& f) {
-    f.number({"x_m", "m", "place of the way's highest point, the pass"}, pass.x);
-    f.number({"y_m", "m", "place of the pass"}, pass.y);
-    f.number({"energy_J", "J", "potential energy on the pass"}, pass.energy);
-    f.number({"begins_at_J", "J", "potential energy where the way begins"}, pass.start_energy);
-    f.number({"barrier_J", "J", "how far the pass lies above where the way begins"},
-             pass.barrier());
-    f.points({"way_m", "m", "the way, as x and y of each grid point"}, pass.way);
+    f.number({"x_m", "m", "x of the pass, the highest point of the path"}, pass.x);
+    f.number({"y_m", "m", "y of the pass, the highest point of the path"}, pass.y);
+    f.number({"energy_J", "J", "potential energy at the pass"}, pass.energy);
+    f.number({"begins_at_J", "J", "potential energy where the path begins"}, pass.start_energy);
+    f.number({"barrier_J", "J", "energy_J minus begins_at_J"}, pass.barrier());
+    f.points({"way_m", "m", "the path: x and y of each of its grid points"}, pass.way);
   });
 }
 
 void describe(Fields& out, const GridPasses& grid) {
-  out.number({"grid_m", "m", "between grid points, at most"}, grid.spacing);
-  describe(out, {"from_start", "the way from the start whose highest point is lowest"},
-           grid.from_start);
-  describe(out, {"from_basin", "the same from the basin below the start"}, grid.from_basin);
+  out.number({"grid_m", "m", "largest distance between neighbouring grid points"}, grid.spacing);
+  describe(
+      out,
+      {"from_start",
+       "of all paths from the start to the far boundary, the one whose highest point is lowest"},
+      grid.from_start);
+  describe(out,
+           {"from_basin",
+            "of all paths from the basin below the start to the far boundary, the one whose "
+            "highest point is lowest"},
+           grid.from_basin);
   const std::vector<std::array<double, 2>>& way = grid.from_basin.way;
   const auto basin = way.empty() ? std::array<double, 2>{} : way.front();
-  out.numbers({"basin_m", "m", "x and y of the basin; of the far boundary if there is none"},
-              {basin[0], basin[1]});
-  out.number({"above_start_J", "J", "how far the pass out of the basin lies above the start"},
+  out.numbers(
+      {"basin_m", "m",
+       "x and y of the basin below the start; without a basin on the way, of the far boundary"},
+      {basin[0], basin[1]});
+  out.number({"above_start_J", "J", "from_basin.energy_J minus from_start.begins_at_J"},
              grid.above_start());
 }
 
@@ -61,15 +69,17 @@ std::string measured_line(const dynamics::GateTally& tally) {
 
 void describe(Fields& out, const LandscapeResult& result) {
   const dynamics::Passes& passes = result.passes;
-  out.number({"spacing_m", "m", "between points of the coarse grid"}, passes.coarse.spacing);
-  out.text(Label("beams", "beams that resist").one_of({"both", "left", "right"}),
+  out.number({"spacing_m", "m", "largest distance between neighbouring points of the coarse grid"},
+             passes.coarse.spacing);
+  out.text(Label("beams", "beams that resist the body").one_of({"both", "left", "right"}),
            beams_word(passes.beams));
-  out.number({"start_kinetic_energy_J", "J", "kinetic energy of the start"}, passes.kinetic_energy);
-  out.list({"passes", "the coarse grid and the fine one"},
+  out.number({"start_kinetic_energy_J", "J", "kinetic energy of the body at the start"},
+             passes.kinetic_energy);
+  out.list({"passes", "lowest passes through the gate, on the coarse grid and on the fine grid"},
            std::vector{&passes.coarse, &passes.fine},
            [](Fields& f, const GridPasses* grid) { describe(f, *grid); });
   out.optional(result.measured.has_value(), [&](Fields& f) {
-    f.object({"measured", "how runs of the gate ended"}, [&](Fields& runs) {
+    f.object({"measured", "simulated runs of the gate, by outcome"}, [&](Fields& runs) {
       const dynamics::GateTally tally = result.measured.value_or(dynamics::GateTally());
       describe(runs, tally);
       describe_method(runs, result.method);

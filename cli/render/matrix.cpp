@@ -111,29 +111,33 @@ void add_types(TextTable& table, const lattice::MatrixFile& file) {
 // ---- Keys of results ----
 
 void describe_size(Fields& out, const Transitions& t) {
-  out.count({"inputs", "1", "rows: states in which a gate is entered"}, t.space.size());
-  out.count({"outputs", "1", "columns: states in which the next gate is entered, and trapped"},
-            t.space.size() + 1);
+  out.count({"inputs", "1", "number of rows: states in which a gate is entered"}, t.space.size());
+  out.count(
+      {"outputs", "1",
+       "number of columns: states in which the next gate is entered, and trapped as the last one"},
+      t.space.size() + 1);
 }
 void describe_counts(Fields& out, const Transitions::Totals& total) {
-  out.count({"counts", "1", "counts in all: runs, with their mirror images where these count"},
+  out.count({"counts", "1",
+             "sum of all counts: gate runs, with their mirror images where these count too"},
             total.runs);
 }
 void describe_nonzeros(Fields& out, const Transitions::Totals& total) {
-  out.count({"nonzeros", "1", "entries of the matrix that are not zero"}, total.nonzeros);
+  out.count({"nonzeros", "1", "number of entries of the matrix that are not zero"}, total.nonzeros);
 }
 void describe_clamped_share(Fields& out, const Transitions::Totals& total) {
   out.number({"clamped_share", "1",
-              "share of the crossings that lay outside every bin and count in the nearest one"},
+              "share of crossings into a next gate that lie outside all bins and count in the "
+              "nearest bin"},
              total.clamped_share());
 }
 void describe_empty_rows(Fields& out, const Transitions::Totals& total) {
-  out.count({"rows_never_sampled", "1", "rows without any run"}, total.empty_rows);
+  out.count({"rows_never_sampled", "1", "number of rows without any run"}, total.empty_rows);
 }
 
 void describe_types(Fields& out, const lattice::MatrixFile& file) {
   out.optional(!file.types.empty(), [&](Fields& f) {
-    f.object({"types", "the matrices of other gates in the field, by the name of their type"},
+    f.object({"types", "matrices of the field's other types of gates, by type"},
              [&](Fields& types) {
                for (const auto& [name, t] : file.types)
                  types.object(Label(name, "the matrix of this type").varying("<type>"),
@@ -151,23 +155,31 @@ void describe_types(Fields& out, const lattice::MatrixFile& file) {
 void describe_row(Fields& out, const Transitions& t, int row) {
   const StateRange range = t.space.range(row);
   const Section& section = t.space.section();
-  out.count({"input", "1", "number of the state, from 1"}, lattice::shown_number(t.space, row) + 1);
-  out.text({"boundary", "the boundary that is entered"}, section.faces[range.face].name);
+  out.count({"input", "1", "number of the state in which the gate is entered, from 1"},
+            lattice::shown_number(t.space, row) + 1);
+  out.text({"boundary", "boundary through which the gate is entered"},
+           section.faces[range.face].name);
   const std::string name = name_of(section, range.middle());
   out.optional(!name.empty(), [&](Fields& f) {
-    f.text({"name", "the state's, of a chain that was made elsewhere"}, name);
+    f.text({"name", "name of the state, in a chain that was made elsewhere"}, name);
   });
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
-    out.numbers(Field(section.coordinates[axis].key, "its own", "from and to, of the coordinate")
+    out.numbers(Field(section.coordinates[axis].key, "its own",
+                      "range of this coordinate in the state: from, to")
                     .varying("<coordinate>"),
                 {range.at[axis][0], range.at[axis][1]});
-  out.count({"trials", "1", "runs from the state"}, t.trials[row]);
-  out.count({"clamped", "1", "crossings of these that lay outside every bin"}, t.clamped[row]);
-  out.list({"outputs", "how the next gate is entered"}, outputs_of(t, row),
-           [](Fields& f, const auto& output) {
-             f.count({"output", "1", "number of the state, from 1; the last one is trapped"},
+  out.count({"trials", "1", "number of runs from the state"}, t.trials[row]);
+  out.count({"clamped", "1",
+             "number of these runs whose crossing into the next gate lies outside all bins"},
+            t.clamped[row]);
+  out.list({"outputs", "how runs from the state go on: the entries of the row that are not zero"},
+           outputs_of(t, row), [](Fields& f, const auto& output) {
+             f.count({"output", "1",
+                      "number of the state in which the next gate is entered, from 1; the last "
+                      "number: trapped"},
                      output.first + 1);
-             f.count({"count", "1", "counts of this output"}, output.second.second);
+             f.count({"count", "1", "number of runs from the state with this output"},
+                     output.second.second);
            });
 }
 
@@ -179,7 +191,7 @@ std::string bins_text(const StateRecord& states) {
 
 /// The key "matrix", of commands that write one.
 void describe_path(Fields& out, const std::string& path) {
-  out.text({"matrix", "the matrix file that was written"}, path);
+  out.text({"matrix", "path of the matrix file that was written"}, path);
 }
 
 }  // namespace
@@ -288,11 +300,12 @@ void describe(Fields& out, const MadeMatrix& made) {
   describe_path(out, made.path);
   describe_size(out, t);
   out.optional(made.trials_per_row.has_value(), [&](Fields& f) {
-    f.count({"trials_per_row", "1", "runs from each state"}, made.trials_per_row.value_or(0));
+    f.count({"trials_per_row", "1", "number of gate runs from each state"},
+            made.trials_per_row.value_or(0));
   });
   out.given({"bins", "1",
-             "bins per axis as a multiple of Table III's; else auto: from a pilot, scene: the "
-             "scene's table [bins], tree: leaves of trees"},
+             "bins per axis as a multiple of the paper's Table III; or auto, scene, tree (see "
+             "state_space.bins)"},
             bins_text(made.states));
   describe_nonzeros(out, total);
   describe_clamped_share(out, total);
@@ -328,31 +341,34 @@ void describe(Fields& out, const ShownMatrix& shown) {
   const auto total = t.totals();
   const double cells = static_cast<double>(t.space.size()) * (t.space.size() + 1);
   describe_size(out, t);
-  out.count({"gate_runs", "1", "gate runs behind the counts"}, gate_runs_of(file, path));
+  out.count({"gate_runs", "1", "number of gate runs from which the matrix was counted"},
+            gate_runs_of(file, path));
   describe_counts(out, total);
   describe_nonzeros(out, total);
-  out.number({"density", "1", "share of the entries that are not zero"},
+  out.number({"density", "1", "share of the matrix's entries that are not zero"},
              static_cast<double>(total.nonzeros) / cells);
   describe_clamped_share(out, total);
   describe_empty_rows(out, total);
   describe_types(out, file);
-  out.count({"counted_from", "1", "the number of the first input and output in the rows"}, 1);
-  out.list({"rows", "each row of the matrix"}, lattice::shown_order(t.space),
+  out.count({"counted_from", "1", "number of the first input, and of the first output, in rows"},
+            1);
+  out.list({"rows", "the rows of the matrix"}, lattice::shown_order(t.space),
            [&](Fields& f, int row) { describe_row(f, t, row); });
   if (const auto states = recorded_states(file, path); states || out.is_schema())
     describe_state_space(out, states.value_or(StateRecord()));  // a foreign file may have none
-  out.object({"text", "what else the file keeps, as text"}, [&](Fields& f) {
+  out.object({"text", "the other texts in the matrix file"}, [&](Fields& f) {
     for (const auto& [key, value] : file.text)
-      f.text(Label(key, "the attribute of this name").varying("<attribute>"), value);
+      f.text(Label(key, "text of this attribute").varying("<attribute>"), value);
   });
 }
 
 void describe(Fields& out, const ImportedMatrix& imported) {
   describe(out, imported.matrix);
   describe_path(out, imported.matrix.path);
-  out.texts({"understood",
-             "what import decided where a file may be read in more than one way, a sentence each"},
-            imported.understood);
+  out.texts(
+      {"understood",
+       "choices that import made where a file can be read in more than one way, a sentence each"},
+      imported.understood);
   describe_made_by(out, imported.made_by);
 }
 

@@ -70,50 +70,69 @@ std::string sentence(const MemoryStudy& study, Question q) {
 }
 
 void describe_p(Fields& out, const MemoryStudy& study, Question q) {
-  out.number({"p", "1", "how often chance makes as large a difference"}, study.p(q));
-  out.number({"p_adjusted", "1", "p, corrected for asking all questions"}, study.p_adjusted(q));
+  out.number(
+      {"p", "1", "p-value of this question: how often chance alone makes as large a difference"},
+      study.p(q));
+  out.number({"p_adjusted", "1", "p, corrected for asking several questions (Holm)"},
+             study.p_adjusted(q));
 }
 
 void describe(Fields& out, const MemoryStudy& study, Question q) {
   const Independence& i = study.independence(q);
   describe_p(out, study, q);
-  out.count({"runs", "1", "gate runs that can tell: in states with several labels and outcomes"},
-            i.runs);
-  out.count({"states", "1", "states of these runs"}, i.states);
+  out.count(
+      {"runs", "1",
+       "number of gate runs from states in which several labels and several outcomes were seen"},
+      i.runs);
+  out.count(
+      {"states", "1", "number of states in which several labels and several outcomes were seen"},
+      i.states);
   out.object(
-      {"statistics", "what was looked at: does the label tell more than the state does?"},
+      {"statistics",
+       "tests of whether the label tells more of a run's outcome than its state does"},
       [&](Fields& f) {
-        f.object({"pooled", "differences that go the same way in all states"}, [&](Fields& pooled) {
-          cli::describe(pooled, i.pooled);
-          pooled.count({"degrees", "1", "degrees of freedom of the statistic"}, i.degrees);
-          pooled.number({"p_chi_squared", "1", "p by the chi-squared distribution"},
-                        i.p_chi_squared);
-        });
-        f.object({"strongest", "the largest of these, over its standard deviation"},
-                 [&](Fields& strongest) {
-                   cli::describe(strongest, i.strongest);
-                   strongest.optional(i.label >= 0, [&](Fields& whose) {
-                     const bool any = i.label >= 0;
-                     whose.text({"label", "the label whose runs differ most"},
-                                any ? label_name(study, q, i.label) : "");
-                     whose.text({"outcome", "the way on that differs, or trapped"},
-                                any ? outcome_name(study, i.outcome) : "");
-                     whose.number(
-                         {"excess", "1", "share of these runs by which this is more frequent"},
-                         i.more);
-                   });
-                 });
-        f.object({"state_by_state", "differences that go another way in each state"},
+        f.object(
+            {"pooled",
+             "test of differences that go the same way in all states (Cochran-Mantel-Haenszel)"},
+            [&](Fields& pooled) {
+              cli::describe(pooled, i.pooled);
+              pooled.count({"degrees", "1", "degrees of freedom of the statistic"}, i.degrees);
+              pooled.number({"p_chi_squared", "1", "p by the chi-squared distribution"},
+                            i.p_chi_squared);
+            });
+        f.object(
+            {"strongest",
+             "test of the largest of the pooled differences, divided by its standard deviation"},
+            [&](Fields& strongest) {
+              cli::describe(strongest, i.strongest);
+              strongest.optional(i.label >= 0, [&](Fields& whose) {
+                const bool any = i.label >= 0;
+                whose.text({"label", "label whose runs differ most from what their states say"},
+                           any ? label_name(study, q, i.label) : "");
+                whose.text({"outcome",
+                            "outcome in which these runs differ most: boundary of the next entry, "
+                            "or trapped"},
+                           any ? outcome_name(study, i.outcome) : "");
+                whose.number({"excess", "1",
+                              "share of this label's runs by which this outcome is more frequent "
+                              "than expected"},
+                             i.more);
+              });
+            });
+        f.object({"state_by_state",
+                  "test of the squared differences summed over states, which may go another way in "
+                  "each state"},
                  [&](Fields& each) { cli::describe(each, i.state_by_state); });
       });
   out.estimate({"total_variation", "1",
-                "size of the memory: by how much outcomes differ after one half of the labels and "
-                "after the other"},
+                "size of the memory: total variation between outcomes after one half of the labels "
+                "and after the other"},
                i.memory, Interval{i.memory_low, i.memory_high});
-  out.number({"seen_with_probability_90", "1",
-              "a memory of this total variation is found with a probability of 0.9; null: none is"},
-             i.seen_at_90);
-  out.text({"power", "the same in words"}, power_words(i));
+  out.number(
+      {"seen_with_probability_90", "1",
+       "total variation of a memory that is found with a probability of at least 0.9; null: none"},
+      i.seen_at_90);
+  out.text({"power", "seen_with_probability_90 in words"}, power_words(i));
   out.text({"sentence", "the answer in words"}, sentence(study, q));
 }
 
@@ -210,9 +229,10 @@ std::string verdict(const MemoryStudy& study) {
 }  // namespace
 
 void describe(Fields& out, const lattice::LookedAt::Test& test) {
-  out.number({"value", "1", "the statistic as it was seen"}, test.seen);
-  out.number({"p", "1", "how often chance makes the statistic as large"}, test.p);
-  out.number({"p_adjusted", "1", "p, corrected for looking at all statistics"}, test.p_adjusted);
+  out.number({"value", "1", "value of the statistic"}, test.seen);
+  out.number({"p", "1", "p-value: how often chance alone makes the statistic as large"}, test.p);
+  out.number({"p_adjusted", "1", "p, corrected for looking at several statistics"},
+             test.p_adjusted);
 }
 
 void describe(Fields& out, const MemoryStudy& study) {

@@ -136,18 +136,19 @@ std::string table_of(const RunsPrediction& runs) {
 
 void describe_own_trials(Fields& out, const std::optional<lattice::OwnTrials>& own) {
   out.maybe(Label("own_trials",
-                  "the full trials of all starts against the chain that was made from them; null: "
-                  "none of a chain's answers, or answers by walks")
+                  "test of the chain against the full trials it is made from; null: no trials, or "
+                  "no exact chain answer")
                 .shared(),
             own, [](Fields& f, const lattice::OwnTrials& o) {
-              f.count({"trials", "1", "full trials"}, o.trials);
-              f.number({"total_variation", "1", "between their final gates and the chain's"},
+              f.count({"trials", "1", "number of full trials of all starts together"}, o.trials);
+              f.number({"total_variation", "1",
+                        "total variation between the full trials' final gates and the chain's"},
                        o.total_variation);
               f.number({"chance_total_variation", "1",
-                        "mean of the same for as many trials drawn from the chain's answer"},
+                        "mean of total_variation for as many trials drawn from the chain's answer"},
                        o.chance_total_variation);
-              f.number({"p", "1", "of final gates and endings together"}, o.p);
-              f.flag({"differs", "p is at most 1 %: the chain errs"}, o.differs());
+              f.number({"p", "1", "p-value of the test, of final gates and endings together"}, o.p);
+              f.flag({"differs", "whether p is at most 0.01: the chain is wrong"}, o.differs());
             });
 }
 

@@ -50,21 +50,26 @@ void describe(Fields& out, const Effect& effect, const ExperimentOptions& option
   if (what == Differs::final_gates)
     out.number({"total_variation", "1", "between the final gates"}, effect.difference);
   else
-    out.number({"percentage_points", "%", "by how much the ending is more or less frequent"},
+    out.number({"percentage_points", "%",
+                "difference of the ending's share, in percentage points, more or fewer"},
                100.0 * effect.difference);
   out.count({"trials", "1",
-             "trials of each experiment that show the difference; null: more than 100 000, or "
-             "there is no such difference"},
+             "trials that each experiment needs to show the difference; null: over 100 000, or no "
+             "such difference"},
             effect.trials);
   if (what != Differs::final_gates)
-    out.count({"trials_if_all_are_looked_at", "1", "the same where all endings are looked at"},
+    out.count({"trials_if_all_are_looked_at", "1",
+               "trials that each experiment needs if all endings are looked at; null: as trials"},
               effect.trials_of_all);
   out.optional(options.trials.has_value(), [&](Fields& f) {
-    f.number({"power", "1", "how often the trials that are planned show the difference"},
-             effect.power.value_or(kUnknown));
+    f.number(
+        {"power", "1",
+         "probability that the planned number of trials shows the difference, looked at alone"},
+        effect.power.value_or(kUnknown));
   });
   if (what != Differs::ending_of_groups)
-    out.flag({"within_error_of_prediction", "whether the prediction itself may be as far off"},
+    out.flag({"within_error_of_prediction",
+              "whether the prediction's own error may be as large as the difference"},
              effect.within_error);
 }
 
@@ -385,8 +390,12 @@ void describe(Fields& out, const lattice::SmallestDifference& d) {
   const auto points = [&](const Field& field, const std::optional<double>& x) {
     out.number(field, x ? 100.0 * *x : kUnknown);
   };
-  points({"more", "%", "percentage points more that are found; null: none"}, d.more);
-  points({"fewer", "%", "percentage points fewer that are found; null: none"}, d.fewer);
+  points({"more", "%",
+          "smallest increase, in percentage points, that the planned trials show; null: none"},
+         d.more);
+  points({"fewer", "%",
+          "smallest decrease, in percentage points, that the planned trials show; null: none"},
+         d.fewer);
 }
 
 Json to_json(const lattice::SmallestDifference& d) {

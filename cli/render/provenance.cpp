@@ -10,10 +10,10 @@
 namespace gatewalk::cli {
 
 void describe(Fields& out, const Provenance& p) {
-  out.text({"program", "its name"}, "gatewalk");
-  out.text({"version", "of the program"}, kVersion);
-  out.text({"commit", "of the sources that the program was built from"}, kCommit);
-  out.text({"command", "the command with all that shaped the result"}, p.command);
+  out.text({"program", "name of the program"}, "gatewalk");
+  out.text({"version", "version of the program"}, kVersion);
+  out.text({"commit", "commit of the sources from which the program was built"}, kCommit);
+  out.text({"command", "the command line with everything that shaped the result"}, p.command);
   out.optional(p.seed.has_value(), [&](Fields& f) {
     f.count({"seed", "1", "seed of all random numbers"}, p.seed.value_or(0));
   });
@@ -21,22 +21,23 @@ void describe(Fields& out, const Provenance& p) {
     f.text({"scene", "the whole scene, as TOML"}, p.scene.value_or(""));
   });
   out.optional(!p.derived.empty(), [&](Fields& f) {
-    f.texts({"derived", "keys that the scene left out, and the program derived from others"},
+    f.texts({"derived", "keys that the scene leaves out and the program derives from other keys"},
             {p.derived.begin(), p.derived.end()});
   });
   out.optional(!p.parts.empty(), [&](Fields& f) {
-    f.list({"parts", "the files of a run in parts"}, p.parts, [](Fields& part, const auto& file) {
-      part.text({"file", "its path"}, file.first);
-      part.text({"holds", "which part of the run it is"}, file.second);
-    });
+    f.list({"parts", "the files that were joined, of a run that was divided into parts"}, p.parts,
+           [](Fields& part, const auto& file) {
+             part.text({"file", "path of the file"}, file.first);
+             part.text({"holds", "which part of the run the file holds"}, file.second);
+           });
   });
   out.optional(p.cell.has_value(), [&](Fields& f) {
-    f.text({"cell", "what describes the cells, as TOML"}, p.cell.value_or(""));
+    f.text({"cell", "the description of the cells, as TOML"}, p.cell.value_or(""));
   });
 }
 
 void describe_made_by(Fields& out, const Provenance& provenance) {
-  out.object(Label("made_by", "what gives the same result again").shared(),
+  out.object(Label("made_by", "what is needed to make the same result again").shared(),
              [&](Fields& made) { describe(made, provenance); });
 }
 

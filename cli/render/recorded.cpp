@@ -37,16 +37,19 @@ RecordedCounts counts_of(const lattice::RunPool& pool) {
 }
 
 void describe(Fields& out, const RecordedCounts& counts) {
-  out.count({"bodies", "1", "different bodies"}, counts.bodies);
-  out.count({"trials", "1", "trials: ways of a body through the field"}, counts.trials);
-  out.count({"passages", "1", "passages of a body through one cell"}, counts.passages);
-  out.count({"left", "1", "passages that led into the next cell"}, counts.left);
+  out.count({"bodies", "1", "number of different bodies"}, counts.bodies);
+  out.count({"trials", "1", "number of trials, each the way of a body through the field"},
+            counts.trials);
+  out.count({"passages", "1", "number of passages, each of a body through one cell"},
+            counts.passages);
+  out.count({"left", "1", "passages in which the body left the cell"}, counts.left);
   out.count({"trapped", "1", "passages in which the body was trapped"}, counts.trapped);
   out.count({"lost", "1", "passages in which the body was lost from sight"}, counts.lost);
 }
 
 void describe_recorded(Fields& out, const RecordedCounts& counts) {
-  out.object({"recorded", "the recorded runs"}, [&](Fields& f) { describe(f, counts); });
+  out.object({"recorded", "numbers of recorded bodies, trials and passages"},
+             [&](Fields& f) { describe(f, counts); });
 }
 
 Json to_json(const lattice::RunPool& pool) {

@@ -19,10 +19,10 @@ void describe_entry(Fields& out, const dynamics::Section& of, const dynamics::En
   const dynamics::Section& section = out.is_schema() ? dynamics::disc_section() : of;
   const std::string name = out.is_schema() ? "" : name_of(section, entry);
   out.optional(!name.empty(), [&](Fields& f) {
-    f.text({"name", "of the state that the body enters in, where states have names"}, name);
+    f.text({"name", "name of the state in which the body enters, where states have names"}, name);
   });
   out.optional(entry.face != 0, [&](Fields& f) {
-    f.text({"face", "by which face of the cell the body enters, where it is not the first one"},
+    f.text({"face", "face through which the body enters the cell; absent: the first face"},
            section.faces[static_cast<std::size_t>(entry.face)].name);
   });
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
@@ -32,12 +32,14 @@ void describe_entry(Fields& out, const dynamics::Section& of, const dynamics::En
 }  // namespace
 
 void describe(Fields& out, const dynamics::Section& section, const dynamics::Entry& entry) {
-  describe_entry(out, section, entry, "a coordinate of the entry: its place or a speed",
+  describe_entry(out, section, entry,
+                 "coordinate of the entry, such as its place on the face or a velocity",
                  [&](const Field& f, std::size_t axis) { out.number(f, entry.at[axis]); });
 }
 
 void describe(Fields& out, const dynamics::Section& section, const dynamics::StateRange& range) {
-  describe_entry(out, section, range.middle(), "a coordinate of the entries, from and to",
+  describe_entry(out, section, range.middle(),
+                 "range of this coordinate in the entries: from, to (no confidence interval)",
                  [&](const Field& f, std::size_t axis) { out.interval(f, range.at[axis]); });
 }
 
@@ -49,8 +51,9 @@ void describe_start(Fields& out, const Label& l, const dynamics::Section& sectio
 }
 
 void describe_start(Fields& out, const dynamics::Section& section, const Start& start) {
-  describe_start(out, {"start", "how bodies enter the field; \"as seen\": as they were recorded"},
-                 section, start);
+  describe_start(
+      out, {"start", "how bodies enter the field; \"as seen\": like the recorded first entries"},
+      section, start);
 }
 
 Json to_json(const dynamics::Section& section, const Start& start) {
@@ -106,14 +109,15 @@ ShownState shown_state(const lattice::ChainStart& start, const dynamics::StateSp
 }
 
 void describe(Fields& out, const ShownState& state) {
-  out.count({"input", "1", "number of the state"}, state.number);
-  out.count(Field("counted_from", "1", "the first state's number").at_least(1).at_most(1), 1);
-  out.text({"bin", "the entries that the state stands for"}, state.bin);
-  out.flag({"clamped", "the start lies outside all bins: the nearest one is taken"}, state.clamped);
+  out.count({"input", "1", "number of the state, from 1"}, state.number);
+  out.count(Field("counted_from", "1", "number of the first state").at_least(1).at_most(1), 1);
+  out.text({"bin", "range of entries that make up the state, in words"}, state.bin);
+  out.flag({"clamped", "whether the start lies outside all bins, so that the nearest bin is taken"},
+           state.clamped);
 }
 
 void describe_start_state(Fields& out, const ShownState& state) {
-  out.object(Label("start_state", "the state of the chain in which bodies start").shared(),
+  out.object(Label("start_state", "state of the chain in which bodies start").shared(),
              [&](Fields& f) { describe(f, state); });
 }
 

@@ -26,25 +26,32 @@ double clamped_share(const Resolution& r) {
 
 void describe(Fields& out, const BinRecord& bins) {
   const Resolution& r = bins.resolution;
-  out.object({"pilot", "full trials by which the bins are judged"}, [&](Fields& pilot) {
-    pilot.count({"trials", "1", "full trials"}, bins.pilot_trials);
-    pilot.count({"entries", "1", "entries into gates behind the first one"}, r.entries);
+  out.object({"pilot", "full trials with which the bins are assessed"}, [&](Fields& pilot) {
+    pilot.count({"trials", "1", "number of full trials"}, bins.pilot_trials);
+    pilot.count({"entries", "1", "number of entries into gates after the first one"}, r.entries);
     describe_status(pilot, bins.pilot_health);
   });
-  out.object({"resolution", "how well the bins tell the pilot's entries apart"}, [&](Fields& f) {
-    f.number({"clamped_share", "1", "share of the entries that lie outside every bin"},
+  out.object({"resolution", "how well the bins separate the pilot's entries"}, [&](Fields& f) {
+    f.number({"clamped_share", "1", "share of the pilot's entries that lie outside all bins"},
              clamped_share(r));
-    f.count({"states_entered", "1", "states that any entry fell into"}, r.states_entered);
-    f.count({"states_of_90_percent", "1", "the fewest states that hold 90 % of the entries"},
+    f.count(
+        {"states_entered", "1", "number of states that have at least one of the pilot's entries"},
+        r.states_entered);
+    f.count({"states_of_90_percent", "1",
+             "smallest number of states that hold 90 % of the pilot's entries"},
             r.states_of_90);
-    f.object({"unresolved_variance",
-              "variance of a coordinate within the states over that within the boundaries"},
-             [&](Fields& unresolved) {
-               unresolved.number({"d", "1", "of the place on the boundary"}, r.unresolved[kEntryD]);
-               unresolved.number({"vx", "1", "of the lateral velocity"}, r.unresolved[kEntryVx]);
-               unresolved.number({"vy", "1", "of the forward velocity"}, r.unresolved[kEntryVy]);
-             });
-    f.flag({"poor", "whether the bins tell too little for the chain to be trusted"}, r.poor());
+    f.object(
+        {"unresolved_variance",
+         "variance of each coordinate within states divided by its variance within boundaries"},
+        [&](Fields& unresolved) {
+          unresolved.number({"d", "1", "unresolved variance of the place on the boundary"},
+                            r.unresolved[kEntryD]);
+          unresolved.number({"vx", "1", "unresolved variance of the lateral velocity"},
+                            r.unresolved[kEntryVx]);
+          unresolved.number({"vy", "1", "unresolved variance of the forward velocity"},
+                            r.unresolved[kEntryVy]);
+        });
+    f.flag({"poor", "whether the bins resolve too little for the chain to be trusted"}, r.poor());
   });
 }
 
@@ -53,28 +60,33 @@ bool is_of_recorded_runs(const TreeRecord& trees) { return !trees.accuracy; }
 
 void describe_start(Fields& out, const Section& section, const Entry& entry) {
   out.optional(entry.face != 0, [&](Fields& f) {
-    f.text({"face", "the boundary that is entered, where it is not the first one"},
+    f.text({"face", "boundary through which the body enters; absent: the first one"},
            section.faces[static_cast<std::size_t>(entry.face)].name);
   });
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
-    out.number(Field(section.coordinates[axis].key, "its own", "value of the coordinate")
-                   .varying("<coordinate>"),
-               entry.at[axis]);
+    out.number(
+        Field(section.coordinates[axis].key, "its own", "value of this coordinate at the entry")
+            .varying("<coordinate>"),
+        entry.at[axis]);
 }
 
 void describe(Fields& out, const lattice::PooledRange& range, const Section& section) {
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
     const auto& [from, to] = range.range.at[axis];
-    out.numbers(Field(section.coordinates[axis].key, "its own", "from and to, of the coordinate")
-                    .varying("<coordinate>"),
-                {from, to});
+    out.numbers(
+        Field(section.coordinates[axis].key, "its own", "range of this coordinate: from, to")
+            .varying("<coordinate>"),
+        {from, to});
   }
-  out.count({"tried_on_starts", "1", "starts of the range on which its error was tried"},
+  out.count({"tried_on_starts", "1",
+             "number of starts in the range at which the chain's error was estimated"},
             range.tried_on);
-  out.number({"kernel_error_95", "1",
-              "total variation, 95 %, with endlessly many first runs: of the start in the middle"},
-             range.kernel_error_95);
-  out.number({"worst_kernel_error_95", "1", "the same of the worst of these starts"},
+  out.number(
+      {"kernel_error_95", "1",
+       "median over these starts of error_95 as it would be with infinitely many first runs"},
+      range.kernel_error_95);
+  out.number({"worst_kernel_error_95", "1",
+              "largest of these starts' error_95 as it would be with infinitely many first runs"},
              range.worst_kernel_error_95);
 }
 
@@ -257,60 +269,70 @@ void describe(Fields& out, const StateRecord& s) {
   const TreeRecord trees = s.trees.value_or(TreeRecord());
   const bool recorded = s.trees && is_of_recorded_runs(trees);
   const auto put_states = [&](Fields& f) {
-    f.count({"states", "1", "states of the chain"}, s.states);
+    f.count({"states", "1", "number of states of the chain"}, s.states);
   };
   out.text(Label("bins",
-                 "how the states are made: of Table III's bins, of bins from a pilot, of the "
-                 "scene's table [bins], of leaves of trees, or imported with the chain")
+                 "origin of the states: bins of the paper's Table III, of a pilot (auto), of the "
+                 "scene; tree leaves; import")
                .one_of({"paper", "auto", "scene", "tree", "imported"}),
            s.kind);
   out.optional(bins.factor.has_value(), [&](Fields& f) {
-    f.number({"factor", "1", "bins per axis as a multiple of Table III's"},
+    f.number({"factor", "1", "bins per axis as a multiple of those in the paper's Table III"},
              bins.factor.value_or(1.0));
   });
   if (!recorded) put_states(out);
   out.optional(s.bins || (s.trees && !recorded), [&](Fields& f) {
-    f.text(Label("outermost_bins", "whether they take all entries that lie beyond them")
+    f.text(Label("outermost_bins",
+                 "open: outermost bins take all entries beyond them; closed: these lie outside and "
+                 "count in the nearest bin")
                .one_of({"open", "closed"}),
            s.are_open ? "open" : "closed");
   });
   out.optional(s.bins.has_value(), [&](Fields& f) {
-    f.text(Label("row_starts", "where the runs of a bin start: anywhere in it, or as bodies enter")
+    f.text(Label("row_starts",
+                 "where the runs of a row start: anywhere in its bin, or where bodies were seen to "
+                 "enter")
                .one_of({"uniform", "visited"}),
            bins.rows_without_entries ? "visited" : "uniform");
     f.optional(bins.rows_without_entries.has_value(), [&](Fields& rows) {
-      rows.count({"rows_without_entries", "1", "bins that no body was seen to enter"},
-                 bins.rows_without_entries.value_or(0));
+      rows.count(
+          {"rows_without_entries", "1",
+           "number of bins that no body was seen to enter; their runs start anywhere in the bin"},
+          bins.rows_without_entries.value_or(0));
     });
   });
   out.optional(s.trees.has_value(), [&](Fields& f) {
-    f.count({"entries_per_leaf", "1", "entries that a leaf has at least"}, trees.entries_per_leaf);
-    f.count({"gate_runs", "1", "gate runs, or recorded passages, behind the chain"},
+    f.count({"entries_per_leaf", "1", "smallest number of entries in a leaf"},
+            trees.entries_per_leaf);
+    f.count({"gate_runs", "1",
+             "number of gate runs, or recorded passages, from which the chain is made"},
             trees.gate_runs);
     f.optional(trees.accuracy.has_value(), [&](Fields& asked) {
-      asked.number({"accuracy", "1",
-                    "total variation that was asked for (of a matrix for any start: half of it is "
-                    "the chain's)"},
-                   trees.accuracy.value_or(0.0));
+      asked.number(
+          {"accuracy", "1",
+           "error_95 that was asked for; a chain for a range of starts is made for half of it"},
+          trees.accuracy.value_or(0.0));
     });
   });
   out.optional(s.bins || s.trees, [&](Fields& f) {
-    f.list({"starts_of_their_own", "starts that are states of their own"}, s.starts,
+    f.list({"starts_of_their_own", "starts that have a state of their own"}, s.starts,
            [&](Fields& start, const Entry& entry) { describe_start(start, s.section, entry); });
   });
   out.optional(s.bins.has_value(), [&](Fields& f) { describe(f, bins); });
   out.optional(s.trees.has_value(), [&](Fields& f) {
     f.optional(trees.error_95.has_value(), [&](Fields& errors) {
       errors.numbers({"error_95", "1",
-                      "by start: total variation of all shares, 95 %; null where nothing can be "
-                      "told"},
+                      "by start: total variation of the final gates that 95 of 100 answers do not "
+                      "exceed; null: not known"},
                      trees.error_95.value_or(std::vector<double>()));
     });
-    f.maybe({"range", "starts that the chain is good for; null: for starts of its own"},
-            trees.range,
-            [&](Fields& range, const lattice::PooledRange& r) { describe(range, r, s.section); });
+    f.maybe(
+        {"range",
+         "range of starts for which the chain is made; null: it is made for starts_of_their_own"},
+        trees.range,
+        [&](Fields& range, const lattice::PooledRange& r) { describe(range, r, s.section); });
     f.number({"states_bias", "1",
-              "total variation of the final gates that a limit of states makes; 0 without one"},
+              "total variation of the final gates that a limit of states causes; 0: no limit"},
              trees.states_bias);
     f.optional(trees.own_trials.has_value(), [&](Fields& own) {
       describe_own_trials(own, trees.own_trials.value_or(std::nullopt));
@@ -318,8 +340,9 @@ void describe(Fields& out, const StateRecord& s) {
   });
   if (recorded) put_states(out);
   out.optional(s.are_probabilities, [&](Fields& f) {
-    f.flag({"probabilities", "the imported chain is made of probabilities, without counts"},
-           s.are_probabilities);
+    f.flag(
+        {"probabilities", "whether the imported chain consists of probabilities, without counts"},
+        s.are_probabilities);
   });
 }
 

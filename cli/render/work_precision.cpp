@@ -75,58 +75,74 @@ std::string csv_of(const ChartPoint& p, const WorkPrecision& chart) {
 void describe(Fields& out, const WeakError& e, double limit) {
   const Shown tv = shown(e.total_variation, limit);
   out.number({"total_variation", "1",
-              "total variation from the reference; null where there is none or it is below"},
+              "total variation from the other setting's trials; null: less than below, or nothing "
+              "to compare"},
              tv.value);
-  out.number({"standard_error", "1", "standard error of this total variation"},
+  out.number({"standard_error", "1", "standard error of total_variation; null: as total_variation"},
              tv.below ? kUnknown : e.standard_error);
-  out.number({"chance", "1", "total variation that chance alone would show"}, e.chance);
-  out.count({"trials_changed", "1", "trials that ended otherwise than by the reference"},
-            e.changed);
+  out.number(
+      {"chance", "1", "total variation that the trials that changed would show by chance alone"},
+      e.chance);
+  out.count(
+      {"trials_changed", "1", "number of trials that end otherwise than with the other setting"},
+      e.changed);
   out.optional(tv.below, [&](Fields& f) {
-    f.number({"below", "1", "the least total variation that can be told from none"}, limit);
+    f.number({"below", "1", "smallest total variation that could be shown; the one seen is less"},
+             limit);
   });
 }
 
 void describe(Fields& out, const StrongError& e, const WorkPrecision& chart, bool of_reference) {
-  out.count({"compared", "1", "trials that took the same course in both runs"}, e.compared);
-  out.count({"parted", "1", "trials that took another course: they count as infinitely far"},
+  out.count(
+      {"compared", "1", "pairs of trials that left the gate in the same way with both settings"},
+      e.compared);
+  out.count({"parted", "1",
+             "pairs of trials that took different courses: they count as infinitely far apart"},
             e.parted);
-  out.number({"parted_share", "1", "share of these among the trials that left the gate"},
-             e.parted_share());
-  out.count({"trapped_in_both", "1", "trials without an exit in both runs"}, e.trapped);
+  out.number({"parted_share", "1", "parted / (compared + parted)"}, e.parted_share());
+  out.count({"trapped_in_both", "1",
+             "pairs of trials that were trapped with both settings, with no exit to compare"},
+            e.trapped);
   const auto median = [&](const Field& of, double value, double limit) {
     const Shown m = shown(value, of_reference ? 0.0 : limit);
     out.object(Label(of.key, of.meaning), [&](Fields& f) {
       f.number_or_object(
-          {"median", of.unit, "median over the trials that left the gate; null: half have parted"},
+          {"median", of.unit,
+           "median over compared and parted pairs; null: half or more have parted"},
           m.below ? std::nullopt : std::optional(m.value), [&](Fields& below) {
-            below.number({"below", of.unit, "the least median that can be told from none"}, limit);
+            below.number(
+                {"below", of.unit, "smallest median that could be shown; the one seen is less"},
+                limit);
           });
     });
   };
-  median({"position_m", "m", "distance at the exit"}, e.position, chart.position_limit());
-  median({"velocity_m_per_s", "m/s", "difference of velocities at the exit"}, e.velocity,
-         chart.strong_limit(&StrongError::velocity));
-  median({"time_s", "s", "difference of times at the exit"}, e.time,
+  median({"position_m", "m", "distance between the two bodies at their exits"}, e.position,
+         chart.position_limit());
+  median({"velocity_m_per_s", "m/s", "difference of the two bodies' velocities at their exits"},
+         e.velocity, chart.strong_limit(&StrongError::velocity));
+  median({"time_s", "s", "difference of the two bodies' times at their exits"}, e.time,
          chart.strong_limit(&StrongError::time));
-  median({"energy_J", "J", "difference of kinetic energies at the exit"}, e.energy,
-         chart.strong_limit(&StrongError::energy));
+  median({"energy_J", "J", "difference of the two bodies' kinetic energies at their exits"},
+         e.energy, chart.strong_limit(&StrongError::energy));
 }
 
 /// What the reference shows of itself is given in full.
 void describe(Fields& out, const Errors& e, const WorkPrecision& chart, bool of_reference) {
-  out.object(Label("errors", "how far trials are from others under the same noise").shared(),
-             [&](Fields& f) {
-               f.object({"outcomes", "of the outcomes of trials"}, [&](Fields& weak) {
-                 describe(weak, e.outcomes, of_reference ? 0.0 : chart.outcome_bound(e));
-               });
-               f.object({"columns", "of the states in which trials enter the next gate"},
-                        [&](Fields& weak) {
-                          describe(weak, e.columns, of_reference ? 0.0 : chart.column_bound(e));
-                        });
-               f.object({"strong", "of single trials, one by one"},
-                        [&](Fields& strong) { describe(strong, e.strong, chart, of_reference); });
-             });
+  out.object(
+      Label("errors", "differences between trials of two settings with the same random numbers")
+          .shared(),
+      [&](Fields& f) {
+        f.object({"outcomes", "difference of the distributions of outcomes"}, [&](Fields& weak) {
+          describe(weak, e.outcomes, of_reference ? 0.0 : chart.outcome_bound(e));
+        });
+        f.object({"columns",
+                  "difference of the distributions of states in which the next gate is entered"},
+                 [&](Fields& weak) {
+                   describe(weak, e.columns, of_reference ? 0.0 : chart.column_bound(e));
+                 });
+        f.object({"strong", "differences of single trials, pair by pair"},
+                 [&](Fields& strong) { describe(strong, e.strong, chart, of_reference); });
+      });
 }
 
 Label status_label(std::string_view meaning) {
@@ -136,51 +152,57 @@ Label status_label(std::string_view meaning) {
 
 void describe_reference(Fields& out, const WorkPrecision& chart) {
   const dynamics::Reference& r = chart.reference;
-  out.text({"setting", "method and its accuracy"}, r.setting.name());
+  out.text({"setting", "method and accuracy of the reference"}, r.setting.name());
   out.text(status_label("ok, or the worst fault that its runs showed"),
            dynamics::name_of(r.verdict));
-  out.number({"evaluations_per_trial", "1", "evaluations of the forces, mean over trials"},
+  out.number({"evaluations_per_trial", "1", "mean number of evaluations of the forces per trial"},
              r.evaluations_per_trial);
-  out.object({"outcomes", "how its trials ended"}, [&](Fields& f) {
+  out.object({"outcomes", "number of the reference's trials by outcome"}, [&](Fields& f) {
     for (const auto& [outcome, key, words] : dynamics::kOutcomeNames)
       if (outcome != Outcome::traversed_even)  // those that are even count as right (accuracy.h)
-        f.count({key, "1", fmt::format("trials that ended so: {}", words)}, r[outcome]);
+        f.count({key, "1", fmt::format("number of trials with this outcome: {}", words)},
+                r[outcome]);
   });
   const auto against = [&](const Label& label, const dynamics::Setting& other, const Errors& e) {
     out.object(label, [&](Fields& f) {
-      f.text({"against", "method and accuracy that the reference is held against"}, other.name());
+      f.text({"against", "method and accuracy with which the reference is compared"}, other.name());
       describe(f, e, chart, true);
     });
   };
-  against({"own_error", "the reference against the same method, ten times coarser"}, r.second,
-          r.own);
-  against({"another_method", "the reference against another method"}, r.other_method, r.other);
+  against({"own_error",
+           "differences of the reference from the same method with ten times coarser accuracy"},
+          r.second, r.own);
+  against({"another_method", "differences of the reference from another method"}, r.other_method,
+          r.other);
 }
 
 void describe(Fields& out, const ChartPoint& p, const WorkPrecision& chart) {
-  out.text({"method", "run.method"}, p.setting.method);
-  out.text({"key", "the key of the scene that sets how exact the method is"}, p.setting.key);
-  out.number({"value", "its own", "value of this key"}, p.setting.value);
-  out.flag({"default", "whether a scene has this value if it says nothing"}, p.setting.usual);
+  out.text({"method", "method of the setting, as in run.method"}, p.setting.method);
+  out.text({"key", "key of the scene that sets how exact the method is"}, p.setting.key);
+  out.number({"value", "s or m", "value of this key, in the unit that ends the key's name"},
+             p.setting.value);
+  out.flag({"default", "whether this value is the default of the method"}, p.setting.usual);
   out.text(status_label("ok, or the worst fault that its runs showed"),
            dynamics::name_of(p.verdict));
   const auto ran = [&](Fields& f) {
-    f.object({"microseconds_per_trial", "time of a trial on one thread"}, [&](Fields& time) {
-      time.number({"min", "us", "least of the rounds"}, p.least_microseconds());
-      time.number({"median", "us", "median of the rounds"}, p.median_microseconds());
-      time.numbers({"rounds", "us", "mean of each round"}, p.microseconds);
-    });
-    f.number({"steps_per_trial", "1", "time steps, mean over trials"}, p.steps_per_trial());
-    f.number({"evaluations_per_trial", "1", "evaluations of the forces, mean over trials"},
+    f.object(
+        {"microseconds_per_trial", "computing time of a trial on one thread"}, [&](Fields& time) {
+          time.number({"min", "us", "smallest of the rounds' means"}, p.least_microseconds());
+          time.number({"median", "us", "median of the rounds' means"}, p.median_microseconds());
+          time.numbers({"rounds", "us", "mean time of a trial in each round"}, p.microseconds);
+        });
+    f.number({"steps_per_trial", "1", "mean number of time steps per trial"}, p.steps_per_trial());
+    f.number({"evaluations_per_trial", "1", "mean number of evaluations of the forces per trial"},
              p.evaluations_per_trial());
-    f.count({"runs_cut_short", "1", "trials that took more work than they were granted"},
+    f.count({"runs_cut_short", "1",
+             "number of trials stopped because they took over 50 million steps or evaluations"},
             p.out_of_work);
     describe(f, p.errors, chart, false);
-    f.object({"health", "numerical faults of its trials"},
+    f.object({"health", "numerical faults of the setting's trials"},
              [&](Fields& health) { cli::describe(health, p.health); });
   };
   out.either(p.ran(), ran, [&](Fields& f) {
-    f.text({"reason", "why the method refuses the scene with this value"}, p.refusal);
+    f.text({"reason", "why the method refuses this scene with this value"}, p.refusal);
   });
 }
 
@@ -248,19 +270,20 @@ std::string reference_text(const WorkPrecision& chart) {
 }  // namespace
 
 void describe(Fields& out, const WorkPrecision& chart) {
-  out.text({"scene", "what the scene is called"}, chart.label);
-  out.count({"trials", "1", "trials of each setting"}, chart.trials);
-  out.count({"timed_trials", "1", "those that were timed; of settings that take long, fewer are"},
+  out.text({"scene", "name of the scene"}, chart.label);
+  out.count({"trials", "1", "number of trials with each setting"}, chart.trials);
+  out.count({"timed_trials", "1",
+             "number of trials with each setting that were timed; with slow settings fewer"},
             chart.timed_trials);
   out.object({"reference", "the setting that all others are compared with"},
              [&](Fields& f) { describe_reference(f, chart); });
-  out.list({"settings", "method by method, from coarse to fine"}, chart.points,
-           [&](Fields& f, const ChartPoint& p) { describe(f, p, chart); });
+  out.list({"settings", "the charted settings, method by method, from coarse to fine"},
+           chart.points, [&](Fields& f, const ChartPoint& p) { describe(f, p, chart); });
 }
 
 void describe(Fields& out, const ChartResult& result) {
-  out.text({"machine", "the processor on which times were taken"}, machine());
-  out.list_of({"scenes", "one for each scene"}, result.charts.size(),
+  out.text({"machine", "processor on which times were taken"}, machine());
+  out.list_of({"scenes", "results of each scene"}, result.charts.size(),
               [&](Fields& f, std::size_t s) {
                 describe(f, result.charts[s]);
                 describe_made_by(f, result.made_by[s]);

@@ -64,7 +64,7 @@ struct HealthNumber {
 };
 /// All of them, in the order of files. Counts add, of the others the largest stays.
 inline constexpr std::array<HealthNumber, 16> kHealthNumbers{{
-    {"runs", "1", "gate runs", &Health::runs},
+    {"runs", "1", "number of gate runs", &Health::runs},
     {"runs_penetrating_over_1_percent", "1",
      "gate runs in which the body sank into a beam by more than 1 % of its radius",
      &Health::penetrating},
@@ -73,8 +73,8 @@ inline constexpr std::array<HealthNumber, 16> kHealthNumbers{{
     {"runs_too_fast_for_the_step", "1",
      "gate runs in which body or beam moved over half a radius in one step", &Health::fast},
     {"runs_beyond_the_stability_bound", "1",
-     "gate runs whose step is longer than the method is stable for", &Health::unstable},
-    {"runs_not_finite", "1", "gate runs that stopped being finite numbers", &Health::broken},
+     "gate runs with steps longer than the method's bound of stability", &Health::unstable},
+    {"runs_not_finite", "1", "gate runs whose state stopped being finite numbers", &Health::broken},
     {"contacts_without_a_formula", "1",
      "steps that overlapped a joint, for which the method has no formula",
      &Health::undefined_contacts},
@@ -82,16 +82,17 @@ inline constexpr std::array<HealthNumber, 16> kHealthNumbers{{
      &Health::forced_holds},
     {"worst_penetration_m", "m", "deepest overlap of body and beam", nullptr,
      &Health::worst_penetration},
-    {"worst_energy_created_J", "J", "most energy that appeared from nothing in a gate run", nullptr,
-     &Health::worst_energy_created},
+    {"worst_energy_created_J", "J", "largest energy that appeared from nothing in a gate run",
+     nullptr, &Health::worst_energy_created},
     {"worst_speed_m_per_s", "m/s", "highest speed of the body", nullptr, &Health::worst_speed},
-    {"steps", "1", "time steps of all gate runs", &Health::steps},
-    {"evaluations", "1", "evaluations of the forces", &Health::evaluations},
-    {"impacts", "1", "impacts of body and beams", &Health::impacts},
+    {"steps", "1", "number of time steps of all gate runs", &Health::steps},
+    {"evaluations", "1", "number of evaluations of the forces in all gate runs",
+     &Health::evaluations},
+    {"impacts", "1", "number of impacts of body and beams in all gate runs", &Health::impacts},
     {"trials_checked", "1", "trials that were run again by a better method",
      &Health::checked_trials, nullptr, true},
     {"outcome_error_seen", "1",
-     "total variation between their outcomes by both methods that chance does not explain", nullptr,
+     "total variation of outcomes between both methods, less two standard errors", nullptr,
      &Health::outcome_error, true},
 }};
 
