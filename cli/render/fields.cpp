@@ -3,13 +3,12 @@
 
 namespace gatewalk::cli {
 
-void Fields::limits_of(const Field& f, const std::optional<Interval>& limits,
-                       std::string_view bar) {
+void Fields::limits_of(const Field& f, const std::optional<Interval>& limits, std::string_view bar,
+                       std::string_view what) {
   const auto behind = [](std::string_view name) {
     return name.empty() ? std::string() : std::string(name) + "_95";
   };
-  const std::string meaning =
-      "95 % interval of " + std::string(f.varies.empty() ? f.key : f.varies);
+  const std::string meaning = std::string(what) + std::string(f.varies.empty() ? f.key : f.varies);
   if (!intervals_.empty()) {
     intervals_.back().push_back(
         {std::string(f.key), std::string(f.unit), meaning, std::string(f.varies), limits});

@@ -213,7 +213,7 @@ class Fields {
   void counted(const Field& f, T n, const std::optional<Interval>& share,
                std::string_view bar = {}) {
     leaf(f, ValueKind::count, false, whole(n));
-    limits_of(f, share, bar);
+    limits_of(f, share, bar, "95 % interval of the share of ");
   }
 
   template <class Describe>
@@ -354,7 +354,8 @@ class Fields {
     else
       return static_cast<std::int64_t>(n);
   }
-  void limits_of(const Field& f, const std::optional<Interval>& limits, std::string_view bar);
+  void limits_of(const Field& f, const std::optional<Interval>& limits, std::string_view bar,
+                 std::string_view what = "95 % interval of ");
   void put_intervals(const Label& l, const Description& more);
 
   std::vector<std::vector<Limits>> intervals_;  // those that are still to be put, innermost last

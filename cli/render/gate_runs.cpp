@@ -15,15 +15,17 @@ namespace gatewalk::cli {
 using dynamics::Outcome;
 
 void describe(Fields& out, const dynamics::GateTally& tally, const Description& more) {
-  out.count({"trials", "1", "runs of the gate"}, tally.trials);
+  out.count({"trials", "1", "number of runs of the gate"}, tally.trials);
   const auto all = [&](Fields& f) {
     const auto counted = [&](const Field& field, std::int64_t n) {
       f.counted(field, n, dynamics::share_interval(n, tally.trials));
     };
-    counted({"traversed", "1", "runs in which the body came through, over either beam"},
+    counted({"traversed", "1",
+             "runs in which the body got through the gate: left, right, even is the beam deflected "
+             "more"},
             tally.traversed());
     for (const auto& [outcome, key, words] : dynamics::kOutcomeNames) {
-      const std::string meaning = "runs that ended so: " + std::string(words);
+      const std::string meaning = "number of runs with this outcome: " + std::string(words);
       const Field field(key, "1", meaning);
       if (outcome != Outcome::traversed_even && outcome != Outcome::broken)
         counted(field, tally[outcome]);
@@ -31,7 +33,7 @@ void describe(Fields& out, const dynamics::GateTally& tally, const Description& 
         f.count(field, tally[outcome]);
     }
   };
-  out.with_intervals_in({"intervals_95", "95 % intervals of the shares"}, all, more);
+  out.with_intervals_in({"intervals_95", "95 % intervals of the shares of all runs"}, all, more);
 }
 
 void describe(Fields& out, const GateResult& result) {
