@@ -21,7 +21,9 @@ std::string setting_text(const dynamics::RunParams& run) {
 /// What was tried: a method with the value of the key that sets its accuracy.
 void describe_setting(Fields& out, const dynamics::Setting& setting, dynamics::Verdict verdict) {
   out.text({"method", "method of the setting, as in run.method"}, setting.method);
-  out.text({"key", "key of the scene that sets how exact the method is"}, setting.key);
+  out.text(Label("key", "key of the scene that sets how exact the method is")
+               .one_of({"run.step_s", "run.event_tolerance_m"}),
+           setting.key);
   out.number({"value", "s or m", "value of this key, in the unit that ends the key's name"},
              setting.value);
   out.text(Label("verdict", "ok, or the worst fault that runs with this setting showed")

@@ -135,7 +135,8 @@ std::string text_of(const Json& json, int indent) {
 }
 
 void describe_version(Fields& out) {
-  out.count(Field("format_version", "1", "changes when a key goes or changes its meaning")
+  out.count(Field("format_version", "1",
+                  "version of the format: it changes when a key goes or changes its meaning")
                 .at_least(kFormatVersion)
                 .at_most(kFormatVersion),
             kFormatVersion);

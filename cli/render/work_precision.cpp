@@ -178,7 +178,9 @@ void describe_reference(Fields& out, const WorkPrecision& chart) {
 
 void describe(Fields& out, const ChartPoint& p, const WorkPrecision& chart) {
   out.text({"method", "method of the setting, as in run.method"}, p.setting.method);
-  out.text({"key", "key of the scene that sets how exact the method is"}, p.setting.key);
+  out.text(Label("key", "key of the scene that sets how exact the method is")
+               .one_of({"run.step_s", "run.event_tolerance_m"}),
+           p.setting.key);
   out.number({"value", "s or m", "value of this key, in the unit that ends the key's name"},
              p.setting.value);
   out.flag({"default", "whether this value is the default of the method"}, p.setting.usual);
