@@ -134,8 +134,8 @@ void describe(Fields& out, const DesignedScene& d) {
         chain.list({"optima", "maps at which searches ended, the best first"}, all.optima,
                    [&](Fields& map, const markov::FieldDesign& optimum) {
                      map.number({"crossed", "1",
-                                 "chance to cross this map by the chain, too good: searches "
-                                 "exploit the chain's sampling error"},
+                                 "chance to cross this map by the chain, biased to the aim: "
+                                 "searches exploit the chain's sampling error"},
                                 optimum.gain);
                      map.count({"searches", "1", "number of searches that ended at this map"},
                                optimum.searches);
