@@ -42,7 +42,7 @@ std::string verdict(const FoundStart& f) {
 }
 
 void describe_column(Fields& out, const FoundStart& f, int column) {
-  out.count({"i_x", "1", "the column, counted from that of the field's start"},
+  out.count({"i_x", "1", "column of gates in which bodies enter; 0: the field's start column"},
             column - f.shown.field.start_column());
 }
 
@@ -52,7 +52,9 @@ void describe_map(Fields& out, const FoundStart& f, int column) {
   describe_column(out, f, column);
   const auto middles = [&](std::size_t range, const std::vector<double>& numbers) {
     const dynamics::Coordinate& c = f.shown.map.section.coordinates[f.ranges[range].coordinate];
-    out.numbers(Field(c.key, "its own", "numbers of the start at which its chance is given")
+    out.numbers(Field(c.key, "its own",
+                      "values of the coordinate for which the grid gives the chance; the key names "
+                      "their unit")
                     .varying("<coordinate>"),
                 numbers);
   };
@@ -60,10 +62,10 @@ void describe_map(Fields& out, const FoundStart& f, int column) {
   if (f.ranges.size() > 1) middles(1, map.up);
   const markov::CellProbabilities chance = Eigen::Map<const markov::CellProbabilities>(
       map.chance.data(), std::ssize(map.up), std::ssize(map.across));
-  out.grid({"chance", "1",
-            "chance to cross by the chain: columns by the first range, rows by the second, if "
-            "there is one; other numbers are those of the best start"},
-           chance);
+  out.grid(
+      {"chance", "1",
+       "chance to cross by the chain: columns by the first range, rows by the second if given"},
+      chance);
 }
 
 }  // namespace
@@ -97,22 +99,28 @@ void describe(Fields& out, const FoundStart& f) {
     describe(start, section, found.best.entry);
     describe_column(start, f, found.best.column);
   });
-  out.flag({"is_own", "whether no start was better than the own one by more than a standard error"},
+  out.flag({"is_own",
+            "whether the scene's own start is kept: none was better by more than a standard error"},
            found.own);
   out.object({"own", "the start of the scene, or of --start"}, [&](Fields& own) {
-    describe_start(own, {"start", "where it is"}, section, f.own);
-    describe_crossed(own, "share of trials from it that crossed", found.crossings_of_own);
+    describe_start(own, {"start", "entry of the body into the field"}, section, f.own);
+    describe_crossed(own, "share of trials from this start that crossed", found.crossings_of_own);
   });
-  describe_gain(out, "of the best start over the own one, of new trials of both", found.gain);
-  out.object({"ranges", "where bodies may start, by the keys of start"}, [&](Fields& ranges) {
-    for (const lattice::CoordinateRange& range : f.ranges) {
-      const dynamics::Coordinate& c = section.coordinates[range.coordinate];
-      ranges.numbers(Field(c.key, "its own", "from and to").varying("<coordinate>"),
-                     {range.low, range.high});
-    }
-  });
-  out.list({"starts", "by column: the chance to cross by start"}, f.columns,
-           [&](Fields& map, int column) { describe_map(map, f, column); });
+  describe_gain(out,
+                "share crossed from the best start less that from the own start, in new trials",
+                found.gain);
+  out.object(
+      {"ranges", "the ranges that were searched, by the keys of start"}, [&](Fields& ranges) {
+        for (const lattice::CoordinateRange& range : f.ranges) {
+          const dynamics::Coordinate& c = section.coordinates[range.coordinate];
+          ranges.numbers(Field(c.key, "its own",
+                               "lowest and highest value that was searched; the key names the unit")
+                             .varying("<coordinate>"),
+                         {range.low, range.high});
+        }
+      });
+  out.list({"starts", "chance to cross by start, a map for each column that was searched"},
+           f.columns, [&](Fields& map, int column) { describe_map(map, f, column); });
   describe_search(out, found, f.seconds);
   describe_method(out, f.method);
   describe_made_by(out, f.made_by);

@@ -134,39 +134,48 @@ TextRows action_rows(const PlannedField& p, const markov::Decisions& d) {
 }
 
 void describe_action(Fields& out, const PlannedField& p, std::size_t a) {
-  out.text({"name", "of the action"}, p.actions[a]);
-  describe_crossed(out, "share of trials that crossed with this action all the time",
+  out.text({"name", "name of the action"}, p.actions[a]);
+  describe_crossed(out, "share of trials that crossed when bodies took this action all the time",
                    p.plan.alone[a]);
-  describe_gain(out, "of the plan over this action all the time, under the same noise",
-                p.plan.gains[a]);
-  out.grid({"taken", "1", "how often the plan takes it in each gate, per trial"}, usage_of(p, a));
+  describe_gain(
+      out, "share crossed by the plan less that of this action all the time, under the same noise",
+      p.plan.gains[a]);
+  out.grid({"taken", "1",
+            "mean number of times that a trial of the plan takes this action in each gate"},
+           usage_of(p, a));
   describe_method(out, p.methods[a]);
 }
 
 void describe_front(Fields& out, const PlannedField& p) {
   const dynamics::CostInfo& cost = cost_of(p);
-  out.text({"least", "the cost of which the policies of front take less"}, cost.key);
+  out.text({"least", "key of the cost that the policies of front save"}, cost.key);
   out.list_of(
-      {"front", "policies from the plan's own to that which takes least for each crossing"},
+      {"front",
+       "policies from the plan to the one that costs least for each crossing, by rising price"},
       p.plan.front.size(), [&](Fields& policy, std::size_t i) {
         const auto& [price, does, crossings, spent] = p.plan.front[i];
-        policy.number({"price", "its own", "chance to cross that a unit of the cost was worth"},
+        policy.number({"price", "1 / unit of least",
+                       "the policy maximises P(cross) - price x cost; per unit of the cost in "
+                       "least; 0: the plan"},
                       price);
         describe_crossed(policy, "share of trials that crossed under this policy", crossings);
         policy.estimate(
-            {"mean", cost.unit, "what a trial takes, however it ends"}, spent.mean,
+            {"mean", "its own",
+             "mean cost of a trial, however the trial ends; unit: that of the cost in least"},
+            spent.mean,
             std::isfinite(spent.mean_95[0]) ? std::optional(spent.mean_95) : std::nullopt);
-        policy.estimate({"per_crossing", cost.unit,
-                         "what all trials take for each that crosses; null: none crossed"},
-                        spent.per_crossing, spent.per_crossing_95);
-        policy.flag({"chosen",
-                     "whether it takes least of those that cross as often as --chance "
-                     "asks"},
-                    cheapest(p) == i);
+        policy.estimate(
+            {"per_crossing", "its own",
+             "cost of all trials divided by the number that crossed; null: none crossed"},
+            spent.per_crossing, spent.per_crossing_95);
+        policy.flag(
+            {"chosen",
+             "whether it has the least mean of the policies whose crossed is at least --chance"},
+            cheapest(p) == i);
       });
   out.flag({"front_finished",
-            "whether nothing was found that takes less for each crossing than the last of front; "
-            "no: there were no more runs, or points"},
+            "whether the search for a lower per_crossing ended; no: the limit of runs or points "
+            "came first"},
            p.plan.front_finished);
 }
 
@@ -191,11 +200,12 @@ void describe_crossed(Fields& out, std::string_view meaning, const lattice::Cros
 }
 
 void describe_chance(Fields& out, const lattice::Crossings& c, double chain) {
-  describe_crossed(out, "share of new trials that crossed, none of which was used to choose", c);
-  out.count({"trials", "1", "new trials, as many of each action or start that is compared"},
+  describe_crossed(out, "share of new trials that crossed; the search did not use these trials", c);
+  out.count({"trials", "1",
+             "new trials of the result, and of each action or start that it is compared with"},
             c.trials);
   out.number({"chain", "1",
-              "the chance to cross by the chain that chose; null: one action all the time, or "
+              "chance to cross by the chain of the last search; null: one action all the time, or "
               "--robust"},
              chain);
 }
@@ -273,35 +283,32 @@ void describe(Fields& out, const PlannedField& p) {
   describe_chance(out, plan.crossings, plan.chain_says);
   out.optional(plan.worst_case.has_value(), [&](Fields& f) {
     f.number({"worst_case", "1",
-              "with --robust: what that chain says where the mean of each of its rows is 1.96 "
-              "standard errors worse than was counted (in symmetric gates 2.77); of one action all "
-              "the time, the chain of leaves of the middle size"},
+              "with --robust: chance to cross if each row is 1.96 standard errors worse (symmetric "
+              "gates: 2.77)"},
              plan.worst_case.value_or(kUnknown));
   });
-  out.text({"best_alone", "the action that crosses most often all the time"},
+  out.text({"best_alone", "the action that crosses most often when taken all the time"},
            p.actions[best_alone(plan)]);
-  out.list_of({"actions", "what a body may do"}, p.actions.size(),
+  out.list_of({"actions", "the actions that a body may take"}, p.actions.size(),
               [&](Fields& action, std::size_t a) { describe_action(action, p, a); });
-  out.text_rows({"most_taken",
-                 "the action that is taken most in each gate (null: nobody came), rows from the "
-                 "start's side on"},
-                most_taken_rows(p));
-  out.maybe({"by_gate",
-             "the best that was found of policies that know the gate alone, not the way in nor how "
-             "many gates were passed; null: no body crossed"},
+  out.text_rows(
+      {"most_taken",
+       "action that the plan takes most in each gate, from the start's row on; null: no body came"},
+      most_taken_rows(p));
+  out.maybe({"by_gate", "best policy found that chooses by the gate alone; null: no body crossed"},
             plan.by_cell, [&](Fields& gates, const lattice::Plan::ByCell& by_cell) {
               const auto& [policy, crossings, worth, searched] = by_cell;
-              describe_crossed(gates, "share of trials that crossed under it", crossings);
+              describe_crossed(gates, "share of trials that crossed under this policy", crossings);
               describe_gain(gates,
-                            "of the plan over it, under the same noise: what it is worth to know "
-                            "the way in, and how many gates were passed",
+                            "share crossed by the plan less that of this policy: worth of knowing "
+                            "entry and gates passed",
                             worth);
               gates.flag({"searched",
-                          "no: the field is so large that not all was tried, and there may be a "
-                          "better one"},
+                          "whether the search was complete; no: the field is too large, a better "
+                          "policy may exist"},
                          searched);
               gates.text_rows(
-                  {"action", "what it does in each gate, rows from the start's side on"},
+                  {"action", "action that this policy takes in each gate, from the start's row on"},
                   action_rows(p, policy.decisions));
             });
   out.optional(p.thrift.has_value(), [&](Fields& f) { describe_front(f, p); });

@@ -42,10 +42,13 @@ void describe_gain(Fields& out, std::string_view meaning, const lattice::Gain& g
 /// The keys "rounds" to "status" of a Plan, a BestStart or a DesignedField.
 template <class Found>
 void describe_search(Fields& out, const Found& found, double seconds) {
-  out.count({"rounds", "1", "rounds of trials and of choosing again"}, found.rounds);
-  out.flag({"settled", "whether the last round gained next to nothing"}, found.settled);
+  out.count({"rounds", "1", "rounds of the search: trials, then a new choice"}, found.rounds);
+  out.flag(
+      {"settled",
+       "whether the last round gained less than half the accuracy, or less than sampling noise"},
+      found.settled);
   out.count({"gate_runs", "1", "gate runs of all trials"}, found.gate_runs);
-  out.number({"seconds", "s", "time in all"}, seconds);
+  out.number({"seconds", "s", "wall-clock time of the command's work"}, seconds);
   describe_status(out, found.health);
 }
 
