@@ -58,13 +58,16 @@ std::string differences(const lattice::ObservedComparison& c, const Judgement& j
 
 void describe(Fields& out, const Judgement& j, const std::optional<lattice::Comparison>& gates) {
   describe(out, j);
-  out.object({"p_endings", "p of each ending by itself"}, [&](Fields& f) {
-    for (const EndingName& e : kEndingNames)
-      f.number({e.key, "1", fmt::format("of bodies that {}", meaning_of(e))},
-               j.endings[index_of(e)].p);
-  });
+  out.object(
+      {"p_endings", "p-value of the share of each ending, not corrected for testing several"},
+      [&](Fields& f) {
+        for (const EndingName& e : kEndingNames)
+          f.number(
+              {e.key, "1", fmt::format("p-value of the share of bodies that {}", meaning_of(e))},
+              j.endings[index_of(e)].p);
+      });
   out.optional(gates.has_value(), [&](Fields& f) {
-    f.object({"final_gates", "final gates as observed against the model's"},
+    f.object({"final_gates", "observed final gates compared with the model's"},
              [&](Fields& of) { describe(of, gates.value_or(lattice::Comparison())); });
   });
 }
@@ -72,25 +75,30 @@ void describe(Fields& out, const Judgement& j, const std::optional<lattice::Comp
 /// `c`: what such differences are looked for in.
 void describe(Fields& out, const lattice::LeastDifferences& least,
               const lattice::ObservedComparison& c) {
-  out.number({"power", "1", "how often experiments of so many trials show the difference"},
-             least.goal.power);
-  out.number({"level", "1", "how often experiments may find what is not there"}, least.goal.level);
+  out.number(
+      {"power", "1", "statistical power: share of such experiments that detect the difference"},
+      least.goal.power);
+  out.number({"level", "1", "level of significance: share of experiments with a false detection"},
+             least.goal.level);
   out.optional(c.seen.has_gates(), [&](Fields& f) {
     f.number({"final_gates_total_variation", "1",
-              "of the final gates, of the kind that is hardest to see; null: not even the largest"},
+              "total variation of the final gates, of the kind hardest to detect; null: none is "
+              "detected"},
              least.final_gates.value_or(kUnknown));
   });
   out.optional(c.seen.has_endings(), [&](Fields& f) {
-    f.number({"endings_total_variation", "1",
-              "of the endings, of the kind that is hardest to see; null: not even the largest"},
-             least.endings.value_or(kUnknown));
-    f.object({"endings_percentage_points", "of each ending that bodies may have"}, [&](Fields& of) {
-      for (const EndingName& e : kEndingNames)
-        of.optional(!c.endings.rules_out(e.ending), [&](Fields& there) {
-          there.object({e.key, fmt::format("of bodies that {}", meaning_of(e))},
-                       [&](Fields& d) { describe(d, least.by_ending[index_of(e)]); });
-        });
-    });
+    f.number(
+        {"endings_total_variation", "1",
+         "total variation of the endings, of the kind hardest to detect; null: none is detected"},
+        least.endings.value_or(kUnknown));
+    f.object({"endings_percentage_points", "smallest detected change of each possible ending"},
+             [&](Fields& of) {
+               for (const EndingName& e : kEndingNames)
+                 of.optional(!c.endings.rules_out(e.ending), [&](Fields& there) {
+                   there.object({e.key, fmt::format("bodies that {}", meaning_of(e))},
+                                [&](Fields& d) { describe(d, least.by_ending[index_of(e)]); });
+                 });
+             });
   });
 }
 
@@ -165,24 +173,29 @@ std::string verdict_of(const lattice::ObservedComparison& c, const lattice::Star
 
 void describe_observed(Fields& out, const lattice::ObservedComparison& c,
                        const lattice::StartValidation& v, const ObservedFiles& files) {
-  out.object({"observed", "counts of an experiment, held against dynamics and chain"}, [&](Fields&
-                                                                                               f) {
-    f.text({"verdict", "do the counts differ from the model, in what, how sure"}, verdict_of(c, v));
-    f.texts({"files", "the tables of counts"}, files.paths);
-    f.count({"trials", "1", "trials that were observed"}, c.seen.trials());
+  out.object({"observed", "counts of an experiment, compared with dynamics and chain"}, [&](Fields&
+                                                                                                f) {
+    f.text({"verdict",
+            "sentence: whether the counts differ from dynamics and chain, in what, and p-values"},
+           verdict_of(c, v));
+    f.texts({"files", "paths of the tables of counts"}, files.paths);
+    f.count({"trials", "1", "observed trials, without those in went_back"}, c.seen.trials());
     f.optional(c.seen.has_endings(),
                [&](Fields& seen) { describe_endings(seen, c.seen.endings, c.endings); });
     f.optional(c.seen.has_gates(), [&](Fields& seen) {
-      seen.grid({"final_gates", "1", "number of trials by the gate where they end"},
+      seen.grid({"final_gates", "1", "number of observed trials by the gate in which they end"},
                 c.seen.final_gates);
     });
-    f.object({"against_dynamics", "whether they differ from the full dynamics"},
+    f.object({"against_dynamics", "test of the counts against the full dynamics"},
              [&](Fields& of) { describe(of, c.against_dynamics, c.dynamics_gates); });
-    f.object({"against_chain", "whether they differ from the chain"},
+    f.object({"against_chain", "test of the counts against the chain"},
              [&](Fields& of) { describe(of, c.against_chain, c.chain_gates); });
-    f.object({"smallest_difference", "the least differences that so many trials show"},
+    f.object({"smallest_difference", "smallest differences that this number of trials detects"},
              [&](Fields& of) { describe(of, c.least, c); });
-    f.count({"went_back", "1", "trials that went back: they are left out"}, files.went_back);
+    f.count(
+        {"went_back", "1",
+         "observed trials that left by the side they came in by; the comparison leaves them out"},
+        files.went_back);
   });
 }
 

@@ -48,23 +48,24 @@ enum class Differs { ending, ending_of_groups, final_gates };
 
 void describe(Fields& out, const Effect& effect, const ExperimentOptions& options, Differs what) {
   if (what == Differs::final_gates)
-    out.number({"total_variation", "1", "between the final gates"}, effect.difference);
+    out.number({"total_variation", "1", "total variation of the final gates between the two"},
+               effect.difference);
   else
     out.number({"percentage_points", "%",
-                "difference of the ending's share, in percentage points, more or fewer"},
+                "difference of the ending's share, in percentage points (versus: other less this)"},
                100.0 * effect.difference);
-  out.count({"trials", "1",
-             "trials that each experiment needs to show the difference; null: over 100 000, or no "
-             "such difference"},
-            effect.trials);
+  out.count(
+      {"trials", "1",
+       "trials (of each experiment) that detect the difference; null: over 100 000, or impossible"},
+      effect.trials);
   if (what != Differs::final_gates)
     out.count({"trials_if_all_are_looked_at", "1",
-               "trials that each experiment needs if all endings are looked at; null: as trials"},
+               "trials that detect the difference when all endings are tested; null as for trials"},
               effect.trials_of_all);
   out.optional(options.trials.has_value(), [&](Fields& f) {
     f.number(
         {"power", "1",
-         "probability that the planned number of trials shows the difference, looked at alone"},
+         "share of experiments of the planned trials that detect the difference; null: impossible"},
         effect.power.value_or(kUnknown));
   });
   if (what != Differs::ending_of_groups)
@@ -90,7 +91,7 @@ void by_ending(Fields& out, const Label& label, const std::vector<std::size_t>& 
 template <std::size_t n>
 void describe_plans(Fields& out, const PowerResult& p, std::array<Effect, n> EndingPlan::*effects,
                     Differs what) {
-  by_ending(out, {"endings", "differences of each ending"}, looked_at(p),
+  by_ending(out, {"endings", "a list for each ending, by size of the difference"}, looked_at(p),
             what == Differs::ending ? "differences" : "differences_of_groups",
             [&](Fields& f, const Label& ending, std::size_t e) {
               f.list(ending, p.plan.endings[e].*effects, [&](Fields& item, const Effect& effect) {
@@ -106,30 +107,33 @@ void describe_smallest(Fields& out, const PowerResult& p) {
                 f.object(ending, [&](Fields& d) { describe(d, p.plan.endings[e].*least); });
               });
   };
-  points({"endings_percentage_points", "of an ending that alone is looked at"}, &EndingPlan::least);
-  points({"endings_percentage_points_if_all_are_looked_at", "the same where all endings are"},
+  points({"endings_percentage_points", "smallest differences if only one ending is tested"},
+         &EndingPlan::least);
+  points({"endings_percentage_points_if_all_are_looked_at",
+          "smallest differences if all endings are tested"},
          &EndingPlan::least_of_all);
-  out.number({"final_gates_total_variation", "1", "of the final gates; null: none is found"},
+  out.number({"final_gates_total_variation", "1",
+              "smallest detected total variation of the final gates; null: none is detected"},
              p.plan.least_total_variation.value_or(kUnknown));
 }
 
 void describe(Fields& out, const PowerResult::Versus& versus, const PowerResult& p) {
-  out.texts({"set", "what --versus gives: keys of the other scene, or a matrix"}, versus.set);
+  out.texts({"set", "values of --versus: keys of the other scene, or a matrix"}, versus.set);
   describe(out, versus.prediction);
-  out.object({"apart", "what tells the two apart"}, [&](Fields& apart) {
-    by_ending(apart, {"endings", "by each ending"},
+  out.object({"apart", "trials that tell the two predictions apart"}, [&](Fields& apart) {
+    by_ending(apart, {"endings", "trials that tell them apart by one ending"},
               lattice::endings_to_look_at(p.prediction, versus.prediction), "difference",
               [&](Fields& f, const Label& ending, std::size_t e) {
                 f.object(ending, [&](Fields& effect) {
                   describe(effect, versus.apart.endings[e], p.options, Differs::ending);
                 });
               });
-    apart.object({"final_gates", "by the final gates"}, [&](Fields& f) {
+    apart.object({"final_gates", "trials that tell them apart by the final gates"}, [&](Fields& f) {
       describe(f, versus.apart.final_gates, p.options, Differs::final_gates);
     });
   });
   out.optional(versus.scene.has_value(), [&](Fields& f) {
-    f.text({"scene", "the other scene, as TOML; not of another group's matrix"},
+    f.text({"scene", "the other scene, as TOML; absent for a matrix"},
            versus.scene ? lattice::to_toml(*versus.scene) : "");
   });
 }
@@ -390,11 +394,9 @@ void describe(Fields& out, const lattice::SmallestDifference& d) {
   const auto points = [&](const Field& field, const std::optional<double>& x) {
     out.number(field, x ? 100.0 * *x : kUnknown);
   };
-  points({"more", "%",
-          "smallest increase, in percentage points, that the planned trials show; null: none"},
+  points({"more", "%", "smallest detected increase, in percentage points; null: none is detected"},
          d.more);
-  points({"fewer", "%",
-          "smallest decrease, in percentage points, that the planned trials show; null: none"},
+  points({"fewer", "%", "smallest detected decrease, in percentage points; null: none is detected"},
          d.fewer);
 }
 
@@ -412,31 +414,35 @@ std::string text_of(const lattice::SmallestDifference& d) {
 void describe(Fields& out, const PowerResult& p) {
   describe(out, p.prediction);
   const auto sentences = summary_of(p);
-  out.texts({"summary", "what these trials show and what it takes, in two sentences"},
+  out.texts({"summary",
+             "two sentences: what the planned trials show, and how many trials a difference takes"},
             {sentences.begin(), sentences.end()});
-  out.number({"power", "1", "how often a difference is to be found"}, p.options.goal.power);
-  out.number({"level", "1", "how often one may be found where there is none"},
+  out.number(
+      {"power", "1", "statistical power: share of experiments that are to detect a difference"},
+      p.options.goal.power);
+  out.number({"level", "1", "level of significance: share of experiments with a false detection"},
              p.options.goal.level);
   out.optional(p.options.trials.has_value(), [&](Fields& f) {
-    f.count({"trials", "1", "trials that are planned, of each experiment"},
+    f.count({"trials", "1", "planned trials of each experiment, from --trials"},
             p.options.trials.value_or(0));
   });
-  out.object({"from_prediction", "one experiment against the prediction"}, [&](Fields& f) {
+  out.object({"from_prediction", "one experiment compared with the prediction"}, [&](Fields& f) {
     describe_plans(f, p, &EndingPlan::effects, Differs::ending);
-    f.list({"final_gates", "differences of the final gates, spread over all of them"},
+    f.list({"final_gates", "a total variation each, spread over all gates: the hardest to detect"},
            p.plan.final_gates, [&](Fields& item, const Effect& effect) {
              describe(item, effect, p.options, Differs::final_gates);
            });
   });
-  out.object({"two_groups", "two groups, one of which ends as predicted"}, [&](Fields& f) {
-    describe_plans(f, p, &EndingPlan::of_groups, Differs::ending_of_groups);
-  });
+  out.object(
+      {"two_groups", "two groups compared with each other; one of them ends as predicted"},
+      [&](Fields& f) { describe_plans(f, p, &EndingPlan::of_groups, Differs::ending_of_groups); });
   out.optional(p.options.trials.has_value(), [&](Fields& f) {
-    f.object({"smallest_difference", "the smallest difference that the trials planned show"},
+    f.object({"smallest_difference",
+              "smallest difference that the planned trials detect with this power"},
              [&](Fields& least) { describe_smallest(least, p); });
   });
   out.optional(p.versus.has_value(), [&](Fields& f) {
-    f.object({"versus", "the other scene or group, and what tells the two apart"},
+    f.object({"versus", "the other scene or group, and the trials that tell it from this one"},
              [&](Fields& other) { describe(other, p.versus.value_or(PowerResult::Versus()), p); });
   });
   describe_status(out, p.health);
