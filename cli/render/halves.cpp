@@ -32,64 +32,77 @@ std::vector<EndingName> shown_endings_of(const HalvesValidation& v) {
 
 void describe(Fields& out, const HalfAgainstHalf& way) {
   const lattice::SeenSoFar& so_far = way.seen_so_far;
-  out.count({"bodies", "1", "bodies of the half that is predicted"}, way.bodies);
-  out.count({"chain_bodies", "1", "bodies of the other half, of which the chain is made"},
+  out.count({"bodies", "1", "bodies of the half that the chain predicts"}, way.bodies);
+  out.count({"chain_bodies", "1", "bodies of the other half, whose runs make the chain"},
             way.chain_bodies);
   out.count({"states", "1", "states of the chain"}, way.states);
-  out.object({"trials", "how far the trials that are predicted were seen"}, [&](Fields& f) {
-    f.count({"compared", "1", "trials of which one passage is known at least"}, so_far.trials);
-    f.count({"seen_to_their_end", "1", "of these: seen until they end"}, so_far.to_end);
-    f.count({"unwatched", "1", "of these: seen until nobody looked"}, so_far.unwatched);
-    f.count({"lost", "1", "of these: seen until they were lost"}, so_far.lost);
+  out.object({"trials", "how far the predicted trials were watched"}, [&](Fields& f) {
+    f.count({"compared", "1", "trials with at least one known passage"}, so_far.trials);
+    f.count({"seen_to_their_end", "1", "compared trials that were watched until their end"},
+            so_far.to_end);
+    f.count({"unwatched", "1", "compared trials that were watched only for a time"},
+            so_far.unwatched);
+    f.count({"lost", "1", "compared trials in which the body was lost from sight"}, so_far.lost);
     f.count({"in_a_cell_of_another_type", "1",
-             "of these: seen until they were in a cell whose type is not the field's there"},
+             "compared trials watched until they entered a cell of another type than the field has "
+             "there"},
             so_far.other_type);
-    f.count({"left_out", "1", "trials of which no passage can be compared"}, so_far.left_out);
+    f.count({"left_out", "1", "trials without any passage that can be compared"}, so_far.left_out);
   });
-  out.object({"seen", "where these trials ended"}, [&](Fields& f) {
-    describe_endings(f, way.seen);
-    f.grid({"final_gates", "1", "share of trials by the gate where they end"}, way.seen_gates);
-  });
-  out.object({"chain", "where they end by the chain, from the same starts"}, [&](Fields& f) {
-    describe_endings(f, way.chain_endings);
-    const FieldEnds<markov::CellProbabilities> ends = ends_of(way.chain, way.chain_endings);
-    ends.describe_never_sampled(f);
-    ends.describe_still_walking(f);
-    f.number({"error_95", "1",
-              "total variation of the final gates from the truth: 95 of 100 answers have no more"},
-             way.chain_error.total_variation);
-    f.grid({"final_gates", "1", "share of trials by the gate where they end"},
-           way.chain.final_cells);
-  });
-  out.object({"final_gates", "final gates as seen against the chain"}, [&](Fields& f) {
-    f.object({"total_variation", "total variation of the two maps"},
+  out.object(
+      {"seen", "observed endings; the chain goes on where a trial was not watched to its end"},
+      [&](Fields& f) {
+        describe_endings(f, way.seen);
+        f.grid({"final_gates", "1", "share of all trials by the gate in which they end"},
+               way.seen_gates);
+      });
+  out.object(
+      {"chain", "endings by the chain of the other half, from the same starts"}, [&](Fields& f) {
+        describe_endings(f, way.chain_endings);
+        const FieldEnds<markov::CellProbabilities> ends = ends_of(way.chain, way.chain_endings);
+        ends.describe_never_sampled(f);
+        ends.describe_still_walking(f);
+        f.number({"error_95", "1",
+                  "95 % bound of the total variation between final_gates and the truth"},
+                 way.chain_error.total_variation);
+        f.grid({"final_gates", "1", "share of all trials by the gate in which they end"},
+               way.chain.final_cells);
+      });
+  out.object({"final_gates", "final gates as observed, compared with the chain's"}, [&](Fields& f) {
+    f.object({"total_variation", "total variation of the two maps of final gates"},
              [&](Fields& of) { describe(of, way.total_variation); });
-    f.number({"total_variation_chance", "1", "mean of what chance in the bodies makes of it"},
-             way.chance_total_variation);
-    f.number({"total_variation_chance_95", "1", "95 % of the draws of chance have no more"},
-             way.chance_total_variation_95);
-    f.number({"corrcoef", "1", "Pearson correlation of the two maps, over the gates"},
-             way.corrcoef);
-    f.number({"corrcoef_chance", "1", "mean of what chance in the bodies makes of it"},
-             way.chance_corrcoef);
-    f.number({"rmse_per_100", "trials per 100", "root mean squared difference, over the gates"},
-             way.rmse_per_100);
     f.number(
-        {"rmse_per_100_chance", "trials per 100", "mean of what chance in the bodies makes of it"},
-        way.chance_rmse_per_100);
+        {"total_variation_chance", "1", "mean total variation that chance in the bodies makes"},
+        way.chance_total_variation);
+    f.number({"total_variation_chance_95", "1",
+              "95 % of the total variations that chance makes are at most this"},
+             way.chance_total_variation_95);
+    f.number(
+        {"corrcoef", "1", "Pearson correlation of the two maps of final gates, over all gates"},
+        way.corrcoef);
+    f.number({"corrcoef_chance", "1", "mean correlation that chance in the bodies makes"},
+             way.chance_corrcoef);
+    f.number({"rmse_per_100", "trials per 100",
+              "root mean squared difference of the two maps of final gates, over all gates"},
+             way.rmse_per_100);
+    f.number({"rmse_per_100_chance", "trials per 100", "mean RMSE that chance in the bodies makes"},
+             way.chance_rmse_per_100);
   });
-  out.object({"differences", "how far the share of each ending is off"}, [&](Fields& f) {
-    for (const EndingName& e : kAllEndingNames) {
-      const auto at = static_cast<std::size_t>(e.ending);
-      f.object(
-          {e.key, fmt::format("share of trials that {}: as seen against the chain", meaning_of(e))},
-          [&](Fields& of) {
-            describe(of, way.endings[at]);
-            of.number({"chance_95", "1", "95 % of the draws of chance have no more"},
-                      way.chance_95[at]);
-          });
-    }
-  });
+  out.object(
+      {"differences", "difference of the share of each ending between observation and chain"},
+      [&](Fields& f) {
+        for (const EndingName& e : kAllEndingNames) {
+          const auto at = static_cast<std::size_t>(e.ending);
+          f.object({e.key, fmt::format("absolute difference of the share of trials that {}",
+                                       meaning_of(e))},
+                   [&](Fields& of) {
+                     describe(of, way.endings[at]);
+                     of.number({"chance_95", "1",
+                                "95 % of the differences that chance makes are at most this"},
+                               way.chance_95[at]);
+                   });
+        }
+      });
 }
 
 std::string half_name(std::size_t half) { return half == 0 ? "half 1" : "half 2"; }
@@ -192,45 +205,55 @@ std::string verdict(const lattice::BodyMemory& m, const dynamics::Section& secti
 
 void describe(Fields& out, const lattice::BodyMemory& m, const dynamics::Section& section) {
   const auto& faces = section.faces;
-  out.count(
-      {"runs", "1", "passages that can tell: in states with several faces before and outcomes"},
-      m.runs);
-  out.count({"states", "1", "states of these passages"}, m.states);
-  out.object({"together", "differences of all faces and outcomes"},
+  out.count({"runs", "1",
+             "passages in states where at least two faces before and two outcomes were seen"},
+            m.runs);
+  out.count({"states", "1", "states in which these passages begin"}, m.states);
+  out.object({"together", "statistic of all faces before and all outcomes together"},
              [&](Fields& f) { describe(f, m.together); });
-  out.object({"strongest", "the largest of these, over its standard deviation"}, [&](Fields& f) {
-    describe(f, m.strongest);
-    f.optional(m.face >= 0, [&](Fields& whose) {
-      const std::size_t face = m.face < 0 ? 0 : static_cast<std::size_t>(m.face),
-                        outcome = m.face < 0 ? 0 : static_cast<std::size_t>(m.outcome);
-      whose.text({"face_before", "the face of the cell before"}, faces[face].name);
-      whose.text({"outcome", "the face by which bodies go on, or trapped"},
-                 outcome < faces.size() ? faces[outcome].name : "trapped");
-      whose.number({"more", "1", "share of these passages by which this outcome is more frequent"},
-                   m.more);
-    });
-  });
-  out.number({"p", "1", "how often chance makes as large a difference in any of the two"}, m.p);
-  out.flag({"remembers", "whether the face before tells more than the state"}, m.remembers());
-  out.count({"null_draws", "1", "random draws behind p"}, m.null_draws);
-  out.text({"verdict", "the answer in words"}, verdict(m, section));
+  out.object(
+      {"strongest", "largest difference of one face and outcome, over its standard deviation"},
+      [&](Fields& f) {
+        describe(f, m.strongest);
+        f.optional(m.face >= 0, [&](Fields& whose) {
+          const std::size_t face = m.face < 0 ? 0 : static_cast<std::size_t>(m.face),
+                            outcome = m.face < 0 ? 0 : static_cast<std::size_t>(m.outcome);
+          whose.text({"face_before", "face by which the body entered the cell before"},
+                     faces[face].name);
+          whose.text(
+              {"outcome", "outcome that differs: the face by which bodies go on, or trapped"},
+              outcome < faces.size() ? faces[outcome].name : "trapped");
+          whose.number(
+              {"more", "1",
+               "share of these passages by which the outcome is more frequent than expected"},
+              m.more);
+        });
+      });
+  out.number({"p", "1", "p-value of both statistics together"}, m.p);
+  out.flag({"remembers", "whether the face before predicts the outcome beyond what the state does"},
+           m.remembers());
+  out.count({"null_draws", "1", "random draws behind the p-values"}, m.null_draws);
+  out.text({"verdict", "whether the face before matters, in words"}, verdict(m, section));
 }
 
 }  // namespace
 
 void describe(Fields& out, const HalvesResult& result) {
   const auto& [halves, memory, section, recorded, made_by] = result;
-  out.list({"halves", "the second half as seen against the chain of the first, and the other way"},
-           halves.ways, [](Fields& f, const HalfAgainstHalf& way) { describe(f, way); });
-  out.number({"p", "1", "how often chance makes as large a difference in any of the statistics"},
-             halves.p);
+  out.list(
+      {"halves",
+       "two: the second half against the chain of the first, then the first against the second's"},
+      halves.ways, [](Fields& f, const HalfAgainstHalf& way) { describe(f, way); });
+  out.number({"p", "1", "p-value of both halves and all statistics together"}, halves.p);
   out.number({"level", "1", "level of significance"}, HalfAgainstHalf::kLevel);
-  out.flag({"differs", "whether p is at most the level: one half does not predict the other"},
+  out.flag({"differs", "verdict: p is at most the level, one half does not predict the other"},
            halves.differs());
-  out.count({"null_draws", "1", "random draws behind p"}, halves.null_draws);
-  out.text({"verdict", "the answer in words"}, verdict(halves));
-  out.object({"memory", "does the face of the cell before tell more than the state?"},
-             [&](Fields& f) { describe(f, memory, section); });
+  out.count({"null_draws", "1", "random draws behind the p-values"}, halves.null_draws);
+  out.text({"verdict", "whether the halves predict each other, in words"}, verdict(halves));
+  out.object(
+      {"memory",
+       "test: does the face of the cell before predict the outcome beyond what the state does?"},
+      [&](Fields& f) { describe(f, memory, section); });
   describe_recorded(out, recorded);
   describe_made_by(out, made_by);
 }

@@ -70,10 +70,8 @@ std::string sentence(const MemoryStudy& study, Question q) {
 }
 
 void describe_p(Fields& out, const MemoryStudy& study, Question q) {
-  out.number(
-      {"p", "1", "p-value of this question: how often chance alone makes as large a difference"},
-      study.p(q));
-  out.number({"p_adjusted", "1", "p, corrected for asking several questions (Holm)"},
+  out.number({"p", "1", "p-value: how often chance makes as large a difference"}, study.p(q));
+  out.number({"p_adjusted", "1", "p-value, corrected for asking all four questions"},
              study.p_adjusted(q));
 }
 
@@ -81,59 +79,51 @@ void describe(Fields& out, const MemoryStudy& study, Question q) {
   const Independence& i = study.independence(q);
   describe_p(out, study, q);
   out.count(
-      {"runs", "1",
-       "number of gate runs from states in which several labels and several outcomes were seen"},
+      {"runs", "1", "gate runs in states where at least two labels and two outcomes were seen"},
       i.runs);
-  out.count(
-      {"states", "1", "number of states in which several labels and several outcomes were seen"},
-      i.states);
+  out.count({"states", "1", "states in which these runs begin"}, i.states);
   out.object(
-      {"statistics",
-       "tests of whether the label tells more of a run's outcome than its state does"},
+      {"statistics", "test statistics: do outcomes depend on the label, given the state?"},
       [&](Fields& f) {
-        f.object(
-            {"pooled",
-             "test of differences that go the same way in all states (Cochran-Mantel-Haenszel)"},
-            [&](Fields& pooled) {
-              cli::describe(pooled, i.pooled);
-              pooled.count({"degrees", "1", "degrees of freedom of the statistic"}, i.degrees);
-              pooled.number({"p_chi_squared", "1", "p by the chi-squared distribution"},
-                            i.p_chi_squared);
-            });
+        f.object({"pooled", "statistic for differences that have the same sign in all states"},
+                 [&](Fields& pooled) {
+                   cli::describe(pooled, i.pooled);
+                   pooled.count(
+                       {"degrees", "1", "degrees of freedom of the chi-squared distribution"},
+                       i.degrees);
+                   pooled.number({"p_chi_squared", "1", "p-value by the chi-squared distribution"},
+                                 i.p_chi_squared);
+                 });
         f.object(
             {"strongest",
-             "test of the largest of the pooled differences, divided by its standard deviation"},
+             "largest pooled difference of one label and outcome, over its standard deviation"},
             [&](Fields& strongest) {
               cli::describe(strongest, i.strongest);
               strongest.optional(i.label >= 0, [&](Fields& whose) {
                 const bool any = i.label >= 0;
-                whose.text({"label", "label whose runs differ most from what their states say"},
+                whose.text({"label", "label whose runs differ most from expectation"},
                            any ? label_name(study, q, i.label) : "");
-                whose.text({"outcome",
-                            "outcome in which these runs differ most: boundary of the next entry, "
-                            "or trapped"},
-                           any ? outcome_name(study, i.outcome) : "");
+                whose.text(
+                    {"outcome", "outcome that differs: the way into the next gate, or trapped"},
+                    any ? outcome_name(study, i.outcome) : "");
                 whose.number({"excess", "1",
-                              "share of this label's runs by which this outcome is more frequent "
+                              "share of this label's runs by which the outcome is more frequent "
                               "than expected"},
                              i.more);
               });
             });
-        f.object({"state_by_state",
-                  "test of the squared differences summed over states, which may go another way in "
-                  "each state"},
+        f.object({"state_by_state", "statistic for differences that vary from state to state"},
                  [&](Fields& each) { cli::describe(each, i.state_by_state); });
       });
   out.estimate({"total_variation", "1",
-                "size of the memory: total variation between outcomes after one half of the labels "
-                "and after the other"},
+                "size of the memory: total variation of outcomes between two halves of the labels; "
+                "null: unknown"},
                i.memory, Interval{i.memory_low, i.memory_high});
-  out.number(
-      {"seen_with_probability_90", "1",
-       "total variation of a memory that is found with a probability of at least 0.9; null: none"},
-      i.seen_at_90);
+  out.number({"seen_with_probability_90", "1",
+              "total variation of a memory that is detected with probability 0.9; null: none is"},
+             i.seen_at_90);
   out.text({"power", "seen_with_probability_90 in words"}, power_words(i));
-  out.text({"sentence", "the answer in words"}, sentence(study, q));
+  out.text({"sentence", "the answer to this question in words"}, sentence(study, q));
 }
 
 // ---- Gates ahead ----
@@ -164,11 +154,14 @@ void describe_ways(Fields& out, const MemoryStudy& study, const Label& label,
     std::size_t at = 0;
     const std::vector<std::string>& names = study.outcomes;  // the last one: trapped
     for (std::size_t from = 0; from + 1 < names.size(); ++from)
-      f.object(Label(names[from], "of bodies that entered this way").varying("<way>"),
+      f.object(Label(names[from], "bodies that entered the first of these gates this way")
+                   .varying("<way>"),
                [&](Fields& ways) {
                  for (const std::string& to : names)
                    put(ways,
-                       Field(to, "1", "of those that then enter this way, or are trapped")
+                       Field(to, "1",
+                             "share of all runs with the way above now and this way then (trapped: "
+                             "by then)")
                            .varying("<way>"),
                        values[at++]);
                });
@@ -176,39 +169,49 @@ void describe_ways(Fields& out, const MemoryStudy& study, const Label& label,
 }
 
 void describe(Fields& out, const MemoryStudy& study, const GatesAhead::Step& s) {
-  out.count({"gates", "1", "how many gates ahead"}, s.gates);
-  out.object({"total_variation", "total variation between seen and predicted"},
+  out.count({"gates", "1", "number of gates ahead"}, s.gates);
+  out.object({"total_variation", "total variation between seen and predicted, way by way"},
              [&](Fields& f) { cli::describe(f, s.total_variation); });
   describe_by_chance(out, s.chance, s.chance_95);
   const auto share = [](Fields& f, const Field& key, double x) { f.number(key, x); };
-  describe_ways(out, study,
-                {"seen", "shares of all runs, by the way in and the way in so many gates later"},
-                s.seen, share);
-  describe_ways(out, study, {"predicted", "the same by the chain"}, s.predicted, share);
-  describe_ways(out, study, {"excess_95", "95 % interval of seen less predicted"}, s.excess_95,
+  describe_ways(
+      out, study,
+      {"seen",
+       "observed shares of all runs, by the way of entry now and that number of gates later"},
+      s.seen, share);
+  describe_ways(
+      out, study,
+      {"predicted",
+       "shares of all runs predicted by the powers of the transition matrix, by both ways"},
+      s.predicted, share);
+  describe_ways(out, study, {"excess_95", "95 % intervals of seen less predicted, by both ways"},
+                s.excess_95,
                 [](Fields& f, const Field& key, const Interval& x) { f.interval(key, x); });
   out.numbers({"time_scales_gates", "1",
-               "implied time scales at this lag, in gates: -gates / ln of the eigenvalues of seen "
-               "by way; null: endless"},
+               "implied time scales, -gates / ln |eigenvalue| of seen by way, longest first; null: "
+               "infinite"},
               s.seen_scales);
-  out.numbers({"predicted_time_scales_gates", "1", "the same of predicted"}, s.predicted_scales);
-  out.intervals({"time_scales_chance_95", "1",
-                 "where 95 of 100 time scales lie by chance, by the predicted counts dealt out "
-                 "anew; few walks make them longer"},
-                s.scales_95);
+  out.numbers({"predicted_time_scales_gates", "1",
+               "implied time scales of predicted, longest first; null: infinite"},
+              s.predicted_scales);
+  out.intervals(
+      {"time_scales_chance_95", "1",
+       "95 % ranges of time_scales_gates under the chain; few walks bias these scales upwards"},
+      s.scales_95);
 }
 
 void describe(Fields& out, const MemoryStudy& study, const GatesAhead& ahead) {
   describe_p(out, study, Question::gates_ahead);
-  out.count({"runs", "1", "gate runs from which bodies are followed"}, ahead.runs);
+  out.count({"runs", "1", "gate runs from which bodies are followed ahead"}, ahead.runs);
   out.optional(!ahead.steps.empty(), [&](Fields& f) {
     f.count({"largest", "1",
-             "the number of gates ahead that differs most from what 95 % of chance makes"},
+             "number of gates ahead that exceeds the 95 % bound of chance most, or comes closest"},
             ahead.steps.empty() ? 0 : ahead.largest().gates);
   });
-  out.list({"steps", "one for each number of gates ahead, from 2 on"}, ahead.steps,
-           [&](Fields& f, const GatesAhead::Step& s) { describe(f, study, s); });
-  out.text({"sentence", "the answer in words"}, sentence_ahead(study));
+  out.list(
+      {"steps", "one for each number of gates ahead, from 2 on; empty: several types of gates"},
+      ahead.steps, [&](Fields& f, const GatesAhead::Step& s) { describe(f, study, s); });
+  out.text({"sentence", "the answer to this question in words"}, sentence_ahead(study));
 }
 
 std::string any_sentence(const MemoryStudy& study, Question q) {
@@ -229,26 +232,25 @@ std::string verdict(const MemoryStudy& study) {
 }  // namespace
 
 void describe(Fields& out, const lattice::LookedAt::Test& test) {
-  out.number({"value", "1", "value of the statistic"}, test.seen);
-  out.number({"p", "1", "p-value: how often chance alone makes the statistic as large"}, test.p);
-  out.number({"p_adjusted", "1", "p, corrected for looking at several statistics"},
-             test.p_adjusted);
+  out.number({"value", "1", "observed value of the statistic"}, test.seen);
+  out.number({"p", "1", "p-value: how often chance makes the statistic as large"}, test.p);
+  out.number({"p_adjusted", "1", "p-value, corrected for testing all statistics"}, test.p_adjusted);
 }
 
 void describe(Fields& out, const MemoryStudy& study) {
   constexpr std::array kMeanings{
-      "do the powers of the transition matrix put bodies where they are some gates later?",
-      "does the gate before tell more of what comes next than the state does?",
-      "does the number of gates so far tell more of what comes next than the state does?",
-      "does the row of the field tell more of what comes next than the state does?"};
-  out.text({"verdict", "the answer in words"}, verdict(study));
-  out.flag({"remembers", "whether any question finds a memory: the chain forgets what matters"},
+      "Chapman-Kolmogorov test: do powers of the matrix predict bodies some gates later?",
+      "does the gate before predict the next step beyond what the state does?",
+      "does the number of gates so far predict the next step beyond what the state does?",
+      "does the row of the field predict the next step beyond what the state does?"};
+  out.text({"verdict", "the answers to all questions in words"}, verdict(study));
+  out.flag({"remembers", "whether any question finds a memory that the chain lacks"},
            study.remembers());
-  out.number({"level", "1", "level of significance of all questions together"},
+  out.number({"level", "1", "level of significance for all questions together"},
              MemoryStudy::kLevel);
-  out.count({"walks", "1", "trials of the full dynamics that were asked"}, study.walks);
-  out.count({"runs", "1", "gate runs of these trials"}, study.runs);
-  out.count({"null_draws", "1", "random draws behind each p"}, study.ahead.null_draws);
+  out.count({"walks", "1", "trials of the full dynamics behind the tests"}, study.walks);
+  out.count({"runs", "1", "gate runs of the trials behind the tests"}, study.runs);
+  out.count({"null_draws", "1", "random draws behind each p-value"}, study.ahead.null_draws);
   for (std::size_t k = 0; k < kMeanings.size(); ++k) {
     const auto q = static_cast<Question>(k);
     Label label(lattice::kQuestionKeys[k], kMeanings[k]);
@@ -284,23 +286,29 @@ std::string text_of(const lattice::ForceMemory& m) {
 }
 
 void describe(Fields& out, const lattice::ForceMemory& m) {
-  out.text({"verdict", "the answer in words"}, text_of(m));
-  out.flag({"matters", "whether the final gates change by more than chance makes them"},
-           m.matters());
-  out.count({"trials", "1", "trials that were run both ways"}, m.change.trials);
+  out.text({"verdict", "the result of the test in words"}, text_of(m));
+  out.flag(
+      {"matters",
+       "whether the final gates change by more than chance: p of total variation at most 0.05"},
+      m.matters());
+  out.count({"trials", "1", "trials that were run both with the force kept and drawn anew"},
+            m.change.trials);
   describe_change(out, m.change);
-  out.object({"in_pairs", "final gates against those of the same trials, trial by trial"},
-             [&](Fields& f) { describe(f, m.change.in_pairs); });
   out.object(
-      {"endings", "how much more often trials end so with the force drawn anew"}, [&](Fields& f) {
-        for (const EndingName& e : kEndingNames) {
-          const lattice::PairedDifference& d = m.endings[static_cast<std::size_t>(e.ending)];
-          f.object({e.key, fmt::format("of trials that {}", meaning_of(e))}, [&](Fields& of) {
-            of.estimate({"difference", "1", "difference of the shares"}, d.difference,
-                        Interval{d.low, d.high}, "interval_95");
-          });
-        }
-      });
+      {"in_pairs", "final gates with the force drawn anew and kept, compared trial by trial"},
+      [&](Fields& f) { describe(f, m.change.in_pairs); });
+  out.object({"endings", "change of the share of each ending when the force is drawn anew"},
+             [&](Fields& f) {
+               for (const EndingName& e : kEndingNames) {
+                 const lattice::PairedDifference& d = m.endings[static_cast<std::size_t>(e.ending)];
+                 f.object({e.key, fmt::format("trials that {}", meaning_of(e))}, [&](Fields& of) {
+                   of.estimate(
+                       {"difference", "1",
+                        "share with the force drawn anew less the share with the force kept"},
+                       d.difference, Interval{d.low, d.high}, "interval_95");
+                 });
+               }
+             });
 }
 
 }  // namespace gatewalk::cli

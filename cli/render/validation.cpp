@@ -83,8 +83,8 @@ std::int64_t traverse_sides(const lattice::Validation& v) {
 /// Mean and standard deviation.
 void describe_spread(Fields& out, const Field& of, std::string_view over, double mean, double sd) {
   out.object(Label(of.key, of.meaning), [&](Fields& f) {
-    f.number({"mean", of.unit, fmt::format("mean over {}", over)}, mean);
-    f.number({"sd", of.unit, fmt::format("standard deviation over {}", over)}, sd);
+    f.number({"mean", of.unit, fmt::format("mean over the {}", over)}, mean);
+    f.number({"sd", of.unit, fmt::format("standard deviation over the {}", over)}, sd);
   });
 }
 
@@ -94,107 +94,130 @@ void describe_paper_sized(Fields& out, const lattice::StartValidation& r) {
   const auto with_floor = [&](const Field& of, const lattice::MeanAndSd& m, std::string_view key,
                               double floor) {
     describe_spread(out, of, "parts of 100 trials", m.mean(), m.sd());
-    out.number({key, of.unit, "the same if the chain were perfect: what chance alone gives"},
-               floor);
+    out.number(
+        {key, of.unit, "floor: mean that sampling noise alone would give for a perfect chain"},
+        floor);
   };
-  out.count({"repeats", "1", "parts of 100 trials"}, p.exact_rmse.n);
-  with_floor({"exact_corrcoef", "1", "correlation of final gates with the exact chain's"},
+  out.count({"repeats", "1", "number of parts of 100 trials"}, p.exact_rmse.n);
+  with_floor({"exact_corrcoef", "1",
+              "correlation of the final gates of 100 trials with the exact chain's"},
              p.exact_corrcoef, "exact_corrcoef_floor", r.floor_100_exact.corrcoef);
-  with_floor({"exact_rmse_per_100", "trials per 100", "RMSE of final gates from the exact chain's"},
+  with_floor({"exact_rmse_per_100", "trials per 100",
+              "RMSE of the final gates of 100 trials from the exact chain's"},
              p.exact_rmse, "exact_rmse_per_100_floor", r.floor_100_exact.rmse_per_100);
-  out.number({"exact_corrcoef_rmse_correlation", "1", "correlation of these two over the parts"},
+  out.number({"exact_corrcoef_rmse_correlation", "1",
+              "correlation of exact_corrcoef with exact_rmse_per_100 over the parts"},
              p.exact_correlation());
-  with_floor({"walks_corrcoef", "1", "correlation of final gates with those of 100 walks"},
+  with_floor({"walks_corrcoef", "1",
+              "correlation of the final gates of 100 trials with those of 100 walks"},
              p.walks_corrcoef, "walks_corrcoef_floor", r.floor_100_walks.corrcoef);
-  with_floor(
-      {"walks_rmse_per_100", "trials per 100", "RMSE of final gates from those of 100 walks"},
-      p.walks_rmse, "walks_rmse_per_100_floor", r.floor_100_walks.rmse_per_100);
+  with_floor({"walks_rmse_per_100", "trials per 100",
+              "RMSE of the final gates of 100 trials from those of 100 walks"},
+             p.walks_rmse, "walks_rmse_per_100_floor", r.floor_100_walks.rmse_per_100);
 }
 
 /// A map of each: dynamics, walks, exact chain.
 void describe_maps(Fields& out, const Label& label, const markov::CellCounts& dynamics,
                    const markov::CellCounts& walks, const markov::CellProbabilities& exact) {
   out.object(label, [&](Fields& f) {
-    f.grid({"dynamics", "1", "number of trials"}, dynamics);
-    f.grid({"walks", "1", "number of walks"}, walks);
-    f.grid({"exact", "1", "share by the exact chain"}, exact);
+    f.grid({"dynamics", "1", "number of trials of the full dynamics, by gate"}, dynamics);
+    f.grid({"walks", "1", "number of walks through the chain, by gate"}, walks);
+    f.grid({"exact", "1", "share of all bodies by the exact chain, by gate"}, exact);
   });
 }
 
 void describe(Fields& out, const lattice::StartValidation& r, const lattice::PaperStart& paper,
               const ShownField& shown) {
-  out.text({"verdict", "does the chain agree with the dynamics, by chance in trials and matrix"},
+  out.text({"verdict",
+            "sentence: whether the chain differs from the dynamics by more than sampling noise"},
            verdict(r));
   out.object(
-      {"trials_and_matrix", "one test by chance in the trials and in the matrix's runs"},
+      {"trials_and_matrix",
+       "test of chain against dynamics, with the sampling noise of trials and matrix"},
       [&](Fields& f) {
         describe(f, r.judgement);
-        f.count({"resampled_matrices", "1", "matrices drawn anew behind the test"}, r.resampled);
+        f.count({"resampled_matrices", "1", "resampled matrices behind the test"}, r.resampled);
       });
   out.object({"start", "how bodies enter the field"}, [&](Fields& f) {
     describe(f, shown.map.section, r.start);
-    f.flag({"clamped", "the start lies outside all bins: the nearest one is taken"},
+    f.flag({"clamped",
+            "whether the start lies outside all bins, so that the chain starts in the nearest one"},
            r.chain_start.clamped);
   });
   out.optional(paper.corrcoef.has_value(), [&](Fields& f) {
-    f.object({"paper", "what the paper prints of this start, in Table IV"}, [&](Fields& printed) {
-      printed.number({"corrcoef", "1", "correlation of final gates"},
-                     paper.corrcoef.value_or(kUnknown));
-      printed.number({"rmse_per_100", "trials per 100", "RMSE of final gates"},
-                     paper.rmse.value_or(kUnknown));
-    });
+    f.object(
+        {"paper", "values that the paper prints for this start in Table IV"}, [&](Fields& printed) {
+          printed.number({"corrcoef", "1", "correlation of the final gates as printed"},
+                         paper.corrcoef.value_or(kUnknown));
+          printed.number({"rmse_per_100", "trials per 100", "RMSE of the final gates as printed"},
+                         paper.rmse.value_or(kUnknown));
+        });
   });
-  out.object({"exact", "final gates of the dynamics against the exact chain"}, [&](Fields& f) {
-    describe(f, r.exact_against);
-    describe_spread(f,
-                    {"total_variation_of_matrix_sampling", "1",
-                     "total variation that the sampling of the matrix alone makes"},
-                    "resampled matrices", r.matrix_noise_mean, r.matrix_noise_sd);
+  out.object({"exact", "final gates of the dynamics compared with the exact chain's"},
+             [&](Fields& f) {
+               describe(f, r.exact_against);
+               describe_spread(f,
+                               {"total_variation_of_matrix_sampling", "1",
+                                "total variation that sampling noise of the matrix alone makes"},
+                               "resampled matrices", r.matrix_noise_mean, r.matrix_noise_sd);
+             });
+  out.object(
+      {"walks", "final gates of the dynamics compared with those of walks through the chain"},
+      [&](Fields& f) { describe(f, r.walks_against); });
+  out.object(
+      {"at_100_trials", "as in the paper: parts of 100 trials, each compared with the chain"},
+      [&](Fields& f) { describe_paper_sized(f, r); });
+  out.object({"seconds", "wall-clock time"}, [&](Fields& f) {
+    f.number({"dynamics", "s", "time of all trials, on the number of threads in threads"},
+             r.dynamics_seconds);
+    f.number({"walks", "s", "time of all walks, on the number of threads in threads"},
+             r.walks_seconds);
+    f.number({"exact", "s", "time of one exact prediction, on one thread"}, r.exact_seconds);
   });
-  out.object({"walks", "final gates of the dynamics against walks through the chain"},
-             [&](Fields& f) { describe(f, r.walks_against); });
-  out.object({"at_100_trials", "as in the paper: 100 trials against the chain, over and over"},
-             [&](Fields& f) { describe_paper_sized(f, r); });
-  out.object({"seconds", "time that it took"}, [&](Fields& f) {
-    f.number({"dynamics", "s", "time of all trials"}, r.dynamics_seconds);
-    f.number({"walks", "s", "time of all walks"}, r.walks_seconds);
-    f.number({"exact", "s", "time of one exact prediction"}, r.exact_seconds);
-  });
-  out.object({"speed_ratio", "how much faster the chain is"}, [&](Fields& f) {
-    f.number({"dynamics_trial_over_walk", "1", "time of a trial over that of a walk"},
+  out.object({"speed_ratio", "how many times faster the chain is"}, [&](Fields& f) {
+    f.number({"dynamics_trial_over_walk", "1", "time of a trial divided by the time of a walk"},
              seconds_per_trial(r) / seconds_per_walk(r));
-    f.number({"dynamics_over_exact", "1", "time of all trials over that of an exact prediction"},
+    f.number({"dynamics_over_exact", "1",
+              "time of all trials divided by the time of one exact prediction"},
              r.dynamics_seconds / r.exact_seconds);
   });
-  out.object({"endings", "how bodies end: number of trials, number of walks, share of all"},
-             [&](Fields& f) {
-               describe_endings(f, {"dynamics", "number of trials by ending"}, r.dynamics.endings);
-               describe_endings(f, {"walks", "number of walks by ending"}, r.walks.endings);
-               describe_endings(f, {"exact", "share by ending"}, r.exact.endings);
-             });
+  out.object(
+      {"endings", "how bodies end: by trials and walks (numbers) and by the exact chain (shares)"},
+      [&](Fields& f) {
+        describe_endings(f, {"dynamics", "number of trials by ending"}, r.dynamics.endings);
+        describe_endings(f, {"walks", "number of walks by ending"}, r.walks.endings);
+        describe_endings(f, {"exact", "share of all bodies by ending"}, r.exact.endings);
+      });
   out.object({"endings_95", "95 % intervals of the shares by ending"}, [&](Fields& f) {
-    describe_endings_95(f, {"dynamics", "by chance in the trials"}, r.dynamics_endings);
-    describe_endings_95(f, {"walks", "by chance in the walks and in the matrix's runs"},
+    describe_endings_95(f, {"dynamics", "sampling noise of the trials"}, r.dynamics_endings);
+    describe_endings_95(f,
+                        {"walks", "sampling noise of the walks alone, without that of the matrix"},
                         r.walks_endings);
-    describe_endings_95(f, {"exact", "by chance in the matrix's runs"}, r.exact_endings);
+    describe_endings_95(f, {"exact", "sampling noise of the matrix; null: no resampled matrices"},
+                        r.exact_endings);
   });
-  out.object({"fates", "how bodies end, as shares"}, [&](Fields& f) {
-    f.object({"dynamics", "in the trials"}, [&](Fields& of) { describe_fates(of, r.dynamics); });
-    f.object({"exact", "by the exact chain"}, [&](Fields& of) { describe_fates(of, r.exact); });
+  out.object({"fates", "shares of all bodies by fate"}, [&](Fields& f) {
+    f.object({"dynamics", "shares in the trials of the full dynamics"},
+             [&](Fields& of) { describe_fates(of, r.dynamics); });
+    f.object({"exact", "shares by the exact chain"},
+             [&](Fields& of) { describe_fates(of, r.exact); });
   });
-  describe_maps(out, {"final_gates", "bodies by the gate where they end"}, r.dynamics.final_gates,
-                r.walks.final_cells, r.exact.final_cells);
-  describe_maps(out, {"trapped_gates", "those that are trapped, by the gate where they end"},
+  describe_maps(out, {"final_gates", "bodies by the gate in which they end"},
+                r.dynamics.final_gates, r.walks.final_cells, r.exact.final_cells);
+  describe_maps(out, {"trapped_gates", "trapped bodies by the gate in which they end"},
                 r.dynamics.trapped_gates, r.walks.trapped_cells, markov::trapped_cells(r.exact));
-  describe_maps(out, {"departed_gates", "those that leave the field, by the gate where they end"},
+  describe_maps(out,
+                {"departed_gates", "bodies that leave the field, by the gate that they leave from"},
                 r.dynamics.departed_gates, r.walks.departed_cells, markov::departed_cells(r.exact));
   describe_exits(out, r.dynamics_exits, r.exact_exits, shown);
   const FieldEnds<markov::CellProbabilities> ends = ends_of(r.exact, r.exact_endings);
   ends.describe_never_sampled(out);
   ends.describe_still_walking(out);
   out.optional(r.force.has_value(), [&](Fields& f) {
-    f.object({"force_memory", "the same trials with the random force drawn anew at each crossing"},
-             [&](Fields& force) { describe(force, r.force.value_or(lattice::ForceMemory())); });
+    f.object(
+        {"force_memory",
+         "test: the same trials with the random force drawn anew at each crossing between gates"},
+        [&](Fields& force) { describe(force, r.force.value_or(lattice::ForceMemory())); });
   });
 }
 
@@ -356,46 +379,54 @@ void describe(Fields& out, const ValidateResult& result) {
   out.count({"trials", "1", "trials of the full dynamics from each start"}, v.trials);
   out.count({"walks", "1", "walks through the chain from each start"}, v.walks);
   out.count({"left_out_matrices", "1",
-             "resampled matrices in which bodies circle too long to be solved: the intervals leave "
-             "them out"},
+             "resampled matrices left out of the intervals because bodies circle too long in them"},
             v.left_out.matrices);
-  out.list_of({"starts", "one for each start"}, v.starts.size(), [&](Fields& f, std::size_t k) {
+  out.list_of({"starts", "results of each start"}, v.starts.size(), [&](Fields& f, std::size_t k) {
     describe(f, v.starts[k], result.papers.empty() ? lattice::PaperStart() : result.papers[k],
              result.shown);
   });
-  out.object({"crossings", "crossings from gate to gate in all trials"}, [&](Fields& f) {
-    f.count({"between_gates", "1", "number of crossings"}, v.entries);
-    f.optional(result.shown.mass.has_value(), [&](Fields& of) {
-      of.number({"RT_and_LT_share", "1", "share of these through the sides above the joints"},
-                share(traverse_sides(v), v.entries));
-    });
-    f.optional(!result.shown.mass.has_value(), [&](Fields& of) {
-      of.object({"by_face", "number of these by face, of cells other than the paper's gate"},
-                [&](Fields& faces) {
-                  const auto& names = result.shown.map.section.faces;
-                  for (std::size_t i = 0; i < names.size(); ++i)
-                    faces.count(Field(names[i].name, "1", "by this face").varying("<face>"),
-                                v.entries_by[i]);
-                });
-    });
-    f.number({"clamped_share", "1", "share of these outside the bins"},
-             share(v.clamped, v.entries));
-  });
-  out.object({"matrix", "the matrix that is validated"}, [&](Fields& f) {
+  out.object(
+      {"crossings", "crossings from gate to gate in the trials of all starts"}, [&](Fields& f) {
+        f.count({"between_gates", "1", "number of crossings"}, v.entries);
+        f.optional(result.shown.mass.has_value(), [&](Fields& of) {
+          of.number(
+              {"RT_and_LT_share", "1",
+               "share of the crossings through a side above the joint (right or left traverse)"},
+              share(traverse_sides(v), v.entries));
+        });
+        f.optional(!result.shown.mass.has_value(), [&](Fields& of) {
+          of.object(
+              {"by_face", "number of crossings by face, for cells other than the paper's gate"},
+              [&](Fields& faces) {
+                const auto& names = result.shown.map.section.faces;
+                for (std::size_t i = 0; i < names.size(); ++i)
+                  faces.count(
+                      Field(names[i].name, "1", "number of crossings into a cell by this face")
+                          .varying("<face>"),
+                      v.entries_by[i]);
+              });
+        });
+        f.number({"clamped_share", "1", "share of the crossings that lie outside all bins"},
+                 share(v.clamped, v.entries));
+      });
+  out.object({"matrix", "the transition matrix of the chain"}, [&](Fields& f) {
     const dynamics::Transitions::Totals total = totals_of(matrix);
     f.count({"gate_runs", "1", "gate runs behind the matrix"}, total.runs);
-    f.number({"clamped_share", "1", "share of the runs' crossings outside the bins"},
-             total.clamped_share());
-    f.count({"rows_never_sampled", "1", "rows without a run"}, total.empty_rows);
-    f.maybe(Label("status", "numerical faults of these runs; null: the file does not say").shared(),
+    f.number(
+        {"clamped_share", "1", "share of the crossings of these runs that lie outside all bins"},
+        total.clamped_share());
+    f.count({"rows_never_sampled", "1", "rows without any run"}, total.empty_rows);
+    f.maybe(Label("status", "numerical faults of the runs behind the matrix; null: not on record")
+                .shared(),
             matrix.health, [](Fields& of, const dynamics::Health& h) { describe(of, h); });
     f.number({"seconds", "s", "time to make the matrix, or to read it"}, matrix.seconds);
   });
   out.optional(matrix.states.has_value(),
                [&](Fields& f) { describe_state_space(f, matrix.states.value_or(StateRecord())); });
-  out.object({"markov", "is it Markov? what the trials remember beyond the chain's states"},
-             [&](Fields& f) { describe(f, v.memory); });
-  out.count({"threads", "1", "threads on which times were taken"}, v.threads);
+  out.object(
+      {"markov", "tests of the Markov property: what trials remember beyond the chain's states"},
+      [&](Fields& f) { describe(f, v.memory); });
+  out.count({"threads", "1", "threads of the timed trials and walks"}, v.threads);
   describe_status(out, v.health);
   describe_method(out, matrix.method);
   out.optional(!v.starts.empty() && v.starts.front().observed.has_value(), [&](Fields& f) {
