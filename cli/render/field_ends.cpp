@@ -37,13 +37,12 @@ void FieldEnds<Cells>::describe_endings(Fields& out) const {
 template <class Cells>
 void FieldEnds<Cells>::describe_gates(Fields& out) const {
   const auto map = [&](std::string_view key, std::string_view who, const Cells& cells) {
-    describe_map(out,
-                 {key, "1", fmt::format("{} {}, by the gate in which they end", kOf<Number>, who)},
+    describe_map(out, {key, "1", fmt::format("{} all bodies, by gate: {}", kOf<Number>, who)},
                  cells);
   };
-  map("final_gates", "all bodies", final_gates);
-  map("trapped_gates", "bodies that are trapped", trapped_gates);
-  map("departed_gates", "bodies that leave the field", departed_gates);
+  map("final_gates", "those that end there", final_gates);
+  map("trapped_gates", "those that are trapped there", trapped_gates);
+  map("departed_gates", "those that leave the field from there", departed_gates);
 }
 
 template <class Cells>
@@ -60,7 +59,7 @@ void FieldEnds<Cells>::describe_sums(Fields& out, bool with_intervals) const {
   };
   sum("trapped", "are trapped in a gate", trapped);
   sum("departed", "leave the field", departed);
-  sum("cut_off", "the limit of gates cuts off", cut_off,
+  sum("cut_off", "field.max_gates cuts off", cut_off,
       shares.interval[static_cast<std::size_t>(markov::Ending::cut_off)]);
 }
 
@@ -68,9 +67,8 @@ template <class Cells>
 void FieldEnds<Cells>::describe_never_sampled(Fields& out) const {
   put(out,
       {"never_sampled", "1",
-       fmt::format(
-           "{} bodies without an ending: they reach a state from which there is no gate run",
-           kOf<Number>)},
+       fmt::format("{} bodies left out of endings because they reach a state whose row has no run",
+                   kOf<Number>)},
       never_sampled);
 }
 
@@ -78,8 +76,7 @@ template <class Cells>
 void FieldEnds<Cells>::describe_still_walking(Fields& out) const {
   put(out,
       {"still_walking", "1",
-       fmt::format("{} bodies without an ending: they were under way when the sum or the walks "
-                   "were stopped",
+       fmt::format("{} bodies left out of endings because they still walk when the program stops",
                    kOf<Number>)},
       still_walking);
 }

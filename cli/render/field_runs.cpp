@@ -101,15 +101,14 @@ void describe(Fields& out, const WalkResult& r) {
   ends.describe_sums(out);
   ends.describe_never_sampled(out);
   ends.describe_still_walking(out);
-  out.interval(
-      {"still_walking_95", "1",
-       "95 % interval of the share of walks that were still under way when the walks were stopped"},
-      still_walking_95(r.tally, r.shown.field));
-  out.count({"gates_visited", "1", "number of gate visits of all walks together"}, r.tally.steps);
+  out.interval({"still_walking_95", "1", "95 % interval of the share of walks in still_walking"},
+               still_walking_95(r.tally, r.shown.field));
+  out.count({"gates_visited", "1", "number of gates visited by all walks together"}, r.tally.steps);
   const bool as_seen = !r.start.state && !r.start.entry;
   out.object_or_text(
       {"start_state",
-       "the state in which walks start; of a matrix of recorded runs the entry, or \"as seen\""},
+       "state in which walks start; recorded runs: their start, or \"as seen\" for all first "
+       "entries"},
       as_seen ? std::optional<std::string>("as seen") : std::nullopt, [&](Fields& f) {
         f.optional(r.start.state.has_value(), [&](Fields& of_chain) {
           describe(of_chain, r.start.state.value_or(ShownState()));

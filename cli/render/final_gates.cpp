@@ -19,73 +19,78 @@ void describe(Fields& out, const lattice::Comparison& c) {
                               double by_chance) {
     out.number(field, value);
     out.number({floor, field.unit,
-                "floor: the value that sampling noise alone gives two samples of the same field"},
+                "floor: value that sampling noise alone gives, the best to expect; null: unknown, "
+                "as for pairs"},
                by_chance);
   };
   with_floor(
-      {"corrcoef", "1", "Pearson correlation of the two maps of final gates, over the gates"},
+      {"corrcoef", "1", "Pearson correlation of the two maps of final gates, over all gates"},
       c.corrcoef, "corrcoef_floor", c.floor.corrcoef);
   with_floor({"rmse_per_100", "trials per 100",
-              "root mean squared difference of the two maps of final gates, over the gates"},
+              "root mean squared difference of the two maps of final gates, over all gates"},
              c.rmse_per_100, "rmse_per_100_floor", c.floor.rmse_per_100);
   with_floor(
       {"total_variation", "1",
-       "total variation of the final gates: half the sum of the absolute differences of shares"},
+       "total variation of the two maps of final gates: half the sum of absolute differences"},
       c.total_variation, "total_variation_floor", c.floor_total_variation);
   out.number({"total_variation_floor_95", "1",
-              "total variation that sampling noise alone exceeds in 5 % of cases"},
+              "95 % of the total variations that sampling noise alone gives are at most this"},
              c.floor_total_variation_95);
   out.object(
-      {"p_values", "p-values: how often two samples of the same field differ at least as much"},
+      {"p_values", "p-values: how often chance makes the two maps at least as different"},
       [&](Fields& p) {
         p.number({"chi_squared", "1", "p-value of the chi-squared statistic"}, c.p_chi_squared);
         p.number({"total_variation", "1", "p-value of the total variation"}, c.p_total_variation);
         p.number({"energy_distance", "1", "p-value of the energy distance; null: too many gates"},
                  c.p_energy);
-        p.count({"null_draws", "1", "random draws behind these numbers"}, c.null_draws);
+        p.count({"null_draws", "1", "random draws behind the p-values"}, c.null_draws);
       });
 }
 
 void describe_change(Fields& out, const lattice::PairedChange& change) {
-  out.number({"changed_share", "1",
-              "share of trials that end in another gate with the change than without it"},
+  out.number({"changed_share", "1", "share of the trials whose final gate changes"},
              change.changed);
   out.number({"total_variation_uncertainty", "1",
-              "how far the total variation of the final gates may be from that of infinitely many "
-              "trials, 95 %"},
+              "95 %: the total variation may be this far from that of infinitely many trials"},
              change.uncertainty());
 }
 
 void describe_by_chance(Fields& out, double mean, double at_95) {
-  out.object({"total_variation_by_chance", "total variation by chance alone"}, [&](Fields& f) {
-    f.number({"mean", "1", "mean of the random draws"}, mean);
-    f.number({"at_95", "1", "95 of 100 draws have no more"}, at_95);
-  });
+  out.object(
+      {"total_variation_by_chance", "total variation of the final gates that chance alone makes"},
+      [&](Fields& f) {
+        f.number({"mean", "1", "mean over the random draws"}, mean);
+        f.number({"at_95", "1", "95 % of the random draws have at most this"}, at_95);
+      });
 }
 
 void describe(Fields& out, const lattice::Judgement& j) {
-  out.flag({"differs", "whether p is at most the level"}, j.differs());
-  out.number({"p", "1", "how often chance makes as large a difference in any of the statistics"},
-             j.p);
-  out.number({"level", "1", "the verdict's level of significance"}, lattice::Judgement::kLevel);
+  out.flag({"differs", "verdict: whether p is at most the level"}, j.differs());
+  out.number({"p", "1", "p-value of all statistics together: the smallest of p_adjusted"}, j.p);
+  out.number({"level", "1", "level of significance of the verdict"}, lattice::Judgement::kLevel);
   out.object(
-      {"p_adjusted", "p of each statistic, corrected for looking at all; null: not counted"},
+      {"p_adjusted", "p-value of each statistic, corrected for testing all; null: no counts of it"},
       [&](Fields& p) {
-        p.number({"total_variation", "1", "of the final gates"}, j.total_variation.p_adjusted);
-        p.number({"energy_distance", "1", "of the final gates; null also of too many gates"},
-                 j.energy.p_adjusted);
-        p.number({"chi_squared", "1", "of the final gates"}, j.chi_squared.p_adjusted);
-        p.object({"endings", "of the share of each ending"}, [&](Fields& e) {
+        p.number({"total_variation", "1", "p-value of the total variation of the final gates"},
+                 j.total_variation.p_adjusted);
+        p.number(
+            {"energy_distance", "1",
+             "p-value of the energy distance of the final gates; null also for too many gates"},
+            j.energy.p_adjusted);
+        p.number({"chi_squared", "1", "p-value of the chi-squared statistic of the final gates"},
+                 j.chi_squared.p_adjusted);
+        p.object({"endings", "p-value of the share of each ending"}, [&](Fields& e) {
           for (const EndingName& name : kEndingNames)
-            e.number({name.key, "1", fmt::format("of bodies that {}", meaning_of(name))},
+            e.number({name.key, "1",
+                      fmt::format("p-value of the share of bodies that {}", meaning_of(name))},
                      j.endings[static_cast<std::size_t>(name.ending)].p_adjusted);
           e.number({"never_sampled", "1",
-                    "of bodies that reach a state from which there is no gate run"},
+                    "p-value of the share of bodies that reach a state whose row has no run"},
                    j.endings[static_cast<std::size_t>(markov::Ending::unsampled)].p_adjusted);
         });
       });
   describe_by_chance(out, j.chance_total_variation, j.chance_total_variation_95);
-  out.count({"null_draws", "1", "random draws behind these numbers"}, j.null_draws);
+  out.count({"null_draws", "1", "random draws behind the p-values"}, j.null_draws);
 }
 
 Json grid(const markov::CellCounts& cells) {
@@ -115,7 +120,7 @@ FieldMap::Span span_of(const Eigen::ArrayXd& shares, Eigen::Index most) {
 
 void describe_left_out(Fields& out, int columns, int rows) {
   out.optional(Eigen::Index{columns} * rows > kMostGatesInJson, [&](Fields& f) {
-    f.text({"left_out", "which maps are null because the field has too many gates"},
+    f.text({"left_out", "which maps are null because they have too many gates"},
            fmt::format("maps of {} x {} gates (null here; JSON has up to {} gates): --netcdf "
                        "FILE.nc writes them",
                        columns, rows, kMostGatesInJson));
@@ -244,11 +249,11 @@ std::vector<std::string> ending_keys() {
 }
 
 void describe_answer_from(Fields& out, bool from_trials) {
-  out.text(Label("answer_from",
-                 "source of the answer: the chain, or the shares of full trials where these are "
-                 "more precise")
-               .one_of({"chain", "trials"}),
-           from_trials ? "trials" : "chain");
+  out.text(
+      Label("answer_from",
+            "source of the answer: the chain, or the shares of the full trials if more precise")
+          .one_of({"chain", "trials"}),
+      from_trials ? "trials" : "chain");
 }
 
 void describe_endings(Fields& out, const Label& l, const EndingCounts& counts) {
@@ -275,11 +280,11 @@ void describe_intervals(Fields& out, const lattice::EndingShares& shares) {
 
 void describe_endings(Fields& out, const EndingCounts& counts,
                       const lattice::EndingShares& shares) {
-  describe_endings(out, {"endings", "number of bodies by ending"}, counts);
+  describe_endings(out, {"endings", "how bodies end: number of bodies by ending"}, counts);
   describe_intervals(out, shares);
 }
 void describe_endings(Fields& out, const lattice::EndingShares& shares) {
-  describe_endings(out, {"endings", "share of bodies by ending"}, shares.share);
+  describe_endings(out, {"endings", "how bodies end: share of all bodies by ending"}, shares.share);
   describe_intervals(out, shares);
 }
 
@@ -313,11 +318,10 @@ Rest rest_of(const markov::FinalDistribution& f) {
 void describe(Fields& out, const Rest& rest) {
   out.number(
       {"never_sampled", "1",
-       "share of bodies without an ending: they reach a state from which there is no gate run"},
+       "share of bodies left out of endings because they reach a state whose row has no run"},
       rest.never_sampled);
   out.number({"still_walking", "1",
-              "share of bodies without an ending: they were under way when the sum or the walks "
-              "were stopped"},
+              "share of bodies left out of endings because they still walk when the program stops"},
              rest.still_walking);
 }
 

@@ -30,15 +30,17 @@ double direct_seconds(const lattice::PooledPrediction& p) {
 }
 
 void describe_direct_seconds(Fields& out, double seconds) {
-  out.number({"direct_seconds", "s", "time of direct simulation for the same error bar"}, seconds);
+  out.number({"direct_seconds", "s",
+              "estimated time of direct simulation with the same error_95; null: unknown"},
+             seconds);
 }
 
 }  // namespace
 
 void describe_error(Fields& out, double error_95) {
   out.number({"error_95", "1",
-              "total variation of the final gates from the truth: 95 of 100 answers have no more "
-              "(of several starts the largest); null where nothing can be told"},
+              "95 % bound: total variation of final_gates from the truth (starts: the largest); "
+              "null: unknown"},
              error_95);
 }
 
@@ -50,49 +52,49 @@ void describe(Fields& out, const lattice::StartAnswer& a, const ShownField& show
   ends.describe_never_sampled(out);
   ends.describe_still_walking(out);
   describe_exits(out, shown_exits(a.exits, a.final), shown);
-  out.object({"final_gates_95", "95 % intervals of the final gates"}, [&](Fields& f) {
-    describe_map(f, {"low", "1", "their lower ends"}, a.gates_95[0]);
-    describe_map(f, {"high", "1", "their upper ends"}, a.gates_95[1]);
+  out.object({"final_gates_95", "95 % intervals of final_gates"}, [&](Fields& f) {
+    describe_map(f, {"low", "1", "lower ends of the intervals, by gate"}, a.gates_95[0]);
+    describe_map(f, {"high", "1", "upper ends of the intervals, by gate"}, a.gates_95[1]);
   });
   describe_answer_from(out, a.from_trials);
   describe_error(out, a.error.total_variation);
   out.number(
       {"corrcoef_95", "1",
-       "correlation of the final gates with the truth: 95 of 100 answers have at least this"},
+       "95 % bound: correlation of final_gates with the truth is at least this; null: unknown"},
       a.error.corrcoef);
-  out.number({"rmse_per_100_95", "trials per 100",
-              "root mean squared difference of the final gates from the truth: 95 of 100 answers "
-              "have no more"},
-             a.error.rmse_per_100);
-  out.number({"kernel_error_95", "1", "what error_95 would be with endlessly many first runs"},
-             a.kernel_error_95);
   out.number(
-      {"unseen_entries", "1",
-       "share of bodies that enter the second gate where no gate run did; error_95 counts it"},
-      a.unseen);
-  out.count({"full_trials", "1", "trials through the field from this start"}, a.trials);
-  out.count({"first_runs", "1", "runs through the first gate from this start"}, a.first_runs);
+      {"rmse_per_100_95", "trials per 100",
+       "95 % bound: root mean squared difference of final_gates from the truth is at most this"},
+      a.error.rmse_per_100);
+  out.number({"kernel_error_95", "1",
+              "error_95 with infinitely many first runs; of an answer from walks: error_95"},
+             a.kernel_error_95);
+  out.number({"unseen_entries", "1",
+              "share of bodies that enter the second gate where no gate run begins; in error_95"},
+             a.unseen);
+  out.count({"full_trials", "1", "full trials from this start"}, a.trials);
+  out.count({"first_runs", "1", "runs through the first gate only, from this start"}, a.first_runs);
   describe_direct_seconds(out, a.direct_seconds);
 }
 
 void describe(Fields& out, const RunsPrediction& runs, bool given) {
   const lattice::PooledPrediction& p = runs.prediction;
   out.number(
-      {"accuracy", "1", "error_95 that was asked for; of a matrix for any start, half of its own"},
+      {"accuracy", "1", "error_95 that was asked for; for a matrix of any start, half of its own"},
       runs.accuracy);
-  out.flag({"reached", "whether error_95 is as small"}, p.reached);
+  out.flag({"reached", "whether error_95 is at most accuracy, for all starts"}, p.reached);
   out.optional(given, [&](Fields& f) { describe_error(f, worst_error(p)); });
   describe_own_trials(out, p.own_trials);
-  out.count({"gate_runs", "1", "gate runs that this command made"}, p.gate_runs);
-  out.count({"states", "1", "states of the chain"}, p.states);
-  out.count({"nonzeros", "1", "chances of the chain that are not 0"}, p.nonzeros);
-  out.number({"seconds", "s", "time of runs, chains and error bars"}, p.seconds);
-  out.number({"run_seconds", "s", "time of the runs alone"}, p.run_seconds);
+  out.count({"gate_runs", "1", "gate runs that this command simulated"}, p.gate_runs);
+  out.count({"states", "1", "number of states of the chain"}, p.states);
+  out.count({"nonzeros", "1", "transition probabilities of the chain that are not 0"}, p.nonzeros);
+  out.number({"seconds", "s", "wall-clock time of runs, chains and error bars"}, p.seconds);
+  out.number({"run_seconds", "s", "wall-clock time of the runs alone"}, p.run_seconds);
   out.optional(given, [&](Fields& f) { describe_direct_seconds(f, direct_seconds(p)); });
   describe_status(out, p.health);
   describe_method(out, runs.method);
   out.optional(runs.recorded.has_value(), [&](Fields& f) {
-    f.object({"recorded", "the recorded runs"}, [&](Fields& r) {
+    f.object({"recorded", "the recorded runs behind the chain"}, [&](Fields& r) {
       const RecordedRuns recorded = runs.recorded.value_or(RecordedRuns());
       describe(r, recorded.counts);
       describe_lost_bounds(r, recorded.bounds);
@@ -136,19 +138,20 @@ std::string table_of(const RunsPrediction& runs) {
 
 void describe_own_trials(Fields& out, const std::optional<lattice::OwnTrials>& own) {
   out.maybe(Label("own_trials",
-                  "test of the chain against the full trials it is made from; null: no trials, or "
-                  "no exact chain answer")
+                  "test: full trials of all starts against the chain's answers; null: no such "
+                  "trials, or walks")
                 .shared(),
             own, [](Fields& f, const lattice::OwnTrials& o) {
-              f.count({"trials", "1", "number of full trials of all starts together"}, o.trials);
+              f.count({"trials", "1", "number of full trials"}, o.trials);
               f.number({"total_variation", "1",
-                        "total variation between the full trials' final gates and the chain's"},
+                        "total variation between the final gates of these trials and the chain's"},
                        o.total_variation);
               f.number({"chance_total_variation", "1",
-                        "mean of total_variation for as many trials drawn from the chain's answer"},
+                        "mean total variation of as many trials drawn from the chain's answer"},
                        o.chance_total_variation);
-              f.number({"p", "1", "p-value of the test, of final gates and endings together"}, o.p);
-              f.flag({"differs", "whether p is at most 0.01: the chain is wrong"}, o.differs());
+              f.number({"p", "1", "p-value of final gates and endings together"}, o.p);
+              f.flag({"differs", "whether p is at most 0.01: the chain differs from the trials"},
+                     o.differs());
             });
 }
 

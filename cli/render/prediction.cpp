@@ -20,22 +20,29 @@ void describe(Fields& out, const lattice::StartPrediction& s, const ShownField& 
   const markov::FinalDistribution& f = s.final;
   const auto ends = ends_of(f, s.shares);
   ends.describe_endings(out);
-  out.object({"matrix_sampling", "what the sampling of the matrix makes"}, [&](Fields& m) {
-    m.count({"replicates", "1", "predictions from resampled matrices"}, s.replicates);
-    m.number({"total_variation_mean", "1", "mean total variation of theirs from this one"},
-             s.mean_total_variation);
-    m.number({"total_variation_95", "1", "95 of 100 of them have no more"}, s.total_variation_95);
-  });
+  out.object(
+      {"matrix_sampling", "sampling error of the prediction, from resampled matrices"},
+      [&](Fields& m) {
+        m.count({"replicates", "1", "number of predictions from resampled matrices"}, s.replicates);
+        m.number({"total_variation_mean", "1",
+                  "mean total variation between their final gates and this prediction's; null: no "
+                  "replicates"},
+                 s.mean_total_variation);
+        m.number({"total_variation_95", "1",
+                  "95 % of these total variations are at most this; null: no replicates"},
+                 s.total_variation_95);
+      });
   ends.describe_gates(out);
   ends.describe_sums(out);
   ends.describe_never_sampled(out);
   describe_exits(out, shown_exits(s.exits, f), shown);
   ends.describe_still_walking(out);
-  out.number({"rounding_at_most", "1", "what rounding changes in all shares together, at most"},
+  out.number({"rounding_at_most", "1", "upper bound of the rounding error of all shares together"},
              f.rounding);
-  out.number({"error_at_most", "1", "what rounding and walks not finished change, at most"},
+  out.number({"error_at_most", "1",
+              "upper bound of the error of all shares from rounding and unfinished walks together"},
              f.remainder + f.rounding);
-  out.count({"steps", "1", "steps of propagation; 0: the chain was solved"}, f.steps);
+  out.count({"steps", "1", "propagation steps; 0: a linear solve instead"}, f.steps);
 }
 
 std::string table_of(const lattice::StartPrediction& s, const std::string& bin,
@@ -69,7 +76,7 @@ template <class Describe>
 void describe_starts(Fields& out, const PredictResult& r, Describe describe_one) {
   out.optional(r.given.empty(), [&](Fields& f) { describe_one(f, 0); });
   out.optional(!r.given.empty(), [&](Fields& f) {
-    f.list_of({"starts", "what is predicted for each start that was given"}, r.given.size(),
+    f.list_of({"starts", "prediction for each --start"}, r.given.size(),
               [&](Fields& one, std::size_t k) {
                 describe_start(one, r.shown.map.section, r.given[k]);
                 describe_one(one, k);
@@ -90,23 +97,25 @@ void describe(Fields& out, const MatrixPrediction& m, const PredictResult& r) {
     f.optional(given, [&](Fields& s) { describe_start_state(s, m.states[k]); });
   };
   out.count({"left_out_matrices", "1",
-             "resampled matrices that the intervals leave out, as bodies circle too long in them"},
+             "resampled matrices left out of the intervals because bodies circle too long in them"},
             m.prediction.left_out.matrices);
   describe_starts(out, r, [&](Fields& f, std::size_t k) {
     describe(f, m.prediction.starts[k], r.shown);
     state_in_list(f, k);
   });
-  out.text({"solver", "how the sum over all walks was found (--solver)"}, m.solver);
+  out.text(Label("solver", "method for the sum over all walks, as given by --solver")
+               .one_of({"auto", "propagate", "march", "klu"}),
+           m.solver);
   out.optional(!given, [&](Fields& f) { describe_start_state(f, m.states.front()); });
   describe_status_of_matrix(out, m.status);
   out.optional(!m.rows.empty(), [&](Fields& f) {
-    f.list({"rows", "rows of gates with another matrix"}, m.rows,
+    f.list({"rows", "rows of gates that have another matrix, a range each"}, m.rows,
            [](Fields& row, const OtherRows& o) {
-             row.count({"first", "1", "i_y of the first row"}, o.first);
-             row.count({"last", "1", "i_y of the last row"}, o.last);
-             row.text({"matrix", "its file"}, o.matrix);
+             row.count({"first", "1", "i_y of the first row of the range"}, o.first);
+             row.count({"last", "1", "i_y of the last row of the range"}, o.last);
+             row.text({"matrix", "path of the matrix file of these rows"}, o.matrix);
              describe_status_of_matrix(row, o.status);
-             row.text({"scene", "its scene, as TOML"}, o.scene);
+             row.text({"scene", "scene of this matrix, as TOML"}, o.scene);
            });
   });
 }

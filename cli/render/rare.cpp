@@ -38,9 +38,11 @@ std::string rounded(double n) {
 }
 
 void describe(Fields& out, const lattice::RowChance& c) {
-  out.estimate({"probability", "1", "chance that a body enters the row"}, c.probability,
-               c.interval_95(), "interval_95");
-  out.number({"relative_standard_error", "1", "of the chance; null where no body came"},
+  out.estimate({"probability", "1",
+                "chance that a body enters the row, from split trials of the full dynamics"},
+               c.probability, c.interval_95(), "interval_95");
+  out.number({"relative_standard_error", "1",
+              "standard error of probability, as a share of it; null: no body came"},
              c.probability > 0.0 ? c.relative_standard_error : kUnknown);
 }
 
@@ -51,34 +53,40 @@ void describe(Fields& out, const RareResult& result) {
   const lattice::Splitting& s = event.splitting;
   const lattice::RowChance last = s.rows.empty() ? lattice::RowChance() : s.rows.back();
   describe(out, last);
-  out.count({"row", "1", "the row to enter; the one behind the start's is 1"}, s.rows.size());
-  out.number({"chain", "1", "the same chance by the chain alone"},
+  out.count({"row", "1", "row to enter, i_y; bodies start in row 0"}, s.rows.size());
+  out.number({"chain", "1", "chance to enter the row by the Markov chain alone"},
              event.chain.empty() ? kUnknown : event.chain.back());
   out.number({"direct_trials_needed", "1",
-              "trials of direct simulation that have the same relative standard error"},
+              "trials of direct simulation for the same relative standard error; null: unknown"},
              has_error(last) ? trials_needed(last) : kUnknown);
-  out.flag({"reached", "whether the accuracy that was asked for was reached"}, s.reached);
-  out.count({"gate_runs", "1", "gate runs, of the chain and of the split trials"},
+  out.flag(
+      {"reached", "whether relative_standard_error is at most the accuracy that was asked for"},
+      s.reached);
+  out.count({"gate_runs", "1", "gate runs of the chain and of the split trials together"},
             s.gate_runs + event.pool_runs);
-  out.count({"split_trials", "1", "independent trials, before they were split"}, s.trials);
-  out.number({"chain_seconds", "s", "time of the chain and its runs"}, event.chain_seconds);
-  out.number({"seconds", "s", "time in all"}, event.seconds);
+  out.count({"split_trials", "1", "independent trials before splitting"}, s.trials);
+  out.number({"chain_seconds", "s", "wall-clock time of the chain and its runs"},
+             event.chain_seconds);
+  out.number({"seconds", "s", "wall-clock time of chain and split trials"}, event.seconds);
   out.list_of(
-      {"rows", "each row up to the target"}, s.rows.size(), [&](Fields& row, std::size_t r) {
+      {"rows", "each row from 1 to the target"}, s.rows.size(), [&](Fields& row, std::size_t r) {
         describe(row, s.rows[r]);
-        row.count({"row", "1", "the one behind the start's is 1"}, r + 1);
-        row.number({"chain", "1", "the same chance by the chain alone"}, event.chain[r]);
+        row.count({"row", "1", "row of gates, i_y; bodies start in row 0"}, r + 1);
+        row.number({"chain", "1", "chance to enter the row by the Markov chain alone"},
+                   event.chain[r]);
         row.optional(direct.trials > 0, [&](Fields& f) {
           const std::int64_t entered = direct.trials > 0 ? direct.entered[r] : 0;
-          f.count({"direct_entered", "1", "trials of direct simulation that entered it"}, entered);
-          f.interval({"direct_interval_95", "1", "95 % interval of their share"},
+          f.count({"direct_entered", "1", "trials of direct simulation that entered the row"},
+                  entered);
+          f.interval({"direct_interval_95", "1",
+                      "95 % interval of the share of direct trials that entered the row"},
                      dynamics::share_interval(entered, direct.trials));
         });
       });
   out.optional(direct.trials > 0, [&](Fields& f) {
-    f.object({"direct", "direct simulation beside it"}, [&](Fields& d) {
+    f.object({"direct", "direct simulation for comparison"}, [&](Fields& d) {
       d.count({"trials", "1", "trials of direct simulation"}, direct.trials);
-      d.number({"seconds", "s", "time that they took"}, direct.seconds);
+      d.number({"seconds", "s", "wall-clock time of the direct trials"}, direct.seconds);
     });
   });
   describe_status(out, s.health);

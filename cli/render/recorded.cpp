@@ -38,17 +38,15 @@ RecordedCounts counts_of(const lattice::RunPool& pool) {
 
 void describe(Fields& out, const RecordedCounts& counts) {
   out.count({"bodies", "1", "number of different bodies"}, counts.bodies);
-  out.count({"trials", "1", "number of trials, each the way of a body through the field"},
-            counts.trials);
-  out.count({"passages", "1", "number of passages, each of a body through one cell"},
-            counts.passages);
-  out.count({"left", "1", "passages in which the body left the cell"}, counts.left);
-  out.count({"trapped", "1", "passages in which the body was trapped"}, counts.trapped);
-  out.count({"lost", "1", "passages in which the body was lost from sight"}, counts.lost);
+  out.count({"trials", "1", "number of trials: paths of a body through the field"}, counts.trials);
+  out.count({"passages", "1", "number of passages of a body through one cell"}, counts.passages);
+  out.count({"left", "1", "number of passages that left their cell"}, counts.left);
+  out.count({"trapped", "1", "number of passages in which the body was trapped"}, counts.trapped);
+  out.count({"lost", "1", "number of passages in which the body was lost from sight"}, counts.lost);
 }
 
 void describe_recorded(Fields& out, const RecordedCounts& counts) {
-  out.object({"recorded", "numbers of recorded bodies, trials and passages"},
+  out.object({"recorded", "the recorded runs behind the result"},
              [&](Fields& f) { describe(f, counts); });
 }
 
@@ -94,14 +92,18 @@ std::vector<std::string> doubts(const lattice::RunPool& pool, const lattice::Pro
 
 void describe_lost_bounds(Fields& out, const lattice::LostBounds& bounds) {
   out.optional(bounds.lost > 0.0, [&](Fields& f) {
-    f.object({"lost_bounds", "the endings if all of the lost bodies had met one fate"}, [&](Fields&
-                                                                                                b) {
-      b.number({"lost_share", "1", "share of the passages that were lost from sight"}, bounds.lost);
-      describe_endings(b, {"if_trapped", "shares by ending if all had been trapped"},
-                       bounds.final[0].endings);
-      describe_endings(b, {"if_left", "shares by ending if all had left their cell"},
-                       bounds.final[1].endings);
-    });
+    f.object(
+        {"lost_bounds", "endings if all bodies lost from sight had met one fate"}, [&](Fields& b) {
+          b.number(
+              {"lost_share", "1", "share of the passages in which the body was lost from sight"},
+              bounds.lost);
+          describe_endings(b,
+                           {"if_trapped", "shares by ending if all lost bodies had been trapped"},
+                           bounds.final[0].endings);
+          describe_endings(b,
+                           {"if_left", "shares by ending if all lost bodies had left their cell"},
+                           bounds.final[1].endings);
+        });
   });
 }
 
