@@ -33,9 +33,9 @@ void describe(Fields& out, const ExportResult& result) {
 namespace {
 
 void describe(Fields& out, const Sample& sample) {
-  out.text({"name", "what `gatewalk sample NAME` calls it"}, sample.name);
-  out.text({"file", "where it stands in the program's sources"}, sample.file);
-  out.text({"about", "what it is"}, sample.about);
+  out.text({"name", "name of the sample, for `gatewalk sample NAME`"}, sample.name);
+  out.text({"file", "path of the sample in the program's sources"}, sample.file);
+  out.text({"about", "what the sample shows"}, sample.about);
 }
 
 }  // namespace
@@ -44,12 +44,12 @@ void describe(Fields& out, const SampleResult& result) {
   out.either(
       !result.text,
       [&](Fields& f) {
-        f.list({"samples", "all samples that there are"}, result.samples,
+        f.list({"samples", "all samples"}, result.samples,
                [](Fields& item, const Sample& sample) { describe(item, sample); });
       },
       [&](Fields& f) {
         describe(f, result.samples.empty() ? Sample() : result.samples.front());
-        f.text({"text", "the whole file"}, result.text.value_or(""));
+        f.text({"text", "text of the whole sample file"}, result.text.value_or(""));
       });
 }
 

@@ -21,11 +21,10 @@ void describe(Fields& out, const dynamics::GateTally& tally, const Description& 
       f.counted(field, n, dynamics::share_interval(n, tally.trials));
     };
     counted({"traversed", "1",
-             "runs in which the body got through the gate: left, right, even is the beam deflected "
-             "more"},
+             "runs in which the body traversed the gate: traversed left, right and even together"},
             tally.traversed());
     for (const auto& [outcome, key, words] : dynamics::kOutcomeNames) {
-      const std::string meaning = "number of runs with this outcome: " + std::string(words);
+      const std::string meaning = "number of runs with the outcome: " + std::string(words);
       const Field field(key, "1", meaning);
       if (outcome != Outcome::traversed_even && outcome != Outcome::broken)
         counted(field, tally[outcome]);

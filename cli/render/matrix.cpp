@@ -113,22 +113,20 @@ void add_types(TextTable& table, const lattice::MatrixFile& file) {
 void describe_size(Fields& out, const Transitions& t) {
   out.count({"inputs", "1", "number of rows: states in which a gate is entered"}, t.space.size());
   out.count(
-      {"outputs", "1",
-       "number of columns: states in which the next gate is entered, and trapped as the last one"},
+      {"outputs", "1", "number of columns: states in which the next gate is entered, and trapped"},
       t.space.size() + 1);
 }
 void describe_counts(Fields& out, const Transitions::Totals& total) {
-  out.count({"counts", "1",
-             "sum of all counts: gate runs, with their mirror images where these count too"},
-            total.runs);
+  out.count(
+      {"counts", "1", "sum of all counts: runs, with their mirror images where these count too"},
+      total.runs);
 }
 void describe_nonzeros(Fields& out, const Transitions::Totals& total) {
-  out.count({"nonzeros", "1", "number of entries of the matrix that are not zero"}, total.nonzeros);
+  out.count({"nonzeros", "1", "matrix entries that are not zero"}, total.nonzeros);
 }
 void describe_clamped_share(Fields& out, const Transitions::Totals& total) {
   out.number({"clamped_share", "1",
-              "share of crossings into a next gate that lie outside all bins and count in the "
-              "nearest bin"},
+              "share of the crossings that lie outside all bins and count in the nearest bin"},
              total.clamped_share());
 }
 void describe_empty_rows(Fields& out, const Transitions::Totals& total) {
@@ -140,7 +138,7 @@ void describe_types(Fields& out, const lattice::MatrixFile& file) {
     f.object({"types", "matrices of the field's other types of gates, by type"},
              [&](Fields& types) {
                for (const auto& [name, t] : file.types)
-                 types.object(Label(name, "the matrix of this type").varying("<type>"),
+                 types.object(Label(name, "matrix of the gates of this type").varying("<type>"),
                               [&](Fields& type) {
                                 const auto total = t.totals();
                                 describe_counts(type, total);
@@ -155,31 +153,28 @@ void describe_types(Fields& out, const lattice::MatrixFile& file) {
 void describe_row(Fields& out, const Transitions& t, int row) {
   const StateRange range = t.space.range(row);
   const Section& section = t.space.section();
-  out.count({"input", "1", "number of the state in which the gate is entered, from 1"},
+  out.count({"input", "1", "number of the state, counted from 1"},
             lattice::shown_number(t.space, row) + 1);
-  out.text({"boundary", "boundary through which the gate is entered"},
+  out.text({"boundary", "boundary of the gate through which the state enters"},
            section.faces[range.face].name);
   const std::string name = name_of(section, range.middle());
   out.optional(!name.empty(), [&](Fields& f) {
-    f.text({"name", "name of the state, in a chain that was made elsewhere"}, name);
+    f.text({"name", "name of the state, in a chain imported from elsewhere"}, name);
   });
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
     out.numbers(Field(section.coordinates[axis].key, "its own",
-                      "range of this coordinate in the state: from, to")
+                      "range of the coordinate that the state covers; the key names the unit")
                     .varying("<coordinate>"),
                 {range.at[axis][0], range.at[axis][1]});
-  out.count({"trials", "1", "number of runs from the state"}, t.trials[row]);
-  out.count({"clamped", "1",
-             "number of these runs whose crossing into the next gate lies outside all bins"},
-            t.clamped[row]);
-  out.list({"outputs", "how runs from the state go on: the entries of the row that are not zero"},
-           outputs_of(t, row), [](Fields& f, const auto& output) {
-             f.count({"output", "1",
-                      "number of the state in which the next gate is entered, from 1; the last "
-                      "number: trapped"},
-                     output.first + 1);
-             f.count({"count", "1", "number of runs from the state with this output"},
-                     output.second.second);
+  out.count({"trials", "1", "counts of the row: runs from this state"}, t.trials[row]);
+  out.count({"clamped", "1", "crossings of these runs that lie outside all bins"}, t.clamped[row]);
+  out.list({"outputs", "the outputs of this row that were counted"}, outputs_of(t, row),
+           [](Fields& f, const auto& output) {
+             f.count(
+                 {"output", "1",
+                  "number of the state entered next, counted from 1; the last output is trapped"},
+                 output.first + 1);
+             f.count({"count", "1", "count of this output"}, output.second.second);
            });
 }
 
@@ -341,24 +336,22 @@ void describe(Fields& out, const ShownMatrix& shown) {
   const auto total = t.totals();
   const double cells = static_cast<double>(t.space.size()) * (t.space.size() + 1);
   describe_size(out, t);
-  out.count({"gate_runs", "1", "number of gate runs from which the matrix was counted"},
-            gate_runs_of(file, path));
+  out.count({"gate_runs", "1", "gate runs behind the matrix"}, gate_runs_of(file, path));
   describe_counts(out, total);
   describe_nonzeros(out, total);
-  out.number({"density", "1", "share of the matrix's entries that are not zero"},
+  out.number({"density", "1", "share of the matrix entries that are not zero"},
              static_cast<double>(total.nonzeros) / cells);
   describe_clamped_share(out, total);
   describe_empty_rows(out, total);
   describe_types(out, file);
-  out.count({"counted_from", "1", "number of the first input, and of the first output, in rows"},
-            1);
-  out.list({"rows", "the rows of the matrix"}, lattice::shown_order(t.space),
+  out.count({"counted_from", "1", "number of the first input and output in rows"}, 1);
+  out.list({"rows", "rows of the matrix, one for each input"}, lattice::shown_order(t.space),
            [&](Fields& f, int row) { describe_row(f, t, row); });
   if (const auto states = recorded_states(file, path); states || out.is_schema())
     describe_state_space(out, states.value_or(StateRecord()));  // a foreign file may have none
-  out.object({"text", "the other texts in the matrix file"}, [&](Fields& f) {
+  out.object({"text", "other texts that the file keeps"}, [&](Fields& f) {
     for (const auto& [key, value] : file.text)
-      f.text(Label(key, "text of this attribute").varying("<attribute>"), value);
+      f.text(Label(key, "attribute of this name in the file").varying("<attribute>"), value);
   });
 }
 

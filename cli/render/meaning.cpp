@@ -162,59 +162,72 @@ std::vector<std::string> remarks(const SceneResult& result) {
 
 void describe(Fields& out, const dynamics::RingDown& r) {
   out.number({"period_s", "s",
-              "from swing to swing on the same side; null: it creeps back without a swing"},
+              "period of the beam's free swing; null: the beam creeps back without a swing"},
              r.period);
-  out.number({"kept_per_swing", "1", "share of a swing's angle that the next one has"}, r.kept);
-  out.number({"half_s", "s",
-              "time in which its angle, or that of its swings, halves in the long run; null: "
-              "nothing brings it back or stops it"},
-             r.half);
+  out.number({"kept_per_swing", "1",
+              "amplitude of a swing divided by that of the swing before; 0: no swing"},
+             r.kept);
+  out.number(
+      {"half_s", "s",
+       "time in which the angle, or its amplitude, halves in the long run; null: it never does"},
+      r.half);
 }
 
 void describe_meaning(Fields& out, const Meaning& m, const lattice::Scene& scene) {
-  out.number({"top_speed_m_per_s", "m/s", "top speed in the open; null: there is no drag"},
-             m.top_speed);
-  out.number({"top_speed_time_s", "s", "time from rest to 95 % of the top speed"},
+  out.number(
+      {"top_speed_m_per_s", "m/s", "top speed without beams: propulsion / drag; null: no drag"},
+      m.top_speed);
+  out.number({"top_speed_time_s", "s", "time from rest to 95 % of the top speed; null: no drag"},
              m.top_speed_time);
-  out.number({"passage_s", "s", "time from the start through a gate without beams; null: never"},
-             m.passage);
-  out.number({"passage_speed_m_per_s", "m/s", "speed at the end of this passage"}, m.passage_speed);
+  out.number(
+      {"passage_s", "s",
+       "time from the start to the end of a gate without beams and noise; null: never there"},
+      m.passage);
+  out.number({"passage_speed_m_per_s", "m/s",
+              "speed at the end of the passage in passage_s; null: never there"},
+             m.passage_speed);
   out.number({"shaken_sideways_m", "m",
-              "standard deviation of the place sideways that noise makes in this passage, or in "
-              "the time limit if that is less"},
+              "standard deviation of the sideways place from noise after passage_s or the time "
+              "limit, if shorter"},
              m.shaken);
   out.number({"draws_per_body_length", "1",
-              "draws of the random force while the body goes its own length"},
+              "draws of the random force while the body moves its own length; null: no passage"},
              m.draws_per_length);
-  out.number(
-      {"froude", "1",
-       "v^2/(g R), with the radius for a leg: of the top speed, else of passage_speed_m_per_s"},
-      m.froude);
-  out.number({"push_per_weight", "1", "propulsion over the body's weight on Earth"},
+  out.number({"froude", "1",
+              "Froude number v^2/(g R) with R the body radius, v the top speed or passage speed; "
+              "null: no v"},
+             m.froude);
+  out.number({"push_per_weight", "1", "propulsion divided by the body's weight on Earth"},
              m.push_per_weight);
-  out.number({"random_per_weight", "1", "random force over the body's weight on Earth"},
+  out.number({"random_per_weight", "1", "random force divided by the body's weight on Earth"},
              m.random_per_weight);
-  out.number({"passages_waited", "1", "run.time_limit_s over passage_s"}, m.passages_waited);
-  out.number({"resistance_N", "N",
-              "the most with which both beams resist a body on the middle line; null: it covers "
-              "their joints"},
-             m.beams.resistance);
-  out.number({"resistance_angle_rad", "rad", "angle of a beam where they resist most"},
+  out.number({"passages_waited", "1", "run.time_limit_s divided by passage_s; 0: no passage"},
+             m.passages_waited);
+  out.number(
+      {"resistance_N", "N",
+       "largest resistance of both beams to a body on the middle line; null: it covers the joints"},
+      m.beams.resistance);
+  out.number({"resistance_angle_rad", "rad",
+              "beam angle of the largest resistance; null: the body covers the joints"},
              m.beams.angle);
   out.number({"held_angle_rad", "rad",
-              "angle of a beam where they hold the propulsion; null: the body gets past"},
+              "beam angle at which the beams balance the propulsion; null: they never do"},
              m.beams.held_angle);
-  out.object({"ring_down", "how a beam that is let go comes to rest"}, [&](Fields& beams) {
-    beams.object({"left", "the left beam"},
-                 [&](Fields& f) { describe(f, m.ring_down[dynamics::kLeft]); });
-    beams.object({"right", "the right beam"},
-                 [&](Fields& f) { describe(f, m.ring_down[dynamics::kRight]); });
-  });
-  out.list({"far_from_walkers", "what no animal and no robot that walks has"},
+  out.object({"ring_down", "how a deflected beam comes to rest after its release"},
+             [&](Fields& beams) {
+               beams.object({"left", "the left beam"},
+                            [&](Fields& f) { describe(f, m.ring_down[dynamics::kLeft]); });
+               beams.object({"right", "the right beam"},
+                            [&](Fields& f) { describe(f, m.ring_down[dynamics::kRight]); });
+             });
+  out.list({"far_from_walkers", "numbers of meaning that no walking animal or robot reaches"},
            far_from_walkers(m, scene), [](Fields& f, const FarFromWalkers& far) {
-             f.text({"name", "a key of meaning"}, far.name);
-             f.text({"what", "in words"}, far.what);
-             f.text({"reason", "why that is far"}, far.reason);
+             f.text(Label("name", "short name of the quantity in meaning")
+                        .one_of({"froude", "push_per_weight", "random_per_weight",
+                                 "draws_per_length", "passages_waited"}),
+                    far.name);
+             f.text({"what", "the number in words"}, far.what);
+             f.text({"reason", "why the number is far from walking"}, far.reason);
            });
 }
 
@@ -270,30 +283,31 @@ std::string far_from_walkers_line(const lattice::Scene& scene) {
 
 void describe(Fields& out, const SceneResult& result) {
   const lattice::Scene& scene = result.scene;
-  out.list({"keys", "every key of the scene"}, lattice::describe(scene),
+  out.list({"keys", "all keys of the scene with their values"}, lattice::describe(scene),
            [](Fields& f, const lattice::KeyInfo& k) {
-             f.text({"key", "its name"}, k.key);
-             f.text({"value", "as TOML has it"}, k.value);
-             f.text({"unit", "of the value; empty: a pure number, or a text"}, k.unit);
-             f.text({"range", "that the value must lie in"}, k.range);
-             f.text({"meaning", "what it is"}, k.meaning);
+             f.text({"key", "name of the key"}, k.key);
+             f.text({"value", "value of the key, as TOML"}, k.value);
+             f.text({"unit", "unit of the value; empty: a pure number or a text"}, k.unit);
+             f.text({"range", "range of allowed values"}, k.range);
+             f.text({"meaning", "meaning of the key"}, k.meaning);
              f.text({"source",
-                     "where the value comes from: a line of the file, --set, \"paper\", or "
+                     "origin of the value: a line of the file, --set, \"paper\" (default) or "
                      "\"derived\" from other keys"},
                     k.source);
            });
-  out.object({"meaning", "what these numbers amount to"},
+  out.object({"meaning", "physical quantities that follow from these values"},
              [&](Fields& f) { describe_meaning(f, result.meaning, scene); });
-  out.texts({"remarks", "the same in sentences"}, remarks(result));
+  out.texts({"remarks", "the quantities of meaning in sentences"}, remarks(result));
   out.text({"scene", "the whole scene, as TOML"}, lattice::to_toml(scene));
   out.optional(scene.terrain.has_value(), [&](Fields& f) {
-    f.texts({"map", "types of the field's gates, a row each, the far row first"},
+    f.texts({"map", "types of the field's gates, one text for each row, the far row first"},
             lattice::map_rows(*scene.terrain, scene.field));
   });
   out.optional(!scene.actions.empty(), [&](Fields& f) {
     std::vector<std::string> names;
     for (const lattice::Terrain::Type& action : scene.actions) names.push_back(action.name);
-    f.texts({"actions", "names of what a body may do, in the order of their numbers"}, names);
+    f.texts({"actions", "names of the actions that a body may take, in the order of their numbers"},
+            names);
   });
 }
 

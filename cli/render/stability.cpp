@@ -17,28 +17,30 @@ using dynamics::Verdict;
 namespace {
 
 void describe(Fields& out, const dynamics::MapAxis& axis) {
-  out.text({"name", "the number that varies along this axis, with its unit"}, axis.name);
-  out.numbers({"values", "its own", "values of this number"}, axis.values);
+  out.text({"name", "parameter along this axis, with its unit"}, axis.name);
+  out.numbers({"values", "its own", "values of this parameter; the name gives the unit"},
+              axis.values);
 }
 
 void describe(Fields& out, const FinishedMap& m) {
   const auto& [map, points, seconds] = m;
   out.text({"map", "name of the map"}, map.name);
   out.text({"method", "run.method of the trials"}, map.method);
-  out.object({"x", "the axis to the right"}, [&](Fields& f) { describe(f, map.x); });
-  out.object({"y", "the axis upwards"}, [&](Fields& f) { describe(f, map.y); });
+  out.object({"x", "horizontal axis"}, [&](Fields& f) { describe(f, map.x); });
+  out.object({"y", "vertical axis"}, [&](Fields& f) { describe(f, map.y); });
   TextRows status(map.y.values.size());
   for (std::size_t iy = 0; iy < status.size(); ++iy)
     for (std::size_t ix = 0; ix < map.x.values.size(); ++ix)
       status[iy].emplace_back(std::string(dynamics::name_of(m.at(ix, iy).verdict)));
-  out.text_rows({"status", "the worst that the trials of each point showed: a row for each y"},
-                status);
-  out.list({"borders", "borders that theory predicts, as lines"},
+  out.text_rows(
+      {"status", "worst fault in the trials of each point, or ok; one row for each value of y"},
+      status);
+  out.list({"borders", "stability borders from theory, as lines"},
            points.empty() ? std::vector<dynamics::Border>() : dynamics::borders(map),
            [](Fields& f, const dynamics::Border& b) {
              f.text({"label", "formula of the border"}, b.label);
-             f.numbers({"x", "its own", "places of its points on the axis x"}, b.x);
-             f.numbers({"y", "its own", "places of its points on the axis y"}, b.y);
+             f.numbers({"x", "its own", "coordinates of the line's points on the axis x"}, b.x);
+             f.numbers({"y", "its own", "coordinates of the line's points on the axis y"}, b.y);
            });
 }
 
@@ -46,13 +48,15 @@ void describe(Fields& out, const FinishedMap& m) {
 
 void describe(Fields& out, const StabilityResult& result) {
   const auto& [maps, made_by] = result;
-  out.count({"trials_per_point", "1", "trials of each point"}, dynamics::kTrialsPerPoint);
-  out.count({"work_granted_per_point", "1",
-             "steps or evaluations that all trials of a point may take; beyond, it is stuck"},
-            dynamics::kMostWorkPerPoint);
-  out.number({"holds_share", "1", "share of steps that may be forced to hold; beyond, it is stuck"},
+  out.count({"trials_per_point", "1", "number of trials at each point"}, dynamics::kTrialsPerPoint);
+  out.count(
+      {"work_granted_per_point", "1",
+       "limit of steps or evaluations for all trials of a point; beyond it the status is stuck"},
+      dynamics::kMostWorkPerPoint);
+  out.number({"holds_share", "1",
+              "limit of the share of steps forced to hold; beyond it the status is stuck"},
              dynamics::Health::kPermittedHolds);
-  out.list({"maps", "one for each pair of axes and each method"}, maps,
+  out.list({"maps", "one map for each pair of axes and each method"}, maps,
            [](Fields& f, const FinishedMap& m) { describe(f, m); });
   describe_made_by(out, made_by);
 }

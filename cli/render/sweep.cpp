@@ -46,17 +46,18 @@ std::string share_text(const Share& s) {
 }
 
 void describe(Fields& out, const std::vector<SweepAxis>& axes, const SweepPoint& p) {
-  out.object({"at", "values of the varied keys"}, [&](Fields& at) {
+  out.object({"at", "values of the varied keys at this point"}, [&](Fields& at) {
     for (std::size_t i = 0; i < axes.size(); ++i)
-      at.given(Field(axes[i].key, "its own", "value of this key of the scene").varying("<key>"),
-               p.values[i]);
+      at.given(
+          Field(axes[i].key, "its own", "value of this key of the scene; the key names the unit")
+              .varying("<key>"),
+          p.values[i]);
   });
   const Share right = shares_of(p.tally).back();
   describe(out, p.tally, [&](Fields& intervals) {
     intervals.optional(right.whole > 0, [&](Fields& f) {
       f.interval({right.name, "1",
-                  "95 % interval of the share of traversed_right in traversed_left and "
-                  "traversed_right"},
+                  "95 % interval of traversed_right / (traversed_left + traversed_right)"},
                  share_interval(right.part, right.whole));
     });
   });
@@ -69,8 +70,10 @@ void describe(Fields& out, const std::vector<SweepAxis>& axes, const SweepPoint&
 void describe(Fields& out, const SweepResult& result) {
   out.list({"vary", "the keys of the scene that are varied"}, result.axes,
            [](Fields& f, const SweepAxis& axis) {
-             f.text({"key", "of the scene"}, axis.key);
-             f.givens({"values", "its own", "its values, in this order"}, axis.values);
+             f.text({"key", "name of the varied key of the scene"}, axis.key);
+             f.givens({"values", "its own",
+                       "values of this key, in their order; the key names the unit"},
+                      axis.values);
            });
   out.list({"points", "every combination of the values, the last key varying fastest"},
            result.points,
