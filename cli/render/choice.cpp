@@ -156,13 +156,13 @@ void describe_methods(Fields& out, const ActionMethods& all) {
       if (!chosen) chosen.emplace();
       chosen->push_back({all.actions[a], *all.methods[a]});
     }
-  out.list({"methods",
-            "what run.method = \"auto\" chose for each action; null: no action has run.method = "
-            "\"auto\""},
-           chosen, [](Fields& f, const Chosen& c) {
-             f.text({"action", "name of the action"}, c.action);
-             f.object(method_label(), [&](Fields& method) { describe(method, c.method); });
-           });
+  out.list(
+      {"methods",
+       "what run.method = \"auto\" chose for each action; null: no action has method \"auto\""},
+      chosen, [](Fields& f, const Chosen& c) {
+        f.text({"action", "name of the action"}, c.action);
+        f.object(method_label(), [&](Fields& method) { describe(method, c.method); });
+      });
 }
 
 std::string method_lines(const ActionMethods& all) {

@@ -174,8 +174,8 @@ std::string netcdf_of(const Recordings& recordings, const Provenance& made_by) {
 
 void describe_details(Fields& out, const Recordings& recordings, const Recording& run,
                       double joule) {
-  out.count({"trial", "1", "number of the trial"}, run.trial);
-  out.count({"hits", "1", "hits on beams"}, run.health.impacts);
+  out.count({"trial", "1", "number of the trial, counted from 0"}, run.trial);
+  out.count({"hits", "1", "number of hits of the body on beams"}, run.health.impacts);
   for (const char* name : {"potential_J", "elastic_left_J", "elastic_right_J", "landscape_J",
                            "landscape_left_J", "landscape_right_J"}) {
     const Column& c = lattice::column(name);
