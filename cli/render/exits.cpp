@@ -30,7 +30,7 @@ std::vector<double> place_bounds(const ShownField& shown, std::size_t side) {
 }
 
 Label exits_label() {
-  return {"exits", "share of bodies that leave the field at each place along its sides"};
+  return {"exits", "places where bodies leave the field, along each of its sides"};
 }
 
 /// What one or two answers say of it.
@@ -55,16 +55,16 @@ void describe_places(Fields& out, const Label& l, const std::vector<const FieldE
           places[i].interval[k] = (*exits[k])[side].interval[i];
         }
       }
-      sides.list({name_of_side(side).key, side == lattice::kFarSide
-                                              ? "places along the far side, one for each column of "
-                                                "gates; x from the middle of the start's column"
-                                              : "places along this side, one for each row of "
-                                                "gates; y from the near end of the field"},
-                 places, [&](Fields& f, const Place& place) {
-                   f.number({"from_m", "m", "lower end of the place"}, place.from);
-                   f.number({"to_m", "m", "upper end of the place"}, place.to);
-                   describe_shares(f, place);
-                 });
+      sides.list(
+          {name_of_side(side).key,
+           side == lattice::kFarSide
+               ? "one place for each column of gates, along x; x = 0: middle of the start's column"
+               : "one place for each row of gates, along y; y = 0: near end of the field"},
+          places, [&](Fields& f, const Place& place) {
+            f.number({"from_m", "m", "lower end of the place"}, place.from);
+            f.number({"to_m", "m", "upper end of the place"}, place.to);
+            describe_shares(f, place);
+          });
     }
   });
 }
@@ -98,9 +98,9 @@ void describe_exits(Fields& out, const FieldExits& dynamics, const FieldExits& c
   describe_places(out, exits_label(), {&dynamics, &chain}, shown, [](Fields& f, const Place& p) {
     f.estimate({"dynamics", "1", "share of all trials that leave the field at this place"},
                p.share[0], p.interval[0]);
-    f.estimate(
-        {"exact", "1", "share of all bodies that leave the field at this place, by the chain"},
-        p.share[1], p.interval[1]);
+    f.estimate({"exact", "1",
+                "share of all bodies that leave the field at this place, by the exact chain"},
+               p.share[1], p.interval[1]);
   });
 }
 

@@ -22,7 +22,7 @@ void describe_entry(Fields& out, const dynamics::Section& of, const dynamics::En
     f.text({"name", "name of the state in which the body enters, where states have names"}, name);
   });
   out.optional(entry.face != 0, [&](Fields& f) {
-    f.text({"face", "face through which the body enters the cell; absent: the first face"},
+    f.text({"face", "face by which the body enters the cell, if not the first face"},
            section.faces[static_cast<std::size_t>(entry.face)].name);
   });
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
@@ -33,13 +33,13 @@ void describe_entry(Fields& out, const dynamics::Section& of, const dynamics::En
 
 void describe(Fields& out, const dynamics::Section& section, const dynamics::Entry& entry) {
   describe_entry(out, section, entry,
-                 "coordinate of the entry, such as its place on the face or a velocity",
+                 "coordinate of the entry, a place or a velocity; the key names the unit",
                  [&](const Field& f, std::size_t axis) { out.number(f, entry.at[axis]); });
 }
 
 void describe(Fields& out, const dynamics::Section& section, const dynamics::StateRange& range) {
   describe_entry(out, section, range.middle(),
-                 "range of this coordinate in the entries: from, to (no confidence interval)",
+                 "range of a coordinate of the entries; the key names the unit",
                  [&](const Field& f, std::size_t axis) { out.interval(f, range.at[axis]); });
 }
 
@@ -52,7 +52,9 @@ void describe_start(Fields& out, const Label& l, const dynamics::Section& sectio
 
 void describe_start(Fields& out, const dynamics::Section& section, const Start& start) {
   describe_start(
-      out, {"start", "how bodies enter the field; \"as seen\": like the recorded first entries"},
+      out,
+      {"start",
+       "how bodies enter the field; \"as seen\": by all first entries of the recorded runs"},
       section, start);
 }
 
@@ -109,10 +111,11 @@ ShownState shown_state(const lattice::ChainStart& start, const dynamics::StateSp
 }
 
 void describe(Fields& out, const ShownState& state) {
-  out.count({"input", "1", "number of the state, from 1"}, state.number);
+  out.count({"input", "1", "number of the state, counted from counted_from"}, state.number);
   out.count(Field("counted_from", "1", "number of the first state").at_least(1).at_most(1), 1);
-  out.text({"bin", "range of entries that make up the state, in words"}, state.bin);
-  out.flag({"clamped", "whether the start lies outside all bins, so that the nearest bin is taken"},
+  out.text({"bin", "face and coordinate ranges of the state, in words"}, state.bin);
+  out.flag({"clamped",
+            "whether the start lies outside all bins, so that the chain starts in the nearest one"},
            state.clamped);
 }
 
