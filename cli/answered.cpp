@@ -14,6 +14,7 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/json.h"
 #include "cli/render/text.h"
+#include "cli/render/version.h"
 #include "cli/web/embedded.h"
 #include "cli/web/html.h"
 
@@ -109,10 +110,6 @@ AnalysedField analysis_of(const Options& options, const Subject& s,
               options.work())};
 }
 
-Json json_for_page(const AnalysedField& analysis) {
-  return json_of([&](Fields& out) { describe_for_page(out, analysis); });
-}
-
 std::string name_of_field(const Subject& s) {
   const lattice::FieldParams field = s.shown().field;
   return fmt::format("Through {} x {} {}", field.columns, field.rows, s.scene ? "gates" : "cells");
@@ -192,30 +189,30 @@ void write_page(const Options& options, const Subject& s,
   const std::int64_t bodies = s.pool ? s.pool->bodies() : 0,
                      gate_runs = s.pool ? s.pool->gate_runs() : states.gate_runs;
   const ShownField shown = s.shown();
-  AnswerPage page{.title = name_of_field(s),
-                  .shown = shown,
-                  .scene = s.scene ? &*s.scene : nullptr,
-                  .starts = starts,
-                  .space = states.space,
-                  .faces = start_faces(s),
-                  .states = states.states,
-                  .cells = lattice::cells_ahead(outcomes, s.problem.field, bodies, gate_runs),
-                  .moves = outcomes.whole.moves,
-                  .chain = {{"kind", s.pool ? "trees" : "bins"},
-                            {"states", chain.space.size()},
-                            {"gate_runs", states.gate_runs},
-                            {"asked", s.path},
-                            {"is_matrix", s.file != nullptr},
-                            {"can_run", !s.is_recorded() && s.pool.has_value()}},
-                  .analysis = analysis ? json_for_page(*analysis)
-                                       : json_for_page(analysis_of(options, s, chain))};
-  const Json made_by = s.made_by(options);
+  std::optional<AnalysedField> made_here;
+  if (!analysis) analysis = &made_here.emplace(analysis_of(options, s, chain));
+  const AnswerPage page{.title = name_of_field(s),
+                        .shown = shown,
+                        .scene = s.scene ? &*s.scene : nullptr,
+                        .starts = starts,
+                        .space = states.space,
+                        .faces = start_faces(s),
+                        .states = states.states,
+                        .cells = lattice::cells_ahead(outcomes, s.problem.field, bodies, gate_runs),
+                        .moves = outcomes.whole.moves,
+                        .chain = {.has_trees = s.pool.has_value(),
+                                  .states = chain.space.size(),
+                                  .gate_runs = states.gate_runs,
+                                  .asked = s.path,
+                                  .is_matrix = s.file != nullptr,
+                                  .can_run = !s.is_recorded() && s.pool.has_value()},
+                        .analysis = *analysis};
+  const Provenance made_by = s.provenance(options);
   const std::string words =
       endings_text(shown_endings(starts.front().endings, starts.front().final),
                    "of bodies from " + title_of(shown.map.section, starts.front().start)) +
       rest_text(rest_of(starts.front().final));
   const auto text_of_page = [&](bool gates_95) {
-    const Json json = to_json(page, gates_95);
     return filled(
         carried_file("answer.html"),
         {{"title", escaped(page.title)},
@@ -225,10 +222,10 @@ void write_page(const Options& options, const Subject& s,
          {"answer_css", std::string(carried_file("answer.css"))},
          {"theme", std::string(carried_file("theme.js"))},
          {"script", std::string(carried_file("answer.js"))},
-         {"command", escaped(made_by.at("command").get<std::string>())},
-         {"version", escaped(made_by.value("version", "") + " " + made_by.value("commit", ""))},
-         {"scene", escaped(made_by.value(s.scene ? "scene" : "cell", ""))},
-         {"answer", script_json(json)}});
+         {"command", escaped(made_by.command)},
+         {"version", escaped(fmt::format("{} {}", kVersion, kCommit))},
+         {"scene", escaped((s.scene ? made_by.scene : made_by.cell).value_or(""))},
+         {"answer", script_json(json_of([&](Fields& out) { describe(out, page, gates_95); }))}});
   };
   std::string text = text_of_page(true);
   if (text.size() > kMostBytes) text = text_of_page(false);

@@ -3,6 +3,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -58,12 +59,17 @@ struct ShareTable {
     low.push_back(share_code(interval[0]));
     high.push_back(share_code(interval[1]));
   }
-  [[nodiscard]] Json json(bool intervals) const {
-    Json json{{"share", packed(share)}};
-    if (intervals) json.update({{"low", packed(low)}, {"high", packed(high)}});
-    return json;
-  }
 };
+
+void describe(Fields& out, const Label& l, const ShareTable& table, bool intervals = true) {
+  out.object(l, [&](Fields& f) {
+    f.text({"share", "shares, all places of an end together"}, packed(table.share));
+    f.optional(intervals, [&](Fields& bars) {
+      bars.text({"low", "from where their 95 % intervals go"}, packed(table.low));
+      bars.text({"high", "to where these go"}, packed(table.high));
+    });
+  });
+}
 
 /// What is known of a place: of a state, of a start, of a cell; nothing of those without runs.
 struct Known {
@@ -100,70 +106,87 @@ ShareTable gate_table(const std::vector<Known>& places, Eigen::Index cells) {
   return table;
 }
 
-Json section_json(const dynamics::Section& section) {
-  Json json;
-  for (const dynamics::Face& f : section.faces)
-    json["faces"].push_back({{"name", f.name}, {"origin", f.origin}, {"move", {f.di_x, f.di_y}}});
-  for (const dynamics::Coordinate& c : section.coordinates)
-    json["coordinates"].push_back(
-        {{"name", c.name}, {"key", c.key}, {"unit", c.unit}, {"words", c.words}});
-  return json;
+void describe_section(Fields& out, const dynamics::Section& section) {
+  out.object({"section", "how bodies enter a cell"}, [&](Fields& of) {
+    of.list({"faces", "by which faces"}, section.faces, [](Fields& f, const dynamics::Face& face) {
+      f.text({"name", "of the face"}, face.name);
+      f.text({"origin", "from where bodies come"}, face.origin);
+      f.counts({"move", "1", "columns and rows of the move by which it is entered"},
+               {face.di_x, face.di_y});
+    });
+    of.list({"coordinates", "what tells one entry from another"}, section.coordinates,
+            [](Fields& f, const dynamics::Coordinate& c) {
+              f.text({"name", "of the coordinate"}, c.name);
+              f.text({"key", "in results"}, c.key);
+              f.text({"unit", "its unit"}, c.unit);
+              f.text({"words", "what it is"}, c.words);
+            });
+  });
+}
+
+/// How the state is found of a start by this face.
+void describe_face(Fields& out, const dynamics::StateSpace& space, int face) {
+  const auto at = static_cast<std::size_t>(face);
+  const std::size_t coordinates = space.section().coordinates.size();
+  std::vector<Interval> seen;
+  out.count({"face", "1", "its number, from 0"}, face);
+  out.count({"first", "1", "number of its first leaf or bin"}, space.first(face));
+  if (space.has_trees()) {
+    const dynamics::Tree& tree = space.trees()[at];
+    std::vector<std::int8_t> axis;
+    std::vector<double> cut;
+    for (const dynamics::Tree::Node& n : tree.nodes) {
+      axis.push_back(static_cast<std::int8_t>(n.axis));
+      if (n.axis != dynamics::Tree::kLeaf) cut.push_back(n.cut);
+    }
+    out.text({"axis", "coordinate that each node of its tree cuts; -1: a leaf"}, packed(axis));
+    out.text({"cut", "where each node that is no leaf cuts"}, packed(cut));
+    seen.assign(tree.seen.begin(), tree.seen.begin() + static_cast<std::ptrdiff_t>(coordinates));
+  } else {
+    NumberRows edges;
+    for (std::size_t c = 0; c < coordinates; ++c) {
+      edges.push_back(space.bins()[at].edges[c]);
+      seen.push_back({edges.back().front(), edges.back().back()});
+    }
+    out.number_rows({"edges", "its own", "edges of the bins of each coordinate"}, edges);
+  }
+  out.points({"seen", "its own", "from where to where each coordinate was seen"}, seen);
 }
 
 /// How a start's state is found.
-Json states_json(const AnswerPage& page) {
-  const dynamics::StateSpace& space = page.space;
-  const std::size_t coordinates = space.section().coordinates.size();
-  Json faces = Json::array();
-  for (const int face : page.faces) {
-    const auto at = static_cast<std::size_t>(face);
-    Json one{{"face", face}, {"first", space.first(face)}};
-    std::array<std::vector<double>, dynamics::kMostCoordinates> seen;
-    if (space.has_trees()) {
-      std::vector<std::int8_t> axis;
-      std::vector<double> cut;
-      for (const dynamics::Tree::Node& n : space.trees()[at].nodes) {
-        axis.push_back(static_cast<std::int8_t>(n.axis));
-        if (n.axis != dynamics::Tree::kLeaf) cut.push_back(n.cut);
-      }
-      one["axis"] = packed(axis);
-      one["cut"] = packed(cut);
-      for (std::size_t c = 0; c < coordinates; ++c)
-        one["seen"].push_back(space.trees()[at].seen[c]);
-    } else {
-      for (std::size_t c = 0; c < coordinates; ++c) {
-        const std::vector<double>& edges = space.bins()[at].edges[c];
-        one["edges"].push_back(edges);
-        one["seen"].push_back({edges.front(), edges.back()});
-      }
-    }
-    faces.push_back(std::move(one));
-  }
+void describe_states(Fields& out, const AnswerPage& page) {
   std::vector<std::int32_t> of_leaf(page.states.of_leaf.begin(), page.states.of_leaf.end()), runs;
   for (const lattice::StartState& s : page.states.states)
     runs.push_back(static_cast<std::int32_t>(s.runs));
-  return {{"faces", faces},
-          {"open", space.open()},
-          {"of_leaf", packed(of_leaf)},
-          {"count", page.states.states.size()},
-          {"runs", packed(runs)},
-          {"joined_for", page.states.least_runs}};
+  out.object({"states", "states in which bodies start"}, [&](Fields& f) {
+    f.list({"faces", "by which starts may be"}, page.faces,
+           [&](Fields& one, int face) { describe_face(one, page.space, face); });
+    f.flag({"open", "whether the outermost states go on without end"}, page.space.open());
+    f.text({"of_leaf", "number of each leaf's state; -1: it has none"}, packed(of_leaf));
+    f.count({"count", "1", "number of states"}, page.states.states.size());
+    f.text({"runs", "gate runs behind each of them"}, packed(runs));
+    f.count({"joined_for", "1", "gate runs that states were joined for"}, page.states.least_runs);
+  });
 }
 
-Json drawn_gate(const lattice::Scene& scene) {
-  const lattice::FieldGates gates = lattice::gates_of(scene);
-  Json json{{"radius_m", scene.gate.body.radius},
-            {"joint_x_m", scene.gate.beams.joint_x},
-            {"joint_y_m", scene.gate.beams.joint_y},
-            {"propulsion_N", scene.gate.forces.propulsion}};
-  for (const dynamics::GateParams& type : gates.types())
-    json["beam_m"].push_back(type.beams.length);
-  return json;
+void describe_gate(Fields& out, const lattice::Scene& scene) {
+  std::vector<double> beams;
+  for (const lattice::FieldGates gates = lattice::gates_of(scene);
+       const dynamics::GateParams& type : gates.types())
+    beams.push_back(type.beams.length);
+  out.object({"gate", "what is drawn to scale"}, [&](Fields& f) {
+    f.number({"radius_m", "m", "radius of the body"}, scene.gate.body.radius);
+    f.number({"joint_x_m", "m", "place of the right joint; the left one is at -x"},
+             scene.gate.beams.joint_x);
+    f.number({"joint_y_m", "m", "place of both joints"}, scene.gate.beams.joint_y);
+    f.number({"propulsion_N", "N", "propulsion"}, scene.gate.forces.propulsion);
+    f.numbers({"beam_m", "m", "length of a beam of each type"}, beams);
+  });
 }
 
-Json cells_json(const AnswerPage& page, Eigen::Index cells, bool back) {
+void describe_cells(Fields& out, const AnswerPage& page, Eigen::Index cells, bool back) {
   std::vector<Known> places;
-  Json visits = Json::array();
+  NumberRows visits;
   ShareTable next;
   for (const lattice::CellAhead& a : page.cells) {
     places.push_back({&a.endings, &a.gates, nullptr});
@@ -176,11 +199,45 @@ Json cells_json(const AnswerPage& page, Eigen::Index cells, bool back) {
       else
         next.add(a.next[move].mean, a.next[move].interval);
     }
-  return {{"visits", visits},
-          {"moves", page.moves},
-          {"next", next.json(true)},
-          {"endings", ending_table(places, back).json(true)},
-          {"gates", gate_table(places, cells).json(false)}};
+  markov::CellCounts moves(static_cast<Eigen::Index>(page.moves.size()), 2);
+  for (Eigen::Index move = 0; move < moves.rows(); ++move)
+    for (Eigen::Index axis = 0; axis < 2; ++axis)
+      moves(move, axis) =
+          page.moves[static_cast<std::size_t>(move)][static_cast<std::size_t>(axis)];
+  out.object({"cells", "what becomes of bodies from each cell"}, [&](Fields& f) {
+    f.number_rows({"visits", "1", "mean visits of a body to each cell, from and to in 95 %"},
+                  visits);
+    f.grid({"moves", "1", "columns and rows of each move out of a cell"}, moves);
+    describe(f, {"next", "by move, and trapped here"}, next);
+    describe(f, {"endings", "by ending"}, ending_table(places, back));
+    describe(f, {"gates", "by final gate"}, gate_table(places, cells), false);
+  });
+}
+
+void describe(Fields& out, const PageStart& s, const dynamics::Section& section) {
+  describe_start(out, section, s.start);
+  out.text(Label("answer_from", "what the answer is from").one_of({"chain", "trials", "matrix"}),
+           s.from);
+  out.number({"error_95", "1", "95 % of its total variation from the whole truth are below"},
+             s.error_95);
+  out.count({"first_runs", "1", "gate runs of the start's own"}, s.first_runs);
+  out.count({"face", "1", "number of the face that is entered, from 0"},
+            s.start ? s.start->face : 0);
+  out.optional(s.start.has_value(), [&](Fields& f) {
+    const dynamics::Entry entry = s.start.value_or(dynamics::Entry());
+    const auto n = static_cast<std::ptrdiff_t>(section.coordinates.size());
+    f.numbers({"at", "its own", "its coordinates"}, {entry.at.begin(), entry.at.begin() + n});
+  });
+}
+
+void describe(Fields& out, const PageChain& chain) {
+  out.text(Label("kind", "of states").one_of({"trees", "bins"}),
+           chain.has_trees ? "trees" : "bins");
+  out.count({"states", "1", "number of states"}, chain.states);
+  out.count({"gate_runs", "1", "gate runs behind them"}, chain.gate_runs);
+  out.text({"asked", "scene or file that was asked"}, chain.asked);
+  out.flag({"is_matrix", "whether that is a matrix"}, chain.is_matrix);
+  out.flag({"can_run", "whether more gate runs can be made"}, chain.can_run);
 }
 
 }  // namespace
@@ -196,62 +253,63 @@ std::uint16_t share_code(double share) {
   return static_cast<std::uint16_t>(kSmall + (power - 3) * kDigits + digits - 10);
 }
 
-Json to_json(const AnswerPage& page, bool gates_95) {
+void describe(Fields& out, const AnswerPage& page, bool gates_95) {
   const lattice::FieldParams& field = page.shown.field;
+  const dynamics::Section& section = page.shown.map.section;
   const Eigen::Index cells = Eigen::Index{field.columns} * field.rows;
   std::vector<Known> places;
   for (const lattice::StartState& s : page.states.states)
     places.push_back({&s.endings, &s.gates, &s.gates_95});
   std::vector<lattice::EndingShares> told;
   told.reserve(page.starts.size());
-  Json starts = Json::array();
   for (const PageStart& s : page.starts) {
     told.push_back(shown_endings(s.endings, s.final));
     places.push_back({&told.back(), &s.final.final_cells, &s.gates_95});
-    Json one{{"start", to_json(page.shown.map.section, s.start)},
-             {"answer_from", s.from},
-             {"error_95", s.error_95},
-             {"first_runs", s.first_runs}};
-    one["face"] = s.start ? s.start->face : 0;
-    if (s.start)
-      for (std::size_t c = 0; c < page.shown.map.section.coordinates.size(); ++c)
-        one["at"].push_back(s.start->at[c]);
-    starts.push_back(std::move(one));
   }
   const auto back_at = static_cast<std::size_t>(lattice::kWentBack.ending);
-  bool back = false;
-  for (const Known& k : places)
-    back = back || (k.gates->size() > 0 && k.endings->share[back_at] > 0.0);
-  Json names = Json::array();
-  for (const EndingName& e : kAllEndingNames)
-    if (back || e.ending != lattice::kWentBack.ending)
-      names.push_back({{"key", e.key}, {"name", e.name}});
+  const bool back = std::ranges::any_of(places, [&](const Known& k) {
+    return k.gates->size() > 0 && k.endings->share[back_at] > 0.0;
+  });
+  std::vector<EndingName> names(std::begin(kAllEndingNames), std::end(kAllEndingNames));
+  if (!back)
+    std::erase_if(names, [](const EndingName& e) { return e.ending == lattice::kWentBack.ending; });
 
-  Json json{{"title", page.title},
-            {"columns", field.columns},
-            {"rows", field.rows},
-            {"start_column", field.start_column()},
-            {"max_gates", field.max_gates},
-            {"cell_m", {page.shown.width, page.shown.length}},
-            {"time_limit_s", page.shown.time_limit},
-            {"section", section_json(page.shown.map.section)},
-            {"endings", names},
-            {"states", states_json(page)},
-            {"starts", starts},
-            {"answers",
-             {{"endings", ending_table(places, back).json(true)},
-              {"gates", gate_table(places, cells).json(gates_95)}}},
-            {"cells", cells_json(page, cells, back)},
-            {"chain", page.chain},
-            {"analysis", page.analysis}};
-  if (page.scene) json["gate"] = drawn_gate(*page.scene);
-  if (!page.shown.types.empty()) {
-    json["types"] = page.shown.types;
-    json["type_of_gate"] = page.shown.map.type_of_cell;
-  }
-  if (!gates_95)
-    json["left_out"] = "intervals of single gates, with which the page would be too large";
-  return json;
+  out.text({"title", "of the page"}, page.title);
+  out.count({"columns", "1", "cells side by side"}, field.columns);
+  out.count({"rows", "1", "cells one behind the other"}, field.rows);
+  out.count({"start_column", "1", "number of the column in which bodies start, from 0"},
+            field.start_column());
+  out.count({"max_gates", "1", "cells after which a body is cut off; 0: never"}, field.max_gates);
+  out.numbers({"cell_m", "m", "width and depth of a cell"}, {page.shown.width, page.shown.length});
+  out.number({"time_limit_s", "s", "until a body in a cell is trapped; null: somebody said so"},
+             page.shown.time_limit);
+  describe_section(out, section);
+  out.list({"endings", "how bodies end"}, names, [](Fields& f, const EndingName& e) {
+    f.text({"key", "in results"}, e.key);
+    f.text({"name", "in words"}, e.name);
+  });
+  describe_states(out, page);
+  out.list({"starts", "that were asked about"}, page.starts,
+           [&](Fields& f, const PageStart& s) { describe(f, s, section); });
+  out.object({"answers", "of each state, and behind them of each start"}, [&](Fields& f) {
+    describe(f, {"endings", "by ending"}, ending_table(places, back));
+    describe(f, {"gates", "by final gate"}, gate_table(places, cells), gates_95);
+  });
+  describe_cells(out, page, cells, back);
+  out.object({"chain", "what the page was made from"}, [&](Fields& f) { describe(f, page.chain); });
+  out.object({"analysis", "times, work and ways"},
+             [&](Fields& f) { describe_for_page(f, page.analysis); });
+  out.optional(page.scene != nullptr, [&](Fields& f) { describe_gate(f, *page.scene); });
+  out.optional(!page.shown.types.empty(), [&](Fields& f) {
+    f.texts({"types", "names of types of cells"}, page.shown.types);
+    const std::vector<int>& types = page.shown.map.type_of_cell;
+    f.counts({"type_of_gate", "1", "type of each cell, row by row from the start's side on"},
+             {types.begin(), types.end()});
+  });
+  out.optional(!gates_95, [](Fields& f) {
+    f.text({"left_out", "what the page does not hold"},
+           "intervals of single gates, with which the page would be too large");
+  });
 }
 
 }  // namespace gatewalk::cli

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What the page of an answer holds, as JSON: gatewalk predict --page.
+/// What the page of an answer holds: gatewalk predict --page.
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cli/render/json.h"
+#include "cli/render/analysis.h"
 #include "cli/render/shown_field.h"
 #include "cli/render/start.h"
 #include "lattice/study/outlook.h"
@@ -19,9 +19,18 @@ struct PageStart {
   const markov::FinalDistribution& final;
   lattice::EndingShares endings;
   std::array<markov::CellProbabilities, 2> gates_95{};  // without intervals: empty
-  std::string from;                                     // "chain", "trials"
+  std::string from;                                     // "chain", "trials", "matrix"
   double error_95 = 0.0;                                // NaN: not known
   std::int64_t first_runs = 0;
+};
+
+/// What the page was made from.
+struct PageChain {
+  bool has_trees;  // else bins
+  int states;
+  std::int64_t gate_runs;
+  std::string asked;  // the scene or the file
+  bool is_matrix, can_run;
 };
 
 struct AnswerPage {
@@ -34,13 +43,13 @@ struct AnswerPage {
   const lattice::StartStates& states;
   const std::vector<lattice::CellAhead>& cells;
   const std::vector<std::array<int, 2>>& moves;  // of the cells' `next`
-  Json chain;                                    // what it was made from
-  Json analysis;                                 // parts of gatewalk analyze's
+  PageChain chain;
+  const AnalysedField& analysis;  // parts of it are told
 };
 
 /// Shares are packed as the digits that are shown (share_code), beside `gates_95` with their
 /// intervals; what is left out `left_out` says.
-[[nodiscard]] Json to_json(const AnswerPage& page, bool gates_95);
+void describe(Fields& out, const AnswerPage& page, bool gates_95);
 
 /// A share as percents() shows it in 16 bits: hundredths of a per cent; above 10 000 two digits and
 /// a power of ten, where these would be 0; 65535: not a number.

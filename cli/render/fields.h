@@ -84,6 +84,7 @@ struct Label : ResultKey {
 };
 
 using TextRows = std::vector<std::vector<std::optional<std::string>>>;  // none: null
+using NumberRows = std::vector<std::vector<double>>;
 
 /// As many numbers for each gate, one gate behind another, row by row from the start's side on.
 struct GateNumbers {
@@ -95,9 +96,9 @@ struct GateNumbers {
 using Value =
     std::variant<std::monostate, double, std::int64_t, std::uint64_t, bool, std::string_view,
                  Interval, const std::vector<double>*, const std::vector<std::int64_t>*,
-                 const std::vector<std::string>*, const TextRows*, const std::vector<Interval>*,
-                 const Json*, const markov::CellProbabilities*, const markov::CellCounts*,
-                 const GateNumbers*>;
+                 const std::vector<std::string>*, const TextRows*, const NumberRows*,
+                 const std::vector<Interval>*, const Json*, const markov::CellProbabilities*,
+                 const markov::CellCounts*, const GateNumbers*>;
 
 /// What a value may be, whatever it is in one result.
 enum class ValueKind {
@@ -108,6 +109,7 @@ enum class ValueKind {
   interval,      // or null
   numbers,       // a list, of numbers or null
   counts,        // a list
+  number_rows,   // a list of lists, of numbers or null
   texts,         // a list
   text_rows,     // a list of lists, of texts or null
   given,         // a number, or else a text
@@ -161,6 +163,10 @@ class Fields {
   template <std::same_as<std::optional<std::vector<double>>> Numbers>
   void numbers(const Field& f, const Numbers& x) {
     leaf(f, ValueKind::numbers, true, x ? Value(&*x) : Value());
+  }
+  /// Lists of numbers, which may differ in length.
+  void number_rows(const Field& f, const NumberRows& rows) {
+    leaf(f, ValueKind::number_rows, false, &rows);
   }
   void counts(const Field& f, const std::vector<std::int64_t>& n) {
     leaf(f, ValueKind::counts, false, &n);

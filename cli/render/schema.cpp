@@ -178,6 +178,8 @@ std::string type_of(const Node& node) {
       return R"("$ref": "#/$defs/interval")";
     case ValueKind::numbers:
       return list(kNumber, node.may_be_null);
+    case ValueKind::number_rows:
+      return list(list(kNumber));
     case ValueKind::counts:
       return list(R"("type": "integer")");
     case ValueKind::texts:
@@ -301,6 +303,8 @@ std::string type_words(const Node& node) {
       return "interval";
     case ValueKind::numbers:
       return "numbers" + or_null;
+    case ValueKind::number_rows:
+      return "rows of numbers";
     case ValueKind::counts:
       return "counts";
     case ValueKind::texts:
