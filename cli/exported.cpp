@@ -105,9 +105,7 @@ Exported export_field(const Options& options, ExportForm form) {
                                             field.max_gates);
   const std::string output = options.text("output");
   if (form == ExportForm::umb) {
-    options.write(output, umb_of(chain, {{"tool", "gatewalk"},
-                                         {"tool-version", kVersion},
-                                         {"parameters", options.canonical()}}));
+    options.write(output, umb_of(chain, options.canonical()));
   } else if (form == ExportForm::drn) {
     options.write(output, drn_of(chain));
   } else if (form == ExportForm::prism) {

@@ -11,6 +11,7 @@
 #include "cli/render/files.h"
 #include "cli/render/json.h"
 #include "cli/render/little_endian.h"
+#include "cli/render/version.h"
 
 namespace gatewalk::cli {
 
@@ -34,28 +35,29 @@ std::string one_bit(std::int64_t states, std::int64_t only) {
 
 }  // namespace
 
-std::string umb_of(const ExplicitChain& chain, const Json& tool) {
+std::string umb_of(const ExplicitChain& chain, const std::string& command) {
   const std::int64_t n = chain.size();
   const Json boolean = {{"type", "bool"}, {"size", 1}};
   Json aps = Json::object();
   for (const char* label : kEndingLabels)
     aps[label] = {{"alias", label}, {"applies-to", {"states"}}, {"type", boolean}};
-  const Json index = {{"format-version", 1},
-                      {"format-revision", 0},
-                      {"model-data", {{"description", "a gatewalk field, as a Markov chain"}}},
-                      {"file-data", tool},
-                      {"transition-system",
-                       {{"time", "discrete"},
-                        {"#players", 0},
-                        {"#states", n},
-                        {"#initial-states", 1},
-                        {"#choices", n},
-                        {"#choice-actions", 0},
-                        {"#branches", chain.target.size()},
-                        {"#branch-actions", 0},
-                        {"#observations", 0},
-                        {"branch-probability-type", {{"type", "double"}, {"size", 64}}}}},
-                      {"annotations", {{"aps", aps}}}};
+  const Json index = {
+      {"format-version", 1},
+      {"format-revision", 0},
+      {"model-data", {{"description", "a gatewalk field, as a Markov chain"}}},
+      {"file-data", {{"tool", "gatewalk"}, {"tool-version", kVersion}, {"parameters", command}}},
+      {"transition-system",
+       {{"time", "discrete"},
+        {"#players", 0},
+        {"#states", n},
+        {"#initial-states", 1},
+        {"#choices", n},
+        {"#choice-actions", 0},
+        {"#branches", chain.target.size()},
+        {"#branch-actions", 0},
+        {"#observations", 0},
+        {"branch-probability-type", {{"type", "double"}, {"size", 64}}}}},
+      {"annotations", {{"aps", aps}}}};
   std::vector<PackedFile> files{
       {"index.json", text_of(index) + "\n"},
       {"state-is-initial.bin", one_bit(n, 0)},

@@ -7,14 +7,13 @@
 #include <vector>
 
 #include "cli/exchange/sparse_table.h"
-#include "cli/render/json_fwd.h"
 #include "markov/explicit_chain.h"
 
 namespace gatewalk::cli {
 
 /// A tar of the Unified Markov Binary format (version 1): read by PRISM from 4.10, Storm from 1.12.
-/// `tool`: what and how it was made by. Bit-exact.
-[[nodiscard]] std::string umb_of(const markov::ExplicitChain& chain, const Json& tool);
+/// `command`: how it was made. Bit-exact.
+[[nodiscard]] std::string umb_of(const markov::ExplicitChain& chain, const std::string& command);
 /// Storm's explicit text, with labels.
 [[nodiscard]] std::string drn_of(const markov::ExplicitChain& chain);
 /// PRISM's transitions, states and labels. `numbers`: as which number each state of the chain is

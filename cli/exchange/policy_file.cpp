@@ -142,39 +142,60 @@ void require_file_for(const PolicyField& made_for) {
                     made_for.source, kLetters.size(), static_cast<int>(kMostGates)));
 }
 
+namespace {
+
+void describe(Fields& out, const dynamics::Tree& tree, std::ptrdiff_t coordinates) {
+  std::vector<std::int64_t> axes;
+  std::vector<double> cuts;
+  for (const dynamics::Tree::Node& node : tree.nodes) {
+    axes.push_back(node.axis);
+    cuts.push_back(node.cut);
+  }
+  out.counts({"axis", "1", "coordinate that each node cuts; -1: a leaf"}, axes);
+  out.numbers({"cut", "its own", "where each node cuts"}, cuts);
+  out.points({"seen", "its own", "from where to where each coordinate was seen"},
+             {tree.seen.begin(), tree.seen.begin() + coordinates});
+}
+
+/// The gates' decisions, each with a letter for each state.
+std::vector<std::string> rows_of(const lattice::Policy& policy) {
+  const std::vector<std::uint16_t>& action = policy.decisions.action;
+  const auto states = static_cast<std::size_t>(policy.space.size());
+  std::vector<std::string> rows;
+  for (std::size_t at = 0; at < action.size(); at += states) {
+    std::string& row = rows.emplace_back(states, ' ');
+    for (std::size_t i = 0; i < states; ++i) row[i] = kLetters[action[at + i]];
+  }
+  return rows;
+}
+
+void describe(Fields& out, const lattice::Policy& policy, const PolicyField& made_for) {
+  const auto coordinates = std::ssize(policy.space.section().coordinates);
+  out.count({"policy_format", "1", "of such files"}, kPolicyFormat);
+  out.text({made_for.kind, "what the policy was made for, as TOML"}, made_for.text);
+  out.list({"trees", "states of the bodies that enter, by face"}, policy.space.trees(),
+           [&](Fields& f, const dynamics::Tree& tree) { describe(f, tree, coordinates); });
+  out.list({"points", "entries with a state of their own"}, policy.space.points(),
+           [&](Fields& f, const dynamics::Entry& point) {
+             f.count({"face", "1", "its number, from 0"}, point.face);
+             f.numbers({"at", "its own", "its coordinates"},
+                       {point.at.begin(), point.at.begin() + coordinates});
+           });
+  out.either(
+      policy.always.has_value(),
+      [&](Fields& f) {
+        f.count({"always", "1", "number of the one action, from 0"}, policy.always.value_or(0));
+      },
+      [&](Fields& f) {
+        f.texts({"action", "for each gate a letter for each state: its action"}, rows_of(policy));
+      });
+}
+
+}  // namespace
+
 std::string policy_text(const lattice::Policy& policy, const PolicyField& made_for) {
   require_file_for(made_for);
-  const std::vector<std::uint16_t>& action = policy.decisions.action;
-  Json json{{"policy_format", kPolicyFormat}, {made_for.kind, made_for.text}};
-  for (const dynamics::Tree& given : policy.space.trees()) {
-    Json tree{{"axis", Json::array()}, {"cut", Json::array()}};
-    for (std::size_t c = 0; c < policy.space.section().coordinates.size(); ++c)
-      tree["seen"].push_back(given.seen[c]);
-    for (const dynamics::Tree::Node& node : given.nodes) {
-      tree["axis"].push_back(node.axis);
-      tree["cut"].push_back(node.cut);
-    }
-    json["trees"].push_back(std::move(tree));
-  }
-  json["points"] = Json::array();
-  const std::size_t coordinates = policy.space.section().coordinates.size();
-  for (const dynamics::Entry& point : policy.space.points())
-    json["points"].push_back(
-        {{"face", point.face},
-         {"at", std::vector<double>(point.at.begin(),
-                                    point.at.begin() + static_cast<std::ptrdiff_t>(coordinates))}});
-  if (policy.always) {
-    json["always"] = *policy.always;
-    return json.dump(0) + "\n";
-  }
-  const auto states = static_cast<std::size_t>(policy.space.size());
-  json["action"] = Json::array();
-  for (std::size_t at = 0; at < action.size(); at += states) {
-    std::string row(states, ' ');
-    for (std::size_t i = 0; i < states; ++i) row[i] = kLetters[action[at + i]];
-    json["action"].push_back(std::move(row));
-  }
-  return json.dump(0) + "\n";
+  return json_of([&](Fields& out) { describe(out, policy, made_for); }).dump(0) + "\n";
 }
 
 lattice::Policy read_policy(const std::string& path, const PolicyField& made_for) try {
