@@ -900,19 +900,14 @@ ResultFolder::ResultFolder(const Options& options, const std::vector<std::string
 }
 
 void ResultFolder::write(const std::string& csv_file, const std::string& csv,
-                         const std::string& json_file, const Json& json) const {
+                         const std::string& json_file, const Description& describe) const {
   for (const std::string& file : files_)
     if (file.ends_with(".svg")) {
       options_.keep_old(path(file));
       std::filesystem::remove(path(file));
     }
   options_.write(path(csv_file), csv);
-  options_.write(path(json_file), json_text(json));
-}
-
-void ResultFolder::write(const std::string& csv_file, const std::string& csv,
-                         const std::string& json_file, const Description& describe) const {
-  write(csv_file, csv, json_file, json_of(describe));
+  options_.write(path(json_file), json_text(json_of(describe)));
 }
 
 void ResultFolder::draw(const std::string& file, const Figure& figure) const {

@@ -251,8 +251,6 @@ class ResultFolder {
   /// Each file replaces the one before as a whole. First old figures go: they shall not stand
   /// beside new numbers.
   void write(const std::string& csv_file, const std::string& csv, const std::string& json_file,
-             const Json& json) const;
-  void write(const std::string& csv_file, const std::string& csv, const std::string& json_file,
              const Description& describe) const;
   /// The same of a result that is described.
   template <class Result>

@@ -13,7 +13,6 @@
 #include "cli/cells/program.h"
 #include "cli/exchange/imported.h"
 #include "cli/loaded_matrix.h"
-#include "cli/render/json.h"
 #include "cli/render/matrix.h"
 #include "cli/render/recorded.h"
 #include "cli/render/text.h"
@@ -445,8 +444,6 @@ Provenance Subject::provenance(const Options& options) const {
   made_by.cell = lattice::to_toml(*cells);
   return made_by;
 }
-
-Json Subject::made_by(const Options& options) const { return to_json(provenance(options)); }
 
 Subject open_subject(const Options& options, const std::string& name) {
   const std::string path = options.text(name);

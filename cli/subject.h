@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/render/json_fwd.h"
 #include "cli/render/shown_field.h"
 #include "cli/render/start.h"
 #include "lattice/cells/cell_file.h"
@@ -58,7 +57,6 @@ struct Subject {
   void settle(const Options& options);
   /// Where the result comes from.
   [[nodiscard]] Provenance provenance(const Options& options) const;
-  [[nodiscard]] Json made_by(const Options& options) const;  // the same
 };
 
 /// Opens what the positional argument of this name says, with --cell-program, --start and --set,

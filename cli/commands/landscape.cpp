@@ -3,7 +3,6 @@
 
 #include "cli/arguments.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "dynamics/disc/study/accuracy.h"
@@ -65,8 +64,7 @@ int run_landscape(const Arguments& arguments) {
                                                    {"gate runs", {0, trials}}, options.work());
   }
   result.made_by = options.provenance(scene);
-  folder.write("landscape.csv", csv_of(result.passes.coarse.landscape), "landscape.json",
-               json_of([&](Fields& out) { describe(out, result); }));
+  folder.write("landscape.csv", csv_of(result.passes.coarse.landscape), "landscape.json", result);
   folder.draw("landscape.svg", figure_of(result.passes));
   options.give_out(result, line + table_of(result, scene.gate));
   const int exit =

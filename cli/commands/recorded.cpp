@@ -10,7 +10,6 @@
 
 #include "cli/arguments.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/matrix.h"
 #include "cli/render/recorded.h"
 #include "cli/render/states.h"
@@ -38,7 +37,7 @@ void give_out(const Options& options, std::vector<dynamics::Transitions> matrice
                                           {"program", std::string("gatewalk ") + kVersion},
                                           {"commit", kCommit},
                                           {"command", options.canonical()}};
-  if (health) text["status"] = to_json(*health).dump();
+  if (health) text["status"] = attribute_of(*health);
   const std::string path = options.text("output");
   CellMatrixResult built{
       {path, lattice::cell_matrix_file(std::move(matrices), cells, pool, std::move(text))},

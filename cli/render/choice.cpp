@@ -84,8 +84,8 @@ Label method_label() { return Label("method", "what run.method = \"auto\" chose"
 
 }  // namespace
 
-Json to_json(const lattice::Settled& settled) {
-  return json_of([&](Fields& out) { describe(out, settled); });
+std::string attribute_of(const lattice::Settled& settled) {
+  return text_of(json_of([&](Fields& out) { describe(out, settled); }), -1);
 }
 
 lattice::Settled settled_from(const Json& json) {

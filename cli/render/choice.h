@@ -14,7 +14,8 @@ namespace gatewalk::cli {
 
 /// The key "method", of results whose scene leaves the method to the program.
 void describe_method(Fields& out, const std::optional<lattice::Settled>& settled);
-[[nodiscard]] Json to_json(const lattice::Settled& settled);
+/// The attribute of files with its keys.
+[[nodiscard]] std::string attribute_of(const lattice::Settled& settled);
 /// Its inverse. Throws nlohmann::json::exception and std::invalid_argument for what is none.
 [[nodiscard]] lattice::Settled settled_from(const Json& json);
 /// What is wrong with a choice, in a sentence; empty if nothing.

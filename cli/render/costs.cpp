@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
@@ -119,10 +118,6 @@ void describe_costs(Fields& out, const FieldCosts& costs, const ShownField& show
                  add(e.key, fmt::format("times and costs of trials whose bodies {}", meaning_of(e)),
                      e.ending);
              });
-}
-
-Json to_json(const FieldCosts& costs, const ShownField& shown) {
-  return json_of([&](Fields& out) { describe_costs(out, costs, shown); })["costs"];
 }
 
 std::string table_of(const FieldCosts& costs, const ShownField& shown) {

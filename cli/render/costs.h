@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What bodies take on their way through a field (time, work, ...), as JSON and as a table.
+/// What bodies take on their way through a field (time, work, ...), as keys of results and as a
+/// table.
 
 #include <array>
 #include <optional>
 #include <string>
 
 #include "cli/render/fields.h"
-#include "cli/render/json_fwd.h"
 #include "cli/render/shown_field.h"
 #include "cli/render/text_table.h"
 #include "dynamics/disc/gate.h"
@@ -47,7 +47,6 @@ class CostTable {
 
 /// The key "costs": what trials took, of all and by how they ended.
 void describe_costs(Fields& out, const lattice::FieldCosts& costs, const ShownField& shown);
-[[nodiscard]] Json to_json(const lattice::FieldCosts& costs, const ShownField& shown);
 [[nodiscard]] std::string table_of(const lattice::FieldCosts& costs, const ShownField& shown);
 
 }  // namespace gatewalk::cli

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
 #include "cli/render/text_table.h"

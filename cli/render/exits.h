@@ -5,7 +5,6 @@
 #include <string>
 
 #include "cli/render/fields.h"
-#include "cli/render/json_fwd.h"
 #include "cli/render/panel.h"
 #include "cli/render/shown_field.h"
 #include "lattice/exits.h"

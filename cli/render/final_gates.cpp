@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "cli/render/text_table.h"
 #include "lattice/statistics/compare.h"
@@ -91,13 +90,6 @@ void describe(Fields& out, const lattice::Judgement& j) {
       });
   describe_by_chance(out, j.chance_total_variation, j.chance_total_variation_95);
   out.count({"null_draws", "1", "random draws behind the p-values"}, j.null_draws);
-}
-
-Json grid(const markov::CellCounts& cells) {
-  return json_of([&](Fields& out) { out.grid({"of", "1", "gates"}, cells); })["of"];
-}
-Json grid(const markov::CellProbabilities& cells) {
-  return json_of([&](Fields& out) { out.grid({"of", "1", "gates"}, cells); })["of"];
 }
 
 namespace {
@@ -286,16 +278,6 @@ void describe_endings(Fields& out, const EndingCounts& counts,
 void describe_endings(Fields& out, const lattice::EndingShares& shares) {
   describe_endings(out, {"endings", "how bodies end: share of all bodies by ending"}, shares.share);
   describe_intervals(out, shares);
-}
-
-Json endings(const EndingCounts& counts) {
-  return json_of([&](Fields& out) { describe_endings(out, {"of", "them"}, counts); })["of"];
-}
-Json endings(const EndingChances& shares) {
-  return json_of([&](Fields& out) { describe_endings(out, {"of", "them"}, shares); })["of"];
-}
-Json endings_95(const lattice::EndingShares& shares) {
-  return json_of([&](Fields& out) { describe_intervals(out, shares); })["endings_95"];
 }
 
 lattice::EndingShares shown_endings(lattice::EndingShares shares,

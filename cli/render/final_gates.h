@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Where and how trials, walks and predictions through a field end, as JSON and as tables.
+/// Where and how trials, walks and predictions through a field end, as keys of results and as
+/// tables.
 
 #include <array>
 #include <cstdint>
 #include <string>
 
 #include "cli/render/fields.h"
-#include "cli/render/json_fwd.h"
 #include "lattice/statistics/ending_shares.h"
 #include "markov/predict.h"
 #include "markov/walk.h"
@@ -26,8 +26,6 @@ void describe(Fields& out, const lattice::Comparison& c);
 void describe_change(Fields& out, const lattice::PairedChange& change);
 /// The keys of one test of all statistics.
 void describe(Fields& out, const lattice::Judgement& j);
-[[nodiscard]] Json grid(const markov::CellCounts& cells);
-[[nodiscard]] Json grid(const markov::CellProbabilities& cells);
 
 /// A map of a command with --netcdf: null in fields of more gates than kMostGatesInJson.
 inline constexpr Eigen::Index kMostGatesInJson = 100'000;
@@ -100,10 +98,6 @@ void describe_endings_95(Fields& out, const Label& l, const lattice::EndingShare
 /// The keys "endings" and "endings_95".
 void describe_endings(Fields& out, const EndingCounts& counts, const lattice::EndingShares& shares);
 void describe_endings(Fields& out, const lattice::EndingShares& shares);
-/// {"crossed": ..., "left_side": ..., ...}: counts, shares, or [low, high] (null: no interval).
-[[nodiscard]] Json endings(const EndingCounts& counts);
-[[nodiscard]] Json endings(const EndingChances& shares);
-[[nodiscard]] Json endings_95(const lattice::EndingShares& shares);
 /// A prediction's endings as they are shown: 0 where the share is no more than rounding and walks
 /// not finished may make.
 [[nodiscard]] lattice::EndingShares shown_endings(lattice::EndingShares shares,

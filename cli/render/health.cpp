@@ -29,8 +29,8 @@ void describe_status(Fields& out, const std::optional<dynamics::Health>& health)
       health, [](Fields& status, const dynamics::Health& h) { describe(status, h); });
 }
 
-Json to_json(const dynamics::Health& health) {
-  return json_of([&](Fields& out) { describe(out, health); });
+std::string attribute_of(const dynamics::Health& health) {
+  return text_of(json_of([&](Fields& out) { describe(out, health); }), -1);
 }
 
 dynamics::Health health_from(const Json& j) {

@@ -17,7 +17,8 @@ void describe(Fields& out, const dynamics::Health& health);
 void describe_status(Fields& out, const dynamics::Health& health);
 /// The same of a result whose record of faults may be missing; none: null.
 void describe_status(Fields& out, const std::optional<dynamics::Health>& health);
-[[nodiscard]] Json to_json(const dynamics::Health& health);
+/// The attribute of files with these keys.
+[[nodiscard]] std::string attribute_of(const dynamics::Health& health);
 /// Its inverse. Throws nlohmann::json::exception when a count is missing.
 [[nodiscard]] dynamics::Health health_from(const Json& j);
 /// One sentence if something was seen, else empty.

@@ -3,10 +3,14 @@
 
 #include <locale.h>
 
+#include <cmath>
 #include <utility>
 
 namespace gatewalk::cli {
 namespace {
+
+/// null for what JSON has no number for.
+Json or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }
 
 /// While it lives, this thread has no other locale than C.
 class PlainLocale {

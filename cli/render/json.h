@@ -2,7 +2,6 @@
 #pragma once
 /// JSON, keys in the order in which they were written.
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -28,9 +27,6 @@ namespace gatewalk::cli {
 
 /// A text in quotation marks, as JSON writes it.
 [[nodiscard]] std::string json_string(std::string_view text);
-
-/// null for what JSON has no number for.
-[[nodiscard]] inline Json or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }
 
 /// Of the JSON that commands write; a key that goes, or changes its meaning, makes another one.
 inline constexpr int kFormatVersion = 1;

@@ -189,28 +189,6 @@ void describe_path(Fields& out, const std::string& path) {
   out.text({"matrix", "path of the matrix file that was written"}, path);
 }
 
-}  // namespace
-
-Json recorded(const lattice::MatrixFile& file, const std::string& path, const std::string& key) {
-  const auto text = file.text.find(key);
-  if (text == file.text.end()) return {};
-  Json json = parsed_json(text->second);
-  if (json.is_discarded())
-    throw markov::BadFile(path + ": its record of the " +
-                          (key == "method"   ? "chosen method"
-                           : key == "status" ? "status"
-                                             : "state space") +
-                          " is damaged");
-  return json;
-}
-
-Json recorded_status(const lattice::MatrixFile& file) {
-  const auto text = file.text.find("status");
-  return text == file.text.end() ? Json() : parsed_json(text->second);
-}
-
-namespace {
-
 /// Its record of this key, as `read` understands it; none where it has none.
 template <class Read>
 auto record_in(const lattice::MatrixFile& file, const std::string& path, const std::string& key,
@@ -252,14 +230,6 @@ std::optional<dynamics::Health> recorded_health(const lattice::MatrixFile& file)
   return {};
 }
 
-std::string faults_recorded(const Json& status) {
-  try {
-    return complaint(health_from(status));
-  } catch (const Json::exception&) {
-    return faults_recorded(std::nullopt);
-  }
-}
-
 std::string faults_recorded(const std::optional<dynamics::Health>& status) {
   return status ? complaint(*status) : "the record of numerical faults is missing or damaged.";
 }
@@ -283,9 +253,9 @@ std::map<std::string, std::string> texts_of(const MadeMatrix& made, const lattic
       {"program", std::string("gatewalk ") + kVersion},
       {"commit", kCommit},
       {"command", made.made_by.command},
-      {"status", to_json(health).dump()}};
+      {"status", attribute_of(health)}};
   if (made.trials_per_row) text["trials_per_row"] = std::to_string(*made.trials_per_row);
-  if (made.method) text["method"] = to_json(*made.method).dump();
+  if (made.method) text["method"] = attribute_of(*made.method);
   return text;
 }
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
 #include "cli/render/provenance.h"
 #include "cli/render/recorded.h"
 #include "cli/render/states.h"
@@ -19,20 +18,14 @@
 
 namespace gatewalk::cli {
 
-/// Its record "status", "state_space" or "method"; null where it has none. Throws markov::BadFile
-/// naming `path` when one is damaged; a damaged status is discarded JSON.
-[[nodiscard]] Json recorded(const lattice::MatrixFile& file, const std::string& path,
-                            const std::string& key);
-[[nodiscard]] Json recorded_status(const lattice::MatrixFile& file);
-/// The same records, read; none where it has none. Throws markov::BadFile naming `path` when one is
-/// damaged; a damaged status is none.
+/// Its record "state_space", "method" or "status"; none where it has none. Throws markov::BadFile
+/// naming `path` when one is damaged; a damaged status is none.
 [[nodiscard]] std::optional<StateRecord> recorded_states(const lattice::MatrixFile& file,
                                                          const std::string& path);
 [[nodiscard]] std::optional<lattice::Settled> recorded_method(const lattice::MatrixFile& file,
                                                               const std::string& path);
 [[nodiscard]] std::optional<dynamics::Health> recorded_health(const lattice::MatrixFile& file);
 /// The faults of the runs behind a recorded status, in one sentence; empty when none were seen.
-[[nodiscard]] std::string faults_recorded(const Json& status);
 [[nodiscard]] std::string faults_recorded(const std::optional<dynamics::Health>& status);
 
 /// Throws std::invalid_argument where a scene is larger than what a matrix file keeps of it.

@@ -10,7 +10,6 @@
 #include "cli/render/choice.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/pooled_prediction.h"
 #include "cli/render/text.h"
 #include "cli/render/text_table.h"
@@ -388,8 +387,6 @@ std::array<std::string, 2> summary_of(const PowerResult& p) {
 
 }  // namespace
 
-Json or_null(const std::optional<double>& x) { return x ? Json(*x) : Json(); }
-
 void describe(Fields& out, const lattice::SmallestDifference& d) {
   const auto points = [&](const Field& field, const std::optional<double>& x) {
     out.number(field, x ? 100.0 * *x : kUnknown);
@@ -398,10 +395,6 @@ void describe(Fields& out, const lattice::SmallestDifference& d) {
          d.more);
   points({"fewer", "%", "smallest detected decrease, in percentage points; null: none is detected"},
          d.fewer);
-}
-
-Json to_json(const lattice::SmallestDifference& d) {
-  return json_of([&](Fields& out) { describe(out, d); });
 }
 
 std::string text_of(const lattice::SmallestDifference& d) {

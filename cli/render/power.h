@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "cli/render/fields.h"
-#include "cli/render/json_fwd.h"
 #include "cli/render/provenance.h"
 #include "dynamics/cells/health.h"
 #include "lattice/scene/scene.h"
@@ -16,11 +15,8 @@
 
 namespace gatewalk::cli {
 
-/// null for none.
-[[nodiscard]] Json or_null(const std::optional<double>& x);
 /// The keys "more" and "fewer", in percentage points.
 void describe(Fields& out, const lattice::SmallestDifference& d);
-[[nodiscard]] Json to_json(const lattice::SmallestDifference& d);
 /// "+17.1 / -8.2"
 [[nodiscard]] std::string text_of(const lattice::SmallestDifference& d);
 

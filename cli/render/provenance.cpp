@@ -41,13 +41,9 @@ void describe_made_by(Fields& out, const Provenance& provenance) {
              [&](Fields& made) { describe(made, provenance); });
 }
 
-Json to_json(const Provenance& provenance) {
-  return json_of([&](Fields& out) { describe(out, provenance); });
-}
-
 std::vector<std::pair<std::string, std::string>> attributes_of(const Provenance& provenance) {
   std::vector<std::pair<std::string, std::string>> all;
-  const Json made_by = to_json(provenance);
+  const Json made_by = json_of([&](Fields& out) { describe(out, provenance); });
   for (const auto& [key, value] : made_by.items())
     all.emplace_back(key, value.is_string() ? value.get<std::string>() : text_of(value, -1));
   return all;

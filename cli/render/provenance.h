@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "cli/render/fields.h"
-#include "cli/render/json_fwd.h"
 
 namespace gatewalk::cli {
 
@@ -29,7 +28,6 @@ struct Provenance {
 void describe(Fields& out, const Provenance& provenance);
 /// The key "made_by", which all results have.
 void describe_made_by(Fields& out, const Provenance& provenance);
-[[nodiscard]] Json to_json(const Provenance& provenance);
 /// The same keys with their values as text: attributes of NetCDF files.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> attributes_of(
     const Provenance& provenance);

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "cli/render/text_table.h"
 #include "lattice/pool/pooled_prediction.h"
@@ -48,10 +47,6 @@ void describe(Fields& out, const RecordedCounts& counts) {
 void describe_recorded(Fields& out, const RecordedCounts& counts) {
   out.object({"recorded", "the recorded runs behind the result"},
              [&](Fields& f) { describe(f, counts); });
-}
-
-Json to_json(const lattice::RunPool& pool) {
-  return json_of([&](Fields& out) { describe(out, counts_of(pool)); });
 }
 
 std::string table_of(const lattice::RunPool& pool) { return table_of(counts_of(pool)); }

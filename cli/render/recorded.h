@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "cli/render/fields.h"
-#include "cli/render/json_fwd.h"
 #include "lattice/cells/cell_matrix.h"
 
 namespace gatewalk::cli {
@@ -21,7 +20,6 @@ struct RecordedCounts {
 void describe(Fields& out, const RecordedCounts& counts);
 /// The key "recorded", of results that recorded runs are behind.
 void describe_recorded(Fields& out, const RecordedCounts& counts);
-[[nodiscard]] Json to_json(const lattice::RunPool& pool);
 [[nodiscard]] std::string table_of(const RecordedCounts& counts);
 [[nodiscard]] std::string table_of(const lattice::RunPool& pool);
 /// What they cannot tell, a sentence each: few bodies, faces that nobody entered by.

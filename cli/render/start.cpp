@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 
-#include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "dynamics/disc/disc_section.h"
 
@@ -56,14 +55,6 @@ void describe_start(Fields& out, const dynamics::Section& section, const Start& 
       {"start",
        "how bodies enter the field; \"as seen\": by all first entries of the recorded runs"},
       section, start);
-}
-
-Json to_json(const dynamics::Section& section, const Start& start) {
-  return json_of([&](Fields& out) { describe_start(out, section, start); })["start"];
-}
-
-Json to_json(const dynamics::Section& section, const dynamics::StateRange& range) {
-  return json_of([&](Fields& out) { describe(out, section, range); });
 }
 
 std::string title_of(const dynamics::Section& section, const Start& start) {

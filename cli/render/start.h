@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Starts of trials and of chains, as JSON and in words.
+/// Starts of trials and of chains, as keys of results and in words.
 
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/render/fields.h"
-#include "cli/render/json_fwd.h"
 #include "lattice/gate_chain.h"
 
 namespace gatewalk::cli {
@@ -23,8 +22,6 @@ void describe(Fields& out, const dynamics::Section& section, const dynamics::Sta
 void describe_start(Fields& out, const Label& l, const dynamics::Section& section,
                     const Start& start);
 void describe_start(Fields& out, const dynamics::Section& section, const Start& start);
-[[nodiscard]] Json to_json(const dynamics::Section& section, const Start& start);
-[[nodiscard]] Json to_json(const dynamics::Section& section, const dynamics::StateRange& range);
 /// "start d 4 m, vx 5 m/s, vy 10 m/s"; with the face's name where it is not the first one.
 [[nodiscard]] std::string title_of(const dynamics::Section& section, const Start& start);
 

@@ -52,9 +52,10 @@ TEST(Endings, AreNamedWithTheirIntervals) {
   const std::array<std::int64_t, markov::kEndings> counts{700, 1,  120, 119,
                                                           0,   60, 0};  // by markov::Ending
   const lattice::EndingShares shares(counts, 1000);
-  EXPECT_EQ(endings(counts).dump(),
+  const Json json = json_of([&](Fields& out) { describe_endings(out, counts, shares); });
+  EXPECT_EQ(json.at("endings").dump(),
             R"({"crossed":1,"left_side":120,"right_side":119,"trapped":700,"cut_off":60})");
-  const Json intervals = endings_95(shares);
+  const Json& intervals = json.at("endings_95");
   EXPECT_EQ(intervals["trapped"][0], dynamics::share_interval(700, 1000)[0]);
   EXPECT_LT(intervals["crossed"][0].get<double>(), 0.001);
   EXPECT_GT(intervals["crossed"][1].get<double>(), 0.001);
@@ -67,7 +68,11 @@ TEST(Endings, AreNamedWithTheirIntervals) {
   // Without intervals, and shares that two decimals would hide.
   EXPECT_EQ(endings_text(lattice::EndingShares({0.5, 1.23e-7, 0, 0, 0, 0, 0}), "x").substr(0, 23),
             "crossed    1.2e-05 %  x");
-  EXPECT_EQ(endings_95(lattice::EndingShares({0.5, 0.5, 0, 0, 0, 0, 0}))["crossed"].dump(),
+  const lattice::EndingShares without({0.5, 0.5, 0, 0, 0, 0, 0});
+  EXPECT_EQ(json_of([&](Fields& out) {
+              describe_endings_95(out, {"endings_95", "of them"}, without);
+            })["endings_95"]["crossed"]
+                .dump(),
             "[null,null]");
 }
 
@@ -171,7 +176,7 @@ TEST(FinalGates, LargeFieldsAreLeftOutOfJson) {
     describe_map(out, {"small", "1", "a map"}, small);
     describe_map(out, {"large", "1", "a map"}, large);
   });
-  EXPECT_EQ(json["small"], grid(small));
+  EXPECT_EQ(json["small"], Json(100, std::vector<double>(1000, 0.0)));
   EXPECT_TRUE(json["large"].is_null());
   json = json_of([](Fields& out) { describe_left_out(out, 1000, 100); });
   EXPECT_TRUE(json.empty());
