@@ -15,12 +15,12 @@
 namespace gatewalk::cli {
 
 struct Claim {
-  const char* id;
-  const char* where;  // in the paper
+  const char* id = "";
+  const char* where = "";  // in the paper
   std::string claim, paper, ours;
-  Verdict verdict;
-  std::string why;  // may be empty
-  const char* see;  // a section of the report
+  Verdict verdict = Verdict::cannot_tell;
+  std::string why;       // may be empty
+  const char* see = "";  // a section of the report
 };
 
 /// All of them, in the order of the report.

@@ -40,7 +40,9 @@ void describe(Fields& out, const Report::Section& s) {
   out.optional(!s.film.is_null(), [&](Fields& f) {
     f.as_kept({"film", "runs to be played, as trace records them"}, s.film, [](Fields& film) {
       describe_version(film);
-      describe(film, Film());
+      Film one;
+      one.runs.resize(1);
+      describe(film, one);
     });
   });
 }

@@ -31,12 +31,12 @@ std::string words_of(const Pen& pen) {
   return words;
 }
 
-std::string words_of(const Layer& layer) {
+std::string words_of(const Layer& layer, bool with_key) {
   std::string words = layer.data;
   if (!layer.columns.empty()) words += " using " + layer.columns;
   words += " with " + layer.with + words_of(layer.pen);
   if (!layer.title.text.empty()) return words + " title " + layer.title.quoted();
-  return words + " notitle";
+  return with_key ? words + " notitle" : words;
 }
 
 std::string range_of(double low, double high) {
@@ -104,7 +104,7 @@ std::string words_of(const Panel& panel, const std::string& frame, const Sheet& 
   words += panel.more + "plot ";
   if (panel.layers.empty()) words += "NaN";
   for (std::size_t i = 0; i < panel.layers.size(); ++i)
-    words += (i == 0 ? "" : ", ") + words_of(panel.layers[i]);
+    words += (i == 0 ? "" : ", ") + words_of(panel.layers[i], panel.key.has_value());
   return words + "\n";
 }
 

@@ -88,7 +88,7 @@ TEST(ReportPage, RefusesWhatItDoesNotKnow) {
 }
 
 TEST(ReportPage, ItsJsonHasTheFilmsInTheirSections) {
-  const Json json = to_json(sample());
+  const Json json = json_of([](Fields& out) { describe(out, sample()); });
   EXPECT_EQ(json.at("claims").at(1).at("verdict"), "differs");
   EXPECT_FALSE(json.at("sections").at(0).contains("film"));
   EXPECT_EQ(json.at("sections").at(1).at("film").at("title"), "F");
