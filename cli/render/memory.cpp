@@ -188,8 +188,8 @@ void describe(Fields& out, const MemoryStudy& study, const GatesAhead::Step& s) 
                 s.excess_95,
                 [](Fields& f, const Field& key, const Interval& x) { f.interval(key, x); });
   out.numbers({"time_scales_gates", "1",
-               "implied time scales, -gates / ln |eigenvalue| of seen by way, longest first; null: "
-               "infinite"},
+               "implied time scales of seen, longest first: -gates / ln(modulus of an eigenvalue); "
+               "null: infinite"},
               s.seen_scales);
   out.numbers({"predicted_time_scales_gates", "1",
                "implied time scales of predicted, longest first; null: infinite"},
