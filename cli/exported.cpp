@@ -140,7 +140,8 @@ Exported export_gate(const Options& options, ExportForm form) {
   const dynamics::Transitions& t = options.has("type") ? type->second : file.transitions;
   if (const auto states = recorded_states(file, path);
       options.has("counts") && states && states->are_probabilities)
-    throw UsageError("--counts: " + path + " was made of probabilities, and has no counts");
+    throw UsageError(
+        fmt::format("--counts: {} was made of probabilities, and has no counts", path));
   const std::vector<int> order = lattice::shown_order(t.space);
   const SparseTable table = options.has("counts")
                                 ? table_of(in_order(t.counts(), order))

@@ -54,10 +54,8 @@ void describe(Fields& out, const SampleResult& result) {
 }
 
 std::string table_of(const std::vector<Sample>& samples) {
-  TextTable table({{"", -14, 0, "", "  "}, {}});
-  for (const Sample& s : samples)
-    // A name of 12 characters or more is two blanks away from what it is.
-    table.row({s.name.size() > 12 ? s.name + "  " : s.name, s.about});
+  TextTable table({{"", -12, 0, "", "  "}, {"", 0, 0, "", "  "}});
+  for (const Sample& s : samples) table.row({s.name, s.about});
   return table.text();
 }
 
