@@ -10,6 +10,7 @@
 #include "cli/render/health.h"
 #include "cli/render/json.h"
 #include "cli/render/pooled_prediction.h"
+#include "cli/render/start.h"
 #include "cli/render/text.h"
 #include "lattice/text/digits.h"
 
@@ -57,18 +58,6 @@ void describe(Fields& out, const BinRecord& bins) {
 
 /// Recorded runs have no accuracy that was asked for.
 bool is_of_recorded_runs(const TreeRecord& trees) { return !trees.accuracy; }
-
-void describe_start(Fields& out, const Section& section, const Entry& entry) {
-  out.optional(entry.face != 0, [&](Fields& f) {
-    f.text({"face", "boundary through which the body enters; absent: the first one"},
-           section.faces[static_cast<std::size_t>(entry.face)].name);
-  });
-  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
-    out.number(
-        Field(section.coordinates[axis].key, "its own", "value of this coordinate at the entry")
-            .varying("<coordinate>"),
-        entry.at[axis]);
-}
 
 void describe(Fields& out, const lattice::PooledRange& range, const Section& section) {
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
@@ -316,7 +305,7 @@ void describe(Fields& out, const StateRecord& s) {
   });
   out.optional(s.bins || s.trees, [&](Fields& f) {
     f.list({"starts_of_their_own", "starts that have a state of their own"}, s.starts,
-           [&](Fields& start, const Entry& entry) { describe_start(start, s.section, entry); });
+           [&](Fields& start, const Entry& entry) { describe(start, s.section, entry); });
   });
   out.optional(s.bins.has_value(), [&](Fields& f) { describe(f, bins); });
   out.optional(s.trees.has_value(), [&](Fields& f) {
