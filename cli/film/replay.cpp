@@ -50,7 +50,7 @@ constexpr Array kArrays[] = {
      [](Step s) { return s.lost_in_hits; }},
 };
 
-/// `more`: what else is told of each run, by its number.
+/// `more` adds keys to a run: it is called with the run's fields and its number, from 0.
 template <class More>
 void describe(Fields& out, const Film& film, More more) {
   const dynamics::GateParams& p = film.gate;

@@ -31,7 +31,7 @@ namespace gatewalk::cli {
 /// The result of `trace`.
 struct TraceResult {
   lattice::Recordings recordings;
-  Film film{};                         // of these
+  Film film{};                         // of the recordings
   std::optional<double> film_speed{};  // of a video: seconds of a run in one of it
   std::optional<lattice::Settled> method{};
   ActionMethods may_do{};  // under a policy

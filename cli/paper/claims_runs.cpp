@@ -44,7 +44,7 @@ Measured escape(const Findings& f) {
 Measured steep(const Findings& f) {
   const bool downhill = f.steep.fine.downhill();
   const Share share = f.steep.measured.traversed_share();
-  // "Always" is 100 of the paper's 100; by more trials, all of these.
+  // "Always" is 100 of the paper's 100 trials, or all trials where there are more.
   Verdict verdict = downhill ? against(kPaperTrials, share) : Verdict::differs;
   if (verdict == Verdict::reproduced && share.part < share.whole) verdict = Verdict::agrees;
   return {verdict,
@@ -57,7 +57,7 @@ Measured steep(const Findings& f) {
 struct Moments {
   std::int64_t looked = 0;
   std::int64_t below = 0;      // the landscape, by more than 0.5 J
-  std::int64_t explained = 0;  // of these: not below that of one beam alone
+  std::int64_t explained = 0;  // moments below it, but not below that of one beam alone
 
   void look_at(const TracedRun& run) {
     for (std::size_t i = 0; i < run.t.size(); ++i) {

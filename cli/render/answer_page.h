@@ -44,7 +44,7 @@ struct AnswerPage {
   const std::vector<lattice::CellAhead>& cells;
   const std::vector<std::array<int, 2>>& moves;  // of the cells' `next`
   PageChain chain;
-  const AnalysedField& analysis;  // parts of it are told
+  const AnalysedField& analysis;  // of which the page shows parts
 };
 
 /// Shares are packed as the digits that are shown (share_code), beside `gates_95` with their
