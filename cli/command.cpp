@@ -845,24 +845,16 @@ const LoadedMatrix* Options::loaded(const std::string& path) const {
   return nullptr;
 }
 
-bool Options::takes_json() const {
-  return has("json") || (state_->has_table && has("csv")) || state_->given_out;
-}
-
-void Options::give_out(const Json& json, const std::string& table, int indent) const {
+void Options::give_out(const Description& describe, const std::string& table, int indent) const {
   const std::string csv = state_->has_table ? text("csv") : "";
   if (!state_->given_out && is_first_rank()) {
     const bool to_stdout = text("json") == "-" || csv == "-";
     if (!to_stdout && ((text("json").empty() && csv.empty()) || talk()))
       write_text_atomically("-", table);
-    if (has("json")) write(text("json"), json_text(json, indent));
+    if (has("json")) write(text("json"), json_text(json_of(describe), indent));
   }
-  if (!csv.empty()) write(csv, table_of_numbers(json));
-  if (state_->given_out) state_->given_out(with_format_version(json));
-}
-
-void Options::give_out(const Description& describe, const std::string& table, int indent) const {
-  give_out(takes_json() ? json_of(describe) : Json(), table, indent);
+  if (!csv.empty()) write(csv, table_of_numbers(describe));
+  if (state_->given_out) state_->given_out(with_format_version(json_of(describe)));
 }
 
 void Options::keep_old(const std::string& path) const {

@@ -203,12 +203,9 @@ class Options {
   [[nodiscard]] Provenance provenance() const;
   [[nodiscard]] Provenance provenance(const lattice::Scene& scene) const;
 
-  /// Whether give_out would hand the JSON on: to a file, a table of numbers, or who called.
-  [[nodiscard]] bool takes_json() const;
   /// Gives the result to Arguments::given_out; without it prints it: JSON where --json says, the
   /// table on standard output otherwise; with --json FILE the table too, unless --quiet. `indent`
   /// -1: JSON on one line, for long arrays.
-  void give_out(const Json& json, const std::string& table, int indent = 2) const;
   void give_out(const Description& describe, const std::string& table, int indent = 2) const;
   /// The same of a result that is described.
   template <class Result>

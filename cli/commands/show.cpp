@@ -13,8 +13,7 @@ int run_show(const Arguments& arguments) {
       "gatewalk show matrix.nc --rows");
   options.positional("matrix", "matrix file written by gatewalk build", true);
   options.add_flag("rows", "a line per input state");
-  options.add_count("row", "I",
-                    "all outputs of input state I (states count from 1; in the file from 0)");
+  options.add_count("row", "I", "all outputs of input state I; states count from 0");
   options.add_text("type", "NAME", "the matrix of gates of that type of the table [terrain]");
   options.add_figure("the matrix, states grouped by boundary");
   options.without_scene("a matrix keeps its scene");
@@ -30,7 +29,7 @@ int run_show(const Arguments& arguments) {
   }
   ShownRows shown{.all = options.has("rows"), .one = {}};
   if (options.has("row"))
-    shown.one = static_cast<int>(options.count("row", 1, file.transitions.space.size())) - 1;
+    shown.one = static_cast<int>(options.count("row", 0, file.transitions.space.size() - 1));
 
   options.give_out(matrix, table_of(matrix, shown));
   options.draw([&] { return figure_of(file.transitions); });

@@ -97,7 +97,7 @@ void read(ValidatedStart& s, const Json& json) {
   s.total_variation = all.at("total_variation");
   s.total_variation_floor = all.at("total_variation_floor");
   s.finding = lattice::finding_of(json.at("trials_and_matrix").at("differs"), s.total_variation,
-                                  all.at("total_variation_floor_95"));
+                                  all.at("total_variation_floor_q95"));
   s.counts = json.at("final_gates").at("dynamics");
   s.chain = json.at("final_gates").at("exact");
   s.departed_counts = json.at("departed_gates").at("dynamics");

@@ -11,11 +11,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "cli/commands.h"
 #include "cli/exchange/sparse_table.h"
@@ -44,7 +47,64 @@ std::optional<std::vector<double>> numbers_of(const Json& array) {
   return numbers;
 }
 
-/// Rows and tables of numbers are numpy arrays; below a key with _95, pairs are tuples: intervals.
+/// Two limits; null: none.
+bool is_pair(const Json& x) {
+  const auto is_limit = [](const Json& limit) { return limit.is_number() || limit.is_null(); };
+  return x.is_array() && x.size() == 2 && is_limit(x[0]) && is_limit(x[1]);
+}
+
+/// How many lists there are around the pairs in it, one in another.
+std::size_t lists_around_pairs(const Json& x) {
+  if (!x.is_array() || is_pair(x)) return 0;
+  std::size_t inner = 0;
+  for (const Json& element : x) inner = std::max(inner, lists_around_pairs(element));
+  return inner + 1;
+}
+
+using Shape = std::vector<py::ssize_t>;
+
+/// The shape of a list, or of lists of lists, of pairs.
+Shape shape_of_pairs(const Json& json) {
+  Shape shape;
+  const Json* list = &json;
+  for (std::size_t lists = lists_around_pairs(json); lists > 0; --lists) {
+    shape.push_back(static_cast<py::ssize_t>(list->size()));
+    const auto full = std::find_if(list->begin(), list->end(), [&](const Json& element) {
+      return lists_around_pairs(element) + 1 == lists;
+    });
+    if (full != list->end()) list = &*full;
+  }
+  shape.push_back(2);
+  return shape;
+}
+
+/// Adds the numbers of a table of this shape, from its axis on, NaN for each below a null; false
+/// where it is none.
+bool add_numbers(const Json& x, const Shape& shape, std::size_t axis, std::vector<double>& all) {
+  if (x.is_null()) {
+    const auto rest = std::accumulate(shape.begin() + static_cast<std::ptrdiff_t>(axis),
+                                      shape.end(), py::ssize_t{1}, std::multiplies<>());
+    all.insert(all.end(), static_cast<std::size_t>(rest), std::numeric_limits<double>::quiet_NaN());
+    return true;
+  }
+  if (axis == shape.size()) {
+    if (x.is_number()) all.push_back(x.get<double>());
+    return x.is_number();
+  }
+  return x.is_array() && x.size() == static_cast<std::size_t>(shape[axis]) &&
+         std::all_of(x.begin(), x.end(), [&](const Json& element) {
+           return add_numbers(element, shape, axis + 1, all);
+         });
+}
+
+/// Whether the value of a key is an interval, or holds intervals: KEY_95. error_95 and its like
+/// are bounds, numbers.
+bool is_of_intervals(std::string_view key) {
+  return key.ends_with("_95") && !key.ends_with("error_95");
+}
+
+/// Rows and tables of numbers are numpy arrays. An interval is a tuple (low, high); a list or a
+/// table of intervals is an array whose last axis has low and high, NaN where there is none.
 py::object to_python(const Json& json, bool intervals = false) {
   switch (json.type()) {
     case Json::value_t::null:
@@ -62,24 +122,28 @@ py::object to_python(const Json& json, bool intervals = false) {
     case Json::value_t::object: {
       py::dict dict;
       for (const auto& [key, value] : json.items())
-        dict[py::str(key)] = to_python(value, intervals || key.find("_95") != key.npos);
+        dict[py::str(key)] = to_python(value, intervals || is_of_intervals(key));
       return dict;
     }
     default:
       break;
   }
-  const auto is_limit = [](const Json& x) { return x.is_number() || x.is_null(); };
-  if (intervals && json.size() == 2 && is_limit(json[0]) && is_limit(json[1])) {
+  const auto as_array = [](const std::vector<double>& numbers, Shape shape) {
+    py::array_t<double> array(std::move(shape));
+    std::copy(numbers.begin(), numbers.end(), array.mutable_data());
+    return array;
+  };
+  if (intervals && is_pair(json)) {
     const auto limit = [](const Json& x) -> py::object {
       return x.is_null() ? py::float_(std::numeric_limits<double>::quiet_NaN()) : to_python(x);
     };
     return py::make_tuple(limit(json[0]), limit(json[1]));
   }
-  const auto as_array = [](const auto& numbers, std::vector<py::ssize_t> shape) {
-    py::array_t<double> array(std::move(shape));
-    std::copy(numbers.begin(), numbers.end(), array.mutable_data());
-    return array;
-  };
+  if (intervals && !json.empty()) {
+    const Shape shape = shape_of_pairs(json);
+    std::vector<double> all;
+    if (add_numbers(json, shape, 0, all)) return as_array(all, shape);
+  }
   if (!json.empty()) {
     if (const auto numbers = numbers_of(json))
       return as_array(*numbers, {static_cast<py::ssize_t>(json.size())});

@@ -107,10 +107,9 @@ struct NamedMean {
   }
 };
 
-/// The key "why_no_interval", which stands behind `mean` if that is the first one with a reason.
-void describe_reasons(Fields& out, const std::vector<NamedMean>& means, const NamedMean& mean) {
-  const auto first = std::ranges::find_if(means, &NamedMean::says_why);
-  out.optional(first != means.end() && &*first == &mean, [&](Fields& f) {
+/// The key "why_no_interval", where a mean has a reason.
+void describe_reasons(Fields& out, const std::vector<NamedMean>& means) {
+  out.optional(std::ranges::any_of(means, &NamedMean::says_why), [&](Fields& f) {
     f.object({"why_no_interval", "by the key of the mean: why the mean has no 95 % interval"},
              [&](Fields& why) {
                for (const NamedMean& m : means)
@@ -153,40 +152,37 @@ void describe_means(Fields& out, const AnalysedField& f) {
       m.describe(out);
     else
       out.optional(true, [&](Fields& o) { m.describe(o); });
-    describe_reasons(out, means, m);
   }
+  describe_reasons(out, means);
 }
 
 void describe_by_ending(Fields& out, const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
-  const auto intervals = [&](Fields& out_of_ending, markov::Ending ending) {
+  const auto means_of = [&](markov::Ending ending) {
     std::vector<NamedMean> means;
     for (std::size_t c = 0; c < costs_of(f).size(); ++c)
       means.push_back({"mean_" + costs_of(f)[c].key, "", "", "", &a.costs_of[place(ending)][c]});
-    for (const NamedMean& m : means) {
-      out_of_ending.interval(
-          Field(m.key + "_95", "its own", "95 % interval of mean_<cost>").varying("mean_<cost>_95"),
-          known(m.mean->interval));
-      describe_reasons(out_of_ending, means, m);
-    }
+    return means;
   };
   const auto add = [&](Fields& endings, const char* key, const std::string& who,
                        std::optional<markov::Ending> ending) {
-    const Spent s = spent(a, ending);
+    Spent s = spent(a, ending);
+    const auto means = ending ? means_of(*ending) : std::vector<NamedMean>();
+    for (const NamedMean& m : means) s.mean_95.push_back(m.mean->interval);
     endings.optional(s.share > 0.0, [&](Fields& o) {
       o.object(Label(key, who).shared("costs_of_bodies"), [&](Fields& one) {
         describe(one, s, f.shown);
         one.number(
             {"probability", "1", "share of all bodies that belong to this group, by the chain"},
             s.share);
-        if (ending) intervals(one, *ending);
+        if (ending) describe_reasons(one, means);
         one.optional(f.direct.has_value(), [&](Fields& d) {
           const auto [distance, chance_95] = duration_distance(a, f.direct->costs, ending);
           d.number({"kolmogorov_distance", "1",
                     "Kolmogorov distance between times of the chain's walks and of the trials; "
                     "null: fewer than 50 of either"},
                    distance);
-          d.number({"kolmogorov_chance_95", "1",
+          d.number({"kolmogorov_chance_q95", "1",
                     "kolmogorov_distance that chance alone exceeds in 5 % of cases; null: as "
                     "kolmogorov_distance"},
                    chance_95);
@@ -315,7 +311,7 @@ void describe_starts(Fields& out, const lattice::Analysis& a) {
              start.estimate({"probability", "1",
                              "chance of the target; in a mirror-symmetric field its mean with the "
                              "mirror image's; null: no run entered"},
-                            s.chance.mean, known(s.chance.interval), "interval_95");
+                            s.chance.mean, known(s.chance.interval));
              start.count({"runs", "1",
                           "gate runs from the state of this range; in a mirror-symmetric field "
                           "with those of the mirror image"},
@@ -384,7 +380,7 @@ void describe_elasticity(Fields& out, const lattice::Mean95& m) {
   out.estimate(
       {"elasticity", "1",
        "per cent by which the chance of the target changes for one per cent more of the number"},
-      m.mean, known(m.interval), "interval_95");
+      m.mean, known(m.interval));
 }
 
 void describe_effect(Fields& out, const AnalysedField& f, const lattice::ParameterEffect& e) {
@@ -466,28 +462,11 @@ void describe_sensitivities(Fields& out, const AnalysedField& f) {
   describe_status(out, f.parameters.health);
 }
 
-void describe_chances(Fields& out, const lattice::EndingShares& shares) {
-  out.object({"endings", "share of bodies by ending, with its interval"}, [&](Fields& endings) {
-    const auto add = [&](const EndingName& e) {
-      endings.object(
-          Label(e.key, fmt::format("share of bodies that {}", meaning_of(e))).shared("ending"),
-          [&](Fields& one) {
-            one.estimate({"probability", "1", "share of all bodies that end in this way"},
-                         shares.share[place(e.ending)], known(shares.interval[place(e.ending)]),
-                         "interval_95");
-          });
-    };
-    for (const EndingName& e : kEndingNames) add(e);
-    endings.optional(!shares.rules_out(lattice::kWentBack.ending),
-                     [&](Fields&) { add(lattice::kWentBack); });
-  });
-}
-
 }  // namespace
 
 void describe(Fields& out, const AnalysedField& f) {
   const auto& [shown, start, answer, a, parameters, step, direct, shares, passage, made_by] = f;
-  describe_chances(out, answer.endings);
+  describe_endings(out, answer.endings);
   describe_means(out, f);
   out.optional(shown.mass.has_value(), [&](Fields& o) {
     o.number({"cost_of_transport_J_per_kg_m", "J/(kg m)",

@@ -48,10 +48,14 @@ double Spent::cost_of_transport(double mass) const {
 void describe(Fields& out, const Spent& s, const ShownField& shown) {
   for (std::size_t c = 0; c < costs_of(shown).size(); ++c) {
     const std::string &key = costs_of(shown)[c].key, mean = "mean_" + key, sd = "sd_" + key;
-    out.number(Field(mean, "its own",
-                     "mean of this cost over the bodies of the group; null: nobody measured it")
-                   .varying("mean_<cost>"),
-               s.mean[c]);
+    const Field of_mean =
+        Field(mean, "its own",
+              "mean of this cost over the bodies of the group; null: nobody measured it")
+            .varying("mean_<cost>");
+    if (s.mean_95.empty())
+      out.number(of_mean, s.mean[c]);
+    else
+      out.estimate(of_mean, s.mean[c], s.mean_95[c]);
     out.number(Field(sd, "its own",
                      "standard deviation of this cost over the bodies of the group; null: nobody "
                      "measured it")

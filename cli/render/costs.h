@@ -21,6 +21,7 @@ struct Spent {
 
   double share = 0.0;                              // of all bodies
   dynamics::Costs mean{}, sd{};                    // by Section::costs
+  std::vector<Interval> mean_95{};                 // of the means; empty: not known
   std::array<double, kLevels.size()> quantiles{};  // of the duration, s; NaN: not known
 
   [[nodiscard]] double of(dynamics::Cost c) const { return mean[static_cast<std::size_t>(c)]; }

@@ -88,7 +88,7 @@ FieldExits shown_exits(FieldExits exits, const markov::FinalDistribution& f) {
 void describe_exits(Fields& out, const FieldExits& exits, const ShownField& shown) {
   describe_places(out, exits_label().shared(), {&exits}, shown, [](Fields& f, const Place& p) {
     f.estimate({"share", "1", "share of all bodies that leave the field at this place"}, p.share[0],
-               p.interval[0], "interval_95");
+               p.interval[0]);
   });
 }
 

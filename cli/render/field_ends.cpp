@@ -29,18 +29,22 @@ constexpr std::string_view kOf = std::integral<Number> ? "number of" : "share of
 template <class Cells>
 void FieldEnds<Cells>::describe_endings(Fields& out) const {
   if constexpr (std::integral<Number>)
-    cli::describe_endings(out, endings, shares);
+    cli::describe_endings(out, endings, bodies, shares);
   else
     cli::describe_endings(out, shares);
 }
 
 template <class Cells>
-void FieldEnds<Cells>::describe_gates(Fields& out) const {
-  const auto map = [&](std::string_view key, std::string_view who, const Cells& cells) {
-    describe_map(out, {key, "1", fmt::format("{} all bodies, by gate: {}", kOf<Number>, who)},
-                 cells);
+void FieldEnds<Cells>::describe_gates(Fields& out, const GateLimits* limits) const {
+  const auto map = [&](std::string_view key, std::string_view who, const Cells& cells,
+                       const GateLimits* of_cells = nullptr) {
+    const std::string meaning = fmt::format("{} all bodies, by gate: {}", kOf<Number>, who);
+    const Field f(key, "1", meaning);
+    if constexpr (!std::integral<Number>)
+      if (of_cells) return describe_map(out, f, cells, *of_cells);
+    describe_map(out, f, cells);
   };
-  map("final_gates", "those that end there", final_gates);
+  map("final_gates", "those that end there", final_gates, limits);
   map("trapped_gates", "those that are trapped there", trapped_gates);
   map("departed_gates", "those that leave the field from there", departed_gates);
 }
@@ -53,7 +57,7 @@ void FieldEnds<Cells>::describe_sums(Fields& out, bool with_intervals) const {
     if constexpr (std::integral<Number>)
       if (with_intervals)
         return out.counted(
-            {key, "1", meaning}, n,
+            {key, "1", meaning}, n, bodies,
             interval ? interval : share_interval(n, static_cast<std::int64_t>(bodies)));
     put(out, {key, "1", meaning}, n);
   };
@@ -73,12 +77,14 @@ void FieldEnds<Cells>::describe_never_sampled(Fields& out) const {
 }
 
 template <class Cells>
-void FieldEnds<Cells>::describe_still_walking(Fields& out) const {
-  put(out,
-      {"still_walking", "1",
-       fmt::format("{} bodies left out of endings because they still walk when the program stops",
-                   kOf<Number>)},
-      still_walking);
+void FieldEnds<Cells>::describe_still_walking(Fields& out,
+                                              const std::optional<Interval>& share) const {
+  const std::string meaning = fmt::format(
+      "{} bodies left out of endings because they still walk when the program stops", kOf<Number>);
+  const Field f("still_walking", "1", meaning);
+  if constexpr (std::integral<Number>)
+    if (share) return out.counted(f, still_walking, bodies, share);
+  put(out, f, still_walking);
 }
 
 template <class Cells>

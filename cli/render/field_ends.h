@@ -36,12 +36,13 @@ struct FieldEnds {
   }
   /// The keys "endings" and "endings_95".
   void describe_endings(Fields& out) const;
-  /// The maps "final_gates", "trapped_gates" and "departed_gates".
-  void describe_gates(Fields& out) const;
-  /// The keys "trapped", "departed" and "cut_off"; their intervals in "intervals_95", if asked for.
+  /// The maps "final_gates", with `limits` if there are any, "trapped_gates" and "departed_gates".
+  void describe_gates(Fields& out, const GateLimits* limits = nullptr) const;
+  /// The keys "trapped", "departed" and "cut_off"; with their intervals, if asked for.
   void describe_sums(Fields& out, bool with_intervals = false) const;
   void describe_never_sampled(Fields& out) const;
-  void describe_still_walking(Fields& out) const;
+  /// `share`: 95 % interval of the share of these walks.
+  void describe_still_walking(Fields& out, const std::optional<Interval>& share = {}) const;
   /// Endings (`of` says of what), `about` the field, maps and who departed.
   [[nodiscard]] std::string table(const std::string& of, const std::string& about) const;
 };

@@ -29,13 +29,9 @@ void describe(Fields& out, const FieldRun& run) {
   ends.describe_gates(out);
   describe_left_out(out, run.shown.field.columns, run.shown.field.rows);
   out.count({"trials", "1", "number of trials through the field"}, tally.trials);
-  out.with_intervals_in(
-      {"intervals_95", "95 % intervals of the shares of all trials"}, [&](Fields& f) {
-        ends.describe_sums(f, true);
-        f.count(
-            {"not_finite", "1", "number of trials with a run that stopped being finite numbers"},
+  ends.describe_sums(out, true);
+  out.count({"not_finite", "1", "number of trials with a run that stopped being finite numbers"},
             tally.broken);
-      });
   out.object(
       {"entries_between_gates", "entries into gates after a body's first one, by face"},
       [&](Fields& faces) {
@@ -100,9 +96,7 @@ void describe(Fields& out, const WalkResult& r) {
   out.count({"walks", "1", "number of walks through the field"}, r.tally.walks);
   ends.describe_sums(out);
   ends.describe_never_sampled(out);
-  ends.describe_still_walking(out);
-  out.interval({"still_walking_95", "1", "95 % interval of the share of walks in still_walking"},
-               still_walking_95(r.tally, r.shown.field));
+  ends.describe_still_walking(out, still_walking_95(r.tally, r.shown.field));
   out.count({"gates_visited", "1", "number of gates visited by all walks together"}, r.tally.steps);
   const bool as_seen = !r.start.state && !r.start.entry;
   out.object_or_text(

@@ -2,29 +2,38 @@
 #include "cli/render/fields.h"
 
 namespace gatewalk::cli {
+namespace {
 
-void Fields::limits_of(const Field& f, const std::optional<Interval>& limits, std::string_view bar,
-                       std::string_view what) {
-  const auto behind = [](std::string_view name) {
-    return name.empty() ? std::string() : std::string(name) + "_95";
-  };
-  const std::string meaning = std::string(what) + std::string(f.varies.empty() ? f.key : f.varies);
-  if (!intervals_.empty()) {
-    intervals_.back().push_back(
-        {std::string(f.key), std::string(f.unit), meaning, std::string(f.varies), limits});
+std::string key_95(std::string_view key) { return key.empty() ? "" : std::string(key) + "_95"; }
+std::string meaning_95(std::string_view key) { return "95 % interval of " + std::string(key); }
+
+}  // namespace
+
+void Fields::bounded(const Field& f, ValueKind kind, const Value& value, ValueKind limits_kind,
+                     const Value& limits) {
+  const bool may_be_null = kind == ValueKind::grid;
+  leaf(f, kind, may_be_null, value);
+  const std::string meaning = meaning_95(f.varies.empty() ? f.key : f.varies);
+  if (auto& object = opened_.back(); object) {
+    object->all.push_back({std::string(f.key), std::string(f.unit), meaning, std::string(f.varies),
+                           optional_ > object->optional, limits_kind, limits});
     return;
   }
-  const std::string key = bar.empty() ? behind(f.key) : std::string(bar), varies = behind(f.varies);
-  interval(Field(key, f.unit, meaning).varying(bar.empty() ? varies : ""), limits);
+  const std::string key = key_95(f.key), varies = key_95(f.varies);
+  leaf(Field(key, f.unit, meaning).varying(varies), limits_kind, true, limits);
 }
 
-void Fields::put_intervals(const Label& l, const Description& more) {
-  const std::vector<Limits> all = std::move(intervals_.back());
-  intervals_.pop_back();
-  object(l, [&](Fields& out) {
-    for (const Limits& i : all)
-      out.interval(Field(i.key, i.unit, i.meaning).varying(i.varies), i.limits);
-    if (more) more(out);
+void Fields::put_limits(const Label& l, const std::optional<LimitsOfObject>& limits) {
+  if (!limits || limits->all.empty()) return;
+  const std::string_view shown = l.varies.empty() ? l.key : l.varies;
+  const std::string key = key_95(l.key), varies = key_95(l.varies),
+                    meaning = "95 % intervals of " + std::string(shown);
+  object(Label(key, meaning).varying(varies), [&](Fields& out) {
+    for (const Limits& of : limits->all) {
+      if (of.is_optional) out.begin_optional();
+      out.leaf(Field(of.key, of.unit, of.meaning).varying(of.varies), of.kind, true, of.value);
+      if (of.is_optional) out.end_optional();
+    }
   });
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 /// A result described once, key by key: describe(Fields&, const Result&) names each key with its
 /// unit and meaning and gives its value. What takes the fields makes of them the result's JSON
-/// (json.h) or the schema of all such results (schema.h).
+/// (json.h), a table of its numbers (csv.h) or the schema of all such results (schema.h).
 
 #include <array>
 #include <cmath>
@@ -85,6 +85,7 @@ struct Label : ResultKey {
 
 using TextRows = std::vector<std::vector<std::optional<std::string>>>;  // none: null
 using NumberRows = std::vector<std::vector<double>>;
+using GateLimits = std::array<markov::CellProbabilities, 2>;  // 95 % intervals: from and to
 
 /// As many numbers for each gate, one gate behind another, row by row from the start's side on.
 struct GateNumbers {
@@ -98,7 +99,7 @@ using Value =
                  Interval, const std::vector<double>*, const std::vector<std::int64_t>*,
                  const std::vector<std::string>*, const TextRows*, const NumberRows*,
                  const std::vector<Interval>*, const Json*, const markov::CellProbabilities*,
-                 const markov::CellCounts*, const GateNumbers*>;
+                 const markov::CellCounts*, const GateLimits*, const GateNumbers*>;
 
 /// What a value may be, whatever it is in one result.
 enum class ValueKind {
@@ -106,7 +107,8 @@ enum class ValueKind {
   count,   // whole
   flag,
   text,
-  interval,      // or null
+  interval,      // 95 %; or null
+  range,         // from and to
   numbers,       // a list, of numbers or null
   counts,        // a list
   number_rows,   // a list of lists, of numbers or null
@@ -117,6 +119,7 @@ enum class ValueKind {
   intervals,     // a list
   points,        // a list
   grid,          // of numbers: rows and columns; or null
+  grid_95,       // of intervals: rows and columns; or null
   gate_numbers,  // rows and columns of lists
 };
 
@@ -152,10 +155,12 @@ class Fields {
   void text(const Label& l, const Words& words) {
     leaf(l, ValueKind::text, true, words ? Value(std::string_view(*words)) : Value());
   }
-  /// None: null.
+  /// Of a number that the result does not hold; none: null. Others have theirs by `estimate`.
   void interval(const Field& f, const std::optional<Interval>& limits) {
-    leaf(f, ValueKind::interval, true, limits ? Value(*limits) : Value());
+    leaf(f, ValueKind::interval, true, value_of(limits));
   }
+  /// From and to, of what is no estimate.
+  void range(const Field& f, const Interval& ends) { leaf(f, ValueKind::range, false, ends); }
   void numbers(const Field& f, const std::vector<double>& x) {
     leaf(f, ValueKind::numbers, false, &x);
   }
@@ -200,6 +205,13 @@ class Fields {
   }
   void grid(const Field& f, const markov::CellCounts& n) { leaf(f, ValueKind::grid, true, &n); }
   void no_grid(const Field& f) { leaf(f, ValueKind::grid, true, {}); }
+  /// A number for each gate, and behind them as KEY_95 their intervals.
+  void grid(const Field& f, const markov::CellProbabilities& x, const GateLimits& limits) {
+    bounded(f, ValueKind::grid, &x, ValueKind::grid_95, &limits);
+  }
+  void no_estimated_grid(const Field& f) {
+    bounded(f, ValueKind::grid, {}, ValueKind::grid_95, {});
+  }
   void gate_numbers(const Field& f, const GateNumbers& n) {
     leaf(f, ValueKind::gate_numbers, false, &n);
   }
@@ -208,54 +220,59 @@ class Fields {
   void gate_numbers(const Field& f, const Numbers& n) {
     leaf(f, ValueKind::gate_numbers, true, n ? Value(&*n) : Value());
   }
-  /// A number and behind it its 95 % interval (none: null), as `bar`: key_95 if that is empty.
-  void estimate(const Field& f, double x, const std::optional<Interval>& limits,
-                std::string_view bar = {}) {
-    leaf(f, ValueKind::number, false, x);
-    limits_of(f, limits, bar);
+  /// A number, and behind it as KEY_95 its 95 % interval in the same unit (none: null).
+  void estimate(const Field& f, double x, const std::optional<Interval>& limits) {
+    bounded(f, ValueKind::number, x, ValueKind::interval, value_of(limits));
   }
-  /// A count, and behind it the interval of its share.
+  /// A count of so many, and behind it the interval of its share, times how many these are.
   template <std::integral T>
-  void counted(const Field& f, T n, const std::optional<Interval>& share,
-               std::string_view bar = {}) {
-    leaf(f, ValueKind::count, false, whole(n));
-    limits_of(f, share, bar, "95 % interval of the share of ");
+  void counted(const Field& f, T n, double of, const std::optional<Interval>& share) {
+    bounded(f, ValueKind::count, whole(n), ValueKind::interval,
+            share ? value_of(Interval{of * (*share)[0], of * (*share)[1]}) : Value());
+  }
+  /// An object whose numbers have their intervals in a second one behind it, KEY_95.
+  template <class Describe>
+  void estimates(const Label& l, Describe describe) {
+    enter(l, Shape::object, "");
+    opened_.back() = LimitsOfObject{optional_, {}};
+    describe(*this);
+    put_limits(l, leave());
   }
 
   template <class Describe>
   void object(const Label& l, Describe describe) {
-    open(l, Shape::object, "");
+    enter(l, Shape::object, "");
     describe(*this);
-    close();
+    leave();
   }
   /// The object where there is one, else null. `describe` also takes what it points to; the schema
   /// is told of one that is made by default, if need be.
   template <class Result, class Describe>
   void maybe(const Label& l, const Result& result, Describe describe) {
     if (!result && !is_schema()) return leaf(l, ValueKind::text, true, {});
-    open(l, Shape::object, "null");
+    enter(l, Shape::object, "null");
     using Object = std::remove_cvref_t<decltype(*result)>;
     if (result)
       describe(*this, *result);
     else if constexpr (std::default_initializable<Object>)
       describe(*this, Object{});
-    close();
+    leave();
   }
   /// An object, or words that stand in its place.
   template <class Describe>
   void object_or_text(const Label& l, const std::optional<std::string>& words, Describe describe) {
     if (words && !is_schema()) return leaf(l, ValueKind::text, false, std::string_view(*words));
-    open(l, Shape::object, "string");
+    enter(l, Shape::object, "string");
     describe(*this);
-    close();
+    leave();
   }
   /// A number (null where it is NaN or infinite), or an object that stands in its place.
   template <class Describe>
   void number_or_object(const Field& f, const std::optional<double>& x, Describe describe) {
     if (x && !is_schema()) return leaf(f, ValueKind::number, false, *x);
-    open(f, Shape::object, "number");
+    enter(f, Shape::object, "number");
     describe(*this);
-    close();
+    leave();
   }
   /// An object for each item. The schema is told of one that is made by default, if need be.
   template <std::ranges::range Items, class Describe>
@@ -271,12 +288,12 @@ class Fields {
   /// The same with the numbers 0 to n - 1 as items.
   template <class Describe>
   void list_of(const Label& l, std::size_t n, Describe describe) {
-    open(l, Shape::list, "");
+    enter(l, Shape::list, "");
     for (std::size_t i = 0; i < n; ++i) {
       next();
       describe(*this, i);
     }
-    close();
+    leave();
   }
   /// An object that stands as JSON in a file, such as another result; `describe` tells its schema.
   template <class Describe>
@@ -291,7 +308,9 @@ class Fields {
   void optional(bool there, Describe describe) {
     if (!there && !is_schema()) return;
     begin_optional();
+    ++optional_;
     describe(*this);
+    --optional_;
     end_optional();
   }
   /// One of two descriptions, both of keys beside each other; they may share some.
@@ -303,20 +322,6 @@ class Fields {
     if (!is_first || is_schema()) second(*this);
     end_either();
   }
-  /// The intervals of the numbers that `describe` gives stand behind these, in an object of their
-  /// own with the same keys; behind them those that `more` gives.
-  template <class Describe>
-  void with_intervals_in(const Label& l, Describe describe, const Description& more = {}) {
-    intervals_.emplace_back();
-    describe(*this);
-    put_intervals(l, more);
-  }
-  /// An object whose numbers have their intervals in a second one, behind it.
-  template <class Describe>
-  void object(const Label& l, const Label& intervals, Describe describe) {
-    with_intervals_in(intervals, [&](Fields& out) { out.object(l, describe); });
-  }
-
   /// All that results may have is asked for: what is described only makes a schema.
   [[nodiscard]] virtual bool is_schema() const { return false; }
 
@@ -325,6 +330,9 @@ class Fields {
   virtual void leaf(const ResultKey& key, ValueKind kind, bool may_be_null, const Value& value) = 0;
   /// `also`: "null", "string" or "number" (or null), what may stand in its place.
   virtual void open(const ResultKey& key, Shape shape, std::string_view also) = 0;
+  /// A value and its 95 % limits, which are of the same form.
+  virtual void bounded(const Field& f, ValueKind kind, const Value& value, ValueKind limits_kind,
+                       const Value& limits);
   virtual void next() = 0;  // an item of a list
   virtual void close() = 0;
   virtual void begin_optional() {}
@@ -336,7 +344,7 @@ class Fields {
  private:
   template <class Items, class Describe>
   void list(const Label& l, const Items* items, std::string_view also, Describe describe) {
-    open(l, Shape::list, also);
+    enter(l, Shape::list, also);
     if (items)
       for (const auto& item : *items) {
         next();
@@ -347,11 +355,17 @@ class Fields {
         next();
         describe(*this, std::ranges::range_value_t<Items>{});
       }
-    close();
+    leave();
   }
   struct Limits {
     std::string key, unit, meaning, varies;
-    std::optional<Interval> limits;
+    bool is_optional;
+    ValueKind kind;
+    Value value;
+  };
+  struct LimitsOfObject {
+    int optional;  // as optional_ was where the object begins
+    std::vector<Limits> all;
   };
   template <std::integral T>
   static Value whole(T n) {
@@ -360,11 +374,25 @@ class Fields {
     else
       return static_cast<std::int64_t>(n);
   }
-  void limits_of(const Field& f, const std::optional<Interval>& limits, std::string_view bar,
-                 std::string_view what = "95 % interval of ");
-  void put_intervals(const Label& l, const Description& more);
+  static Value value_of(const std::optional<Interval>& limits) {
+    return limits && known(*limits) ? Value(*limits) : Value();
+  }
+  void enter(const ResultKey& key, Shape shape, std::string_view also) {
+    open(key, shape, also);
+    opened_.emplace_back();
+  }
+  std::optional<LimitsOfObject> leave() {
+    close();
+    std::optional<LimitsOfObject> limits = std::move(opened_.back());
+    opened_.pop_back();
+    return limits;
+  }
+  void put_limits(const Label& l, const std::optional<LimitsOfObject>& limits);
 
-  std::vector<std::vector<Limits>> intervals_;  // those that are still to be put, innermost last
+  int optional_ = 0;  // > 0: not every result has what is described now
+  // Objects and lists that are not complete, innermost last, with the limits that are to be put.
+  std::vector<std::optional<LimitsOfObject>> opened_ =
+      std::vector<std::optional<LimitsOfObject>>(1);
 };
 
 }  // namespace gatewalk::cli

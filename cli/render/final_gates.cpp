@@ -32,7 +32,7 @@ void describe(Fields& out, const lattice::Comparison& c) {
       {"total_variation", "1",
        "total variation of the two maps of final gates: half the sum of absolute differences"},
       c.total_variation, "total_variation_floor", c.floor_total_variation);
-  out.number({"total_variation_floor_95", "1",
+  out.number({"total_variation_floor_q95", "1",
               "95 % of the total variations that sampling noise alone gives are at most this"},
              c.floor_total_variation_95);
   out.object(
@@ -54,12 +54,20 @@ void describe_change(Fields& out, const lattice::PairedChange& change) {
              change.uncertainty());
 }
 
-void describe_by_chance(Fields& out, double mean, double at_95) {
+void describe_map(Fields& out, const Field& f, const markov::CellProbabilities& cells,
+                  const GateLimits& limits) {
+  if (cells.size() > kMostGatesInJson)
+    out.no_estimated_grid(f);
+  else
+    out.grid(f, cells, limits);
+}
+
+void describe_by_chance(Fields& out, double mean, double q95) {
   out.object(
       {"total_variation_by_chance", "total variation of the final gates that chance alone makes"},
       [&](Fields& f) {
         f.number({"mean", "1", "mean over the random draws"}, mean);
-        f.number({"at_95", "1", "95 % of the random draws have at most this"}, at_95);
+        f.number({"q95", "1", "95 % of the random draws have at most this"}, q95);
       });
 }
 
@@ -193,16 +201,16 @@ constexpr auto kBack = static_cast<std::size_t>(lattice::kWentBack.ending);
 
 /// `back`: some went back, which is an ending of its own then. `put` takes key and meaning.
 template <class Put>
-void by_ending(Fields& out, const Label& l, bool back, std::string_view what, Put put) {
-  out.object(l, [&](Fields& f) {
-    const auto add = [&](const EndingName& e) {
-      put(f, Field(e.key, "1", fmt::format("{} bodies that {}", what, meaning_of(e))),
-          static_cast<std::size_t>(e.ending));
-    };
-    for (const EndingName& e : kEndingNames) add(e);
-    f.optional(back, [&](Fields&) { add(lattice::kWentBack); });
-  });
+void by_ending(Fields& f, bool back, std::string_view what, Put put) {
+  const auto add = [&](const EndingName& e) {
+    put(Field(e.key, "1", fmt::format("{} bodies that {}", what, meaning_of(e))),
+        static_cast<std::size_t>(e.ending));
+  };
+  for (const EndingName& e : kEndingNames) add(e);
+  f.optional(back, [&](Fields&) { add(lattice::kWentBack); });
 }
+
+constexpr char kNumberOf[] = "number of", kShareOf[] = "share of";
 
 }  // namespace
 
@@ -249,35 +257,40 @@ void describe_answer_from(Fields& out, bool from_trials) {
 }
 
 void describe_endings(Fields& out, const Label& l, const EndingCounts& counts) {
-  by_ending(out, l, counts[kBack] > 0, "number of",
-            [&](Fields& f, const Field& e, std::size_t at) { f.count(e, counts[at]); });
+  out.object(l, [&](Fields& f) {
+    by_ending(f, counts[kBack] > 0, kNumberOf,
+              [&](const Field& e, std::size_t at) { f.count(e, counts[at]); });
+  });
 }
 void describe_endings(Fields& out, const Label& l, const EndingChances& shares) {
-  by_ending(out, l, shares[kBack] > 0.0, "share of",
-            [&](Fields& f, const Field& e, std::size_t at) { f.number(e, shares[at]); });
+  out.object(l, [&](Fields& f) {
+    by_ending(f, shares[kBack] > 0.0, kShareOf,
+              [&](const Field& e, std::size_t at) { f.number(e, shares[at]); });
+  });
 }
-void describe_endings_95(Fields& out, const Label& l, const lattice::EndingShares& shares) {
-  by_ending(out, l, shares.share[kBack] > 0.0, "95 % interval of the share of",
-            [&](Fields& f, const Field& e, std::size_t at) { f.interval(e, shares.interval[at]); });
-}
-
-namespace {
-
-void describe_intervals(Fields& out, const lattice::EndingShares& shares) {
-  describe_endings_95(out, {"endings_95", "95 % intervals of the shares of bodies by ending"},
-                      shares);
-}
-
-}  // namespace
-
-void describe_endings(Fields& out, const EndingCounts& counts,
+void describe_endings(Fields& out, const Label& l, const EndingCounts& counts, double bodies,
                       const lattice::EndingShares& shares) {
-  describe_endings(out, {"endings", "how bodies end: number of bodies by ending"}, counts);
-  describe_intervals(out, shares);
+  out.estimates(l, [&](Fields& f) {
+    by_ending(f, counts[kBack] > 0, kNumberOf, [&](const Field& e, std::size_t at) {
+      f.counted(e, counts[at], bodies, shares.interval[at]);
+    });
+  });
+}
+void describe_endings(Fields& out, const Label& l, const lattice::EndingShares& shares) {
+  out.estimates(l, [&](Fields& f) {
+    by_ending(f, shares.share[kBack] > 0.0, kShareOf, [&](const Field& e, std::size_t at) {
+      f.estimate(e, shares.share[at], shares.interval[at]);
+    });
+  });
+}
+
+void describe_endings(Fields& out, const EndingCounts& counts, double bodies,
+                      const lattice::EndingShares& shares) {
+  describe_endings(out, {"endings", "how bodies end: number of bodies by ending"}, counts, bodies,
+                   shares);
 }
 void describe_endings(Fields& out, const lattice::EndingShares& shares) {
-  describe_endings(out, {"endings", "how bodies end: share of all bodies by ending"}, shares.share);
-  describe_intervals(out, shares);
+  describe_endings(out, {"endings", "how bodies end: share of all bodies by ending"}, shares);
 }
 
 lattice::EndingShares shown_endings(lattice::EndingShares shares,

@@ -36,8 +36,11 @@ void describe_map(Fields& out, const Field& f, const Cells& cells) {
   else
     out.grid(f, cells);
 }
+/// With its 95 % intervals.
+void describe_map(Fields& out, const Field& f, const markov::CellProbabilities& cells,
+                  const GateLimits& limits);
 /// The key "total_variation_by_chance": what is between two maps of final gates.
-void describe_by_chance(Fields& out, double mean, double at_95);
+void describe_by_chance(Fields& out, double mean, double q95);
 /// The key "left_out" where a field has so many gates that its maps are null.
 void describe_left_out(Fields& out, int columns, int rows);
 
@@ -91,12 +94,17 @@ using EndingChances = std::array<double, markov::kEndings>;
 [[nodiscard]] std::vector<std::string> ending_keys();
 /// The key "answer_from".
 void describe_answer_from(Fields& out, bool from_trials);
-/// An object with a key for each ending: counts, shares of all bodies, or 95 % intervals of these.
+/// An object with a key for each ending: counts, or shares of all bodies.
 void describe_endings(Fields& out, const Label& l, const EndingCounts& counts);
 void describe_endings(Fields& out, const Label& l, const EndingChances& shares);
-void describe_endings_95(Fields& out, const Label& l, const lattice::EndingShares& shares);
+/// Behind it another one with their 95 % intervals. `counts`: of so many `bodies`; the limits are
+/// those of `shares` times these.
+void describe_endings(Fields& out, const Label& l, const EndingCounts& counts, double bodies,
+                      const lattice::EndingShares& shares);
+void describe_endings(Fields& out, const Label& l, const lattice::EndingShares& shares);
 /// The keys "endings" and "endings_95".
-void describe_endings(Fields& out, const EndingCounts& counts, const lattice::EndingShares& shares);
+void describe_endings(Fields& out, const EndingCounts& counts, double bodies,
+                      const lattice::EndingShares& shares);
 void describe_endings(Fields& out, const lattice::EndingShares& shares);
 /// A prediction's endings as they are shown: 0 where the share is no more than rounding and walks
 /// not finished may make.

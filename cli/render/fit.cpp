@@ -96,11 +96,11 @@ void describe_number(Fields& out, const lattice::NumberRange& r, const lattice::
   out.number({"best", "its own",
               "value in the draw from the posterior that makes the observed counts likeliest"},
              r.at(n.best));
-  out.number({"median", "its own", "median of the posterior"}, r.at(n.median));
+  out.estimate({"median", "its own",
+                "median of the posterior; median_95: from its 2.5 to its 97.5 % quantile"},
+               r.at(n.median), Interval{r.at(n.interval[0]), r.at(n.interval[1])});
   out.number({"mean", "its own", "mean of the posterior"}, r.at(n.mean));
   out.number({"sd", "its own", "standard deviation of the posterior"}, n.sd * (r.high - r.low));
-  out.interval({"interval_95", "its own", "95 % interval of the posterior"},
-               Interval{r.at(n.interval[0]), r.at(n.interval[1])});
   out.flag({"told",
             "whether the data tell more than the range: Kolmogorov distance of posterior and range "
             "over 0.15 plus noise"},
@@ -149,9 +149,9 @@ void describe(Fields& out, const FittedScene& f) {
                           "number of observed trials, or passages, with an outcome of the group"},
                          g.observed);
              group.estimate({"expected", "1",
-                             "number expected, mean over the posterior; interval_95: where 95 % of "
+                             "number expected, mean over the posterior; expected_95: where 95 % of "
                              "such experiments lie"},
-                            seven_digits(g.expected, 1.0), g.interval, "interval_95");
+                            seven_digits(g.expected, 1.0), g.interval);
            });
   out.count({"draws", "1", "number of draws from the posterior"}, fit.draws.rows());
   out.flag({"settled",

@@ -14,25 +14,23 @@ namespace gatewalk::cli {
 
 using dynamics::Outcome;
 
-void describe(Fields& out, const dynamics::GateTally& tally, const Description& more) {
+void describe(Fields& out, const dynamics::GateTally& tally) {
   out.count({"trials", "1", "number of runs of the gate"}, tally.trials);
-  const auto all = [&](Fields& f) {
-    const auto counted = [&](const Field& field, std::int64_t n) {
-      f.counted(field, n, dynamics::share_interval(n, tally.trials));
-    };
-    counted({"traversed", "1",
-             "runs in which the body traversed the gate: traversed left, right and even together"},
-            tally.traversed());
-    for (const auto& [outcome, key, words] : dynamics::kOutcomeNames) {
-      const std::string meaning = "number of runs with the outcome: " + std::string(words);
-      const Field field(key, "1", meaning);
-      if (outcome != Outcome::traversed_even && outcome != Outcome::broken)
-        counted(field, tally[outcome]);
-      else
-        f.count(field, tally[outcome]);
-    }
+  const auto counted = [&](const Field& field, std::int64_t n) {
+    out.counted(field, n, static_cast<double>(tally.trials),
+                dynamics::share_interval(n, tally.trials));
   };
-  out.with_intervals_in({"intervals_95", "95 % intervals of the shares of all runs"}, all, more);
+  counted({"traversed", "1",
+           "runs in which the body traversed the gate: traversed left, right and even together"},
+          tally.traversed());
+  for (const auto& [outcome, key, words] : dynamics::kOutcomeNames) {
+    const std::string meaning = "number of runs with the outcome: " + std::string(words);
+    const Field field(key, "1", meaning);
+    if (outcome != Outcome::traversed_even && outcome != Outcome::broken)
+      counted(field, tally[outcome]);
+    else
+      out.count(field, tally[outcome]);
+  }
 }
 
 void describe(Fields& out, const GateResult& result) {

@@ -13,8 +13,8 @@
 
 namespace gatewalk::cli {
 
-/// Counts, and 95 % intervals of their shares; behind these those that `more` gives.
-void describe(Fields& out, const dynamics::GateTally& tally, const Description& more = {});
+/// Counts with their 95 % intervals.
+void describe(Fields& out, const dynamics::GateTally& tally);
 
 /// The result of `gate`.
 struct GateResult {

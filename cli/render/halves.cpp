@@ -74,7 +74,7 @@ void describe(Fields& out, const HalfAgainstHalf& way) {
     f.number(
         {"total_variation_chance", "1", "mean total variation that chance in the bodies makes"},
         way.chance_total_variation);
-    f.number({"total_variation_chance_95", "1",
+    f.number({"total_variation_chance_q95", "1",
               "95 % of the total variations that chance makes are at most this"},
              way.chance_total_variation_95);
     f.number(
@@ -97,7 +97,7 @@ void describe(Fields& out, const HalfAgainstHalf& way) {
                                        meaning_of(e))},
                    [&](Fields& of) {
                      describe(of, way.endings[at]);
-                     of.number({"chance_95", "1",
+                     of.number({"chance_q95", "1",
                                 "95 % of the differences that chance makes are at most this"},
                                way.chance_95[at]);
                    });

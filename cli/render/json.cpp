@@ -96,6 +96,17 @@ class JsonFields final : public Fields {
     }
     return rows;
   }
+  static Json json_of_value(const GateLimits* limits) {
+    const auto& [low, high] = *limits;
+    Json rows = Json::array();
+    for (Eigen::Index r = 0; r < low.rows(); ++r) {
+      Json row = Json::array();
+      for (Eigen::Index c = 0; c < low.cols(); ++c)
+        row.push_back(json_of_value(Interval{low(r, c), high(r, c)}));
+      rows.push_back(std::move(row));
+    }
+    return rows;
+  }
   static Json json_of_value(const GateNumbers* all) {
     const std::size_t gates = all->rows * all->columns,
                       each = gates > 0 ? all->numbers.size() / gates : 0;

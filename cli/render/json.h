@@ -29,7 +29,7 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string json_string(std::string_view text);
 
 /// Of the JSON that commands write; a key that goes, or changes its meaning, makes another one.
-inline constexpr int kFormatVersion = 1;
+inline constexpr int kFormatVersion = 2;
 void describe_version(Fields& out);
 /// The result with "format_version" as its first key.
 [[nodiscard]] Json with_format_version(const Json& result);

@@ -65,7 +65,7 @@ std::string row_table(const Transitions& t) {
   TextTable table(std::move(columns));
   for (const int row : lattice::shown_order(t.space)) {
     const StateRange range = t.space.range(row);
-    std::vector<TextCell> cells{lattice::shown_number(t.space, row) + 1,
+    std::vector<TextCell> cells{lattice::shown_number(t.space, row),
                                 name_of(section, range.middle()), section.faces[range.face].name};
     for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
       cells.emplace_back(dynamics::text_of(range.at[axis]) + " ");
@@ -92,11 +92,11 @@ std::string outputs_table(const Transitions& t, int shown) {
   TextTable table({{"", 6}, {"", 9}, {"", 0, 0, "", "  "}});
   for (const auto& [number, output] : outputs_of(t, row)) {
     const auto& [column, count] = output;
-    table.row({number + 1, count,
+    table.row({number, count,
                column == t.space.trapped() ? "trapped"
                                            : text_of(t.space.section(), t.space.range(column))});
   }
-  return fmt::format("\n  outputs of input {}\n{}", shown + 1, table.text());
+  return fmt::format("\n  outputs of input {}\n{}", shown, table.text());
 }
 
 /// A line of each other gate in the field.
@@ -153,8 +153,8 @@ void describe_types(Fields& out, const lattice::MatrixFile& file) {
 void describe_row(Fields& out, const Transitions& t, int row) {
   const StateRange range = t.space.range(row);
   const Section& section = t.space.section();
-  out.count({"input", "1", "number of the state, counted from 1"},
-            lattice::shown_number(t.space, row) + 1);
+  out.count({"input", "1", "number of the state; states count from 0"},
+            lattice::shown_number(t.space, row));
   out.text({"boundary", "boundary of the gate through which the state enters"},
            section.faces[range.face].name);
   const std::string name = name_of(section, range.middle());
@@ -170,10 +170,9 @@ void describe_row(Fields& out, const Transitions& t, int row) {
   out.count({"clamped", "1", "crossings of these runs that lie outside all bins"}, t.clamped[row]);
   out.list({"outputs", "the outputs of this row that were counted"}, outputs_of(t, row),
            [](Fields& f, const auto& output) {
-             f.count(
-                 {"output", "1",
-                  "number of the state entered next, counted from 1; the last output is trapped"},
-                 output.first + 1);
+             f.count({"output", "1",
+                      "number of the state entered next, from 0; the last output is trapped"},
+                     output.first);
              f.count({"count", "1", "count of this output"}, output.second.second);
            });
 }
@@ -314,7 +313,6 @@ void describe(Fields& out, const ShownMatrix& shown) {
   describe_clamped_share(out, total);
   describe_empty_rows(out, total);
   describe_types(out, file);
-  out.count({"counted_from", "1", "number of the first input and output in rows"}, 1);
   out.list({"rows", "rows of the matrix, one for each input"}, lattice::shown_order(t.space),
            [&](Fields& f, int row) { describe_row(f, t, row); });
   if (const auto states = recorded_states(file, path); states || out.is_schema())

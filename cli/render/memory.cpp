@@ -305,7 +305,7 @@ void describe(Fields& out, const lattice::ForceMemory& m) {
                    of.estimate(
                        {"difference", "1",
                         "share with the force drawn anew less the share with the force kept"},
-                       d.difference, Interval{d.low, d.high}, "interval_95");
+                       d.difference, Interval{d.low, d.high});
                  });
                }
              });

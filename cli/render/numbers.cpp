@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/numbers.h"
 
-#include <array>
+#include <fmt/format.h>
+
 #include <cmath>
+#include <concepts>
 
 #include "cli/render/csv.h"
 #include "cli/render/json.h"
@@ -10,126 +12,167 @@
 namespace gatewalk::cli {
 namespace {
 
-bool is_value(const Json& json) { return json.is_number() || json.is_boolean() || json.is_null(); }
+template <class Number>
+using Grid = Eigen::Array<Number, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The 95 % limits of the number that the result holds beside `bars`; none where it is no pair.
-std::array<Json, 2> limits_in(const Json& bars) {
-  const bool is_pair =
-      bars.is_array() && bars.size() == 2 && is_value(bars[0]) && is_value(bars[1]);
-  return is_pair ? std::array<Json, 2>{bars[0], bars[1]} : std::array<Json, 2>{};
+std::string shown(double x) { return std::isfinite(x) ? text_of(Json(x)) : ""; }
+/// Yes is 1, no 0.
+template <std::integral T>
+std::string shown(T n) {
+  return fmt::format("{:d}", n);
 }
+std::string shown_limits(const Interval& limits) {
+  return fmt::format("{},{}", shown(limits[0]), shown(limits[1]));
+}
+constexpr char kNoLimits[] = ",";
 
-class NumberTable {
+class NumberFields final : public Fields {
  public:
-  explicit NumberTable(const Json& result) {
-    csv_ = "quantity,i,j,value,low_95,high_95\n";
-    if (result.contains("walks") && result["walks"].is_number())
-      walks_ = result["walks"].get<double>();
+  [[nodiscard]] std::string text() && {
+    std::string csv = "quantity,i,j,value,low_95,high_95\n";
+    for (const Row& row : rows_) csv += fmt::format("{},{}\n", csv_text(row.quantity), row.cells);
+    return csv;
   }
 
-  /// `bars`: what the result says of its limits, of the same form; or "low" and "high" of such.
-  /// `total`: how many were counted, where shares have limits and the numbers are counts.
-  void add(const std::string& name, const Json& json, const Json& bars, double total = kUnknown) {
-    if (is_value(json)) return line(name, {}, {}, json, limits_in(bars), total);
-    if (json.is_object()) return add_object(name, json, bars, total);
-    if (!json.is_array()) return;
-    for (std::size_t i = 0; i < json.size(); ++i) {
-      const Json& x = json[i];
-      if (is_value(x)) {
-        line(name, std::to_string(i), {}, x, limits_at(bars, i), total);
-      } else if (x.is_array()) {
-        for (std::size_t j = 0; j < x.size(); ++j)
-          if (is_value(x[j]))
-            line(name, std::to_string(i), std::to_string(j), x[j], limits_at(bars, i, j), total);
-          else
-            add(name + "." + std::to_string(i) + "." + std::to_string(j), x[j], {}, total);
-      } else {
-        add(name + "." + name_of(x, i), x, {}, total);
-      }
+ protected:
+  void leaf(const ResultKey& key, ValueKind kind, bool, const Value& value) override {
+    const std::string name(key.key);
+    if (kind == ValueKind::given) return add_given(name, "", std::get<std::string_view>(value));
+    if (kind == ValueKind::givens) {
+      const auto& texts = *std::get<const std::vector<std::string>*>(value);
+      for (std::size_t i = 0; i < texts.size(); ++i) add_given(name, shown(i), texts[i]);
+      return;
     }
+    if (const auto* words = std::get_if<std::string_view>(&value);
+        words && (name == "key" || name == "name") && !scopes_.empty())
+      scopes_.back().called = *words;
+    std::visit([&](const auto& x) { add(name, x); }, value);
   }
-
-  [[nodiscard]] std::string text() && { return std::move(csv_); }
+  void bounded(const Field& f, ValueKind, const Value& value, ValueKind,
+               const Value& limits) override {
+    const std::string name(f.key);
+    if (const auto* const* grid = std::get_if<const markov::CellProbabilities*>(&value)) {
+      const auto* const* ends = std::get_if<const GateLimits*>(&limits);
+      return add_grid(name, **grid, [&](Eigen::Index r, Eigen::Index c) {
+        return ends ? shown_limits({(**ends)[0](r, c), (**ends)[1](r, c)}) : std::string(kNoLimits);
+      });
+    }
+    const auto* ends = std::get_if<Interval>(&limits);
+    const std::string bar = ends ? shown_limits(*ends) : kNoLimits;
+    std::visit(
+        [&](const auto& x) {
+          if constexpr (requires { shown(x); })
+            put(name, "", "", shown(x), bar);
+          else
+            put(name, "", "", "", bar);
+        },
+        value);
+  }
+  void open(const ResultKey& key, Shape shape, std::string_view) override {
+    scopes_.push_back({std::string(key.key), shape == Shape::list, rows_.size(), rows_.size()});
+  }
+  void next() override {
+    end_item();
+    ++scopes_.back().items;
+  }
+  void close() override {
+    end_item();
+    const Scope scope = std::move(scopes_.back());
+    scopes_.pop_back();
+    if (scopes_.empty() && scope.name == "made_by")
+      rows_.resize(scope.first);
+    else
+      put_before(scope.first, scope.name);
+  }
 
  private:
-  static const Json& at(const Json& json, std::size_t i) {
-    static const Json kNone;
-    return json.is_array() && i < json.size() ? json[i] : kNone;
+  struct Row {
+    std::string quantity, cells{};  // i,j,value,low_95,high_95
+  };
+  struct Scope {  // an object, or a list with the item that is told now
+    std::string name;
+    bool is_list;
+    std::size_t first, first_of_item;  // rows
+    std::size_t items = 0;
+    std::string called{};  // what the item says that its name is
+  };
+
+  void put_before(std::size_t first, const std::string& name) {
+    for (std::size_t r = first; r < rows_.size(); ++r)
+      rows_[r].quantity = fmt::format("{}.{}", name, rows_[r].quantity);
   }
-  static std::array<Json, 2> limits_at(const Json& bars, std::size_t i) {
-    if (bars.is_object() && bars.contains("low") && bars.contains("high"))
-      return {at(bars["low"], i), at(bars["high"], i)};
-    return limits_in(at(bars, i));
-  }
-  static std::array<Json, 2> limits_at(const Json& bars, std::size_t i, std::size_t j) {
-    if (bars.is_object() && bars.contains("low") && bars.contains("high"))
-      return {at(at(bars["low"], i), j), at(at(bars["high"], i), j)};
-    return limits_in(at(at(bars, i), j));
+  void end_item() {
+    Scope& scope = scopes_.back();
+    if (!scope.is_list || scope.items == 0) return;
+    put_before(scope.first_of_item, scope.called.empty() ? shown(scope.items - 1) : scope.called);
+    scope.first_of_item = rows_.size();
+    scope.called.clear();
   }
 
-  /// Where the limits of `key` stand beside it; empty: nowhere.
-  static std::string bars_of(const Json& object, const std::string& key) {
-    if (object.contains(key + "_95")) return key + "_95";
-    if ((key == "probability" || key == "share") && object.contains("interval_95"))
-      return "interval_95";
-    return "";
+  void put(const std::string& name, const std::string& i, const std::string& j,
+           const std::string& value, const std::string& limits = kNoLimits) {
+    rows_.push_back({name, fmt::format("{},{},{},{}", i, j, value, limits)});
   }
-  static bool is_bars(const Json& object, const std::string& key) {
-    if (key == "intervals_95") return true;
-    if (key == "interval_95") return object.contains("probability") || object.contains("share");
-    return key.ends_with("_95") && object.contains(key.substr(0, key.size() - 3));
+  void add_given(const std::string& name, const std::string& i, std::string_view text) {
+    if (const Json number = parsed_json(text); number.is_number())
+      put(name, i, "", text_of(number));
   }
-
-  /// An element of a list by what the result calls it, else by its number.
-  static std::string name_of(const Json& element, std::size_t i) {
-    for (const char* key : {"key", "name"})
-      if (element.is_object() && element.contains(key) && element[key].is_string())
-        return element[key].get<std::string>();
-    return std::to_string(i);
+  template <class Rows, class Limits>
+  void add_grid(const std::string& name, const Rows& grid, Limits limits) {
+    for (Eigen::Index r = 0; r < grid.rows(); ++r)
+      for (Eigen::Index c = 0; c < grid.cols(); ++c)
+        put(name, shown(r), shown(c), shown(grid(r, c)), limits(r, c));
   }
 
-  void add_object(const std::string& name, const Json& object, const Json& bars, double total) {
-    for (const char* key : {"walks", "trials"})  // of both: but for what is called so, the trials
-      if (object.contains(key) && object[key].is_number()) total = object[key].get<double>();
-    for (const auto& [key, value] : object.items()) {
-      if ((name.empty() && (key == "made_by" || key == "format_version")) || is_bars(object, key))
-        continue;
-      Json own;
-      if (const std::string place = bars_of(object, key); !place.empty())
-        own = object[place];
-      else if (object.contains("intervals_95") && object["intervals_95"].contains(key))
-        own = object["intervals_95"][key];
-      else if (bars.is_object() && bars.contains(key))
-        own = bars[key];
-      add(name.empty() ? key : name + "." + key, value, own, key == "walks" ? walks_ : total);
-    }
+  void add(const std::string& name, std::monostate) { put(name, "", "", ""); }
+  template <class T>
+  requires requires(T x) { shown(x); }
+  void add(const std::string& name, T x) { put(name, "", "", shown(x)); }
+  template <class T>
+  requires requires(T x) { shown(x); }
+  void add(const std::string& name, const std::vector<T>* list) {
+    for (std::size_t i = 0; i < list->size(); ++i) put(name, shown(i), "", shown((*list)[i]));
   }
+  /// Lists in a list; also pairs in one.
+  template <class List>
+  requires requires(List x) { shown(x[0]); }
+  void add(const std::string& name, const std::vector<List>* rows) {
+    for (std::size_t i = 0; i < rows->size(); ++i)
+      for (std::size_t j = 0; j < (*rows)[i].size(); ++j)
+        put(name, shown(i), shown(j), shown((*rows)[i][j]));
+  }
+  void add(const std::string& name, const Interval& ends) {
+    for (std::size_t i = 0; i < ends.size(); ++i) put(name, shown(i), "", shown(ends[i]));
+  }
+  template <class Number>
+  void add(const std::string& name, const Grid<Number>* grid) {
+    add_grid(name, *grid, [](Eigen::Index, Eigen::Index) { return std::string(kNoLimits); });
+  }
+  void add(const std::string& name, const GateNumbers* all) {
+    const std::size_t gates = all->rows * all->columns,
+                      each = gates > 0 ? all->numbers.size() / gates : 0;
+    for (std::size_t gate = 0; gate < gates; ++gate)
+      for (std::size_t i = 0; i < each; ++i)
+        put(fmt::format("{}.{}.{}", name, gate / all->columns, gate % all->columns), shown(i), "",
+            shown(all->numbers[gate * each + i]));
+  }
+  // Words.
+  void add(const std::string&, std::string_view) {}
+  void add(const std::string&, const std::vector<std::string>*) {}
+  void add(const std::string&, const TextRows*) {}
+  void add(const std::string&, const Json*) {}
+  void add(const std::string&, const GateLimits*) {}  // they stand beside their grid
 
-  static std::string shown(const Json& value) {
-    if (value.is_null() || (value.is_number_float() && !std::isfinite(value.get<double>())))
-      return "";
-    return value.is_boolean() ? (value.get<bool>() ? "1" : "0") : value.dump();
-  }
-  void line(const std::string& name, const std::string& i, const std::string& j, const Json& value,
-            std::array<Json, 2> limits, double total) {
-    // The limits of a count are those of its share.
-    for (Json& limit : limits)
-      if (value.is_number_integer() && limit.is_number_float())
-        limit = std::isnan(total) ? Json() : Json(limit.get<double>() * total);
-    csv_ += csv_text(name) + "," + i + "," + j + "," + shown(value) + "," + shown(limits[0]) + "," +
-            shown(limits[1]) + "\n";
-  }
-
-  double walks_ = kUnknown;  // of the result
-  std::string csv_;
+  std::vector<Row> rows_;
+  std::vector<Scope> scopes_;
 };
 
 }  // namespace
 
-std::string table_of_numbers(const Json& result) {
-  NumberTable table(result);
-  table.add("", result, {});
-  return std::move(table).text();
+std::string table_of_numbers(const Description& describe) {
+  NumberFields fields;
+  describe(fields);
+  return std::move(fields).text();
 }
 
 }  // namespace gatewalk::cli

@@ -180,8 +180,9 @@ void describe_observed(Fields& out, const lattice::ObservedComparison& c,
            verdict_of(c, v));
     f.texts({"files", "paths of the tables of counts"}, files.paths);
     f.count({"trials", "1", "observed trials, without those in went_back"}, c.seen.trials());
-    f.optional(c.seen.has_endings(),
-               [&](Fields& seen) { describe_endings(seen, c.seen.endings, c.endings); });
+    f.optional(c.seen.has_endings(), [&](Fields& seen) {
+      describe_endings(seen, c.seen.endings, static_cast<double>(c.seen.trials()), c.endings);
+    });
     f.optional(c.seen.has_gates(), [&](Fields& seen) {
       seen.grid({"final_gates", "1", "number of observed trials by the gate in which they end"},
                 c.seen.final_gates);

@@ -196,7 +196,7 @@ const lattice::Policy& chosen_policy(const PlannedField& p) {
 }
 
 void describe_crossed(Fields& out, std::string_view meaning, const lattice::Crossings& c) {
-  out.estimate({"crossed", "1", meaning}, c.share(), c.interval_95(), "interval_95");
+  out.estimate({"crossed", "1", meaning}, c.share(), c.interval_95());
 }
 
 void describe_chance(Fields& out, const lattice::Crossings& c, double chain) {

@@ -33,7 +33,7 @@ void describe(Fields& out, const PlannedField& p);
 /// Which action is taken most in each cell, and how often bodies cross.
 [[nodiscard]] Figure figure_of(const PlannedField& p);
 
-/// The keys "crossed" and "interval_95".
+/// The keys "crossed" and "crossed_95".
 void describe_crossed(Fields& out, std::string_view meaning, const lattice::Crossings& c);
 /// The keys "crossed" to "chain", with which results of `plan` begin.
 void describe_chance(Fields& out, const lattice::Crossings& c, double chain);

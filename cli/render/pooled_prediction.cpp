@@ -47,15 +47,11 @@ void describe_error(Fields& out, double error_95) {
 void describe(Fields& out, const lattice::StartAnswer& a, const ShownField& shown) {
   const auto ends = ends_of(a.final, a.endings);
   ends.describe_endings(out);
-  ends.describe_gates(out);
+  ends.describe_gates(out, &a.gates_95);
   ends.describe_sums(out);
   ends.describe_never_sampled(out);
   ends.describe_still_walking(out);
   describe_exits(out, shown_exits(a.exits, a.final), shown);
-  out.object({"final_gates_95", "95 % intervals of final_gates"}, [&](Fields& f) {
-    describe_map(f, {"low", "1", "lower ends of the intervals, by gate"}, a.gates_95[0]);
-    describe_map(f, {"high", "1", "upper ends of the intervals, by gate"}, a.gates_95[1]);
-  });
   describe_answer_from(out, a.from_trials);
   describe_error(out, a.error.total_variation);
   out.number(

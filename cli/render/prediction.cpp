@@ -28,7 +28,7 @@ void describe(Fields& out, const lattice::StartPrediction& s, const ShownField& 
                   "mean total variation between their final gates and this prediction's; null: no "
                   "replicates"},
                  s.mean_total_variation);
-        m.number({"total_variation_95", "1",
+        m.number({"total_variation_q95", "1",
                   "95 % of these total variations are at most this; null: no replicates"},
                  s.total_variation_95);
       });

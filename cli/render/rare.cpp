@@ -40,7 +40,7 @@ std::string rounded(double n) {
 void describe(Fields& out, const lattice::RowChance& c) {
   out.estimate({"probability", "1",
                 "chance that a body enters the row, from split trials of the full dynamics"},
-               c.probability, c.interval_95(), "interval_95");
+               c.probability, c.interval_95());
   out.number({"relative_standard_error", "1",
               "standard error of probability, as a share of it; null: no body came"},
              c.probability > 0.0 ? c.relative_standard_error : kUnknown);
@@ -76,11 +76,9 @@ void describe(Fields& out, const RareResult& result) {
                    event.chain[r]);
         row.optional(direct.trials > 0, [&](Fields& f) {
           const std::int64_t entered = direct.trials > 0 ? direct.entered[r] : 0;
-          f.count({"direct_entered", "1", "trials of direct simulation that entered the row"},
-                  entered);
-          f.interval({"direct_interval_95", "1",
-                      "95 % interval of the share of direct trials that entered the row"},
-                     dynamics::share_interval(entered, direct.trials));
+          f.counted({"direct_entered", "1", "trials of direct simulation that entered the row"},
+                    entered, static_cast<double>(direct.trials),
+                    dynamics::share_interval(entered, direct.trials));
         });
       });
   out.optional(direct.trials > 0, [&](Fields& f) {

@@ -176,6 +176,8 @@ std::string type_of(const Node& node) {
       break;
     case ValueKind::interval:
       return R"("$ref": "#/$defs/interval")";
+    case ValueKind::range:
+      return list(kNumber) + R"(, "minItems": 2, "maxItems": 2)";
     case ValueKind::numbers:
       return list(kNumber, node.may_be_null);
     case ValueKind::number_rows:
@@ -196,6 +198,8 @@ std::string type_of(const Node& node) {
       return list(list(kNumber) + R"(, "minItems": 2, "maxItems": 2)");
     case ValueKind::grid:
       return R"("$ref": "#/$defs/grid")";
+    case ValueKind::grid_95:
+      return list(list(R"("$ref": "#/$defs/interval")"), true);
     case ValueKind::gate_numbers:
       return list(list(list(kNumber)), node.may_be_null);
   }
@@ -301,6 +305,8 @@ std::string type_words(const Node& node) {
       return "text" + or_null;
     case ValueKind::interval:
       return "interval";
+    case ValueKind::range:
+      return "range";
     case ValueKind::numbers:
       return "numbers" + or_null;
     case ValueKind::number_rows:
@@ -321,6 +327,8 @@ std::string type_words(const Node& node) {
       return "points";
     case ValueKind::grid:
       return "grid";
+    case ValueKind::grid_95:
+      return "grid of intervals";
     case ValueKind::gate_numbers:
       return "grid of lists" + or_null;
   }

@@ -39,7 +39,7 @@ void describe(Fields& out, const dynamics::Section& section, const dynamics::Ent
 void describe(Fields& out, const dynamics::Section& section, const dynamics::StateRange& range) {
   describe_entry(out, section, range.middle(),
                  "range of a coordinate of the entries; the key names the unit",
-                 [&](const Field& f, std::size_t axis) { out.interval(f, range.at[axis]); });
+                 [&](const Field& f, std::size_t axis) { out.range(f, range.at[axis]); });
 }
 
 void describe_start(Fields& out, const Label& l, const dynamics::Section& section,
@@ -97,13 +97,12 @@ StartTexts::StartTexts(const dynamics::Section& section, const std::vector<dynam
 
 ShownState shown_state(const lattice::ChainStart& start, const dynamics::StateSpace& space) {
   const int state = start.start.input;
-  return {lattice::shown_number(space, state) + 1, text_of(space.section(), space.range(state)),
+  return {lattice::shown_number(space, state), text_of(space.section(), space.range(state)),
           start.clamped};
 }
 
 void describe(Fields& out, const ShownState& state) {
-  out.count({"input", "1", "number of the state, counted from counted_from"}, state.number);
-  out.count(Field("counted_from", "1", "number of the first state").at_least(1).at_most(1), 1);
+  out.count({"input", "1", "number of the state; states count from 0"}, state.number);
   out.text({"bin", "face and coordinate ranges of the state, in words"}, state.bin);
   out.flag({"clamped",
             "whether the start lies outside all bins, so that the chain starts in the nearest one"},

@@ -35,7 +35,7 @@ struct StartTexts {
                                      const dynamics::Entry& start);
 /// The state of a chain in which bodies start, as it is shown.
 struct ShownState {
-  int number = 1;   // from 1
+  int number = 0;   // from 0
   std::string bin;  // the entries that it stands for
   bool clamped = false;
 };

@@ -54,12 +54,11 @@ void describe(Fields& out, const std::vector<SweepAxis>& axes, const SweepPoint&
           p.values[i]);
   });
   const Share right = shares_of(p.tally).back();
-  describe(out, p.tally, [&](Fields& intervals) {
-    intervals.optional(right.whole > 0, [&](Fields& f) {
-      f.interval({right.name, "1",
-                  "95 % interval of traversed_right / (traversed_left + traversed_right)"},
-                 share_interval(right.part, right.whole));
-    });
+  describe(out, p.tally);
+  out.optional(right.whole > 0, [&](Fields& f) {
+    f.estimate({right.name, "1", "traversed_right / (traversed_left + traversed_right)"},
+               static_cast<double>(right.part) / static_cast<double>(right.whole),
+               share_interval(right.part, right.whole));
   });
   describe_method(out, p.settled);
   describe_status(out, p.tally.health);

@@ -184,18 +184,19 @@ void describe(Fields& out, const lattice::StartValidation& r, const lattice::Pap
   out.object(
       {"endings", "how bodies end: by trials and walks (numbers) and by the exact chain (shares)"},
       [&](Fields& f) {
-        describe_endings(f, {"dynamics", "number of trials by ending"}, r.dynamics.endings);
-        describe_endings(f, {"walks", "number of walks by ending"}, r.walks.endings);
-        describe_endings(f, {"exact", "share of all bodies by ending"}, r.exact.endings);
+        describe_endings(f, {"dynamics", "number of trials by ending"}, r.dynamics.endings,
+                         static_cast<double>(r.dynamics.trials), r.dynamics_endings);
+        describe_endings(f,
+                         {"walks",
+                          "number of walks by ending; walks_95 counts the sampling of the walks "
+                          "alone, without that of the matrix"},
+                         r.walks.endings, static_cast<double>(r.walks.walks), r.walks_endings);
+        describe_endings(f,
+                         {"exact",
+                          "share of all bodies by ending; exact_95 counts the sampling of the "
+                          "matrix; null: no resampled matrices"},
+                         r.exact_endings);
       });
-  out.object({"endings_95", "95 % intervals of the shares by ending"}, [&](Fields& f) {
-    describe_endings_95(f, {"dynamics", "sampling noise of the trials"}, r.dynamics_endings);
-    describe_endings_95(f,
-                        {"walks", "sampling noise of the walks alone, without that of the matrix"},
-                        r.walks_endings);
-    describe_endings_95(f, {"exact", "sampling noise of the matrix; null: no resampled matrices"},
-                        r.exact_endings);
-  });
   out.object({"fates", "shares of all bodies by fate"}, [&](Fields& f) {
     f.object({"dynamics", "shares in the trials of the full dynamics"},
              [&](Fields& of) { describe_fates(of, r.dynamics); });

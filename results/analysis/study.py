@@ -46,13 +46,12 @@ def analysis(lines):
         d = run("lattice", *scene, "--trials", str(TRIALS), "--seed", "4711")
         b = run("analyze", *scene, "--accuracy", "0.01", "--runs", "0", "--seed", "1", "--trials",
                 str(TRIALS))
-        ends = {e: (v["probability"], d["endings"][e] / TRIALS) for e, v in a["endings"].items()}
+        ends = {e: (p, d["endings"][e] / TRIALS) for e, p in a["endings"].items()}
         worst = max(ends, key=lambda e: abs(ends[e][0] - ends[e][1]))
-        inside = sum(v["interval_95"][0] <= ends[e][1] <= v["interval_95"][1]
-                     for e, v in a["endings"].items())
+        inside = sum(low <= ends[e][1] <= high for e, (low, high) in a["endings_95"].items())
         all_ = d["costs"]["all"]
         se = all_["sd_time_s"] / math.sqrt(TRIALS)
-        ks, chance = (b["by_ending"]["all"][k] for k in ("kolmogorov_distance", "kolmogorov_chance_95"))
+        ks, chance = (b["by_ending"]["all"][k] for k in ("kolmogorov_distance", "kolmogorov_chance_q95"))
         ratio = lambda ours, theirs: f"{100 * (ours / theirs - 1):+.2f} %"
         lines.append(
             f"{name}\n  endings: largest difference {abs(ends[worst][0] - ends[worst][1]):.4f} "
@@ -89,15 +88,15 @@ def derivatives(lines):
         central = (crossed[0] - crossed[1]) / width
         half = 1.96 * math.sqrt(sum(c * (1 - c) for c in crossed) / DERIVATIVE_TRIALS) / width
         said = f"  {p['key']:33} {p['elasticity']:7.2f} "
-        if p["interval_95"]:
-            low, high = p["interval_95"]
+        if p["elasticity_95"]:
+            low, high = p["elasticity_95"]
             known += 1
             inside += low <= central <= high
             overlap = low <= central + half and central - half <= high
             overlaps += overlap
             said += f"[{low:.2f}, {high:.2f}]"
         lines.append(f"{said}   dynamics {central:7.2f} [{central - half:.2f}, {central + half:.2f}]"
-                     f"{'' if not p['interval_95'] or overlap else '  apart'}")
+                     f"{'' if not p['elasticity_95'] or overlap else '  apart'}")
     lines.append(f"  {inside} of {known} central differences lie inside the chain's interval, {overlaps} agree within "
                  f"both; {len(parameters)} numbers took {a['sensitivities']['seconds']:.1f} s, all of it {seconds:.1f} s")
 

@@ -91,9 +91,8 @@ def corrcoef(p, q):
 
 
 def gates_of(count, what, scene, j, truth, trials, truth_trials=TRUTH_TRIALS):
-    low, high = (flat(j["final_gates_95"][side]) for side in ("low", "high"))
-    for p, own, a, b in zip(truth, flat(j["final_gates"]), low, high):
-        count.share(f"{what}: a final gate", scene, p, own, (a, b), trials, truth_trials)
+    for p, own, interval in zip(truth, flat(j["final_gates"]), flat(j["final_gates_95"])):
+        count.share(f"{what}: a final gate", scene, p, own, interval, trials, truth_trials)
 
 
 def predicted(count, scene, truth):
@@ -115,7 +114,7 @@ def predicted(count, scene, truth):
             gates_of(count, "predict", scene, j, p, trials)
             for side, places in j["exits"].items():
                 for q, place in zip(truth["exits"][side], places):
-                    count.share("predict: where they leave", scene, q, place["share"], place["interval_95"], trials)
+                    count.share("predict: where they leave", scene, q, place["share"], place["share_95"], trials)
 
 
 def simulated(count, scene, truth):
@@ -125,11 +124,11 @@ def simulated(count, scene, truth):
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         for j in pool.map(one, range(1, LATTICE_SEEDS + 1)):
             for e, interval in j["endings_95"].items():
-                count.share(f"lattice: {e}", scene, truth["endings"][e], j["endings"][e] / LATTICE_TRIALS, interval,
-                            LATTICE_TRIALS)
+                count.share(f"lattice: {e}", scene, truth["endings"][e], j["endings"][e] / LATTICE_TRIALS,
+                            [limit / LATTICE_TRIALS for limit in interval], LATTICE_TRIALS)
             for side, places in j["exits"].items():
                 for q, place in zip(truth["exits"][side], places):
-                    count.share("lattice: where they leave", scene, q, place["share"], place["interval_95"],
+                    count.share("lattice: where they leave", scene, q, place["share"], place["share_95"],
                                 LATTICE_TRIALS)
 
 
@@ -174,9 +173,8 @@ def mean_of(count, row, scene, answer, interval, truth):
 
 def analyzed(count, scene, truth):
     for j in each("analyze", scene, "--accuracy", ACCURACY, "--runs", 0, "--paths", 1):
-        shares = {e: x["probability"] for e, x in j["endings"].items()}
         runs = j["gate_runs"]
-        endings_of(count, "analyze", scene, shares, {e: x["interval_95"] for e, x in j["endings"].items()}, truth, runs)
+        endings_of(count, "analyze", scene, j["endings"], j["endings_95"], truth, runs)
         for cost, key in zip(COSTS, ("seconds", None, "work_J", "random_work_J", "lost_J")):
             if key:
                 mean_of(count, f"analyze: mean {cost}", scene, j[f"expected_{key}"], j[f"expected_{key}_95"],
@@ -196,8 +194,9 @@ def validated(count, scene, truth):
         own = j["starts"][0]
         for kind, key, n in (("trials", "dynamics", VALIDATE_TRIALS), ("walks", "walks", VALIDATE_TRIALS),
                              ("chain", "exact", j["matrix"]["gate_runs"])):
-            intervals = own["endings_95"][key]
-            shares = {e: x / (1 if key == "exact" else VALIDATE_TRIALS) for e, x in own["endings"][key].items()}
+            of_shares = 1 if key == "exact" else VALIDATE_TRIALS
+            shares = {e: x / of_shares for e, x in own["endings"][key].items()}
+            intervals = {e: [x / of_shares for x in interval] for e, interval in own["endings"][f"{key}_95"].items()}
             # Walks are of this chain: their truth is what it says exactly.
             of = {"endings": own["endings"]["exact"]} if key == "walks" else truth
             endings_of(count, f"validate, {kind}", scene, shares, intervals, of, n)
@@ -214,7 +213,7 @@ def powered(count, scene, truth):
 def rare(count, scene, truth):
     for j in each("rare", scene, "--row", RARE_ROW, "--gate-runs", RARE_RUNS):
         for row, p in zip(j["rows"], truth["rows"]):
-            count.share("rare: the chance of a row", scene, p, row["probability"], row["interval_95"],
+            count.share("rare: the chance of a row", scene, p, row["probability"], row["probability_95"],
                         j["split_trials"], MORE_TRUTH_TRIALS)
 
 

@@ -78,7 +78,7 @@ def one(number: int) -> list:
     for n in fit["numbers"]:
         key = n["key"]
         below = sum(float(d[key]) < truth[key] for d in draws) / len(draws)
-        lines.append([number, kind, key, truth[key], n["median"], *n["interval_95"], below, half, fit["p"], int(fit["settled"]),
+        lines.append([number, kind, key, truth[key], n["median"], *n["median_95"], below, half, fit["p"], int(fit["settled"]),
                       fit["outside"], fit["seconds"]])
     return lines
 

@@ -47,7 +47,7 @@ def one(number: int) -> dict:
             draws = list(csv.DictReader(open(path("draws.csv"))))
             fit = json.load(open(path("fit.json")))
             for n in fit["numbers"]:
-                low, high = n["interval_95"]
+                low, high = n["median_95"]
                 key, value = n["key"], truth[n["key"]]
                 answers[key, table] = (low <= value <= high, high - low, sum(float(d[key]) < value for d in draws) / len(draws))
             answers["p", table] = fit["p"]

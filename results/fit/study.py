@@ -47,7 +47,7 @@ def one(number: int) -> list:
     for n in fit["numbers"]:
         key = n["key"]
         below = sum(float(d[key]) < truth[key] for d in draws) / len(draws)
-        rows.append([number, key, truth[key], n["median"], *n["interval_95"], below, fit["p"], int(fit["settled"]), fit["seconds"]])
+        rows.append([number, key, truth[key], n["median"], *n["median_95"], below, fit["p"], int(fit["settled"]), fit["seconds"]])
     return rows
 
 

@@ -47,7 +47,7 @@ def one(number: int) -> dict:
                 trials, "--seed", str(number), "--json", path("fit.json"), "--draws", path("draws.csv"))
             draws = list(csv.DictReader(open(path("draws.csv"))))
             for n in json.load(open(path("fit.json")))["numbers"]:
-                low, high = n["interval_95"]
+                low, high = n["median_95"]
                 key, value = n["key"], truth[n["key"]]
                 answers[key, timed] = (low <= value <= high, high - low, sum(float(d[key]) < value for d in draws) / len(draws))
     return answers

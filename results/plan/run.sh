@@ -32,7 +32,7 @@ planned() {
   "$gatewalk" lattice "${words[@]}" --policy "$work/policy.json" --trials $trials --seed $((seed + 1000)) --quiet --force \
     --json "$work/run.json" >/dev/null 2>>"$work/words"
   jq -r -s --arg name "$name" '.[0] as $p | .[1] as $r | ($p.actions | map(select(.name == $p.best_alone))[0]) as $best |
-    [$name, $p.trials, $p.crossed, $p.interval_95[0], $p.interval_95[1], $r.endings.crossed / $r.trials, $p.best_alone,
+    [$name, $p.trials, $p.crossed, $p.crossed_95[0], $p.crossed_95[1], $r.endings.crossed / $r.trials, $p.best_alone,
      $best.crossed, $best.gain, $best.gain_95[0], $best.gain_95[1], $p.rounds, $p.gate_runs, $p.seconds] | @csv' \
     "$work/plan.json" "$work/run.json" | tr -d '"'
 }

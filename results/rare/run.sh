@@ -30,7 +30,7 @@ jq -rs '(.[0].rows | map(.row)) as $rows | .[0].rows as $split | .[1:] as $direc
     ($rows[] as $r | ($direct | map((([.final_gates[$r:][][]] | add) // 0) + if $r == 40 then .endings.crossed else 0 end) | add) as $k
      | ($k / $n) as $p | (1.959964 * 1.959964) as $z | (($p + $z / 2 / $n) / (1 + $z / $n)) as $middle
      | ((($p * (1 - $p) * $z / $n + $z * $z / 4 / $n / $n) | sqrt) / (1 + $z / $n)) as $half
-     | $split[$r - 1] | [.row, .probability, .interval_95[], $n, $k, $p, $middle - $half, $middle + $half, .chain])
+     | $split[$r - 1] | [.row, .probability, .probability_95[], $n, $k, $p, $middle - $half, $middle + $half, .chain])
   | @csv' "$here/rare.json" "$work"/direct*.json | tr -d '"' >"$here/rare.csv"
 direct=$(awk '{ s += $1 } END { printf "%.0f", s }' "$work/direct.txt")
 chain=$(jq --argjson all "$(cat "$work/rare.txt")" '$all * .chain_seconds / .seconds | round' "$here/rare.json")

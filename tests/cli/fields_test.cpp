@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 #include "cli/render/json.h"
+#include "cli/render/numbers.h"
 #include "cli/render/schema.h"
 
 namespace gatewalk::cli {
@@ -31,6 +34,14 @@ std::string json_text_of(const Description& describe) { return json_of(describe)
 TEST(Fields, OneDescriptionIsJson) {
   EXPECT_EQ(json_text_of([](Fields& out) { describe(out, kTrial); }),
             R"({"speed_m_per_s":1.5,"speed_m_per_s_95":[1.25,1.75],"visits":[[0.5,2.0]]})");
+}
+
+TEST(Fields, TheSameDescriptionIsATableOfNumbers) {
+  EXPECT_EQ(table_of_numbers([](Fields& out) { describe(out, kTrial); }),
+            "quantity,i,j,value,low_95,high_95\n"
+            "speed_m_per_s,,,1.5,1.25,1.75\n"
+            "visits,0,0,0.5,,\n"
+            "visits,0,1,2.0,,\n");
 }
 
 TEST(Fields, TheSameDescriptionIsTheSchemaWithUnitsAndMeanings) {
@@ -101,9 +112,7 @@ Description all_parts(bool is_full) {
         });
     out.object({"by", "of each cost"},
                [](Fields& f) { f.number(Field("work_J", "J", "of it").varying("<cost>"), 4.0); });
-    out.with_intervals_in({"intervals_95", "of the shares"}, [](Fields& f) {
-      f.counted({"seen", "1", "that were seen"}, 7, Interval{0.25, 0.75});
-    });
+    out.counted({"seen", "1", "that were seen"}, 7, 10.0, Interval{0.25, 0.75});
   };
 }
 
@@ -111,10 +120,10 @@ TEST(Fields, PartsThatMayBeMissing) {
   EXPECT_EQ(json_text_of(all_parts(true)),
             R"({"items":[{"n":1},{"n":2}],"more":[{"n":1},{"n":2}],"extra":true,"part":{"n":3},)"
             R"("or":{"below":5.0},"one":1,"both":{"first":1,"last":2},)"
-            R"("by":{"work_J":4.0},"seen":7,"intervals_95":{"seen":[0.25,0.75]}})");
+            R"("by":{"work_J":4.0},"seen":7,"seen_95":[2.5,7.5]})");
   EXPECT_EQ(json_text_of(all_parts(false)),
             R"({"items":[],"more":null,"part":null,"or":2.0,"other":2,"both":{"last":2,"new":3},)"
-            R"("by":{"work_J":4.0},"seen":7,"intervals_95":{"seen":[0.25,0.75]}})");
+            R"("by":{"work_J":4.0},"seen":7,"seen_95":[2.5,7.5]})");
 }
 
 TEST(Fields, TheSchemaIsThatOfAllResultsWhateverTheExampleHas) {
@@ -122,7 +131,7 @@ TEST(Fields, TheSchemaIsThatOfAllResultsWhateverTheExampleHas) {
   EXPECT_EQ(full, schema_of({"x", all_parts(false)}));
   const Json schema = parsed_json(full), &keys = schema["properties"];
   EXPECT_EQ(schema["required"].dump(),
-            R"(["format_version","items","more","part","or","both","by","seen","intervals_95"])");
+            R"(["format_version","items","more","part","or","both","by","seen","seen_95"])");
   EXPECT_EQ(schema["oneOf"].dump(), R"([{"required":["one"]},{"required":["other"]}])");
   EXPECT_EQ(keys["items"]["items"]["required"].dump(), R"(["n"])");
   EXPECT_EQ(keys["more"]["anyOf"].dump(), R"([{"type":"null"},{"$ref":"#/$defs/things"}])");
@@ -140,26 +149,125 @@ void describe_others(Fields& out) {
   out.given({"step", "its own", "as it was given"}, "0.5");
   out.givens({"values", "its own", "as they were given"}, {"6", "6.0", "1e400", "auto"});
   out.points({"way_m", "m", "places"}, {{0.0, 1.5}, {kUnknown, 2.0}});
-  out.with_intervals_in(
-      {"intervals_95", "of these"},
-      [](Fields& f) {
-        f.counted({"seen", "1", "that were seen"}, 7, Interval{0.25, 0.75});
-      },
-      [](Fields& f) {
-        f.interval({"right", "1", "of what has no count"}, Interval{0.5, kUnknown});
-      });
 }
 
-TEST(Fields, TextsOfGatesWhatAUserGavePlacesAndMoreIntervals) {
+TEST(Fields, TextsOfGatesWhatAUserGaveAndPlaces) {
   EXPECT_EQ(json_text_of(describe_others),
             R"({"best":[["a",null],["b","a"]],"step":0.5,"values":[6,6.0,"1e400","auto"],)"
-            R"("way_m":[[0.0,1.5],[null,2.0]],"seen":7,)"
-            R"("intervals_95":{"seen":[0.25,0.75],"right":[0.5,null]}})");
+            R"("way_m":[[0.0,1.5],[null,2.0]]})");
   const Json schema = parsed_json(schema_of({"x", describe_others})), &keys = schema["properties"];
   EXPECT_EQ(keys["best"]["items"]["items"]["type"].dump(), R"(["string","null"])");
   EXPECT_EQ(keys["values"]["items"]["type"].dump(), R"(["number","string"])");
   EXPECT_EQ(keys["way_m"]["items"]["maxItems"], 2);
-  EXPECT_EQ(keys["intervals_95"]["required"].dump(), R"(["seen","right"])");
+}
+
+/// Intervals of an object, which may hold others, and of a map.
+void describe_estimates(Fields& out) {
+  static const markov::CellProbabilities map{{0.5, 1.0}};
+  static const GateLimits limits{map - 0.25, map + 0.25};
+  out.estimates({"ends", "by ending"}, [](Fields& f) {
+    f.counted({"left", "1", "that left"}, 7, 10.0, Interval{0.25, 0.75});
+    f.optional(true, [](Fields& o) {
+      o.estimate({"back", "1", "that went back"}, 0.5, Interval{kUnknown, kUnknown});
+    });
+    f.object({"inner", "of its own"}, [](Fields& o) {
+      o.estimate({"x", "1", "a number"}, 2.0, Interval{1.0, kUnknown});
+    });
+  });
+  out.grid({"map", "1", "by gate"}, map, limits);
+}
+
+TEST(Fields, IntervalsHaveTheFormOfWhatTheyAreOf) {
+  EXPECT_EQ(json_text_of(describe_estimates),
+            R"({"ends":{"left":7,"back":0.5,"inner":{"x":2.0,"x_95":[1.0,null]}},)"
+            R"("ends_95":{"left":[2.5,7.5],"back":null},)"
+            R"("map":[[0.5,1.0]],"map_95":[[[0.25,0.75],[0.75,1.25]]]})");
+  const Json schema = parsed_json(schema_of({"x", describe_estimates})), &keys = schema["properties"];
+  EXPECT_EQ(keys["ends_95"]["required"].dump(), R"(["left"])");
+  EXPECT_EQ(keys["ends_95"]["properties"]["back"]["$ref"], "#/$defs/interval");
+  EXPECT_EQ(keys["map_95"]["items"]["items"]["$ref"], "#/$defs/interval");
+}
+
+TEST(Fields, TheTableOfNumbersHasLimitsBesideTheirNumbers) {
+  EXPECT_EQ(table_of_numbers(describe_estimates),
+            "quantity,i,j,value,low_95,high_95\n"
+            "ends.left,,,7,2.5,7.5\n"
+            "ends.back,,,0.5,,\n"
+            "ends.inner.x,,,2.0,1.0,\n"
+            "map,0,0,0.5,0.25,0.75\n"
+            "map,0,1,1.0,0.75,1.25\n");
+  EXPECT_EQ(table_of_numbers(describe_others),
+            "quantity,i,j,value,low_95,high_95\n"
+            "step,,,0.5,,\n"
+            "values,0,,6,,\n"
+            "values,1,,6.0,,\n"
+            "way_m,0,0,0.0,,\n"
+            "way_m,0,1,1.5,,\n"
+            "way_m,1,0,,,\n"
+            "way_m,1,1,2.0,,\n");
+}
+
+TEST(Fields, TheTableOfNumbersCallsItemsByTheirNamesAndLeavesOutWordsAndOrigin) {
+  struct Item {
+    std::string name;
+    std::vector<double> x;
+  };
+  const std::vector<Item> items{{"a,b", {1.0}}, {"", {2.0, kUnknown}}};
+  EXPECT_EQ(table_of_numbers([&](Fields& out) {
+              out.list({"items", "some"}, items, [](Fields& f, const Item& item) {
+                f.numbers({"x", "1", "numbers"}, item.x);
+                if (!item.name.empty()) f.text({"name", "its name"}, item.name);
+                f.flag({"ok", "whether"}, true);
+              });
+              out.text({"about", "words"}, "words");
+              out.count({"none", "1", "unknown"}, std::optional<int>());
+              out.gate_numbers({"by_gate", "1", "lists"}, GateNumbers{1, 2, {1, 2, 3, 4}});
+              out.object({"made_by", "origin"}, [](Fields& f) { f.count({"seed", "1", "s"}, 1); });
+            }),
+            "quantity,i,j,value,low_95,high_95\n"
+            "\"items.a,b.x\",0,,1.0,,\n"
+            "\"items.a,b.ok\",,,1,,\n"
+            "items.1.x,0,,2.0,,\n"
+            "items.1.x,1,,,,\n"
+            "items.1.ok,,,1,,\n"
+            "none,,,,,\n"
+            "by_gate.0.0,0,,1.0,,\n"
+            "by_gate.0.0,1,,2.0,,\n"
+            "by_gate.0.1,0,,3.0,,\n"
+            "by_gate.0.1,1,,4.0,,\n");
+}
+
+/// The path without its first "_95" at the end of a key.
+std::string without_95(std::string path) {
+  for (std::size_t at = path.find("_95"); at != path.npos; at = path.find("_95", at + 1))
+    if (const char next = path.size() > at + 3 ? path[at + 3] : '.'; next == '.' || next == '[')
+      return path.erase(at, 3);
+  return "";
+}
+
+TEST(Fields, EveryResultHasItsIntervalsBesideTheirNumbers) {
+  // What the two numbers beside it differ by; what a null model makes.
+  const std::set<std::string> alone{"excess_95", "time_scales_chance_95"};
+  int intervals = 0;
+  for (const ResultOf& of : results())
+    for (const KeyList& list : keys_of(of))
+      for (const KeyLine& line : list.keys) {
+        const bool is_interval = line.type.find("interval") != std::string::npos;
+        const std::string number = without_95(line.path);
+        const bool has_number =
+            std::ranges::find(list.keys, number, &KeyLine::path) != list.keys.end();
+        if (is_interval && std::ranges::none_of(alone, [&](const std::string& key) {
+              return line.path.find(key) != std::string::npos;
+            })) {
+          EXPECT_TRUE(has_number) << of.command << ": " << line.path << " is of no number";
+          ++intervals;
+        }
+        if (has_number && !number.empty()) {
+          EXPECT_TRUE(is_interval || line.type.starts_with("object"))
+              << of.command << ": " << line.path << " is no interval";
+        }
+      }
+  EXPECT_GT(intervals, 100);
 }
 
 TEST(Fields, AKeyWithoutMeaningOrAListWithoutItemIsAMistakeOfTheProgram) {

@@ -6,7 +6,7 @@
 # analyze: from a scene and from its file, the keys that scripts rely on; lattice takes as long.
 fast=(--set run.method=moreau --set field.rows=4 --set forces.propulsion_N=8.5)
 "$gatewalk" analyze "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --runs 300 --trials 4000 --json analysis.json --quiet
-holds '.endings.crossed.interval_95[0] < .endings.crossed.probability and .endings.trapped.probability > 0.3' analysis.json
+holds '.endings_95.crossed[0] < .endings.crossed and .endings.trapped > 0.3' analysis.json
 holds '([.expected_visits[][]] | add) as $visits | .expected_gates - $visits | fabs < 1e-9' analysis.json
 holds '(.expected_visits | length) == 4 and (.expected_visits[0] | length) == 9' analysis.json
 holds '(.expected_seconds / .direct.costs.all.mean_time_s - 1 | fabs) < 0.06 and (.expected_work_J / .direct.costs.all.mean_work_J - 1 | fabs) < 0.08' analysis.json
@@ -35,7 +35,7 @@ expect 0 'states (--lump), total variation to this chain: endings 0' "$gatewalk"
 holds '.lumping | .parts == [3, 1, 2] and .count > 6 and .count <= 31 and .error.final_gates > 0' lump.json
 "$gatewalk" build "$scenes/field.toml" --bins paper --trials 2 -o bins.nc --quiet
 "$gatewalk" analyze bins.nc --runs 200 --json bins.json --quiet
-holds '.expected_seconds > 10 and .expected_seconds_95 == null and .endings.trapped.interval_95[0] > 0 and .quasi_stationary.survival_per_gate > 0' bins.json
+holds '.expected_seconds > 10 and .expected_seconds_95 == null and .endings_95.trapped[0] > 0 and .quasi_stationary.survival_per_gate > 0' bins.json
 expect 2 'keeps no gate runs' "$gatewalk" analyze bins.nc --accuracy 0.1
 "$gatewalk" lattice "$scenes/field.toml" "${fast[@]}" --trials 500 --json lattice_costs.json --quiet
 holds '.costs.all | .trials == 500 and .mean_time_s > 0 and .quantiles_time_s[0] < .quantiles_time_s[4]' lattice_costs.json

@@ -43,18 +43,18 @@ grep -q '^gatewalk: .*50.00 % were still walking in states without a way out' ou
 holds '.endings.trapped == 0.5 and .still_walking == 0.5 and .endings_95.trapped[0] > 0.38 and .endings_95.trapped[1] == 1 and .endings_95.crossed[1] >= 0.5' never.json
 expect 2 "solver march .*solvers auto and klu" "$gatewalk" predict long.nc --solver march
 "$gatewalk" walk never.nc --walks 20 --json walked.json --quiet 2>/dev/null || fail "walk"
-holds '.still_walking as $left | .endings.cut_off == 0 and $left > 0 and .still_walking_95[0] < $left / 20 and $left / 20 < .still_walking_95[1]' walked.json
+holds '.still_walking as $left | .endings.cut_off == 0 and $left > 0 and .still_walking_95[0] < $left and $left < .still_walking_95[1]' walked.json
 holds '([.final_gates[][]] | add) == 20 - .still_walking and .final_gates == .trapped_gates' walked.json
 
 # Sums that would stop with walks under way are no answer. Half of the walks circle for ever; a walk to and fro in
 # 501 columns leaves after 251^2 gates, which are more than are added up.
 expect 0 'visits, times and costs are not known: 50 % of the walks' "$gatewalk" analyze never.nc --json analyzed.json
-holds '.expected_gates == null and (.why_no_interval.expected_gates | startswith("50 %")) and .endings.trapped.probability == 0.5 and .still_walking == 0.5' analyzed.json
+holds '.expected_gates == null and (.why_no_interval.expected_gates | startswith("50 %")) and .endings.trapped == 0.5 and .still_walking == 0.5' analyzed.json
 holds '[.expected_visits[][] | . == null] | all' analyzed.json
 printf 'from,to,count\nright,right,50\nright,left,50\nleft,left,50\nleft,right,50\n' >fro.csv
 "$gatewalk" import fro.csv --states states.csv --start right --set field.rows=1 --set field.columns=501 --set field.max_gates=0 -o fro.nc --force --quiet >/dev/null || fail "import fro.csv"
 expect 0 'visits, times and costs are not known' "$gatewalk" analyze fro.nc --paths 0 --json fro.json
-holds '.expected_gates == null and (.endings.left_side.probability + .endings.right_side.probability - 1 | fabs) < 1e-6 and .still_walking < 1e-6' fro.json
+holds '.expected_gates == null and (.endings.left_side + .endings.right_side - 1 | fabs) < 1e-6 and .still_walking < 1e-6' fro.json
 
 # One run of a row that half of the walks pass: it excludes hardly anything, however many runs the start has.
 printf 'from,to,count\nahead,right,50000\nahead,trapped,50000\nright,ahead,1\n' >few.csv
@@ -71,7 +71,7 @@ holds "$within" many.json
 # Counts of trees: a run is counted with its mirror image, and import knows it. Of trajectories each run once.
 "$gatewalk" build "$scenes/field.toml" --accuracy 0.05 -o tree.nc --quiet >/dev/null 2>&1
 "$gatewalk" predict tree.nc --first-runs 0 --json own.json --quiet
-start=$(jq '.start_state.input - 1' own.json)
+start=$(jq .start_state.input own.json)
 expect 0 'runs are counted twice' "$gatewalk" export tree.nc --gate --counts -o g.mtx
 [ "$(head -n 1 g.states.csv | grep -c ',counts_per_run$')" = 1 ] || fail "no counts_per_run in g.states.csv"
 "$gatewalk" export tree.nc -o runs.dtrajs --quiet >/dev/null

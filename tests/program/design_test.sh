@@ -15,7 +15,7 @@ expect 0 'run.event_tolerance_m has no effect' "$gatewalk" design "${small[@]}" 
 grep -q '^event_tolerance_m = 0.02$' given.toml || fail "design leaves out what was given"
 "$gatewalk" scene changed.toml --quiet --json scene.json
 "$gatewalk" lattice changed.toml --trials 4000 --quiet --json full.json
-jq -s '.[0] as $d | (.[1].endings.crossed / .[1].trials) as $full | $full > $d.interval_95[0] - 0.03 and $full < $d.interval_95[1] + 0.03' design.json full.json | grep -q true || fail "the changed scene crosses otherwise"
+jq -s '.[0] as $d | (.[1].endings.crossed / .[1].trials) as $full | $full > $d.crossed_95[0] - 0.03 and $full < $d.crossed_95[1] + 0.03' design.json full.json | grep -q true || fail "the changed scene crosses otherwise"
 # The same bits on one thread; what is kept is taken up again; harder to cross.
 same() { jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' "$1" "$2" | grep -q true || fail "$3"; }
 "$gatewalk" design "${small[@]}" --accuracy 0.05 --threads 1 --checkpoint kept --quiet --json one.json

@@ -12,7 +12,7 @@ holds '(.endings | keys_unsorted) == ["crossed", "left_side", "right_side", "tra
 holds '(.endings | add) + .not_finite == 150 and .endings.crossed + .endings.left_side + .endings.right_side == .departed' ends-lattice.json
 holds '((.endings | add) + .never_sampled - 1 | fabs) < 1e-12 and .endings.trapped == .trapped' ends-predict.json
 for file in walk predict lattice; do
-  holds '(.endings | add) as $all | .endings as $e | .endings_95 | to_entries | all(.value[0] <= $e[.key] / $all and $e[.key] / $all <= .value[1] and .value[0] >= 0 and .value[1] <= 1)' ends-$file.json
+  holds '(.walks // .trials // 1) as $all | .endings as $e | .endings_95 | to_entries | all(.value[0] <= $e[.key] and $e[.key] <= .value[1] and .value[0] >= 0 and .value[1] <= $all)' ends-$file.json
   holds '((.trapped_gates | flatten | add) - .trapped | fabs) < 1e-12 and ((.departed_gates | flatten | add) - .departed | fabs) < 1e-12' ends-$file.json
   # Who left was last in the last row or an outer column.
   holds '[.departed_gates[:8][][1:8][]] | add == 0' ends-$file.json
@@ -22,12 +22,12 @@ done
 for file in predict lattice trees; do
   holds '(.exits | keys_unsorted) == ["crossed", "left_side", "right_side"] and [.exits[] | length] == [9, 9, 9]' ends-$file.json
   holds '(.endings | add) as $all | .endings as $e | .exits | to_entries | all(((.value | map(.share) | add) - $e[.key] / $all | fabs) < 1e-12)' ends-$file.json
-  holds '[.exits[][] | .interval_95[0] <= .share and .share <= .interval_95[1] and .interval_95[0] < .interval_95[1]] | all' ends-$file.json
+  holds '[.exits[][] | .share_95[0] <= .share and .share <= .share_95[1] and .share_95[0] < .share_95[1]] | all' ends-$file.json
 done
 holds '.exits | .left_side[1].from_m == 60 and .left_side[8].to_m == 540 and .crossed[0].from_m == -225 and .crossed[4].to_m == 25' ends-predict.json
 grep -q '^left side  y 60 to 120 m  *[0-9.]* \[' trees.txt || fail "predict: no place on the left side"
 "$gatewalk" lattice "$scenes/field.toml" --trials 150 --quiet | grep -q '^left side  y 60 to 120 m' || fail "lattice: no place on the left side"
-holds '.matrix_sampling | .replicates == 999 and 0 < .total_variation_mean and .total_variation_mean < .total_variation_95 and .total_variation_95 < 1' ends-predict.json
+holds '.matrix_sampling | .replicates == 999 and 0 < .total_variation_mean and .total_variation_mean < .total_variation_q95 and .total_variation_q95 < 1' ends-predict.json
 "$gatewalk" predict m.nc --threads 1 --json ends-again.json --quiet
 jq -s '.[0].endings_95 == .[1].endings_95' ends-predict.json ends-again.json | grep -q true || fail "predict: intervals depend on the threads"
 "$gatewalk" predict m.nc --seed 2 --json ends-again.json --quiet

@@ -9,7 +9,7 @@ small=("$scenes/field.toml" --set run.method=moreau --set field.rows=4)
 jq -r '"ending,count", (.endings | to_entries[] | select(.key != "broken") | "\(.key),\(.value)")' truth.json >endings.csv
 free=(--free forces.propulsion_N=5:9)
 expect 0 '^forces.propulsion_N  *5 to 9  *[0-9.]*  *[0-9.]*  *\[[0-9.]*, [0-9.]*\]$' "$gatewalk" fit "${small[@]}" endings.csv "${free[@]}" --trials 16384 --json fit.json --figure fit.svg --draws draws.csv --inference-data fit.nc -o best.toml --scenes 2
-holds '.numbers[0] | .key == "forces.propulsion_N" and .interval_95[0] < 7.2 and 7.2 < .interval_95[1] and .told and .sd < 0.6 and .low == 5' fit.json
+holds '.numbers[0] | .key == "forces.propulsion_N" and .median_95[0] < 7.2 and 7.2 < .median_95[1] and .told and .sd < 0.6 and .low == 5' fit.json
 holds '.observed == 300 and ([.outcomes[].observed] | add) == 300 and .p > 0.001 and .correlation == [[1]] and .trials <= 16384 and .trials > 15000' fit.json
 grep -q 'posterior after 300 trials' fit.svg || fail "no picture"
 [ "$(wc -l <draws.csv)" = "$(($(jq .draws fit.json) + 1))" ] && [ "$(head -n 1 draws.csv)" = forces.propulsion_N,log_likelihood ] || fail "draws"
@@ -47,7 +47,7 @@ cut -d, -f1,2 timed.csv >untimed.csv
 drag=(--free forces.drag_Ns_per_m=0.02:0.3 --trials 16384)
 "$gatewalk" fit "${fast[@]}" timed.csv "${drag[@]}" --quiet --json timed.json --force
 "$gatewalk" fit "${fast[@]}" untimed.csv "${drag[@]}" --quiet --json untimed.json --force
-holds '.numbers[0] | .interval_95[0] < 0.12 and 0.12 < .interval_95[1]' timed.json
+holds '.numbers[0] | .median_95[0] < 0.12 and 0.12 < .median_95[1]' timed.json
 holds '[.outcomes[].outcomes] | any(test("crossed .*(within|from) [0-9.]+ s"))' timed.json
 jq -s '.[0].numbers[0].sd < 0.2 * .[1].numbers[0].sd' timed.json untimed.json | grep -q true || fail "times tell nothing: $(jq -c .numbers timed.json untimed.json)"
 expect 0 'times are not looked at here; gatewalk fit does' "$gatewalk" validate "${fast[@]}" --observed timed.csv --trials 200 --accuracy 0.1
@@ -71,7 +71,7 @@ holds '.p < 0.001 and .numbers[0].sd > 0.02' all.json
 # Passages tell more than endings do: each is carried out from where it began. Costs but the time may be left out.
 "$gatewalk" lattice "${small[@]}" --set forces.propulsion_N=7.2 --trials 300 --seed 11 --quiet --passages runs.csv --cell-file cell.toml --json again.json --force
 expect 0 '^[0-9]* observed passages; ' "$gatewalk" fit "${small[@]}" runs.csv "${free[@]}" --trials 100000 --json passages.json
-holds '.of == "passages" and (.numbers[0] | .interval_95[0] < 7.2 and 7.2 < .interval_95[1] and .interval_95[1] - .interval_95[0] < 0.3) and .settled and .p > 0.01' passages.json
+holds '.of == "passages" and (.numbers[0] | .median_95[0] < 7.2 and 7.2 < .median_95[1] and .median_95[1] - .median_95[0] < 0.3) and .settled and .p > 0.01' passages.json
 holds '.observed == ([.outcomes[].observed] | add) and ([.outcomes[].outcomes] | any(test("^EN d .* m/s( or mirrored)?: to [ELR][DNT] (within|from|after) ")) and any(test("trapped$")))' passages.json
 cut -d, -f1-11 runs.csv >bare.csv
 "$gatewalk" fit "${small[@]}" bare.csv "${free[@]}" --trials 100000 --quiet --json bare.json
@@ -102,10 +102,10 @@ hopper=("$scenes/programs/hopper.toml" --cell-program "mawk -W interactive -f $w
 "$gatewalk" lattice "${hopper[@]}" --set parameters.push_J=1.4 --trials 300 --seed 3 --quiet --passages hops.csv --cell-file hops.toml --json hops.json --force
 push=(--free parameters.push_J=1:3 --trials 30000 --quiet)
 "$gatewalk" fit "${hopper[@]}" hops.csv "${push[@]}" --json hopped.json
-holds '.of == "passages" and (.numbers[0] | .key == "parameters.push_J" and .told and .interval_95[0] < 1.4 and 1.4 < .interval_95[1] and .interval_95[1] < 2)' hopped.json
+holds '.of == "passages" and (.numbers[0] | .key == "parameters.push_J" and .told and .median_95[0] < 1.4 and 1.4 < .median_95[1] and .median_95[1] < 2)' hopped.json
 jq -r '"ending,count", (.endings | to_entries[] | select(.key != "broken") | "\(.key),\(.value)")' hops.json >ends.csv
 "$gatewalk" fit "${hopper[@]}" ends.csv "${push[@]}" --json ended.json
-holds '.of == "trials" and (.numbers[0] | .interval_95[0] < 1.4 and 1.4 < .interval_95[1])' ended.json
+holds '.of == "trials" and (.numbers[0] | .median_95[0] < 1.4 and 1.4 < .median_95[1])' ended.json
 # Sobol indices of such a number: all of the variance is its own.
 "$gatewalk" analyze "${hopper[@]}" --over parameters.push_J=1:3 --over-trials 4000 --runs 0 --quiet --json over.json
 holds '.variance_shares.numbers[0] | .key == "parameters.push_J" and .total_95[1] > 0.9' over.json

@@ -9,9 +9,9 @@ expect 0 '"trials": 200' "$gatewalk" gate "$scenes/single_gate.toml" --trials 2e
 holds '.traversed + .exited_left + .exited_right + .trapped == .trials' gate.json
 holds '.traversed == .traversed_left + .traversed_right + .traversed_even' gate.json
 holds '.status.clean' gate.json
-holds '(.trapped / .trials) as $share | .intervals_95.trapped | .[0] < $share and $share < .[1]' gate.json
+holds '.trapped_95[0] < .trapped and .trapped < .trapped_95[1]' gate.json
 # Jeffreys' interval for none of 200: up to 0.012466 (beta quantile 0.975 of 0.5, 200.5).
-holds '.traversed == 0 and .trials == 200 and .intervals_95.traversed[0] == 0 and (.intervals_95.traversed[1] - 0.012466 | fabs) < 1e-6' gate.json
+holds '.traversed == 0 and .trials == 200 and .traversed_95[0] == 0 and (.traversed_95[1] / .trials - 0.012466 | fabs) < 1e-6' gate.json
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 3 --json - --threads 1 2>/dev/null | cmp -s - gate.json ||
   fail "gate: another number of threads gave another file"
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 4 --json other.json --quiet

@@ -6,12 +6,12 @@
 actions=(--set actions.slow.forces.propulsion_N=6 --set actions.fast.forces.propulsion_N=9)
 small=("$scenes/field.toml" --set run.method=moreau --set field.rows=3 --accuracy 0.1)
 expect 0 '^chance to cross: [0-9.]* \[[0-9., ]*\] % of 97 trials by which nothing was chosen$' "$gatewalk" plan "${small[@]}" "${actions[@]}" --json plan.json --figure plan.svg
-holds '.crossed > 0 and .interval_95[0] < .crossed and .crossed < .interval_95[1] and .trials == 97 and [.actions[].name] == ["fast", "slow"] and (.best_alone == "fast" or .best_alone == "slow") and (.most_taken | length) == 3 and .most_taken[0][4] != null and .most_taken[0][0] == null' plan.json
+holds '.crossed > 0 and .crossed_95[0] < .crossed and .crossed < .crossed_95[1] and .trials == 97 and [.actions[].name] == ["fast", "slow"] and (.best_alone == "fast" or .best_alone == "slow") and (.most_taken | length) == 3 and .most_taken[0][4] != null and .most_taken[0][0] == null' plan.json
 # At the start each trial takes one action.
 holds '[.actions[].taken[0][4]] | add | . > 0.999999 and . < 1.000001' plan.json
 grep -q 'most frequent action' plan.svg || fail "no map of actions"
 # An action all the time is the field with its keys. Over itself a plan gains nothing, which is no estimate.
-holds '[.actions[] | .crossed - .interval_95[0] > 0 and (.gain_95 == null or .gain_95[0] < .gain and .gain < .gain_95[1])] | all' plan.json
+holds '[.actions[] | .crossed - .crossed_95[0] > 0 and (.gain_95 == null or .gain_95[0] < .gain and .gain < .gain_95[1])] | all' plan.json
 grep -q '^the best that was found is to take fast all the time$' out.txt || fail "this plan is to be one action: $(head -n 2 out.txt)"
 holds '.actions[0].gain == 0 and .actions[0].gain_95 == null and .actions[1].gain_95 != null and .by_gate.gain == 0 and .by_gate.gain_95 == null' plan.json
 [ "$(grep -c ' 0.00  *100.0 %$\| 0.00$' out.txt)" = 2 ] || fail "the gain of a plan over itself: $(grep -e fast -e 'gate alone' out.txt)"
@@ -37,7 +37,7 @@ sides=(sides.toml --set run.method=moreau --set field.rows=4 --set field.max_gat
 "$gatewalk" plan "${sides[@]}" --accuracy 0.05 --quiet --json sides.json --policy sides.policy.json
 holds '.chain != null and .actions[0].gain > 0' sides.json
 expect 0 '^crossed' "$gatewalk" lattice "${sides[@]}" --policy sides.policy.json --trials 2000 --seed 3 --json run.json
-jq -s '.[0].interval_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' sides.json run.json | grep -q true || fail "the policy crosses less or more often than planned"
+jq -s '.[0].crossed_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' sides.json run.json | grep -q true || fail "the policy crosses less or more often than planned"
 "$gatewalk" lattice "${sides[@]}" --policy sides.policy.json --trials 2000 --seed 3 --threads 1 --quiet --json again.json --force
 cmp -s run.json again.json || fail "a policy runs otherwise on one thread"
 # It can be watched: the very same trials; the film knows what is done in each step.
@@ -51,7 +51,7 @@ expect 2 'sides.policy.json: was made for another scene: ' "$gatewalk" trace own
 "$gatewalk" plan "${sides[@]}" --accuracy 0.05 --quiet --json gates.json --gate-policy gates.policy.json
 holds '.by_gate.crossed > 0 and .by_gate.gain_95[0] <= .by_gate.gain and (.by_gate.action | length) == 4 and (.by_gate.action[0] | length) == 9 and (.by_gate.action | add | unique | inside(["left", "right"]))' gates.json
 "$gatewalk" lattice "${sides[@]}" --policy gates.policy.json --trials 2000 --seed 3 --quiet --json run.json --force
-jq -s '.[0].by_gate.interval_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' gates.json run.json | grep -q true || fail "the policy by gates crosses less or more often than planned"
+jq -s '.[0].by_gate.crossed_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' gates.json run.json | grep -q true || fail "the policy by gates crosses less or more often than planned"
 # Policies that take less, from the plan's own on; the one that is written crosses so often.
 least=("$scenes/field.toml" --set run.method=moreau --set field.rows=2 --set actions.slow.forces.propulsion_N=5 --set actions.fast.forces.propulsion_N=11 --accuracy 0.05)
 expect 0 '^policies that take less (work of the propulsion), under the same noise:$' "$gatewalk" plan "${least[@]}" --least work_J --points 4 --json least.json
@@ -61,17 +61,17 @@ chance=$(jq '.front[-1].crossed' least.json)
 expect 0 '^[*] ' "$gatewalk" plan "${least[@]}" --least work_J --points 4 --chance "$chance" --policy least.policy.json --json chosen.json
 holds ".front | map(select(.chosen)) | length == 1 and .[0].crossed >= $chance" chosen.json
 "$gatewalk" lattice "${least[@]:0:9}" --policy least.policy.json --trials 2000 --seed 3 --quiet --json run.json --force
-jq -s '(.[0].front | map(select(.chosen))[0].interval_95) as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' chosen.json run.json | grep -q true || fail "the policy that takes less crosses less or more often than said"
+jq -s '(.[0].front | map(select(.chosen))[0].crossed_95) as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' chosen.json run.json | grep -q true || fail "the policy that takes less crosses less or more often than said"
 expect 0 'none of these policies crosses so often' "$gatewalk" plan "${least[@]}" --least time_s --points 2 --chance 0.99
 expect 2 "'heat_J' is none of time_s, forward_m, work_J, random_work_J, lost_J" "$gatewalk" plan "${least[@]}" --least heat_J
 expect 2 '--points: only with --least' "$gatewalk" plan "${least[@]}" --points 3
 expect 2 '--chance: must lie between 0 and 1' "$gatewalk" plan "${least[@]}" --least time_s --chance 1
 # What is best in the worst case, and how bad that is.
 expect 0 "^with each row 1.96 standard errors worse than counted: [0-9.]* %$" "$gatewalk" plan "${sides[@]}" --accuracy 0.05 --robust --json robust.json --policy robust.policy.json
-holds '.worst_case >= 0 and .worst_case < .interval_95[1] and .chain == null' robust.json
+holds '.worst_case >= 0 and .worst_case < .crossed_95[1] and .chain == null' robust.json
 holds 'has("worst_case") | not' sides.json
 "$gatewalk" lattice "${sides[@]}" --policy robust.policy.json --trials 2000 --seed 3 --quiet --json run.json --force
-jq -s '.[0].interval_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' robust.json run.json | grep -q true || fail "the robust policy crosses less or more often than planned"
+jq -s '.[0].crossed_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' robust.json run.json | grep -q true || fail "the robust policy crosses less or more often than planned"
 expect 2 '--robust: not with --least' "$gatewalk" plan "${least[@]}" --robust --least time_s
 # One action all the time is the scene with its keys.
 "$gatewalk" plan "${small[@]}" "${actions[@]}" --quiet --policy fast.json
@@ -97,7 +97,7 @@ jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' sta
 holds '.ranges == {"d_m": [-5, 5], "vy_m_per_s": [5, 25]} and (.starts | length) == 1 and .start.i_x == 0' start.json
 start=$(jq -r '.start | "\(.d_m),\(.vx_m_per_s),\(.vy_m_per_s)"' start.json)
 "$gatewalk" lattice "${small[@]:0:5}" --set start.x_m="${start%%,*}" --set start.vy_m_per_s="${start##*,}" --trials 2000 --seed 3 --quiet --json run.json --force
-jq -s '.[0].interval_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' start.json run.json | grep -q true || fail "bodies from the best start cross less or more often than planned"
+jq -s '.[0].crossed_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' start.json run.json | grep -q true || fail "bodies from the best start cross less or more often than planned"
 expect 2 'over: is for a scene without actions' "$gatewalk" plan "${small[@]}" "${actions[@]}" --over start.x_m=-5:5
 expect 2 'a start is planned over start.x_m, start.vx_m_per_s and start.vy_m_per_s alone' "$gatewalk" plan "${small[@]}" --over forces.propulsion_N=5:9
 expect 2 'start.x_m = -30 is not permitted' "$gatewalk" plan "${small[@]}" --over start.x_m=-30:30
@@ -123,7 +123,7 @@ if command -v python3 >/dev/null; then
   # The first one is always taken on hard ground.
   holds '.most_taken[0] == [null, "hard", null] and .actions[0].taken[0][1] == 0' hops.json
   "$gatewalk" lattice "${hopper[@]}" --policy hops.policy.json --trials 4000 --seed 3 --quiet --json hopped.json --threads 2
-  jq -s '(.[0].interval_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02) and .[1].actions == ["gently", "hard"] and .[1].methods == null and (.[1].made_by.cell | contains("[actions.hard]\nparameters.push_J = 3.0"))' hops.json hopped.json | grep -q true || fail "a program's policy crosses less or more often than planned"
+  jq -s '(.[0].crossed_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02) and .[1].actions == ["gently", "hard"] and .[1].methods == null and (.[1].made_by.cell | contains("[actions.hard]\nparameters.push_J = 3.0"))' hops.json hopped.json | grep -q true || fail "a program's policy crosses less or more often than planned"
   "$gatewalk" lattice "${hopper[@]}" --policy push.policy.json --trials 4000 --seed 3 --quiet --json push.json
   holds '.endings.crossed / .trials - 0.324 | fabs < 0.03' push.json
   # The same bits on one thread, from --set, and when kept pieces are taken up again; which others' are not.

@@ -84,7 +84,7 @@ awk 'function draw() { x = x * 16807 % 2147483647; return x / 2147483647 }
 "$gatewalk" predict five.nc --json five.json --quiet >/dev/null || fail "predict of five.nc"
 holds '.endings_95.crossed[0] < 0.26188 and .endings_95.crossed[1] > 0.26188' five.json
 holds '.endings_95.crossed[0] > 0.6 * 0.6 * 0.6 and .endings_95.crossed[1] - .endings_95.crossed[0] < 0.08' five.json
-expect 0 'd \[' "$gatewalk" show five.nc --row 3
+expect 0 'd \[' "$gatewalk" show five.nc --row 2
 expect 0 'start a 0.3' "$gatewalk" predict five.nc --start S:0.3,0.3,0,0,0
 expect 2 'must be' "$gatewalk" predict five.nc --start S:0.3,0.3,0
 {

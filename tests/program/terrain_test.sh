@@ -14,7 +14,7 @@ jq -s '.[0].map == .[1].map' mixed.json again.json | grep -q true || fail "scene
 "$gatewalk" build $mixed --bins paper --trials 3 -o mixed.nc --json mixed.json --quiet
 holds '(.types | keys) == ["s", "u"] and .types.u.counts > 200' mixed.json
 expect 0 '^  type u  ' "$gatewalk" show mixed.nc
-expect 0 'outputs of input 13' "$gatewalk" show mixed.nc --type u --row 13
+expect 0 'outputs of input 12' "$gatewalk" show mixed.nc --type u --row 12
 expect 2 'has no such type' "$gatewalk" show mixed.nc --type x
 expect 0 '^trapped' "$gatewalk" walk mixed.nc --walks 1000
 expect 0 '^trapped' "$gatewalk" predict mixed.nc --set terrain.seed=6

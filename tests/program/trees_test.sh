@@ -9,7 +9,7 @@ fast=(--set run.method=moreau --set run.step_s=0.02)
 "$gatewalk" predict "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --json direct.json --threads 1 --quiet >/dev/null 2>&1
 "$gatewalk" predict "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --json direct2.json --threads 2 --quiet >/dev/null 2>&1
 holds '.reached and .error_95 <= 0.05 and .error_95 > 0 and .gate_runs > 1000 and .seconds >= .run_seconds and .direct_seconds > 0 and ([.final_gates[][]] | add | . > 0.999999 and . < 1.000001)' direct.json
-holds '(.final_gates_95.low[0][4] <= .final_gates[0][4]) and (.final_gates[0][4] <= .final_gates_95.high[0][4]) and .endings_95.trapped[0] <= .endings.trapped and .endings.trapped <= .endings_95.trapped[1]' direct.json
+holds '(.final_gates_95[0][4][0] <= .final_gates[0][4]) and (.final_gates[0][4] <= .final_gates_95[0][4][1]) and .endings_95.trapped[0] <= .endings.trapped and .endings.trapped <= .endings_95.trapped[1]' direct.json
 jq -s '.[0].final_gates == .[1].final_gates and .[0].error_95 == .[1].error_95' direct.json direct2.json | grep -q true || fail "predict SCENE: other results on other threads"
 expect 0 'was not reached' "$gatewalk" predict "$scenes/field.toml" "${fast[@]}" --accuracy 1e-6 --gate-runs 2000
 expect 2 'must lie between 0 and 1' "$gatewalk" predict "$scenes/field.toml" --accuracy 5

@@ -42,9 +42,18 @@ ncdump -h large.nc | grep -q 'i_y = 501 ;' || fail "walk: netcdf of a large fiel
 holds 'has("left_out") | not' walk.json
 expect 2 'are the same file' "$gatewalk" walk m.nc --netcdf m.nc
 
-# States count from 1 here, which JSON says (in the file from 0).
-holds '.counted_from == 1 and .rows[0].input == 1' <("$gatewalk" show m.nc --json - --quiet)
-holds '.start_state.counted_from == 1' predict.json
+# States count from 0, in JSON, in tables and for --row, as in the file.
+"$gatewalk" show m.nc --json show.json --quiet
+holds '[.rows[].input] == [range(87)]' show.json
+jq -s '.[0].start_state as $s | .[1].rows[$s.input] | .boundary == "EN" and .d_m == [-5, 5] and .vx_m_per_s == [-5, 5] and
+  .vy_m_per_s == [10, 20] and $s.bin == "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s"' predict.json show.json | grep -q true ||
+  fail "the state of the start is another row: $(jq -c .start_state predict.json)"
+for row in 0 86; do
+  "$gatewalk" show m.nc --row $row --quiet >row.txt || fail "show --row $row"
+  [ "$(sed '1,/outputs of input/d; /^$/,$d' row.txt | awk '{ print $1, $2 }')" = "$(jq -r ".rows[$row].outputs[] | \"\(.output) \(.count)\"" show.json)" ] ||
+    fail "show --row $row: other outputs than in JSON: $(cat row.txt)"
+done
+expect 2 'row 87: must be at least 0 and at most 86' "$gatewalk" show m.nc --row 87
 
 # A chain has field.fidelity "active": another one is refused, never ignored.
 "$gatewalk" build "$field" --trials 2 --set run.method=moreau --set run.step_s=0.005 -o moreau.nc --quiet >/dev/null

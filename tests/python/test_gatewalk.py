@@ -138,7 +138,7 @@ class SameAsTheProgram(unittest.TestCase):
     def test_fit(self):
         few, free = {"field.rows": 3, "run.method": "moreau"}, {"forces.propulsion_N": (5, 9)}
         seen = gw.fit(FIELD, {"crossed": 20, "trapped": 60, "left side": 2}, free=free, trials=12288, set=few)
-        low, high = seen["numbers"][0]["interval_95"]
+        low, high = seen["numbers"][0]["median_95"]
         self.assertTrue(5 < low < high < 9)
         days = gw.fit(FIELD, [{"crossed": 12, "trapped": 60}, {"crossed": 8, "left side": 2}], free=free, trials=12288, set=few)
         self.assertEqual(days["numbers"], seen["numbers"])
@@ -343,8 +343,9 @@ class Elsewhere(unittest.TestCase):
             reached = chance[:count] > 1e-12
             np.testing.assert_allclose(own["mean_gates"][reached], gates[:count][reached] / chance[:count][reached], rtol=1e-9)
             self.assertAlmostEqual(first.probability, chance[0], 12)
-            ending = matrix.analyze(runs=0, paths=0, set=key).endings.get(target) if isinstance(target, str) else None
-            self.assertEqual(first.probability_95, tuple(ending["interval_95"]) if ending else None)  # of one number one interval
+            limits = matrix.analyze(runs=0, paths=0, set=key).endings_95.get(target) if isinstance(target, str) else None
+            self.assertEqual(first.probability_95, limits)  # of one number one interval
+            self.assertEqual(target in ("left_side", "crossed"), isinstance(limits, tuple))
             self.assertEqual(first.of_states["probability"].shape, (3, 3, 87))
             self.assertEqual(first.states, [f"{face}_{k}" for k, face in enumerate(matrix.states["face"])])
         np.testing.assert_array_equal(*(matrix.first_passage(state).of_states["mean_time_s"] for state in (3, "EN_3")))
@@ -383,7 +384,10 @@ class Elsewhere(unittest.TestCase):
         for number, name in enumerate(states["name"]):
             self.assertEqual(dense.predict(start=number).endings, dense.predict(start=name).endings)
         shares = gw.from_counts(counts / counts.sum(axis=1, keepdims=True), states, **field)
-        self.assertTrue(math.isnan(shares.predict().endings_95["crossed"][0]))
+        certain = shares.predict()
+        self.assertEqual(set(certain.endings_95.values()), {None})
+        self.assertTrue(certain.to_frame()[["low_95", "high_95"]].isna().all(axis=None))
+        self.assertIn("crossed 0.7, ", repr(certain))
         with self.assertRaisesRegex(gw.UsageError, "the chain: is 2 x 2; of 3 states it must be 3 x 4"):
             gw.from_counts(counts[:2, :2], states)
 
@@ -398,7 +402,7 @@ class Elsewhere(unittest.TestCase):
 
         def equals(matrix, wanted, probabilities=False):
             if probabilities:
-                self.assertTrue(np.isnan(matrix.predict().endings_95["crossed"]).all())
+                self.assertIsNone(matrix.predict().endings_95["crossed"])
                 np.testing.assert_allclose(matrix.matrix.toarray()[:, : wanted.shape[1]], wanted, rtol=0, atol=2e-7)
             else:
                 np.testing.assert_array_equal(matrix.counts().toarray()[:, : wanted.shape[1]], wanted)
@@ -530,11 +534,18 @@ class Elsewhere(unittest.TestCase):
 
     def test_limits_of_counts_are_counts(self):
         seen = gw.lattice(FIELD, trials=50)
+        for ending, (low, high) in seen.endings_95.items():
+            self.assertTrue(low <= seen.endings[ending] <= high, ending)
         frame = seen.to_frame()
+        np.testing.assert_array_equal(frame[["low_95", "high_95"]], list(seen.endings_95.values()))
         self.assertTrue((frame.low_95 <= frame.value).all() and (frame.value <= frame.high_95).all())
         self.assertGreater(frame.high_95.max(), 1.0)
         data = seen.to_xarray()
         self.assertTrue((data.endings_95.sel(bound="low") <= data.endings).all())
+        self.assertTrue((data.endings <= data.endings_95.sel(bound="high")).all())
+        np.testing.assert_array_equal(data.endings_95, frame[["low_95", "high_95"]])
+        one = gw.gate(FIELD, trials=50)
+        self.assertTrue(one.traversed_95[0] <= one.traversed <= one.traversed_95[1] and one.trapped_95[1] > 1.0)
 
 
 class Scenes(unittest.TestCase):
@@ -645,6 +656,14 @@ class Results(unittest.TestCase):
         self.assertEqual(data.final_gates.dims, ("i_y", "i_x"))
         self.assertEqual(list(data.i_x.values), list(range(-4, 5)))
         np.testing.assert_array_equal(data.final_gates.values, p.final_gates)
+        # An interval is a tuple; of a table they are an array, as the program has them.
+        self.assertEqual({type(limits) for limits in p.endings_95.values()}, {tuple})
+        self.assertEqual(p.final_gates_95.shape, (9, 9, 2))
+        np.testing.assert_array_equal(p.final_gates_95, program("predict", FIELD, "--accuracy", 0.1)["final_gates_95"])
+        self.assertEqual(data.final_gates_95.dims, ("i_y", "i_x", "bound"))
+        np.testing.assert_array_equal(data.final_gates_95.values, p.final_gates_95)
+        low, high = data.final_gates_95.sel(bound="low"), data.final_gates_95.sel(bound="high")
+        self.assertTrue((low <= data.final_gates).all() and (data.final_gates <= high).all() and (low < high).any())
         self.assertEqual(list(p.to_frame().index), list(p.endings))
         twin = pickle.loads(pickle.dumps(p))
         self.assertEqual(twin, p)
@@ -657,6 +676,39 @@ class Results(unittest.TestCase):
         self.assertEqual(list(frame["forces.propulsion_N"]), [6, 7])
         self.assertEqual(list(frame["trials"]), [20, 20])
         self.assertIn("vy", gw.trace(FIELD).to_frame())
+
+    def test_lists_of_intervals_and_of_bounds(self):
+        v = gw.validate(FIELD, accuracy=0.2, trials=200, null_draws=99, start=[(0.0, 0.0, 15.0), (1.0, 0.0, 15.0)])
+        step = v.markov["gates_ahead"]["steps"][0]
+        self.assertEqual(step["time_scales_chance_95"].shape, (len(step["time_scales_gates"]), 2))
+        self.assertEqual(v.state_space["error_95"].shape, (2,))  # no interval: a bound for each start
+        low, high = v.starts[0]["endings"]["dynamics_95"]["trapped"]
+        self.assertTrue(1 < low <= v.starts[0]["endings"]["dynamics"]["trapped"] <= high < 200)
+
+    def test_columns_are_numbered_as_in_the_program(self):
+        import matplotlib
+        import netCDF4
+
+        matplotlib.use("Agg")
+        # One state, which is entered ahead: all bodies stay in the column in which they start.
+        ahead = gw.from_counts(np.array([[10, 0]]), {"state": [0], "move_x": [0], "move_y": [1]}, start=0, set={"field.rows": 3})
+        for columns, first in ((1, 0), (2, -1), (3, -1), (4, -2), (5, -2)):
+            with self.subTest(columns=columns), tempfile.TemporaryDirectory() as folder:
+                there = {"field.columns": columns}
+                p = ahead.predict(set=there, netcdf=str(Path(folder) / "p.nc"))
+                data = p.to_xarray()
+                with netCDF4.Dataset(Path(folder) / "p.nc") as file:
+                    np.testing.assert_array_equal(data.i_x, file["i_x"][:])
+                    np.testing.assert_array_equal(data.final_gates, file["final_gates"][0])
+                self.assertEqual(data.i_x[0], first)
+                self.assertEqual(float(data.final_gates.sel(i_y=2, i_x=0)), 1.0)
+                image = p.plot()[0].images[0]
+                left, right, *_ = image.get_extent()
+                self.assertEqual((left, right), (first - 0.5, first + columns - 0.5))
+                self.assertEqual(left + 0.5 + np.argmax(image.get_array()[2]), 0)
+                table = ahead.first_passage("crossed", set=there).to_frame()
+                self.assertEqual(sorted(table.index.unique("i_x")), list(data.i_x))
+                matplotlib.pyplot.close("all")
 
     def test_pictures(self):
         import matplotlib

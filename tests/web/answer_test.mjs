@@ -61,9 +61,9 @@ test('the first thing shown is what predict says', () => seen('tree.html', {}, a
   const said = JSON.parse(readFileSync(at('tree.json')));
   assert.deepEqual(await numbersOf(page), Object.keys(said.endings).map((key) =>
       withInterval(said.endings[key], said.endings_95[key])));
-  const {low, high} = said.final_gates_95;
+  const intervals = said.final_gates_95.flat();
   assert.deepEqual(await tileWords(page), said.final_gates.flat().map((share, i) =>
-    `${percents(share)} per cent [${percents(low.flat()[i])}, ${percents(high.flat()[i])}]`));
+    `${percents(share)} per cent [${intervals[i].map(percents).join(', ')}]`));
   assert.match(await page.locator('#state').innerText(),
       new RegExp(`a state of its own, with ${said.first_runs} runs`));
 }));

@@ -16,7 +16,7 @@ ValueErrors; RuntimeError where something could not be finished; OSError by `Mat
 >>> p.final_gates.shape
 (9, 9)
 
-States, rows and columns count from 0 here; tables and JSON of the program count states from 1.
+States, rows and columns count from 0.
 """
 
 from __future__ import annotations

@@ -34,10 +34,17 @@ def _same(a: t.Any, b: t.Any) -> bool:
     return bool(a == b) or (isinstance(a, float) and isinstance(b, float) and a != a and b != b)
 
 
+def _first_column(columns: int) -> int:
+    """i_x of the leftmost of so many columns, as the program has it: bodies start in the column i_x = 0."""
+    return -(columns // 2)
+
+
 class Result(collections.abc.Mapping):  # type: ignore[type-arg]
     """A command's result: its JSON as a mapping, keys as attributes too. Equal where all but times and origin is.
 
-    Tables of numbers are numpy arrays, intervals are tuples (low, high). The docstring of the function that gives it says what each key means.
+    Tables of numbers are numpy arrays. The 95 % interval of `x` is `x_95`, a tuple (low, high) in the unit of x, or None. Of a
+    list or table x it is an array with one more axis, the last: low and high, NaN where there is none. The docstring of the
+    function that gives the result says what each key means.
     """
 
     def __init__(self, data: dict[str, t.Any]) -> None:
@@ -91,8 +98,8 @@ class Result(collections.abc.Mapping):  # type: ignore[type-arg]
 class Prediction(Result):
     """Where bodies end, and how. Of several starts, `starts` has one for each; of one, all is here.
 
-    Of `lattice`: what was seen, numbers of bodies where a prediction has shares; intervals are those of the shares, and in
-    `to_frame` those of the numbers.
+    Of `lattice`: what was seen. Endings, gates and the limits of their intervals are numbers of bodies there, where a
+    prediction has shares.
     """
 
     def __getattr__(self, name: str) -> t.Any:
@@ -121,20 +128,15 @@ class Prediction(Result):
         return {**first["endings"], **{k: v for k, v in rest.items() if v > 1e-6}}
 
     def _limits(self, first: dict[str, t.Any]) -> dict[str, tuple[float, float]]:
-        """95 % intervals of all of these, NaN: none; of lattice's numbers those of their shares, times the trials."""
-        trials = self._data.get("trials", 1)
-        none = float("nan")
-        bars = {k: (none, none) if low is None or high is None else (trials * low, trials * high)
-                for k, (low, high) in first.get("endings_95", {}).items()}
-        return {k: bars.get(k, (none, none)) for k in self._all(first)}
-
-    def _gates(self) -> tuple[Array, tuple[Array, Array] | None]:
-        first = self._only()
-        bars = first.get("final_gates_95")
-        return np.asarray(first["final_gates"]), (np.asarray(bars["low"]), np.asarray(bars["high"])) if bars else None
+        """95 % intervals of all of these; (NaN, NaN): none."""
+        limits = first.get("endings_95", {})
+        return {k: limits.get(k) or (float("nan"), float("nan")) for k in self._all(first)}
 
     def to_xarray(self) -> t.Any:
-        """An xarray.Dataset: final, trapped and departed gates by i_y and i_x (0 in the middle), endings by ending."""
+        """An xarray.Dataset: final, trapped and departed gates by i_y and i_x (bodies start in i_x = 0), endings by ending.
+
+        Intervals have the dimensions of their numbers, and `bound`: "low", "high".
+        """
         import xarray
 
         first = self._only()
@@ -144,17 +146,17 @@ class Prediction(Result):
         place = ("i_y", "i_x")
         data: dict[str, t.Any] = {k: (place, np.asarray(first[k]), unit) for k in ("final_gates", "trapped_gates", "departed_gates")
                                   if k in first}
-        _, bars = self._gates()
-        if bars:
-            data["final_gates_95"] = (("bound", *place), np.stack(bars), unit)
+        gate_limits = first.get("final_gates_95")
+        if gate_limits is not None:
+            data["final_gates_95"] = ((*place, "bound"), np.asarray(gate_limits), unit)
         ends = self._all(first)
         data["endings"] = (("ending",), np.array(list(ends.values()), dtype=float), unit)
         if "endings_95" in first:
             data["endings_95"] = (("ending", "bound"), np.array(list(self._limits(first).values()), dtype=float), unit)
         coordinates = {"i_y": ("i_y", np.arange(rows), {"long_name": "row of gates, from the start's side"}),
-                       "i_x": ("i_x", np.arange(columns) - (columns - 1) // 2, {"long_name": "column of gates"}),
+                       "i_x": ("i_x", np.arange(columns) + _first_column(columns), {"long_name": "column of gates, that of the start is 0"}),
                        "ending": list(ends)}
-        if bars or "endings_95" in first:
+        if gate_limits is not None or "endings_95" in first:
             coordinates["bound"] = ["low", "high"]
         return xarray.Dataset(data, coordinates, {"title": "gatewalk", "scene": self._data.get("made_by", {}).get("scene", "")})
 
@@ -179,7 +181,7 @@ class Prediction(Result):
         total = float(self._data.get("trials", 1))
         gates = np.asarray(first["final_gates"], dtype=float) / total
         columns = gates.shape[1]
-        left = -((columns - 1) // 2) - 0.5
+        left = _first_column(columns) - 0.5
         shown = np.ma.masked_where(gates <= 0.0, 100 * gates)  # type: ignore[no-untyped-call]
         image = axes[0].imshow(shown, origin="lower", cmap="viridis", extent=(left, left + columns, -0.5, gates.shape[0] - 0.5))
         axes[0].set_xlabel("$i_x$")
@@ -203,8 +205,7 @@ class Prediction(Result):
             return [("starts", str(len(self.starts)))]
         first = self.starts[0]._data
         bars = self._limits(first)
-        given = first.get("endings_95", {})
-        lines = [(k.replace("_", " "), f"{v:.4g}" + (f" [{bars[k][0]:.3g}, {bars[k][1]:.3g}]" if k in given else ""))
+        lines = [(k.replace("_", " "), f"{v:.4g}" + (f" [{bars[k][0]:.3g}, {bars[k][1]:.3g}]" if bars[k][0] == bars[k][0] else ""))
                  for k, v in self._all(first).items()]
         if first.get("error_95") is not None:
             lines.append(("error_95", f"{first['error_95']:.3g}"))
@@ -241,14 +242,14 @@ class FirstPassage(Result):
                                                 for k, v in tables.items()} or None})
 
     def to_frame(self) -> t.Any:
-        """A pandas.DataFrame: a line per gate and state, i_x (0 in the middle), i_y and the state's name its index."""
+        """A pandas.DataFrame: a line per gate and state, i_x (bodies start in i_x = 0), i_y and the state's name its index."""
         import pandas
 
         tables = self._data["of_states"]
         if tables is None:
             raise _core.UsageError("the field has too many gates and states for tables")
         rows, columns, _ = tables["probability"].shape
-        index = pandas.MultiIndex.from_product([range(rows), np.arange(columns) - columns // 2, self._data["states"]],
+        index = pandas.MultiIndex.from_product([range(rows), np.arange(columns) + _first_column(columns), self._data["states"]],
                                                names=["i_y", "i_x", "state"])
         return pandas.DataFrame({k: v.ravel() for k, v in tables.items() if v is not None}, index=index)
 
