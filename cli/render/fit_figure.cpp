@@ -34,7 +34,7 @@ double middle(std::size_t bin, const std::array<double, 2>& range) {
 }
 
 /// Numbers that stand clear of each other, and of those of the next panel: none at its very ends.
-std::string tics_of(const std::array<double, 2>& range, double side) {
+std::string range_tics(const std::array<double, 2>& range, double side) {
   constexpr double kLetter = 8.0, kApart = 14.0, kAside = 12.0;  // points
   const double span = range[1] - range[0];
   std::string list;
@@ -92,7 +92,7 @@ Figure figure_of(const FittedScene& f) {
     return Axis{named ? verbatim(axis_name(f, k)) : Caption(),
                 ranges[k][0],
                 ranges[k][1],
-                tics_of(ranges[k], side),
+                range_tics(ranges[k], side),
                 "%g",
                 named};
   };

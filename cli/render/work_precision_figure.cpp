@@ -12,7 +12,6 @@ namespace gatewalk::cli {
 namespace {
 
 using dynamics::ChartPoint;
-using dynamics::Verdict;
 using dynamics::WorkPrecision;
 
 /// Colour and marker (filled) of a method.
@@ -127,7 +126,7 @@ void draw_methods(Panels& out, Panel& panel, const WorkPrecision& chart, const O
         continue;
       }
       line.add(time, at);
-      (error < bound ? less : p.verdict == Verdict::fine ? good : fault).add(time, at);
+      (error < bound ? less : p.verdict == dynamics::Verdict::fine ? good : fault).add(time, at);
       if (error >= bound && std::isfinite(spread))
         bars.add(time, std::max(error - 2 * spread, 0.1 * error), error + 2 * spread);
     }
