@@ -12,7 +12,7 @@
 #include "cli/parsers.h"
 #include "cli/render/analysis.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/text.h"
 #include "cli/render/version.h"
 #include "cli/web/embedded.h"

@@ -21,6 +21,7 @@
 #include "cli/kept/kept_options.h"
 #include "cli/kept/ranks.h"
 #include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/numbers.h"
 #include "cli/render/text_table.h"
 #include "cli/terminal/backup.h"
@@ -269,7 +270,7 @@ struct Options::State {
   std::string no_scene;  // why there is no --set, if there is none
   std::optional<dynamics::Work> work;
   std::function<void(const std::string&)> warned;
-  std::function<void(const Json&)> given_out;
+  std::function<void(const Description&)> given_out;
   std::shared_ptr<const dynamics::Cell> cell;
   std::vector<std::shared_ptr<const LoadedMatrix>> loaded;
 
@@ -851,10 +852,10 @@ void Options::give_out(const Description& describe, const std::string& table, in
     const bool to_stdout = text("json") == "-" || csv == "-";
     if (!to_stdout && ((text("json").empty() && csv.empty()) || talk()))
       write_text_atomically("-", table);
-    if (has("json")) write(text("json"), json_text(json_of(describe), indent));
+    if (has("json")) write(text("json"), result_json(describe, indent));
   }
   if (!csv.empty()) write(csv, table_of_numbers(describe));
-  if (state_->given_out) state_->given_out(with_format_version(json_of(describe)));
+  if (state_->given_out) state_->given_out(with_format_version(describe));
 }
 
 void Options::keep_old(const std::string& path) const {
@@ -899,7 +900,7 @@ void ResultFolder::write(const std::string& csv_file, const std::string& csv,
       std::filesystem::remove(path(file));
     }
   options_.write(path(csv_file), csv);
-  options_.write(path(json_file), json_text(json_of(describe)));
+  options_.write(path(json_file), result_json(describe));
 }
 
 void ResultFolder::draw(const std::string& file, const Figure& figure) const {

@@ -16,7 +16,6 @@
 
 #include "cli/render/fields.h"
 #include "cli/render/figure.h"
-#include "cli/render/json_fwd.h"
 #include "cli/render/provenance.h"
 #include "dynamics/base/work.h"
 
@@ -46,8 +45,8 @@ struct CommandHelp {
 };
 
 /// The words behind a command's name; and what they have no words for, where they do not come from
-/// the user at the terminal: who is told how far it is and what it warns of, who takes the result
-/// as JSON, the cell of --cell-program, matrix files that are in memory and need not be read again.
+/// the user at the terminal: who is told how far it is and what it warns of, who takes the
+/// result, the cell of --cell-program, matrix files that are in memory and need not be read again.
 struct Arguments {
   Arguments(std::vector<std::string> given) : words(std::move(given)) {}  // NOLINT: the usual case
   Arguments(std::initializer_list<std::string> given) : words(given) {}
@@ -56,7 +55,7 @@ struct Arguments {
   std::optional<dynamics::Work> work = std::nullopt;
   std::function<void(const std::string&)> warned = nullptr;
   std::vector<std::string> parts{};  // files that hold all its work (merge)
-  std::function<void(const Json&)> given_out = nullptr;
+  std::function<void(const Description&)> given_out = nullptr;
   std::shared_ptr<const dynamics::Cell> cell = nullptr;
   std::vector<std::shared_ptr<const LoadedMatrix>> loaded{};
   std::function<void(const CommandHelp&)> helped = nullptr;  // the help page, and nothing else

@@ -12,6 +12,7 @@
 
 #include "cli/cells/process.h"
 #include "cli/render/json.h"
+#include "cli/render/json_value.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -195,8 +196,7 @@ Hello::Parameter read_parameter(const std::string& key, const Json& value) {
 }  // namespace
 
 std::string Hello::Parameter::range() const {
-  const auto digits = [](double x) { return Json(x).dump(); };
-  return fmt::format("a number from {} to {}", digits(low), digits(high));
+  return fmt::format("a number from {} to {}", json_number(low), json_number(high));
 }
 
 Hello read_hello(std::string_view line) {

@@ -4,7 +4,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/kept/kept_run.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "markov/formats/counts.h"
 
 namespace gatewalk::cli {

@@ -5,7 +5,6 @@
 
 #include "cli/command.h"
 #include "cli/paper/reproduction.h"
-#include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "cli/terminal/interrupt.h"
 #include "cli/web/embedded.h"

@@ -9,7 +9,7 @@
 #include "cli/exchange/archive.h"
 #include "cli/render/csv.h"
 #include "cli/render/files.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/little_endian.h"
 #include "cli/render/version.h"
 

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "dynamics/disc/disc_section.h"
 #include "lattice/text/toml_text.h"
 #include "markov/formats/counts.h"
@@ -195,7 +196,7 @@ void describe(Fields& out, const lattice::Policy& policy, const PolicyField& mad
 
 std::string policy_text(const lattice::Policy& policy, const PolicyField& made_for) {
   require_file_for(made_for);
-  return json_of([&](Fields& out) { describe(out, policy, made_for); }).dump(0) + "\n";
+  return json_text([&](Fields& out) { describe(out, policy, made_for); }, 0) + "\n";
 }
 
 lattice::Policy read_policy(const std::string& path, const PolicyField& made_for) try {

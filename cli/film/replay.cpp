@@ -2,7 +2,7 @@
 #include "cli/film/replay.h"
 
 #include "cli/render/health.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/recording.h"
 #include "cli/web/embedded.h"
 #include "cli/web/html.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cli/paper/verdicts.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/landscape.h"
 #include "lattice/study/validation.h"

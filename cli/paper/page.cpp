@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/text.h"
 #include "cli/web/embedded.h"
 #include "cli/web/html.h"

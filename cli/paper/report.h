@@ -7,7 +7,7 @@
 
 #include "cli/paper/claims.h"
 #include "cli/render/fields.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 
 namespace gatewalk::cli {
 

@@ -25,6 +25,7 @@
 #include "cli/paper/studies.h"
 #include "cli/render/figure.h"
 #include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/provenance.h"
 #include "cli/render/text.h"
 #include "cli/render/version.h"
@@ -321,8 +322,7 @@ Report reproduce(const ReproductionOptions& options) {
   std::filesystem::remove("report.html");
   Report r = report_of(carry_out(studies, options.talk), studies, options.quick, scenes);
   write_text_atomically("claims.csv", csv_of(r.claims));
-  write_text_atomically("report.json",
-                        json_text(json_of([&](Fields& out) { describe(out, r); }), -1));
+  write_text_atomically("report.json", result_json([&](Fields& out) { describe(out, r); }, -1));
   if (has_pages()) write_text_atomically("report.html", report_page(r, drawn_figure));
   return r;
 }

@@ -24,7 +24,7 @@
 #include "cli/exchange/sparse_table.h"
 #include "cli/loaded_matrix.h"
 #include "cli/python/python_cell.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/schema.h"
 #include "cli/render/version.h"
 #include "dynamics/cells/check_cell.h"
@@ -330,7 +330,7 @@ py::tuple run(const std::string& name, std::vector<std::string> words, const py:
     const py::gil_scoped_acquire gil;
     warned(text);
   };
-  arguments.given_out = [&](const Json& json) { result = json; };
+  arguments.given_out = [&](const cli::Description& describe) { result = cli::json_of(describe); };
   if (!cell.is_none()) arguments.cell = std::make_shared<PythonCell>(cell);
   for (const Matrix* matrix : matrices) arguments.loaded.push_back(matrix->loaded());
   int status = 0;

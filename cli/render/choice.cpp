@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
@@ -14,8 +15,8 @@ namespace {
 
 std::string setting_text(const dynamics::RunParams& run) {
   return "method " + run.method +
-         (run.method == "event" ? ", run.event_tolerance_m = " + Json(run.event_tolerance).dump()
-                                : ", run.step_s = " + Json(run.step).dump());
+         (run.method == "event" ? ", run.event_tolerance_m = " + json_number(run.event_tolerance)
+                                : ", run.step_s = " + json_number(run.step));
 }
 
 /// What was tried: a method with the value of the key that sets its accuracy.
@@ -85,7 +86,7 @@ Label method_label() { return Label("method", "what run.method = \"auto\" chose"
 }  // namespace
 
 std::string attribute_of(const lattice::Settled& settled) {
-  return text_of(json_of([&](Fields& out) { describe(out, settled); }), -1);
+  return json_text([&](Fields& out) { describe(out, settled); }, -1);
 }
 
 lattice::Settled settled_from(const Json& json) {
@@ -127,7 +128,7 @@ std::string complaint(const lattice::Settled& settled) {
   if (!settled.choice.met)
     return "run.method \"auto\": no setting was shown to keep the outcomes within run.tolerance "
            "= " +
-           Json(settled.tolerance).dump() +
+           json_number(settled.tolerance) +
            "; took the one they were compared with: " + setting_text(settled.choice.params.run);
   return {};
 }

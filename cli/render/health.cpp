@@ -2,6 +2,7 @@
 #include "cli/render/health.h"
 
 #include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
 
@@ -30,7 +31,7 @@ void describe_status(Fields& out, const std::optional<dynamics::Health>& health)
 }
 
 std::string attribute_of(const dynamics::Health& health) {
-  return text_of(json_of([&](Fields& out) { describe(out, health); }), -1);
+  return json_text([&](Fields& out) { describe(out, health); }, -1);
 }
 
 dynamics::Health health_from(const Json& j) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "cli/render/json_value.h"
+
 namespace gatewalk::cli {
 namespace {
 
@@ -143,11 +145,16 @@ Json json_of(const Description& describe) {
   return std::move(fields).take();
 }
 
-std::string json_string(std::string_view text) { return text_of(Json(std::string(text))); }
-
 std::string text_of(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
+
+std::string json_text(const Description& describe, int indent) {
+  return text_of(json_of(describe), indent);
+}
+
+std::string json_number(double x) { return Json(x).dump(); }
+std::string json_string(std::string_view text) { return text_of(Json(std::string(text))); }
 
 void describe_version(Fields& out) {
   out.count(Field("format_version", "1",
@@ -157,14 +164,15 @@ void describe_version(Fields& out) {
             kFormatVersion);
 }
 
-Json with_format_version(const Json& result) {
-  Json all = json_of(describe_version);
-  all.update(result);
-  return all;
+Description with_format_version(Description result) {
+  return [result = std::move(result)](Fields& out) {
+    describe_version(out);
+    result(out);
+  };
 }
 
-std::string json_text(const Json& result, int indent) {
-  return text_of(with_format_version(result), indent) + "\n";
+std::string result_json(const Description& result, int indent) {
+  return json_text(with_format_version(result), indent) + "\n";
 }
 
 }  // namespace gatewalk::cli

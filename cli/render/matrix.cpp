@@ -9,7 +9,7 @@
 
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/text.h"
 #include "cli/render/text_table.h"
 #include "cli/render/version.h"

@@ -7,7 +7,7 @@
 #include <concepts>
 
 #include "cli/render/csv.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 
 namespace gatewalk::cli {
 namespace {

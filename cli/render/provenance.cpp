@@ -4,7 +4,7 @@
 #include <fstream>
 #include <thread>
 
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/version.h"
 
 namespace gatewalk::cli {

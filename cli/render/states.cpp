@@ -9,6 +9,7 @@
 
 #include "cli/render/health.h"
 #include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/pooled_prediction.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
@@ -250,7 +251,7 @@ StateRecord state_record(const Json& attribute, const Section& section) {
 }
 
 std::string attribute_of(const StateRecord& states) {
-  return text_of(json_of([&](Fields& out) { describe(out, states); }), -1);
+  return json_text([&](Fields& out) { describe(out, states); }, -1);
 }
 
 void describe(Fields& out, const StateRecord& s) {

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 
 namespace gatewalk::cli {
 

@@ -18,7 +18,7 @@
 
 #include "cli/commands.h"
 #include "cli/loaded_matrix.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "dynamics/cells/cell.h"
 #include "lattice/cells/cell_file.h"
 #include "lattice/cells/recorded_pool.h"
@@ -50,7 +50,7 @@ void predict(const std::string& path, int times) {
   const auto by_command = [&] {
     cli::Arguments arguments{path, "--quiet", "--json=-"};
     arguments.loaded = {loaded};
-    arguments.given_out = [](const cli::Json&) {};
+    arguments.given_out = [](const cli::Description& describe) { (void)cli::json_of(describe); };
     arguments.work = dynamics::Work{};
     (void)cli::run_predict(arguments);
   };

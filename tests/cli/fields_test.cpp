@@ -8,7 +8,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/numbers.h"
 #include "cli/render/schema.h"
 

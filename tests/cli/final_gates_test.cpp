@@ -7,7 +7,7 @@
 
 #include "cli/arguments.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
 #include "dynamics/base/share.h"

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "cli/film/replay.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "dynamics/disc/landscape.h"
 #include "lattice/scene/terrain.h"
 #include "tests/cli/films.h"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/web/html.h"
 #include "tests/cli/films.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/paper/page.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 
 #include <gtest/gtest.h>
 

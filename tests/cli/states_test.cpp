@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cli/render/choice.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/render/matrix.h"
 #include "dynamics/disc/disc_section.h"
 #include "markov/formats/counts.h"

@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "cli/film/replay.h"
-#include "cli/render/json.h"
+#include "cli/render/json_value.h"
 #include "cli/terminal/output.h"
 #include "tests/cli/films.h"
 
