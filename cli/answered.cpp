@@ -12,7 +12,7 @@
 #include "cli/parsers.h"
 #include "cli/render/analysis.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/json_value.h"
+#include "cli/render/json.h"
 #include "cli/render/text.h"
 #include "cli/render/version.h"
 #include "cli/web/embedded.h"
@@ -213,19 +213,19 @@ void write_page(const Options& options, const Subject& s,
                    "of bodies from " + title_of(shown.map.section, starts.front().start)) +
       rest_text(rest_of(starts.front().final));
   const auto text_of_page = [&](bool gates_95) {
-    return filled(
-        carried_file("answer.html"),
-        {{"title", escaped(page.title)},
-         {"cell", s.scene ? "gate" : "cell"},
-         {"words", escaped(words)},
-         {"css", std::string(carried_file("report.css"))},
-         {"answer_css", std::string(carried_file("answer.css"))},
-         {"theme", std::string(carried_file("theme.js"))},
-         {"script", std::string(carried_file("answer.js"))},
-         {"command", escaped(made_by.command)},
-         {"version", escaped(fmt::format("{} {}", kVersion, kCommit))},
-         {"scene", escaped((s.scene ? made_by.scene : made_by.cell).value_or(""))},
-         {"answer", script_json(json_of([&](Fields& out) { describe(out, page, gates_95); }))}});
+    return filled(carried_file("answer.html"),
+                  {{"title", escaped(page.title)},
+                   {"cell", s.scene ? "gate" : "cell"},
+                   {"words", escaped(words)},
+                   {"css", std::string(carried_file("report.css"))},
+                   {"answer_css", std::string(carried_file("answer.css"))},
+                   {"theme", std::string(carried_file("theme.js"))},
+                   {"script", std::string(carried_file("answer.js"))},
+                   {"command", escaped(made_by.command)},
+                   {"version", escaped(fmt::format("{} {}", kVersion, kCommit))},
+                   {"scene", escaped((s.scene ? made_by.scene : made_by.cell).value_or(""))},
+                   {"answer", script_json(json_text(
+                                  [&](Fields& out) { describe(out, page, gates_95); }, -1))}});
   };
   std::string text = text_of_page(true);
   if (text.size() > kMostBytes) text = text_of_page(false);

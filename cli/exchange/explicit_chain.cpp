@@ -5,11 +5,13 @@
 
 #include <array>
 #include <charconv>
+#include <initializer_list>
+#include <utility>
 
 #include "cli/exchange/archive.h"
 #include "cli/render/csv.h"
 #include "cli/render/files.h"
-#include "cli/render/json_value.h"
+#include "cli/render/json.h"
 #include "cli/render/little_endian.h"
 #include "cli/render/version.h"
 
@@ -33,33 +35,59 @@ std::string one_bit(std::int64_t states, std::int64_t only) {
   return bits;
 }
 
+/// How numbers of a file stand in it.
+void describe_numbers(Fields& out, std::string_view type, int bits) {
+  out.text({"type", "kind of the numbers"}, type);
+  out.count({"size", "bit", "size of a number"}, bits);
+}
+
+/// What a Unified Markov Binary says of the chain in its other files.
+void describe(Fields& out, const ExplicitChain& chain, const std::string& command) {
+  out.count({"format-version", "1", "version of the format"}, 1);
+  out.count({"format-revision", "1", "revision of this version"}, 0);
+  out.object({"model-data", "what the model is"}, [](Fields& f) {
+    f.text({"description", "the model in words"}, "a gatewalk field, as a Markov chain");
+  });
+  out.object({"file-data", "what made the file"}, [&](Fields& f) {
+    f.text({"tool", "name of the program"}, "gatewalk");
+    f.text({"tool-version", "version of the program"}, kVersion);
+    f.text({"parameters", "the command"}, command);
+  });
+  out.object({"transition-system", "kind and size of the model"}, [&](Fields& f) {
+    f.text({"time", "how time passes"}, "discrete");
+    const std::int64_t states = chain.size(), branches = std::ssize(chain.target);
+    for (const auto& [what, n] :
+         std::initializer_list<std::pair<const char*, std::int64_t>>{{"#players", 0},
+                                                                     {"#states", states},
+                                                                     {"#initial-states", 1},
+                                                                     {"#choices", states},
+                                                                     {"#choice-actions", 0},
+                                                                     {"#branches", branches},
+                                                                     {"#branch-actions", 0},
+                                                                     {"#observations", 0}})
+      f.count({what, "1", "how many there are"}, n);
+    f.object({"branch-probability-type", "how probabilities stand in their file"},
+             [](Fields& type) { describe_numbers(type, "double", 64); });
+  });
+  out.object({"annotations", "what is said of states"}, [](Fields& f) {
+    f.object({"aps", "atomic propositions: the endings"}, [](Fields& aps) {
+      for (const char* label : kEndingLabels)
+        aps.object({label, "states in which walks end so"}, [&](Fields& ending) {
+          ending.text({"alias", "name of the ending"}, label);
+          ending.texts({"applies-to", "what has this proposition"}, {"states"});
+          ending.object({"type", "how its values stand in their file"},
+                        [](Fields& type) { describe_numbers(type, "bool", 1); });
+        });
+    });
+  });
+}
+
 }  // namespace
 
 std::string umb_of(const ExplicitChain& chain, const std::string& command) {
   const std::int64_t n = chain.size();
-  const Json boolean = {{"type", "bool"}, {"size", 1}};
-  Json aps = Json::object();
-  for (const char* label : kEndingLabels)
-    aps[label] = {{"alias", label}, {"applies-to", {"states"}}, {"type", boolean}};
-  const Json index = {
-      {"format-version", 1},
-      {"format-revision", 0},
-      {"model-data", {{"description", "a gatewalk field, as a Markov chain"}}},
-      {"file-data", {{"tool", "gatewalk"}, {"tool-version", kVersion}, {"parameters", command}}},
-      {"transition-system",
-       {{"time", "discrete"},
-        {"#players", 0},
-        {"#states", n},
-        {"#initial-states", 1},
-        {"#choices", n},
-        {"#choice-actions", 0},
-        {"#branches", chain.target.size()},
-        {"#branch-actions", 0},
-        {"#observations", 0},
-        {"branch-probability-type", {{"type", "double"}, {"size", 64}}}}},
-      {"annotations", {{"aps", aps}}}};
   std::vector<PackedFile> files{
-      {"index.json", text_of(index) + "\n"},
+      {"index.json", json_text([&](Fields& out) { describe(out, chain, command); }) + "\n"},
       {"state-is-initial.bin", one_bit(n, 0)},
       {"choice-to-branches.bin", all_little_endian(chain.first)},
       {"branch-to-target.bin", all_little_endian(chain.target)},

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "cli/film/replay.h"
 
+#include <fmt/core.h>
+
 #include "cli/render/health.h"
-#include "cli/render/json_value.h"
+#include "cli/render/json.h"
 #include "cli/render/recording.h"
 #include "cli/web/embedded.h"
 #include "cli/web/html.h"
@@ -143,22 +145,15 @@ void describe(Fields& out, const Film& film) {
   describe(out, film, [](Fields&, std::size_t) {});
 }
 
-Json to_json(const Film& film) {
-  return json_of([&](Fields& out) { describe(out, film); });
-}
-
-std::string replay_page(const Json& film) {
+std::string replay_page(const Film& film) {
   // Without scripts the page still says how the runs ended.
   std::string words;
-  if (film.contains("runs"))
-    for (const Json& run : film["runs"])
-      words += "<p>" + escaped(run.value("label", "a run")) + "</p>";
-  return filled(carried_file("replay.html"), {{"title", escaped(film.value("title", "Replay"))},
-                                              {"words", words},
-                                              {"script", std::string(carried_file("replay.js"))},
-                                              {"film", script_json(film)}});
+  for (const FilmRun& run : film.runs) words += fmt::format("<p>{}</p>", escaped(run.label));
+  return filled(carried_file("replay.html"),
+                {{"title", escaped(film.title)},
+                 {"words", words},
+                 {"script", std::string(carried_file("replay.js"))},
+                 {"film", script_json(json_text([&](Fields& out) { describe(out, film); }, -1))}});
 }
-
-std::string replay_page(const Film& film) { return replay_page(to_json(film)); }
 
 }  // namespace gatewalk::cli

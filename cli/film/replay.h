@@ -23,7 +23,6 @@
 #include "cli/film/film.h"
 #include "cli/render/choice.h"
 #include "cli/render/fields.h"
-#include "cli/render/json_fwd.h"
 #include "cli/render/provenance.h"
 
 namespace gatewalk::cli {
@@ -41,11 +40,9 @@ void describe(Fields& out, const TraceResult& result);
 
 /// The film as above, with lost_in_hits_J.
 void describe(Fields& out, const Film& film);
-[[nodiscard]] Json to_json(const Film& film);
 
-/// A whole page with the animation of all runs of a film; it loads nothing from anywhere. A film
-/// that is not as above makes a page that says so.
-[[nodiscard]] std::string replay_page(const Json& film);
+/// A whole page with the animation of all runs of a film; it loads nothing from anywhere. Its
+/// script says what a film lacks of the above.
 [[nodiscard]] std::string replay_page(const Film& film);
 
 }  // namespace gatewalk::cli

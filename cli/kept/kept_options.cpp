@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cli/kept/ranks.h"
+#include "cli/render/json.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "lattice/scene/scene.h"
@@ -34,8 +35,8 @@ double seconds_of(const std::string& text) {
   throw UsageError("--max-time " + text + ": must be a time, such as 90s, 45min, 3h or 2d");
 }
 
-/// What a file held.
-Json fingerprint(const std::string& path) {
+/// What the file at `path` holds.
+void describe_input(Fields& out, const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   in.exceptions(std::ios_base::badbit);  // what cannot be read is no end
   std::vector<char> buffer(std::size_t{1} << 16);
@@ -46,36 +47,47 @@ Json fingerprint(const std::string& path) {
     check = ::crc32_z(check, reinterpret_cast<const Bytef*>(buffer.data()), n);
     bytes += n;
   }
-  return {{"file", path}, {"bytes", bytes}, {"crc32", check}};
+  out.text({"file", "path of the file"}, path);
+  out.count({"bytes", "byte", "size of the file"}, bytes);
+  out.count({"crc32", "1", "checksum of the file's bytes"}, check);
 }
 
 bool is_by_trials(const Options& options) { return options.has("part") && !options.has("shard"); }
 
-Json head_of(const Options& options) {
+/// The scene as TOML; none where the command reads a matrix or recorded runs in its place.
+std::optional<std::string> scene_of(const Options& options) {
+  if (!options.has("scene")) return {};
+  try {
+    return lattice::to_toml(options.read_scene());
+  } catch (const lattice::SceneError&) {
+    return {};
+  }
+}
+
+/// The head of the file of pieces: what command they are of.
+void describe_head(Fields& out, const Options& options) {
   const CommandWords& words = options.words();
-  Json head{{"version", kVersion},      {"commit", kCommit},
-            {"command", words.command}, {"words", words.shaping},
-            {"outputs", words.outputs}, {"main_output", words.main_output},
-            {"scene", nullptr},         {"inputs", Json::array()}};
-  head["others"] = words.others;
-  if (options.has("passages")) head["words"].push_back("--passages");  // what is kept has them
-  if (options.has("scene")) {
-    try {
-      head["scene"] = lattice::to_toml(options.read_scene());
-    } catch (const lattice::SceneError&) {  // a matrix, or recorded runs
-    }
-  }
-  for (const std::string& path : options.files_read()) head["inputs"].push_back(fingerprint(path));
-  if (options.has("shard")) {
+  std::vector<std::string> shaping = words.shaping;
+  if (options.has("passages")) shaping.emplace_back("--passages");  // what is kept has them
+  out.text({"version", "version of the program"}, kVersion);
+  out.text({"commit", "commit of its sources"}, kCommit);
+  out.text({"command", "name of the command"}, words.command);
+  out.texts({"words", "words that shape the result"}, shaping);
+  out.texts({"outputs", "words that say where the result goes"}, words.outputs);
+  out.text({"main_output", "option of the main output"}, words.main_output);
+  out.text({"scene", "the scene, as TOML"}, scene_of(options));
+  out.list({"inputs", "files that the command reads"}, options.files_read(), describe_input);
+  out.texts({"others", "what else shapes the result, and is no word"}, words.others);
+  out.optional(options.has("shard"), [&](Fields& part) {
     const Shard shard = shard_of(options.text("shard"));
-    head["shard"] = {shard.number, shard.of};
-  }
-  if (is_by_trials(options)) {
+    part.counts({"shard", "1", "number of the part, from 1, and number of parts"},
+                {shard.number, shard.of});
+  });
+  out.optional(is_by_trials(options), [&](Fields& part) {
     const dynamics::TrialRange trials = options.trial_range();
-    head["first_trial"] = trials.first;
-    head["trials"] = trials.count;
-  }
-  return head;
+    part.count({"first_trial", "1", "number of the part's first trial"}, trials.first);
+    part.count({"trials", "1", "number of the part's trials"}, trials.count);
+  });
 }
 
 /// Where pieces are kept without being asked: beside the result. Empty where that is no file.
@@ -165,7 +177,7 @@ std::unique_ptr<KeptRun> kept_run(const Options& options, const std::set<std::st
                      ": is there and holds no pieces of a run: name another file, or --force");
   if (options.has("max-time") && !ranks())  // which stop together
     plan.most_seconds = seconds_of(options.text("max-time"));
-  plan.head = head_of(options);
+  plan.head = json_text([&](Fields& out) { describe_head(out, options); }, -1);
   return std::make_unique<KeptRun>(std::move(plan));
 }
 

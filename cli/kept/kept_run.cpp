@@ -179,9 +179,9 @@ KeptRun::KeptRun(KeptPlan plan) : plan_(std::move(plan)) {
 void KeptRun::read(std::size_t number) {
   const PieceFile& file = files_[number];
   const std::string& path = file.path();
-  const Json head = head_of(file);
+  const Json head = head_of(file), own = parsed_json(plan_.head);
   const bool goes_on = plan_.parts.empty();
-  std::string differs = difference(head, plan_.head);
+  std::string differs = difference(head, own);
   // What a file holds is shown, and no terminal shall obey it.
   std::replace_if(
       differs.begin(), differs.end(),
@@ -196,9 +196,9 @@ void KeptRun::read(std::size_t number) {
     return std::array{h.value("shard", Json()), h.value("first_trial", Json()),
                       h.value("trials", Json())};
   };
-  if (goes_on && part_of(head) != part_of(plan_.head))
-    throw UsageError(fmt::format("{}: holds {}, and this is {}", path, name_of_part(head),
-                                 name_of_part(plan_.head)));
+  if (goes_on && part_of(head) != part_of(own))
+    throw UsageError(
+        fmt::format("{}: holds {}, and this is {}", path, name_of_part(head), name_of_part(own)));
   for (const PieceRecord& record : file.records()) {
     if (record.stage == kEndStage) continue;
     if (is_name(record)) {
@@ -333,7 +333,7 @@ void KeptRun::write(std::uint32_t stage, TrialRange items, std::string_view byte
 }
 
 void KeptRun::open() {
-  writer_.emplace(plan_.file, plan_.head.dump(-1, ' ', false, Json::error_handler_t::replace));
+  writer_.emplace(plan_.file, plan_.head);
   set_kept_file(plan_.file);
   for (const Waiting& w : waiting_) writer_->add(w.stage, w.items, w.bytes);
   writer_->sync();

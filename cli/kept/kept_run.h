@@ -29,7 +29,7 @@ struct Shard {
 
 /// What a run keeps and where.
 struct KeptPlan {
-  Json head;                     // what command this is: the same for all its runs
+  std::string head;              // JSON: what command this is, the same for all its runs
   std::string file;              // empty: pieces are only read
   bool at_once = true;           // the file is made with the first piece, or once it is a minute's
   bool goes_on = false;          // with what the file holds

@@ -218,12 +218,13 @@ std::string section(const Report::Section& s, const std::vector<Claim>& claims,
   if (!about.empty()) about = element("ul class=\"about\" aria-label=\"Claims shown here\"", about);
   const bool plays = !s.film.is_null();
   const std::string shown =
-      plays ? fmt::format(
-                  "<figure><div class=\"replay\"><noscript><p>The animation needs JavaScript. {}"
-                  "</p></noscript></div>\n<script type=\"application/json\" id=\"film\">{}"
-                  "</script>{}</figure>\n",
-                  words(s.alt), script_json(s.film), element("figcaption", made_with(s)))
-            : figure(s.id + ".svg", s.alt, made_with(s), figure_text);
+      plays
+          ? fmt::format(
+                "<figure><div class=\"replay\"><noscript><p>The animation needs JavaScript. {}"
+                "</p></noscript></div>\n<script type=\"application/json\" id=\"film\">{}"
+                "</script>{}</figure>\n",
+                words(s.alt), script_json(text_of(s.film, -1)), element("figcaption", made_with(s)))
+          : figure(s.id + ".svg", s.alt, made_with(s), figure_text);
   return element(fmt::format("section id=\"{}\"{}", escaped(s.id), plays ? " class=\"wide\"" : ""),
                  element("h2", words(s.heading)) +
                      element("div class=\"beside\"",

@@ -3,8 +3,6 @@
 
 #include <stdexcept>
 
-#include "cli/render/json_value.h"
-
 namespace gatewalk::cli {
 
 std::string escaped(std::string_view text) {
@@ -30,9 +28,9 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-std::string script_json(const Json& json) {
+std::string script_json(std::string_view json) {
   std::string out;
-  for (const char c : text_of(json, -1)) {
+  for (const char c : json) {
     if (c == '<')
       out += "\\u003c";
     else

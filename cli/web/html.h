@@ -7,15 +7,13 @@
 #include <string>
 #include <string_view>
 
-#include "cli/render/json_fwd.h"
-
 namespace gatewalk::cli {
 
 /// Text as it stands in HTML, in an attribute too.
 [[nodiscard]] std::string escaped(std::string_view text);
 
-/// JSON as it stands in a <script>: nothing in it can end the element.
-[[nodiscard]] std::string script_json(const Json& json);
+/// JSON, as text, as it stands in a <script>: nothing in it can end the element.
+[[nodiscard]] std::string script_json(std::string_view json);
 
 /// `page` with each {{name}} replaced; what is put in is not looked at again. Throws
 /// std::logic_error for a name without a part.

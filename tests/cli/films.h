@@ -5,10 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/film/film.h"
+#include "cli/film/replay.h"
+#include "cli/render/json_value.h"
 #include "tests/support/twins.h"
 
 namespace gatewalk::cli {
+
+/// The film as its page reads it.
+inline Json json_of(const Film& film) {
+  return json_of([&](Fields& out) { describe(out, film); });
+}
 
 /// `steps` steps of 0.02 s; the body moves 0.5 m in each, a gate is 60 m deep.
 inline Film small_film(int steps = 50) {

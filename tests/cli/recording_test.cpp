@@ -108,7 +108,7 @@ TEST(Recording, FilmHasTheForceThatComes) {
   ASSERT_EQ(steps.size(), moments.size());
   for (std::size_t i = 0; i + 1 < moments.size(); ++i)
     EXPECT_NEAR(steps[i].random_force, moments[i + 1].sample.random_force, 1e-5);
-  const Json json = to_json(film)["runs"][0];
+  const Json json = json_of(film)["runs"][0];
   EXPECT_EQ(json["random_N"].size(), moments.size());
   EXPECT_FALSE(json.contains("landscape_J"));
   const Json details = details_of(s, recordings);
@@ -154,7 +154,7 @@ Recordings in_other_units(Recordings recordings, const Twin& twin) {
 
 /// A film without what is said in words, which name numbers with their units.
 Json without_words(const Film& film) {
-  Json json = to_json(film);
+  Json json = json_of(film);
   json.erase("title");
   for (Json& run : json["runs"]) run.erase("label");
   return json;

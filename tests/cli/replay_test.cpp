@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/render/json_value.h"
 #include "cli/web/html.h"
 #include "tests/cli/films.h"
 
@@ -34,8 +33,8 @@ Json film_in(const std::string& page) {
 }
 
 TEST(Replay, PageHoldsTheFilm) {
-  const std::string page = replay_page(to_json(small_film()));
-  EXPECT_EQ(film_in(page), to_json(small_film()));
+  const std::string page = replay_page(small_film());
+  EXPECT_EQ(film_in(page), json_of(small_film()));
   EXPECT_NE(page.find("<title>A small film</title>"), page.npos);
   EXPECT_NE(page.find("<p>trial 1: traversed left after 1 s</p>"), page.npos)
       << "said without scripts too";
@@ -43,20 +42,18 @@ TEST(Replay, PageHoldsTheFilm) {
 }
 
 TEST(Replay, TextsCannotBreakOut) {
-  Json film = to_json(small_film());
-  const std::string evil = "</script><script>alert(1)</script><!-- {{film}}";
-  film["title"] = evil;
-  film["runs"][0]["label"] = evil;
-  film["runs"][0]["ending"] = evil;
+  Film film = small_film();
+  film.title = film.runs[0].label = film.runs[0].ending =
+      "</script><script>alert(1)</script><!-- {{film}}";
   const std::string page = replay_page(film);
-  EXPECT_EQ(film_in(page), film);
+  EXPECT_EQ(film_in(page), json_of(film));
   EXPECT_EQ(page.find("<script>alert"), page.npos);
   EXPECT_EQ(page.find("<!-- {{"), page.npos);
-  EXPECT_EQ(count(page, "</script"), count(replay_page(to_json(small_film())), "</script"));
+  EXPECT_EQ(count(page, "</script"), count(replay_page(small_film()), "</script"));
 }
 
 TEST(Replay, LoadsNothing) {
-  const std::string page = replay_page(to_json(small_film()));
+  const std::string page = replay_page(small_film());
   for (const char* address : {"http:", "https:", "src=", "@import", "url("})
     EXPECT_EQ(page.find(address), page.npos) << address;
   EXPECT_NE(page.find("default-src 'none'"), page.npos);

@@ -95,7 +95,7 @@ void go_on(const std::string& path, const cli::PieceFile& file, const cli::Json&
   constexpr int kMostPieces = 50;
   (void)accepted([&] {
     cli::KeptPlan plan;
-    plan.head = head;
+    plan.head = head.dump();
     plan.goes_on = true;
     plan.writes = false;
     plan.divided = {"gate runs"};
