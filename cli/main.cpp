@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <iomanip>
 #include <iostream>
 #include <iterator>
 #include <new>
@@ -17,7 +18,6 @@
 #include "cli/kept/kept_run.h"
 #include "cli/kept/ranks.h"
 #include "cli/render/schema.h"
-#include "cli/render/text.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "cli/terminal/output.h"
@@ -39,7 +39,7 @@ void print_help(std::ostream& out) {
     if (!c.run)
       out << (is_first ? "" : "\n") << c.name << "\n";
     else
-      out << "  " << padded(c.name, -13) << c.summary << "\n";
+      out << "  " << std::left << std::setw(13) << c.name << c.summary << "\n";
     is_first = false;
   }
   out << "\ngatewalk COMMAND --help, or gatewalk help COMMAND, explains a command and gives an "

@@ -84,7 +84,7 @@ CostTable::CostTable(const ShownField& shown)
       }()) {
   if (mass_) header_ += "   work/J of: push     noise   lost/J   J/(kg m)";
   for (std::size_t c = 1; c < costs_ && !mass_; ++c)
-    header_ += " " + padded(costs_of(shown)[c].key, 11);
+    header_ += fmt::format(" {:>11}", costs_of(shown)[c].key);
   header_ += "\n";
 }
 

@@ -182,14 +182,14 @@ std::string map_of(const markov::CellProbabilities& shares, const std::string& w
   for (const double share : blocks.reshaped())
     width = std::max(width, static_cast<int>(fixed(100.0 * share, 2).size()) + 1);
   for (Eigen::Index r = blocks.rows() - 1; r >= 0; --r) {
-    text += padded(std::to_string(map.rows.first + r * map.rows.block), 4) + " |";
+    text += fmt::format("{:>4} |", map.rows.first + r * map.rows.block);
     for (const double share : blocks.row(r))
-      text += padded(share == 0.0 ? "." : fixed(100.0 * share, 2), width);
+      text += fmt::format("{:>{}}", share == 0.0 ? "." : fixed(100.0 * share, 2), width);
     text += "\n";
   }
   text += "  i_x ";
   for (Eigen::Index c = 0; c < blocks.cols(); ++c)
-    text += padded(std::to_string(map.columns.middle(c) - map.middle_column), width);
+    text += fmt::format("{:>{}}", map.columns.middle(c) - map.middle_column, width);
   text += "\n";
   if (const std::string rest = elsewhere_text(map, shares); !rest.empty()) text += rest + "\n";
   return text;
@@ -336,7 +336,8 @@ std::string rest_warning(const Rest& rest, const std::string& where) {
   if (!(all > kCounts)) return "";
   std::string what;
   const auto add = [&](double share, const std::string& words) {
-    if (share > 0.0) what += (what.empty() ? "" : ", ") + percents(share) + " % " + words;
+    if (share > 0.0)
+      what += fmt::format("{}{} % {}", what.empty() ? "" : ", ", percents(share), words);
   };
   add(rest.never_sampled, "reach a state that was never sampled");
   add(rest.still_walking, "were still walking " + rest.stopped);

@@ -51,13 +51,13 @@ std::string row_table(const Transitions& t) {
   int width = 0;  // of names, if states have some
   for (const NamedEntries& named : section.named)
     width = std::max(width, static_cast<int>(named.name.size()) + 2);
-  std::string head = "\n  in  " + padded(width > 0 ? "name" : "", -width) + "from";
+  std::string head = fmt::format("\n  in  {:<{}}from", width > 0 ? "name" : "", width);
   std::vector<TextColumn> columns{{"", 4}, {"", -width, 0, "", "  "}, {}};
   for (const Coordinate& c : section.coordinates) {
     const bool is_first = &c == &section.coordinates.front();
     const std::string unit = behind_number(c.unit);
-    const std::string name = c.name + (unit.empty() ? "" : " (" + unit.substr(1) + ")");
-    head += is_first ? " " + padded(name, -13) : padded(name, -12);
+    const std::string name = c.name + (unit.empty() ? "" : fmt::format(" ({})", unit.substr(1)));
+    head += is_first ? fmt::format(" {:<13}", name) : fmt::format("{:<12}", name);
     columns.push_back({"", -12, 0, "", is_first ? " " : ""});
   }
   columns.insert(columns.end(), {{"", 7}, {"", 8}, {"", 6, 1, "", " |"}});
@@ -75,7 +75,7 @@ std::string row_table(const Transitions& t) {
     table.row(cells);
   }
   head += "trials clamped |";
-  for (const Face& face : section.faces) head += padded(face.name, 5) + " ";
+  for (const Face& face : section.faces) head += fmt::format("{:>5} ", face.name);
   return head + " trap (%)\n" + table.rows();
 }
 
@@ -197,7 +197,7 @@ auto record_in(const lattice::MatrixFile& file, const std::string& path, const s
   const char* const what = key == "method"   ? "chosen method"
                            : key == "status" ? "status"
                                              : "state space";
-  const std::string damaged = path + ": its record of the " + what + " is damaged";
+  const std::string damaged = fmt::format("{}: its record of the {} is damaged", path, what);
   try {
     const Json json = parsed_json(text->second);
     if (json.is_null()) return {};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/start.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <charconv>
 
@@ -76,9 +78,9 @@ StartTexts::StartTexts(const dynamics::Section& section, const std::vector<dynam
                        const auto& text_of_start) {
     std::size_t width = std::max(least, name.size() + gap);
     for (const dynamics::Entry& s : starts) width = std::max(width, text_of_start(s).size() + gap);
-    header += padded(name, static_cast<int>(width));
+    header += fmt::format("{:>{}}", name, width);
     for (std::size_t k = 0; k < starts.size(); ++k)
-      texts[k] += padded(text_of_start(starts[k]), static_cast<int>(width));
+      texts[k] += fmt::format("{:>{}}", text_of_start(starts[k]), width);
   };
   const auto face_of = [&](const dynamics::Entry& s) {
     return section.faces[static_cast<std::size_t>(s.face)].name;

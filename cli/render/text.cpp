@@ -42,16 +42,4 @@ std::string counted(std::int64_t n, std::string_view one, std::string_view many)
   return fmt::format("{} {}", n, n == 1 ? one : many);
 }
 
-int length_of(std::string_view text) {
-  // A character of UTF-8 is as wide as its first byte alone.
-  return static_cast<int>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
-std::string padded(const std::string& text, int width) {
-  const std::string space(static_cast<std::size_t>(std::max(0, std::abs(width) - length_of(text))),
-                          ' ');
-  return width > 0 ? space + text : text + space;
-}
-
 }  // namespace gatewalk::cli

@@ -27,9 +27,5 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string scientific(double x, int decimals);
 /// "1 gap", "12 gaps"
 [[nodiscard]] std::string counted(std::int64_t n, std::string_view one, std::string_view many);
-/// Characters of UTF-8.
-[[nodiscard]] int length_of(std::string_view text);
-/// Text padded on the left or (negative width) on the right.
-[[nodiscard]] std::string padded(const std::string& text, int width);
 
 }  // namespace gatewalk::cli

@@ -7,6 +7,23 @@
 #include "cli/render/text.h"
 
 namespace gatewalk::cli {
+namespace {
+
+/// Characters of UTF-8.
+int length_of(std::string_view text) {
+  // A character of UTF-8 is as wide as its first byte alone.
+  return static_cast<int>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+/// Text padded on the left or (negative width) on the right.
+std::string padded(const std::string& text, int width) {
+  const std::string space(static_cast<std::size_t>(std::max(0, std::abs(width) - length_of(text))),
+                          ' ');
+  return width > 0 ? space + text : text + space;
+}
+
+}  // namespace
 
 std::string TextCell::text_in(const TextColumn& column) const {
   if (const auto* words = std::get_if<std::string>(&content_)) return *words;

@@ -68,7 +68,7 @@ class TextTable {
   using Line = std::vector<std::string>;
   [[nodiscard]] Line headings() const;
   [[nodiscard]] std::string text_of(const Line& line) const;
-  /// The width of a column, as padded() takes it.
+  /// The width of a column; negative: text stands on the left.
   [[nodiscard]] int width_of(std::size_t column) const;
 
   std::vector<TextColumn> columns_;

@@ -255,8 +255,8 @@ std::string reference_text(const WorkPrecision& chart) {
     return percent(static_cast<double>(r[outcome]), static_cast<double>(chart.trials));
   };
   const auto against = [&](const dynamics::Setting& setting, const Errors& e) {
-    return fmt::format("  against {} outcomes {}, columns {}, exit {}, parted {}\n",
-                       padded(setting.name(), -20), digits(e.outcomes.total_variation),
+    return fmt::format("  against {:<20} outcomes {}, columns {}, exit {}, parted {}\n",
+                       setting.name(), digits(e.outcomes.total_variation),
                        digits(e.columns.total_variation), quantity(e.strong.position, "m"),
                        percent(e.strong.parted_share(), 1.0, 3));
   };

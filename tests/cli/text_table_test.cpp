@@ -31,6 +31,12 @@ TEST(TextTable, AColumnMayFitItsWidestLine) {
             "* µm  | 5 of a length\n");
 }
 
+TEST(TextTable, WidthsCountCharactersNotBytes) {
+  TextTable table({{"", 4}, {"", -4, 0, "", "|"}, {"", 0, 0, "", "|"}});
+  table.row({"µm", "µm", "µm"});
+  EXPECT_EQ(table.text(), "  µm|µm  |µm\n");
+}
+
 TEST(TextTable, LongerTextMovesTheRestOfItsLineOnly) {
   TextTable table({{"", -3}, {"", 4}});
   table.row({"four", 1});

@@ -16,12 +16,6 @@ TEST(Text, AZeroHasNoSign) {
   EXPECT_EQ(fixed(std::nan(""), 1), "-");
 }
 
-TEST(Text, PaddingCountsCharactersNotBytes) {
-  EXPECT_EQ(padded("µm", 4), "  µm");
-  EXPECT_EQ(padded("µm", -4), "µm  ");
-  EXPECT_EQ(padded("longer", 4), "longer");
-}
-
 TEST(Text, OneOfAKindIsNamedSo) {
   EXPECT_EQ(counted(1, "gap", "gaps"), "1 gap");
   EXPECT_EQ(counted(0, "gap", "gaps"), "0 gaps");
