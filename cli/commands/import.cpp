@@ -69,7 +69,8 @@ int run_import(const Arguments& arguments) {
     std::size_t k = 0;
     while (k < states.size() && start != states[k].name && start != std::to_string(k)) ++k;
     if (k == states.size())
-      throw UsageError("--start " + start + ": " + options.text("states") + " has no such state");
+      throw UsageError(
+          fmt::format("--start {}: {} has no such state", start, options.text("states")));
     cells.start = entry_of(states, k, cells.map.section);
   }
   dynamics::Transitions t = transitions_of(matrix, states, cells);

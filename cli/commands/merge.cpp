@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "cli/arguments.h"
@@ -55,8 +57,9 @@ std::vector<std::string> words_of(const std::vector<Json>& heads, const std::str
   if (!output.empty()) {
     std::string name = head.at("main_output");
     if (head.at("command") == "sweep" && output.ends_with(".csv")) name = "csv";
-    std::erase_if(outputs, [&](const std::string& w) { return w.starts_with("--" + name + "="); });
-    outputs.push_back("--" + name + "=" + output);
+    std::erase_if(outputs,
+                  [&](const std::string& w) { return w.starts_with(fmt::format("--{}=", name)); });
+    outputs.push_back(fmt::format("--{}={}", name, output));
   }
   words.insert(words.end(), outputs.begin(), outputs.end());
   return words;
@@ -87,9 +90,10 @@ int run_merge(const Arguments& arguments) {
   const std::string name = heads.front().at("command");
   const Command* const command = command_named(name);
   if (!command)
-    throw markov::BadFile(parts.front() + ": is of a command " + name + ", unknown here");
+    throw markov::BadFile(fmt::format("{}: is of a command {}, unknown here", parts.front(), name));
   if (options.has("output") && options.has("json") && heads.front().at("main_output") == "json")
-    throw UsageError("-o and --json name the same output of gatewalk " + name + ": give one");
+    throw UsageError(
+        fmt::format("-o and --json name the same output of gatewalk {}: give one", name));
   Arguments all(words_of(heads, options.text("output")));
   for (const char* flag : {"quiet", "force"})
     if (options.has(flag)) all.words.push_back("--" + std::string(flag));

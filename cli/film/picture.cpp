@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/film/picture.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -242,8 +244,8 @@ void Picture::panel(double x, const Scenery& now, const Scenery& said) {
     text(x, 154, 17, "ended: " + about_.ending, kText, true, kRightEdge - x);
   else if (film_.is_field())
     text(x, 154, 17,
-         "gate: column " + whole(said.i_x) + ", row " + whole(said.i_y) +
-             (film_.actions.empty() ? "" : ", " + film_.action_of(run_.steps()[said.at.i])),
+         fmt::format("gate: column {}, row {}{}", whole(said.i_x), whole(said.i_y),
+                     film_.actions.empty() ? "" : ", " + film_.action_of(run_.steps()[said.at.i])),
          kMuted, false, kRightEdge - x);
   double y = 196;
   legend(x, y, said);
@@ -276,8 +278,8 @@ void Picture::legend(double x, double& y, const Scenery& said) {
         said.contact[side] == ContactMode::free && just_hit ? ContactMode::hit : said.contact[side];
     painter_.line({x, y - 5}, {x + 26, y - 5}, colour_of(side), 4.0);
     words(side == kLeft ? "left beam" : "right beam",
-          std::string(kContactNames[static_cast<std::size_t>(contact)]) + ", " +
-              whole(said.angle[side] * 180.0 / std::numbers::pi) + "°");
+          fmt::format("{}, {}°", kContactNames[static_cast<std::size_t>(contact)],
+                      whole(said.angle[side] * 180.0 / std::numbers::pi)));
     y += 27;
   }
   const auto force = [&](Colour c, const char* name, double newton) {

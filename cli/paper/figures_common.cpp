@@ -64,8 +64,8 @@ Panel& add_panel(Panels& out, const Box& box, const std::string& x, const std::s
 std::string root_tics(const std::vector<double>& percents, bool numbers) {
   std::string list;
   for (const double p : percents)
-    list +=
-        (list.empty() ? "('" : ", '") + (numbers ? digits(p) : "") + "' " + digits(std::sqrt(p));
+    list += fmt::format("{}{}' {}", list.empty() ? "('" : ", '", numbers ? digits(p) : "",
+                        digits(std::sqrt(p)));
   return list + ")";
 }
 
@@ -145,7 +145,7 @@ Figure rates(const std::vector<std::string>& head, const std::vector<Series>& se
   Panels out = paper_panels();
   Rows &guides = out.data("$guides"), marks("$marks");
   std::vector<Rows> dots;
-  for (std::size_t i = 0; i < series.size(); ++i) dots.emplace_back("$series" + std::to_string(i));
+  for (std::size_t i = 0; i < series.size(); ++i) dots.emplace_back(fmt::format("$series{}", i));
   std::vector<Text> mark_labels;
   for (const RateGroup& g : groups) {
     const auto first = static_cast<double>(labels.size());
@@ -177,7 +177,7 @@ Figure rates(const std::vector<std::string>& head, const std::vector<Series>& se
   for (std::size_t i = 0; i < head.size(); ++i)
     panel.say(as_printed(head[i]), 8, 18 + 22.0 * static_cast<double>(i));
   panel.border = 1;
-  panel.x = {"", 0, 1.02 * end, "(" + scale.tics() + ")"};
+  panel.x = {"", 0, 1.02 * end, fmt::format("({})", scale.tics())};
   panel.y = row_axis(labels);
   panel.more = "set bars 0.4\n";
   panel.draw(guides, "1:2:3:4", std::string("vectors nohead") + kGrid);

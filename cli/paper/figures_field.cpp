@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -62,7 +64,7 @@ Figure drawn_fig11(const std::string& start, std::vector<Cell> cells, std::int64
   const RootScale scale(most);
   const std::string tic = short_number(0.7 * largest);
   const char* const heads[] = {"A  dynamics, %", "chain, %", "dynamics − chain, points"};
-  out.say(as_printed("final gates, n = " + std::to_string(trials) + "; start " + start), 8, 18);
+  out.say(as_printed(fmt::format("final gates, n = {}; start {}", trials, start)), 8, 18);
   for (int i = 0; i < 3; ++i) {
     Panel& map = add_panel(out, {left_of(i), left_of(i) + kWide, kTop, bottom},
                            i == 1 ? "column i_x" : "", i == 0 ? "row i_y" : "");
@@ -77,13 +79,13 @@ Figure drawn_fig11(const std::string& start, std::vector<Cell> cells, std::int64
     };
     map.colours = i < 2 ? Colours{0, std::sqrt(scale.most())} : Colours{-largest, largest};
     if (i == 1) {
-      bar_with(0, 1, "(" + scale.tics() + ")");
+      bar_with(0, 1, fmt::format("({})", scale.tics()));
       map.say(as_printed("root scale; circle: most of those departed from this gate"), left_of(0),
               bar + 46, kSmallFont);
     }
     if (i == 2) {
       map.colours->palette = kDiverging;
-      bar_with(2, 2, "('−" + tic + "' -" + tic + ", '0' 0, '+" + tic + "' " + tic + ")");
+      bar_with(2, 2, fmt::format("('−{}' -{}, '0' 0, '+{}' {})", tic, tic, tic, tic));
     }
     map.say(as_printed(heads[i]), left_of(i), kTop - 11, kSmallFont);
     map.draw_cells(*maps[i]);
@@ -97,7 +99,7 @@ Figure drawn_fig11(const std::string& start, std::vector<Cell> cells, std::int64
   panel.say(as_printed("B  gate by gate"), 8, below.top - 62);
   panel.grid = std::string("ytics") + kGrid;
   panel.x = {"", 0, static_cast<double>(cells.size() + 1), "10"};
-  panel.y = {"", -0.05, 1.03 * highest, "(" + scale.tics() + ")"};
+  panel.y = {"", -0.05, 1.03 * highest, fmt::format("({})", scale.tics())};
   panel.key = {"left center horizontal Left reverse samplen 1.5", below.left, below.top - 20};
   panel.draw(pairs, "1:2:($1-0.5):($1+0.5):2:3", kBars, {kFirstColour}, "dynamics, 95 % intervals");
   panel.layers.push_back(
@@ -115,11 +117,11 @@ Section fig11(const Findings& f) {
   const ValidatedStart& first = f.field.starts.front();
   return {"fig11",
           "Fig. 11: where bodies end in the field",
-          {"9 x 9 gates, " + std::to_string(f.field.trials) +
-               " trials of the full dynamics for each start of Table IV, beside what infinitely "
-               "many walks of the 87 x 88 chain would give; shown is the paper's start, fig11.csv "
-               "has all. The paper prints neither force; 7 N and 50 N fit its Table IV best "
-               "(results/field_scan).",
+          {fmt::format("9 x 9 gates, {} trials of the full dynamics for each start of Table IV, "
+                       "beside what infinitely many walks of the 87 x 88 chain would give; shown "
+                       "is the paper's start, fig11.csv has all. The paper prints neither force; 7 "
+                       "N and 50 N fit its Table IV best (results/field_scan).",
+                       f.field.trials),
            "The final gate is the last one that a body was in, however it ended: most are trapped "
            "there, but in the columns and the row at the edge many departed from it (circles: "
            "more than half did). B has all gates with the intervals of the trials."},
@@ -140,11 +142,11 @@ std::string with_minus(double x) { return (x < 0 ? "−" : "") + fixed(std::abs(
 /// Four starts: means with bars, floors and the paper's, from column `first` of the rows on.
 void draw_table4(Panel& panel, const Rows& rows, int first) {
   const auto column = [&](int i) { return std::to_string(first + i); };
-  panel.draw(rows, "($1-0.12):" + column(0) + ":" + column(1), "yerrorlines",
+  panel.draw(rows, fmt::format("($1-0.12):{}:{}", column(0), column(1)), "yerrorlines",
              {kFirstColour, 1.5, 7, 0.8}, "here, 100 trials: mean, one sd");
   panel.draw(rows, "($1+0.12):" + column(3), "points",
              {.colour = kSecondColour, .mark = 5, .size = 0.9}, "paper");
-  panel.draw(rows, "($1-0.3):" + column(2) + ":(0.6):(0)", "vectors nohead", {kInk, 2},
+  panel.draw(rows, fmt::format("($1-0.3):{}:(0.6):(0)", column(2)), "vectors nohead", {kInk, 2},
              "floor: a perfect chain, by chance alone");
 }
 
@@ -166,9 +168,7 @@ struct Among {
     part += one;
     ++whole;
   }
-  [[nodiscard]] std::string text() const {
-    return std::to_string(part) + " of " + std::to_string(whole) + " starts";
-  }
+  [[nodiscard]] std::string text() const { return fmt::format("{} of {} starts", part, whole); }
 };
 
 }  // namespace
@@ -203,7 +203,8 @@ Section table4(const Findings& f) {
     rows.add(starts.size(), corrcoef.mean, corrcoef.sd, corrcoef_floor, s.paper_corrcoef, rmse.mean,
              rmse.sd, rmse_floor, s.paper_rmse);
     rows.gap();  // nothing joins two starts
-    starts.push_back(with_minus(s.d) + ", " + with_minus(s.vx) + ", " + with_minus(s.vy));
+    starts.push_back(
+        fmt::format("{}, {}, {}", with_minus(s.d), with_minus(s.vx), with_minus(s.vy)));
   }
   const double last = static_cast<double>(starts.size()) - 0.5;
   const Box above{78, 488, 96, 276}, below{78, 488, 318, 498};
@@ -223,18 +224,18 @@ Section table4(const Findings& f) {
   return {
       "table4",
       "Table IV: prediction against dynamics, beside what chance allows",
-      {"With 100 trials of the dynamics even a perfect chain would not reach corrcoef 1 and "
-       "RMSE 0: that is the floor. Shown is the exact chain against 100 trials. The paper says "
-       "that it compared 100 trials with 100 walks: the floor of that is corrcoef " +
-       corrcoef_walks.text(2) + " and RMSE " + rmse_walks.text(2) + ", of an exact prediction " +
-       corrcoef_exact.text(2) + " and " + rmse_exact.text(2) +
-       ". Both printed values lie within one standard deviation of the exact prediction's "
-       "floor at " +
-       on_exact.text() + ", of the walks' floor at " + on_walks.text() + "."},
-      "Correlation and, below, RMSE of the four starts: here with bars of one standard deviation, "
-      "the paper's, and the floor by chance as a line. Both of the paper's lie within the bars "
-      "at " +
-          within.text() + ".",
+      {fmt::format(
+          "With 100 trials of the dynamics even a perfect chain would not reach corrcoef 1 and "
+          "RMSE 0: that is the floor. Shown is the exact chain against 100 trials. The paper says "
+          "that it compared 100 trials with 100 walks: the floor of that is corrcoef {} and RMSE "
+          "{}, of an exact prediction {} and {}. Both printed values lie within one standard "
+          "deviation of the exact prediction's floor at {}, of the walks' floor at {}.",
+          corrcoef_walks.text(2), rmse_walks.text(2), corrcoef_exact.text(2), rmse_exact.text(2),
+          on_exact.text(), on_walks.text())},
+      fmt::format("Correlation and, below, RMSE of the four starts: here with bars of one standard "
+                  "deviation, the paper's, and the floor by chance as a line. Both of the paper's "
+                  "lie within the bars at {}.",
+                  within.text()),
       {"field"},
       csv.text(),
       out.figure(556)};
@@ -261,26 +262,26 @@ Section crossings(const Findings& f) {
     csv.row("7 N, Rm " + force + more, sides.value, sides.low, sides.high, clamped.value,
             clamped.low, clamped.high, c.between_gates, c.bodies);
     all_above = all_above && sides.low > 0.01 * kPaperSays;
-    const std::string label = "Rm = " + force + ", n = " + std::to_string(sides.whole);
+    const std::string label = fmt::format("Rm = {}, n = {}", force, sides.whole);
     above.rows.push_back({label, {sides}});
     outside.rows.push_back({label, {clamped}});
   }
-  return {"crossings",
-          "Crossings between gates: side entries and velocities",
-          {"The paper says that fewer than 4 % of the inputs come through the sides above the "
-           "joints (RT, LT) and that velocities stay in the range of Table III. Both depend on the "
-           "forces, which it does not print.",
-           "A body crosses several times, one crossing much like the next. So the intervals are "
-           "those of as many trials as there are bodies (or crossings, if fewer)."},
-          std::string("Shares of crossings through RT or LT, for four random forces, ") +
-              (all_above ? "all above " : "beside ") +
-              "a dashed line at the paper's four percent; and of those outside the bins of Table "
-              "III.",
-          {"field_random_10", "field_random_20", "field_random_40", "field", "field_no_drag"},
-          csv.text(),
-          rates({"crossings between gates; F_prop = 7 N",
-                 "95 % intervals, n: bodies, or crossings if fewer"},
-                {{"", kFirstColour, 7}}, {above, outside}, "% of crossings (root scale)")};
+  return {
+      "crossings",
+      "Crossings between gates: side entries and velocities",
+      {"The paper says that fewer than 4 % of the inputs come through the sides above the "
+       "joints (RT, LT) and that velocities stay in the range of Table III. Both depend on the "
+       "forces, which it does not print.",
+       "A body crosses several times, one crossing much like the next. So the intervals are "
+       "those of as many trials as there are bodies (or crossings, if fewer)."},
+      fmt::format("Shares of crossings through RT or LT, for four random forces, {}a dashed line "
+                  "at the paper's four percent; and of those outside the bins of Table III.",
+                  all_above ? "all above " : "beside "),
+      {"field_random_10", "field_random_20", "field_random_40", "field", "field_no_drag"},
+      csv.text(),
+      rates({"crossings between gates; F_prop = 7 N",
+             "95 % intervals, n: bodies, or crossings if fewer"},
+            {{"", kFirstColour, 7}}, {above, outside}, "% of crossings (root scale)")};
 }
 
 Section speed(const Findings& f) {
@@ -308,9 +309,9 @@ Section speed(const Findings& f) {
   double least = times[0].seconds;
   for (const Time& t : times) {
     csv.row(t.who + ": " + t.what, t.seconds);
-    list += (list.empty() ? "" : "; ") + t.who + ": " + t.what + ", " + t.text;
+    list += fmt::format("{}{}: {}, {}", list.empty() ? "" : "; ", t.who, t.what, t.text);
     if (t.who != who) labels.push_back(bold(who = t.who));
-    rows.add(t.seconds, labels.size(), "\"" + t.text + "\"");
+    rows.add(t.seconds, labels.size(), fmt::format("\"{}\"", t.text));
     labels.push_back(t.what);
     least = std::min(least, t.seconds);
   }
@@ -325,10 +326,11 @@ Section speed(const Findings& f) {
   panel.draw_again("(1e6):2:3", "labels left offset 0.6,0 font ',12'");
   return {"speed",
           "Time: dynamics against chain",
-          {"The paper's factor is 100 h of dynamics over 10 s of walks. The matrix costs more than "
-           "the 100 trials of one start, and serves all starts. Measured once on " +
-           machine() + ", all cores; tests/bench/run.sh measures with care."},
-          "Times on a logarithmic axis, with their numbers. " + list + ".",
+          {fmt::format("The paper's factor is 100 h of dynamics over 10 s of walks. The matrix "
+                       "costs more than the 100 trials of one start, and serves all starts. "
+                       "Measured once on {}, all cores; tests/bench/run.sh measures with care.",
+                       machine())},
+          fmt::format("Times on a logarithmic axis, with their numbers. {}.", list),
           {"field", "field_paper_method"},
           csv.text(),
           out.figure(static_cast<int>(panel.box.bottom + 62))};

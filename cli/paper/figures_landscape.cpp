@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "cli/paper/figures.h"
@@ -113,20 +115,19 @@ Section barriers(const Findings& f) {
                                  root_percent(s.high));
       trials = static_cast<double>(s.whole);
       if (damping == 10 && !downhill && start < 0.0 && s.value < 0.05)
-        below_start =
-            " And the height above the start says little: with k_L = " + std::to_string(k) +
-            " the lowest way lies below the start, yet only " + percent_text(s) +
-            " traverse at d = 10, because hits and dampers take the energy.";
+        below_start = fmt::format(
+            " And the height above the start says little: with k_L = {} the lowest way lies below "
+            "the start, yet only {} traverse at d = 10, because hits and dampers take the energy.",
+            k, percent_text(s));
     }
-    studies.push_back("barrier_" + std::to_string(k));
+    studies.push_back(fmt::format("barrier_{}", k));
   }
   studies.emplace_back("fig12");
   const std::string foot = none.empty() ? "" : ", with a cross at the foot where there is no basin";
   if (none.empty()) none.add("NaN NaN NaN");
   const Box above{78, 488, 96, 286}, below{78, 488, 346, 536};
   const auto key = [&](double middle, const char* how) {
-    return Legend{std::string("left center ") + how + " Left reverse samplen 2.5", above.left,
-                  middle};
+    return Legend{fmt::format("left center {} Left reverse samplen 2.5", how), above.left, middle};
   };
   out.say(as_printed("F_prop = 7 N, Rm = 10 N, k_R = 500 N m/rad"), 8, 18);
   Panel& upper = add_panel(out, above, "", "barrier (J)", 64);
@@ -157,9 +158,10 @@ Section barriers(const Findings& f) {
            below_start,
        "Where there is no basin neither height is drawn: a cross at the foot of the frame stands "
        "for it."},
-      "Above, over the stiffness of the left beam, the height of the barrier above the basin and "
-      "above the start" +
-          foot + ". Below, the shares that traverse with 95 % bars, a curve for each damping.",
+      fmt::format("Above, over the stiffness of the left beam, the height of the barrier above the "
+                  "basin and above the start{}. Below, the shares that traverse with 95 % bars, a "
+                  "curve for each damping.",
+                  foot),
       studies,
       csv.text(),
       out.figure(594)};

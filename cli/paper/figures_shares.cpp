@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -27,10 +29,10 @@ Section fig8(const Findings& f) {
   std::map<int, std::vector<const Rows*>> curves;  // by damping
   out.say(as_printed("traversed, %; k_L = k_R = 400 N m/rad, n = " + trials), 8, 18);
   for (const int damping : {50, 10}) {
-    const std::string name = "$d" + std::to_string(damping);
+    const std::string name = fmt::format("$d{}", damping);
     Rows map(name);
     for (int random = 0; random <= 60; random += 10) {
-      Rows& curve = out.data(name + "_" + std::to_string(random));
+      Rows& curve = out.data(fmt::format("{}_{}", name, random));
       curves[damping].push_back(&curve);
       for (int force = 4; force <= 9; ++force) {
         const SweepPoint& p =
@@ -68,7 +70,7 @@ Section fig8(const Findings& f) {
     const double left = kLeft + column * (kSmall + kGap), top = kUnder + row * kNext;
     Panel& panel =
         add_panel(out, {left, left + kSmall, top, top + kDeep}, i >= 3 ? "F_prop (N)" : "", "");
-    panel.say(as_printed("Rm = " + std::to_string(10 * i) + " N"), left + 4, top - 10, kSmallFont);
+    panel.say(as_printed(fmt::format("Rm = {} N", 10 * i)), left + 4, top - 10, kSmallFont);
     panel.tics_font = kSmallFont;
     panel.x = {"", 3.7, 9.3, "1"};
     panel.y = {"", -0.4, 10.4, root_tics({0, 2, 10, 30, 60, 100}, column == 0), "", false};
@@ -87,23 +89,25 @@ Section fig8(const Findings& f) {
     panel.draw(*curves[10][static_cast<std::size_t>(i)], "1:2:3:4", "yerrorlines",
                {kSecondColour, 1.2, 5, 0.5}, as_printed("d = 10"));
   }
-  return {"fig8",
-          "Fig. 8: traversal of equal beams",
-          {"k = 400 N m/rad, from rest, " + trials +
-               " trials a point (paper: 100), Table I's grid and two more rows of random force. "
-               "Where propulsion alone is enough everybody gets through and random force only "
-               "hinders; below that a few do, and only with random force. At Rm = 0 all trials are "
-               "the same run, so those shares are 0 or 1 without an interval.",
-           "Below that threshold traversal need not rise step by step with the propulsion: see the "
-           "claims. Colours and the axes of the curves show the square root of the share, so that "
-           "small ones can be told apart."},
-          "Two maps of the share traversed over propulsion and random force with a number in each "
-          "cell, one for each damping; below, the same as curves over the propulsion, a panel for "
-          "each random force: near zero below 8 or 9 newton of propulsion, near one above it "
-          "without random force, falling with random force there.",
-          {"fig8", "exits"},
-          csv.text(),
-          out.figure(626)};
+  return {
+      "fig8",
+      "Fig. 8: traversal of equal beams",
+      {fmt::format(
+           "k = 400 N m/rad, from rest, {} trials a point (paper: 100), Table I's grid and two "
+           "more rows of random force. Where propulsion alone is enough everybody gets through and "
+           "random force only hinders; below that a few do, and only with random force. At Rm = 0 "
+           "all trials are the same run, so those shares are 0 or 1 without an interval.",
+           trials),
+       "Below that threshold traversal need not rise step by step with the propulsion: see the "
+       "claims. Colours and the axes of the curves show the square root of the share, so that "
+       "small ones can be told apart."},
+      "Two maps of the share traversed over propulsion and random force with a number in each "
+      "cell, one for each damping; below, the same as curves over the propulsion, a panel for "
+      "each random force: near zero below 8 or 9 newton of propulsion, near one above it "
+      "without random force, falling with random force there.",
+      {"fig8", "exits"},
+      csv.text(),
+      out.figure(626)};
 }
 
 Section fig12(const Findings& f) {
@@ -118,13 +122,13 @@ Section fig12(const Findings& f) {
   const double half = 0.5 * (stiffnesses.at(1) - stiffnesses[0]);  // of a cell
   Panels out = paper_panels();
   out.say(as_printed("past the right beam, % of the traversed; k_R = 500 N m/rad"), 8, 18);
-  out.say(
-      as_printed("grey, (3): too few for a share; of " + std::to_string(f.fig12.points[0].trials) +
-                 " trials 3 traversed; d in N m s/rad"),
-      8, height - 14, kSmallFont);
+  out.say(as_printed(fmt::format(
+              "grey, (3): too few for a share; of {} trials 3 traversed; d in N m s/rad",
+              f.fig12.points[0].trials)),
+          8, height - 14, kSmallFont);
   for (const int damping : {50, 10})
     for (const int force : {7, 8}) {
-      const std::string name = "$d" + std::to_string(damping) + "f" + std::to_string(force);
+      const std::string name = fmt::format("$d{}f{}", damping, force);
       Rows &shares = out.data(name), &few = out.data(name + "_few");
       for (const double k : stiffnesses)
         for (int random = 10; random <= 60; random += 10) {
@@ -135,7 +139,7 @@ Section fig12(const Findings& f) {
                   static_cast<double>(s.whole), s.value, s.low, s.high);
           grey += s.whole < kFew;
           if (s.whole < kFew)
-            few.add(random, k, "(" + std::to_string(s.whole) + ")");
+            few.add(random, k, fmt::format("({})", s.whole));
           else
             shares.add(random, k, 100.0 * s.value, short_share(s.value));
         }
@@ -145,9 +149,8 @@ Section fig12(const Findings& f) {
       const double left = first ? kLeft : kRight, top = upper ? kTop : kTop + kNext;
       Panel& panel = add_panel(out, {left, left + kWide, top, top + kTall}, upper ? "" : "Rm (N)",
                                first ? "k_L (N m/rad)" : "", 54);
-      panel.say(
-          as_printed("F_prop = " + std::to_string(force) + " N, d = " + std::to_string(damping)),
-          left, top - 14, kSmallFont);
+      panel.say(as_printed(fmt::format("F_prop = {} N, d = {}", force, damping)), left, top - 14,
+                kSmallFont);
       panel.tics_font = kSmallFont;
       panel.border = 15;
       panel.x = {"", 5, 65, "10"};
@@ -160,25 +163,24 @@ Section fig12(const Findings& f) {
       panel.draw_cells(shares, 5, half);
       panel.draw_again("1:2:4:($3 < 20 || $3 > 80 ? 0xffffff : 0x000000)",
                        "labels tc rgb variable font ',12'");
-      panel.draw(few, "1:2:(5):(" + digits(half) + ")", kBars, {"#a8a8a8"});
+      panel.draw(few, fmt::format("1:2:(5):({})", digits(half)), kBars, {"#a8a8a8"});
       panel.draw_again("1:2:3", "labels tc rgb '#000000' font ',12'");
     }
-  return {
-      "fig12",
-      "Fig. 12: right trials of all successful ones",
-      {"Of those that traverse, the share that pushed more past the right beam: blue, past the "
-       "left one; white, both alike; red, past the right one. A softer left beam draws the "
-       "body to the left. The paper's A is 7 N, its B 8 N. " +
-       std::to_string(f.fig12.points[0].trials) +
-       " trials a cell. Where fewer than 10 get through there is no share to speak of: "
-       "those cells are grey and say, in parentheses, how many do."},
-      "Four maps of the share of right traversals over left stiffness and random force, a number "
-      "in each cell: from blue, none on the right, over white, one half, to red, all. In " +
-          std::to_string(grey) + " of " + std::to_string(f.fig12.points.size()) +
-          " cells, grey, a small number in parentheses.",
-      {"fig12"},
-      csv.text(),
-      out.figure(height)};
+  return {"fig12",
+          "Fig. 12: right trials of all successful ones",
+          {fmt::format("Of those that traverse, the share that pushed more past the right beam: "
+                       "blue, past the left one; white, both alike; red, past the right one. A "
+                       "softer left beam draws the body to the left. The paper's A is 7 N, its B 8 "
+                       "N. {} trials a cell. Where fewer than 10 get through there is no share to "
+                       "speak of: those cells are grey and say, in parentheses, how many do.",
+                       f.fig12.points[0].trials)},
+          fmt::format("Four maps of the share of right traversals over left stiffness and random "
+                      "force, a number in each cell: from blue, none on the right, over white, one "
+                      "half, to red, all. In {} of {} cells, grey, a small number in parentheses.",
+                      grey, f.fig12.points.size()),
+          {"fig12"},
+          csv.text(),
+          out.figure(height)};
 }
 
 Section thirteen_eight(const Findings& f) {
@@ -216,32 +218,31 @@ Section thirteen_eight(const Findings& f) {
   add(f.tried_random, "random force", kRandom, " N");
   add(f.tried_propulsion, "propulsion", kPropulsion, " N");
   const LandscapeStudy& landscape = f.barriers.at(500);
-  return {
-      "thirteen_eight",
-      "The 13 % and 8 % of Fig. 9A",
-      {"With k_L = k_R = 500 the paper sees 21 of 100 bodies traverse. Here hardly any does. "
-       "The landscape's argument: on the paper's grid of 0.5 m the lowest way through rises " +
-           fixed(landscape.coarse.above_start(), 1) + " J above the start, on one of 0.05 m " +
-           fixed(landscape.fine.above_start(), 1) +
-           " J; a body that has come to rest in the basin must climb " +
-           fixed(landscape.fine.from_basin.barrier(), 0) +
-           " J. The start is at rest, so only the work of the random force could lift it, and "
-           "hits and dampers take what it gives.",
-       "Tried, " + std::to_string(settings) +
-           " settings: four methods, the paper's own Euler scheme among them, whose drifting "
-           "constraints create energy; that at five steps; other dampings, restitutions, "
-           "rates of the random force, starting speeds, random forces, and more propulsion. "
-           "The rows show which makes as many traverse. The printed parameters do not give "
-           "these two numbers in this model."},
-      "Dots with 95 % bars of the share traversed for many settings in seven groups, a colour "
-      "for each damping, and a dashed line at the paper's 21 %, which only the largest "
-      "propulsions reach.",
-      {"tried_method", "tried_step", "tried_restitution", "tried_rate", "tried_start",
-       "tried_random", "tried_propulsion", "paper_method", "barrier_500"},
-      csv.text(),
-      rates({"k_L = k_R = 500 N m/rad; unless said F_prop = 7 N, Rm = 10 N",
-             "95 % intervals, n = " + digits(static_cast<double>(f.tried_method.points[0].trials)) +
-                 "; d in N m s/rad"},
-            series, groups, "traversed (%, root scale)")};
+  return {"thirteen_eight",
+          "The 13 % and 8 % of Fig. 9A",
+          {fmt::format(
+               "With k_L = k_R = 500 the paper sees 21 of 100 bodies traverse. Here hardly any "
+               "does. The landscape's argument: on the paper's grid of 0.5 m the lowest way "
+               "through rises {} J above the start, on one of 0.05 m {} J; a body that has come to "
+               "rest in the basin must climb {} J. The start is at rest, so only the work of the "
+               "random force could lift it, and hits and dampers take what it gives.",
+               fixed(landscape.coarse.above_start(), 1), fixed(landscape.fine.above_start(), 1),
+               fixed(landscape.fine.from_basin.barrier(), 0)),
+           fmt::format("Tried, {} settings: four methods, the paper's own Euler scheme among them, "
+                       "whose drifting constraints create energy; that at five steps; other "
+                       "dampings, restitutions, rates of the random force, starting speeds, random "
+                       "forces, and more propulsion. The rows show which makes as many traverse. "
+                       "The printed parameters do not give these two numbers in this model.",
+                       settings)},
+          "Dots with 95 % bars of the share traversed for many settings in seven groups, a colour "
+          "for each damping, and a dashed line at the paper's 21 %, which only the largest "
+          "propulsions reach.",
+          {"tried_method", "tried_step", "tried_restitution", "tried_rate", "tried_start",
+           "tried_random", "tried_propulsion", "paper_method", "barrier_500"},
+          csv.text(),
+          rates({"k_L = k_R = 500 N m/rad; unless said F_prop = 7 N, Rm = 10 N",
+                 fmt::format("95 % intervals, n = {}; d in N m s/rad",
+                             digits(static_cast<double>(f.tried_method.points[0].trials)))},
+                series, groups, "traversed (%, root scale)")};
 }
 }  // namespace gatewalk::cli

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -23,13 +25,14 @@ double depth_of(const TracedRun& run) {
 void add_sample(Panel& panel, const Sheet& sheet, const char* colour, const std::string& text,
                 double left, double middle) {
   const auto line = [&](const char* width, const char* ink) {
-    panel.more += "set arrow from screen " + sheet.at(left + 3, middle) + " to screen " +
-                  sheet.at(left + 33, middle) + " nohead front lw " + width + " lc rgb '" + ink +
-                  "'\n";
+    panel.more +=
+        fmt::format("set arrow from screen {} to screen {} nohead front lw {} lc rgb '{}'\n",
+                    sheet.at(left + 3, middle), sheet.at(left + 33, middle), width, ink);
   };
-  panel.more += "set object rectangle from screen " + sheet.at(left, middle + 8) + " to screen " +
-                sheet.at(left + 36, middle - 8) +
-                " fillcolor rgb '#277f8e' fillstyle solid noborder\n";
+  panel.more += fmt::format(
+      "set object rectangle from screen {} to screen {} fillcolor rgb '#277f8e' fillstyle solid "
+      "noborder\n",
+      sheet.at(left, middle + 8), sheet.at(left + 36, middle - 8));
   line("3.4", "#000000");
   line("2", colour);
   panel.say(as_printed(text), left + 44, middle, kSmallFont);
@@ -72,8 +75,7 @@ Section fig6(const Findings& f) {
                            int landscape) -> Panel& {
     Panel& panel = map.add(out, data, left, kUpper, "x (m)", left == kLeft ? "y (m)" : "");
     draw_track(panel, rows, "2:3", 1.2, kWay);
-    draw_track(panel, rows,
-               "2:($4 < $" + std::to_string(landscape) + " - " + digits(kBelow) + " ? $3 : NaN)",
+    draw_track(panel, rows, fmt::format("2:($4 < ${} - {} ? $3 : NaN)", landscape, digits(kBelow)),
                2.6, kOther);
     return panel;
   };
@@ -99,17 +101,17 @@ Section fig6(const Findings& f) {
   return {
       "fig6",
       "Fig. 6: a trajectory that dives through the landscape",
-      {"A body that pushes past the right beam (" + run.label +
-           "). The landscape assumes that both beams are deflected; once the left one has let go, "
-           "the system's energy is below it, here by up to " +
-           fixed(depth_of(run), 0) +
-           " J. With the landscape of the right beam alone that is gone or less.",
-       "It is a selection, the one that sinks deepest of " + std::to_string(f.fig6.runs.size()) +
-           " such runs, of which " + std::to_string(dives) + " sink more than " + fixed(kBelow, 0) +
-           " J below the landscape at all.",
-       "B and C as in the paper, seen from above. The way is orange where the system has more "
-       "than " +
-           fixed(kBelow, 0) + " J less than the landscape."},
+      {fmt::format(
+           "A body that pushes past the right beam ({}). The landscape assumes that both beams are "
+           "deflected; once the left one has let go, the system's energy is below it, here by up "
+           "to {} J. With the landscape of the right beam alone that is gone or less.",
+           run.label, fixed(depth_of(run), 0)),
+       fmt::format("It is a selection, the one that sinks deepest of {} such runs, of which {} "
+                   "sink more than {} J below the landscape at all.",
+                   f.fig6.runs.size(), dives, fixed(kBelow, 0)),
+       fmt::format("B and C as in the paper, seen from above. The way is orange where the system "
+                   "has more than {} J less than the landscape.",
+                   fixed(kBelow, 0))},
       "Two maps of the energy with the body's way from below, past the right beam, to the far "
       "side: over that of both beams a part of it is orange, over that of the right beam alone "
       "less or none. Below, energies over time: the system's follows the landscape of both beams, "
@@ -159,12 +161,10 @@ Section fig9(const Findings& f) {
     const auto line = [&](const std::string& text, double above) {
       out.say(as_printed(text), traced.left, traced.top - above, kSmallFont);
     };
-    line(std::string(traced.letter) + "  k_L = " + digits(traced.k_left) +
-             " N m/rad, d = " + digits(traced.damping),
+    line(fmt::format("{}  k_L = {} N m/rad, d = {}", traced.letter, digits(traced.k_left),
+                     digits(traced.damping)),
          28);
-    line("left " + std::to_string(count[0]) + ", right " + std::to_string(count[1]) + " of " +
-             std::to_string(traced.study.trials),
-         11);
+    line(fmt::format("left {}, right {} of {}", count[0], count[1], traced.study.trials), 11);
     Panel& panel =
         map.add(out, map.add_data(out, l, l.total), traced.left, traced.top,
                 traced.top == kLower ? "x (m)" : "", traced.left == kLeft ? "y (m)" : "");

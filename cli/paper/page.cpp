@@ -48,7 +48,8 @@ std::string words(const std::string& plain) {
   for (auto at = html.begin(); at != html.end();) {
     const auto end = std::find_if_not(at, html.end(), in_word);
     const std::string word(at, end);
-    out += has_index(word) ? word.substr(0, 1) + "<sub>" + word.substr(2) + "</sub>" : word;
+    out +=
+        has_index(word) ? fmt::format("{}<sub>{}</sub>", word.substr(0, 1), word.substr(2)) : word;
     if (end == html.end()) break;
     out += *end;
     at = end + 1;
@@ -166,7 +167,7 @@ std::string picture(const std::string& svg, const std::string& alt) {
       default:
         url += escaped({&c, 1});
     }
-  return "<img src=\"" + url + "\" alt=\"" + escaped(alt) + "\">";
+  return fmt::format("<img src=\"{}\" alt=\"{}\">", url, escaped(alt));
 }
 
 /// A command whose words stay whole where a line ends.
@@ -181,9 +182,9 @@ std::string command(const std::string& line) {
 /// A picture with what made it.
 std::string figure(const std::string& file, const std::string& alt, const std::string& caption,
                    const FigureText& figure_text) {
-  return element("figure",
-                 element("a href=\"" + escaped(file) + "\"", picture(figure_text(file), alt)) +
-                     element("figcaption", caption));
+  return element("figure", element(fmt::format("a href=\"{}\"", escaped(file)),
+                                   picture(figure_text(file), alt)) +
+                               element("figcaption", caption));
 }
 
 std::string first_screen(const std::vector<Report::First>& first, const FigureText& figure_text) {
@@ -259,7 +260,7 @@ std::string report_page(const Report& report, const FigureText& figure_text) {
   for (const Report::Section& s : report.sections) {
     // "Fig. 8: traversal of ..." is "Fig. 8" where room is short.
     if (!headings.emplace(s.id, s.heading.substr(0, s.heading.find(':'))).second)
-      throw std::invalid_argument("two sections \"" + s.id + "\"");
+      throw std::invalid_argument(fmt::format("two sections \"{}\"", s.id));
     contents +=
         element("li", fmt::format("<a href=\"#{}\">{}</a>", escaped(s.id), words(s.heading)));
     sections += section(s, report.claims, figure_text);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/python/python_cell.h"
 
+#include <fmt/core.h>
+
 #include <pybind11/numpy.h>
 
 #include <algorithm>
@@ -34,9 +36,9 @@ py::array_t<T, py::array::c_style | py::array::forcecast> given(const py::handle
   auto array = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(value);
   if (!array) throw py::error_already_set();
   if (static_cast<std::size_t>(array.size()) != rows * columns)
-    throw std::invalid_argument(std::string("cell: pass_ must give ") + std::to_string(columns) +
-                                " " + name + " for each of " + std::to_string(rows) +
-                                " bodies, it gave " + std::to_string(array.size()) + " numbers");
+    throw std::invalid_argument(
+        fmt::format("cell: pass_ must give {} {} for each of {} bodies, it gave {} numbers",
+                    columns, name, rows, array.size()));
   return array;
 }
 
@@ -56,8 +58,7 @@ PythonCell::PythonCell(py::object cell)
       hello_(cli::read_hello(cell_.attr("_hello")().cast<std::string>())),
       memory_(cell_.attr("memory").cast<int>()) {
   if (memory_ < 0 || memory_ > Memory::kMost)
-    throw std::invalid_argument("cell: memory must be 0 to " + std::to_string(Memory::kMost) +
-                                " numbers");
+    throw std::invalid_argument(fmt::format("cell: memory must be 0 to {} numbers", Memory::kMost));
 }
 
 PythonCell::~PythonCell() {
@@ -141,28 +142,28 @@ void PythonCell::run_batch(std::vector<Slot>& slots) const {
   const auto kept = given<double>(answer[3], "numbers of memory", n, memory);
   for (std::size_t k = 0; k < n; ++k) {
     const auto wrong = [&](const std::string& what) {
-      return std::invalid_argument("cell: pass_ gave body " + std::to_string(k) +
-                                   " (counted from 0) " + what);
+      return std::invalid_argument(
+          fmt::format("cell: pass_ gave body {} (counted from 0) {}", k, what));
     };
     const std::int64_t fate = out.data()[k];
     if (fate < -2 || fate >= std::ssize(hello_.section.faces))
-      throw wrong("the face " + std::to_string(fate) + "; faces are 0 to " +
-                  std::to_string(hello_.section.faces.size() - 1) + ", -1 is trapped, -2 broken");
+      throw wrong(fmt::format("the face {}; faces are 0 to {}, -1 is trapped, -2 broken", fate,
+                              hello_.section.faces.size() - 1));
     Passage& passage = slots[k].passage;
     passage = {fate == -1 ? Fate::trapped : fate == -2 ? Fate::broken : Fate::left, {}, {}};
     if (fate == -2) continue;
     for (std::size_t c = 0; c < costs; ++c) {
       passage.costs[c] = took.data()[k * costs + c];
       if (!std::isfinite(passage.costs[c]) || (c == 0 && passage.costs[c] < 0.0))
-        throw wrong("a " + hello_.section.costs[c].key +
-                    " that is not finite, or a time that is negative");
+        throw wrong(fmt::format("a {} that is not finite, or a time that is negative",
+                                hello_.section.costs[c].key));
     }
     if (fate == -1) continue;
     passage.next.face = static_cast<int>(fate);
     for (std::size_t c = 0; c < coordinates; ++c) {
       passage.next.at[c] = to.data()[k * coordinates + c];
       if (!std::isfinite(passage.next.at[c]))
-        throw wrong("a " + hello_.section.coordinates[c].name + " that is not finite");
+        throw wrong(fmt::format("a {} that is not finite", hello_.section.coordinates[c].name));
     }
     Body& body = slots[k].body;
     body.entry = passage.next;

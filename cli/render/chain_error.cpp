@@ -375,7 +375,7 @@ std::string csv_of(const ChainErrorChart& chart) {
       };
       line("exact", a.exact_seconds, a.exact, a.exact_sd, a.sampling, a.bins);
       for (std::size_t w = 0; w < kChainWalks.size(); ++w)
-        line(std::to_string(kChainWalks[w]) + " walks", a.walk_seconds[w], a.walks[w], kUnknown,
+        line(fmt::format("{} walks", kChainWalks[w]), a.walk_seconds[w], a.walks[w], kUnknown,
              kUnknown, kUnknown);
     }
     for (const lattice::TreePoint& p : chart.trees[s])

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -43,7 +45,7 @@ struct Extent {
 /// Total variation over seconds, for one start; the truth's noise as a level.
 void draw_curves(Panels& out, Panel& panel, const ChainErrorChart& chart, std::size_t s,
                  Extent& seconds, Extent& errors) {
-  const std::string of = "_" + std::to_string(s);
+  const std::string of = fmt::format("_{}", s);
   const double noise = chart.truths[s].floor.total_variation;
   errors.see(noise);
   panel.draw_level(noise, kNoise.pen);
@@ -60,7 +62,7 @@ void draw_curves(Panels& out, Panel& panel, const ChainErrorChart& chart, std::s
     add(direct, d.seconds, d.drawn.total_variation);
   draw(direct, kDirect);
   for (std::size_t c = 0; c < chart.curves.size(); ++c) {
-    Rows chain("$chain" + std::to_string(c) + of);
+    Rows chain(fmt::format("$chain{}{}", c, of));
     for (const lattice::ChainPoint& p : chart.points)
       if (p.curve == c) add(chain, p.seconds(s), p.error(s));
     const lattice::ChainCurve& curve = chart.curves[c];
@@ -118,7 +120,7 @@ Figure figure_of(const ChainErrorChart& chart) {
     Panel& panel = *panels[s];
     const bool first = s % columns == 0;
     panel.x = {s + columns >= starts ? "seconds on one thread" : "", low, high,
-               "(" + tics_1_2_5(low, high, wide) + ")"};
+               fmt::format("({})", tics_1_2_5(low, high, wide))};
     panel.y = {first ? "total variation" : "",
                0.6 * errors.low,
                std::max(1.0, 1.4 * errors.high),

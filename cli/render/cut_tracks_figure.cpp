@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -98,15 +100,14 @@ Figure figure_of(const CutTracks& cut, const lattice::CellFile& cell) {
   Rows& ways = out.data("$ways");
   add_ways(ways, cut, metre);
   Panel& panel = out.add(box);
-  panel.say(std::to_string(cut.passages.size()) + " passages of " +
-                std::to_string(cut.pieces.size()) + " pieces of track" +
-                (most > kMostMarks ? "; not all marks are drawn" : "") +
-                (with_borders ? "" : "; too many borders to be drawn"),
+  panel.say(fmt::format("{} passages of {} pieces of track{}{}", cut.passages.size(),
+                        cut.pieces.size(), most > kMostMarks ? "; not all marks are drawn" : "",
+                        with_borders ? "" : "; too many borders to be drawn"),
             8, 18);
   panel.border = 15;
-  panel.x = {"x (" + metre.name + ")", left / metre.size, right / metre.size,
+  panel.x = {fmt::format("x ({})", metre.name), left / metre.size, right / metre.size,
              digits(tic_step((right - left) / metre.size, std::max(1.0, box.width() / 70.0)))};
-  panel.y = {"y (" + metre.name + ")", bottom / metre.size, top / metre.size};
+  panel.y = {fmt::format("y ({})", metre.name), bottom / metre.size, top / metre.size};
   if (with_borders) {
     Rows& borders = out.data("$borders");
     add_borders(borders, span.within(cut.columns, cut.rows), cell, metre);
@@ -122,7 +123,7 @@ Figure figure_of(const CutTracks& cut, const lattice::CellFile& cell) {
       rows.add(marks[i][0] / metre.size, marks[i][1] / metre.size);
     panel.draw(rows, "1:2", "points", pen);
     out.add_key(at, box.bottom + 62,
-                {entry("points", pen, word + " " + std::to_string(marks.size()))});
+                {entry("points", pen, fmt::format("{} {}", word, marks.size()))});
     at += 166.0;
   };
   add("$crossed", crossed, {.colour = "#000000", .mark = 7, .size = 0.3}, "border crossed");

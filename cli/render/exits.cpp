@@ -148,7 +148,7 @@ void add_exits(Panels& out, const FieldExits& exits, const ShownField& shown, do
     const Sized metre = readable_unit("m", std::max(-bounds.front(), bounds.back()));
     for (double& b : bounds) b /= metre.size;
     double most = far ? largest_share(e) : sides;
-    Rows& rows = out.data("$exits" + tag + "_" + std::to_string(side));
+    Rows& rows = out.data(fmt::format("$exits{}_{}", tag, side));
     for (std::size_t i = 0; i < e.share.size(); ++i) {
       // Nothing where nobody is expected: in large fields its bars would be all that is seen.
       if (e.share[i] <= lattice::kShareRounding) continue;

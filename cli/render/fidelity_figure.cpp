@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 
@@ -34,14 +36,15 @@ Figure figure_of(const FidelityStudy& study) {
   // A line for each variant of each start, from the top down: "line TV TV- TV+ chance ms".
   std::vector<Rows*> rows;
   for (std::size_t v = 0; v < variants; ++v)
-    rows.push_back(&out.data("$variant" + std::to_string(v)));
+    rows.push_back(&out.data(fmt::format("$variant{}", v)));
   std::vector<Tic> tics;
   double most = lattice::kSmallChange, slowest = 0.0;
   for (std::size_t s = 0; s < n; ++s) {
     const lattice::FidelityOfStart& of = study.starts[s];
     const double first = kRow * static_cast<double>(s) + 0.5 * (kRow - 3 * kLine);
-    tics.push_back({digits(of.start.d) + ", " + digits(of.start.vx) + ", " + digits(of.start.vy),
-                    first + 1.5 * kLine});
+    tics.push_back(
+        {fmt::format("{}, {}, {}", digits(of.start.d), digits(of.start.vx), digits(of.start.vy)),
+         first + 1.5 * kLine});
     for (std::size_t v = 0; v < variants; ++v) {
       const FidelityRun& run = of.runs[v];
       const double line = first + kLine * static_cast<double>(v), ms = 1e3 * run.seconds_per_trial;
@@ -68,14 +71,14 @@ Figure figure_of(const FidelityStudy& study) {
                entry("lines", bound, "bound " + digits(lattice::kSmallChange))});
 
   Panel& changes = out.add({100, 330, kTop, bottom});
-  changes.say(std::to_string(study.trials) + " trials; starts: d (m), v_x, v_y (m/s)", 8, 16);
+  changes.say(fmt::format("{} trials; starts: d (m), v_x, v_y (m/s)", study.trials), 8, 16);
   changes.x = {"total variation to active", 0, 1.05 * most, digits(tic_step(most, 4))};
   changes.y = {"", bottom - kTop, 0, tics_of(tics) + " scale 0"};
   changes.grid = std::string("xtics") + kThin;
   changes.uprights.push_back({lattice::kSmallChange, bound});
   Panel& times = out.add({362, 492, kTop, bottom});
-  times.x = {"ms, " + std::to_string(study.threads) + (study.threads == 1 ? " thread" : " threads"),
-             0, kFree, digits(tic_step(slowest, 2))};
+  times.x = {fmt::format("ms, {}{}", study.threads, study.threads == 1 ? " thread" : " threads"), 0,
+             kFree, digits(tic_step(slowest, 2))};
   times.y = {"", changes.y.low, changes.y.high, kNoTics};
   times.grid = changes.grid;
   for (std::size_t v = 0; v < variants; ++v) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/field_figure.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -122,8 +124,7 @@ void add_large_map(Panels& out, const FieldPicture& p, const FieldMap& map, cons
   panel.say(p.title, 8, plan.top - 30);
   std::string blocks;
   if (map.rows.block > 1 || map.columns.block > 1)
-    blocks = ", blocks of " + std::to_string(map.columns.block) + " x " +
-             std::to_string(map.rows.block) + " gates";
+    blocks = fmt::format(", blocks of {} x {} gates", map.columns.block, map.rows.block);
   panel.say("final gate, % of bodies" + blocks, Plan::kLeft, plan.top - 12);
   add_colours(panel, scale, panel.box.beside(10));
   panel.draw_cells(rows);
@@ -170,8 +171,8 @@ std::vector<ShareBar> bars_of(const lattice::EndingShares& all, const ShownField
 Figure figure_of(const std::vector<FieldPicture>& pictures, const ShownField& shown) {
   const TypeMarks types(shown);
   if (pictures.empty() || pictures.size() > kMostPictures)
-    throw std::invalid_argument("a figure shows 1 to " + std::to_string(kMostPictures) +
-                                " starts, these are " + std::to_string(pictures.size()));
+    throw std::invalid_argument(
+        fmt::format("a figure shows 1 to {} starts, these are {}", kMostPictures, pictures.size()));
   std::vector<FieldMap> maps;
   std::vector<Plan> plans;
   double height = 0.0, most = 0.0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/figure.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "cli/render/text.h"
@@ -9,7 +11,7 @@ namespace gatewalk::cli {
 
 std::string Sheet::margins(const Box& box) const {
   const auto side = [](const char* name, double share) {
-    return std::string("set ") + name + "margin at screen " + digits(share) + "\n";
+    return fmt::format("set {}margin at screen {}\n", name, digits(share));
   };
   return side("l", box.left / kWidth) + side("r", box.right / kWidth) +
          side("t", 1.0 - box.top / height) + side("b", 1.0 - box.bottom / height);
@@ -28,13 +30,15 @@ std::string RootScale::tics() const {
     for (const double x : {1.0, 2.0, 5.0}) {
       const double root = std::sqrt(x * decade);
       if (x * decade > most_ || root - last < gap) continue;
-      list += ", '" + digits(x * decade) + "' " + digits(root);
+      list += fmt::format(", '{}' {}", digits(x * decade), digits(root));
       last = root;
     }
   return list;
 }
 
-std::string ink(double most) { return "($3 > " + digits(0.6 * most) + " ? 0x000000 : 0xffffff)"; }
+std::string ink(double most) {
+  return fmt::format("($3 > {} ? 0x000000 : 0xffffff)", digits(0.6 * most));
+}
 
 std::string literal(std::string_view text) {
   std::string out = "'";  // single quotes: taken as it stands
@@ -46,7 +50,7 @@ std::string literal(std::string_view text) {
 }
 
 std::string data_block(std::string_view name, const std::string& rows) {
-  return std::string(name) + " << EOD\n" + rows + "EOD\n";
+  return fmt::format("{} << EOD\n{}EOD\n", name, rows);
 }
 
 std::string tics_1_2_5(double low, double high, double length) {
@@ -57,9 +61,10 @@ std::string tics_1_2_5(double low, double high, double length) {
   for (int n = static_cast<int>(std::floor(std::log10(low))); std::pow(10.0, n) <= high; ++n)
     for (const int digit : {1, 2, 5}) {
       const std::string at = digits(digit * std::pow(10.0, n)),
-                        shown = n >= 4 && digit == 1 ? "10^{" + std::to_string(n) + "}" : at;
+                        shown = n >= 4 && digit == 1 ? fmt::format("10^{{{}}}", n) : at;
       const bool has_number = all || (digit == 1 && n % apart == 0);
-      list += (list.empty() ? "'" : ", '") + (has_number ? shown + "' " + at : "' " + at + " 1");
+      list += fmt::format("{}{}' {}{}", list.empty() ? "'" : ", '", has_number ? shown : "", at,
+                          has_number ? "" : " 1");
     }
   return list;
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -58,7 +60,7 @@ std::string range_tics(const std::array<double, 2>& range, double side) {
     };
     list = near(0.25) + ", " + near(0.75);
   }
-  return "(" + list + ")";
+  return fmt::format("({})", list);
 }
 
 /// Where there are many, a letter, which the upper right corner explains.
@@ -97,8 +99,7 @@ Figure figure_of(const FittedScene& f) {
                 named};
   };
   Panels out;
-  out.say("posterior after " + std::to_string(f.fit.observed) + " " + counted(f) + "; dashed: 95 %",
-          8, 18);
+  out.say(fmt::format("posterior after {} {}; dashed: 95 %", f.fit.observed, counted(f)), 8, 18);
   for (std::size_t k = 0; k < numbers && numbers > 2; ++k)
     out.say(axis_name(f, k) + ": " + f.ranges[k].key, kLeft + side + kGap,
             kTop + 10 + 20 * static_cast<double>(k), kSmallFont);
@@ -106,7 +107,7 @@ Figure figure_of(const FittedScene& f) {
     for (std::size_t right = 0; right <= down; ++right) {
       const double left = kLeft + static_cast<double>(right) * (side + kGap),
                    top = kTop + static_cast<double>(down) * (side + kGap);
-      Rows& rows = out.data("$p" + std::to_string(down) + "_" + std::to_string(right));
+      Rows& rows = out.data(fmt::format("$p{}_{}", down, right));
       Panel& p = out.add({left, left + side, top, top + side});
       p.x = axis(right, down + 1 == numbers);
       if (right == down) {

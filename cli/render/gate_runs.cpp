@@ -73,7 +73,7 @@ Figure figure_of(const dynamics::GateTally& tally) {
   const Box box{135, 320, 36, 36 + height_of_bars(bars.size())};
   Panels out("unset key\n");
   add_share_bars(out, box, "$outcomes", bars)
-      .say("one gate, " + std::to_string(tally.trials) + " trials, 95 % intervals", 8, 18);
+      .say(fmt::format("one gate, {} trials, 95 % intervals", tally.trials), 8, 18);
   return out.figure(static_cast<int>(box.bottom + 10));
 }
 

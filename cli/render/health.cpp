@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/health.h"
 
+#include <fmt/core.h>
+
 #include "cli/render/json.h"
 #include "cli/render/json_value.h"
 #include "cli/render/quantity.h"
@@ -48,33 +50,36 @@ dynamics::Health health_from(const Json& j) {
 
 std::string complaint(const dynamics::Health& h) {
   if (h.clean()) return "";
-  const auto of_runs = [&](std::int64_t n) {
-    return std::to_string(n) + " of " + std::to_string(h.runs) + " gate runs";
-  };
+  const auto of_runs = [&](std::int64_t n) { return fmt::format("{} of {} gate runs", n, h.runs); };
   std::string text = "the method showed faults:";
   if (h.penetrating > 0)
-    text += " the disc sank into a beam in " + of_runs(h.penetrating) + " (worst " +
-            quantity(h.worst_penetration, "m") + ");";
+    text += fmt::format(" the disc sank into a beam in {} (worst {});", of_runs(h.penetrating),
+                        quantity(h.worst_penetration, "m"));
   if (h.creating_energy > 0)
-    text += " energy appeared from nothing in " + of_runs(h.creating_energy) + " (worst " +
-            quantity(h.worst_energy_created, "J") + ");";
+    text += fmt::format(" energy appeared from nothing in {} (worst {});",
+                        of_runs(h.creating_energy), quantity(h.worst_energy_created, "J"));
   if (h.fast > 0)
-    text += " disc or beam moved over half a radius in one step in " + of_runs(h.fast) +
-            ", hits may have been missed: take a smaller run.step_s;";
+    text += fmt::format(
+        " disc or beam moved over half a radius in one step in {}, hits may have been missed: take "
+        "a smaller run.step_s;",
+        of_runs(h.fast));
   if (h.unstable > 0)
-    text += " the step is longer than the method's stability bound for these beams in " +
-            of_runs(h.unstable) + ": take a smaller run.step_s or another run.method;";
+    text += fmt::format(
+        " the step is longer than the method's stability bound for these beams in {}: take a "
+        "smaller run.step_s or another run.method;",
+        of_runs(h.unstable));
   if (h.outcomes_off())
-    text += " a better method gives other outcomes for at least " + percent(h.outcome_error, 1.0) +
-            " of " + std::to_string(h.checked_trials) +
-            " trials that were run again: take a smaller run.step_s, or run.method = \"auto\";";
+    text += fmt::format(
+        " a better method gives other outcomes for at least {} of {} trials that were run again: "
+        "take a smaller run.step_s, or run.method = \"auto\";",
+        percent(h.outcome_error, 1.0), h.checked_trials);
   if (h.undefined_contacts > 0)
-    text += " " + std::to_string(h.undefined_contacts) +
-            " steps overlapped a joint, for which it has no formula;";
+    text += fmt::format(" {} steps overlapped a joint, for which it has no formula;",
+                        h.undefined_contacts);
   if (h.piled_up())
-    text += " hits piled up and were forced to end in " + std::to_string(h.forced_holds) + " of " +
-            std::to_string(h.steps) + " steps;";
-  if (h.broken > 0) text += " " + std::to_string(h.broken) + " runs stopped being finite numbers;";
+    text += fmt::format(" hits piled up and were forced to end in {} of {} steps;", h.forced_holds,
+                        h.steps);
+  if (h.broken > 0) text += fmt::format(" {} runs stopped being finite numbers;", h.broken);
   text.back() = '.';
   return text;
 }

@@ -129,16 +129,16 @@ Figure figure_of(const Transitions& t) {
     panel.texts.push_back({text, x, y, kSmallFont, how, true});
   };
   for (const StateGroup& r : rows)
-    name(r.name + (r.states > 1 ? " " + std::to_string(r.states) : ""), -6, r.from + 0.5 * r.size,
+    name(r.name + (r.states > 1 ? fmt::format(" {}", r.states) : ""), -6, r.from + 0.5 * r.size,
          "right");
   for (const StateGroup& c : columns)
     name(c.name, c.from + 0.5 * c.size, kSide + 8,
          c.size > 8.0 * static_cast<double>(c.name.size()) ? "center offset 0,-0.3"
                                                            : "right rotate by 90");
-  panel.say("transition matrix: " + std::to_string(t.space.size()) + " states, " +
-                std::to_string(t.totals().runs) + " counts" +
-                (per_block > 1 ? ", blocks of " + std::to_string(per_block) : ""),
-            8, 18);
+  panel.say(
+      fmt::format("transition matrix: {} states, {} counts{}", t.space.size(), t.totals().runs,
+                  per_block > 1 ? fmt::format(", blocks of {}", per_block) : ""),
+      8, 18);
   panel.say("down: how a gate is entered; across: how the next one is, or trapped", 8,
             panel.box.bottom + 76, kSmallFont);
   panel.say("grey: no run ended here; white: none began here", 8, panel.box.bottom + 96,

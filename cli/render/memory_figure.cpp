@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -89,8 +91,7 @@ void add_ways(Panels& out, const MemoryStudy& study, double top) {
         top + kPanelsHead + static_cast<double>(k) * (kMemoryPanelHeight + kPanelGap);
     const bool lowest = k + 1 == rows.size();
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      const Probabilities p(ahead, ways, rows[k], columns[i],
-                            "$ahead" + std::to_string(k) + "_" + std::to_string(i));
+      const Probabilities p(ahead, ways, rows[k], columns[i], fmt::format("$ahead{}_{}", k, i));
       Panel& panel =
           out.add({left_of(i), left_of(i) + pitch - 30, above, above + kMemoryPanelHeight});
       if (i == 0) panel.say(names[rows[k]], 8, above + 0.5 * kMemoryPanelHeight, kSmallFont);
@@ -115,7 +116,7 @@ void add_scales(Panels& out, const MemoryStudy& study, double top) {
             kSmallFont);
   double most = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
-    Rows rows("$scale" + std::to_string(k));
+    Rows rows(fmt::format("$scale{}", k));
     for (const GatesAhead::Step& s : steps) {
       if (!std::isfinite(s.seen_scales[k]) || !std::isfinite(s.scales_95[k][1])) continue;
       rows.add(s.gates, s.scales_95[k], s.predicted_scales[k], s.seen_scales[k]);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -80,7 +82,7 @@ std::vector<ComparedShare> compared_gates(const lattice::ObservedComparison& c,
     other_seen -= seen(row, column);
     other_trials -= trials(row, column);
     other_chain -= chain;
-    rows.push_back({std::to_string(column - field.start_column()) + ", " + std::to_string(row),
+    rows.push_back({fmt::format("{}, {}", column - field.start_column(), row),
                     {drawn_share(seen(row, column), n), drawn_share(trials(row, column), m),
                      drawn_share(chain, {kNone, kNone})}});
   }
@@ -99,7 +101,7 @@ double add_compared(Panels& out, double top, const std::string& title, const std
   std::vector<Layer> key;
   double most = 0.0;
   for (std::size_t k = 0; k < kCompared.size(); ++k) {
-    Rows& data = out.data(std::string("$") + kCompared[k] + "_" + kind);
+    Rows& data = out.data(fmt::format("${}_{}", kCompared[k], kind));
     bool has_intervals = false;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const DrawnShare& s = rows[i].shares[k];
@@ -130,11 +132,10 @@ double add_compared(Panels& out, double top, const std::string& title, const std
 Figure figure_of(const lattice::ObservedComparison& c, const lattice::StartValidation& v,
                  const lattice::FieldParams& field) {
   Panels out;
-  out.say(std::to_string(c.seen.trials()) + " trials observed, " +
-              std::to_string(v.dynamics.trials) + " of the dynamics",
+  out.say(fmt::format("{} trials observed, {} of the dynamics", c.seen.trials(), v.dynamics.trials),
           8, 16);
-  out.say("against the dynamics " + p_words(c.against_dynamics.p) + ", against the chain " +
-              p_words(c.against_chain.p),
+  out.say(fmt::format("against the dynamics {}, against the chain {}",
+                      p_words(c.against_dynamics.p), p_words(c.against_chain.p)),
           8, 36, kSmallFont);
   double end = 46.0;
   if (c.seen.has_endings())

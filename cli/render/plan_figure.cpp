@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,10 +35,11 @@ Colours colours_of(const PlannedField& p, const Box& bar) {
     const std::string colour = kShades[static_cast<std::size_t>(
         std::lround(static_cast<double>(a * (kShades.size() - 1)) / std::max(1, n - 1)))];
     for (const int edge : {a, a + 1})
-      steps += (steps.empty() ? "" : ", ") + std::to_string(edge) + " '" + colour + "'";
+      steps += fmt::format("{}{} '{}'", steps.empty() ? "" : ", ", edge, colour);
   }
   Colours colours{-0.5, n - 0.5, bar, tics_of(names) + " scale 0"};
-  if (p.actions.size() <= kShades.size()) colours.palette = "set palette defined (" + steps + ")\n";
+  if (p.actions.size() <= kShades.size())
+    colours.palette = fmt::format("set palette defined ({})\n", steps);
   return colours;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/provenance.h"
 
+#include <fmt/core.h>
+
 #include <fstream>
 #include <thread>
 
@@ -57,7 +59,7 @@ std::string machine() {
     model = line.substr(line.find(':') + 2);
     break;
   }
-  return model + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores";
+  return fmt::format("{}, {} cores", model, std::thread::hardware_concurrency());
 }
 
 }  // namespace gatewalk::cli

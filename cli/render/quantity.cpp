@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/quantity.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -78,7 +80,7 @@ std::string reading(double x, const std::string& unit, double step) {
       !plain && (size < 0.9 || size > 999.0)) {  // beyond all prefixes
     const int exponent = 3 * static_cast<int>(std::floor((power + 2.0) / 3.0));
     shown.size = std::pow(10.0, exponent);
-    behind = "e" + std::to_string(exponent) + " " + unit;
+    behind = fmt::format("e{} {}", exponent, unit);
   }
   const int decimals = std::max(0, static_cast<int>(std::lround(std::log10(shown.size / last))));
   std::string text = fixed(x / shown.size, decimals);

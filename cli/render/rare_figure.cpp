@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -35,7 +37,7 @@ Figure figure_of(const RareResult& result) {
   p.draw(chain, "1:2", "lines", {.colour = kSecondColour, .width = 2}, "chain");
   p.draw(trials, "($1+0.25):2:3:4", "yerrorbars",  // beside the others
          {.colour = kThirdColour, .mark = 4, .size = 0.5},
-         std::to_string(direct.trials) + " direct trials, 95 %");
+         fmt::format("{} direct trials, 95 %", direct.trials));
   p.draw(split, "1:2:3:4", "yerrorbars", {.colour = kFirstColour, .mark = 7, .size = 0.5},
          "splitting, 95 %");
   return out.figure(330);

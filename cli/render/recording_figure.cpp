@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -71,7 +73,7 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
   std::vector<const Rows*> ways;
   Rows ends("$ends");
   for (const Recording* run : runs) {
-    Rows& way = out.data("$way" + std::to_string(run->trial));
+    Rows& way = out.data(fmt::format("$way{}", run->trial));
     const std::size_t stride = run->moments.size() / 4000 + 1;  // no more than can be seen
     for (std::size_t i = 0; i < run->moments.size(); i += stride) {
       const auto [x, y] = place(scene, run->moments[i]);
@@ -88,17 +90,16 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
   Panel& panel = out.add({78, 78 + scale * wide, 44, 44 + scale * tall});
   const int height = static_cast<int>(panel.box.bottom + (over_landscape ? 84 : 62));
   const std::string title =
-      runs.size() == 1
-          ? "trial " + std::to_string(runs.front()->trial) + ": " + runs.front()->ending
-          : std::to_string(runs.size()) + " trials" +
-                (runs.size() < recordings.runs.size()
-                     ? " of " + std::to_string(recordings.runs.size())
-                     : "");
+      runs.size() == 1 ? fmt::format("trial {}: {}", runs.front()->trial, runs.front()->ending)
+                       : fmt::format("{} trials{}", runs.size(),
+                                     runs.size() < recordings.runs.size()
+                                         ? fmt::format(" of {}", recordings.runs.size())
+                                         : "");
   panel.say(title + "; disc: where it ended", 8, 18);
   panel.border = 15;
-  panel.x = {"x (" + metre.name + ")", w.left / metre.size, w.right / metre.size,
+  panel.x = {fmt::format("x ({})", metre.name), w.left / metre.size, w.right / metre.size,
              digits(tic_step(wide / metre.size, std::max(1.0, panel.box.width() / 70.0)))};
-  panel.y = {"y (" + metre.name + ")", w.bottom / metre.size, w.top / metre.size};
+  panel.y = {fmt::format("y ({})", metre.name), w.bottom / metre.size, w.top / metre.size};
   if (over_landscape) {
     const dynamics::Landscape l =
         dynamics::landscape(scene.gate, std::min(0.0, w.bottom), scene.gate.run.traverse_y / 120.0);
@@ -107,9 +108,9 @@ Figure figure_of(const Scene& scene, const Recordings& recordings) {
     Rows& ground = out.data("$ground");
     add_rows(ground, l, metre, joule, highest);
     panel.colours = {kFree, highest / joule.size, panel.box.beside(14, 12), "",
-                     "potential energy (" + joule.name + ")"};
-    panel.say("cut at " + short_energy(highest, joule) + "; no colour: " + kHole, 8, height - 12,
-              kSmallFont);
+                     fmt::format("potential energy ({})", joule.name)};
+    panel.say(fmt::format("cut at {}; no colour: {}", short_energy(highest, joule), kHole), 8,
+              height - 12, kSmallFont);
     panel.draw(ground, "1:2:4", "image pixels");
   }
   for (const Rows* way : ways)

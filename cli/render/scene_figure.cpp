@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/scene_figure.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,14 +24,14 @@ constexpr double kTable = 374, kKeys = 406, kRow = 16.5;
 class Drawing {
  public:
   void line(double x, double y, double to_x, double to_y, const std::string& style) {
-    out_ += "set arrow from " + at(x, y) + " to " + at(to_x, to_y) + " " + style + "\n";
+    out_ += fmt::format("set arrow from {} to {} {}\n", at(x, y), at(to_x, to_y), style);
   }
   void circle(double x, double y, double radius, const std::string& style) {
-    out_ += "set object circle at " + at(x, y) + " size " + digits(radius) + " " + style + "\n";
+    out_ += fmt::format("set object circle at {} size {} {}\n", at(x, y), digits(radius), style);
   }
   /// `text` in gnuplot's quotes; `where`: left, center or right, and more.
   void text(const std::string& text, double x, double y, const std::string& where) {
-    out_ += "set label " + text + " at " + at(x, y) + " " + where + "\n";
+    out_ += fmt::format("set label {} at {} {}\n", text, at(x, y), where);
   }
   [[nodiscard]] const std::string& commands() const { return out_; }
 
@@ -41,7 +43,7 @@ class Drawing {
 const std::string kThinLine = "nohead lt -1 lw 0.5", kDashed = "nohead lt -1 lw 0.7 dt (4,4)";
 const std::string kMeasure = "heads filled size 5,18 lt -1 lw 0.5";
 
-std::string coloured(const char* colour) { return std::string(" lc rgb '") + colour + "'"; }
+std::string coloured(const char* colour) { return fmt::format(" lc rgb '{}'", colour); }
 std::string force_arrow(const char* head, const char* colour) {
   return std::string(head) + " filled size 7,20 lw 2" + coloured(colour);
 }
@@ -75,7 +77,7 @@ constexpr std::array<KeySymbol, 21> kSceneSymbols{{{"M", "body.mass_kg"},
 /// Symbols, keys and values; those that the scene leaves out in another colour. Returns where it
 /// ends.
 double draw_table(Drawing& drawing, const Scene& scene) {
-  const std::string left_out = std::string("left tc rgb '") + kSecondColour + "'";
+  const std::string left_out = fmt::format("left tc rgb '{}'", kSecondColour);
   const std::vector<lattice::KeyInfo> keys = lattice::describe(scene);
   double y = kSceneTop;
   bool any_left_out = false;
@@ -84,7 +86,7 @@ double draw_table(Drawing& drawing, const Scene& scene) {
                                     [&](const lattice::KeyInfo& k) { return k.key == symbol.key; });
     const bool own = found->source != "derived" && found->source != "paper";
     any_left_out |= !own;
-    drawing.text("'" + std::string(symbol.sign) + "'", kTable, y, "left");
+    drawing.text(fmt::format("'{}'", symbol.sign), kTable, y, "left");
     drawing.text(literal(found->key + " = " + digits(lattice::number_of(found->value))), kKeys, y,
                  own ? "left" : left_out);
     y += kRow;
@@ -123,18 +125,18 @@ void draw_body(Drawing& drawing, const Scene& scene, double x, double y, double 
     drawing.line(x - noise, y, x + noise, y, force_arrow("heads", kFourthColour));
     const bool outside = noise > disc;
     drawing.text("'Rm, f'", x + std::max(noise, 10.0) + (outside ? 4 : 2), outside ? y : y - 9,
-                 std::string(outside ? "left" : "right") + " tc rgb '" + kFourthColour + "'");
+                 fmt::format("{} tc rgb '{}'", outside ? "left" : "right", kFourthColour));
   }
   if (push > 0.0) {
     drawing.line(x, y, x, y - push, force_arrow("head", kFirstColour));
     drawing.text("'F'", x + 6, y - std::max(push - 5.0, 21.0),
-                 std::string("left tc rgb '") + kFirstColour + "'");
+                 fmt::format("left tc rgb '{}'", kFirstColour));
   }
   if (forces.drag > 0.0) {
     const double against = push > 0.0 ? push : 0.6 * longest;
     drawing.line(x, y, x, y + against, force_arrow("head", kFifthColour));
     drawing.text("'D v'", x - 6, y + std::max(against - 5.0, 13.0),
-                 std::string("right tc rgb '") + kFifthColour + "'");
+                 fmt::format("right tc rgb '{}'", kFifthColour));
   }
   const auto& start = scene.start;
   if (const double speed = std::hypot(start.vx, start.vy); speed > 0.0) {
@@ -167,7 +169,7 @@ Figure figure_of(const Scene& scene) {
   Drawing d;
   d.text(
       literal(scene.source + ": one gate, to scale" + (scene.terrain ? " (the scene's own)" : "")),
-      8, 14, "left font '," + std::to_string(kFont) + "'");
+      8, 14, fmt::format("left font ',{}'", kFont));
   for (const double side : {left, right}) d.line(side, bottom, side, far, kDashed);
   for (const double edge : {bottom, far}) d.line(left, edge, right, edge, kDashed);
   d.line(x_at(0.0), bottom, x_at(0.0), far, "nohead lt -1 lw 0.3 dt (2,5)");
@@ -199,7 +201,7 @@ Figure figure_of(const Scene& scene) {
     d.circle(x + side * scale * beams.length, joint, 2.5, "fs solid border fc rgb '#ffffff'");
     draw_spring(d, x, joint);
     d.text(side > 0 ? "'k_L, d'" : "'k_R, d'", x + side * 12, joint + 14,
-           std::string(side > 0 ? "left" : "right") + " tc rgb '" + kThirdColour + "'");
+           fmt::format("{} tc rgb '{}'", side > 0 ? "left" : "right", kThirdColour));
   }
   if (joint - far > 70)
     d.text(literal("trapped: still inside after " + quantity(gate.run.time_limit, "s", 3)),
@@ -210,10 +212,10 @@ Figure figure_of(const Scene& scene) {
   const int height = static_cast<int>(end + 6);
   return {
       static_cast<int>(kSceneWide), height,
-      "set lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen 1\nset bmargin at "
-      "screen 0\nunset key\nunset border\nunset tics\n" +
-          d.commands() + "plot [0:" + digits(kSceneWide) + "] [" + std::to_string(height) +
-          ":0] NaN\n",
+      fmt::format(
+          "set lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen 1\nset bmargin "
+          "at screen 0\nunset key\nunset border\nunset tics\n{}plot [0:{}] [{}:0] NaN\n",
+          d.commands(), digits(kSceneWide), height),
       kSmallFont};
 }
 

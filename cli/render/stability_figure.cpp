@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -87,7 +89,7 @@ struct DrawnAxis {
         tic(at[i], "0");
       else if (by_number ? whole == -6
                          : i > 1 && std::abs(decade - static_cast<double>(whole)) < 1e-9)
-        tic(at[i], (v[i] < 0 ? "-10^{" : "10^{") + std::to_string(whole) + "}");
+        tic(at[i], fmt::format("{}10^{{{}}}", v[i] < 0 ? "-" : "", whole));
     }
     if (by_number) tic(0.5 * (at.front() + at.back()), "0");
     return tics_of(list);
@@ -156,7 +158,7 @@ class PanelGroup {
     for (const dynamics::Border& border : dynamics::borders(map)) {
       const auto place = std::find(borders_.begin(), borders_.end(), border.label);
       const int dash = static_cast<int>(place - borders_.begin()) + 1;
-      Rows& rows = out.data(tag + "B" + std::to_string(dash));
+      Rows& rows = out.data(fmt::format("{}B{}", tag, dash));
       for (std::size_t k = 0; k < border.x.size(); ++k) rows.add(border.x[k], border.y[k]);
       panel.draw_outlined(rows, "1:2", "lines", {"#ffffff", 3.5},
                           {.colour = "#000000", .width = 1.5, .dashes = dash});
@@ -197,7 +199,7 @@ Figure figure_of(std::span<const FinishedMap> maps) {
   for (std::size_t begin = 0, end = 0; begin < maps.size(); begin = end) {
     while (end < maps.size() && maps[end].map.kind == maps[begin].map.kind) ++end;
     groups.emplace_back(maps.subspan(begin, end - begin), height,
-                        "$map" + std::to_string(groups.size()) + "_");
+                        fmt::format("$map{}_", groups.size()));
     height = groups.back().end();
   }
   Panels out;

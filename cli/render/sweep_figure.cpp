@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -42,7 +44,7 @@ Axis axis_of(const SweepAxis& axis, double points_per_value, bool upright) {
 }
 
 std::string about(const std::vector<SweepPoint>& points) {
-  return "one gate, " + std::to_string(points.front().tally.trials) + " trials a point";
+  return fmt::format("one gate, {} trials a point", points.front().tally.trials);
 }
 
 /// Shares of all over one key, with their intervals.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/type_marks.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -56,7 +58,7 @@ TypeMarks::TypeMarks(const ShownField& shown) : map_(shown.map) {
   std::rotate(names.begin(), names.begin() + 1, names.end());
   if (names.size() > kMarkLooks + 1) {
     const std::size_t others = names.size() - 1 - kMarkLooks;
-    names[kMarkLooks] = std::to_string(others) + " others";
+    names[kMarkLooks] = fmt::format("{} others", others);
     names.erase(names.begin() + kMarkLooks + 1, names.end() - 1);
   }
   names.back() = "unmarked: " + names.back();
@@ -86,7 +88,7 @@ bool TypeMarks::draw_on(Panels& out, Panel& panel, const FieldMap& map,
   const double left = std::max(0.0, 0.5 - kAside / width),
                up = std::max(0.0, 0.5 - kAside / height);
   for (std::size_t type = 1; type < map_.types.size(); ++type) {
-    Rows rows("$type" + tag + "_" + std::to_string(type));
+    Rows rows(fmt::format("$type{}_{}", tag, type));
     for (Eigen::Index r = 0; r < map.rows.count; ++r)
       for (Eigen::Index c = 0; c < map.columns.count; ++c)
         if (static_cast<std::size_t>(map_.type_of(static_cast<int>(map.columns.first + c),

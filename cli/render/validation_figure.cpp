@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -20,23 +22,23 @@ using markov::CellProbabilities;
 constexpr double kMapWidth = 130, kGap = 16, kLeft = 64, kHead = 46;
 
 std::string summary(const StartValidation& v, const ShownField& shown) {
-  return title_of(shown.map.section, v.start) + ": total variation " +
-         fixed(v.exact_against.total_variation, 3) +
-         " (chance: " + fixed(v.exact_against.floor_total_variation, 3) + ")";
+  return fmt::format("{}: total variation {} (chance: {})", title_of(shown.map.section, v.start),
+                     fixed(v.exact_against.total_variation, 3),
+                     fixed(v.exact_against.floor_total_variation, 3));
 }
 
 }  // namespace
 
 Figure figure_of(const lattice::Validation& v, const ShownField& shown) {
   if (v.starts.empty() || v.starts.size() > kMostValidated)
-    throw std::invalid_argument("a figure shows 1 to " + std::to_string(kMostValidated) +
-                                " starts, these are " + std::to_string(v.starts.size()));
+    throw std::invalid_argument(fmt::format("a figure shows 1 to {} starts, these are {}",
+                                            kMostValidated, v.starts.size()));
   std::vector<ComparedGates> compared;
   for (const StartValidation& s : v.starts)
     compared.push_back(
         {summary(s, shown), lattice::shares(s.dynamics.final_gates), s.exact.final_cells});
-  return figure_of(compared, "final gates, " + std::to_string(v.trials) + " trials", "dynamics, %",
-                   shown, panels_of(v.memory));
+  return figure_of(compared, fmt::format("final gates, {} trials", v.trials), "dynamics, %", shown,
+                   panels_of(v.memory));
 }
 
 Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& title,
@@ -93,13 +95,13 @@ Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& 
       if (i == 2) panel.colours->palette = kDiverging;
       if (last && i == 1) {
         panel.colours->bar = bar_of(0, 1);
-        panel.colours->tics = "(" + scale.tics() + ")" + look;
+        panel.colours->tics = fmt::format("({}){}", scale.tics(), look);
         panel.say("root scale", left_of(1) - 30, end + 50, kSmallFont);
       }
       if (last && i == 2) {
         panel.colours->bar = bar_of(2, 2);
         panel.colours->tics =
-            "('-" + tic + "' -" + tic + ", '0' 0, '+" + tic + "' " + tic + ")" + look;
+            fmt::format("('-{}' -{}, '0' 0, '+{}' {}){}", tic, tic, tic, tic, look);
       }
       panel.draw_cells(data);
       marked = types.draw_on(out, panel, map, data.name().substr(1)) || marked;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -108,7 +110,9 @@ void draw_methods(Panels& out, Panel& panel, const WorkPrecision& chart, const O
   bool compared = false;
   for (std::size_t begin = 0, end = 0; begin < chart.points.size(); begin = end) {
     const std::string& method = chart.points[begin].setting.method;
-    const auto rows_of = [&](const char* what) { return Rows("$" + tag + method + what); };
+    const auto rows_of = [&](const char* what) {
+      return Rows(fmt::format("${}{}{}", tag, method, what));
+    };
     Rows line = rows_of("line"), bars = rows_of("bars"), good = rows_of("good"),
          fault = rows_of("fault"), less = rows_of("less"), parted = rows_of("parted"),
          usual = rows_of("usual");
@@ -201,7 +205,7 @@ void add_keys(Panels& out, const std::vector<WorkPrecision>& charts) {
 Figure figure_of(const std::vector<WorkPrecision>& charts) {
   constexpr double kTop = 112, kPanel = 142, kBelow = 30, kLine = 16;
   const Ranges ranges(charts);
-  const std::string tics = "(" + tics_1_2_5(ranges.time.low, ranges.time.high, 160) + ")";
+  const std::string tics = fmt::format("({})", tics_1_2_5(ranges.time.low, ranges.time.high, 160));
   Panels out;
   add_keys(out, charts);
   double top = kTop;
