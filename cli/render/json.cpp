@@ -104,7 +104,8 @@ class JsonFields final : public Fields {
     for (Eigen::Index r = 0; r < low.rows(); ++r) {
       Json row = Json::array();
       for (Eigen::Index c = 0; c < low.cols(); ++c)
-        row.push_back(json_of_value(Interval{low(r, c), high(r, c)}));
+        row.push_back(std::isfinite(low(r, c)) ? json_of_value(Interval{low(r, c), high(r, c)})
+                                               : Json());
       rows.push_back(std::move(row));
     }
     return rows;

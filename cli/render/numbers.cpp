@@ -7,6 +7,7 @@
 #include <concepts>
 
 #include "cli/render/csv.h"
+#include "cli/render/json.h"
 #include "cli/render/json_value.h"
 
 namespace gatewalk::cli {
@@ -15,7 +16,7 @@ namespace {
 template <class Number>
 using Grid = Eigen::Array<Number, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-std::string shown(double x) { return std::isfinite(x) ? text_of(Json(x)) : ""; }
+std::string shown(double x) { return std::isfinite(x) ? json_number(x) : ""; }
 /// Yes is 1, no 0.
 template <std::integral T>
 std::string shown(T n) {

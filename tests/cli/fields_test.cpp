@@ -182,7 +182,8 @@ TEST(Fields, IntervalsHaveTheFormOfWhatTheyAreOf) {
             R"({"ends":{"left":7,"back":0.5,"inner":{"x":2.0,"x_95":[1.0,null]}},)"
             R"("ends_95":{"left":[2.5,7.5],"back":null},)"
             R"("map":[[0.5,1.0]],"map_95":[[[0.25,0.75],[0.75,1.25]]]})");
-  const Json schema = parsed_json(schema_of({"x", describe_estimates})), &keys = schema["properties"];
+  const Json schema = parsed_json(schema_of({"x", describe_estimates})),
+             &keys = schema["properties"];
   EXPECT_EQ(keys["ends_95"]["required"].dump(), R"(["left"])");
   EXPECT_EQ(keys["ends_95"]["properties"]["back"]["$ref"], "#/$defs/interval");
   EXPECT_EQ(keys["map_95"]["items"]["items"]["$ref"], "#/$defs/interval");
