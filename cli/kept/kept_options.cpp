@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/kept/kept_options.h"
 
+#include <fmt/core.h>
 #include <zlib.h>
 
 #include <array>
@@ -32,7 +33,8 @@ double seconds_of(const std::string& text) {
   for (const auto& [name, seconds] : kUnits)
     if (read.ec == std::errc() && unit == name && number > 0.0 && std::isfinite(number))
       return number * seconds;
-  throw UsageError("--max-time " + text + ": must be a time, such as 90s, 45min, 3h or 2d");
+  throw UsageError(
+      fmt::format("--max-time {}: must be a time, such as 90s, 45min, 3h or 2d", text));
 }
 
 /// What the file at `path` holds.
@@ -146,8 +148,8 @@ std::unique_ptr<KeptRun> kept_run(const Options& options, const std::set<std::st
     if (std::filesystem::is_regular_file(path, error)) continue;
     for (const char* name : {"checkpoint", "resume", "max-time", "part"})
       if (options.has(name))
-        throw UsageError("--" + std::string(name) + ": " + path +
-                         " is no file, and what was read from it cannot be read again");
+        throw UsageError(fmt::format(
+            "--{}: {} is no file, and what was read from it cannot be read again", name, path));
     return nullptr;
   }
   KeptPlan plan{.head = {},
@@ -163,8 +165,8 @@ std::unique_ptr<KeptRun> kept_run(const Options& options, const std::set<std::st
     plan.file = file_beside_result(options);
     plan.at_once = options.has("max-time");
     if (plan.file.empty() && (options.has("max-time") || plan.goes_on))
-      throw UsageError("--" + std::string(plan.goes_on ? "resume" : "max-time") +
-                       " needs an output file, or --checkpoint FILE");
+      throw UsageError(fmt::format("--{} needs an output file, or --checkpoint FILE",
+                                   plan.goes_on ? "resume" : "max-time"));
     if (plan.file.empty()) return nullptr;
   }
   const bool is_there = std::filesystem::exists(plan.file), is_kept = PieceFile::is_one(plan.file);

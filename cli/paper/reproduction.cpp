@@ -72,8 +72,9 @@ void require_no_scene_of_ones_own(const std::string& folder) {
         text && *text != carried_file(name) &&
         std::find(scenes.begin(), scenes.end(), Json{{"name", name}, {"text", *text}}) ==
             scenes.end())
-      throw UsageError("-o " + folder + ": its " + name +
-                       " is not the paper's and would be replaced; choose another folder");
+      throw UsageError(fmt::format(
+          "-o {}: its {} is not the paper's and would be replaced; choose another folder", folder,
+          name));
 }
 
 /// Nobody else works in this folder while it lives.
@@ -118,21 +119,46 @@ struct Results {
   double seconds = 0.0;  // of all of them
 };
 
+/// A finished study on record.
+struct Record {
+  std::string study, command, program, remarks;
+  double seconds = 0.0;
+};
+
+void describe(Fields& out, const std::vector<Record>& records) {
+  for (const Record& r : records)
+    out.object({r.study, "a finished study"}, [&](Fields& f) {
+      f.text({"command", "the command of the study"}, r.command);
+      f.text({"program", "the build that ran it"}, r.program);
+      f.optional(!r.remarks.empty(), [&](Fields& some) {
+        some.text({"remarks", "what the command warned of"}, r.remarks);
+      });
+      f.number({"seconds", "s", "time that it took"}, r.seconds);
+    });
+}
+
+/// Those of data/done.json; none of a file that has anything else.
+std::vector<Record> read_records() try {
+  std::vector<Record> records;
+  const Json done = read_json(kDone);
+  for (const auto& [study, record] : done.items())
+    records.push_back({study, record.at("command"), record.at("program"),
+                       record.value("remarks", ""), record.at("seconds")});
+  return records;
+} catch (const Json::exception&) {
+  return {};
+}
+
 /// The studies on record. Every finished one is there at once, so a run that is stopped goes on
 /// from there; none is while it is made anew.
 class Records {
  public:
-  Records() : done_(read_json(kDone)) {
-    if (!done_.is_object()) done_ = Json::object();
-  }
-
   /// Takes the result of a study. False when it is not done yet, or by another command or program,
   /// or cannot be read any more.
   [[nodiscard]] bool take(const Study& s, Findings& findings) const {
     try {
-      const Json& known = done_.at(s.name);
-      if (known.at("command") != s.text() || known.at("program") != build_id()) return false;
-      (void)known.at("seconds").get<double>();
+      const Record& known = of(s);
+      if (known.command != s.text() || known.program != build_id()) return false;
       for (auto word = s.arguments.begin(); word != s.arguments.end(); ++word)
         if (*word == "--figure" && !std::filesystem::exists(*(word + 1))) return false;
       take_file(s, findings);
@@ -143,19 +169,18 @@ class Records {
   }
   /// Carries a study out, puts it on record and takes its result.
   void make(const Study& s, const dynamics::Work& work, Findings& findings) {
-    if (done_.erase(s.name) > 0) write();
+    if (std::erase_if(done_, [&](const Record& r) { return r.study == s.name; }) > 0) write();
     const dynamics::Stopwatch watch;
     const std::string remarks = run(s, work);
     take_file(s, findings);
-    done_[s.name] = {{"command", s.text()}, {"program", build_id()}};
-    if (!remarks.empty()) done_[s.name]["remarks"] = remarks;
-    done_[s.name]["seconds"] = watch.seconds();
+    done_.push_back({s.name, s.text(), build_id(), remarks, watch.seconds()});
     write();
   }
-  [[nodiscard]] double seconds(const Study& s) const {
-    return done_[s.name]["seconds"].get<double>();
+  /// Throws std::out_of_range if the study is not on record.
+  [[nodiscard]] const Record& of(const Study& s) const {
+    return done_.at(
+        static_cast<std::size_t>(std::ranges::find(done_, s.name, &Record::study) - done_.begin()));
   }
-  [[nodiscard]] bool has_remarks(const Study& s) const { return done_[s.name].contains("remarks"); }
 
  private:
   static std::string file_of(const Study& s) { return "data/" + s.name + ".json"; }
@@ -178,9 +203,11 @@ class Records {
           fmt::format("{}: ended with status {}. {}", s.text(), status, remarks));
     return remarks;
   }
-  void write() const { write_text_atomically(kDone, text_of(done_) + "\n"); }
+  void write() const {
+    write_text_atomically(kDone, json_text([&](Fields& out) { describe(out, done_); }) + "\n");
+  }
 
-  Json done_;
+  std::vector<Record> done_ = read_records();
 };
 
 /// Carries out what is not done yet, and takes what all of them gave.
@@ -212,13 +239,13 @@ Results carry_out(const std::vector<Study>& studies, bool talk) {
     done += s->cost;
     progress.finish();
     if (talk)
-      std::cout << fmt::format("{:>8}  {:<18}{:>7} s{}\n",
-                               fmt::format("[{}/{}]", ++number, studies.size()), s->name,
-                               fixed(records.seconds(*s), 1),
-                               records.has_remarks(*s) ? "   (with remarks: data/done.json)" : "")
+      std::cout << fmt::format(
+                       "{:>8}  {:<18}{:>7} s{}\n", fmt::format("[{}/{}]", ++number, studies.size()),
+                       s->name, fixed(records.of(*s).seconds, 1),
+                       records.of(*s).remarks.empty() ? "" : "   (with remarks: data/done.json)")
                 << std::flush;
   }
-  for (const Study& s : studies) results.seconds += records.seconds(s);
+  for (const Study& s : studies) results.seconds += records.of(s).seconds;
   return results;
 }
 
@@ -301,9 +328,10 @@ Report reproduce(const ReproductionOptions& options) {
   require_folder(folder);
   if (!options.force && !std::filesystem::is_empty(folder) &&
       !std::filesystem::exists(std::filesystem::path(folder) / kDone))
-    throw UsageError("-o " + folder +
-                     ": is not empty and holds no report, so files of yours could be replaced; "
-                     "choose another folder, or give --force");
+    throw UsageError(
+        fmt::format("-o {}: is not empty and holds no report, so files of yours could be replaced; "
+                    "choose another folder, or give --force",
+                    folder));
   require_folder(folder + "/data");
   require_folder(folder + "/scenes");
   require_gnuplot();
@@ -312,8 +340,8 @@ Report reproduce(const ReproductionOptions& options) {
   const FolderLock lock(folder);
   if (const Json old = read_json("report.json");
       options.quick && old.is_object() && old.value("quick", Json()) == false)
-    throw UsageError(folder +
-                     " holds a full report, which --quick would replace; choose another folder");
+    throw UsageError(fmt::format(
+        "{} holds a full report, which --quick would replace; choose another folder", folder));
   require_no_scene_of_ones_own(folder);
   if (!std::filesystem::exists(kDone)) write_text_atomically(kDone, "{}\n");
   const std::vector<Study> studies = paper_studies(options.quick);

@@ -121,15 +121,16 @@ void describe_method(Fields& out, const std::optional<lattice::Settled>& settled
 
 std::string complaint(const lattice::Settled& settled) {
   if (settled.choice.reference_verdict != dynamics::Verdict::fine)
-    return "run.method \"auto\": the reference itself shows faults (" +
-           std::string(dynamics::name_of(settled.choice.reference_verdict)) +
-           "), nothing can be compared with it; took it all the same: " +
-           setting_text(settled.choice.params.run);
+    return fmt::format(
+        "run.method \"auto\": the reference itself shows faults ({}), nothing can be compared with "
+        "it; took it all the same: {}",
+        dynamics::name_of(settled.choice.reference_verdict),
+        setting_text(settled.choice.params.run));
   if (!settled.choice.met)
-    return "run.method \"auto\": no setting was shown to keep the outcomes within run.tolerance "
-           "= " +
-           json_number(settled.tolerance) +
-           "; took the one they were compared with: " + setting_text(settled.choice.params.run);
+    return fmt::format(
+        "run.method \"auto\": no setting was shown to keep the outcomes within run.tolerance = {}; "
+        "took the one they were compared with: {}",
+        json_number(settled.tolerance), setting_text(settled.choice.params.run));
   return {};
 }
 

@@ -66,8 +66,8 @@ std::string title_of(const dynamics::Section& section, const Start& start) {
   if (start->face != 0) title += " " + section.faces[static_cast<std::size_t>(start->face)].name;
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
     const dynamics::Coordinate& c = section.coordinates[axis];
-    title += (axis > 0 ? ", " : " ") + c.name + " " + digits(start->at[axis], 6) +
-             dynamics::behind_number(c.unit);
+    title += fmt::format("{}{} {}{}", axis > 0 ? ", " : " ", c.name, digits(start->at[axis], 6),
+                         dynamics::behind_number(c.unit));
   }
   return title;
 }
