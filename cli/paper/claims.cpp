@@ -74,11 +74,6 @@ Measured measured(const Trend& t, Values more, bool wiggles) {
   return {t.verdict(wiggles), more};
 }
 
-Share fig8_at(const Findings& f, double damping, double force, double random) {
-  return f.fig8.at({{kDamping, damping}, {kPropulsion, force}, {kRandom, random}})
-      .traversed_share();
-}
-
 std::vector<Claim> claims_of(const Findings& f) {
   std::vector<Claim> claims;
   for (const ClaimRow& row : table()) claims.push_back(claim_of(row, f));

@@ -72,7 +72,4 @@ struct ClaimRow {
 [[nodiscard]] std::vector<ClaimRow> claims_on_the_field();  // Sec. III-C
 [[nodiscard]] std::vector<ClaimRow> claims_on_one_run();    // Secs. II-A to II-C
 
-/// Who traverses in Fig. 8.
-[[nodiscard]] Share fig8_at(const Findings& f, double damping, double force, double random);
-
 }  // namespace gatewalk::cli

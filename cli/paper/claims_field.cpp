@@ -99,8 +99,8 @@ Measured speed_up(const Findings& f) {
 Measured below(double limit, const Findings& f, Share (Crossings::*share)() const) {
   const Share ours = (f.field.crossings.*share)();
   std::string others;
-  for (const auto& [random, crossings] : f.field_random)
-    others += (others.empty() ? "" : ", ") + fixed(100 * (crossings.*share)().value, 1);
+  for (const auto& [random, study] : f.field_random)
+    others += (others.empty() ? "" : ", ") + fixed(100 * (study.crossings.*share)().value, 1);
   return {verdict_of(ours.low >= limit, ours.high < limit), {{"ours", ours}, {"others", others}}};
 }
 

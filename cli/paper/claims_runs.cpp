@@ -30,8 +30,8 @@ Measured basin(const Findings& f) {
 }
 
 Measured escape(const Findings& f) {
-  const SweepPoint& p = f.fig8.at({{kDamping, 50}, {kPropulsion, 8}, {kRandom, 0}});
-  const Share still = p.traversed_share(), shaken = fig8_at(f, 50, 8, 40);
+  const SweepPoint& p = fig8_at(f, 50, 8, 0);
+  const Share still = p.traversed_share(), shaken = fig8_at(f, 50, 8, 40).traversed_share();
   const bool helped = rises(still, shaken),
              enough = std::min(still.whole, shaken.whole) >= kEnoughTrials;
   return {verdict_of(falls(still, shaken) || (enough && (!helped || still.low > 0.5)),
@@ -50,7 +50,7 @@ Measured steep(const Findings& f) {
   return {verdict,
           {{"basin", downhill ? "no basin" : "a basin"},
            {"share", share},
-           {"at_9", 100 * fig8_at(f, 50, 9, 0).value}}};
+           {"at_9", 100 * fig8_at(f, 50, 9, 0).traversed_share().value}}};
 }
 
 /// Moments of runs within the beams' reach.

@@ -18,12 +18,6 @@ const AxisValues kDampings{50, 10}, kForces{4, 5, 6, 7, 8, 9}, kPaperRandom{0, 1
 // Of Table II, with the left beam's stiffness.
 const AxisValues kForcesOf12{7, 8}, kRandomOf12{10, 20, 30, 40, 50, 60};
 
-const SweepPoint& fig12_at(const Findings& f, double damping, double force, double random,
-                           double k_left) {
-  return f.fig12.at(
-      {{kDamping, damping}, {kPropulsion, force}, {kRandom, random}, {kLeftStiffness, k_left}});
-}
-
 /// What a function of each place on an axis is.
 template <class Of>
 std::vector<Share> along(const AxisValues& axis, Of of_place) {
@@ -33,7 +27,8 @@ std::vector<Share> along(const AxisValues& axis, Of of_place) {
 }
 std::vector<Share> over_random(const Findings& f, double damping, double force,
                                const AxisValues& axis) {
-  return along(axis, [&](double random) { return fig8_at(f, damping, force, random); });
+  return along(axis,
+               [&](double random) { return fig8_at(f, damping, force, random).traversed_share(); });
 }
 
 // ---- Fig. 8
@@ -42,9 +37,11 @@ Measured rises_with_propulsion(const Findings& f) {
   Trend trend;
   for (const double damping : kDampings)
     for (const double random : {10, 20, 30, 40})
-      trend.add(kForces,
-                along(kForces, [&](double force) { return fig8_at(f, damping, force, random); }));
-  return measured(trend, {{"low", fig8_at(f, 50, 4, 20)}, {"high", fig8_at(f, 50, 9, 20)}});
+      trend.add(kForces, along(kForces, [&](double force) {
+                  return fig8_at(f, damping, force, random).traversed_share();
+                }));
+  return measured(trend, {{"low", fig8_at(f, 50, 4, 20).traversed_share()},
+                          {"high", fig8_at(f, 50, 9, 20).traversed_share()}});
 }
 
 /// Shares over the random force, and which of them is the highest.
@@ -124,8 +121,7 @@ Measured exits_grow(const Findings& f) {
   for (const double damping : kDampings)
     for (const double force : kForces)
       trend.add(kPaperRandom, along(kPaperRandom, [&](double random) {
-                  const SweepPoint& p =
-                      f.fig8.at({{kDamping, damping}, {kPropulsion, force}, {kRandom, random}});
+                  const SweepPoint& p = fig8_at(f, damping, force, random);
                   return share_of(p.exited(), p.trials);
                 }));
   const auto early = std::count_if(f.exits.runs.begin(), f.exits.runs.end(),

@@ -246,9 +246,9 @@ Section crossings(const Findings& f) {
     std::string force, more;
     const Crossings& crossings;
   };
-  const Scene scenes[] = {{"10 N", "", f.field_random.at(10)},
-                          {"20 N", "", f.field_random.at(20)},
-                          {"40 N", "", f.field_random.at(40)},
+  const Scene scenes[] = {{"10 N", "", f.field_random.at(10).crossings},
+                          {"20 N", "", f.field_random.at(20).crossings},
+                          {"40 N", "", f.field_random.at(40).crossings},
                           {"50 N", " (scenes/field.toml)", f.field.crossings}};
   constexpr double kPaperSays = 4.0;  // %
   bool all_above = true;

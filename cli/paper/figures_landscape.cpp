@@ -106,9 +106,7 @@ Section barriers(const Findings& f) {
     const bool downhill = landscape.fine.downhill();
     (downhill ? none : heights).add(k, basin, start);
     for (const int damping : {10, 50}) {
-      const Share s =
-          f.fig12.at({{kDamping, damping}, {kPropulsion, 7}, {kRandom, 10}, {kLeftStiffness, k}})
-              .traversed_share();
+      const Share s = fig12_at(f, damping, 7, 10, k).traversed_share();
       const double nan = std::nan("");
       csv.row(k, damping, downhill ? nan : start, downhill ? nan : basin, s.value, s.low, s.high);
       shares[damping == 10]->add(k, root_percent(s.value), root_percent(s.low),

@@ -194,10 +194,4 @@ void read(Validation& v, const Json& json) {
   v.matrix_seconds = json.at("matrix").at("seconds");
 }
 
-void read(Crossings& crossings, const Json& json) {
-  Validation all;
-  read(all, json);
-  crossings = all.crossings;
-}
-
 }  // namespace gatewalk::cli

@@ -135,7 +135,7 @@ struct Findings {
   LandscapeStudy fig5_symmetric, steep;
   std::map<int, LandscapeStudy> barriers;  // by k_L; fewer in a quick run
   Validation field, field_paper_method, field_no_drag;
-  std::map<int, Crossings> field_random;  // by Rm: 10, 20, 40 N
+  std::map<int, Validation> field_random;  // by Rm: 10, 20, 40 N
 };
 
 // What a study's JSON says. They throw std::exception where it says something else.
@@ -143,6 +143,11 @@ void read(Sweep& sweep, const Json& json);
 void read(Trace& trace, const Json& json);
 void read(LandscapeStudy& study, const Json& json);
 void read(Validation& validation, const Json& json);
-void read(Crossings& crossings, const Json& json);
+template <class Finding>
+[[nodiscard]] Finding found_in(const Json& json) {
+  Finding finding;
+  read(finding, json);
+  return finding;
+}
 
 }  // namespace gatewalk::cli

@@ -30,12 +30,6 @@ using Words = std::vector<std::string>;
 
 using Take = std::function<void(Findings&, const Json&)>;
 
-template <class Finding>
-Finding found_in(const Json& json) {
-  Finding finding;
-  read(finding, json);
-  return finding;
-}
 /// Into a member of the findings, or an entry of such a member.
 template <class Finding>
 Take into(Finding Findings::*member) {
@@ -188,6 +182,15 @@ std::vector<Study> paper_studies(bool quick) {
 
 dynamics::GateParams gate_of(const char* scene, const std::vector<std::string>& overrides) {
   return lattice::parse_scene(carried_file(scene), scene, overrides).gate;
+}
+
+const SweepPoint& fig8_at(const Findings& f, double damping, double force, double random) {
+  return f.fig8.at({{kDamping, damping}, {kPropulsion, force}, {kRandom, random}});
+}
+const SweepPoint& fig12_at(const Findings& f, double damping, double force, double random,
+                           double k_left) {
+  return f.fig12.at(
+      {{kDamping, damping}, {kPropulsion, force}, {kRandom, random}, {kLeftStiffness, k_left}});
 }
 
 }  // namespace gatewalk::cli

@@ -17,13 +17,6 @@ Json small_sweep() {
      "exited_right": 0, "trapped": 200, "not_finite": 0, "status": {"worst_penetration_m": 2}}]})");
 }
 
-template <class Finding>
-Finding found_in(const Json& json) {
-  Finding finding;
-  read(finding, json);
-  return finding;
-}
-
 TEST(Findings, APointIsFoundByItsNumbersAndWords) {
   const auto sweep = found_in<Sweep>(small_sweep());
   const SweepPoint& p = sweep.at({{"run.method", "stable"}, {"beams.damping_Nms_per_rad", 50}});
