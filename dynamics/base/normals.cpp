@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <Random123/philox.h>
+
+#include <algorithm>
+
 #include "dynamics/base/points.h"
 #include "dynamics/base/random.h"
 
@@ -32,6 +36,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace gatewalk::dynamics {
 HWY_EXPORT(box_muller);
+
+void Random::refill() {
+  const auto drawn = r123::Philox4x64()({{block_++, trial_, 0, 0}}, {{key_[0], key_[1]}});
+  // One by one: a copy of all four would wait until the processor has written each.
+  words_ = {drawn[0], drawn[1], drawn[2], drawn[3]};
+  used_ = 0;
+}
 
 void Random::normals(Normals& out) {
   constexpr std::size_t kPairs = std::tuple_size_v<Normals> / 2;

@@ -2,8 +2,6 @@
 #pragma once
 /// Random numbers in named streams: counter-based, so that any can be drawn again alone.
 
-#include <Random123/philox.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -47,13 +45,10 @@ enum class Purpose : std::uint64_t {
 class Random {
  public:
   Random(Purpose purpose, const Stream& s)
-      : key_{{s.seed, (static_cast<std::uint64_t>(purpose) << 56) ^ s.row}}, trial_(s.trial) {}
+      : key_{s.seed, (static_cast<std::uint64_t>(purpose) << 56) ^ s.row}, trial_(s.trial) {}
 
   [[nodiscard]] std::uint64_t word() {
-    if (used_ == 4) {
-      words_ = r123::Philox4x64()({{block_++, trial_, 0, 0}}, key_);
-      used_ = 0;
-    }
+    if (used_ == 4) refill();
     return words_[used_++];
   }
   [[nodiscard]] double uniform() { return open_uniform(word()); }
@@ -83,10 +78,13 @@ class Random {
   }
 
  private:
-  r123::Philox4x64::key_type key_;
+  /// Not inline: whoever compiles it without optimising would slow all down.
+  void refill();
+
+  std::array<std::uint64_t, 2> key_;
   std::uint64_t trial_;
   std::uint64_t block_ = 0;
-  r123::Philox4x64::ctr_type words_{};
+  std::array<std::uint64_t, 4> words_{};
   std::size_t used_ = 4;
   double spare_ = 0.0;
   bool has_spare_ = false;

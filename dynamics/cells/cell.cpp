@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamics/cells/cell.h"
 
+#include <Random123/philox.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamics/disc/disc_cell.h"
 
+#include <Random123/philox.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>

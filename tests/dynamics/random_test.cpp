@@ -2,6 +2,7 @@
 #include "dynamics/base/random.h"
 #include "dynamics/disc/random_force.h"
 
+#include <Random123/philox.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
