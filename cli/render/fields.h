@@ -2,7 +2,7 @@
 #pragma once
 /// A result described once, key by key: describe(Fields&, const Result&) names each key with its
 /// unit and meaning and gives its value. What takes the fields makes of them the result's JSON
-/// (json.h), a table of its numbers (csv.h) or the schema of all such results (schema.h).
+/// (json.h), a table of its numbers (numbers.h) or the schema of all such results (schema.h).
 
 #include <array>
 #include <cmath>
@@ -39,6 +39,7 @@ struct ResultKey {
   std::optional<double> least{}, most{};  // of numbers
   std::vector<std::string> words{};       // of texts: one of these
   std::string_view shared_as{};           // objects and lists that are defined once, by this name
+  std::string_view interval{};            // meaning of KEY_95; else "95 % interval of KEY"
 };
 
 /// The key of numbers: with a unit, "1" for shares, counts and ratios.
@@ -47,6 +48,10 @@ struct Field : ResultKey {
       : ResultKey{name, in, what} {}
   [[nodiscard]] Field varying(std::string_view shown) const {
     return with(&ResultKey::varies, shown);
+  }
+  /// What KEY_95 means, where it is not simply the 95 % interval of the number.
+  [[nodiscard]] Field bounded_by(std::string_view meaning) const {
+    return with(&ResultKey::interval, meaning);
   }
   [[nodiscard]] Field at_least(double x) const { return with(&ResultKey::least, std::optional(x)); }
   [[nodiscard]] Field at_most(double x) const { return with(&ResultKey::most, std::optional(x)); }
@@ -72,6 +77,12 @@ struct Label : ResultKey {
   [[nodiscard]] Label one_of(std::vector<std::string> allowed) const {
     Label changed = *this;
     changed.words = std::move(allowed);
+    return changed;
+  }
+  /// What KEY_95 means, where it is not simply the 95 % intervals of the numbers.
+  [[nodiscard]] Label bounded_by(std::string_view intervals) const {
+    Label changed = *this;
+    changed.interval = intervals;
     return changed;
   }
   /// An object or a list that stands in many places: a schema defines it once, by this name (by
@@ -155,7 +166,8 @@ class Fields {
   void text(const Label& l, const Words& words) {
     leaf(l, ValueKind::text, true, words ? Value(std::string_view(*words)) : Value());
   }
-  /// Of a number that the result does not hold; none: null. Others have theirs by `estimate`.
+  /// The interval of a number that is not in the result itself (none: null); `estimate` gives that
+  /// of one that is.
   void interval(const Field& f, const std::optional<Interval>& limits) {
     leaf(f, ValueKind::interval, true, value_of(limits));
   }
@@ -205,10 +217,13 @@ class Fields {
   }
   void grid(const Field& f, const markov::CellCounts& n) { leaf(f, ValueKind::grid, true, &n); }
   void no_grid(const Field& f) { leaf(f, ValueKind::grid, true, {}); }
-  /// A number for each gate, and behind them as KEY_95 their intervals.
+  /// A number for each gate, and behind them as KEY_95 their intervals; null if no gate has one.
   void grid(const Field& f, const markov::CellProbabilities& x, const GateLimits& limits) {
-    bounded(f, ValueKind::grid, &x, ValueKind::grid_95, &limits);
+    bounded(f, ValueKind::grid, &x, ValueKind::grid_95,
+            limits[0].isFinite().any() ? Value(&limits) : Value());
   }
+  void grid(const Field&, const markov::CellProbabilities&,
+            GateLimits&&) = delete;  // would be gone
   void no_estimated_grid(const Field& f) {
     bounded(f, ValueKind::grid, {}, ValueKind::grid_95, {});
   }
@@ -224,7 +239,7 @@ class Fields {
   void estimate(const Field& f, double x, const std::optional<Interval>& limits) {
     bounded(f, ValueKind::number, x, ValueKind::interval, value_of(limits));
   }
-  /// A count of so many, and behind it the interval of its share, times how many these are.
+  /// A count among `of`; KEY_95 is `of` times the interval of its share (none: null).
   template <std::integral T>
   void counted(const Field& f, T n, double of, const std::optional<Interval>& share) {
     bounded(f, ValueKind::count, whole(n), ValueKind::interval,

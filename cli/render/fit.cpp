@@ -96,8 +96,8 @@ void describe_number(Fields& out, const lattice::NumberRange& r, const lattice::
   out.number({"best", "its own",
               "value in the draw from the posterior that makes the observed counts likeliest"},
              r.at(n.best));
-  out.estimate({"median", "its own",
-                "median of the posterior; median_95: from its 2.5 to its 97.5 % quantile"},
+  out.estimate(Field("median", "its own", "median of the posterior")
+                   .bounded_by("interval that holds 95 % of the posterior"),
                r.at(n.median), Interval{r.at(n.interval[0]), r.at(n.interval[1])});
   out.number({"mean", "its own", "mean of the posterior"}, r.at(n.mean));
   out.number({"sd", "its own", "standard deviation of the posterior"}, n.sd * (r.high - r.low));
@@ -148,9 +148,8 @@ void describe(Fields& out, const FittedScene& f) {
              group.count({"observed", "1",
                           "number of observed trials, or passages, with an outcome of the group"},
                          g.observed);
-             group.estimate({"expected", "1",
-                             "number expected, mean over the posterior; expected_95: where 95 % of "
-                             "such experiments lie"},
+             group.estimate(Field("expected", "1", "number expected, mean over the posterior")
+                                .bounded_by("where the numbers of 95 % of such experiments lie"),
                             seven_digits(g.expected, 1.0), g.interval);
            });
   out.count({"draws", "1", "number of draws from the posterior"}, fit.draws.rows());

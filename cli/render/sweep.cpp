@@ -22,11 +22,11 @@ using lattice::SweepPoint;
 
 /// What a share is of, and how many of those. Right of those that pushed more past one beam than
 /// past the other: the paper's Fig. 12.
-struct Share {
+struct Part {
   const char* name;
   std::int64_t part, whole;
 };
-std::vector<Share> shares_of(const dynamics::GateTally& t) {
+std::vector<Part> shares_of(const dynamics::GateTally& t) {
   return {{"traversed", t.traversed(), t.trials},
           {"traversed_left", t[Outcome::traversed_left], t.trials},
           {"traversed_right", t[Outcome::traversed_right], t.trials},
@@ -37,7 +37,7 @@ std::vector<Share> shares_of(const dynamics::GateTally& t) {
 }
 
 /// "  5.1 [3.9, 6.6]    ", in %
-std::string share_text(const Share& s) {
+std::string share_text(const Part& s) {
   if (s.whole == 0) return fmt::format("{:>6}{:16}", "-", "");
   const auto [low, high] = share_interval(s.part, s.whole);
   return fmt::format("{:>6}{:16}",
@@ -53,7 +53,7 @@ void describe(Fields& out, const std::vector<SweepAxis>& axes, const SweepPoint&
               .varying("<key>"),
           p.values[i]);
   });
-  const Share right = shares_of(p.tally).back();
+  const Part right = shares_of(p.tally).back();
   describe(out, p.tally);
   out.optional(right.whole > 0, [&](Fields& f) {
     f.estimate({right.name, "1", "traversed_right / (traversed_left + traversed_right)"},
@@ -85,7 +85,7 @@ std::string csv_of(const SweepResult& result) {
   for (const SweepAxis& axis : result.axes) out << axis.key << ',';
   out << "method,trials";
   for (const auto& [outcome, key, words] : dynamics::kOutcomeNames) out << ',' << key << "_count";
-  for (const Share& s : shares_of({}))
+  for (const Part& s : shares_of({}))
     out << ',' << s.name << ',' << s.name << "_low," << s.name << "_high";
   out << ",clean\n";
   for (const SweepPoint& p : result.points) {
@@ -93,7 +93,7 @@ std::string csv_of(const SweepResult& result) {
     for (const std::string& value : p.values) out << csv_text(value) << ',';
     out << p.scene.gate.run.method << ',' << t.trials;
     for (const std::int64_t n : t.counts) out << ',' << n;
-    for (const Share& s : shares_of(t)) {
+    for (const Part& s : shares_of(t)) {
       if (s.whole == 0) {
         out << ",,,";  // of none there is no share
         continue;

@@ -246,26 +246,32 @@ std::string without_95(std::string path) {
   return "";
 }
 
+/// The last key of a path.
+std::string last_key(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
 TEST(Fields, EveryResultHasItsIntervalsBesideTheirNumbers) {
-  // What the two numbers beside it differ by; what a null model makes.
-  const std::set<std::string> alone{"excess_95", "time_scales_chance_95"};
+  // Intervals of what is not in the result: seen less predicted, and what a null model gives.
+  const std::set<std::string> alone{"excess_95", "excess_95.<way>", "time_scales_chance_95"};
+  // Bounds, a number each.
+  const std::set<std::string> bounds{"error_95", "kernel_error_95", "worst_kernel_error_95",
+                                     "corrcoef_95", "rmse_per_100_95"};
   int intervals = 0;
   for (const ResultOf& of : results())
     for (const KeyList& list : keys_of(of))
       for (const KeyLine& line : list.keys) {
-        const bool is_interval = line.type.find("interval") != std::string::npos;
-        const std::string number = without_95(line.path);
+        const std::string number = without_95(line.path), about = of.command + (": " + line.path);
         const bool has_number =
+            !number.empty() &&
             std::ranges::find(list.keys, number, &KeyLine::path) != list.keys.end();
-        if (is_interval && std::ranges::none_of(alone, [&](const std::string& key) {
-              return line.path.find(key) != std::string::npos;
-            })) {
-          EXPECT_TRUE(has_number) << of.command << ": " << line.path << " is of no number";
+        if (line.type.find("interval") != std::string::npos) {
+          const bool is_alone = std::ranges::any_of(alone, [&](const std::string& key) {
+            return line.path.ends_with("." + key) ||
+                   line.path.find("." + key + ".") != line.path.npos;
+          });
+          EXPECT_NE(has_number, is_alone) << about << " is of no number beside it";
           ++intervals;
-        }
-        if (has_number && !number.empty()) {
-          EXPECT_TRUE(is_interval || line.type.starts_with("object"))
-              << of.command << ": " << line.path << " is no interval";
+        } else if (last_key(line.path).ends_with("_95") && !line.type.starts_with("object")) {
+          EXPECT_TRUE(bounds.contains(last_key(line.path))) << about << " is no interval";
         }
       }
   EXPECT_GT(intervals, 100);

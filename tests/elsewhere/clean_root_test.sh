@@ -46,7 +46,7 @@ mkdir "$root/srv/own"
 cat >"$root/srv/own/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.25)
 project(own CXX)
-find_package(gatewalk 1.0 REQUIRED)
+find_package(gatewalk 2.0 REQUIRED)
 add_executable(own own.cpp)
 target_link_libraries(own gatewalk::lattice)
 END
