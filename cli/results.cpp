@@ -45,11 +45,7 @@ dynamics::StateSpace states() {
 /// With a gate of another type.
 lattice::MatrixFile matrix_file() {
   const dynamics::Transitions t(states());
-  return {.transitions = t,
-          .text = {{"title", ""}},
-          .arrays = {},
-          .types = {{"", t}},
-          .state_names = {}};
+  return {.transitions = t, .text = {{"title", ""}}, .types = {{"", t}}};
 }
 ShownMatrix shown_matrix() { return {"", matrix_file()}; }
 
@@ -70,21 +66,17 @@ CutResult cut_tracks() {
 
 FieldRun trials() {
   const lattice::Scene scene;
-  return {ShownField(scene),
-          dynamics::Entry(),
-          Provenance(),
-          lattice::FieldCosts(1.0),
-          lattice::ExitCounts(scene.field),
-          std::nullopt,
-          lattice::FieldTally(scene.field)};
+  return {.shown = ShownField(scene),
+          .costs = lattice::FieldCosts(1.0),
+          .exits = lattice::ExitCounts(scene.field),
+          .tally = lattice::FieldTally(scene.field)};
 }
 
 PredictResult prediction() {
   const lattice::EndingShares shares{std::array<double, markov::kEndings>{}};
   PredictResult example{.shown = ShownField(lattice::Scene()), .given = {Start()}};
   example.of_matrix.emplace().states.resize(1);
-  example.of_matrix->prediction.starts.resize(
-      1, {.start = {}, .final = {}, .shares = shares, .exits = {}});
+  example.of_matrix->prediction.starts.resize(1, {.shares = shares});
   example.of_runs.emplace().prediction.starts.resize(1);
   return example;
 }
@@ -208,8 +200,7 @@ ChainErrorResult chain_error() {
 }
 
 FidelityResult fidelity() {
-  const lattice::FidelityRun run{
-      .tally = no_trials(), .final_gates = {}, .change = lattice::PairedChange()};
+  const lattice::FidelityRun run{.tally = no_trials(), .change = lattice::PairedChange()};
   FidelityResult example;
   example.study.variants.resize(3);
   example.study.starts = {{.start = {}, .runs = {run, run, run}}};
@@ -220,22 +211,10 @@ FidelityResult fidelity() {
 void describe_validate(Fields& out) {
   const lattice::EndingShares none{std::array<double, markov::kEndings>{}};
   ValidateResult of_scene{.shown = lattice::Scene()};
-  of_scene.validation.starts.push_back({.start = {},
-                                        .chain_start = {},
-                                        .dynamics = no_trials(),
-                                        .walks = {},
-                                        .exact = {},
-                                        .walks_against = {},
-                                        .exact_against = {},
-                                        .paper_sized = {},
-                                        .floor_100_exact = {},
-                                        .floor_100_walks = {},
-                                        .judgement = {},
+  of_scene.validation.starts.push_back({.dynamics = no_trials(),
                                         .dynamics_endings = none,
                                         .walks_endings = none,
-                                        .exact_endings = none,
-                                        .dynamics_exits = {},
-                                        .exact_exits = {}});
+                                        .exact_endings = none});
   lattice::MemoryStudy& memory = of_scene.validation.memory;
   memory.outcomes = {"way", "trapped"};
   lattice::GatesAhead::Step& step = memory.ahead.steps.emplace_back();

@@ -47,7 +47,7 @@ struct ChainStart {
 /// (scene, seed, version, command, ...).
 struct MatrixFile {
   dynamics::Transitions transitions;
-  std::map<std::string, std::string> text;
+  std::map<std::string, std::string> text{};
   std::vector<markov::NamedArray> arrays{};              // beside those of the state space
   std::map<std::string, dynamics::Transitions> types{};  // of other gates in the field, by name
   std::vector<std::string> state_names{};  // (n + 1), of a chain that was made elsewhere; else none

@@ -127,11 +127,9 @@ void describe(Fields& out, const TraceResult& result) {
   describe(out, result.film, [&](Fields& run, std::size_t i) {
     describe_details(run, recordings, recordings.runs[i], joule);
   });
-  out.optional(result.film_speed.has_value(), [&](Fields& f) {
-    f.number({"video_speed", "1",
+  out.if_any({"video_speed", "1",
               "with --video: seconds of the run for each second of film; 1: real time"},
-             result.film_speed.value_or(kUnknown));
-  });
+             result.film_speed);
   out.count({"recorded", "1", "number of recorded runs"}, recordings.runs.size());
   out.count({"trials", "1", "number of trials that were run"}, recordings.trials);
   describe_method(out, result.method);

@@ -496,14 +496,13 @@ void describe(Fields& out, const AnalysedField& f) {
        "how the chance of the target responds to trapping in gates and to numbers of the scene"},
       [&](Fields& o) { describe_sensitivities(o, f); });
   describe_types(out, f);
-  out.optional(direct.has_value(), [&](Fields& o) {
-    o.object({"direct", "full simulation of the same field, for comparison"}, [&](Fields& d) {
-      d.count({"trials", "1", "number of simulated trials"}, direct->tally.trials);
-      describe_endings(d, {"endings", "number of simulated trials by ending"},
-                       direct->tally.endings);
-      describe_costs(d, direct->costs, shown);
-    });
-  });
+  out.if_any({"direct", "full simulation of the same field, for comparison"}, direct,
+             [&](Fields& d, const auto& value) {
+               d.count({"trials", "1", "number of simulated trials"}, value.tally.trials);
+               describe_endings(d, {"endings", "number of simulated trials by ending"},
+                                value.tally.endings);
+               describe_costs(d, value.costs, shown);
+             });
   out.count({"states", "1", "number of states of the chain"}, answer.states);
   out.count({"gate_runs", "1",
              "gate runs that this command made: for the chain, and for the elasticities"},
@@ -517,12 +516,10 @@ void describe(Fields& out, const AnalysedField& f) {
              "with --over: share of the variance of the target's chance that each number causes; "
              "null: without --over"},
             shares, [](Fields& o, const RangedShares& s) { describe(o, s); });
-  out.optional(passage.has_value(), [&](Fields& o) {
-    o.object({"first_passage",
+  out.if_any({"first_passage",
               "with --first-passage: chance and time to reach a target, from the start and from "
               "each state of each gate"},
-             [&](Fields& p) { describe(p, *passage); });
-  });
+             passage, [&](Fields& p, const auto& value) { describe(p, value); });
   describe_made_by(out, made_by);
 }
 

@@ -113,10 +113,8 @@ lattice::Settled settled_from(const Json& json) {
 }
 
 void describe_method(Fields& out, const std::optional<lattice::Settled>& settled) {
-  out.optional(settled.has_value(), [&](Fields& f) {
-    f.object(method_label(),
-             [&](Fields& method) { describe(method, settled.value_or(lattice::Settled())); });
-  });
+  out.if_any(method_label(), settled,
+             [&](Fields& method, const auto& value) { describe(method, value); });
 }
 
 std::string complaint(const lattice::Settled& settled) {

@@ -27,8 +27,8 @@ struct RunScene {
 /// The result of `lattice`: trials through the field, and what they are of.
 struct FieldRun {
   ShownField shown;
-  dynamics::Entry start;
-  Provenance made_by;
+  dynamics::Entry start{};
+  Provenance made_by{};
   lattice::FieldCosts costs;
   lattice::ExitCounts exits;
   std::optional<RunScene> scene{};  // of gates

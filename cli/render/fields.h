@@ -50,8 +50,8 @@ struct Field : ResultKey {
     return with(&ResultKey::varies, shown);
   }
   /// What KEY_95 means, where it is not simply the 95 % interval of the number.
-  [[nodiscard]] Field bounded_by(std::string_view meaning) const {
-    return with(&ResultKey::interval, meaning);
+  [[nodiscard]] Field bounded_by(std::string_view what) const {
+    return with(&ResultKey::interval, what);
   }
   [[nodiscard]] Field at_least(double x) const { return with(&ResultKey::least, std::optional(x)); }
   [[nodiscard]] Field at_most(double x) const { return with(&ResultKey::most, std::optional(x)); }
@@ -80,9 +80,9 @@ struct Label : ResultKey {
     return changed;
   }
   /// What KEY_95 means, where it is not simply the 95 % intervals of the numbers.
-  [[nodiscard]] Label bounded_by(std::string_view intervals) const {
+  [[nodiscard]] Label bounded_by(std::string_view what) const {
     Label changed = *this;
-    changed.interval = intervals;
+    changed.interval = what;
     return changed;
   }
   /// An object or a list that stands in many places: a schema defines it once, by this name (by
@@ -327,6 +327,29 @@ class Fields {
     describe(*this);
     --optional_;
     end_optional();
+  }
+  /// A key of results that have a value for it.
+  template <class Value>
+  void if_any(const Field& f, const std::optional<Value>& x) {
+    optional(x.has_value(), [&](Fields& out) {
+      if constexpr (std::integral<Value>)
+        out.count(f, x.value_or(0));
+      else if constexpr (std::floating_point<Value>)
+        out.number(f, x.value_or(kUnknown));
+      else
+        out.numbers(f, x.value_or(Value()));
+    });
+  }
+  template <class Value, class Describe>
+  void if_any(const Label& l, const std::optional<Value>& x, Describe describe) {
+    optional(x.has_value(), [&](Fields& out) {
+      if (x) return out.object(l, [&](Fields& f) { describe(f, *x); });
+      if constexpr (std::default_initializable<Value>)
+        out.object(l, [&](Fields& f) { describe(f, Value{}); });
+    });
+  }
+  void if_any(const Label& l, const std::optional<std::string>& x) {
+    optional(x.has_value(), [&](Fields& out) { out.text(l, x.value_or("")); });
   }
   /// One of two descriptions, both of keys beside each other; they may share some.
   template <class First, class Second>

@@ -7,10 +7,8 @@ namespace gatewalk::cli {
 
 void describe(Fields& out, const ExportResult& result) {
   out.count({"states", "1", "number of states of the exported chain"}, result.states);
-  out.optional(result.transitions.has_value(), [&](Fields& f) {
-    f.count({"transitions", "1", "number of transitions with a probability above zero"},
-            result.transitions.value_or(0));
-  });
+  out.if_any({"transitions", "1", "number of transitions with a probability above zero"},
+             result.transitions);
   out.optional(result.first_ending.has_value(), [&](Fields& f) {
     f.count({"initial_state", "1", "number of the state in which walks start; states count from 0"},
             0);
@@ -22,11 +20,9 @@ void describe(Fields& out, const ExportResult& result) {
             endings.count({label, "1", "number of the absorbing state of this ending"}, state++);
         });
   });
-  out.optional(result.trajectories.has_value(), [&](Fields& f) {
-    f.count({"trajectories", "1",
-             "number of trials that were written, each as the sequence of its states"},
-            result.trajectories.value_or(0));
-  });
+  out.if_any({"trajectories", "1",
+              "number of trials that were written, each as the sequence of its states"},
+             result.trajectories);
   describe_made_by(out, result.made_by);
 }
 

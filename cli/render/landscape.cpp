@@ -78,14 +78,13 @@ void describe(Fields& out, const LandscapeResult& result) {
   out.list({"passes", "lowest passes through the gate, on the coarse grid and on the fine grid"},
            std::vector{&passes.coarse, &passes.fine},
            [](Fields& f, const GridPasses* grid) { describe(f, *grid); });
-  out.optional(result.measured.has_value(), [&](Fields& f) {
-    f.object({"measured", "simulated runs of the gate, by outcome"}, [&](Fields& runs) {
-      const dynamics::GateTally tally = result.measured.value_or(dynamics::GateTally());
-      describe(runs, tally);
-      describe_method(runs, result.method);
-      describe_status(runs, tally.health);
-    });
-  });
+  out.if_any({"measured", "simulated runs of the gate, by outcome"}, result.measured,
+             [&](Fields& runs, const auto& value) {
+               const dynamics::GateTally tally = value;
+               describe(runs, tally);
+               describe_method(runs, result.method);
+               describe_status(runs, tally.health);
+             });
   describe_made_by(out, result.made_by);
 }
 

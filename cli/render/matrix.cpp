@@ -263,10 +263,7 @@ void describe(Fields& out, const MadeMatrix& made) {
   const auto total = t.totals();
   describe_path(out, made.path);
   describe_size(out, t);
-  out.optional(made.trials_per_row.has_value(), [&](Fields& f) {
-    f.count({"trials_per_row", "1", "number of gate runs from each state"},
-            made.trials_per_row.value_or(0));
-  });
+  out.if_any({"trials_per_row", "1", "number of gate runs from each state"}, made.trials_per_row);
   out.given({"bins", "1",
              "bins per axis as a multiple of the paper's Table III; or auto, scene, tree (see "
              "state_space.bins)"},

@@ -66,10 +66,8 @@ void describe(Fields& out, const Judgement& j, const std::optional<lattice::Comp
               {e.key, "1", fmt::format("p-value of the share of bodies that {}", meaning_of(e))},
               j.endings[index_of(e)].p);
       });
-  out.optional(gates.has_value(), [&](Fields& f) {
-    f.object({"final_gates", "observed final gates compared with the model's"},
-             [&](Fields& of) { describe(of, gates.value_or(lattice::Comparison())); });
-  });
+  out.if_any({"final_gates", "observed final gates compared with the model's"}, gates,
+             [&](Fields& of, const auto& value) { describe(of, value); });
 }
 
 /// `c`: what such differences are looked for in.

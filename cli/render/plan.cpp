@@ -281,12 +281,10 @@ std::size_t best_alone(const lattice::Plan& plan) {
 void describe(Fields& out, const PlannedField& p) {
   const lattice::Plan& plan = p.plan;
   describe_chance(out, plan.crossings, plan.chain_says);
-  out.optional(plan.worst_case.has_value(), [&](Fields& f) {
-    f.number({"worst_case", "1",
+  out.if_any({"worst_case", "1",
               "with --robust: chance to cross if each row is 1.96 standard errors worse (symmetric "
               "gates: 2.77)"},
-             plan.worst_case.value_or(kUnknown));
-  });
+             plan.worst_case);
   out.text({"best_alone", "the action that crosses most often when taken all the time"},
            p.actions[best_alone(plan)]);
   out.list_of({"actions", "the actions that a body may take"}, p.actions.size(),

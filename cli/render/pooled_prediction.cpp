@@ -89,13 +89,12 @@ void describe(Fields& out, const RunsPrediction& runs, bool given) {
   out.optional(given, [&](Fields& f) { describe_direct_seconds(f, direct_seconds(p)); });
   describe_status(out, p.health);
   describe_method(out, runs.method);
-  out.optional(runs.recorded.has_value(), [&](Fields& f) {
-    f.object({"recorded", "the recorded runs behind the chain"}, [&](Fields& r) {
-      const RecordedRuns recorded = runs.recorded.value_or(RecordedRuns());
-      describe(r, recorded.counts);
-      describe_lost_bounds(r, recorded.bounds);
-    });
-  });
+  out.if_any({"recorded", "the recorded runs behind the chain"}, runs.recorded,
+             [&](Fields& r, const auto& value) {
+               const RecordedRuns recorded = value;
+               describe(r, recorded.counts);
+               describe_lost_bounds(r, recorded.bounds);
+             });
 }
 
 std::string table_of(const lattice::StartAnswer& a, const ShownField& shown) {

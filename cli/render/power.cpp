@@ -415,10 +415,7 @@ void describe(Fields& out, const PowerResult& p) {
       p.options.goal.power);
   out.number({"level", "1", "level of significance: share of experiments with a false detection"},
              p.options.goal.level);
-  out.optional(p.options.trials.has_value(), [&](Fields& f) {
-    f.count({"trials", "1", "planned trials of each experiment, from --trials"},
-            p.options.trials.value_or(0));
-  });
+  out.if_any({"trials", "1", "planned trials of each experiment, from --trials"}, p.options.trials);
   out.object({"from_prediction", "one experiment compared with the prediction"}, [&](Fields& f) {
     describe_plans(f, p, &EndingPlan::effects, Differs::ending);
     f.list({"final_gates", "a total variation each, spread over all gates: the hardest to detect"},
@@ -429,15 +426,11 @@ void describe(Fields& out, const PowerResult& p) {
   out.object(
       {"two_groups", "two groups compared with each other; one of them ends as predicted"},
       [&](Fields& f) { describe_plans(f, p, &EndingPlan::of_groups, Differs::ending_of_groups); });
-  out.optional(p.options.trials.has_value(), [&](Fields& f) {
-    f.object({"smallest_difference",
-              "smallest difference that the planned trials detect with this power"},
-             [&](Fields& least) { describe_smallest(least, p); });
-  });
-  out.optional(p.versus.has_value(), [&](Fields& f) {
-    f.object({"versus", "the other scene or group, and the trials that tell it from this one"},
-             [&](Fields& other) { describe(other, p.versus.value_or(PowerResult::Versus()), p); });
-  });
+  out.if_any(
+      {"smallest_difference", "smallest difference that the planned trials detect with this power"},
+      p.options.trials, [&](Fields& least, const auto&) { describe_smallest(least, p); });
+  out.if_any({"versus", "the other scene or group, and the trials that tell it from this one"},
+             p.versus, [&](Fields& other, const auto& value) { describe(other, value, p); });
   describe_status(out, p.health);
   describe_method(out, p.method);
   describe_made_by(out, p.made_by);

@@ -16,12 +16,8 @@ void describe(Fields& out, const Provenance& p) {
   out.text({"version", "version of the program"}, kVersion);
   out.text({"commit", "commit of the sources from which the program was built"}, kCommit);
   out.text({"command", "the command line with everything that shaped the result"}, p.command);
-  out.optional(p.seed.has_value(), [&](Fields& f) {
-    f.count({"seed", "1", "seed of all random numbers"}, p.seed.value_or(0));
-  });
-  out.optional(p.scene.has_value(), [&](Fields& f) {
-    f.text({"scene", "the whole scene, as TOML"}, p.scene.value_or(""));
-  });
+  out.if_any({"seed", "1", "seed of all random numbers"}, p.seed);
+  out.if_any({"scene", "the whole scene, as TOML"}, p.scene);
   out.optional(!p.derived.empty(), [&](Fields& f) {
     f.texts({"derived", "keys that the scene leaves out and the program derives from other keys"},
             {p.derived.begin(), p.derived.end()});
@@ -33,9 +29,7 @@ void describe(Fields& out, const Provenance& p) {
              part.text({"holds", "which part of the run the file holds"}, file.second);
            });
   });
-  out.optional(p.cell.has_value(), [&](Fields& f) {
-    f.text({"cell", "the description of the cells, as TOML"}, p.cell.value_or(""));
-  });
+  out.if_any({"cell", "the description of the cells, as TOML"}, p.cell);
 }
 
 void describe_made_by(Fields& out, const Provenance& provenance) {

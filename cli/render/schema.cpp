@@ -148,61 +148,47 @@ std::string list_of(const std::vector<std::string>& texts) {
   return "[" + list + "]";
 }
 
+/// How a ValueKind is called, and what the schema says of it: its type, to which "null" is added
+/// where the value may be null, and what stands behind the type; without a type all that it says.
+struct KindText {
+  const char *words, *type, *rest;
+};
+constexpr KindText kKinds[] = {
+    {"number", "", R"("type": ["number", "null"])"},
+    {"count", "integer", ""},
+    {"yes or no", "boolean", ""},
+    {"text", "string", ""},
+    {"interval", "", R"("$ref": "#/$defs/interval")"},
+    {"range", "array", R"(, "items": {"type": ["number", "null"]}, "minItems": 2, "maxItems": 2)"},
+    {"numbers", "array", R"(, "items": {"type": ["number", "null"]})"},
+    {"counts", "array", R"(, "items": {"type": "integer"})"},
+    {"rows of numbers", "array",
+     R"(, "items": {"type": "array", "items": {"type": ["number", "null"]}})"},
+    {"texts", "array", R"(, "items": {"type": "string"})"},
+    {"rows of texts", "array",
+     R"(, "items": {"type": "array", "items": {"type": ["string", "null"]}})"},
+    {"number or text", "", R"("type": ["number", "string"])"},
+    {"numbers or texts", "array", R"(, "items": {"type": ["number", "string"]})"},
+    {"intervals", "array", R"(, "items": {"$ref": "#/$defs/interval"})"},
+    {"points", "array",
+     R"(, "items": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 2, "maxItems": 2})"},
+    {"grid", "", R"("$ref": "#/$defs/grid")"},
+    {"grid of intervals", "",
+     R"("type": ["array", "null"], "items": {"type": "array", "items": {"$ref": "#/$defs/interval"}})"},
+    {"grid of lists", "array",
+     R"(, "items": {"type": "array", "items": {"type": "array", "items": {"type": ["number", "null"]}}})"},
+};
+static_assert(std::size(kKinds) == static_cast<std::size_t>(ValueKind::gate_numbers) + 1);
+const KindText& text_of(ValueKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
+
 /// The words of the schema for a leaf: "type": "integer", "minimum": 0
 std::string type_of(const Node& node) {
-  const char* const kNumber = R"("type": ["number", "null"])";
-  const char* const kGiven = R"("type": ["number", "string"])";
-  const auto list = [](const std::string& items, bool or_null = false) {
-    return fmt::format(R"("type": {}, "items": {{{}}})",
-                       or_null ? R"(["array", "null"])" : R"("array")", items);
-  };
-  const auto type = [&](const char* name) {
-    return node.may_be_null ? fmt::format(R"("type": ["{}", "null"])", name)
-                            : fmt::format(R"("type": "{}")", name);
-  };
-  std::string text;
-  switch (node.kind) {
-    case ValueKind::number:
-      text = kNumber;
-      break;
-    case ValueKind::count:
-      text = type("integer");
-      break;
-    case ValueKind::flag:
-      text = type("boolean");
-      break;
-    case ValueKind::text:
-      text = type("string");
-      break;
-    case ValueKind::interval:
-      return R"("$ref": "#/$defs/interval")";
-    case ValueKind::range:
-      return list(kNumber) + R"(, "minItems": 2, "maxItems": 2)";
-    case ValueKind::numbers:
-      return list(kNumber, node.may_be_null);
-    case ValueKind::number_rows:
-      return list(list(kNumber));
-    case ValueKind::counts:
-      return list(R"("type": "integer")");
-    case ValueKind::texts:
-      return list(R"("type": "string")", node.may_be_null);
-    case ValueKind::text_rows:
-      return list(list(R"("type": ["string", "null"])"));
-    case ValueKind::given:
-      return kGiven;
-    case ValueKind::givens:
-      return list(kGiven);
-    case ValueKind::intervals:
-      return list(R"("$ref": "#/$defs/interval")");
-    case ValueKind::points:
-      return list(list(kNumber) + R"(, "minItems": 2, "maxItems": 2)");
-    case ValueKind::grid:
-      return R"("$ref": "#/$defs/grid")";
-    case ValueKind::grid_95:
-      return list(list(R"("$ref": "#/$defs/interval")"), true);
-    case ValueKind::gate_numbers:
-      return list(list(list(kNumber)), node.may_be_null);
-  }
+  const auto& [words, type, rest] = text_of(node.kind);
+  std::string text = rest;
+  if (*type != '\0')
+    text = (node.may_be_null ? fmt::format(R"("type": ["{}", "null"])", type)
+                             : fmt::format(R"("type": "{}")", type)) +
+           rest;
   if (node.least && node.least == node.most) return "\"const\": " + digits(*node.least);
   if (node.least) text += ", \"minimum\": " + digits(*node.least);
   if (node.most) text += ", \"maximum\": " + digits(*node.most);
@@ -293,46 +279,9 @@ std::string schema_text(const Node& node, const std::string& indent, bool says_w
 // ---- As lines ----
 
 std::string type_words(const Node& node) {
-  const std::string or_null = node.may_be_null ? " or null" : "";
-  switch (node.kind) {
-    case ValueKind::number:
-      return "number";
-    case ValueKind::count:
-      return "count" + or_null;
-    case ValueKind::flag:
-      return (node.may_be_null ? "yes, no" : "yes or no") + or_null;
-    case ValueKind::text:
-      return "text" + or_null;
-    case ValueKind::interval:
-      return "interval";
-    case ValueKind::range:
-      return "range";
-    case ValueKind::numbers:
-      return "numbers" + or_null;
-    case ValueKind::number_rows:
-      return "rows of numbers";
-    case ValueKind::counts:
-      return "counts";
-    case ValueKind::texts:
-      return "texts" + or_null;
-    case ValueKind::text_rows:
-      return "rows of texts";
-    case ValueKind::given:
-      return "number or text";
-    case ValueKind::givens:
-      return "numbers or texts";
-    case ValueKind::intervals:
-      return "intervals";
-    case ValueKind::points:
-      return "points";
-    case ValueKind::grid:
-      return "grid";
-    case ValueKind::grid_95:
-      return "grid of intervals";
-    case ValueKind::gate_numbers:
-      return "grid of lists" + or_null;
-  }
-  return "";
+  const auto& [words, type, rest] = text_of(node.kind);
+  if (!node.may_be_null || *type == '\0') return words;
+  return (node.kind == ValueKind::flag ? "yes, no" : words) + std::string(" or null");
 }
 
 std::string constraints_of(const Node& node) {

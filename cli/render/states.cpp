@@ -266,10 +266,8 @@ void describe(Fields& out, const StateRecord& s) {
                  "scene; tree leaves; import")
                .one_of({"paper", "auto", "scene", "tree", "imported"}),
            s.kind);
-  out.optional(bins.factor.has_value(), [&](Fields& f) {
-    f.number({"factor", "1", "bins per axis as a multiple of those in the paper's Table III"},
-             bins.factor.value_or(1.0));
-  });
+  out.if_any({"factor", "1", "bins per axis as a multiple of those in the paper's Table III"},
+             bins.factor);
   if (!recorded) put_states(out);
   out.optional(s.bins || (s.trees && !recorded), [&](Fields& f) {
     f.text(Label("outermost_bins",
@@ -284,12 +282,10 @@ void describe(Fields& out, const StateRecord& s) {
                  "enter")
                .one_of({"uniform", "visited"}),
            bins.rows_without_entries ? "visited" : "uniform");
-    f.optional(bins.rows_without_entries.has_value(), [&](Fields& rows) {
-      rows.count(
-          {"rows_without_entries", "1",
-           "number of bins that no body was seen to enter; their runs start anywhere in the bin"},
-          bins.rows_without_entries.value_or(0));
-    });
+    f.if_any(
+        {"rows_without_entries", "1",
+         "number of bins that no body was seen to enter; their runs start anywhere in the bin"},
+        bins.rows_without_entries);
   });
   out.optional(s.trees.has_value(), [&](Fields& f) {
     f.count({"entries_per_leaf", "1", "smallest number of entries in a leaf"},
@@ -297,12 +293,9 @@ void describe(Fields& out, const StateRecord& s) {
     f.count({"gate_runs", "1",
              "number of gate runs, or recorded passages, from which the chain is made"},
             trees.gate_runs);
-    f.optional(trees.accuracy.has_value(), [&](Fields& asked) {
-      asked.number(
-          {"accuracy", "1",
-           "error_95 that was asked for; a chain for a range of starts is made for half of it"},
-          trees.accuracy.value_or(0.0));
-    });
+    f.if_any({"accuracy", "1",
+              "error_95 that was asked for; a chain for a range of starts is made for half of it"},
+             trees.accuracy);
   });
   out.optional(s.bins || s.trees, [&](Fields& f) {
     f.list({"starts_of_their_own", "starts that have a state of their own"}, s.starts,
@@ -310,12 +303,10 @@ void describe(Fields& out, const StateRecord& s) {
   });
   out.optional(s.bins.has_value(), [&](Fields& f) { describe(f, bins); });
   out.optional(s.trees.has_value(), [&](Fields& f) {
-    f.optional(trees.error_95.has_value(), [&](Fields& errors) {
-      errors.numbers({"error_95", "1",
-                      "by start: total variation of the final gates that 95 of 100 answers do not "
-                      "exceed; null: not known"},
-                     trees.error_95.value_or(std::vector<double>()));
-    });
+    f.if_any({"error_95", "1",
+              "by start: total variation of the final gates that 95 of 100 answers do not "
+              "exceed; null: not known"},
+             trees.error_95);
     f.maybe(
         {"range",
          "range of starts for which the chain is made; null: it is made for starts_of_their_own"},

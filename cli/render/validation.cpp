@@ -144,15 +144,13 @@ void describe(Fields& out, const lattice::StartValidation& r, const lattice::Pap
             "whether the start lies outside all bins, so that the chain starts in the nearest one"},
            r.chain_start.clamped);
   });
-  out.optional(paper.corrcoef.has_value(), [&](Fields& f) {
-    f.object(
-        {"paper", "values that the paper prints for this start in Table IV"}, [&](Fields& printed) {
-          printed.number({"corrcoef", "1", "correlation of the final gates as printed"},
-                         paper.corrcoef.value_or(kUnknown));
-          printed.number({"rmse_per_100", "trials per 100", "RMSE of the final gates as printed"},
-                         paper.rmse.value_or(kUnknown));
-        });
-  });
+  out.if_any(
+      {"paper", "values that the paper prints for this start in Table IV"}, paper.corrcoef,
+      [&](Fields& printed, const auto& value) {
+        printed.number({"corrcoef", "1", "correlation of the final gates as printed"}, value);
+        printed.number({"rmse_per_100", "trials per 100", "RMSE of the final gates as printed"},
+                       paper.rmse.value_or(kUnknown));
+      });
   out.object({"exact", "final gates of the dynamics compared with the exact chain's"},
              [&](Fields& f) {
                describe(f, r.exact_against);
@@ -214,12 +212,10 @@ void describe(Fields& out, const lattice::StartValidation& r, const lattice::Pap
   const FieldEnds<markov::CellProbabilities> ends = ends_of(r.exact, r.exact_endings);
   ends.describe_never_sampled(out);
   ends.describe_still_walking(out);
-  out.optional(r.force.has_value(), [&](Fields& f) {
-    f.object(
-        {"force_memory",
-         "test: the same trials with the random force drawn anew at each crossing between gates"},
-        [&](Fields& force) { describe(force, r.force.value_or(lattice::ForceMemory())); });
-  });
+  out.if_any(
+      {"force_memory",
+       "test: the same trials with the random force drawn anew at each crossing between gates"},
+      r.force, [&](Fields& force, const auto& value) { describe(force, value); });
 }
 
 // ---- Tables ----

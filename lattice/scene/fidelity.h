@@ -32,9 +32,9 @@ struct FidelityVariant {
 /// One variant from one start.
 struct FidelityRun {
   FieldTally tally;
-  std::vector<std::int32_t> final_gates;  // of each trial, as FieldTrials has them
-  double seconds_per_trial = 0.0;         // wall clock
-  std::optional<PairedChange> change{};   // against the first variant, which has none
+  std::vector<std::int32_t> final_gates{};  // of each trial, as FieldTrials has them
+  double seconds_per_trial = 0.0;           // wall clock
+  std::optional<PairedChange> change{};     // against the first variant, which has none
 };
 
 struct FidelityOfStart {

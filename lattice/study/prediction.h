@@ -15,10 +15,10 @@
 namespace gatewalk::lattice {
 
 struct StartPrediction {
-  ChainStart start;
-  markov::FinalDistribution final;
+  ChainStart start{};
+  markov::FinalDistribution final{};
   EndingShares shares;  // with 95 % intervals where there are replicates
-  FieldExits exits;     // the same
+  FieldExits exits{};   // the same
   /// Predictions from resampled matrices, and their total variation from this one (NaN without).
   std::int64_t replicates = 0;
   double mean_total_variation = 0.0, total_variation_95 = 0.0;

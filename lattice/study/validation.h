@@ -77,19 +77,19 @@ struct ValidationOptions {
 
 /// Everything about one start. Trials, walks and p-values belong to the options' seed.
 struct StartValidation {
-  dynamics::Entry start;
-  ChainStart chain_start;
+  dynamics::Entry start{};
+  ChainStart chain_start{};
   FieldTally dynamics;
-  markov::WalkTally walks;
-  markov::FinalDistribution exact;
-  Comparison walks_against, exact_against;  // the dynamics' final gates against these
-  PaperSized paper_sized;
-  NoiseFloor floor_100_exact, floor_100_walks;  // of 100 trials, against exact and 100 walks
-  Judgement judgement;
+  markov::WalkTally walks{};
+  markov::FinalDistribution exact{};
+  Comparison walks_against{}, exact_against{};  // the dynamics' final gates against these
+  PaperSized paper_sized{};
+  NoiseFloor floor_100_exact{}, floor_100_walks{};  // of 100 trials, against exact and 100 walks
+  Judgement judgement{};
   std::int64_t resampled = 0;                             // matrices behind the two:
   double matrix_noise_mean = 0.0, matrix_noise_sd = 0.0;  // total variation of their predictions
   EndingShares dynamics_endings, walks_endings, exact_endings;
-  FieldExits dynamics_exits, exact_exits;
+  FieldExits dynamics_exits{}, exact_exits{};
   double dynamics_seconds = 0.0, walks_seconds = 0.0, exact_seconds = 0.0;
   std::optional<ForceMemory> force{};            // if asked for
   std::optional<ObservedComparison> observed{};  // if there is an experiment
