@@ -11,12 +11,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <functional>
-#include <limits>
 #include <memory>
 #include <mutex>
-#include <numeric>
-#include <optional>
 #include <stdexcept>
 #include <string_view>
 
@@ -24,7 +20,7 @@
 #include "cli/exchange/sparse_table.h"
 #include "cli/loaded_matrix.h"
 #include "cli/python/python_cell.h"
-#include "cli/render/json_value.h"
+#include "cli/python/python_fields.h"
 #include "cli/render/schema.h"
 #include "cli/render/version.h"
 #include "dynamics/cells/check_cell.h"
@@ -35,138 +31,6 @@ namespace gatewalk::python {
 namespace {
 
 namespace py = pybind11;
-using cli::Json;
-
-/// Numbers of an array; none where something else is in it.
-std::optional<std::vector<double>> numbers_of(const Json& array) {
-  std::vector<double> numbers;
-  for (const Json& x : array) {
-    if (!x.is_number()) return {};
-    numbers.push_back(x.get<double>());
-  }
-  return numbers;
-}
-
-/// Two limits; null: none.
-bool is_pair(const Json& x) {
-  const auto is_limit = [](const Json& limit) { return limit.is_number() || limit.is_null(); };
-  return x.is_array() && x.size() == 2 && is_limit(x[0]) && is_limit(x[1]);
-}
-
-/// How many lists there are around the pairs in it, one in another.
-std::size_t lists_around_pairs(const Json& x) {
-  if (!x.is_array() || is_pair(x)) return 0;
-  std::size_t inner = 0;
-  for (const Json& element : x) inner = std::max(inner, lists_around_pairs(element));
-  return inner + 1;
-}
-
-using Shape = std::vector<py::ssize_t>;
-
-/// The shape of a list, or of lists of lists, of pairs.
-Shape shape_of_pairs(const Json& json) {
-  Shape shape;
-  const Json* list = &json;
-  for (std::size_t lists = lists_around_pairs(json); lists > 0; --lists) {
-    shape.push_back(static_cast<py::ssize_t>(list->size()));
-    const auto full = std::find_if(list->begin(), list->end(), [&](const Json& element) {
-      return lists_around_pairs(element) + 1 == lists;
-    });
-    if (full != list->end()) list = &*full;
-  }
-  shape.push_back(2);
-  return shape;
-}
-
-/// Adds the numbers of a table of this shape, from its axis on, NaN for each below a null; false
-/// where it is none.
-bool add_numbers(const Json& x, const Shape& shape, std::size_t axis, std::vector<double>& all) {
-  if (x.is_null()) {
-    const auto rest = std::accumulate(shape.begin() + static_cast<std::ptrdiff_t>(axis),
-                                      shape.end(), py::ssize_t{1}, std::multiplies<>());
-    all.insert(all.end(), static_cast<std::size_t>(rest), std::numeric_limits<double>::quiet_NaN());
-    return true;
-  }
-  if (axis == shape.size()) {
-    if (x.is_number()) all.push_back(x.get<double>());
-    return x.is_number();
-  }
-  return x.is_array() && x.size() == static_cast<std::size_t>(shape[axis]) &&
-         std::all_of(x.begin(), x.end(), [&](const Json& element) {
-           return add_numbers(element, shape, axis + 1, all);
-         });
-}
-
-/// Whether the value of a key is an interval, or holds intervals: KEY_95. error_95 and its like
-/// are bounds, numbers.
-bool is_of_intervals(std::string_view key) {
-  return key.ends_with("_95") && !key.ends_with("error_95");
-}
-
-/// Rows and tables of numbers are numpy arrays. An interval is a tuple (low, high); a list or a
-/// table of intervals is an array whose last axis has low and high, NaN where there is none.
-py::object to_python(const Json& json, bool intervals = false) {
-  switch (json.type()) {
-    case Json::value_t::null:
-      return py::none();
-    case Json::value_t::boolean:
-      return py::bool_(json.get<bool>());
-    case Json::value_t::number_integer:
-      return py::int_(json.get<std::int64_t>());
-    case Json::value_t::number_unsigned:
-      return py::int_(json.get<std::uint64_t>());
-    case Json::value_t::number_float:
-      return py::float_(json.get<double>());
-    case Json::value_t::string:
-      return py::str(json.get<std::string>());
-    case Json::value_t::object: {
-      py::dict dict;
-      for (const auto& [key, value] : json.items())
-        dict[py::str(key)] = to_python(value, intervals || is_of_intervals(key));
-      return dict;
-    }
-    default:
-      break;
-  }
-  const auto as_array = [](const std::vector<double>& numbers, Shape shape) {
-    py::array_t<double> array(std::move(shape));
-    std::copy(numbers.begin(), numbers.end(), array.mutable_data());
-    return array;
-  };
-  if (intervals && is_pair(json)) {
-    const auto limit = [](const Json& x) -> py::object {
-      return x.is_null() ? py::float_(std::numeric_limits<double>::quiet_NaN()) : to_python(x);
-    };
-    return py::make_tuple(limit(json[0]), limit(json[1]));
-  }
-  if (intervals && !json.empty()) {
-    const Shape shape = shape_of_pairs(json);
-    std::vector<double> all;
-    if (add_numbers(json, shape, 0, all)) return as_array(all, shape);
-  }
-  if (!json.empty()) {
-    if (const auto numbers = numbers_of(json))
-      return as_array(*numbers, {static_cast<py::ssize_t>(json.size())});
-  }
-  if (!json.empty() && json[0].is_array() && !json[0].empty()) {
-    std::vector<double> all;
-    bool is_table = true;
-    for (const Json& row : json) {
-      const auto numbers = row.is_array() && row.size() == json[0].size()
-                               ? numbers_of(row)
-                               : std::optional<std::vector<double>>();
-      is_table = is_table && numbers.has_value();
-      if (!is_table) break;
-      all.insert(all.end(), numbers->begin(), numbers->end());
-    }
-    if (is_table)
-      return as_array(
-          all, {static_cast<py::ssize_t>(json.size()), static_cast<py::ssize_t>(json[0].size())});
-  }
-  py::list list;
-  for (const Json& x : json) list.append(to_python(x, intervals));
-  return list;
-}
 
 /// One command at a time: NetCDF's files are read and written by one thread, and a command is one
 /// of its process. Whoever waits hears Ctrl-C. A process that was forked meanwhile has its own.
@@ -317,7 +181,7 @@ py::tuple run(const std::string& name, std::vector<std::string> words, const py:
               const py::object& warned, const py::object& cell,
               const std::vector<const Matrix*>& matrices) {
   const cli::Command& command = command_of(name);
-  Json result;
+  py::object result = py::none();
   cli::Arguments arguments(std::move(words));
   arguments.work =
       dynamics::Work{[&](std::string_view what, std::int64_t done, std::int64_t total) {
@@ -330,7 +194,10 @@ py::tuple run(const std::string& name, std::vector<std::string> words, const py:
     const py::gil_scoped_acquire gil;
     warned(text);
   };
-  arguments.given_out = [&](const cli::Description& describe) { result = cli::json_of(describe); };
+  arguments.given_out = [&](const cli::Description& describe) {
+    const py::gil_scoped_acquire gil;
+    result = to_python(describe);
+  };
   if (!cell.is_none()) arguments.cell = std::make_shared<PythonCell>(cell);
   for (const Matrix* matrix : matrices) arguments.loaded.push_back(matrix->loaded());
   int status = 0;
@@ -339,7 +206,7 @@ py::tuple run(const std::string& name, std::vector<std::string> words, const py:
     const py::gil_scoped_release no_gil;
     status = command.run(arguments);
   }
-  return py::make_tuple(status, to_python(result));
+  return py::make_tuple(status, result);
 }
 
 /// The keys of a command's results: name of each list, and its keys with type, unit, meaning and
@@ -401,7 +268,7 @@ PYBIND11_MODULE(_core, m) {
   m.def("run", &python::run, pybind11::arg("command"), pybind11::arg("words"), pybind11::kw_only(),
         pybind11::arg("told"), pybind11::arg("warned"), pybind11::arg("cell"),
         pybind11::arg("matrices"),
-        "Runs a command with these words: (exit status, its result as JSON says it). told(what, "
+        "Runs a command with these words: (exit status, its result as a dict). told(what, "
         "done, total) hears how far it is, warned(text) what it warns of. Files of `matrices` are "
         "not read again.");
   m.def("result_keys", &python::result_keys, pybind11::arg("command"),

@@ -677,6 +677,26 @@ class Results(unittest.TestCase):
         self.assertEqual(list(frame["trials"]), [20, 20])
         self.assertIn("vy", gw.trace(FIELD).to_frame())
 
+    def test_fields_of_two_columns(self):
+        """Their rows have two numbers, as intervals do."""
+        import matplotlib
+
+        matplotlib.use("Agg")
+        field = {"field.columns": 2, "field.rows": 3}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", gw.GatewalkWarning)
+            few = gw.from_passages(ROOT / "scenes/tracks/runs.csv", ROOT / "scenes/tracks/cell.toml").predict(set=field)
+        many = gw.predict(FIELD, accuracy=0.2, set=field)
+        self.assertIsNone(few.final_gates_95)  # of fewer than 16 bodies there are no intervals
+        self.assertEqual(set(few.endings_95.values()), {None})
+        self.assertEqual(many.final_gates_95.shape, (3, 2, 2))
+        for p, has_intervals in ((few, False), (many, True)):
+            self.assertEqual(p.final_gates.shape, (3, 2))
+            data = p.to_xarray()
+            self.assertEqual(data.final_gates.shape, (3, 2))
+            self.assertEqual("final_gates_95" in data, has_intervals)
+            self.assertEqual("95 % intervals" in p.plot()[1].get_xlabel(), has_intervals)
+
     def test_lists_of_intervals_and_of_bounds(self):
         v = gw.validate(FIELD, accuracy=0.2, trials=200, null_draws=99, start=[(0.0, 0.0, 15.0), (1.0, 0.0, 15.0)])
         step = v.markov["gates_ahead"]["steps"][0]

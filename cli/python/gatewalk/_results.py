@@ -43,8 +43,8 @@ class Result(collections.abc.Mapping):  # type: ignore[type-arg]
     """A command's result: its JSON as a mapping, keys as attributes too. Equal where all but times and origin is.
 
     Tables of numbers are numpy arrays. The 95 % interval of `x` is `x_95`, a tuple (low, high) in the unit of x, or None. Of a
-    list or table x it is an array with one more axis, the last: low and high, NaN where there is none. The docstring of the
-    function that gives the result says what each key means.
+    list or table x it is an array with one more axis, the last: low and high, NaN where there is none. A table without any
+    interval has None. The docstring of the function that gives the result says what each key means.
     """
 
     def __init__(self, data: dict[str, t.Any]) -> None:
@@ -190,14 +190,12 @@ class Prediction(Result):
         ends = self._all(first)
         table = np.array(list(ends.values()), dtype=float) / total
         names = [name.replace("_", " ") for name in ends]
-        bars = first.get("endings_95")
-        errors = None
-        if bars:
-            limits = np.array(list(self._limits(first).values()), dtype=float) / total
-            errors = 100 * np.clip(np.stack([table - limits[:, 0], limits[:, 1] - table]), 0.0, None)
+        limits = np.array(list(self._limits(first).values()), dtype=float) / total
+        has_limits = np.isfinite(limits).any()
+        errors = 100 * np.clip(np.stack([table - limits[:, 0], limits[:, 1] - table]), 0.0, None) if has_limits else None
         axes[1].barh(names, 100 * table, xerr=errors, color="0.6", ecolor="black", capsize=2)
         axes[1].invert_yaxis()
-        axes[1].set_xlabel("% of bodies, with 95 % intervals" if bars else "% of bodies")
+        axes[1].set_xlabel("% of bodies, with 95 % intervals" if has_limits else "% of bodies")
         return axes
 
     def _lines(self) -> list[tuple[str, str]]:
@@ -235,11 +233,6 @@ class FirstPassage(Result):
         ``mean_time_s``, the mean first passage times, NaN where nobody gets there. In the target 1, and 0. Row 0 is the one
         bodies enter by.
     """
-
-    def __init__(self, data: dict[str, t.Any]) -> None:
-        tables = data.get("of_states") or {}
-        super().__init__({**data, "of_states": {k: None if v is None else np.array([[np.asarray(cell, dtype=float) for cell in row] for row in v])
-                                                for k, v in tables.items()} or None})
 
     def to_frame(self) -> t.Any:
         """A pandas.DataFrame: a line per gate and state, i_x (bodies start in i_x = 0), i_y and the state's name its index."""
