@@ -62,7 +62,7 @@ struct Absorption {
   std::vector<Number> steps;  // (n) expected draws until the end
 };
 
-/// Throws std::invalid_argument naming the state (counted from 1) unless all chances are >= 0, each
+/// Throws std::invalid_argument naming the state (counted from 0) unless all chances are >= 0, each
 /// row sums to 1 within 1e-12, and every state can reach an end.
 template <class Number>
 void validate(const AbsorbingChain<Number>& chain) {
@@ -73,8 +73,8 @@ void validate(const AbsorbingChain<Number>& chain) {
                                 " and " + std::to_string(chain.ends.rows()) + " x " +
                                 std::to_string(m));
   const auto refuse = [](std::ptrdiff_t state, const char* why) {
-    throw std::invalid_argument("absorbing chain: state " + std::to_string(state + 1) +
-                                " (counted from 1) " + why);
+    throw std::invalid_argument("absorbing chain: state " + std::to_string(state) +
+                                " (counted from 0) " + why);
   };
   const Number none(0), least(1.0 - 1e-12), most(1.0 + 1e-12);
   std::vector<char> can_end(static_cast<std::size_t>(n));
@@ -134,8 +134,8 @@ template <class Number>
     for (std::ptrdiff_t j = 0; j < m; ++j) leaves += from[j];
     for (std::ptrdiff_t j = right; j < right + k; ++j) leaves += from[j];
     if (!(leaves > none))
-      throw std::runtime_error("absorbing chain: what leaves state " + std::to_string(k + 1) +
-                               " (counted from 1) is too little for this kind of number");
+      throw std::runtime_error("absorbing chain: what leaves state " + std::to_string(k) +
+                               " (counted from 0) is too little for this kind of number");
     for (std::ptrdiff_t j = 0; j < right + k; ++j) from[j] /= leaves;
   };
   // From the last state to the first, some rows at a time: they share what is read of those behind.

@@ -18,7 +18,7 @@ namespace {
 constexpr double kRowSumTolerance = 1e-12;
 
 std::string row_name(std::int64_t row) {
-  return "row " + std::to_string(row + 1) + " (counted from 1)";
+  return "row " + std::to_string(row) + " (counted from 0)";
 }
 
 std::string printed(double value) { return fmt::format("{:.17g}", value); }
@@ -37,7 +37,7 @@ void validate(const std::vector<Exit>& exits, std::int64_t inputs, std::int64_t 
   }
   for (std::size_t j = 0; j < exits.size(); ++j) {
     const Exit& exit = exits[j];
-    const std::string name = "exit of output " + std::to_string(j + 1) + " (counted from 1): ";
+    const std::string name = "exit of output " + std::to_string(j) + " (counted from 0): ";
     if (exit.next_input == Exit::kTrapped) {
       if (exit.di_x != 0 || exit.di_y != 0) refuse(name + "trapped, and yet it moves");
     } else if (exit.next_input < 0 || exit.next_input >= inputs) {
@@ -59,7 +59,7 @@ Chain Chain::from_counts(const Counts& counts, std::vector<Exit> exits) {
     for (Counts::InnerIterator it(counts, row); it; ++it) {
       if (it.value() < 0) {
         refuse(row_name(row) + ": count " + std::to_string(it.value()) + " of output " +
-               std::to_string(it.col() + 1) + " is negative");
+               std::to_string(it.col()) + " is negative");
       }
       if (__builtin_add_overflow(total, it.value(), &total)) {
         refuse(row_name(row) + ": the sum of counts overflows");
@@ -83,7 +83,7 @@ Chain Chain::from_probabilities(Probabilities matrix, std::vector<Exit> exits) {
     for (Probabilities::InnerIterator it(matrix, row); it; ++it) {
       if (!(std::isfinite(it.value()) && it.value() >= 0.0)) {
         refuse(row_name(row) + ": " + printed(it.value()) + " of output " +
-               std::to_string(it.col() + 1) + " is not a probability");
+               std::to_string(it.col()) + " is not a probability");
       }
       empty = empty && it.value() == 0.0;
       sum += it.value();

@@ -26,7 +26,7 @@ struct Exit {
   friend bool operator==(const Exit&, const Exit&) = default;
 };
 
-/// Throws std::invalid_argument naming the output (counted from 1) unless there is one exit per
+/// Throws std::invalid_argument naming the output (counted from 0) unless there is one exit per
 /// output, next_input is in [0, inputs) or kTrapped, and a trapped exit does not move.
 void validate(const std::vector<Exit>& exits, std::int64_t inputs, std::int64_t outputs);
 
@@ -35,7 +35,7 @@ void validate(const std::vector<Exit>& exits, std::int64_t inputs, std::int64_t 
 class Chain {
  public:
   /// Rows become counts / row sum; an all-zero row becomes "unsampled".
-  /// Throws std::invalid_argument naming the row (counted from 1, as all messages here) on a
+  /// Throws std::invalid_argument naming the row (counted from 0, as all messages here) on a
   /// negative count or an overflowing sum, and on exits that do not fit.
   static Chain from_counts(const Counts& counts, std::vector<Exit> exits);
 

@@ -45,7 +45,7 @@ int state_of_all(const Columns& moves) {
     if (marked[state] == 0)
       throw std::invalid_argument(
           "diffusion: it depends on the start where walks stay: from state " +
-          std::to_string(state + 1) + " (counted from 1) none gets to " + std::to_string(last + 1));
+          std::to_string(state) + " (counted from 0) none gets to " + std::to_string(last));
   return last;
 }
 
@@ -54,8 +54,8 @@ Columns moves_of(const Chain& chain) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int input = 0; input < chain.inputs(); ++input) {
     const auto refuse = [&](const char* what) {
-      throw std::invalid_argument("diffusion: state " + std::to_string(input + 1) +
-                                  " (counted from 1) " + what);
+      throw std::invalid_argument("diffusion: state " + std::to_string(input) +
+                                  " (counted from 0) " + what);
     };
     if (!chain.is_sampled(input)) refuse("was never sampled");
     for (Probabilities::InnerIterator it(chain.matrix(), input); it; ++it) {

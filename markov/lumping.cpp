@@ -31,11 +31,11 @@ int number_of_groups(const Chain& chain, const std::vector<int>& group_of,
   std::vector<char> is_named(inputs);
   for (std::size_t i = 0; i < inputs; ++i) {
     if (group_of[i] < 0 || group_of[i] >= chain.inputs())
-      refuse_lumping("state " + std::to_string(i + 1) + " (counted from 1) is in group " +
+      refuse_lumping("state " + std::to_string(i) + " (counted from 0) is in group " +
                      std::to_string(group_of[i]) + " of " + std::to_string(inputs) + " at most");
     if (!(weights[i] >= 0.0 && std::isfinite(weights[i])))
-      refuse_lumping("the weight of state " + std::to_string(i + 1) +
-                     " (counted from 1) is negative or no number");
+      refuse_lumping("the weight of state " + std::to_string(i) +
+                     " (counted from 0) is negative or no number");
     is_named[static_cast<std::size_t>(group_of[i])] = 1;
   }
   const auto groups = std::find(is_named.begin(), is_named.end(), 0) - is_named.begin();

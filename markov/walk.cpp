@@ -406,8 +406,8 @@ std::int32_t Walker::pick(int row, Word word) const {
 
 int Walker::draw(int row, Word word) const {
   if (row < 0 || row >= chain_.inputs() || !chain_.is_sampled(row)) {
-    throw std::invalid_argument("row " + std::to_string(row + 1) +
-                                " (counted from 1) cannot be drawn from: it does not exist or was "
+    throw std::invalid_argument("row " + std::to_string(row) +
+                                " (counted from 0) cannot be drawn from: it does not exist or was "
                                 "never sampled");
   }
   return pick(row, word);

@@ -72,7 +72,9 @@ double rounding_of(const SparseTable& table, std::size_t begin, std::size_t end,
   return most * kTies;
 }
 
-std::string row_text(const SparseTable::Entry& e) { return fmt::format("row {} (from 0)", e.row); }
+std::string row_text(const SparseTable::Entry& e) {
+  return fmt::format("row {} (counted from 0)", e.row);
+}
 
 constexpr const char* kEffective =
     "round effective counts to whole numbers, which keeps error bars, or divide each row by its "
@@ -156,9 +158,9 @@ SparseTable counts_of(const std::string& path, const Trajectories& all, std::int
       const bool is_last = k + 1 == one.size() || one[k + 1] == kGap;
       if (one[k] < 0 || one[k] > (is_last ? states : states - 1))
         throw std::runtime_error(
-            fmt::format("{}: trajectory {}, step {}: there is no state {} (0 to {}; at the end {}: "
-                        "trapped; -1: a gap)",
-                        path, t + 1, k + 1, one[k], states - 1, states));
+            fmt::format("{}: trajectory {}, step {} (counted from 0): there is no state {} (0 to "
+                        "{}; at the end {}: trapped; -1: a gap)",
+                        path, t, k, one[k], states - 1, states));
       pieces += has_gaps && is_last ? 1 : 0;
       if (k > 0 && one[k - 1] != kGap) ++counts[{one[k - 1], one[k]}];
     }
@@ -330,7 +332,7 @@ ForeignMatrix read_foreign(const std::string& path, const std::vector<ForeignSta
     if (!(e.value >= 0.0) || !std::isfinite(e.value) ||
         (table.whole && (e.value != std::floor(e.value) || e.value > 1e15)))
       throw std::runtime_error(
-          fmt::format("{}: row {}, column {} (from 0): {}{}{}", path, e.row, e.column,
+          fmt::format("{}: row {}, column {} (counted from 0): {}{}{}", path, e.row, e.column,
                       shortest(e.value), table.whole ? " is no count" : " is no probability",
                       table.whole && e.value > 0.0 && std::isfinite(e.value)
                           ? fmt::format(": counts are whole numbers of runs; {}", kEffective)

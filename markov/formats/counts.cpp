@@ -47,7 +47,7 @@ const std::set<std::string> kOwnAttributes = {"format", "format_version", "check
 [[noreturn]] void refuse_counts(const std::string& what) { throw std::invalid_argument(what); }
 
 std::string named_row(std::int64_t row) {
-  return "row " + std::to_string(row + 1) + " (counted from 1)";
+  return "row " + std::to_string(row) + " (counted from 0)";
 }
 
 // The dimension of an array; no variable may have its name (netCDF 4.9 stumbles over some such).
@@ -456,7 +456,7 @@ class Reader {
       }
     }
     if (k < count.size()) {
-      throw std::runtime_error("count_row: entry " + std::to_string(k + 1) + ", row " +
+      throw std::runtime_error("count_row: entry " + std::to_string(k) + " (counted from 0), row " +
                                std::to_string(row[k]) + ", is out of range or out of order");
     }
     result.finalize();

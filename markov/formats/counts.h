@@ -57,7 +57,7 @@ struct CountsFile : RowCounts {
 };
 
 /// The file is damaged, is not ours, or does not add up. what() names the file and, where there is
-/// one, the row (counted from 1, as in the paper's I_1 ... I_87).
+/// one, the row (counted from 0: the paper's I_1 is row 0).
 class BadFile : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -85,7 +85,7 @@ void write_counts(const std::string& path, const CountsFile& file);
 [[nodiscard]] std::optional<std::string> text_of_counts(const std::string& path,
                                                         const std::string& name);
 
-/// What is wrong with a file of a bad checksum, for people: "row 12 (counted from 1): counts add up
+/// What is wrong with a file of a bad checksum, for people: "row 12 (counted from 0): counts add up
 /// to ...", or that its content adds up all the same. Empty where nothing in it can be read. Looks
 /// in a child process, because HDF5 may crash or hang on damaged bytes.
 [[nodiscard]] std::string diagnose_counts(const std::string& path);

@@ -235,7 +235,8 @@ class PredictionRows {
         }
         if (sums == most_sums_)
           throw std::runtime_error("predict by rows: after " + std::to_string(sums) +
-                                   " moves within row " + std::to_string(row + 1) + " a share of " +
+                                   " moves within row " + std::to_string(row) +
+                                   " (counted from 0) a share of " +
                                    fmt::format("{:f}", walking[j]) +
                                    " still walks there: it can circle (almost) for ever");
         ++starts_[j].steps;

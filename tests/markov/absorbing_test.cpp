@@ -245,16 +245,16 @@ TYPED_TEST(Absorbing, RefusesStatesThatNeverEnd) {
   AbsorbingChain<TypeParam> chain(3, 1);
   chain.moves(0, 1) = chain.ends(0, 0) = fraction<TypeParam>(1, 2);
   chain.moves(1, 2) = chain.moves(2, 1) = TypeParam(1);
-  EXPECT_EQ(complaint(chain), "absorbing chain: state 2 (counted from 1) never ends");
+  EXPECT_EQ(complaint(chain), "absorbing chain: state 1 (counted from 0) never ends");
 }
 
 TYPED_TEST(Absorbing, RefusesWhatIsNoChain) {
   auto chain = two_states<TypeParam>();
   chain.moves(1, 0) = fraction<TypeParam>(1, 4);
   EXPECT_EQ(complaint(chain),
-            "absorbing chain: state 2 (counted from 1) has chances that do not sum to 1");
+            "absorbing chain: state 1 (counted from 0) has chances that do not sum to 1");
   chain.moves(0, 1) = TypeParam(-1);
-  EXPECT_EQ(complaint(chain), "absorbing chain: state 1 (counted from 1) has a negative chance");
+  EXPECT_EQ(complaint(chain), "absorbing chain: state 0 (counted from 0) has a negative chance");
   chain.ends = Dense<TypeParam>(3, 1);
   EXPECT_EQ(complaint(chain),
             "absorbing chain: n x n moves and n x m ends are needed, not 2 x 2 and 3 x 1");

@@ -189,7 +189,7 @@ TEST(BlockField, RefusesWhatDoesNotFit) {
   const Chain circle = Chain::from_probabilities(test::matrix(2, 2, {{0, 1, 1.0}, {1, 0, 1.0}}),
                                                  {{0, 1, 0}, {1, -1, 0}});
   EXPECT_EQ(complaint(circle, {3, 3}, {0, 0, 1}),
-            "absorbing chain: state 2 (counted from 1) never ends");
+            "absorbing chain: state 1 (counted from 0) never ends");
   const BlockField blocks = block_field(chain, {3, 3});
   EXPECT_THROW((void)blocks.field({10, 9}), std::invalid_argument);
   EXPECT_THROW((void)blocks.start({1, 1, 0}), std::invalid_argument);

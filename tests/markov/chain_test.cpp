@@ -70,10 +70,10 @@ TEST(Chain, RefusesCountsThatAreNone) {
   Counts counts(2, 2);
   counts.coeffRef(0, 0) = 1;
   counts.coeffRef(1, 1) = -1;
-  EXPECT_REFUSED(Chain::from_counts(counts, kTwoExits), "row 2 (counted from 1): count -1");
+  EXPECT_REFUSED(Chain::from_counts(counts, kTwoExits), "row 1 (counted from 0): count -1");
   counts.coeffRef(1, 0) = std::numeric_limits<std::int64_t>::max();
   counts.coeffRef(1, 1) = 1;
-  EXPECT_REFUSED(Chain::from_counts(counts, kTwoExits), "row 2 (counted from 1): the sum");
+  EXPECT_REFUSED(Chain::from_counts(counts, kTwoExits), "row 1 (counted from 0): the sum");
 }
 
 TEST(Chain, RefusesARowThatDoesNotAddUp) {
@@ -81,9 +81,9 @@ TEST(Chain, RefusesARowThatDoesNotAddUp) {
     return Chain::from_probabilities(matrix(2, 2, {{0, 1, 1.0}, {1, 0, 0.25}, {1, 1, sum - 0.25}}),
                                      kTwoExits);
   };
-  EXPECT_REFUSED(with_sum(0.9), "row 2 (counted from 1): probabilities sum to 0.90000000000000002");
-  EXPECT_REFUSED(with_sum(1.0 + 1.1e-12), "row 2");
-  EXPECT_REFUSED(with_sum(1.0 - 1.1e-12), "row 2");
+  EXPECT_REFUSED(with_sum(0.9), "row 1 (counted from 0): probabilities sum to 0.90000000000000002");
+  EXPECT_REFUSED(with_sum(1.0 + 1.1e-12), "row 1");
+  EXPECT_REFUSED(with_sum(1.0 - 1.1e-12), "row 1");
   // Nothing is normalised: what is within the tolerance stays as it came.
   EXPECT_EQ(with_sum(1.0 - 9e-13).matrix().coeff(1, 1), (1.0 - 9e-13) - 0.25);
 }
@@ -92,7 +92,7 @@ TEST(Chain, RefusesWhatIsNoProbability) {
   for (const double p : {-1e-300, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     EXPECT_REFUSED(
         Chain::from_probabilities(matrix(2, 2, {{0, 1, 1.0}, {1, 0, p}, {1, 1, 1.0}}), kTwoExits),
-        "of output 1 is not a probability");
+        "of output 0 is not a probability");
   }
 }
 
@@ -109,8 +109,8 @@ TEST(Chain, RefusesExitsThatDoNotFit) {
   EXPECT_EQ(build({{0, -3, 7}, {}}).inputs(), 1);
   EXPECT_REFUSED(build({{}}), "1 exits for 2 outputs");
   EXPECT_REFUSED(build({{}, {}, {}}), "3 exits for 2 outputs");
-  EXPECT_REFUSED(build({{}, {1, 0, 1}}), "exit of output 2 (counted from 1): next_input 1");
-  EXPECT_REFUSED(build({{-2, 0, 0}, {}}), "exit of output 1");
+  EXPECT_REFUSED(build({{}, {1, 0, 1}}), "exit of output 1 (counted from 0): next_input 1");
+  EXPECT_REFUSED(build({{-2, 0, 0}, {}}), "exit of output 0");
   EXPECT_REFUSED(build({{Exit::kTrapped, 1, 0}, {}}), "trapped, and yet it moves");
   EXPECT_REFUSED(build({{Exit::kTrapped, 0, -1}, {}}), "trapped, and yet it moves");
   EXPECT_REFUSED(Chain::from_counts(Counts(0, 2), {{}, {}}), "at least one input");

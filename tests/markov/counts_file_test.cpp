@@ -333,19 +333,19 @@ TEST_F(ChainIo, RefusesToWriteWhatDoesNotAddUp) {
     EXPECT_TRUE(same(read_counts(path()), example()));
     EXPECT_EQ(files(), 1);
   };
-  refused("row 5 (counted from 1): counts add up to", [](CountsFile& f) { f.trials[4] += 1; });
-  refused("row 42 (counted from 1): counts add up to 0", [](CountsFile& f) { f.trials[41] = 1; });
-  refused("row 1 (counted from 1): a count is negative",
+  refused("row 4 (counted from 0): counts add up to", [](CountsFile& f) { f.trials[4] += 1; });
+  refused("row 41 (counted from 0): counts add up to 0", [](CountsFile& f) { f.trials[41] = 1; });
+  refused("row 0 (counted from 0): a count is negative",
           [](CountsFile& f) { f.counts.coeffRef(0, 1) = -1; });
   refused("the sum of counts overflows", [](CountsFile& f) {
     f.counts.coeffRef(0, 1) = std::numeric_limits<std::int64_t>::max();
   });
-  refused("row 3 (counted from 1): -1 clamped", [](CountsFile& f) { f.clamped[2] = -1; });
-  refused("row 3", [](CountsFile& f) { f.clamped[2] = f.trials[2] + 1; });
+  refused("row 2 (counted from 0): -1 clamped", [](CountsFile& f) { f.clamped[2] = -1; });
+  refused("row 2", [](CountsFile& f) { f.clamped[2] = f.trials[2] + 1; });
   refused("each of the 87 rows", [](CountsFile& f) { f.trials.pop_back(); });
   refused("each of the 87 rows", [](CountsFile& f) { f.clamped.push_back(0); });
   refused("87 exits for 88 outputs", [](CountsFile& f) { f.exits.pop_back(); });
-  refused("exit of output 88", [](CountsFile& f) { f.exits.back().di_x = 1; });
+  refused("exit of output 87", [](CountsFile& f) { f.exits.back().di_x = 1; });
   refused("name \"trials\" is taken", [](CountsFile& f) { f.arrays[0].name = "trials"; });
   refused("name \"empty\" is taken", [](CountsFile& f) { f.arrays[1].name = "empty"; });
   refused("name \"empty_length\" is taken",
@@ -376,7 +376,7 @@ TEST_F(ChainIo, RefusesToWriteWhatDoesNotAddUp) {
     refused("name \"" + name + "\"", [&](CountsFile& f) { f.arrays[0].name = name; });
     refused("name \"" + name + "\"", [&](CountsFile& f) { f.text[name] = "1"; });
   }
-  refused("type s: row 5 (counted from 1): counts add up to", [](CountsFile& f) {
+  refused("type s: row 4 (counted from 0): counts add up to", [](CountsFile& f) {
     f.types["s"] = static_cast<const RowCounts&>(f);
     f.types["s"].trials[4] += 1;
   });
@@ -534,29 +534,29 @@ TEST_F(ChainIo, RefusesEveryMalformedDraft) {
   const auto value = [](const std::string& name, std::size_t at, std::int64_t number) {
     return [=](Draft& d) { d.variables.at(name).values.at(at) = number; };
   };
-  refused("row 1 (counted from 1): counts add up to 13, trials are 12", value("count", 0, 6));
-  refused("row 2 (counted from 1): counts add up to 3, trials are 4", value("trials", 1, 4));
-  refused("row 2 (counted from 1): count 0 is not positive", value("count", 2, 0));
-  refused("row 2 (counted from 1): count -1 is not positive", value("count", 2, -1));
-  refused("row 1 (counted from 1): the sum of counts overflows",
+  refused("row 0 (counted from 0): counts add up to 13, trials are 12", value("count", 0, 6));
+  refused("row 1 (counted from 0): counts add up to 3, trials are 4", value("trials", 1, 4));
+  refused("row 1 (counted from 0): count 0 is not positive", value("count", 2, 0));
+  refused("row 1 (counted from 0): count -1 is not positive", value("count", 2, -1));
+  refused("row 0 (counted from 0): the sum of counts overflows",
           value("count", 0, std::numeric_limits<std::int64_t>::max()));
-  refused("row 2 (counted from 1): 4 clamped of 3 trials", value("clamped", 1, 4));
-  refused("row 2 (counted from 1): -1 clamped", value("clamped", 1, -1));
-  refused("row 1 (counted from 1): column 2 is repeated", value("count_column", 0, 2));
-  refused("row 2 (counted from 1): column 1 is repeated or out of order", [](Draft& d) {
+  refused("row 1 (counted from 0): 4 clamped of 3 trials", value("clamped", 1, 4));
+  refused("row 1 (counted from 0): -1 clamped", value("clamped", 1, -1));
+  refused("row 0 (counted from 0): column 2 is repeated", value("count_column", 0, 2));
+  refused("row 1 (counted from 0): column 1 is repeated or out of order", [](Draft& d) {
     d.variables.at("count_column").values = {0, 2, 2, 1};
   });
-  refused("row 1 (counted from 1): column -1 is out of range", value("count_column", 0, -1));
-  refused("row 2 (counted from 1): column 3 is out of range", value("count_column", 3, 3));
-  refused("count_row: entry 1, row -1", value("count_row", 0, -1));
-  refused("count_row: entry 4, row 2", value("count_row", 3, 2));
-  refused("count_row: entry 3, row 0", [](Draft& d) {
+  refused("row 0 (counted from 0): column -1 is out of range", value("count_column", 0, -1));
+  refused("row 1 (counted from 0): column 3 is out of range", value("count_column", 3, 3));
+  refused("count_row: entry 0 (counted from 0), row -1", value("count_row", 0, -1));
+  refused("count_row: entry 3 (counted from 0), row 2", value("count_row", 3, 2));
+  refused("count_row: entry 2 (counted from 0), row 0", [](Draft& d) {
     d.variables.at("count_row").values = {0, 1, 0, 1};
   });
-  refused("exit of output 2 (counted from 1): next_input 2", value("exit_next_input", 1, 2));
-  refused("exit of output 2 (counted from 1): next_input -2", value("exit_next_input", 1, -2));
-  refused("exit of output 3 (counted from 1): trapped", value("exit_di_x", 2, 1));
-  refused("exit of output 3 (counted from 1): trapped", value("exit_di_y", 2, 1));
+  refused("exit of output 1 (counted from 0): next_input 2", value("exit_next_input", 1, 2));
+  refused("exit of output 1 (counted from 0): next_input -2", value("exit_next_input", 1, -2));
+  refused("exit of output 2 (counted from 0): trapped", value("exit_di_x", 2, 1));
+  refused("exit of output 2 (counted from 0): trapped", value("exit_di_y", 2, 1));
 
   const Draft whole;
   for (const auto& entry : whole.variables) {

@@ -138,7 +138,7 @@ taken 'probabilities' a.mtx "$head real general\n3 4 4\n1 1 +0.5\n1 4 +5.0E-01\n
 # A third with six digits is a third; with those of floats too. One number that is no rounding of it is refused (below).
 thirds='up,up,0.3333333333333333 up,aside,0.3333333333333333 up,trapped,0.3333333333333333'
 for third in 0.333333 3.33333e-01 0.333 0.33333334 0.3333333432674408; do
-  taken 'rows sum to 1 but for the rounding of their numbers (row 0 (from 0) to ' a.csv "from,to,probability\nup,up,$third\nup,aside,$third\nup,trapped,$third\n"
+  taken 'rows sum to 1 but for the rounding of their numbers (row 0 (counted from 0) to ' a.csv "from,to,probability\nup,up,$third\nup,aside,$third\nup,trapped,$third\n"
   sed -E '1d; s/(0.333333333333333)[0-9]*/\13/' taken.csv | tr '\n' ' ' | grep -qx "$thirds " || fail "$third: $(cat taken.csv)"
 done
 # Each row a single 1: what the numbers are written as decides.
@@ -158,10 +158,10 @@ wrong() { # TEXT FILE CONTENT
   expect 2 "$1" "$gatewalk" import "$2" --states s.csv -o no.nc
   [ ! -e no.nc ] || fail "$2: something is written"
 }
-wrong 'w.csv: row 0 (from 0) sums to 0.9: probabilities' w.csv 'from,to,probability\n0,0,.5\n0,1,.4\n'
+wrong 'w.csv: row 0 (counted from 0) sums to 0.9: probabilities' w.csv 'from,to,probability\n0,0,.5\n0,1,.4\n'
 wrong 'w.csv:2: there is no state "sideways"' w.csv 'from,to,count\nsideways,up,1\n'
 wrong 'w.csv:3: has the same row and column as line 2' w.csv 'from,to,count\n0,1,1\nup,aside,2\n'
-wrong 'w.csv: row 0, column 1 (from 0): -1 is no count' w.csv 'from,to,count\n0,1,-1\n'
+wrong 'w.csv: row 0, column 1 (counted from 0): -1 is no count' w.csv 'from,to,count\n0,1,-1\n'
 wrong 'w.csv:1: must name the columns from,to,count or from,to,probability; there are a, b, c' w.csv 'a,b,c\n'
 wrong 'w.csv:1: must name the columns from,to,count or from,to,probability' w.csv 'from,to,count,probability\n0,1,10,1\n'
 wrong 'w.csv:2: has 4 fields, the line of the columns (line 1) has 3' w.csv 'from,to,count\n0,1,1,500\n'
@@ -175,16 +175,16 @@ wrong 'has 11 entries, not 12 as it says' w.mtx '%%MatrixMarket matrix array int
 wrong 'w.mtx:3: row and column must lie in 1 to 3' w.mtx '%%MatrixMarket matrix coordinate integer general\n3 3 1\n4 1 2\n'
 wrong 'has 1 entries, not 2 as it says' w.mtx '%%MatrixMarket matrix coordinate integer general\n3 3 2\n1 1 2\n'
 wrong 'of 3 states it must be 3 x 4, the last column trapped, or 3 x 3' w.mtx '%%MatrixMarket matrix coordinate integer general\n2 3 1\n1 1 2\n'
-wrong 'trajectory 2, step 1: there is no state 3' w.dtrajs '0 1\n3 0\n'
+wrong 'trajectory 1, step 0 (counted from 0): there is no state 3' w.dtrajs '0 1\n3 0\n'
 wrong 'w.dtrajs:1: "x" is no whole number' w.dtrajs '0 x\n'
-wrong 'trajectory 1, step 2: there is no state -2' w.dtrajs '0 -2 1\n'
+wrong 'trajectory 0, step 1 (counted from 0): there is no state -2' w.dtrajs '0 -2 1\n'
 wrong 'no trajectory has a second state: one column?' w.dtrajs '0\n1\n0\n2\n'
 wrong 'no trajectory has a second state: one column?' w.dtrajs '0 -1 1\n'
-wrong 'row 0, column 0 (from 0): 4.5 is no count: counts are whole numbers of runs; round effective counts' w.csv 'from,to,count\n0,0,4.5\n0,trapped,2.5\n'
-wrong 'row 0 (from 0) sums to 7: probabilities of a row sum to 1, counts are whole numbers (integer, count); round effective counts' w.mtx '%%MatrixMarket matrix coordinate real general\n3 4 2\n1 1 4.5\n1 4 2.5\n'
-wrong 'row 0 (from 0) sums to 0.996' w.csv 'from,to,probability\n0,0,.333\n0,1,.333\n0,2,.33\n'
-wrong 'row 0 (from 0) sums to 0.999997' w.csv 'from,to,probability\n0,0,0.333333\n0,1,0.333333\n0,2,0.333331\n'
-wrong 'row 0 (from 0) sums to 10' w.csv 'from,to,probability\n0,0,5\n0,1,5\n'
+wrong 'row 0, column 0 (counted from 0): 4.5 is no count: counts are whole numbers of runs; round effective counts' w.csv 'from,to,count\n0,0,4.5\n0,trapped,2.5\n'
+wrong 'row 0 (counted from 0) sums to 7: probabilities of a row sum to 1, counts are whole numbers (integer, count); round effective counts' w.mtx '%%MatrixMarket matrix coordinate real general\n3 4 2\n1 1 4.5\n1 4 2.5\n'
+wrong 'row 0 (counted from 0) sums to 0.996' w.csv 'from,to,probability\n0,0,.333\n0,1,.333\n0,2,.33\n'
+wrong 'row 0 (counted from 0) sums to 0.999997' w.csv 'from,to,probability\n0,0,0.333333\n0,1,0.333333\n0,2,0.333331\n'
+wrong 'row 0 (counted from 0) sums to 10' w.csv 'from,to,probability\n0,0,5\n0,1,5\n'
 wrong 'chain is one of a whole field, import takes that of one cell' w.tra '3 3\n0 1 1\n1 2 1\n2 0 1\n'
 wrong 'w.npz' w.npz 'no archive\n'
 wrong 'must end in .mtx, .csv, .npz or .dtrajs' w.txt '0 1\n'

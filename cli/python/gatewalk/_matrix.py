@@ -8,7 +8,6 @@ import csv
 import io
 import numbers
 import os
-import re
 import reprlib
 import shutil
 import tempfile
@@ -530,11 +529,6 @@ def _require_matrix(chain: t.Any) -> None:
         raise _core.UsageError(f"the chain: has a count of {data.max()}, more than 2^63 - 1")
 
 
-def _from_zero(text: str) -> str:
-    """Trajectories and steps as Python counts them."""
-    return re.sub(r"trajectory (\d+), step (\d+)", lambda m: f"trajectory {int(m[1]) - 1}, step {int(m[2]) - 1} (counted from 0)", text)
-
-
 @contextlib.contextmanager
 def _chain_file(chain: t.Any) -> t.Iterator[str]:
     """A file with a sparse or dense matrix, or with trajectories; a path as it is."""
@@ -569,10 +563,7 @@ def _chain_file(chain: t.Any) -> t.Iterator[str]:
             with open(name, "w", encoding="utf-8") as file:
                 file.writelines(" ".join(map(str, one)) + "\n" for one in trajectories)
         with called(name, "the chain"):
-            try:
-                yield name
-            except _core.UsageError as error:
-                raise _core.UsageError(_from_zero(str(error))) from error.__cause__
+            yield name
 
 
 def from_counts(chain: t.Any, states: t.Any, *, start: int | None = None, **more: t.Any) -> Matrix:
