@@ -41,8 +41,8 @@ void describe(Fields& out, const TraceResult& result);
 /// The film as above, with lost_in_hits_J.
 void describe(Fields& out, const Film& film);
 
-/// A whole page with the animation of all runs of a film; it loads nothing from anywhere. Its
-/// script says what a film lacks of the above.
+/// A whole page with the animation of all runs of a film; it loads nothing from anywhere. Where
+/// data are missing, the page says which.
 [[nodiscard]] std::string replay_page(const Film& film);
 
 }  // namespace gatewalk::cli

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "cli/kept/piece_log.h"
-#include "cli/render/json_value.h"
+#include "cli/render/json_fwd.h"
 #include "dynamics/base/work.h"
 
 namespace gatewalk::cli {

@@ -103,7 +103,7 @@ struct NamedMean {
 
   [[nodiscard]] bool says_why() const { return !mean->why_none.empty(); }
   void describe(Fields& out) const {
-    out.estimate(Field(key, unit, meaning).varying(varies), mean->mean, known(mean->interval));
+    out.estimate(Field(key, unit, meaning).varying(varies), mean->mean, mean->interval);
   }
 };
 
@@ -311,7 +311,7 @@ void describe_starts(Fields& out, const lattice::Analysis& a) {
              start.estimate({"probability", "1",
                              "chance of the target; in a mirror-symmetric field its mean with the "
                              "mirror image's; null: no run entered"},
-                            s.chance.mean, known(s.chance.interval));
+                            s.chance.mean, s.chance.interval);
              start.count({"runs", "1",
                           "gate runs from the state of this range; in a mirror-symmetric field "
                           "with those of the mirror image"},
@@ -380,7 +380,7 @@ void describe_elasticity(Fields& out, const lattice::Mean95& m) {
   out.estimate(
       {"elasticity", "1",
        "per cent by which the chance of the target changes for one per cent more of the number"},
-      m.mean, known(m.interval));
+      m.mean, m.interval);
 }
 
 void describe_effect(Fields& out, const AnalysedField& f, const lattice::ParameterEffect& e) {
@@ -414,7 +414,7 @@ void describe_effect(Fields& out, const AnalysedField& f, const lattice::Paramet
   out.estimate({"derivative", "1/(unit of the number)",
                 "change of the target's chance per unit of the number; null: types of gates differ "
                 "in the number"},
-               e.elasticity.mean * unit, known({low * unit, high * unit}));
+               e.elasticity.mean * unit, Interval{low * unit, high * unit});
 }
 
 void describe_sensitivities(Fields& out, const AnalysedField& f) {

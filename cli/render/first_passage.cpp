@@ -38,15 +38,15 @@ void describe(Fields& out, const PassageResult& result) {
   out.text({"target", "what bodies are to reach, as --first-passage gives it"}, asked.text);
   out.estimate({"probability", "1",
                 "share of bodies that reach the target; a body that starts there has reached it"},
-               f.chance.mean, known(f.chance.interval));
+               f.chance.mean, f.chance.interval);
   out.estimate(
       {"mean_gates", "1",
        "mean number of gates visited before the target is reached, of bodies that reach it"},
-      f.gates.mean, known(f.gates.interval));
+      f.gates.mean, f.gates.interval);
   out.estimate({"mean_time_s", "s",
                 "mean time until the target is reached, of bodies that reach it; null: none does, "
                 "or times were not measured"},
-               f.time.mean, known(f.time.interval));
+               f.time.mean, f.time.interval);
   std::optional<std::vector<std::string>> states;
   if (result.has_tables()) states.emplace();
   for (std::size_t k = 0; states && k < order.size(); ++k)

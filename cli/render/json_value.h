@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// JSON as a value, for what reads it; json.h writes JSON.
+/// JSON as a value, for what reads it; json.h writes JSON. The functions of both are in json.cpp.
 
 #include <nlohmann/json.hpp>
 #include <string>

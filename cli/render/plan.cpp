@@ -162,8 +162,7 @@ void describe_front(Fields& out, const PlannedField& p) {
         policy.estimate(
             {"mean", "its own",
              "mean cost of a trial, however the trial ends; unit: that of the cost in least"},
-            spent.mean,
-            std::isfinite(spent.mean_95[0]) ? std::optional(spent.mean_95) : std::nullopt);
+            spent.mean, spent.mean_95);
         policy.estimate(
             {"per_crossing", "its own",
              "cost of all trials divided by the number that crossed; null: none crossed"},
@@ -211,8 +210,7 @@ void describe_chance(Fields& out, const lattice::Crossings& c, double chain) {
 }
 
 void describe_gain(Fields& out, std::string_view meaning, const lattice::Gain& gain) {
-  out.estimate({"gain", "1", meaning}, gain.difference,
-               std::isnan(gain.interval_95[0]) ? std::nullopt : std::optional(gain.interval_95));
+  out.estimate({"gain", "1", meaning}, gain.difference, gain.interval_95);
 }
 
 std::string chance_text(const lattice::Crossings& c) {

@@ -18,7 +18,7 @@ namespace {
 using lattice::Mean95;
 
 void estimate(Fields& out, const Field& field, const Mean95& m) {
-  out.estimate(field, m.mean, known(m.interval));
+  out.estimate(field, m.mean, m.interval);
 }
 
 std::string with_interval(const Mean95& m) {

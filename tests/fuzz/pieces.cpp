@@ -8,6 +8,7 @@
 
 #include "cli/kept/kept_run.h"
 #include "cli/kept/piece_log.h"
+#include "cli/render/json_value.h"
 #include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/row_trials.h"
 #include "lattice/reference.h"
