@@ -162,10 +162,10 @@ void describe_row(Fields& out, const Transitions& t, int row) {
     f.text({"name", "name of the state, in a chain imported from elsewhere"}, name);
   });
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
-    out.numbers(Field(section.coordinates[axis].key, "its own",
-                      "range of the coordinate that the state covers; the key names the unit")
-                    .varying("<coordinate>"),
-                {range.at[axis][0], range.at[axis][1]});
+    out.range(Field(section.coordinates[axis].key, "its own",
+                    "range of the coordinate that the state covers; the key names the unit")
+                  .varying("<coordinate>"),
+              range.at[axis]);
   out.count({"trials", "1", "counts of the row: runs from this state"}, t.trials[row]);
   out.count({"clamped", "1", "crossings of these runs that lie outside all bins"}, t.clamped[row]);
   out.list({"outputs", "the outputs of this row that were counted"}, outputs_of(t, row),

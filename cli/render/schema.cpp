@@ -368,7 +368,8 @@ std::string result_page(const ResultOf& of) {
   std::string page = fmt::format(
       "The result of gatewalk {}, as --json writes it. Keys with a * are not in every result; [] "
       "stands for each item\n"
-      "of a list. An interval is [from, to], 95 %; without one it is null.\n",
+      "of a list. An interval is [from, to], 95 %; without one it is null. A range is [from, to], "
+      "what a coordinate covers.\n",
       of.command);
   for (const KeyList& list : keys_of(of)) {
     page += list.name == of.command ? "\nRESULT\n" : fmt::format("\n{}\n", list.name);
@@ -385,10 +386,9 @@ std::string result_page(const ResultOf& of) {
 std::string results_in_markdown() {
   std::string page =
       "# Results: the keys of `--json`\n\nMade by `gatewalk help --write`; the same of one "
-      "command: "
-      "`gatewalk help COMMAND --result`. Keys with a `*` are not\nin every result; `[]` stands for "
-      "each item of a list. An interval "
-      "is [from, to], 95 %; without one it is null.\n";
+      "command: `gatewalk help COMMAND --result`. Keys with a `*` are not\nin every result; `[]` "
+      "stands for each item of a list. An interval is [from, to], 95 %; without one it is null.\nA "
+      "range is [from, to], what a coordinate covers.\n";
   std::map<std::string, std::vector<KeyLine>, std::less<>> shared;
   const auto add = [&page](const KeyList& list) {
     page +=

@@ -61,13 +61,10 @@ void describe(Fields& out, const BinRecord& bins) {
 bool is_of_recorded_runs(const TreeRecord& trees) { return !trees.accuracy; }
 
 void describe(Fields& out, const lattice::PooledRange& range, const Section& section) {
-  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
-    const auto& [from, to] = range.range.at[axis];
-    out.numbers(
-        Field(section.coordinates[axis].key, "its own", "range of this coordinate: from, to")
-            .varying("<coordinate>"),
-        {from, to});
-  }
+  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
+    out.range(Field(section.coordinates[axis].key, "its own", "range of this coordinate: from, to")
+                  .varying("<coordinate>"),
+              range.range.at[axis]);
   out.count({"tried_on_starts", "1",
              "number of starts in the range at which the chain's error was estimated"},
             range.tried_on);

@@ -186,13 +186,13 @@ void describe(Fields& out, const lattice::StartValidation& r, const lattice::Pap
                          static_cast<double>(r.dynamics.trials), r.dynamics_endings);
         describe_endings(f,
                          {"walks",
-                          "number of walks by ending; walks_95 counts the sampling of the walks "
-                          "alone, without that of the matrix"},
+                          "number of walks by ending; walks_95 includes only the sampling error of "
+                          "the walks, not that of the matrix"},
                          r.walks.endings, static_cast<double>(r.walks.walks), r.walks_endings);
         describe_endings(f,
                          {"exact",
-                          "share of all bodies by ending; exact_95 counts the sampling of the "
-                          "matrix; null: no resampled matrices"},
+                          "share of all bodies by ending; exact_95 includes the sampling error of "
+                          "the matrix; null: no resampled matrices"},
                          r.exact_endings);
       });
   out.object({"fates", "shares of all bodies by fate"}, [&](Fields& f) {
