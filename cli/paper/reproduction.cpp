@@ -137,16 +137,19 @@ void describe(Fields& out, const std::vector<Record>& records) {
     });
 }
 
-/// Those of data/done.json; none of a file that has anything else.
-std::vector<Record> read_records() try {
+/// The records of data/done.json, but for those that lack something or have it of another type.
+std::vector<Record> read_records() {
   std::vector<Record> records;
   const Json done = read_json(kDone);
-  for (const auto& [study, record] : done.items())
-    records.push_back({study, record.at("command"), record.at("program"),
-                       record.value("remarks", ""), record.at("seconds")});
+  for (const auto& [study, record] : done.items()) {
+    try {
+      records.push_back({study, record.at("command"), record.at("program"),
+                         record.value("remarks", ""), record.at("seconds")});
+    } catch (const Json::exception&) {
+      continue;
+    }
+  }
   return records;
-} catch (const Json::exception&) {
-  return {};
 }
 
 /// The studies on record. Every finished one is there at once, so a run that is stopped goes on
