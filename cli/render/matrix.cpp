@@ -312,8 +312,9 @@ void describe(Fields& out, const ShownMatrix& shown) {
   describe_types(out, file);
   out.list({"rows", "rows of the matrix, one for each input"}, lattice::shown_order(t.space),
            [&](Fields& f, int row) { describe_row(f, t, row); });
-  if (const auto states = recorded_states(file, path); states || out.is_schema())
-    describe_state_space(out, states.value_or(StateRecord()));  // a foreign file may have none
+  const auto states = recorded_states(file, path);  // a foreign file may have none
+  out.optional(states.has_value(),
+               [&](Fields& f) { describe_state_space(f, states.value_or(StateRecord())); });
   out.object({"text", "other texts that the file keeps"}, [&](Fields& f) {
     for (const auto& [key, value] : file.text)
       f.text(Label(key, "attribute of this name in the file").varying("<attribute>"), value);

@@ -222,9 +222,9 @@ void describe_meaning(Fields& out, const Meaning& m, const lattice::Scene& scene
              });
   out.list({"far_from_walkers", "numbers of meaning that no walking animal or robot reaches"},
            far_from_walkers(m, scene), [](Fields& f, const FarFromWalkers& far) {
-             f.text(Label("name", "short name of the quantity in meaning")
+             f.text(Label("name", "key of the number in meaning")
                         .one_of({"froude", "push_per_weight", "random_per_weight",
-                                 "draws_per_length", "passages_waited"}),
+                                 "draws_per_body_length", "passages_waited"}),
                     far.name);
              f.text({"what", "the number in words"}, far.what);
              f.text({"reason", "why the number is far from walking"}, far.reason);
@@ -256,7 +256,7 @@ std::vector<FarFromWalkers> far_from_walkers(const Meaning& m, const lattice::Sc
          fmt::format("a random force of {} the body's weight", times_as(m.random_per_weight)),
          "feet hold by friction, which is seldom more than the weight"});
   if (m.draws_per_length > kMostSteps)
-    all.push_back({"draws_per_length",
+    all.push_back({"draws_per_body_length",
                    three_digits(m.draws_per_length) + " draws of the random force per body length",
                    "legs step a few times while the body goes its own length"});
   if (m.passages_waited < kLeastPatience)

@@ -184,15 +184,16 @@ void describe(Fields& out, const lattice::StartValidation& r, const lattice::Pap
       [&](Fields& f) {
         describe_endings(f, {"dynamics", "number of trials by ending"}, r.dynamics.endings,
                          static_cast<double>(r.dynamics.trials), r.dynamics_endings);
+        describe_endings(
+            f,
+            Label("walks", "number of walks by ending")
+                .bounded_by(
+                    "95 % intervals of walks: sampling error of the walks, not of the matrix"),
+            r.walks.endings, static_cast<double>(r.walks.walks), r.walks_endings);
         describe_endings(f,
-                         {"walks",
-                          "number of walks by ending; walks_95 includes only the sampling error of "
-                          "the walks, not that of the matrix"},
-                         r.walks.endings, static_cast<double>(r.walks.walks), r.walks_endings);
-        describe_endings(f,
-                         {"exact",
-                          "share of all bodies by ending; exact_95 includes the sampling error of "
-                          "the matrix; null: no resampled matrices"},
+                         Label("exact", "share of all bodies by ending")
+                             .bounded_by("95 % intervals of exact: sampling error of the matrix; "
+                                         "null: no resampled matrices"),
                          r.exact_endings);
       });
   out.object({"fates", "shares of all bodies by fate"}, [&](Fields& f) {

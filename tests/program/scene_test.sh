@@ -42,7 +42,7 @@ expect 0 'they hold the push of 0.24 N at 25.3 degrees' "$gatewalk" scene "$scen
 "$gatewalk" scene "$scenes/walker.toml" --json walker.json --quiet
 holds '.meaning | .far_from_walkers == [] and .top_speed_m_per_s > 0.29 and .top_speed_m_per_s < 0.31' walker.json
 "$gatewalk" scene --set body.mass_g=90 --set body.radius_cm=6 --set forces.propulsion_N=1 --json small.json --quiet
-holds '[.meaning.far_from_walkers[].name] == ["froude", "push_per_weight", "random_per_weight", "draws_per_length", "passages_waited"]' small.json
+holds '[.meaning.far_from_walkers[].name] == ["froude", "push_per_weight", "random_per_weight", "draws_per_body_length", "passages_waited"]' small.json
 expect 0 'far from any animal or robot that walks: .*a random force of 1.63 times the body.s weight' "$gatewalk" gate mine.toml --trials 10
 expect 2 'figure has no meaning beside --new' "$gatewalk" scene mine.toml --new --figure three.svg
 # A push in the file changes what is left out, by an option it does not: said where pushes are given, with the numbers to
