@@ -278,6 +278,12 @@ std::string schema_text(const Node& node, const std::string& indent, bool says_w
 
 // ---- As lines ----
 
+constexpr char kHowToRead[] =
+    "[] stands for each item of a list. An interval is [from, to], 95 %, null where there is none; "
+    "that of a count is the interval of its share, times the number of runs, trials or walks. A "
+    "range is [from, to], what a coordinate covers. A grid has a list for each row of gates, from "
+    "the start's side on, with a value for each column.";
+
 std::string type_words(const Node& node) {
   const auto& [words, type, rest] = text_of(node.kind);
   if (!node.may_be_null || *type == '\0') return words;
@@ -365,12 +371,12 @@ std::vector<KeyList> keys_of(const ResultOf& of) {
 }
 
 std::string result_page(const ResultOf& of) {
-  std::string page = fmt::format(
-      "The result of gatewalk {}, as --json writes it. Keys with a * are not in every result; [] "
-      "stands for each item\n"
-      "of a list. An interval is [from, to], 95 %; without one it is null. A range is [from, to], "
-      "what a coordinate covers.\n",
-      of.command);
+  std::string page = in_lines(
+      fmt::format("The result of gatewalk {}, as --json writes it. Keys with a * are not in every "
+                  "result. {}",
+                  of.command, kHowToRead),
+      112, "");
+  page += "\n";
   for (const KeyList& list : keys_of(of)) {
     page += list.name == of.command ? "\nRESULT\n" : fmt::format("\n{}\n", list.name);
     for (const KeyLine& key : list.keys) {
@@ -384,11 +390,13 @@ std::string result_page(const ResultOf& of) {
 }
 
 std::string results_in_markdown() {
-  std::string page =
-      "# Results: the keys of `--json`\n\nMade by `gatewalk help --write`; the same of one "
-      "command: `gatewalk help COMMAND --result`. Keys with a `*` are not\nin every result; `[]` "
-      "stands for each item of a list. An interval is [from, to], 95 %; without one it is null.\nA "
-      "range is [from, to], what a coordinate covers.\n";
+  std::string page = in_lines(
+      fmt::format(
+          "Made by `gatewalk help --write`; the same of one command: `gatewalk help COMMAND "
+          "--result`. Keys with a `*` are not in every result. {}",
+          kHowToRead),
+      120, "");
+  page = "# Results: the keys of `--json`\n\n" + page + "\n";
   std::map<std::string, std::vector<KeyLine>, std::less<>> shared;
   const auto add = [&page](const KeyList& list) {
     page +=

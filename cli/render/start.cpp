@@ -104,7 +104,10 @@ ShownState shown_state(const lattice::ChainStart& start, const dynamics::StateSp
 }
 
 void describe(Fields& out, const ShownState& state) {
-  out.count({"input", "1", "number of the state; states count from 0"}, state.number);
+  out.count({"input", "1",
+             "number of the state, from 0; of a start with a state of its own the number of all "
+             "other states"},
+            state.number);
   out.text({"bin", "face and coordinate ranges of the state, in words"}, state.bin);
   out.flag({"clamped",
             "whether the start lies outside all bins, so that the chain starts in the nearest one"},
