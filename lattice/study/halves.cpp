@@ -513,7 +513,7 @@ void add_statistics(std::vector<double>& all, const Eigen::VectorXd& difference)
 class RareEndings {
  public:
   RareEndings(const std::array<Half, 2>& halves, const HalvesValidation& v) {
-    constexpr double kFew = 5.0;  // trials of a half
+    constexpr double kFewTrials = 5.0;  // trials of a half
     for (std::size_t h = 0; h < 2; ++h) trials_[h] = std::ssize(halves[h].trials);
     const auto n = static_cast<double>(trials_[0] + trials_[1]);
     for (std::size_t e = 0; e < kEndings; ++e) {
@@ -522,7 +522,7 @@ class RareEndings {
         count += 0.5 * (v.ways[1 - h].seen.share[e] + v.ways[1 - h].chain.endings[e]) *
                  static_cast<double>(trials_[h]);
       if (count > kShareRounding && n - count > kShareRounding &&
-          0.5 * std::min(count, n - count) < kFew)
+          0.5 * std::min(count, n - count) < kFewTrials)
         rare_.push_back({static_cast<Eigen::Index>(e), (count + 0.5) / (n + 1.0)});
     }
   }
