@@ -29,8 +29,8 @@ using dynamics::Entry;
 using dynamics::Fate;
 using dynamics::Section;
 
-constexpr std::size_t kBlock = 1 << 20;  // bytes written at once
-constexpr double kSameClock = 1e-9;      // relative: how far a time may be off trapped_after_s
+constexpr std::size_t kBytesAtOnce = 1 << 20;  // that are written
+constexpr double kSameClock = 1e-9;  // relative: how far a time may be off trapped_after_s
 constexpr const char* kNumber = "a number, such as 0.25 or -2.5e-1";
 
 // ---- Columns
@@ -412,7 +412,7 @@ class RunsWriter {
  public:
   RunsWriter(const CellFile& cells, const markov::WriteBytes& write)
       : cells_(cells), section_(cells.map.section), write_(write) {
-    text_.reserve(2 * kBlock);
+    text_.reserve(2 * kBytesAtOnce);
     text_ = with_commas(column_names(cells, has_types())) + "\n";
   }
 
@@ -440,7 +440,7 @@ class RunsWriter {
       }
       text_ += '\n';
       entry = passage.entry;
-      if (text_.size() >= kBlock) flush();
+      if (text_.size() >= kBytesAtOnce) flush();
     }
   }
   void flush() {
