@@ -1,9 +1,202 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <system_error>
+
 #include "cli/arguments.h"
-#include "cli/exported.h"
+#include "cli/chain_from_start.h"
+#include "cli/exchange/explicit_chain.h"
+#include "cli/exchange/imported.h"
+#include "cli/exchange/trajectories.h"
+#include "cli/render/files.h"
+#include "cli/render/matrix.h"
+#include "cli/render/version.h"
 #include "cli/subject.h"
+#include "cli/terminal/output.h"
+#include "lattice/cells/cell_matrix.h"
+#include "lattice/pool/tree_chain.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
+namespace {
+
+enum class ExportForm { umb, drn, prism, matrix_market, csv, npz, trajectories };
+
+/// Throws UsageError naming the endings that there are.
+ExportForm export_form(const std::string& output) {
+  constexpr std::pair<const char*, ExportForm> kForms[] = {
+      {".umb", ExportForm::umb},   {".drn", ExportForm::drn},
+      {".tra", ExportForm::prism}, {".mtx", ExportForm::matrix_market},
+      {".csv", ExportForm::csv},   {".dtrajs.npz", ExportForm::trajectories},
+      {".npz", ExportForm::npz},   {".dtrajs", ExportForm::trajectories}};
+  for (const auto& [ending, form] : kForms)
+    if (lattice::has_ending(output, ending)) return form;
+  throw UsageError(fmt::format(
+      "-o {}: must end in .umb, .drn, .tra, .mtx, .csv, .npz, .dtrajs or .dtrajs.npz", output));
+}
+
+/// Without the ending, both of .dtrajs.npz.
+std::string stem_of(const std::string& output) {
+  constexpr std::string_view kBoth = ".dtrajs.npz";
+  return output.substr(
+      0, lattice::has_ending(output, kBoth) ? output.size() - kBoth.size() : output.rfind('.'));
+}
+
+/// Throws UsageError where a file that is written beside it is an input or another output, or
+/// cannot be written.
+void check_files_beside(const Options& options, ExportForm form) {
+  const std::string output = options.text("output"), stem = stem_of(output);
+  std::vector<std::string> files;
+  if (form == ExportForm::prism) files = {stem + ".sta", stem + ".lab"};
+  if (form == ExportForm::matrix_market || form == ExportForm::csv || form == ExportForm::npz ||
+      form == ExportForm::trajectories)
+    files = {stem + ".states.csv"};
+  for (const std::string& file : files) {
+    for (const std::string& input : options.files_read()) {
+      std::error_code missing;
+      if (std::filesystem::equivalent(file, input, missing))
+        throw UsageError(fmt::format(
+            "{}, which is written beside -o {}, is an input: give -o another name", file, output));
+    }
+    for (const char* other : {"json", "csv"})
+      if (options.has(other) && std::filesystem::weakly_canonical(options.text(other)) ==
+                                    std::filesystem::weakly_canonical(file))
+        throw UsageError(fmt::format("--{} {}: is written beside -o {}: give it another name",
+                                     other, options.text(other), output));
+    try {
+      require_writable(file);
+    } catch (const std::runtime_error& e) {
+      throw UsageError(std::string("beside -o: ") + e.what());
+    }
+  }
+}
+
+/// A sparse matrix, and its states beside it.
+void write_table(const Options& options, ExportForm form, const SparseTable& table,
+                 const std::vector<std::string>& rows, const std::vector<std::string>& columns,
+                 const std::string& states) {
+  const std::string output = options.text("output");
+  options.write(stem_of(output) + ".states.csv", states);
+  if (form == ExportForm::matrix_market)
+    options.write(output, matrix_market_of(table, fmt::format("gatewalk {}: {}", kVersion,
+                                                              options.canonical())));
+  else if (form == ExportForm::csv)
+    options.write(output, csv_of(table, rows, columns, table.whole ? "count" : "probability"));
+  else
+    options.write(output, npz_of(table));
+}
+
+/// What was written, and in words.
+struct Exported {
+  ExportResult result;
+  std::string text;
+};
+
+Exported export_field(const Options& options, ExportForm form) {
+  Subject s = open_subject(options, "matrix");
+  if (s.starts.size() > 1) throw UsageError("--start: a chain has one");
+  const ChainFromStart from = chain_from_start(options, s);
+  const lattice::FieldParams& field = s.problem.field;
+  const auto chain =
+      markov::explicit_chain(from.chain, {field.columns, field.rows}, from.start, field.max_gates);
+  const std::string output = options.text("output");
+  if (form == ExportForm::umb) {
+    options.write(output, umb_of(chain, options.canonical()));
+  } else if (form == ExportForm::drn) {
+    options.write(output, drn_of(chain));
+  } else if (form == ExportForm::prism) {
+    const dynamics::StateSpace& space = s.foreign ? s.file->transitions.space : from.space;
+    std::vector<int> numbers;
+    for (int state = 0; state < space.size(); ++state)
+      numbers.push_back(lattice::shown_number(space, state));
+    const PrismFiles files = prism_of(chain, numbers);
+    options.write(stem_of(output) + ".sta", files.states);
+    options.write(stem_of(output) + ".lab", files.labels);
+    options.write(output, files.transitions);
+  } else {
+    const std::vector<std::string> names =
+        s.foreign ? lattice::state_names(*s.file) : lattice::state_names(from.space);
+    const std::vector<std::string> all = names_of(chain, names);
+    write_table(options, form, table_of(chain), all, all, states_csv(chain, names));
+  }
+  return {{.states = chain.size(),
+           .transitions = std::ssize(chain.target),
+           .first_ending = chain.ends(),
+           .made_by = s.provenance(options)},
+          fmt::format("{} states, {} transitions; state 0 is {}, the last {} are endings\n",
+                      chain.size(), chain.target.size(), from.shown.text, kEndingLabels.size())};
+}
+
+/// Counts per run of each row; `rows` may be those of one type of gate. Empty: a run is one count.
+std::vector<std::int64_t> counts_per_run_of(const Options& options, const lattice::MatrixFile& file,
+                                            const dynamics::Transitions& rows) {
+  if (!rows.space.has_trees()) return counts_per_run(file);
+  const Subject s = open_subject(options, "matrix");
+  const std::vector<dynamics::Transitions> matrices = s.matrices();
+  const auto at = std::find_if(matrices.begin(), matrices.end(),
+                               [&](const auto& m) { return m.rows == rows.rows; });
+  const lattice::CountedField counted = s.counted();
+  return counted.images.at(static_cast<std::size_t>(at - matrices.begin()));
+}
+
+Exported export_gate(const Options& options, ExportForm form) {
+  const std::string path = options.text("matrix");
+  const lattice::MatrixFile file = lattice::read_any_matrix(path);
+  const auto type = file.types.find(options.text("type"));
+  if (options.has("type") && type == file.types.end())
+    throw UsageError(fmt::format("--type {}: {} has no such type", options.text("type"), path));
+  const dynamics::Transitions& t = options.has("type") ? type->second : file.transitions;
+  if (const auto states = recorded_states(file, path);
+      options.has("counts") && states && states->are_probabilities)
+    throw UsageError(
+        fmt::format("--counts: {} was made of probabilities, and has no counts", path));
+  const std::vector<int> order = lattice::shown_order(t.space);
+  const SparseTable table = options.has("counts")
+                                ? table_of(in_order(t.counts(), order))
+                                : table_of(in_order(lattice::make_chain(t).matrix(), order));
+  const std::vector<std::string> all = lattice::state_names(file);
+  std::vector<std::string> names;
+  for (const int s : order) names.push_back(all[static_cast<std::size_t>(s)]);
+  names.push_back(all.back());
+  const std::vector<std::int64_t> per_run =
+      options.has("counts") ? counts_per_run_of(options, file, t) : std::vector<std::int64_t>();
+  write_table(options, form, table, names, names, states_csv(file, per_run));
+  std::string text = fmt::format("{} states of one gate, {} entries; the last column is trapped\n",
+                                 t.space.size(), table.entries.size());
+  if (std::count(per_run.begin(), per_run.end(), 2) > 0)
+    text += fmt::format(
+        "runs are counted twice, as they were and as their mirror images: counts_per_run in "
+        "{}.states.csv says in which rows\n",
+        stem_of(options.text("output")));
+  return {{.states = t.space.size(),
+           .transitions = std::ssize(table.entries),
+           .made_by = options.provenance()},
+          text};
+}
+
+Exported export_trials(const Options& options) {
+  const Subject s = open_subject(options, "matrix");
+  if (!s.pool)
+    throw UsageError(fmt::format(
+        "{}: keeps no trials: it was not made of trees or recorded runs{}", s.path,
+        s.foreign ? ", and of trajectories import keeps the counts of their steps, which --gate "
+                    "--counts -o FILE.mtx writes"
+                  : ""));
+  const dynamics::StateSpace& space = s.file->transitions.space;
+  const Trajectories all = trajectories_of(*s.pool, space);
+  const std::string output = options.text("output");
+  options.write(stem_of(output) + ".states.csv", states_csv(*s.file, {}));
+  options.write(output, lattice::has_ending(output, ".npz") ? npz_of(all) : text_of(all));
+  return {
+      {.states = space.size(), .trajectories = std::ssize(all), .made_by = s.provenance(options)},
+      fmt::format("{} trajectories through {} states; {} is trapped\n", all.size(), space.size(),
+                  space.size())};
+}
+
+}  // namespace
 
 int run_export(const Arguments& arguments) {
   Options options(

@@ -2,13 +2,13 @@
 #include <fmt/core.h>
 
 #include "cli/arguments.h"
+#include "cli/chain_from_start.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/matrix.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
-#include "cli/walked.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
@@ -31,17 +31,17 @@ int run_walk(const Arguments& arguments) {
   const std::string path = options.text("matrix");
   if (!is_matrix(path)) (void)read_matrix(options);  // says what it is instead
   Subject s = open_subject(options, "matrix");
-  const Walked walked = walked_chain(options, s);
+  const ChainFromStart from = chain_from_start(options, s);
   const std::int64_t walks = options.count("walks");
   const ShownField shown = s.shown();
   const dynamics::Stopwatch watch;
-  const auto tally = lattice::walks(walked.chain, shown.field, walked.start, walks, options.seed(),
-                                    options.work());
+  const auto tally =
+      lattice::walks(from.chain, shown.field, from.start, walks, options.seed(), options.work());
   const double seconds = watch.seconds();
 
   const WalkResult result{.shown = shown,
                           .tally = tally,
-                          .start = walked.from,
+                          .start = from.shown,
                           .foreign = s.foreign,
                           .matrix_status = recorded_health(*s.file),
                           .made_by = s.provenance(options)};
@@ -56,7 +56,7 @@ int run_walk(const Arguments& arguments) {
   options.remark(fmt::format("{} s, {} million walks a second", fixed(seconds, 3),
                              fixed(static_cast<double>(walks) / seconds / 1e6, 2)));
   const int exit =
-      exit_status(options, faults_recorded(result.matrix_status).empty() && walked.clean);
+      exit_status(options, faults_recorded(result.matrix_status).empty() && from.clean);
   options.draw([&] { return figure_of({picture}, shown); });
   return exit;
 }

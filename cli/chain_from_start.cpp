@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/walked.h"
+#include "cli/chain_from_start.h"
 
 #include "cli/arguments.h"
 #include "cli/render/matrix.h"
@@ -7,7 +7,7 @@
 
 namespace gatewalk::cli {
 
-Walked walked_chain(const Options& options, Subject& s) {
+ChainFromStart chain_from_start(const Options& options, Subject& s) {
   if (s.is_recorded() && s.pool) {
     auto kernel = lattice::kernel_of(s.problem.map(), *s.pool, s.how.per_leaf);
     const int row = kernel.space.size();  // of the start, behind those of the kernel

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The chain that walks through a field draw from.
+/// The chain of a matrix and the state in which bodies start: walks draw from it, export writes it.
 
 #include "cli/render/start.h"
 #include "cli/subject.h"
@@ -8,16 +8,16 @@
 
 namespace gatewalk::cli {
 
-struct Walked {
+struct ChainFromStart {
   markov::FieldChain chain;
   markov::Start start;
-  WalkStart from;
+  WalkStart shown;
   bool clean;                  // the runs behind it
   dynamics::StateSpace space;  // of the chain's states; a start of its own is behind them
 };
 
 /// Of a matrix: of a scene, in which the start becomes a state (trials are added for one that it
 /// does not know, which is said), or of recorded runs. Throws UsageError.
-[[nodiscard]] Walked walked_chain(const Options& options, Subject& s);
+[[nodiscard]] ChainFromStart chain_from_start(const Options& options, Subject& s);
 
 }  // namespace gatewalk::cli
