@@ -3,17 +3,158 @@
 
 #include <fmt/core.h>
 
+#include <array>
+#include <cmath>
+#include <string_view>
+
 #include "cli/actions.h"
 #include "cli/arguments.h"
 #include "cli/choosing.h"
 #include "cli/exchange/policy_file.h"
-#include "cli/planned.h"
+#include "cli/render/best_start.h"
+#include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
+#include "cli/subject.h"
 #include "dynamics/base/work.h"
+#include "dynamics/disc/disc_section.h"
+#include "dynamics/disc/study/meaning.h"
+#include "lattice/cells/cell_file.h"
+#include "lattice/scene/ranges.h"
+#include "lattice/study/plan.h"
+#include "lattice/text/digits.h"
+#include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
+namespace {
+
+/// --least, --points and --chance; none without --least. Throws UsageError.
+std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const ShownField& shown) {
+  if (!options.has("least")) {
+    for (const char* other : {"points", "chance"})
+      if (options.has(other)) throw UsageError(fmt::format("--{}: only with --least", other));
+    return {};
+  }
+  lattice::ThriftOptions thrift;
+  const std::vector<dynamics::CostInfo>& costs = shown.map.section.costs;
+  std::string known;
+  while (thrift.cost < costs.size() && costs[thrift.cost].key != options.text("least"))
+    known += (known.empty() ? "" : ", ") + costs[thrift.cost++].key;
+  if (thrift.cost == costs.size())
+    throw UsageError(fmt::format("--least: '{}' is none of {}",
+                                 lattice::printable(options.text("least")), known));
+  // Passages through gates may take 0 or less of anything but time and losses.
+  const std::string& key = costs[thrift.cost].key;
+  if (shown.mass && shown.field.max_gates == 0 && key != "time_s" && key != "lost_J")
+    throw UsageError(fmt::format(
+        "--least {}: a passage may take 0 or less of it, and without a limit of gates a body would "
+        "go on for ever: give --set field.max_gates=N, or --least time_s or lost_J",
+        key));
+  if (options.has("points")) thrift.points = static_cast<int>(options.count("points", 2, 100));
+  if (options.has("chance")) thrift.chance = options.number("chance");
+  if (options.has("chance") && !(thrift.chance > 0.0 && thrift.chance < 1.0))
+    throw UsageError("--chance: must lie between 0 and 1");
+  return thrift;
+}
+
+/// Keys of a start, by the coordinates of an entry.
+constexpr std::array<std::string_view, 3> kStartKeys{"start.x_m", "start.vx_m_per_s",
+                                                     "start.vy_m_per_s"};
+
+/// A radius from the joints, and up to the speed at the end of a gate without beams.
+std::vector<std::string> all_of(const lattice::Scene& scene) {
+  const double speed = dynamics::meaning_of(scene.gate, scene.start).passage_speed;
+  if (!std::isfinite(speed))
+    throw UsageError(
+        fmt::format("--over: say where bodies may start, such as --over start.vy_m_per_s=0:1; {} "
+                    "has no push through a gate that tells a speed",
+                    scene.source));
+  const std::string x = lattice::toml_float(scene.gate.beams.joint_x - scene.gate.body.radius);
+  return {fmt::format("start.x_m=-{}:{}", x, x),
+          "start.vy_m_per_s=0:" + lattice::toml_float(speed)};
+}
+
+std::vector<lattice::CoordinateRange> ranges_in(const lattice::RangedScene& ranged) {
+  const std::vector<double> none(ranged.ranges().size(), 0.0), all(ranged.ranges().size(), 1.0);
+  const dynamics::Entry low = dynamics::entry_of(ranged.at(none).start),
+                        high = dynamics::entry_of(ranged.at(all).start);
+  std::vector<lattice::CoordinateRange> ranges;
+  for (std::size_t c = 0; c < kStartKeys.size(); ++c)
+    if (low.at[c] < high.at[c]) ranges.push_back({c, low.at[c], high.at[c]});
+  if (ranges.size() != ranged.ranges().size())
+    throw UsageError(
+        "--over: a start is planned over start.x_m, start.vx_m_per_s and "
+        "start.vy_m_per_s alone");
+  return ranges;
+}
+
+/// Numbers of the start of a cell file.
+std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& given,
+                                                const Options& options, const Subject& s) {
+  std::vector<lattice::CoordinateRange> ranges;
+  const std::vector<dynamics::Coordinate>& coordinates = s.problem.map().section.coordinates;
+  for (const std::string& text : given) {
+    const lattice::NumberRange range = lattice::range_in(text, "--over");
+    std::string known;
+    std::size_t c = 0;
+    while (c < coordinates.size() && "start." + coordinates[c].key != range.key)
+      known += (known.empty() ? "start." : ", start.") + coordinates[c++].key;
+    if (c == coordinates.size())
+      throw UsageError(
+          fmt::format("--over: {} is none of {}", lattice::printable(range.key), known));
+    for (const double end : {range.low, range.high}) {  // refuses what is not permitted
+      std::vector<std::string> overrides;
+      for (const std::string& set : options.overrides())
+        if (!set.starts_with(lattice::kParameters)) overrides.push_back(set);
+      overrides.push_back(range.key + "=" + lattice::toml_float(end));
+      (void)lattice::read_cell_file(s.path, overrides);
+    }
+    ranges.push_back({c, range.low, range.high});
+  }
+  if (ranges.empty())
+    throw UsageError(fmt::format("--over: says where bodies may start, such as --over start.{}=0:1",
+                                 coordinates.front().key));
+  return ranges;
+}
+
+/// Of a scene without actions: the start from which bodies cross most often. `s`: as field_to_run
+/// gives it. Returns the exit status. Throws UsageError.
+int plan_start(const Options& options, Subject s) {
+  for (const char* other : {"policy", "gate-policy", "least", "points", "chance", "robust"})
+    if (options.has(other))
+      throw UsageError(fmt::format(
+          "--{}: is for a scene with actions; {} has no tables [actions.NAME]", other, s.path));
+  lattice::BestStartOptions how;
+  take_choosing(options, how);
+  const auto given = options.texts("over");
+  if (s.scene)
+    how.ranges = ranges_in({lattice::scene_text(s.path), s.path, options.overrides(),
+                            given.empty() ? all_of(*s.scene) : given, "--over"});
+  else
+    how.ranges = ranges_in(given, options, s);
+  if (s.given && !given.empty())
+    throw UsageError("--over: varies the scene's start, and --start gives another");
+  const lattice::FieldParams& field = s.problem.field;
+  if (s.problem.map().types.size() > 1)
+    for (int column = 0; column < field.columns; ++column) how.columns.push_back(column);
+  else
+    how.columns = {field.start_column()};
+  s.settle(options);
+  const dynamics::Stopwatch watch;
+  lattice::BestStart found = lattice::best_start(s.problem, how, options.work());
+  const FoundStart shown{s.shown(),        s.problem.start, how.ranges, how.columns,
+                         std::move(found), watch.seconds(), s.settled,  s.provenance(options)};
+  options.give_out(shown, table_of(shown) + method_line(s.settled));
+  options.warn(few_crossings(shown.found.crossings));
+  warn_of_choosing(options, shown.found.settled, shown.found.gate_runs);
+  options.warn(too_few_gates(s.shown()));
+  const int exit = status_of(options, shown.found.health);
+  options.draw([&] { return figure_of(shown); });
+  return exit;
+}
+
+}  // namespace
 
 int run_plan(const Arguments& arguments) {
   Options options(
@@ -54,7 +195,8 @@ int run_plan(const Arguments& arguments) {
   lattice::PlanOptions how;
   take_choosing(options, how);
   Subject s = field_to_run(options, "a plan is made");
-  if (!has_actions(s)) return plan_start(options, std::move(s));
+  if ((s.scene ? s.scene->actions : s.cells->actions).empty())
+    return plan_start(options, std::move(s));
   if (options.has("over"))
     throw UsageError(fmt::format("--over: is for a scene without actions; {} has some", s.path));
   how.thrift = thrift_of(options, s.shown());
