@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "cli/arguments.h"
-#include "cli/parsers.h"
 #include "cli/render/analysis.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/json.h"

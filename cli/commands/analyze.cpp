@@ -1,12 +1,49 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <charconv>
+#include <ranges>
+
 #include "cli/analysed.h"
 #include "cli/answered.h"
 #include "cli/arguments.h"
-#include "cli/parsers.h"
+#include "cli/render/text.h"
 #include "cli/subject.h"
+#include "lattice/pool/lumped_chain.h"
+#include "lattice/statistics/ending_shares.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
+namespace {
+
+/// By the names of JSON. Throws UsageError for any other.
+markov::Ending target_of(const Options& options) {
+  const std::string name = options.text("target");
+  if (const auto ending = lattice::ending_named(name)) return *ending;
+  throw UsageError(fmt::format(
+      "--target {}: must be one of {}", name,
+      fmt::join(lattice::kEndingNames | std::views::transform(&lattice::EndingName::key), ", ")));
+}
+
+/// --lump: parts of each coordinate; 1 each without it. Throws UsageError.
+lattice::LumpingParts lumping_of(const Options& options, const dynamics::Section& section) {
+  constexpr int kMost = 1000;
+  lattice::LumpingParts parts(section.coordinates.size(), 1);
+  if (!options.has("lump")) return parts;
+  const std::string text = options.text("lump");
+  const char *at = text.data(), *const end = at + text.size();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto [next, error] = std::from_chars(at, end, parts[i]);
+    const bool ends_well = i + 1 < parts.size() ? next != end && *next == ',' : next == end;
+    if (error != std::errc() || !ends_well || parts[i] < 1 || parts[i] > kMost)
+      throw UsageError(fmt::format("--lump {}: must be {} whole numbers from 1 to {}: parts of {}",
+                                   text, parts.size(), kMost, names_of(section.coordinates, ",")));
+    at = next + 1;
+  }
+  return parts;
+}
+
+}  // namespace
 
 int run_analyze(const Arguments& arguments) {
   Options options(

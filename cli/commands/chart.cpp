@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/core.h>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
+#include <sstream>
 
 #include "cli/command.h"
-#include "cli/parsers.h"
 #include "cli/render/work_precision.h"
 #include "cli/terminal/interrupt.h"
 #include "dynamics/base/work.h"
@@ -36,6 +37,31 @@ void require_chartable(const Options& options, const std::vector<std::string>& p
     if (!labels.insert(label_of(path)).second)
       throw UsageError("two scenes are called " + label_of(path));
   }
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  stream.exceptions(std::ios_base::badbit);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+/// --methods, else all that are charted. Throws UsageError.
+std::vector<std::string> chosen_methods(const Options& options) {
+  const auto known = dynamics::chart_methods();
+  if (!options.has("methods")) return {known.begin(), known.end()};
+  std::vector<std::string> methods = split(options.text("methods"));
+  const std::string names = fmt::format("{}", fmt::join(known, ", "));
+  if (methods.empty()) throw UsageError("--methods needs at least one of " + names);
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    if (std::find(known.begin(), known.end(), methods[i]) == known.end())
+      throw UsageError(fmt::format("--methods: no method '{}'; there are {}", methods[i], names));
+    if (std::find(methods.begin(), methods.begin() + static_cast<std::ptrdiff_t>(i), methods[i]) !=
+        methods.begin() + static_cast<std::ptrdiff_t>(i))
+      throw UsageError(fmt::format("--methods: {} stands there twice", methods[i]));
+  }
+  return methods;
 }
 
 }  // namespace

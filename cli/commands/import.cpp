@@ -3,9 +3,8 @@
 
 #include <algorithm>
 
-#include "cli/command.h"
+#include "cli/arguments.h"
 #include "cli/exchange/imported.h"
-#include "cli/parsers.h"
 #include "cli/render/matrix.h"
 #include "cli/render/version.h"
 #include "lattice/cells/cell_matrix.h"

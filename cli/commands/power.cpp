@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/power.h"
 #include "cli/arguments.h"
-#include "cli/parsers.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/scene.h"
 #include "cli/subject.h"

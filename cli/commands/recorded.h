@@ -14,7 +14,4 @@ void add_cell(Options& options);
 /// gatewalk build CELL.toml --cell-program COMMAND.
 [[nodiscard]] int build_program(const Options& options);
 
-/// gatewalk validate M.nc: does one half of the bodies predict the other?
-[[nodiscard]] int validate_recorded(const Options& options);
-
 }  // namespace gatewalk::cli

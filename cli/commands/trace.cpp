@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,10 +11,10 @@
 #include "cli/field_run.h"
 #include "cli/film/replay.h"
 #include "cli/film/video.h"
-#include "cli/parsers.h"
 #include "cli/render/health.h"
 #include "cli/render/recording.h"
 #include "cli/render/text.h"
+#include "cli/web/embedded.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -50,6 +51,38 @@ std::optional<double> video_speed(const Options& options, const lattice::Scene& 
     throw UsageError(fmt::format("--video-speed: must lie in [{}, {}]", digits(0.01 * pace),
                                  digits(100.0 * pace)));
   return speed;
+}
+
+/// What `check` refuses is wrong with the option of that name.
+template <class Check>
+void check_option(const Options& options, const char* name, Check check) try {
+  if (options.has(name)) check(options.text(name));
+} catch (const std::invalid_argument& e) {
+  throw UsageError(fmt::format("--{} {}", name, e.what()));
+}
+
+/// Throws UsageError for words that no scene makes sense of.
+lattice::RecordingOptions recording_options(const Options& options) {
+  const lattice::RecordingOptions wanted{
+      .seed = options.seed(),
+      .first = options.count("trial", 0),
+      .trials = options.trials(),
+      .across_field = options.has("field") || options.has("policy"),
+      .only = options.text("only"),
+      .chosen = {}};
+  check_option(options, "only", [&](const std::string& only) {
+    lattice::require_ending(only, wanted.across_field);
+  });
+  if (!options.has("only") && wanted.trials > lattice::kMostRecordings)
+    throw UsageError(fmt::format("--trials {}: at most {} runs are recorded; pick some with --only",
+                                 wanted.trials, lattice::kMostRecordings));
+  check_option(options, "replay", [](const std::string&) {
+    if (!has_pages())
+      throw std::invalid_argument(
+          "needs pages: this gatewalk was built without (GATEWALK_PAGES=OFF)");
+  });
+  check_option(options, "video", [](const std::string& path) { (void)video_format(path); });
+  return wanted;
 }
 
 }  // namespace

@@ -1,16 +1,212 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <string>
+#include <utility>
+
 #include "cli/arguments.h"
-#include "cli/commands/recorded.h"
 #include "cli/render/final_gates.h"
+#include "cli/render/halves.h"
+#include "cli/render/matrix.h"
 #include "cli/render/prediction.h"
+#include "cli/render/validation.h"
 #include "cli/subject.h"
-#include "cli/validated.h"
 #include "dynamics/base/work.h"
 #include "lattice/cells/cell_matrix.h"
+#include "lattice/problem.h"
+#include "lattice/scene/scene.h"
+#include "lattice/study/observed.h"
 
 namespace gatewalk::cli {
+namespace {
+
+/// Of an experiment's trials: so many of the dynamics, and the chance in these is small beside its
+/// own. And at least so many.
+constexpr std::int64_t kTrialsPerObserved = 20, kLeastBesideObserved = 10'000;
+
+constexpr std::int64_t kMostNullDraws = 100'000;  // some 20 MB
+
+/// Matrices to validate, by type of cell, in a result that is complete but for the validation.
+struct ChainUnderTest {
+  lattice::Problem problem;
+  std::vector<dynamics::Entry> starts{};
+  std::optional<lattice::Observed> observed{};
+  std::optional<lattice::Scene> scene{};  // of gates
+  ValidateResult result;
+};
+
+ChainUnderTest of_scene(const Options& options, lattice::Scene scene,
+                        std::vector<lattice::PaperStart> papers) {
+  ChainUnderTest tested{.problem = lattice::problem_of(scene),
+                        .starts = lattice::entries_at(papers),
+                        .result = {.shown = scene,
+                                   .papers = std::move(papers),
+                                   .like_table4 = lattice::like_table4(scene),
+                                   .made_by = options.provenance(scene)}};
+  tested.scene = std::move(scene);
+  return tested;
+}
+
+/// An experiment is of the scene's start, or of the one that is given.
+std::vector<lattice::PaperStart> starts_for(const Options& options, const lattice::Scene& scene) {
+  if (!options.has("observed")) return starts_of(options, scene);
+  auto starts = options.has("start") ? given_starts(options)
+                                     : std::vector<lattice::PaperStart>{lattice::own_start(scene)};
+  if (starts.size() > 1)
+    throw UsageError(
+        fmt::format("--observed: the counts belong to one start, --start gives {}", starts.size()));
+  return starts;
+}
+
+/// Before any run: what so many trials cannot show, and who is left out.
+void warn_of_trials(const Options& options, const lattice::Observed& observed) {
+  const std::int64_t n = observed.seen.trials();
+  for (const std::string& text : observed.remarks) options.warn(text);
+  options.warn(who_went_back(observed));
+  options.warn(too_few_observed(observed));
+  if (!observed.timed.empty())
+    options.warn("--observed: times are not looked at here; gatewalk fit does");
+  if (options.has("trials") && options.trials() < kTrialsPerObserved * n)
+    options.warn(
+        fmt::format("--trials {} for {} observed: chance in the dynamics' own trials hides "
+                    "differences too; take {} or more",
+                    options.trials(), n, kTrialsPerObserved * n));
+}
+
+std::optional<lattice::Observed> experiment_of(const Options& options,
+                                               const lattice::FieldParams& field) {
+  if (!options.has("observed")) return {};
+  auto observed = lattice::read_observed(options.texts("observed"), field);
+  warn_of_trials(options, observed);
+  return observed;
+}
+
+void put_observed(ChainUnderTest& tested, const Options& options,
+                  std::optional<lattice::Observed> observed) {
+  if (observed) tested.result.observed = {options.texts("observed"), observed->went_back};
+  tested.observed = std::move(observed);
+}
+
+ChainUnderTest read_chain(const Options& options) {
+  const std::string path = options.text("matrix");
+  lattice::SceneMatrix m = read_matrix(options, path, options.text("scene"), options.overrides());
+  auto papers = starts_for(options, m.scene);
+  lattice::require_inside(papers, m.scene);
+  const auto starts = lattice::entries_at(papers);
+  auto observed = experiment_of(options, m.scene.field);
+  add_starts_to(m, path, options, starts);
+  require_inside_bins(options, papers, m.scene, m.file->transitions.space);
+  ChainUnderTest tested = of_scene(options, m.scene, std::move(papers));
+  put_observed(tested, options, std::move(observed));
+  tested.result.matrix = {.matrices = lattice::matrices_of(*m.file, m.scene),
+                          .path = path,
+                          .health = recorded_health(*m.file),
+                          .method = recorded_method(*m.file, path),
+                          .states = recorded_states(*m.file, path)};
+  return tested;
+}
+
+/// A chain of trees, grown for this.
+void put_tree(ChainUnderTest& tested, const Options& options) {
+  const lattice::TreeOptions how{.accuracy = accuracy_of(options), .starts = tested.starts};
+  lattice::TreeChain chain = lattice::make_tree_chain(tested.problem, how, options.work());
+  warn_of(options, *chain.prediction, how.accuracy.accuracy);
+  ValidatedMatrix& matrix = tested.result.matrix;
+  matrix.health = chain.transitions.front().health;
+  matrix.states = record_of(chain, how.accuracy.accuracy);
+  matrix.matrices = std::move(chain.transitions);
+}
+
+ChainUnderTest build_chain(const Options& options) {
+  const std::int64_t trials = options.has("matrix-trials") ? options.count("matrix-trials") : 100;
+  lattice::Scene scene = options.read_scene();
+  const lattice::BinsChoice choice = bins_choice(options, scene, options.has("matrix-trials"));
+  auto papers = starts_for(options, scene);
+  lattice::require_inside(papers, scene);
+  const auto bodies = lattice::bodies_at(papers);
+  (void)lattice::entries_at(papers);
+  auto observed = experiment_of(options, scene.field);
+  const bool tree = choice.kind == lattice::BinsChoice::Kind::tree;
+  if (tree && options.has("matrix-trials"))
+    throw UsageError("--matrix-trials is of runs per state of bins: --bins tree takes --accuracy");
+  if (!tree) refuse(options, {"accuracy", "gate-runs"}, "for bins: it is for --bins tree");
+  if (!tree && choice.kind != lattice::BinsChoice::Kind::automatic)
+    require_inside_bins(options, papers, scene, lattice::fixed_space(scene));
+  auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
+  ChainUnderTest tested = of_scene(options, std::move(scene), std::move(papers));
+  put_observed(tested, options, std::move(observed));
+  ValidatedMatrix& matrix = tested.result.matrix;
+  matrix.method = std::move(settled);
+  if (tree) {
+    put_tree(tested, options);
+    return tested;
+  }
+  const lattice::States states = states_of(options, *tested.scene, choice, bodies);
+  for (const std::string& text : complaints(states)) options.warn(text);
+  matrix.matrices =
+      lattice::build_matrices(*tested.scene, states, {0, trials}, options.seed(), options.work());
+  matrix.health = matrix.matrices.front().health;
+  matrix.states = record_of(states);
+  return tested;
+}
+
+/// Cells that another program carries out.
+ChainUnderTest program_chain(const Options& options) {
+  refuse(options, {"bins", "matrix", "matrix-trials"},
+         "for cells that another program carries out");
+  Subject s = open_program(options, options.text("scene"));
+  ChainUnderTest tested{.problem = s.problem,
+                        .starts = s.entries(),
+                        .result = {.shown = s.shown(), .made_by = s.provenance(options)}};
+  if (options.has("observed") && tested.starts.size() > 1)
+    throw UsageError("--observed: the counts belong to one start");
+  put_observed(tested, options, experiment_of(options, tested.problem.field));
+  put_tree(tested, options);
+  return tested;
+}
+
+/// Of --matrix, of the cells of --cell-program, or built from the scene. Throws UsageError and as
+/// what reads or builds it.
+ChainUnderTest chain_under_test(const Options& options) {
+  if (has_cell(options)) return program_chain(options);
+  return options.has("matrix") ? read_chain(options) : build_chain(options);
+}
+
+/// Of a matrix of recorded runs: does one half of the bodies predict the other?
+int validate_recorded(const Options& options) {
+  const std::string path = options.text("scene");
+  refuse(options,
+         {"matrix", "matrix-trials", "observed", "trials", "walks", "accuracy", "gate-runs",
+          "start", "bins", "memory", "strict", "shard", "part", "checkpoint", "resume", "max-time"},
+         fmt::format("for {}, of whose bodies one half is held against the other", path));
+  const Subject s = open_subject(options, "scene");
+  if (s.foreign)
+    throw UsageError(path +
+                     ": is a chain that was made elsewhere: there are no trials to hold it "
+                     "against, and no bodies whose steps could be told apart");
+  if (s.pool->scattered.each.bodies.empty())
+    throw UsageError(path + ": its runs were not recorded: --cell-program says who makes more");
+  lattice::HalvesOptions how{.null_draws = {}, .seed = options.seed(), .per_leaf = s.how.per_leaf};
+  if (options.has("null-draws")) how.null_draws = options.count("null-draws", 1, kMostNullDraws);
+  const HalvesResult result{
+      .halves = lattice::validate_halves(s.problem, *s.pool, how, options.work()),
+      .memory = lattice::body_memory(s.problem, *s.pool, how.per_leaf, how.null_draws.value_or(999),
+                                     how.seed),
+      .section = s.problem.map().section,
+      .recorded = counts_of(*s.pool),
+      .made_by = s.provenance(options)};
+  constexpr std::int64_t kChecked = 200;  // results/tracks
+  if (s.pool->bodies() < kChecked)
+    options.warn(fmt::format("these are {} bodies: of fewer than {} p may come out too small",
+                             s.pool->bodies(), kChecked));
+  options.give_out(result, table_of(result) + table_of(*s.pool));
+  for (const std::string& rest : rest_warnings(result.halves)) options.warn(rest);
+  options.draw([&] { return figure_of(result.halves, s.shown()); });
+  return kFine;
+}
+
+}  // namespace
 
 int run_validate(const Arguments& arguments) {
   Options options(
@@ -60,7 +256,6 @@ int run_validate(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   if (!has_cell(options) && lattice::is_of_cells(options.text("scene")))
     return validate_recorded(options);
-  constexpr std::int64_t kMostNullDraws = 100'000;  // some 20 MB
   lattice::ValidationOptions how{.trials = options.has("trials") ? options.trials() : 100,
                                  .walks = {},
                                  .null_draws = {},
@@ -79,21 +274,22 @@ int run_validate(const Arguments& arguments) {
            "beside --matrix: that one is built already");
   }
   const dynamics::Stopwatch watch;
-  Validated subject = validated(options);
-  ValidateResult& result = subject.result;
+  ChainUnderTest tested = chain_under_test(options);
+  ValidateResult& result = tested.result;
   result.matrix.seconds = watch.seconds();
-  if (const auto& observed = subject.observed) {
+  if (const auto& observed = tested.observed) {
     how.observed = observed->seen;
-    if (!options.has("trials")) how.trials = trials_beside(*observed);
+    if (!options.has("trials"))
+      how.trials = std::max(kLeastBesideObserved, kTrialsPerObserved * observed->seen.trials());
   }
-  result.validation = lattice::validate_chain(subject.problem, result.matrix.matrices,
-                                              subject.starts, how, options.work());
+  result.validation = lattice::validate_chain(tested.problem, result.matrix.matrices, tested.starts,
+                                              how, options.work());
   const lattice::Validation& v = result.validation;
   options.give_out(result, table_of(result));
   options.warn(text_of(v.left_out));
   for (const lattice::StartValidation& start : v.starts)
     options.warn(rest_warning(rest_of(start.exact), "by the chain "));
-  if (subject.observed) options.warn(endings_not_listed(*subject.observed, v.starts.front()));
+  if (tested.observed) options.warn(endings_not_listed(*tested.observed, v.starts.front()));
   const int exit = status_of(options, v.health);
   options.draw([&] {
     const lattice::StartValidation& first = v.starts.front();
