@@ -5,8 +5,8 @@
 #include <charconv>
 #include <utility>
 
-#include "cli/answered.h"
 #include "cli/arguments.h"
+#include "cli/page.h"
 #include "cli/render/field_ends.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/answered.h"
+#include "cli/page.h"
 
 #include <fmt/core.h>
 
@@ -171,10 +171,6 @@ std::vector<PageStart> page_starts(const lattice::Prediction& prediction, const 
                       .first_runs = s.file->transitions.trials[row]});
   }
   return starts;
-}
-
-std::vector<PageStart> page_starts(const AnalysedSubject& analysed, const Subject& s) {
-  return analysed.of_runs ? page_starts(*analysed.of_runs) : page_starts(*analysed.of_bins, s);
 }
 
 void write_page(const Options& options, const Subject& s,

@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "cli/analysed.h"
 #include "cli/render/answer_page.h"
 #include "cli/subject.h"
 #include "lattice/study/prediction.h"
@@ -26,7 +25,6 @@ void check_page(const Options& options, const Subject& s);
 [[nodiscard]] std::vector<PageStart> page_starts(const lattice::PooledPrediction& prediction);
 [[nodiscard]] std::vector<PageStart> page_starts(const lattice::Prediction& prediction,
                                                  const Subject& s);
-[[nodiscard]] std::vector<PageStart> page_starts(const AnalysedSubject& analysed, const Subject& s);
 
 /// Writes the page, if it is asked for. Starts' states are those of the file, if there is one, else
 /// of the chain that the answer comes from. `analysis`: gatewalk analyze's, made here if it is
