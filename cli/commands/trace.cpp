@@ -7,41 +7,19 @@
 #include <utility>
 #include <vector>
 
+#include "cli/actions.h"
 #include "cli/arguments.h"
-#include "cli/field_run.h"
+#include "cli/exchange/policy_file.h"
 #include "cli/film/replay.h"
 #include "cli/film/video.h"
 #include "cli/render/health.h"
 #include "cli/render/recording.h"
 #include "cli/render/text.h"
 #include "cli/web/embedded.h"
+#include "lattice/scene/table4.h"
 
 namespace gatewalk::cli {
 namespace {
-
-void declare(Options& options) {
-  options.scene();
-  options.add_seed();
-  options.add_strict();
-  options.add_count("trial", "I", "number of the first trial", "0");
-  options.add_count("trials", "N", "record trials I to I + N - 1", "1");
-  options.add_text(
-      "only", "ENDING",
-      "keep the runs that end so, e.g. traversed, 'traversed left', trapped; with "
-      "--field crossed, 'left side', 'right side', departed (any of these), trapped, 'cut off'");
-  options.add_flag("field", "cross the field, gate after gate, instead of one gate");
-  options.input_file("policy",
-                     "cross the field and do what this file of gatewalk plan says (FILE.json)");
-  options.output_file("csv", "FILE", "write all samples as CSV; - is standard output");
-  options.output_file("netcdf", "FILE", "write all samples as NetCDF-4", Options::Content::binary);
-  options.output_file("replay", "FILE.html", "write a page that plays the runs");
-  options.output_file("video", "FILE.mp4|gif", "write a film of the first run (needs ffmpeg)",
-                      Options::Content::binary);
-  options.add_figure(fmt::format("the ways of up to {} runs", kMostDrawn));
-  options.add_number(
-      "video-speed", "X",
-      "times as fast as real (default: the scene's own pace, 1 in the paper's scenes)");
-}
 
 std::optional<double> video_speed(const Options& options, const lattice::Scene& scene) {
   if (!options.has("video-speed")) return std::nullopt;
@@ -98,7 +76,27 @@ int run_trace(const Arguments& arguments) {
                   "it; --replay makes a page that plays the runs, --video a film of the first one.",
                   "gatewalk trace scenes/soft_left.toml --trials 20 --only 'traversed left' "
                   "--replay runs.html --csv runs.csv");
-  declare(options);
+  options.scene();
+  options.add_seed();
+  options.add_strict();
+  options.add_count("trial", "I", "number of the first trial", "0");
+  options.add_count("trials", "N", "record trials I to I + N - 1", "1");
+  options.add_text(
+      "only", "ENDING",
+      "keep the runs that end so, e.g. traversed, 'traversed left', trapped; with "
+      "--field crossed, 'left side', 'right side', departed (any of these), trapped, 'cut off'");
+  options.add_flag("field", "cross the field, gate after gate, instead of one gate");
+  options.input_file("policy",
+                     "cross the field and do what this file of gatewalk plan says (FILE.json)");
+  options.output_file("csv", "FILE", "write all samples as CSV; - is standard output");
+  options.output_file("netcdf", "FILE", "write all samples as NetCDF-4", Options::Content::binary);
+  options.output_file("replay", "FILE.html", "write a page that plays the runs");
+  options.output_file("video", "FILE.mp4|gif", "write a film of the first run (needs ffmpeg)",
+                      Options::Content::binary);
+  options.add_figure(fmt::format("the ways of up to {} runs", kMostDrawn));
+  options.add_number(
+      "video-speed", "X",
+      "times as fast as real (default: the scene's own pace, 1 in the paper's scenes)");
   if (!options.parse(arguments)) return kFine;
   lattice::RecordingOptions wanted = recording_options(options);
   lattice::Scene scene = options.read_scene();
@@ -106,9 +104,15 @@ int run_trace(const Arguments& arguments) {
   std::optional<lattice::Settled> settled;
   ActionMethods may_do;
   if (options.has("policy")) {
-    PolicyGates policy = policy_gates(options, scene);
-    wanted.chosen = std::move(policy.gates);
-    may_do = std::move(policy.may_do);
+    Actions all = actions_of(options, scene, lattice::own_start(scene).entry());
+    std::vector<std::string> names = all.names();
+    wanted.chosen =
+        lattice::chosen_gates(names, std::move(all.scenes),
+                              [policy = read_policy(options.text("policy"), all.made_for)](
+                                  const lattice::Place& at, const dynamics::Entry& entry) {
+                                return policy.action(at, entry);
+                              });
+    may_do = {std::move(names), std::move(all.methods)};
   } else {
     settled = settle_method(
         options, scene,
