@@ -461,6 +461,14 @@ Subject open_subject(const Options& options, const std::string& name) {
   return of_cells ? open_recorded(options, path) : open_matrix(options, name, path);
 }
 
+Subject field_to_run(const Options& options, const std::string& made) {
+  Subject s = open_subject(options, "scene");
+  if (s.file)
+    throw UsageError(s.path + ": is a matrix, and new bodies are to be run: give a scene");
+  if (s.starts.size() > 1) throw UsageError("--start: " + made + " for one start");
+  return s;
+}
+
 lattice::PooledPrediction predict(const Options& options, Subject& s) {
   auto prediction = s.is_recorded() ? lattice::predict_recorded(s.problem, *s.pool, s.starts, s.how)
                                     : lattice::predict_pooled(s.problem, *s.pool, s.entries(),

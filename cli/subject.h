@@ -66,6 +66,10 @@ struct Subject {
 /// A cell file, or a matrix of such cells, and the program of --cell-program. As open_subject.
 [[nodiscard]] Subject open_program(const Options& options, const std::string& path);
 
+/// A scene of gates, or cells of a program, with one start: `made` ("a plan is made") is for it.
+/// Throws UsageError.
+[[nodiscard]] Subject field_to_run(const Options& options, const std::string& made);
+
 /// What a program says of its cell: another one is told by it, mostly.
 [[nodiscard]] std::string told_by(const dynamics::Cell& cell);
 

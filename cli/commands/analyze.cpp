@@ -8,8 +8,8 @@
 
 #include "cli/arguments.h"
 #include "cli/exchange/imported.h"
+#include "cli/number_ranges.h"
 #include "cli/page.h"
-#include "cli/ranged.h"
 #include "cli/render/analysis.h"
 #include "cli/render/matrix.h"
 #include "cli/render/text.h"
@@ -235,24 +235,25 @@ std::optional<PassageResult> first_passage_of(const Options& options,
 }
 
 /// The scene over the ranges of --over; none without them. Throws UsageError and SceneError.
-std::optional<Ranged> over_of(const Options& options, const Subject& s) {
-  auto ranged = ranges_of(options, s, "over", lattice::kMostVaried);
-  if (!options.has("over-trials")) return ranged;
-  if (!ranged) throw UsageError("--over-trials: is for --over");
+std::optional<NumberRanges> over_of(const Options& options, const Subject& s) {
+  auto ranges = ranges_of(options, s, "over", lattice::kMostVaried);
+  if (!options.has("over-trials")) return ranges;
+  if (!ranges) throw UsageError("--over-trials: is for --over");
   (void)options.count("over-trials",
-                      lattice::least_trials_of_shares(static_cast<int>(ranged->ranges.size())));
-  return ranged;
+                      lattice::least_trials_of_shares(static_cast<int>(ranges->each.size())));
+  return ranges;
 }
 
 /// How much of the variance of the target's chance over them each number makes; none without them.
-std::optional<RangedShares> shares_of(const Options& options, const std::optional<Ranged>& ranged,
-                                      const Subject& s, markov::Ending target) {
-  if (!ranged) return {};
+std::optional<RangedShares> shares_of(const Options& options,
+                                      const std::optional<NumberRanges>& ranges, const Subject& s,
+                                      markov::Ending target) {
+  if (!ranges) return {};
   lattice::VarianceSharesOptions how{.seed = options.seed()};
   if (options.has("over-trials")) how.trials = options.count("over-trials");
   return RangedShares{
-      ranged->ranges, target,
-      lattice::variance_shares(static_cast<int>(ranged->ranges.size()), problem_at(*ranged, s),
+      ranges->each, target,
+      lattice::variance_shares(static_cast<int>(ranges->each.size()), problem_at(*ranges, s),
                                target, how, options.work())};
 }
 
@@ -329,7 +330,7 @@ int run_analyze(const Arguments& arguments) {
            "for " + s.path +
                (s.foreign ? ", a chain that was made elsewhere" : ", whose runs were recorded"));
   how.lumping = lumping_of(options, s.problem.map().section);
-  const auto ranged = over_of(options, s);
+  const auto ranges = over_of(options, s);
   const auto passage = first_passage_asked(options, s);
   s.settle(options);
   const auto of_file = runs_of_file(options, s);
@@ -350,7 +351,7 @@ int run_analyze(const Arguments& arguments) {
                                        [&](const lattice::FieldTrials& each) { costs.add(each); });
     result.direct = DirectTrials{std::move(tally), std::move(costs)};
   }
-  result.shares = shares_of(options, ranged, s, how.target);
+  result.shares = shares_of(options, ranges, s, how.target);
   bool clean = c.clean;
   const auto look_at = [&](const dynamics::Health& health, const std::string& where) {
     clean = status_of(options, health, where) == kFine && clean;

@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 #include "cli/arguments.h"
-#include "cli/choosing.h"
+#include "cli/choice_rounds.h"
 #include "cli/render/health.h"
 #include "cli/render/plan.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
+#include "cli/subject.h"
 #include "dynamics/base/work.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/text/toml_text.h"
@@ -49,14 +50,15 @@ int run_design(const Arguments& arguments) {
   options.add_text("types", "A,B",
                    "into these types of [terrain], . the scene's own (default: all)");
   options.add_flag("least", "bodies shall cross as rarely as they can");
-  add_choosing(options);
+  add_choice_rounds(options);
   options.output_file("output", "FILE.toml",
                       "write the scene with the gates changed, and with the start of --start");
   options.add_figure("what a change of each gate does, and which are changed");
   if (!options.parse(arguments)) return kFine;
   lattice::FieldDesignOptions how{.least = options.has("least")};
-  take_choosing(options, how);
-  Subject s = scene_to_run(options, "a field is designed");
+  take_choice_rounds(options, how);
+  Subject s = field_to_run(options, "a field is designed");
+  if (!s.scene) throw UsageError(s.path + ": is no scene of gates");
   if (!s.scene->terrain || s.scene->terrain->types.empty())
     throw UsageError(s.path +
                      ": has one type of gates: a table [terrain.types.NAME] makes another");
@@ -80,7 +82,7 @@ int run_design(const Arguments& arguments) {
     options.write(options.text("output"), lattice::scene_file(designed.after));
   const lattice::Crossings &with = designed.design.crossings, &without = designed.design.before;
   options.warn(few_crossings(with.crossed > without.crossed ? with : without));
-  warn_of_choosing(options, designed.design.settled, designed.design.gate_runs);
+  warn_of_choice_rounds(options, designed.design.settled, designed.design.gate_runs);
   options.warn(too_few_gates(s.shown()));
   const int exit = status_of(options, designed.design.health);
   options.draw([&] { return figure_of(designed); });

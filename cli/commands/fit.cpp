@@ -7,8 +7,7 @@
 #include <filesystem>
 
 #include "cli/arguments.h"
-#include "cli/choosing.h"
-#include "cli/ranged.h"
+#include "cli/number_ranges.h"
 #include "cli/render/observed.h"
 #include "cli/subject.h"
 #include "lattice/cells/recorded_pool.h"
@@ -57,18 +56,18 @@ CellTypes types_in(const std::vector<std::string>& paths) {
 }
 
 /// Throws UsageError for a number of a scene that changes nothing there.
-void require_effect(const Ranged& ranged, lattice::RunsFrom from) {
-  if (!ranged.scene) return;
-  const std::vector<double> middle(ranged.ranges.size(), 0.5);
-  for (const std::string& text : lattice::keys_without_effect(ranged.scene->at(middle), from))
-    for (const lattice::NumberRange& r : ranged.ranges)
+void require_effect(const NumberRanges& ranges, lattice::RunsFrom from) {
+  if (!ranges.scene) return;
+  const std::vector<double> middle(ranges.each.size(), 0.5);
+  for (const std::string& text : lattice::keys_without_effect(ranges.scene->at(middle), from))
+    for (const lattice::NumberRange& r : ranges.each)
       if (text.starts_with(r.key + " ")) throw UsageError("--free " + text);
 }
 
-lattice::FitData of_passages(const Options& options, const Subject& s, const Ranged& ranged,
+lattice::FitData of_passages(const Options& options, const Subject& s, const NumberRanges& ranges,
                              const lattice::ProblemAt& at, const std::string& path,
                              std::int64_t trials) {
-  for (const lattice::NumberRange& r : ranged.ranges)
+  for (const lattice::NumberRange& r : ranges.each)
     if (r.key.starts_with("start.") || r.key.starts_with("field."))
       throw UsageError(
           fmt::format("--free {}: says nothing of passages, which begin as they were seen to, each "
@@ -76,9 +75,9 @@ lattice::FitData of_passages(const Options& options, const Subject& s, const Ran
                       r.key));
   if (!s.cells || s.cells->start)
     refuse(options, {"start"}, "for passages, which begin as they were seen to");
-  const auto numbers = static_cast<int>(ranged.ranges.size());
+  const auto numbers = static_cast<int>(ranges.each.size());
   lattice::CellFile cells =
-      s.cells ? *s.cells : lattice::cells_of(at(std::vector<double>(ranged.ranges.size(), 0.5)));
+      s.cells ? *s.cells : lattice::cells_of(at(std::vector<double>(ranges.each.size(), 0.5)));
   if (s.scene) cells.trapped_after = s.scene->gate.run.time_limit;
   const lattice::RecordedRuns runs =
       lattice::read_runs(path, cells, lattice::CostColumns::as_there_are);
@@ -132,7 +131,7 @@ lattice::FitData of_trials(const Options& options, const lattice::Problem& probl
 /// What an experiment saw, from tables of counts or of trials, as lattice::read_observed, or one of
 /// passages; and warns of what it leaves out. `at`: with types_in(paths). Throws UsageError, and
 /// std::invalid_argument.
-lattice::FitData data_to_fit(const Options& options, const Subject& s, const Ranged& ranged,
+lattice::FitData data_to_fit(const Options& options, const Subject& s, const NumberRanges& ranges,
                              const lattice::ProblemAt& at, const std::vector<std::string>& paths,
                              std::int64_t trials) {
   const auto found = std::find_if(paths.begin(), paths.end(), is_of_passages);
@@ -141,9 +140,9 @@ lattice::FitData data_to_fit(const Options& options, const Subject& s, const Ran
     throw UsageError(*found +
                      ": has passages, of which fit takes one file: gatewalk passages cuts "
                      "the tracks of several recordings into one");
-  require_effect(ranged, passages ? lattice::RunsFrom::all_types : lattice::RunsFrom::everywhere);
-  if (passages) return of_passages(options, s, ranged, at, *found, trials);
-  return of_trials(options, at(std::vector<double>(ranged.ranges.size(), 0.5)), paths);
+  require_effect(ranges, passages ? lattice::RunsFrom::all_types : lattice::RunsFrom::everywhere);
+  if (passages) return of_passages(options, s, ranges, at, *found, trials);
+  return of_trials(options, at(std::vector<double>(ranges.each.size(), 0.5)), paths);
 }
 
 std::vector<double> point_of(const Eigen::MatrixXd& draws, Eigen::Index draw) {
@@ -199,11 +198,11 @@ int run_fit(const Arguments& arguments) {
   options.add_figure("the posterior of each number and of each pair");
   if (!options.parse(arguments)) return kFine;
   Subject s = field_to_run(options, "what was seen is");
-  const auto ranged = ranges_of(options, s, "free", lattice::kMostFitted);
-  if (!ranged) throw UsageError("--free KEY=LOW:HIGH says which numbers are to be found: give one");
-  const auto numbers = static_cast<int>(ranged->ranges.size());
+  const auto ranges = ranges_of(options, s, "free", lattice::kMostFitted);
+  if (!ranges) throw UsageError("--free KEY=LOW:HIGH says which numbers are to be found: give one");
+  const auto numbers = static_cast<int>(ranges->each.size());
   const std::vector<std::string> seen = options.texts("counts");
-  if (!ranged->scene && options.has("output"))
+  if (!ranges->scene && options.has("output"))
     throw UsageError("-o: writes scenes of gates; a program's numbers are given by --set");
   const lattice::FitOptions how{
       .trials = options.count("trials", lattice::least_trials_of_fit(numbers)),
@@ -213,10 +212,10 @@ int run_fit(const Arguments& arguments) {
   std::vector<std::string> scenes;
   if (options.has("scenes"))
     scenes = files_of_draws(options, options.count("scenes", 1, kMostScenes));
-  const lattice::ProblemAt at = problem_at(*ranged, s, types_in(seen));
-  const lattice::FitData data = data_to_fit(options, s, *ranged, at, seen, how.trials);
+  const lattice::ProblemAt at = problem_at(*ranges, s, types_in(seen));
+  const lattice::FitData data = data_to_fit(options, s, *ranges, at, seen, how.trials);
   s.settle(options);
-  const FittedScene fitted{ranged->ranges, s.problem.field, s.settled,
+  const FittedScene fitted{ranges->each, s.problem.field, s.settled,
                            lattice::fit(numbers, at, data, how, options.work()),
                            s.provenance(options)};
   const lattice::Fit& fit = fitted.fit;
@@ -225,12 +224,12 @@ int run_fit(const Arguments& arguments) {
   if (options.has("inference-data"))
     options.write(options.text("inference-data"), inference_data(fitted));
   if (const std::string path = options.text("output"); !path.empty()) {
-    options.write(path, lattice::scene_file(scene_at(*ranged, s, point_of(fit.draws, fit.best))));
+    options.write(path, lattice::scene_file(scene_at(*ranges, s, point_of(fit.draws, fit.best))));
     for (std::size_t i = 0; i < scenes.size(); ++i) {
       const auto draw =
           (2 * static_cast<Eigen::Index>(i) + 1) * fit.draws.rows() / (2 * std::ssize(scenes));
       options.write(scenes[i],
-                    lattice::scene_file(scene_at(*ranged, s, point_of(fit.draws, draw))));
+                    lattice::scene_file(scene_at(*ranges, s, point_of(fit.draws, draw))));
     }
   }
   for (const std::string& warning : warnings_of(fitted)) options.warn(warning);

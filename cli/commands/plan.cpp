@@ -9,7 +9,7 @@
 
 #include "cli/actions.h"
 #include "cli/arguments.h"
-#include "cli/choosing.h"
+#include "cli/choice_rounds.h"
 #include "cli/exchange/policy_file.h"
 #include "cli/render/best_start.h"
 #include "cli/render/choice.h"
@@ -126,7 +126,7 @@ int plan_start(const Options& options, Subject s) {
       throw UsageError(fmt::format(
           "--{}: is for a scene with actions; {} has no tables [actions.NAME]", other, s.path));
   lattice::BestStartOptions how;
-  take_choosing(options, how);
+  take_choice_rounds(options, how);
   const auto given = options.texts("over");
   if (s.scene)
     how.ranges = ranges_in({lattice::scene_text(s.path), s.path, options.overrides(),
@@ -147,7 +147,7 @@ int plan_start(const Options& options, Subject s) {
                          std::move(found), watch.seconds(), s.settled,  s.provenance(options)};
   options.give_out(shown, table_of(shown) + method_line(s.settled));
   options.warn(few_crossings(shown.found.crossings));
-  warn_of_choosing(options, shown.found.settled, shown.found.gate_runs);
+  warn_of_choice_rounds(options, shown.found.settled, shown.found.gate_runs);
   options.warn(too_few_gates(s.shown()));
   const int exit = status_of(options, shown.found.health);
   options.draw([&] { return figure_of(shown); });
@@ -171,7 +171,7 @@ int run_plan(const Arguments& arguments) {
       "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 --set "
       "actions.fast.forces.propulsion_N=9");
   options.scene();
-  add_choosing(options, "; of a cell program FACE:c1,c2,...");
+  add_choice_rounds(options, "; of a cell program FACE:c1,c2,...");
   add_cell_program(options);
   options.add_texts(
       "over", "KEY=LOW:HIGH",
@@ -193,7 +193,7 @@ int run_plan(const Arguments& arguments) {
   options.add_figure("the actions by gate, and how often bodies cross");
   if (!options.parse(arguments)) return kFine;
   lattice::PlanOptions how;
-  take_choosing(options, how);
+  take_choice_rounds(options, how);
   Subject s = field_to_run(options, "a plan is made");
   if ((s.scene ? s.scene->actions : s.cells->actions).empty())
     return plan_start(options, std::move(s));
@@ -228,7 +228,7 @@ int run_plan(const Arguments& arguments) {
     options.warn("--least: " + planned.plan.front_refused);
   else if (how.thrift && !planned.plan.front_finished)
     options.warn("--least: the search was not finished; --gate-runs and --points allow more");
-  warn_of_choosing(options, planned.plan.settled, planned.plan.gate_runs);
+  warn_of_choice_rounds(options, planned.plan.settled, planned.plan.gate_runs);
   options.warn(too_few_gates(s.shown()));
   const int exit = status_of(options, planned.plan.health);
   options.draw([&] { return figure_of(planned); });

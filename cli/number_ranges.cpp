@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/ranged.h"
+#include "cli/number_ranges.h"
 
 #include <fmt/core.h>
 
@@ -51,11 +51,11 @@ std::vector<lattice::NumberRange> ranges_in_program(const Options& options, cons
 }
 
 /// With its cell at a point of the ranges.
-lattice::Problem program_at(const Ranged& ranged, const Subject& s,
+lattice::Problem program_at(const NumberRanges& ranges, const Subject& s,
                             const std::vector<double>& point) {
   std::vector<dynamics::Cell::Number> numbers;
   for (std::size_t k = 0; k < point.size(); ++k)
-    numbers.push_back({parameter_of(ranged.ranges[k]), ranged.ranges[k].at(point[k])});
+    numbers.push_back({parameter_of(ranges.each[k]), ranges.each[k].at(point[k])});
   lattice::Problem problem = s.problem;
   problem.cells.cells = {
       dynamic_cast<const ProgramCell&>(*s.problem.cells.cells.front()).with(numbers)};
@@ -64,8 +64,8 @@ lattice::Problem program_at(const Ranged& ranged, const Subject& s,
 
 }  // namespace
 
-std::optional<Ranged> ranges_of(const Options& options, const Subject& s, const std::string& option,
-                                int most) {
+std::optional<NumberRanges> ranges_of(const Options& options, const Subject& s,
+                                      const std::string& option, int most) {
   const auto given = options.texts(option);
   const std::string shown = "--" + option;
   if (given.empty()) return {};
@@ -75,10 +75,10 @@ std::optional<Ranged> ranges_of(const Options& options, const Subject& s, const 
                     shown, s.path));
   if (std::ssize(given) > most)
     throw UsageError(fmt::format("{}: at most {} numbers can vary", shown, most));
-  if (!s.scene) return Ranged{ranges_in_program(options, s, given, shown)};
-  lattice::RangedScene ranged(lattice::scene_text(s.path), s.path, options.overrides(), given,
-                              shown);
-  for (const lattice::NumberRange& r : ranged.ranges()) {
+  if (!s.scene) return NumberRanges{ranges_in_program(options, s, given, shown)};
+  lattice::RangedScene scene(lattice::scene_text(s.path), s.path, options.overrides(), given,
+                             shown);
+  for (const lattice::NumberRange& r : scene.ranges()) {
     if (s.given && r.key.starts_with("start."))
       throw UsageError(
           fmt::format("{} {}: varies the scene's start, and --start gives another", shown, r.key));
@@ -86,11 +86,12 @@ std::optional<Ranged> ranges_of(const Options& options, const Subject& s, const 
       throw UsageError(fmt::format(
           "{} {}: varies what run.method = \"auto\" chooses; name a method", shown, r.key));
   }
-  return Ranged{ranged.ranges(), std::move(ranged)};
+  return NumberRanges{scene.ranges(), std::move(scene)};
 }
 
-lattice::Scene scene_at(const Ranged& ranged, const Subject& s, const std::vector<double>& point) {
-  lattice::Scene scene = ranged.scene->at(point);
+lattice::Scene scene_at(const NumberRanges& ranges, const Subject& s,
+                        const std::vector<double>& point) {
+  lattice::Scene scene = ranges.scene->at(point);
   if (s.settled) {
     const dynamics::RunParams& chosen = s.scene->gate.run;
     scene.gate.run.method = chosen.method;
@@ -104,10 +105,10 @@ lattice::Scene scene_at(const Ranged& ranged, const Subject& s, const std::vecto
   return scene;
 }
 
-lattice::ProblemAt problem_at(const Ranged& ranged, const Subject& s, CellTypes types) {
-  return [&ranged, &s, types](const std::vector<double>& point) {
-    if (!ranged.scene) return program_at(ranged, s, point);
-    lattice::Scene scene = scene_at(ranged, s, point);
+lattice::ProblemAt problem_at(const NumberRanges& ranges, const Subject& s, CellTypes types) {
+  return [&ranges, &s, types](const std::vector<double>& point) {
+    if (!ranges.scene) return program_at(ranges, s, point);
+    lattice::Scene scene = scene_at(ranges, s, point);
     if (scene.gate.run.method == "auto") scene.gate.run.method = "paper";  // not chosen yet
     return types == CellTypes::all ? lattice::problem_with_all_types(scene)
                                    : lattice::problem_of(scene);

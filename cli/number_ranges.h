@@ -13,24 +13,24 @@
 
 namespace gatewalk::cli {
 
-struct Ranged {
-  std::vector<lattice::NumberRange> ranges;
+struct NumberRanges {
+  std::vector<lattice::NumberRange> each;
   std::optional<lattice::RangedScene> scene{};  // of gates; else of a program
 };
 
 /// The subject over the ranges of this option, at most so many; none without it. Throws UsageError
 /// and SceneError.
-[[nodiscard]] std::optional<Ranged> ranges_of(const Options& options, const Subject& s,
-                                              const std::string& option, int most);
+[[nodiscard]] std::optional<NumberRanges> ranges_of(const Options& options, const Subject& s,
+                                                    const std::string& option, int most);
 
 /// The scene of gates at a point of the ranges, started where the subject is and by the method that
 /// was chosen for it.
-[[nodiscard]] lattice::Scene scene_at(const Ranged& ranged, const Subject& s,
+[[nodiscard]] lattice::Scene scene_at(const NumberRanges& ranges, const Subject& s,
                                       const std::vector<double>& point);
 /// Types of cells: those that stand in the map, or all of the scene in their order.
 enum class CellTypes { of_the_map, all };
 /// What is given outlives it.
-[[nodiscard]] lattice::ProblemAt problem_at(const Ranged& ranged, const Subject& s,
+[[nodiscard]] lattice::ProblemAt problem_at(const NumberRanges& ranges, const Subject& s,
                                             CellTypes types = CellTypes::of_the_map);
 
 }  // namespace gatewalk::cli

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What commands have in common that run a scene in full, round by round (plan, design, fit).
+/// What plan and design have in common: rounds of choosing by a chain, which run the scene in full.
 
-#include "cli/arguments.h"
-#include "cli/subject.h"
+#include <cstdint>
+#include <string>
+
+#include "cli/command.h"
 
 namespace gatewalk::cli {
 
 /// `also`: what else a start may be.
-inline void add_choosing(Options& options, const std::string& also = "") {
+inline void add_choice_rounds(Options& options, const std::string& also = "") {
   options.add_texts(
       "start", "D,VX,VY",
       "start at x = D m, y = 0 with this velocity in m/s (default: the scene's start)" + also);
@@ -24,7 +26,7 @@ inline void add_choosing(Options& options, const std::string& also = "") {
 
 /// Of lattice::PlanOptions, or others with the same members. Throws UsageError.
 template <class How>
-void take_choosing(const Options& options, How& how) {
+void take_choice_rounds(const Options& options, How& how) {
   how.seed = options.seed();
   if (options.has("accuracy")) how.accuracy = options.number("accuracy");
   if (!(how.accuracy >= 0.001 && how.accuracy < 0.5))
@@ -33,26 +35,10 @@ void take_choosing(const Options& options, How& how) {
 }
 
 /// Warns where the rounds of choosing ended before the choice was settled.
-inline void warn_of_choosing(const Options& options, bool settled, std::int64_t gate_runs) {
+inline void warn_of_choice_rounds(const Options& options, bool settled, std::int64_t gate_runs) {
   if (!settled)
     options.warn("choosing was not finished after " + std::to_string(gate_runs) +
                  " gate runs; --gate-runs allows more");
-}
-
-/// A scene of gates, or cells of a program, with one start; `made` ("a plan is made") is for it.
-/// Throws UsageError.
-[[nodiscard]] inline Subject field_to_run(const Options& options, const std::string& made) {
-  Subject s = open_subject(options, "scene");
-  if (s.file)
-    throw UsageError(s.path + ": is a matrix, and new bodies are to be run: give a scene");
-  if (s.starts.size() > 1) throw UsageError("--start: " + made + " for one start");
-  return s;
-}
-/// The same of gates alone.
-[[nodiscard]] inline Subject scene_to_run(const Options& options, const std::string& made) {
-  Subject s = field_to_run(options, made);
-  if (!s.scene) throw UsageError(s.path + ": is no scene of gates");
-  return s;
 }
 
 }  // namespace gatewalk::cli
