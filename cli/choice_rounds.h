@@ -9,7 +9,7 @@
 
 namespace gatewalk::cli {
 
-/// `also`: what else a start may be.
+/// Declares the options of these rounds. `also`: what else a start may be.
 inline void add_choice_rounds(Options& options, const std::string& also = "") {
   options.add_texts(
       "start", "D,VX,VY",
@@ -24,7 +24,8 @@ inline void add_choice_rounds(Options& options, const std::string& also = "") {
   options.add_strict();
 }
 
-/// Of lattice::PlanOptions, or others with the same members. Throws UsageError.
+/// Puts these options into a lattice::PlanOptions, or a struct with the same members. Throws
+/// UsageError.
 template <class How>
 void take_choice_rounds(const Options& options, How& how) {
   how.seed = options.seed();

@@ -18,7 +18,7 @@ std::string parameter_of(const lattice::NumberRange& range) {
   return range.key.substr(lattice::kParameters.size());
 }
 
-/// Numbers of a program are as the program permits.
+/// The ranges of numbers of a program. Throws UsageError for those that it does not permit.
 std::vector<lattice::NumberRange> ranges_in_program(const Options& options, const Subject& s,
                                                     const std::vector<std::string>& given,
                                                     const std::string& option) {
@@ -50,7 +50,7 @@ std::vector<lattice::NumberRange> ranges_in_program(const Options& options, cons
   return ranges;
 }
 
-/// With its cell at a point of the ranges.
+/// The problem with the program's cell at a point of the ranges.
 lattice::Problem program_at(const NumberRanges& ranges, const Subject& s,
                             const std::vector<double>& point) {
   std::vector<dynamics::Cell::Number> numbers;

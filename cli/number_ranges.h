@@ -29,7 +29,7 @@ struct NumberRanges {
                                       const std::vector<double>& point);
 /// Types of cells: those that stand in the map, or all of the scene in their order.
 enum class CellTypes { of_the_map, all };
-/// What is given outlives it.
+/// The problem at each point of the ranges; what it is given must outlive it.
 [[nodiscard]] lattice::ProblemAt problem_at(const NumberRanges& ranges, const Subject& s,
                                             CellTypes types = CellTypes::of_the_map);
 

@@ -21,7 +21,7 @@ void check_page(const Options& options, const Subject& s);
 [[nodiscard]] std::optional<lattice::RunPool> runs_of_file(const Options& options,
                                                            const Subject& s);
 
-/// Those of predict's answers.
+/// Every start that was predicted, with its answer, for write_page.
 [[nodiscard]] std::vector<PageStart> page_starts(const lattice::PooledPrediction& prediction);
 [[nodiscard]] std::vector<PageStart> page_starts(const lattice::Prediction& prediction,
                                                  const Subject& s);

@@ -25,7 +25,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// By the names of JSON. Throws UsageError for any other.
+/// The ending that --target names, as in JSON. Throws UsageError for a name that none has.
 markov::Ending target_of(const Options& options) {
   const std::string name = options.text("target");
   if (const auto ending = lattice::ending_named(name)) return *ending;
@@ -142,7 +142,7 @@ int entered_states(const dynamics::StateSpace& space) {
   return space.size() - static_cast<int>(space.points().size());
 }
 
-/// The state of that name or number; none if there is none.
+/// The state of a matrix by its name or its number; none if no state has it.
 std::optional<int> state_named(const Subject& s, const std::string& text) {
   if (!s.file) return {};
   const dynamics::StateSpace& space = s.file->transitions.space;
@@ -207,8 +207,8 @@ std::optional<PassageAsked> first_passage_asked(const Options& options, const Su
              : "; states are those of a matrix: gatewalk build"));
 }
 
-/// Its answer by the chain, and a warning where tables are left out; none without. Throws
-/// UsageError for a state of a chain that has others now.
+/// The chain's answer to --first-passage, with a warning where tables are left out; none without
+/// it. Throws UsageError for a state of the file where the chain has other states now.
 std::optional<PassageResult> first_passage_of(const Options& options,
                                               const std::optional<PassageAsked>& asked,
                                               const Subject& s, const AnalysedSubject& c) {
@@ -244,7 +244,7 @@ std::optional<NumberRanges> over_of(const Options& options, const Subject& s) {
   return ranges;
 }
 
-/// How much of the variance of the target's chance over them each number makes; none without them.
+/// How much of the variance of the target's chance each number of --over makes; none without it.
 std::optional<RangedShares> shares_of(const Options& options,
                                       const std::optional<NumberRanges>& ranges, const Subject& s,
                                       markov::Ending target) {

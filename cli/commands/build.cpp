@@ -104,7 +104,7 @@ void give_out_cells(const Options& options, std::vector<dynamics::Transitions> m
   options.give_out(built, summary_table(built.matrix.file, path) + table_of(pool));
 }
 
-/// Of gatewalk build RUNS.csv --cell CELL.toml.
+/// gatewalk build RUNS.csv --cell CELL.toml: from recorded runs.
 int build_recorded(const Options& options) {
   refuse(options,
          {"accuracy", "gate-runs", "starts", "start", "states", "trials", "first-trial", "bins",
@@ -132,7 +132,7 @@ int build_recorded(const Options& options) {
   return kFine;
 }
 
-/// Of gatewalk build CELL.toml --cell-program COMMAND.
+/// gatewalk build CELL.toml --cell-program COMMAND: from runs of that program.
 int build_program(const Options& options) {
   refuse(options, {"cell", "first-trial", "bins", "starts"},
          "for cells that another program carries out");

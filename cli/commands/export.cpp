@@ -25,7 +25,7 @@ namespace {
 
 enum class ExportForm { umb, drn, prism, matrix_market, csv, npz, trajectories };
 
-/// Throws UsageError naming the endings that there are.
+/// The form that the ending of a file's name asks for. Throws UsageError naming all endings.
 ExportForm export_form(const std::string& output) {
   constexpr std::pair<const char*, ExportForm> kForms[] = {
       {".umb", ExportForm::umb},   {".drn", ExportForm::drn},
@@ -38,15 +38,15 @@ ExportForm export_form(const std::string& output) {
       "-o {}: must end in .umb, .drn, .tra, .mtx, .csv, .npz, .dtrajs or .dtrajs.npz", output));
 }
 
-/// Without the ending, both of .dtrajs.npz.
+/// The name of a file without its ending; of .dtrajs.npz without both.
 std::string stem_of(const std::string& output) {
   constexpr std::string_view kBoth = ".dtrajs.npz";
   return output.substr(
       0, lattice::has_ending(output, kBoth) ? output.size() - kBoth.size() : output.rfind('.'));
 }
 
-/// Throws UsageError where a file that is written beside it is an input or another output, or
-/// cannot be written.
+/// Throws UsageError where a file that is written beside that of -o is an input or another output,
+/// or cannot be written.
 void check_files_beside(const Options& options, ExportForm form) {
   const std::string output = options.text("output"), stem = stem_of(output);
   std::vector<std::string> files;
@@ -74,7 +74,7 @@ void check_files_beside(const Options& options, ExportForm form) {
   }
 }
 
-/// A sparse matrix, and its states beside it.
+/// Writes a sparse matrix, and its states beside it.
 void write_table(const Options& options, ExportForm form, const SparseTable& table,
                  const std::vector<std::string>& rows, const std::vector<std::string>& columns,
                  const std::string& states) {

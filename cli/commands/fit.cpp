@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kMostScenes = 1000;
 
-/// "best.toml" of draw 3 is "best-3.toml".
+/// The file of a draw beside that of -o: of draw 3 beside "best.toml" it is "best-3.toml".
 std::string file_of_draw(const std::string& path, std::int64_t draw) {
   const std::size_t dot = path.rfind('.'), slash = path.rfind('/');
   const std::size_t at =

@@ -20,6 +20,7 @@
 namespace gatewalk::cli {
 namespace {
 
+/// Trials through a scene of gates.
 FieldRun run_gates(const Options& options) {
   RunScene scene{options.read_scene()};
   scene.settled = settle_method(options, scene.scene, lattice::RunsFrom::everywhere);
@@ -37,7 +38,7 @@ FieldRun run_gates(const Options& options) {
   return run;
 }
 
-/// Before any trial.
+/// A run of no trial yet.
 FieldRun empty_run(const Options& options, const Subject& s) {
   const lattice::FieldParams& field = s.problem.field;
   return {s.shown(),
@@ -49,7 +50,7 @@ FieldRun empty_run(const Options& options, const Subject& s) {
           lattice::FieldTally(field)};
 }
 
-/// Of any cells; writes the tables of --passages and --cell-file.
+/// Trials through any cells; writes the tables of --passages and --cell-file.
 FieldRun run_cells(const Options& options) {
   Subject s = open_subject(options, "scene");
   if (s.file) throw UsageError(s.path + ": is a matrix, and bodies are to be run: give a scene");
@@ -77,7 +78,7 @@ FieldRun run_cells(const Options& options) {
   return run;
 }
 
-/// Of bodies that do what a policy says.
+/// Trials of bodies that do what a policy says.
 FieldRun run_policy(const Options& options) {
   refuse(options, {"passages", "cell-file"}, "with --policy");
   Subject s = open_subject(options, "scene");
@@ -95,7 +96,7 @@ FieldRun run_policy(const Options& options) {
   return run;
 }
 
-/// As --trials says; writes the tables of --passages and --cell-file.
+/// The trials that --trials asks for; writes the tables of --passages and --cell-file.
 FieldRun field_run(const Options& options) {
   if (options.has("policy")) return run_policy(options);
   const bool any_cells = has_cell(options) || options.has("passages") || options.has("cell-file");

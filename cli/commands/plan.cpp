@@ -29,7 +29,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// --least, --points and --chance; none without --least. Throws UsageError.
+/// What --least, --points and --chance ask for; none without --least. Throws UsageError.
 std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const ShownField& shown) {
   if (!options.has("least")) {
     for (const char* other : {"points", "chance"})
@@ -62,8 +62,9 @@ std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const Sh
 constexpr std::array<std::string_view, 3> kStartKeys{"start.x_m", "start.vx_m_per_s",
                                                      "start.vy_m_per_s"};
 
-/// A radius from the joints, and up to the speed at the end of a gate without beams.
-std::vector<std::string> all_of(const lattice::Scene& scene) {
+/// Without --over: a radius from the joints, and up to the speed at the end of a gate without
+/// beams.
+std::vector<std::string> usual_ranges(const lattice::Scene& scene) {
   const double speed = dynamics::meaning_of(scene.gate, scene.start).passage_speed;
   if (!std::isfinite(speed))
     throw UsageError(
@@ -75,6 +76,7 @@ std::vector<std::string> all_of(const lattice::Scene& scene) {
           "start.vy_m_per_s=0:" + lattice::toml_float(speed)};
 }
 
+/// Ranges of the start, in the coordinates of an entry. Throws UsageError for other keys.
 std::vector<lattice::CoordinateRange> ranges_in(const lattice::RangedScene& ranged) {
   const std::vector<double> none(ranged.ranges().size(), 0.0), all(ranged.ranges().size(), 1.0);
   const dynamics::Entry low = dynamics::entry_of(ranged.at(none).start),
@@ -89,7 +91,7 @@ std::vector<lattice::CoordinateRange> ranges_in(const lattice::RangedScene& rang
   return ranges;
 }
 
-/// Numbers of the start of a cell file.
+/// The ranges of --over in a start of a cell file. Throws UsageError and as what reads the file.
 std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& given,
                                                 const Options& options, const Subject& s) {
   std::vector<lattice::CoordinateRange> ranges;
@@ -130,7 +132,7 @@ int plan_start(const Options& options, Subject s) {
   const auto given = options.texts("over");
   if (s.scene)
     how.ranges = ranges_in({lattice::scene_text(s.path), s.path, options.overrides(),
-                            given.empty() ? all_of(*s.scene) : given, "--over"});
+                            given.empty() ? usual_ranges(*s.scene) : given, "--over"});
   else
     how.ranges = ranges_in(given, options, s);
   if (s.given && !given.empty())

@@ -49,14 +49,14 @@ lattice::RowMatrix parse_rows(const Options& options, const std::string& text) {
   return {first, last, path, read_matrix(options, path, "", {})};
 }
 
-/// Those of --row: rows whose gates are those of another matrix. Throws UsageError.
+/// The rows whose gates are those of other matrices, as --row says. Throws UsageError.
 std::vector<lattice::RowMatrix> other_rows(const Options& options) {
   std::vector<lattice::RowMatrix> rows;
   for (const std::string& text : options.texts("row")) rows.push_back(parse_rows(options, text));
   return rows;
 }
 
-/// By the names of --solver. Throws UsageError for any other.
+/// The solver that --solver names. Throws UsageError for a name that none has.
 markov::PredictOptions::Solver solver_of(const Options& options) {
   using Solver = markov::PredictOptions::Solver;
   const std::string name = options.text("solver");
@@ -103,8 +103,8 @@ PredictResult empty_result(const Options& options, const Subject& s) {
           .made_by = s.provenance(options)};
 }
 
-/// Until the error bar says enough, with the runs that there are already; of recorded runs with
-/// these alone. The exit status.
+/// Predicts with the runs that there are and, unless they were recorded, with more of them until
+/// the error bar keeps the accuracy. Returns the exit status.
 int predict_from_runs(const Options& options, Subject& s) {
   const auto of_file = runs_of_file(options, s);
   lattice::PooledPrediction made = predict(options, s);
@@ -123,7 +123,8 @@ int predict_from_runs(const Options& options, Subject& s) {
   return exit;
 }
 
-/// What infinitely many walks with a scene's matrix as it is would give; in some rows with others.
+/// Predicts what infinitely many walks with a matrix as it is would give, in the rows of `others`
+/// with these. Returns the exit status.
 int predict_from_matrix(const Options& options, const Subject& s,
                         const std::vector<lattice::RowMatrix>& others) {
   const std::string solver = options.text("solver");

@@ -31,7 +31,7 @@ std::optional<double> video_speed(const Options& options, const lattice::Scene& 
   return speed;
 }
 
-/// What `check` refuses is wrong with the option of that name.
+/// Throws UsageError that names the option where `check` refuses its value.
 template <class Check>
 void check_option(const Options& options, const char* name, Check check) try {
   if (options.has(name)) check(options.text(name));
@@ -39,7 +39,7 @@ void check_option(const Options& options, const char* name, Check check) try {
   throw UsageError(fmt::format("--{} {}", name, e.what()));
 }
 
-/// Throws UsageError for words that no scene makes sense of.
+/// What to record. Throws UsageError for values that no scene makes sense of.
 lattice::RecordingOptions recording_options(const Options& options) {
   const lattice::RecordingOptions wanted{
       .seed = options.seed(),

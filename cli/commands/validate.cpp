@@ -88,6 +88,7 @@ void put_observed(ChainUnderTest& tested, const Options& options,
   tested.observed = std::move(observed);
 }
 
+/// The chain of the file of --matrix.
 ChainUnderTest read_chain(const Options& options) {
   const std::string path = options.text("matrix");
   lattice::SceneMatrix m = read_matrix(options, path, options.text("scene"), options.overrides());
@@ -118,6 +119,7 @@ void put_tree(ChainUnderTest& tested, const Options& options) {
   matrix.matrices = std::move(chain.transitions);
 }
 
+/// A chain that is built from the scene, of bins or of trees.
 ChainUnderTest build_chain(const Options& options) {
   const std::int64_t trials = options.has("matrix-trials") ? options.count("matrix-trials") : 100;
   lattice::Scene scene = options.read_scene();
@@ -151,7 +153,7 @@ ChainUnderTest build_chain(const Options& options) {
   return tested;
 }
 
-/// Cells that another program carries out.
+/// A chain of trees of cells that another program carries out.
 ChainUnderTest program_chain(const Options& options) {
   refuse(options, {"bins", "matrix", "matrix-trials"},
          "for cells that another program carries out");
