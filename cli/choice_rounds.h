@@ -9,7 +9,7 @@
 
 namespace gatewalk::cli {
 
-/// Declares the options of these rounds. `also`: what else a start may be.
+/// Declares --start, --accuracy, --gate-runs and others; `also` ends the help of --start.
 inline void add_choice_rounds(Options& options, const std::string& also = "") {
   options.add_texts(
       "start", "D,VX,VY",

@@ -44,9 +44,9 @@ struct CommandHelp {
   std::vector<Option> options;
 };
 
-/// The words behind a command's name; and what they have no words for, where they do not come from
-/// the user at the terminal: who is told how far it is and what it warns of, who takes the
-/// result, the cell of --cell-program, matrix files that are in memory and need not be read again.
+/// The words behind a command's name. A program that calls a command, such as the Python module,
+/// also says who is told of progress and warnings, who takes the result, which cell --cell-program
+/// means, and which matrix files are in memory and need not be read again.
 struct Arguments {
   Arguments(std::vector<std::string> given) : words(std::move(given)) {}  // NOLINT: the usual case
   Arguments(std::initializer_list<std::string> given) : words(given) {}

@@ -52,10 +52,10 @@ lattice::LumpingParts lumping_of(const Options& options, const dynamics::Section
   return parts;
 }
 
-/// The chain of a subject, and what is said of how its walks end.
+/// The chain that is analysed, and the prediction of how its bodies end.
 struct AnalysedSubject {
   std::optional<lattice::AnalysedChain> chain;
-  std::optional<lattice::PooledPrediction> of_runs{};  // one of these two says where bodies end
+  std::optional<lattice::PooledPrediction> of_runs{};  // of gate runs; else of_bins
   std::optional<lattice::Prediction> of_bins{};
   AnalysedAnswer answer{};
   bool clean = true;

@@ -81,7 +81,7 @@ int build_tree(const Options& options, const lattice::Scene& scene, const Settle
   return status;
 }
 
-/// Writes the file of these matrices of cells and their runs, and says what was made.
+/// Writes the matrices of cells, with the runs behind them, to --output, and gives the result.
 void give_out_cells(const Options& options, std::vector<dynamics::Transitions> matrices,
                     const lattice::CellFile& cells, const lattice::RunPool& pool,
                     const StateRecord& states, const std::optional<dynamics::Health>& health,

@@ -223,7 +223,7 @@ class Fields {
             limits[0].isFinite().any() ? Value(&limits) : Value());
   }
   void grid(const Field&, const markov::CellProbabilities&,
-            GateLimits&&) = delete;  // would be gone
+            GateLimits&&) = delete;  // they must outlive the call
   void no_estimated_grid(const Field& f) {
     bounded(f, ValueKind::grid, {}, ValueKind::grid_95, {});
   }
@@ -402,7 +402,7 @@ class Fields {
     Value value;
   };
   struct LimitsOfObject {
-    int optional;  // as optional_ was where the object begins
+    int optional;  // optional_ where the object begins
     std::vector<Limits> all;
   };
   template <std::integral T>

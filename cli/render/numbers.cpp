@@ -157,7 +157,7 @@ class NumberFields final : public Fields {
         put(fmt::format("{}.{}.{}", name, gate / all->columns, gate % all->columns), shown(i), "",
             shown(all->numbers[gate * each + i]));
   }
-  // Words.
+  // Words are left out.
   void add(const std::string&, std::string_view) {}
   void add(const std::string&, const std::vector<std::string>*) {}
   void add(const std::string&, const TextRows*) {}
