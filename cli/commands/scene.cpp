@@ -2,7 +2,6 @@
 #include "cli/render/scene.h"
 #include "cli/command.h"
 #include "cli/render/meaning.h"
-#include "cli/render/scene_figure.h"
 #include "cli/terminal/output.h"
 
 namespace gatewalk::cli {

@@ -30,7 +30,7 @@ Measured basin(const Findings& f) {
 }
 
 Measured escape(const Findings& f) {
-  const SweepPoint& p = fig8_at(f, 50, 8, 0);
+  const PaperPoint& p = fig8_at(f, 50, 8, 0);
   const Share still = p.traversed_share(), shaken = fig8_at(f, 50, 8, 40).traversed_share();
   const bool helped = rises(still, shaken),
              enough = std::min(still.whole, shaken.whole) >= kEnoughTrials;
@@ -97,7 +97,7 @@ Measured many_hits(const Findings& f) {
 }
 
 Measured euler_step(const Findings& f) {
-  const SweepPoint &by_paper = f.paper_method.at({{"run.method", "paper"}, {kDamping, 10}}),
+  const PaperPoint &by_paper = f.paper_method.at({{"run.method", "paper"}, {kDamping, 10}}),
                    &by_event = f.paper_method.at({{"run.method", "event"}, {kDamping, 10}});
   const Share paper = by_paper.left_share(), event = by_event.left_share();
   const bool apart = rises(paper, event) || falls(paper, event), seen = seen_with_100(paper, event);

@@ -121,7 +121,7 @@ Measured exits_grow(const Findings& f) {
   for (const double damping : kDampings)
     for (const double force : kForces)
       trend.add(kPaperRandom, along(kPaperRandom, [&](double random) {
-                  const SweepPoint& p = fig8_at(f, damping, force, random);
+                  const PaperPoint& p = fig8_at(f, damping, force, random);
                   return share_of(p.exited(), p.trials);
                 }));
   const auto early = std::count_if(f.exits.runs.begin(), f.exits.runs.end(),
@@ -135,7 +135,7 @@ Measured exits_grow(const Findings& f) {
 // ---- Figs. 9 and 12
 
 /// With the beams of Fig. 9A.
-const SweepPoint& equal_beams(const Findings& f) {
+const PaperPoint& equal_beams(const Findings& f) {
   return f.tried_method.at({{"run.method", "stable"}, {kDamping, 50}});
 }
 
@@ -143,7 +143,7 @@ Measured softer_side(const Findings& f) {
   Places cells;
   std::string worst;
   double most = 0.0;
-  for (const SweepPoint& cell : f.fig12.points) {
+  for (const PaperPoint& cell : f.fig12.points) {
     const Share right = cell.right_share();
     if (cell.number(kLeftStiffness) == 500 || right.whole == 0) continue;
     ++cells.of;
@@ -192,7 +192,7 @@ Measured accord(const Findings& f) {
 }
 
 Measured thirteen_and_eight(const Findings& f) {
-  const SweepPoint& point = equal_beams(f);
+  const PaperPoint& point = equal_beams(f);
   const Share left = point.left_share(),
               right = share_of(point[dynamics::Outcome::traversed_right], point.trials);
   const LandscapeStudy& landscape = f.barriers.at(500);
@@ -201,12 +201,12 @@ Measured thirteen_and_eight(const Findings& f) {
   for (const Sweep* study : {&f.tried_method, &f.tried_step, &f.tried_restitution, &f.tried_rate,
                              &f.tried_start, &f.tried_random}) {
     settings += study->points.size();
-    for (const SweepPoint& p : study->points)
+    for (const PaperPoint& p : study->points)
       if (const Share s = p.traversed_share(); most.whole == 0 || s.value > most.value) most = s;
   }
   constexpr double kPrinted = 0.21;
-  std::optional<SweepPoint> enough;
-  for (const SweepPoint& p : f.tried_propulsion.points)
+  std::optional<PaperPoint> enough;
+  for (const PaperPoint& p : f.tried_propulsion.points)
     if (!enough && p.traversed_share().value >= kPrinted) enough = p;
   return {std::max(against(13, left), against(8, right)),
           {{"left", left},
@@ -241,7 +241,7 @@ Measured right_share_falls(const Findings& f, const AxisValues& randoms, bool st
         std::vector<Share> told;
         AxisValues where, counted;
         for (const double k : f.fig12.values(kLeftStiffness)) {
-          const SweepPoint& cell = fig12_at(f, damping, force, random, k);
+          const PaperPoint& cell = fig12_at(f, damping, force, random, k);
           if (cell.right_share().whole < kLeast) continue;
           told.push_back(cell.right_share());
           where.push_back(k);
@@ -258,7 +258,7 @@ Measured right_share_falls(const Findings& f, const AxisValues& randoms, bool st
 Measured fig12_propulsion(const Findings& f) {
   Places cells;
   double softest = 1e9;
-  for (const SweepPoint& p : f.fig12.points) {
+  for (const PaperPoint& p : f.fig12.points) {
     if (p.number(kPropulsion) != 7) continue;
     const double k = p.number(kLeftStiffness);
     const Share seven = p.traversed_share(),

@@ -35,7 +35,7 @@ Section fig8(const Findings& f) {
       Rows& curve = out.data(fmt::format("{}_{}", name, random));
       curves[damping].push_back(&curve);
       for (int force = 4; force <= 9; ++force) {
-        const SweepPoint& p = fig8_at(f, damping, force, random);
+        const PaperPoint& p = fig8_at(f, damping, force, random);
         const Share s = p.traversed_share();
         const auto n = static_cast<double>(p.trials);
         csv.row(damping, force, random, n, s.value, s.low, s.high,
@@ -131,7 +131,7 @@ Section fig12(const Findings& f) {
       Rows &shares = out.data(name), &few = out.data(name + "_few");
       for (const double k : stiffnesses)
         for (int random = 10; random <= 60; random += 10) {
-          const SweepPoint& cell = fig12_at(f, damping, force, random, k);
+          const PaperPoint& cell = fig12_at(f, damping, force, random, k);
           const Share s = cell.right_share();
           csv.row(damping, force, random, k, static_cast<double>(cell.trials),
                   static_cast<double>(s.whole), s.value, s.low, s.high);
@@ -191,7 +191,7 @@ Section thirteen_eight(const Findings& f) {
   const auto add = [&](const Sweep& study, const std::string& group, const char* key,
                        const std::string& unit) {
     RateGroup shown{group, {}, 21.0, groups.empty() ? "paper: 13 + 8 %" : ""};
-    for (const SweepPoint& p : study.points) {
+    for (const PaperPoint& p : study.points) {
       const std::string text = p.text(key) + unit;
       const Share s = p.traversed_share();
       const auto n = static_cast<double>(p.trials);

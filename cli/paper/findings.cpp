@@ -26,7 +26,7 @@ void read(Outcomes& tally, const Json& json) {
   tally.health.worst_penetration = json.at("status").at("worst_penetration_m");
 }
 
-void read(SweepPoint& point, const Json& json) {
+void read(PaperPoint& point, const Json& json) {
   read(static_cast<Outcomes&>(point), json);
   point.place = json.at("at");
 }
@@ -124,13 +124,13 @@ double seconds_per(const Validation& v, double ValidatedStart::*seconds, std::in
 
 }  // namespace
 
-std::string SweepPoint::text(const char* key) const {
+std::string PaperPoint::text(const char* key) const {
   const Json& value = place.at(key);
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-const SweepPoint& Sweep::at(const Json& where) const {
-  for (const SweepPoint& point : points)
+const PaperPoint& Sweep::at(const Json& where) const {
+  for (const PaperPoint& point : points)
     if (std::all_of(where.items().begin(), where.items().end(), [&](const auto& wanted) {
           return point.place.value(wanted.key(), Json()) == wanted.value();
         }))
@@ -140,7 +140,7 @@ const SweepPoint& Sweep::at(const Json& where) const {
 
 std::vector<double> Sweep::values(const char* key) const {
   std::set<double> values;
-  for (const SweepPoint& point : points) values.insert(point.number(key));
+  for (const PaperPoint& point : points) values.insert(point.number(key));
   return {values.begin(), values.end()};
 }
 

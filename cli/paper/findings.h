@@ -32,7 +32,7 @@ struct Outcomes : dynamics::GateTally {
   }
 };
 
-struct SweepPoint : Outcomes {
+struct PaperPoint : Outcomes {
   Json place;  // the varied keys of the scene: {"run.method": "stable", "forces.random_N": 10}
 
   [[nodiscard]] double number(const char* key) const { return place.at(key).get<double>(); }
@@ -40,9 +40,9 @@ struct SweepPoint : Outcomes {
 };
 
 struct Sweep {
-  std::vector<SweepPoint> points;  // at least one
+  std::vector<PaperPoint> points;  // at least one
   /// The point at which these keys have these values. Throws std::out_of_range if there is none.
-  [[nodiscard]] const SweepPoint& at(const Json& where) const;
+  [[nodiscard]] const PaperPoint& at(const Json& where) const;
   [[nodiscard]] std::vector<double> values(const char* key) const;  // ascending
 };
 

@@ -184,10 +184,10 @@ dynamics::GateParams gate_of(const char* scene, const std::vector<std::string>& 
   return lattice::parse_scene(carried_file(scene), scene, overrides).gate;
 }
 
-const SweepPoint& fig8_at(const Findings& f, double damping, double force, double random) {
+const PaperPoint& fig8_at(const Findings& f, double damping, double force, double random) {
   return f.fig8.at({{kDamping, damping}, {kPropulsion, force}, {kRandom, random}});
 }
-const SweepPoint& fig12_at(const Findings& f, double damping, double force, double random,
+const PaperPoint& fig12_at(const Findings& f, double damping, double force, double random,
                            double k_left) {
   return f.fig12.at(
       {{kDamping, damping}, {kPropulsion, force}, {kRandom, random}, {kLeftStiffness, k_left}});

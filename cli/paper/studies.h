@@ -34,9 +34,9 @@ struct Study {
 [[nodiscard]] dynamics::GateParams gate_of(const char* scene,
                                            const std::vector<std::string>& overrides = {});
 /// Points of the grids of Figs. 8 and 12.
-[[nodiscard]] const SweepPoint& fig8_at(const Findings& f, double damping, double force,
+[[nodiscard]] const PaperPoint& fig8_at(const Findings& f, double damping, double force,
                                         double random);
-[[nodiscard]] const SweepPoint& fig12_at(const Findings& f, double damping, double force,
+[[nodiscard]] const PaperPoint& fig12_at(const Findings& f, double damping, double force,
                                          double random, double k_left);
 inline constexpr char kDamping[] = "beams.damping_Nms_per_rad";
 inline constexpr char kPropulsion[] = "forces.propulsion_N";

@@ -3,10 +3,14 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "cli/render/choice.h"
 #include "cli/render/csv.h"
 #include "cli/render/gate_runs.h"
 #include "cli/render/health.h"
+#include "cli/render/panel.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
 #include "cli/render/text_table.h"
@@ -15,6 +19,7 @@
 namespace gatewalk::cli {
 
 using dynamics::GridPasses;
+using dynamics::Landscape;
 
 namespace {
 
@@ -128,6 +133,141 @@ std::string table_of(const LandscapeResult& result, const dynamics::GateParams& 
           : "as energies go enough, but hits and dampers take theirs: a body that comes to rest in "
             "a basin must climb out of it",
       result.measured ? measured_line(*result.measured) : "");
+}
+
+double ceiling_of(const Landscape& l) {
+  const auto middle = static_cast<Eigen::Index>(l.x.size() / 2);
+  double highest = 0.0;
+  for (Eigen::Index i = 0; i < l.total.rows(); ++i)
+    if (const double e = l.total(i, middle); std::isfinite(e)) highest = std::max(highest, e);
+  return 1.2 * highest;
+}
+
+std::string short_energy(double joules, const Sized& unit) {
+  return digits(joules / unit.size, 3) + " " + unit.name;
+}
+
+void add_rows(Rows& rows, const Landscape& l, const Sized& metre, const Sized& joule,
+              double ceiling) {
+  const auto energy = [&](double e) {
+    return std::isfinite(e) ? digits(std::min(e, ceiling) / joule.size) : "NaN";
+  };
+  // No more points than can be seen.
+  const std::size_t stride = std::max<std::size_t>(1, std::max(l.x.size(), l.y.size()) / 200);
+  for (std::size_t i = 0; i < l.y.size(); i += stride) {
+    for (std::size_t j = 0; j < l.x.size(); j += stride)
+      rows.add(l.x[j] / metre.size, l.y[i] / metre.size, energy(l.elastic(i, j)),
+               energy(l.total(i, j)));
+    rows.gap();
+  }
+}
+
+namespace {
+
+/// The number of the grid point nearest to x.
+Eigen::Index nearest(const std::vector<double>& grid, double x) {
+  const double spacing = (grid.back() - grid.front()) / static_cast<double>(grid.size() - 1);
+  return std::lround((x - grid.front()) / spacing);
+}
+
+/// The y axis has its name nearer, by letters, where its numbers are long, as with a step of 0.05.
+Axis upright_axis(const std::string& name, double low, double high, double step) {
+  constexpr std::size_t kShort = 3;
+  const std::string number = digits(step);
+  const std::size_t more = std::max(number.size(), kShort) - kShort;
+  return {.name = name,
+          .low = low,
+          .high = high,
+          .tics = number,
+          .name_look = "offset " + digits(0.8 + static_cast<double>(more)) + ",0"};
+}
+
+/// A mark in black and white: seen on every colour of a map.
+void draw_mark(Panel& panel, const Rows& place, int mark, double size, double inside) {
+  panel.draw_outlined(place, "1:2", "points", {.colour = "#000000", .mark = mark, .size = size},
+                      {.colour = "#ffffff", .mark = mark, .size = inside});
+}
+
+}  // namespace
+
+Figure figure_of(const dynamics::Passes& passes) {
+  const Landscape& l = passes.coarse.landscape;
+  const dynamics::GridPasses& fine = passes.fine;
+  const dynamics::Pass& pass = fine.downhill() ? fine.from_start : fine.from_basin;
+  const double ceiling = ceiling_of(l);
+  const double wide = l.x.back() - l.x.front(), deep = l.y.back() - l.y.front();
+  const Sized metre = readable_unit("m", std::max(wide, deep)), joule = readable_unit("J", ceiling);
+  const double scale = std::min(145.0 / wide, 320.0 / deep);
+  constexpr double kBetween = 40;  // for half a number of either map
+  const Box first{82, 82 + scale * wide, 36, 36 + scale * deep};
+  const Box second{first.right + kBetween, first.right + kBetween + scale * wide, first.top,
+                   first.bottom};
+  const Box profile{82, 488, first.bottom + 100, first.bottom + 240};
+  const int height = static_cast<int>(profile.bottom + 84);
+
+  Panels out;
+  Rows &grid = out.data("$grid"), &way = out.data("$way"), &at_pass = out.data("$pass"),
+       &at_start = out.data("$start");
+  add_rows(grid, l, metre, joule, ceiling);
+  // Both what the way rises to and the start's energy, off the axis.
+  const double start_energy = fine.from_start.start_energy + passes.kinetic_energy;
+  double lowest = start_energy, highest = start_energy, gone = 0.0;
+  for (std::size_t i = 0; i < pass.way.size(); ++i) {
+    const auto [x, y] = pass.way[i];
+    if (i > 0) gone += std::hypot(x - pass.way[i - 1][0], y - pass.way[i - 1][1]);
+    const Landscape& on = fine.landscape;
+    const double e = on.total(nearest(on.y, y), nearest(on.x, x));
+    lowest = std::min(lowest, e);
+    highest = std::max(highest, e);
+    way.add(x / metre.size, y / metre.size, gone / metre.size, e / joule.size);
+  }
+  const double margin = highest > lowest ? 0.06 * (highest - lowest) : 0.5 * joule.size;
+  at_pass.add(pass.x / metre.size, pass.y / metre.size);
+  const auto [start_x, start_y] = fine.from_start.way.front();
+  at_start.add(start_x / metre.size, start_y / metre.size);
+
+  const std::string m = " (" + metre.name + ")";
+  const double energy_step = tic_step(ceiling / joule.size, 5);
+  Panel& beams = out.add(first);
+  beams.say("beams, Eq. (14)", first.left, 18);
+  beams.x = {"x" + m, l.x.front() / metre.size, l.x.back() / metre.size,
+             digits(tic_step(wide / metre.size, 3))};
+  beams.y = upright_axis("y" + m, l.y.front() / metre.size, l.y.back() / metre.size,
+                         tic_step(deep / metre.size, 5));
+  beams.colours = {0, ceiling / joule.size};
+  beams.draw(grid, "1:2:3", "image");
+
+  Panel& total = out.add(second);
+  total.say("with propulsion, Eq. (15)", second.left, 18);
+  total.say("maps: cut at " + short_energy(ceiling, joule) + "; no colour: " + kHole, 8,
+            height - 12, kSmallFont);
+  total.x = beams.x;
+  total.y = {"", beams.y.low, beams.y.high, beams.y.tics};
+  total.y.numbers = false;
+  total.colours = {0,
+                   ceiling / joule.size,
+                   second.beside(12, 12),
+                   digits(energy_step) + " offset -0.8,0",
+                   joule.name,
+                   "offset -1.5,0"};
+  total.draw(grid, "1:2:4", "image");
+  total.draw_outlined(way, "1:2", "lines", {"#000000", 3.5}, {"#ffffff", 1.5});
+  draw_mark(total, at_start, 5, 1, 0.6);
+  draw_mark(total, at_pass, 7, 1.1, 0.7);
+
+  Panel& along = out.add(profile);
+  along.x = {
+      std::string("along the lowest way from the ") + (fine.downhill() ? "start" : "basin") + m, 0};
+  along.y = upright_axis("energy (" + joule.name + ")", (lowest - margin) / joule.size,
+                         (highest + margin) / joule.size, energy_step);
+  along.y.format = "%g";
+  along.draw(way, "3:4", "lines", {kFirstColour, 2});
+  along.draw_level(start_energy / joule.size, {.colour = kInk, .dashes = 2});
+  const double key = first.bottom + 58;
+  out.add_key(82, key, {entry("points", {.colour = kInk, .mark = 5, .size = 0.8}, "start")});
+  out.add_key(160, key, {entry("points", {.colour = kInk, .mark = 7, .size = 0.9}, "pass")});
+  out.add_key(246, key, {entry("lines", {.colour = kInk, .dashes = 2}, "energy of the start")});
+  return out.figure(height);
 }
 
 }  // namespace gatewalk::cli

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "cli/render/figure.h"
 #include "cli/render/shown_field.h"
+#include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {
 
@@ -21,5 +23,9 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string table_of(const std::vector<lattice::KeyInfo>& keys);
 /// The scene as a file to edit: every key with its value, unit, range and meaning.
 [[nodiscard]] std::string commented(const lattice::Scene& scene);
+
+/// One gate to scale: the disc at its start, the beams at rest, each length and force at its place,
+/// and the keys that give them.
+[[nodiscard]] Figure figure_of(const lattice::Scene& scene);
 
 }  // namespace gatewalk::cli

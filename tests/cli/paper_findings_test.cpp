@@ -19,7 +19,7 @@ Json small_sweep() {
 
 TEST(Findings, APointIsFoundByItsNumbersAndWords) {
   const auto sweep = found_in<Sweep>(small_sweep());
-  const SweepPoint& p = sweep.at({{"run.method", "stable"}, {"beams.damping_Nms_per_rad", 50}});
+  const PaperPoint& p = sweep.at({{"run.method", "stable"}, {"beams.damping_Nms_per_rad", 50}});
   EXPECT_EQ(p[dynamics::Outcome::trapped], 162);
   EXPECT_EQ(p.exited(), 30);
   EXPECT_EQ(p.traversed_share().value, 0.04);
@@ -28,7 +28,7 @@ TEST(Findings, APointIsFoundByItsNumbersAndWords) {
   EXPECT_EQ(p.right_share().whole, 8);
   EXPECT_EQ(p.text("beams.damping_Nms_per_rad"), "50");
   EXPECT_EQ(p.text("run.method"), "stable");
-  const SweepPoint& other = sweep.at({{"run.method", "paper"}});
+  const PaperPoint& other = sweep.at({{"run.method", "paper"}});
   EXPECT_EQ(other.number("beams.damping_Nms_per_rad"), 0.5);
   EXPECT_EQ(other.health.worst_penetration, 2.0);
   EXPECT_EQ(sweep.values("beams.damping_Nms_per_rad"), (std::vector<double>{0.5, 50}));

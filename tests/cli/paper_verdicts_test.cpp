@@ -140,7 +140,7 @@ Findings found(std::int64_t trials, std::int64_t (*left)(double force, double ra
                std::int64_t (*right)(double force, double random)) {
   Findings f;
   const auto add = [&](Sweep& to, double damping, double force, double random, double k) {
-    SweepPoint p;
+    PaperPoint p;
     p.trials = trials;
     p.counts = {left(force, random), right(force, random)};
     p.place = {{kDamping, damping}, {kPropulsion, force}, {kRandom, random}};
