@@ -141,22 +141,20 @@ class AdjointPredictor {
   /// On all threads of the current TBB arena; the same bits for any number of them. Throws
   /// std::invalid_argument without a limit of cells, and for a cell that is not in the field.
   AdjointPredictor(const Chain& chain, const Field& field, int column, int row, int max_cells);
-  ~AdjointPredictor();
-  AdjointPredictor(AdjointPredictor&&) noexcept;
-  AdjointPredictor& operator=(AdjointPredictor&&) noexcept;
 
   /// From a start whose first draw gave each output so often (outputs); all zero: a row never
   /// sampled. Throws std::invalid_argument for another number of outputs.
   [[nodiscard]] FinalDistribution predict(const std::vector<std::int64_t>& counts) const;
 
  private:
-  struct Plan;
-  class Backward;
   struct End {
     std::int64_t cell;
     Ending why;
   };
-  std::unique_ptr<const Plan> plan_;
+  Field field_;
+  Start start_;
+  int max_cells_;
+  int most_terms_ = 0;  // of a sum over moves
   std::vector<End> ends_;
   Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
       answers_;  // (outputs x 1 + ends): draws, then the chance of each end
