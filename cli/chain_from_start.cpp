@@ -13,8 +13,8 @@ ChainFromStart chain_from_start(const Options& options, Subject& s) {
     const int row = kernel.space.size();  // of the start, behind those of the kernel
     return {lattice::chain_of(
                 kernel, s.problem.map(), s.problem.field,
-                {lattice::first_row(kernel, s.problem.map(), *s.pool,
-                                    s.pool->begin(s.starts.front()), s.problem.start_type())}),
+                lattice::first_rows(kernel, s.problem.map(), *s.pool,
+                                    {s.pool->first_row(s.starts.front())}, s.problem.start_type())),
             {s.problem.field.start_column(), 0, row},
             {std::nullopt, s.starts.front(), title_of(s.problem.map().section, s.starts.front())},
             true,

@@ -76,7 +76,7 @@ PageStates states_of_trees(const Subject& s, const lattice::RunPool& pool,
 
 /// The chain of the subject's first start; of trees with groups.
 lattice::AnalysedChain chain_from(const Subject& s, const lattice::RunPool& pool) {
-  return lattice::analysed_chain(s.problem, pool, pool.begin(s.starts.front()), s.how.per_leaf);
+  return lattice::analysed_chain(s.problem, pool, pool.first_row(s.starts.front()), s.how.per_leaf);
 }
 lattice::AnalysedChain chain_from(const Subject& s) {
   if (s.pool) return chain_from(s, *s.pool);

@@ -20,13 +20,26 @@ std::vector<Entry> FieldTrials::entries() const {
   return all;
 }
 
+bool FieldTrials::keep_endings_with(const FieldTrials& more) {
+  const auto knows = [](const FieldTrials& t) {
+    return !t.keep_passages || t.endings.size() == t.passed.size();
+  };
+  if (knows(*this) && knows(more)) return true;
+  final_gates.clear();
+  endings.clear();
+  costs.clear();
+  return false;
+}
+
 void FieldTrials::append(const FieldTrials& more) {
   const auto add = [](auto& to, const auto& from) {
     to.insert(to.end(), from.begin(), from.end());
   };
-  add(final_gates, more.final_gates);
-  add(endings, more.endings);
-  add(costs, more.costs);
+  if (keep_endings_with(more)) {
+    add(final_gates, more.final_gates);
+    add(endings, more.endings);
+    add(costs, more.costs);
+  }
   add(bodies, more.bodies);
   if (!keep_passages) return;
   const std::int64_t before = std::ssize(passages);
@@ -35,9 +48,11 @@ void FieldTrials::append(const FieldTrials& more) {
 }
 
 void FieldTrials::append(const FieldTrials& from, std::size_t at) {
-  final_gates.push_back(from.final_gates[at]);
-  endings.push_back(from.endings[at]);
-  costs.push_back(from.costs[at]);
+  if (keep_endings_with(from)) {
+    final_gates.push_back(from.final_gates[at]);
+    endings.push_back(from.endings[at]);
+    costs.push_back(from.costs[at]);
+  }
   if (!from.bodies.empty()) bodies.push_back(from.bodies[at]);
   if (!keep_passages) return;
   passages.append(from.passages, static_cast<std::size_t>(at == 0 ? 0 : from.passed[at - 1]),
@@ -96,6 +111,12 @@ FieldTally& FieldTally::operator+=(const FieldTally& o) {
   return *this;
 }
 
+markov::Exit exit_of(const Section& section, Fate fate, const Entry& next) {
+  if (fate == Fate::trapped) return {};
+  const Face& move = section.faces[static_cast<std::size_t>(next.face)];
+  return {next.face, move.di_x, move.di_y};
+}
+
 std::optional<Entry> RunningTrial::follow(const CellMap& map, const FieldParams& field,
                                           const Passage& passage, bool keep_passages, int type) {
   ++cells_;
@@ -105,20 +126,14 @@ std::optional<Entry> RunningTrial::follow(const CellMap& map, const FieldParams&
     passages_.push_back(
         {passage.fate, static_cast<std::uint8_t>(type), passage.next, passage.costs});
   }
-  if (passage.fate == Fate::trapped) ending_ = markov::Ending::trapped;
-  if (passage.fate != Fate::left) return {};
-  const Face& move = map.section.faces[passage.next.face];
-  const int column = column_ + move.di_x, row = row_ + move.di_y;
-  if (!field.contains(column, row)) {
-    ending_ = markov::edge_before({field.columns, field.rows}, column, row);
-    return {};
-  }
-  if (cells_ == field.max_gates) {
-    ending_ = markov::Ending::cut_off;
-    return {};
-  }
-  column_ = column;
-  row_ = row;
+  if (passage.fate == Fate::broken) return {};
+  std::int64_t column = column_, row = row_;
+  ending_ =
+      markov::follow({field.columns, field.rows}, exit_of(map.section, passage.fate, passage.next),
+                     cells_ == field.max_gates, column, row);
+  if (ending_) return {};
+  column_ = static_cast<std::int32_t>(column);
+  row_ = static_cast<std::int32_t>(row);
   return passage.next;
 }
 

@@ -50,6 +50,8 @@ struct FieldTally {
 
 /// What each trial did, in the order of their numbers.
 struct FieldTrials {
+  // All three are empty where trials were not run in the field at hand: it is not known where and
+  // how they would end there.
   std::vector<std::int32_t> final_gates{};               // row * columns + column
   std::vector<std::optional<markov::Ending>> endings{};  // none: a run stopped being finite
   std::vector<dynamics::Costs> costs{};                  // of all its runs together
@@ -67,10 +69,15 @@ struct FieldTrials {
   }
   /// Those into cells that trials then ran through, in their order.
   [[nodiscard]] std::vector<dynamics::Entry> entries() const;
-  /// All those of others, with their passages if these keep any.
+  /// All those of others, with their passages if these keep any. Where the endings of one of both
+  /// are not known, none are.
   void append(const FieldTrials& more);
   /// One of them.
   void append(const FieldTrials& from, std::size_t at);
+
+ private:
+  /// Whether endings stay known with trials of `more`; else those of these are forgotten.
+  [[nodiscard]] bool keep_endings_with(const FieldTrials& more);
 };
 
 /// Trials, and what each did.
@@ -155,6 +162,10 @@ void require_cells(const dynamics::CellField& cells);
                                    dynamics::TrialRange range, FieldTrials* each = nullptr,
                                    const dynamics::StateSpace* space = nullptr,
                                    Memory memory = Memory::kept);
+
+/// Where a passage through a cell of this section leads, as markov::follow takes it.
+[[nodiscard]] markov::Exit exit_of(const dynamics::Section& section, dynamics::Fate fate,
+                                   const dynamics::Entry& next);
 
 /// One trial on its way through the field, whoever carries its body.
 class RunningTrial {

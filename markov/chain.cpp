@@ -50,13 +50,20 @@ void validate(const std::vector<Exit>& exits, std::int64_t inputs, std::int64_t 
 Chain::Chain(Probabilities p, std::vector<Exit> exits)
     : p_(std::move(p)), exits_(std::move(exits)) {}
 
-Chain Chain::from_counts(const Counts& counts, std::vector<Exit> exits) {
-  validate(exits, counts.rows(), counts.cols());
-  Probabilities p(counts.rows(), counts.cols());
-  p.reserve(counts.nonZeros());
-  for (Eigen::Index row = 0; row < counts.rows(); ++row) {
+Chain Chain::from_counts(const Counts& counts, std::vector<Exit> exits, const Counts& start_rows) {
+  if (start_rows.rows() > 0 && start_rows.cols() != counts.cols())
+    refuse("rows of " + std::to_string(start_rows.cols()) +
+           " outputs cannot stand behind rows of " + std::to_string(counts.cols()));
+  const Eigen::Index rows = counts.rows() + start_rows.rows();
+  validate(exits, rows, counts.cols());
+  Probabilities p(rows, counts.cols());
+  p.reserve(counts.nonZeros() + start_rows.nonZeros());
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const bool is_start = row >= counts.rows();
+    const Counts& from = is_start ? start_rows : counts;
+    const Eigen::Index at = is_start ? row - counts.rows() : row;
     std::int64_t total = 0;
-    for (Counts::InnerIterator it(counts, row); it; ++it) {
+    for (Counts::InnerIterator it(from, at); it; ++it) {
       if (it.value() < 0) {
         refuse(row_name(row) + ": count " + std::to_string(it.value()) + " of output " +
                std::to_string(it.col()) + " is negative");
@@ -66,7 +73,7 @@ Chain Chain::from_counts(const Counts& counts, std::vector<Exit> exits) {
       }
     }
     p.startVec(row);
-    for (Counts::InnerIterator it(counts, row); it; ++it) {
+    for (Counts::InnerIterator it(from, at); it; ++it) {
       if (it.value() == 0) continue;
       p.insertBack(row, it.col()) = static_cast<double>(it.value()) / static_cast<double>(total);
     }

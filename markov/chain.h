@@ -35,9 +35,11 @@ void validate(const std::vector<Exit>& exits, std::int64_t inputs, std::int64_t 
 class Chain {
  public:
   /// Rows become counts / row sum; an all-zero row becomes "unsampled".
+  /// `start_rows` stand behind the others: no exit needs to lead to them.
   /// Throws std::invalid_argument naming the row (counted from 0, as all messages here) on a
   /// negative count or an overflowing sum, and on exits that do not fit.
-  static Chain from_counts(const Counts& counts, std::vector<Exit> exits);
+  static Chain from_counts(const Counts& counts, std::vector<Exit> exits,
+                           const Counts& start_rows = {});
 
   /// Rows must be finite, non-negative and sum to 1 within 1e-12 (nothing is normalised silently);
   /// an empty row is "unsampled". Throws std::invalid_argument naming row and sum.

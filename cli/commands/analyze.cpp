@@ -80,7 +80,7 @@ AnalysedSubject chain_of_runs(const Options& options, Subject& s) {
   const int per_leaf =
       lattice::leaf_of_analysis(s.problem, *s.pool, s.how.per_leaf, prediction.states);
   AnalysedSubject c{.chain = lattice::analysed_chain(s.problem, *s.pool,
-                                                     s.pool->begin(s.starts.front()), per_leaf),
+                                                     s.pool->first_row(s.starts.front()), per_leaf),
                     .answer = {.endings = answer.endings,
                                .rest = rest_of(answer.final),
                                .from_trials = answer.from_trials,

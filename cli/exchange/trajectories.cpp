@@ -22,7 +22,7 @@ Trajectories trajectories_of(const lattice::RunPool& pool, const dynamics::State
   Trajectories all;
   for (const lattice::StartTrials& s : pool.starts)
     for (const lattice::FieldTrials* trials : {&s.full, &s.first})
-      for (std::size_t i = 0; i < trials->final_gates.size(); ++i)
+      for (std::size_t i = 0; i < trials->passed.size(); ++i)
         add(all, space, s.start, trials->of_trial(i));
   for (std::size_t i = 0; i < pool.scattered.starts.size(); ++i)
     add(all, space, pool.scattered.starts[i], pool.scattered.each.of_trial(i));

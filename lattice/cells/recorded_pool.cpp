@@ -18,9 +18,6 @@ RunPool pool_of(RecordedRuns runs) {
     pool.scattered.starts.push_back(trial.start);
     each.bodies.push_back(trial.body);
     each.passed.push_back(trial.first + trial.count);
-    each.final_gates.push_back(0);  // not told: tracks need not run through the field at hand
-    each.endings.push_back({});
-    each.costs.push_back({});
   }
   return pool;
 }

@@ -33,25 +33,23 @@ std::vector<markov::Reward> rewards_of(const std::vector<std::int64_t>& counts,
 }  // namespace
 
 CostedChain costed_chain(const Kernel& kernel, const CellMap& map, const FieldParams& field,
-                         const RunPool& pool, const PoolStart& start, TrialGroup group) {
+                         const RunPool& pool, const FirstRow& start, TrialGroup group) {
   const int start_type = map.type_of(field.start_column(), 0);
   const auto sums = cost_sums(kernel, map, pool, group);
-  const auto first = first_row(kernel, map, pool, start, start_type, group);
+  const markov::Counts first = first_rows(kernel, map, pool, {start}, start_type, {group});
   const auto first_sums = first_cost_sums(kernel, sums, map, pool, start, start_type, group);
   markov::Rewards rewards;
   for (std::size_t type = 0; type < kernel.counts.size(); ++type) {
     const markov::Counts& k = kernel.counts[type];
     std::vector<std::int64_t> counts(k.valuePtr(), k.valuePtr() + k.nonZeros());
     std::vector<CostSums> costs = sums[type];
-    if (static_cast<int>(type) == start_type)
-      for (std::size_t output = 0; output < first.size(); ++output)
-        if (first[output] > 0) {
-          counts.push_back(first[output]);
-          costs.push_back(first_sums[output]);
-        }
+    if (static_cast<int>(type) == start_type) {
+      counts.insert(counts.end(), first.valuePtr(), first.valuePtr() + first.nonZeros());
+      costs.insert(costs.end(), first_sums.begin(), first_sums.end());
+    }
     rewards.push_back(rewards_of(counts, costs, map.section.costs.size()));
   }
-  return {chain_of(kernel, map, field, {first}),
+  return {chain_of(kernel, map, field, first),
           std::move(rewards),
           {field.start_column(), 0, kernel.space.size()}};
 }
@@ -76,11 +74,12 @@ std::vector<EntryTable> entries_of_leaves(const Kernel& kernel, const CellMap& m
 
 /// Entries of the start's row: the one, or those seen.
 EntryTable first_entries(const Kernel& kernel, const CellMap& map, const RunPool& pool,
-                         const PoolStart& start, TrialGroup group,
+                         const FirstRow& start, TrialGroup group,
                          const std::vector<EntryTable>& of_leaves) {
-  if (start.own != nullptr) return {map.section, {*start.entry}};
-  if (start.entry)
-    return of_leaves[static_cast<std::size_t>(kernel.space.index_of(*start.entry).state)];
+  if (const auto* const own = std::get_if<const StartTrials*>(&start))
+    return {map.section, {(*own)->start}};
+  if (const auto* const entry = std::get_if<Entry>(&start))
+    return of_leaves[static_cast<std::size_t>(kernel.space.index_of(*entry).state)];
   EntryTable entries(map.section);
   for (std::int64_t i = 0; i < std::ssize(pool.scattered.starts); ++i)
     if (group.holds(pool.scattered.each, i))
@@ -90,10 +89,11 @@ EntryTable first_entries(const Kernel& kernel, const CellMap& map, const RunPool
 
 }  // namespace
 
-AnalysedChain analysed_chain(const Problem& problem, const RunPool& pool, const PoolStart& start,
+AnalysedChain analysed_chain(const Problem& problem, const RunPool& pool, const FirstRow& start,
                              int per_leaf) {
-  if (start.own != nullptr ? start.own->first_runs() == 0
-                           : !start.entry && pool.scattered.starts.empty())
+  const auto* const own = std::get_if<const StartTrials*>(&start);
+  if (own ? (*own)->first_runs() == 0
+          : !std::holds_alternative<Entry>(start) && pool.scattered.starts.empty())
     throw std::invalid_argument("analysis: the start has no runs of its own");
   const CellMap& map = problem.map();
   const auto chain_of_group = [&](TrialGroup group) -> AnalysedChain {

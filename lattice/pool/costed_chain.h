@@ -25,7 +25,7 @@ struct CostedChain {
 /// the last one.
 [[nodiscard]] CostedChain costed_chain(const Kernel& kernel, const dynamics::CellMap& map,
                                        const FieldParams& field, const RunPool& pool,
-                                       const PoolStart& start, TrialGroup group = {});
+                                       const FirstRow& start, TrialGroup group = {});
 
 /// What is analysed.
 struct AnalysedChain {
@@ -42,7 +42,7 @@ struct AnalysedChain {
 /// kLeastBodies bodies. Throws std::invalid_argument when there are no
 /// runs of `start`.
 [[nodiscard]] AnalysedChain analysed_chain(const Problem& problem, const RunPool& pool,
-                                           const PoolStart& start,
+                                           const FirstRow& start,
                                            int per_leaf = dynamics::kEntriesPerLeaf);
 /// Of matrices, one for each type. What runs took is not a number where they
 /// do not know it.

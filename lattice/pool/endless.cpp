@@ -41,7 +41,6 @@ ScatteredTrials endless_trials(const Cell& cell, const std::function<Entry(Rando
   for (const auto& own : runs) {
     all.each.passages.append(own);
     all.each.passed.push_back(std::ssize(all.each.passages));
-    all.each.final_gates.push_back(0);  // there is no field: their number counts
   }
   return all;
 }

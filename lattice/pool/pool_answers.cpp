@@ -10,7 +10,6 @@ namespace gatewalk::lattice {
 namespace {
 
 using markov::FinalDistribution;
-using Rows = std::vector<std::vector<std::int64_t>>;
 
 // Where exact predictions take more multiplications, walks are made: so many, of a group a part of
 // them.
@@ -92,11 +91,12 @@ FinalDistribution shares_of(const markov::WalkTally& tally) {
 }
 
 /// Exact, or by `walks` where there are any.
-KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map, const Rows& first_rows,
-                         const FieldParams& field, markov::WalkRange walks, std::uint64_t seed) {
+KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
+                         const markov::Counts& first_rows, const FieldParams& field,
+                         markov::WalkRange walks, std::uint64_t seed) {
   std::vector<markov::Start> places;
-  for (std::size_t i = 0; i < first_rows.size(); ++i)
-    places.push_back({field.start_column(), 0, kernel.space.size() + static_cast<int>(i)});
+  for (int i = 0; i < first_rows.rows(); ++i)
+    places.push_back({field.start_column(), 0, kernel.space.size() + i});
   const markov::Field cells{field.columns, field.rows};
   const markov::FieldChain chain = chain_of(kernel, map, field, first_rows);
   if (walks.count == 0)
@@ -110,8 +110,9 @@ KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map, con
 
 }  // namespace
 
-KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map, const Rows& first_rows,
-                         const FieldParams& field, std::uint64_t seed) {
+KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
+                         const markov::Counts& first_rows, const FieldParams& field,
+                         std::uint64_t seed) {
   const std::int64_t of_a_type = kernel.nonzeros() / std::ssize(kernel.counts);
   return answers_of(kernel, map, first_rows, field, {0, by_walks(of_a_type, field) ? kWalks : 0},
                     seed);
@@ -145,7 +146,8 @@ void PoolChains::renew(const RunPool& pool) {
   for (auto& kernel : kernels) chains_.push_back({.kernel = std::move(*kernel)});
 }
 
-KernelAnswers PoolChains::answers(const GroupChain& chain, int group, const Rows& rows) const {
+KernelAnswers PoolChains::answers(const GroupChain& chain, int group,
+                                  const markov::Counts& rows) const {
   if (!chain.adjoint) {
     const std::int64_t walks = group < 0 ? kWalks : kWalksOfGroup;
     return answers_of(chain.kernel, map_, rows, field_,
@@ -153,11 +155,16 @@ KernelAnswers PoolChains::answers(const GroupChain& chain, int group, const Rows
                       seed_);
   }
   KernelAnswers answers;
-  for (const auto& row : rows) answers.final.push_back(chain.adjoint->predict(row));
+  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+    std::vector<std::int64_t> counts(static_cast<std::size_t>(rows.cols()), 0);
+    for (markov::Counts::InnerIterator it(rows, row); it; ++it)
+      counts[static_cast<std::size_t>(it.col())] = it.value();
+    answers.final.push_back(chain.adjoint->predict(counts));
+  }
   return answers;
 }
 
-PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<PoolStart>& starts) {
+PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<FirstRow>& starts) {
   renew(pool);
   if (!chains_.front().adjoint && by_adjoint(pool, starts.size()))
     tbb::parallel_for(std::size_t{0}, chains_.size(), [&](std::size_t g) {
@@ -173,21 +180,20 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<PoolStart>& s
                    .unseen = {},
                    .states = chains_.front().kernel.space.size(),
                    .nonzeros = chains_.front().kernel.nonzeros()};
-  for (const PoolStart& s : starts)
-    said.unseen.push_back(s.own ? unseen_share(chains_.front().kernel, map_, field_, *s.own) : 0.0);
+  for (const FirstRow& s : starts) {
+    const auto* const own = std::get_if<const StartTrials*>(&s);
+    said.unseen.push_back(own ? unseen_share(chains_.front().kernel, map_, field_, **own) : 0.0);
+  }
   const bool with_kernels = !by_walks_ || chains_.front().adjoint;
   if (with_kernels) said.kernels = said.groups;
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const GroupChain& chain = chains_[static_cast<std::size_t>(g + 1)];
-    Rows rows;
-    const auto add = [&](TrialGroup group) {
-      for (const PoolStart& s : starts)
-        rows.push_back(
-            first_row(chain.kernel, map_, pool, s, map_.type_of(field_.start_column(), 0), group));
-    };
-    if (g >= 0) add({g, kTrialGroups});
-    if (g < 0 || with_kernels) add({});
-    KernelAnswers found = answers(chain, g, rows);
+    std::vector<TrialGroup> groups;
+    if (g >= 0) groups.push_back({g, kTrialGroups});
+    if (g < 0 || with_kernels) groups.emplace_back();
+    KernelAnswers found = answers(chain, g,
+                                  first_rows(chain.kernel, map_, pool, starts,
+                                             map_.type_of(field_.start_column(), 0), groups));
     if (g < 0) {
       said.whole = std::move(found);
       return;

@@ -14,15 +14,15 @@
 
 namespace gatewalk::lattice {
 
-/// Predictions of a kernel from starts, of which `first_rows` (n + 1 counts each) are their first
-/// draws: exact, or by walks where that would take long (large fields, very many runs).
+/// Predictions of a kernel from starts, of which `first_rows` (starts x n+1) are the first draws:
+/// exact, or by walks where that would take long (large fields, very many runs).
 struct KernelAnswers {
   std::vector<markov::FinalDistribution> final;  // (starts)
   std::int64_t walks = 0;                        // behind each; 0: they are exact
 };
 [[nodiscard]] KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
-                                       const std::vector<std::vector<std::int64_t>>& first_rows,
-                                       const FieldParams& field, std::uint64_t seed);
+                                       const markov::Counts& first_rows, const FieldParams& field,
+                                       std::uint64_t seed);
 
 struct PoolAnswers {
   KernelAnswers whole;
@@ -46,7 +46,7 @@ class PoolChains {
   /// Whether answers for so many starts come by the adjoint: further ones then cost nothing.
   [[nodiscard]] bool by_adjoint(const RunPool& pool, std::size_t starts) const;
 
-  [[nodiscard]] PoolAnswers ask(const RunPool& pool, const std::vector<PoolStart>& starts);
+  [[nodiscard]] PoolAnswers ask(const RunPool& pool, const std::vector<FirstRow>& starts);
 
  private:
   struct GroupChain {
@@ -55,7 +55,7 @@ class PoolChains {
   };
   void renew(const RunPool& pool);
   [[nodiscard]] KernelAnswers answers(const GroupChain& chain, int group,
-                                      const std::vector<std::vector<std::int64_t>>& rows) const;
+                                      const markov::Counts& rows) const;
 
   dynamics::CellMap map_;
   const FieldParams& field_;

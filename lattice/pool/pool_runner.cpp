@@ -39,7 +39,7 @@ void PoolRunner::run_scattered(ScatteredTrials& s, const StartRange& starts, std
   run({"scattered trials", true, kScatteredOwn, [&](std::int64_t i) { return drawn(starts, i); },
        false},
       count, s.each);
-  for (std::int64_t i = std::ssize(s.starts); i < std::ssize(s.each.final_gates); ++i)
+  for (std::int64_t i = std::ssize(s.starts); i < std::ssize(s.each.passed); ++i)
     s.starts.push_back(drawn(starts, i));
 }
 
@@ -88,7 +88,7 @@ void PoolRunner::run_plain(const Begun& begun, std::int64_t count, FieldTrials& 
   if (!begun.through_field) field.max_gates = 1;
   const auto points = points_of(begun);
   const Cell& cell = problem_.cells.at(field.start_column(), 0);
-  const std::int64_t done = std::ssize(all.final_gates);
+  const std::int64_t done = std::ssize(all.passed);
   work_.in_kept_pieces(
       {begun.what, {0, count}},
       RunTrials{FieldTally(problem_.field), {.final_gates = {}, .keep_passages = true}},
@@ -113,7 +113,7 @@ void PoolRunner::run_plain(const Begun& begun, std::int64_t count, FieldTrials& 
 void PoolRunner::run_even(const Begun& begun, std::int64_t count, FieldTrials& all) {
   const std::int64_t batches = 1 + (count - 1) / (kArrays * most_of_array),
                      of_array = 1 + (count - 1) / (kArrays * batches),
-                     done = std::ssize(all.final_gates);
+                     done = std::ssize(all.passed);
   const auto points = points_of(begun);
   FieldTrials got{.final_gates = {}, .keep_passages = true};  // array by array
   std::size_t ordered = 0;                                    // of them, in `all` already
@@ -144,10 +144,10 @@ void PoolRunner::run_even(const Begun& begun, std::int64_t count, FieldTrials& a
         this->count(begun, piece.tally);
         got.append(piece.each);
         const auto each = static_cast<std::size_t>(of_array), of_batch = kArrays * each;
-        for (; got.final_gates.size() - ordered >= of_batch; ordered += of_batch)
+        for (; got.passed.size() - ordered >= of_batch; ordered += of_batch)
           for (std::size_t i = 0; i < of_batch; ++i)  // in the order of their numbers
             all.append(got, ordered + i % kArrays * each + i / kArrays);
-        if (ordered < got.final_gates.size()) return;
+        if (ordered < got.passed.size()) return;
         got = {.final_gates = {}, .keep_passages = true};
         ordered = 0;
       });

@@ -88,7 +88,7 @@ StartAnswer answer_of(const FieldParams& field, const StartTrials& s, std::int64
   StartAnswer a = chain_answer(field, s.first_runs(), pooled, std::move(whole), chance, unseen,
                                groups, kernels, seed);
   a.start = s.start;
-  a.trials = s.knows_endings ? std::ssize(s.full.final_gates) : 0;
+  a.trials = std::ssize(s.full.endings);
   if (a.trials == 0) return a;
   CellCounts counts = CellCounts::Zero(field.rows, field.columns);
   for (const std::int32_t cell : s.full.final_gates) ++counts.data()[cell];
@@ -224,8 +224,8 @@ class PredictionRun {
     // By the adjoint all starts cost as much as one. So closed ones are asked again: an error bar
     // that was small by chance is seen to be larger.
     if (chains_.by_adjoint(pool_, open_.size())) open_ = all();
-    std::vector<PoolStart> asked;
-    for (const std::size_t k : open_) asked.push_back(pool_.starts[places_[k]]);
+    std::vector<FirstRow> asked;
+    for (const std::size_t k : open_) asked.emplace_back(&pool_.starts[places_[k]]);
     PoolAnswers said = chains_.ask(pool_, asked);
     result_.states = said.states;
     result_.nonzeros = said.nonzeros;
@@ -235,8 +235,8 @@ class PredictionRun {
     tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t i) {
       chances[i] = chance_of_walks(said.whole.final[i], said.whole.walks);
       result_.starts[open_[i]] = answer_of(
-          problem_.field, *asked[i].own, pooled, std::move(said.whole.final[i]), chances[i],
-          said.unseen[i], said.groups[i],
+          problem_.field, pool_.starts[places_[open_[i]]], pooled, std::move(said.whole.final[i]),
+          chances[i], said.unseen[i], said.groups[i],
           said.kernels.empty() ? std::vector<FinalDistribution>{} : said.kernels[i], options_.seed);
     });
     std::erase_if(open_, [&](std::size_t k) {
@@ -347,7 +347,7 @@ class PredictionRun {
 
   /// Those that it has, at least half of a first round.
   [[nodiscard]] double own_trials_of(std::size_t k) const {
-    const std::int64_t trials = std::ssize(pool_.starts[places_[k]].full.final_gates);
+    const std::int64_t trials = std::ssize(pool_.starts[places_[k]].full.passed);
     return static_cast<double>(std::max(trials, kFirstRound / 2));
   }
 
@@ -411,12 +411,19 @@ StartRange usual_range(const Problem& problem) {
 
 namespace {
 
+std::vector<FirstRow> rows_of(const RunPool& pool,
+                              const std::vector<std::optional<Entry>>& starts) {
+  std::vector<FirstRow> rows;
+  for (const auto& start : starts) rows.push_back(pool.first_row(start));
+  return rows;
+}
+
 KernelAnswers whole_answers(const Kernel& kernel, const Problem& problem, const RunPool& pool,
-                            const std::vector<PoolStart>& starts, std::uint64_t seed) {
-  std::vector<std::vector<std::int64_t>> rows;
-  for (const PoolStart& s : starts)
-    rows.push_back(first_row(kernel, problem.map(), pool, s, problem.start_type()));
-  return answers_of(kernel, problem.map(), rows, problem.field, seed);
+                            const std::vector<std::optional<Entry>>& starts, std::uint64_t seed) {
+  return answers_of(
+      kernel, problem.map(),
+      first_rows(kernel, problem.map(), pool, rows_of(pool, starts), problem.start_type()),
+      problem.field, seed);
 }
 
 }  // namespace
@@ -424,10 +431,7 @@ KernelAnswers whole_answers(const Kernel& kernel, const Problem& problem, const 
 std::vector<FinalDistribution> predict_whole(const Problem& problem, const RunPool& pool,
                                              const std::vector<std::optional<Entry>>& starts,
                                              int per_leaf, std::uint64_t seed) {
-  const Kernel kernel = kernel_of(problem.map(), pool, per_leaf);
-  std::vector<PoolStart> asked;
-  for (const auto& start : starts) asked.push_back(pool.begin(start));
-  return whole_answers(kernel, problem, pool, asked, seed).final;
+  return whole_answers(kernel_of(problem.map(), pool, per_leaf), problem, pool, starts, seed).final;
 }
 
 PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
@@ -438,15 +442,14 @@ PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
   const int per_leaf = options.per_leaf;
   const std::uint64_t seed = options.seed;
   const std::int64_t bodies = pool.bodies();
-  std::vector<PoolStart> asked;
-  for (const auto& start : starts) asked.push_back(pool.begin(start));
   PooledPrediction result;
   PoolAnswers said;
   if (bodies >= kLeastBodies) {
-    said = PoolChains(map, problem.field, per_leaf, starts.size(), seed).ask(pool, asked);
+    said = PoolChains(map, problem.field, per_leaf, starts.size(), seed)
+               .ask(pool, rows_of(pool, starts));
   } else {
     const Kernel kernel = kernel_of(map, pool, per_leaf);
-    said.whole = whole_answers(kernel, problem, pool, asked, seed);
+    said.whole = whole_answers(kernel, problem, pool, starts, seed);
     said.states = kernel.space.size();
     said.nonzeros = kernel.nonzeros();
   }
@@ -498,7 +501,8 @@ PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& 
     s.start = runner.drawn(range, -1 - k);
     runner.run_first(s, kFirstRuns);
   }
-  const std::vector<PoolStart> all(tried.starts.begin(), tried.starts.end());
+  std::vector<FirstRow> all;
+  for (const StartTrials& s : tried.starts) all.emplace_back(&s);
   runner.run_scattered(pool.scattered, range, options.trials.value_or(kBegin));
   if (options.trials) work.end_part();
   PoolChains chains(problem.map(), problem.field, options.per_leaf, kTried, options.seed);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -20,7 +21,7 @@ template <class StartOf, class Use>
 void each_run(const FieldTrials& trials, TrialGroup group, std::size_t skipped, StartOf start_of,
               Use use) {
   constexpr CellPassage kNone{.fate = Fate::broken};
-  for (std::int64_t i = 0; i < std::ssize(trials.final_gates); ++i) {
+  for (std::int64_t i = 0; i < std::ssize(trials.passed); ++i) {
     if (!group.holds(trials, i)) continue;
     const auto passages = trials.of_trial(static_cast<std::size_t>(i));
     if (passages.size() <= skipped) continue;
@@ -166,13 +167,14 @@ std::int64_t RunPool::gate_runs() const {
 
 std::int64_t RunPool::trials() const {
   std::int64_t trials = std::ssize(scattered.starts);
-  for (const StartTrials& s : starts) trials += std::ssize(s.full.final_gates);
+  for (const StartTrials& s : starts) trials += std::ssize(s.full.passed);
   return trials;
 }
 
-PoolStart RunPool::begin(const std::optional<Entry>& start) const {
-  const std::size_t own = start ? place_of(*start) : starts.size();
-  return own < starts.size() ? PoolStart(starts[own]) : PoolStart(start);
+FirstRow RunPool::first_row(const std::optional<Entry>& start) const {
+  if (!start) return {};
+  const std::size_t own = place_of(*start);
+  return own < starts.size() ? FirstRow(&starts[own]) : FirstRow(*start);
 }
 
 std::int64_t RunPool::bodies() const {
@@ -271,7 +273,7 @@ double unseen_share(const Kernel& kernel, const CellMap& map, const FieldParams&
   for (const SeenEntries& seen : kernel.seen) here.emplace_back(seen.boxes.size());
   std::int64_t outside = 0;
   for (const FieldTrials* trials : {&start.full, &start.first})
-    for (std::size_t i = 0; i < trials->final_gates.size(); ++i) {
+    for (std::size_t i = 0; i < trials->passed.size(); ++i) {
       const auto passages = trials->of_trial(i);
       const CellPassage passage = passages.front();
       if (passages.size() > 1 || passage.fate != Fate::left)
@@ -375,7 +377,7 @@ template <class Use>
 void each_first_run(const CellMap& map, const StateSpace& space, const FieldTrials& trials,
                     bool with_images, TrialGroup group, Use use) {
   const std::vector<std::size_t> images = images_of(map);
-  for (std::int64_t i = 0; i < std::ssize(trials.final_gates); ++i) {
+  for (std::int64_t i = 0; i < std::ssize(trials.passed); ++i) {
     if (!group.holds(trials, i)) continue;
     const CellPassage passage = trials.of_trial(static_cast<std::size_t>(i)).front();
     if (passage.fate == Fate::broken) continue;
@@ -385,129 +387,116 @@ void each_first_run(const CellMap& map, const StateSpace& space, const FieldTria
   }
 }
 
-/// The same of a start with runs of its own, or of all scattered trials through a cell of this
-/// type; of those as they were: cells are symmetric, and where bodies come from need not be.
-template <class Use>
-void each_first_run(const CellMap& map, const StateSpace& space, const RunPool& pool,
-                    const PoolStart& start, int type, TrialGroup group, Use use) {
-  if (start.own == nullptr)
-    return each_first_run(map, space, pool.scattered.each, false, group,
-                          [&](int output, const CellPassage& passage) {
-                            if (passage.type == type) use(output, passage);
-                          });
-  const bool in_the_middle = mirrored(space.section(), start.own->start) == start.own->start;
-  for (const FieldTrials* trials : {&start.own->full, &start.own->first})
-    each_first_run(map, space, *trials, in_the_middle, group, use);
-}
-
-}  // namespace
-
-namespace {
-
-/// Calls use(leaf) for where the row of a start begins that has no runs of its own in cells of this
-/// type: its leaf, or those of all scattered trials of which none ran through such a cell first.
-/// False where there are such runs.
-template <class Use>
-bool each_leaf_instead(const Kernel& kernel, const RunPool& pool, const PoolStart& start, int type,
-                       TrialGroup group, Use use) {
-  if (start.own != nullptr) return false;
-  const auto use_entry = [&](const Entry& entry) { use(kernel.space.index_of(entry).state); };
-  if (start.entry) {
-    use_entry(*start.entry);
-    return true;
+/// Calls use_run(output, passage) for the first runs behind a start's row in cells of this type:
+/// its own, or those of all scattered trials through such cells; of those as they were: cells are
+/// symmetric, and where bodies come from need not be. Where there are none, use_leaf(leaf) instead:
+/// its leaf, or those of all scattered trials.
+template <class UseRun, class UseLeaf>
+void each_first_run(const Kernel& kernel, const CellMap& map, const RunPool& pool,
+                    const FirstRow& start, int type, TrialGroup group, UseRun use_run,
+                    UseLeaf use_leaf) {
+  const StateSpace& space = kernel.space;
+  const auto use_entry = [&](const Entry& entry) { use_leaf(space.index_of(entry).state); };
+  if (const auto* const entry = std::get_if<Entry>(&start)) return use_entry(*entry);
+  if (const auto* const own = std::get_if<const StartTrials*>(&start)) {
+    const bool in_the_middle = mirrored(space.section(), (*own)->start) == (*own)->start;
+    for (const FieldTrials* trials : {&(*own)->full, &(*own)->first})
+      each_first_run(map, space, *trials, in_the_middle, group, use_run);
+    return;
   }
   const FieldTrials& each = pool.scattered.each;
   const auto is_of_type = [&](std::size_t i) { return each.of_trial(i).front().type == type; };
-  for (std::size_t i = 0; i < each.final_gates.size(); ++i)
-    if (is_of_type(i)) return false;
-  for (std::int64_t i = 0; i < std::ssize(pool.scattered.starts); ++i)
-    if (group.holds(each, i)) use_entry(pool.scattered.starts[static_cast<std::size_t>(i)]);
-  return true;
+  std::size_t i = 0;
+  while (i < each.passed.size() && !is_of_type(i)) ++i;
+  if (i < each.passed.size())
+    return each_first_run(map, space, each, false, group,
+                          [&](int output, const CellPassage& passage) {
+                            if (passage.type == type) use_run(output, passage);
+                          });
+  for (std::int64_t k = 0; k < std::ssize(pool.scattered.starts); ++k)
+    if (group.holds(each, k)) use_entry(pool.scattered.starts[static_cast<std::size_t>(k)]);
 }
 
 }  // namespace
 
-std::vector<std::int64_t> first_row(const Kernel& kernel, const CellMap& map, const RunPool& pool,
-                                    const PoolStart& start, int type, TrialGroup group) {
-  std::vector<std::int64_t> row(static_cast<std::size_t>(kernel.space.size()) + 1, 0);
-  const auto add_leaf = [&](int leaf) {
-    for (markov::Counts::InnerIterator it(kernel.counts[static_cast<std::size_t>(type)], leaf); it;
-         ++it)
-      row[static_cast<std::size_t>(it.col())] += it.value();
-  };
-  if (!each_leaf_instead(kernel, pool, start, type, group, add_leaf))
-    each_first_run(
-        map, kernel.space, pool, start, type, group,
-        [&](int output, const CellPassage&) { ++row[static_cast<std::size_t>(output)]; });
-  return row;
+markov::Counts first_rows(const Kernel& kernel, const CellMap& map, const RunPool& pool,
+                          const std::vector<FirstRow>& starts, int type,
+                          const std::vector<TrialGroup>& groups) {
+  const Eigen::Index outputs = kernel.space.size() + 1;
+  markov::Counts rows(std::ssize(groups) * std::ssize(starts), outputs);
+  Eigen::Index row = 0;
+  for (const TrialGroup group : groups)
+    for (const FirstRow& start : starts) {
+      std::vector<std::int64_t> counts(static_cast<std::size_t>(outputs), 0);
+      each_first_run(
+          kernel, map, pool, start, type, group,
+          [&](int output, const CellPassage&) { ++counts[static_cast<std::size_t>(output)]; },
+          [&](int leaf) {
+            const auto& all = kernel.counts[static_cast<std::size_t>(type)];
+            for (markov::Counts::InnerIterator it(all, leaf); it; ++it)
+              counts[static_cast<std::size_t>(it.col())] += it.value();
+          });
+      rows.startVec(row);
+      for (Eigen::Index output = 0; output < outputs; ++output)
+        if (const std::int64_t n = counts[static_cast<std::size_t>(output)]; n > 0)
+          rows.insertBack(row, output) = n;
+      ++row;
+    }
+  rows.finalize();
+  return rows;
 }
 
 std::vector<CostSums> first_cost_sums(const Kernel& kernel,
                                       const std::vector<std::vector<CostSums>>& sums,
                                       const CellMap& map, const RunPool& pool,
-                                      const PoolStart& start, int type, TrialGroup group) {
-  std::vector<CostSums> row(static_cast<std::size_t>(kernel.space.size()) + 1);
-  const auto add_leaf = [&](int leaf) {
-    const markov::Counts& counts = kernel.counts[static_cast<std::size_t>(type)];
-    for (auto k = counts.outerIndexPtr()[leaf]; k < counts.outerIndexPtr()[leaf + 1]; ++k)
-      row[static_cast<std::size_t>(counts.innerIndexPtr()[k])] +=
-          sums[static_cast<std::size_t>(type)][static_cast<std::size_t>(k)];
-  };
-  if (!each_leaf_instead(kernel, pool, start, type, group, add_leaf))
-    each_first_run(map, kernel.space, pool, start, type, group,
-                   [&](int output, const CellPassage& run) {
-                     row[static_cast<std::size_t>(output)].add(run.costs);
-                   });
-  return row;
+                                      const FirstRow& start, int type, TrialGroup group) {
+  std::map<int, CostSums> row;  // by output
+  each_first_run(
+      kernel, map, pool, start, type, group,
+      [&](int output, const CellPassage& run) { row[output].add(run.costs); },
+      [&](int leaf) {
+        const markov::Counts& counts = kernel.counts[static_cast<std::size_t>(type)];
+        for (auto k = counts.outerIndexPtr()[leaf]; k < counts.outerIndexPtr()[leaf + 1]; ++k)
+          row[counts.innerIndexPtr()[k]] +=
+              sums[static_cast<std::size_t>(type)][static_cast<std::size_t>(k)];
+      });
+  std::vector<CostSums> in_order;
+  for (const auto& [output, sum] : row) in_order.push_back(sum);
+  return in_order;
 }
 
 markov::FieldChain chain_of(const Kernel& kernel, const CellMap& map, const FieldParams& field,
-                            const std::vector<std::vector<std::int64_t>>& first_rows) {
+                            const markov::Counts& first_rows) {
   const int start_type = map.type_of(field.start_column(), 0);
   std::vector<markov::Chain> chains;
-  for (const markov::Counts& k : kernel.counts) {
-    const bool has_first = std::ssize(chains) == start_type;
-    markov::Counts counts(k.rows() + std::ssize(first_rows), k.cols());
-    counts.reserve(k.nonZeros());
-    for (Eigen::Index row = 0; row < counts.rows(); ++row) {
-      counts.startVec(row);
-      if (row < k.rows()) {
-        for (markov::Counts::InnerIterator it(k, row); it; ++it)
-          counts.insertBack(row, it.col()) = it.value();
-        continue;
-      }
-      const auto& first = first_rows[static_cast<std::size_t>(row - k.rows())];
-      for (Eigen::Index column = 0; column < k.cols() && has_first; ++column)
-        if (const std::int64_t n = first[static_cast<std::size_t>(column)]; n > 0)
-          counts.insertBack(row, column) = n;
-    }
-    counts.finalize();
-    chains.push_back(markov::Chain::from_counts(counts, exits_of(kernel.space)));
-  }
+  for (const markov::Counts& counts : kernel.counts)
+    chains.push_back(markov::Chain::from_counts(
+        counts, exits_of(kernel.space),
+        std::ssize(chains) == start_type ? first_rows
+                                         : markov::Counts(first_rows.rows(), counts.cols())));
   return field_chain(map, std::move(chains));
 }
 
 std::vector<Transitions> transitions_of(const Kernel& kernel, const CellMap& map,
                                         const FieldParams& field, const std::vector<Entry>& starts,
-                                        const std::vector<std::vector<std::int64_t>>& first_rows) {
+                                        const markov::Counts& first_rows) {
   std::vector<Transitions> all;
   const int start_type = map.type_of(field.start_column(), 0);
   for (const markov::Counts& counts : kernel.counts) {
     const bool has_first = std::ssize(all) == start_type;
     Transitions& t =
         all.emplace_back(StateSpace(kernel.space.section(), kernel.space.trees(), starts));
-    const auto add = [&](int row, int column, std::int64_t n) {
-      t.rows[static_cast<std::size_t>(row)]
-            [column == kernel.space.trapped() ? t.space.trapped() : column] += n;
-      t.trials[static_cast<std::size_t>(row)] += n;
+    const auto add_rows = [&](const markov::Counts& from, int first) {
+      for (int row = 0; row < from.rows(); ++row)
+        for (markov::Counts::InnerIterator it(from, row); it; ++it) {
+          const auto at = static_cast<std::size_t>(first + row);
+          const int column = static_cast<int>(it.col());
+          t.rows[at][column == kernel.space.trapped() ? t.space.trapped() : column] += it.value();
+          t.trials[at] += it.value();
+        }
     };
-    for (int row = 0; row < kernel.space.size(); ++row)
-      for (markov::Counts::InnerIterator it(counts, row); it; ++it)
-        add(row, static_cast<int>(it.col()), it.value());
-    for (std::size_t s = 0; s < first_rows.size() && has_first; ++s)
-      for (int column = 0; column <= kernel.space.size(); ++column)
-        if (const std::int64_t n = first_rows[s][static_cast<std::size_t>(column)]; n > 0)
-          add(kernel.space.size() + static_cast<int>(s), column, n);
+    add_rows(counts, 0);
+    if (has_first) add_rows(first_rows, kernel.space.size());
   }
   return all;
 }

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "dynamics/cells/entry_table.h"
@@ -25,11 +26,10 @@ struct StartTrials {
   dynamics::Entry start{};
   FieldTrials full{.final_gates = {}, .keep_passages = true};
   FieldTrials first{.final_gates = {}, .keep_passages = true};  // that ran through one gate only
-  bool knows_endings = true;  // the full trials were run in the field at hand
 
   /// Runs through the first gate.
   [[nodiscard]] std::int64_t first_runs() const {
-    return std::ssize(full.final_gates) + std::ssize(first.final_gates);
+    return std::ssize(full.passed) + std::ssize(first.passed);
   }
   [[nodiscard]] std::int64_t gate_runs() const {
     return std::ssize(full.passages) + std::ssize(first.passages);
@@ -42,16 +42,9 @@ struct ScatteredTrials {
   FieldTrials each{.final_gates = {}, .keep_passages = true};
 };
 
-/// What a chain begins with.
-struct PoolStart {
-  const StartTrials* own = nullptr;        // first runs of a start's own; else ...
-  std::optional<dynamics::Entry> entry{};  // ... the runs of its leaf; or, without an entry, ...
-                                           // ... the first runs of all scattered trials
-
-  PoolStart(const StartTrials& start)
-      : own(&start), entry(start.start) {}  // NOLINT: the usual case
-  explicit PoolStart(std::optional<dynamics::Entry> by = {}) : entry(by) {}
-};
+/// Where the chain's row of a start comes from: the start's own first runs, the runs of the leaf
+/// that holds an entry, or (monostate) the first runs of all scattered trials.
+using FirstRow = std::variant<std::monostate, const StartTrials*, dynamics::Entry>;
 
 struct RunPool {
   std::vector<StartTrials> starts;
@@ -59,8 +52,9 @@ struct RunPool {
 
   /// Place of a start among `starts`; their number if it is none.
   [[nodiscard]] std::size_t place_of(const dynamics::Entry& start) const;
-  /// The start's own runs if it has any, else those of its leaf; without an entry all first ones.
-  [[nodiscard]] PoolStart begin(const std::optional<dynamics::Entry>& start) const;
+  /// From the start's own runs if it has any, else from its leaf; without an entry from all
+  /// scattered trials.
+  [[nodiscard]] FirstRow first_row(const std::optional<dynamics::Entry>& start) const;
   [[nodiscard]] std::int64_t gate_runs() const;
   /// Those that ran through the field.
   [[nodiscard]] std::int64_t trials() const;
@@ -140,18 +134,19 @@ struct Kernel {
                                              const std::vector<std::int64_t>& runs,
                                              std::int64_t least);
 
-/// How often the first runs from the start, of one group of the trials, in a cell of this type,
-/// ended in each of the kernel's outputs (n + 1). A start in the middle of a symmetric cell has
-/// mirror images too, and so have those of scattered trials.
-[[nodiscard]] std::vector<std::int64_t> first_row(const Kernel& kernel,
-                                                  const dynamics::CellMap& map, const RunPool& pool,
-                                                  const PoolStart& start, int type,
-                                                  TrialGroup group = {});
+/// How often the first runs from each start, in a cell of this type, ended in each of the kernel's
+/// outputs (starts x n+1): the runs of one group of the trials, or of several, for each of which
+/// all starts have a row. A start in the middle of a symmetric cell has mirror images too.
+[[nodiscard]] markov::Counts first_rows(const Kernel& kernel, const dynamics::CellMap& map,
+                                        const RunPool& pool, const std::vector<FirstRow>& starts,
+                                        int type,
+                                        const std::vector<TrialGroup>& groups = {TrialGroup{}});
 
-/// What these took (n + 1); `sums`: cost_sums of the kernel.
+/// What those of one start took, in the order of its row's nonzeros; `sums`: cost_sums of the
+/// kernel.
 [[nodiscard]] std::vector<dynamics::CostSums> first_cost_sums(
     const Kernel& kernel, const std::vector<std::vector<dynamics::CostSums>>& sums,
-    const dynamics::CellMap& map, const RunPool& pool, const PoolStart& start, int type,
+    const dynamics::CellMap& map, const RunPool& pool, const FirstRow& start, int type,
     TrialGroup group = {});
 
 /// The share of the start's first runs that enter the next gate of the field where no run of the
@@ -163,12 +158,11 @@ struct Kernel {
 /// gate in which trials start.
 [[nodiscard]] markov::FieldChain chain_of(const Kernel& kernel, const dynamics::CellMap& map,
                                           const FieldParams& field,
-                                          const std::vector<std::vector<std::int64_t>>& first_rows);
+                                          const markov::Counts& first_rows);
 
 /// The same as matrices, in which the starts are states of their own.
 [[nodiscard]] std::vector<dynamics::Transitions> transitions_of(
     const Kernel& kernel, const dynamics::CellMap& map, const FieldParams& field,
-    const std::vector<dynamics::Entry>& starts,
-    const std::vector<std::vector<std::int64_t>>& first_rows);
+    const std::vector<dynamics::Entry>& starts, const markov::Counts& first_rows);
 
 }  // namespace gatewalk::lattice

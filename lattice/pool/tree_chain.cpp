@@ -13,21 +13,16 @@ namespace {
 
 using namespace dynamics;
 
-std::vector<std::vector<std::int64_t>> own_rows(const Problem& problem, const RunPool& pool,
-                                                const Kernel& kernel) {
-  std::vector<std::vector<std::int64_t>> rows;
-  for (const StartTrials& s : pool.starts)
-    rows.push_back(first_row(kernel, problem.map(), pool, s, problem.start_type()));
-  return rows;
-}
-
 /// What walks from the starts end with, or from anywhere in the range where there are none.
 std::vector<markov::FinalDistribution> answers(const Problem& problem, const RunPool& pool,
                                                const Kernel& kernel, std::uint64_t seed) {
   const CellMap& map = problem.map();
-  auto rows = own_rows(problem, pool, kernel);
-  if (rows.empty()) rows.push_back(first_row(kernel, map, pool, PoolStart(), problem.start_type()));
-  return answers_of(kernel, map, rows, problem.field, seed).final;
+  std::vector<FirstRow> starts;
+  for (const StartTrials& s : pool.starts) starts.emplace_back(&s);
+  if (starts.empty()) starts.emplace_back();
+  return answers_of(kernel, map, first_rows(kernel, map, pool, starts, problem.start_type()),
+                    problem.field, seed)
+      .final;
 }
 
 /// Larger leaves, until there are no more states than that.
@@ -52,12 +47,16 @@ void limit_states(TreeChain& chain, const Problem& problem, int most, std::uint6
         std::max(chain.states_bias, total_variation(before[i].final_cells, after[i].final_cells));
 }
 
+/// With the starts of these trials as states of their own.
 std::vector<Transitions> transitions_with(const Problem& problem, const RunPool& pool,
-                                          const Kernel& kernel) {
+                                          const Kernel& kernel,
+                                          const std::vector<const StartTrials*>& own) {
   std::vector<Entry> starts;
-  for (const StartTrials& s : pool.starts) starts.push_back(s.start);
+  for (const StartTrials* s : own) starts.push_back(s->start);
   const CellMap& map = problem.map();
-  return transitions_of(kernel, map, problem.field, starts, own_rows(problem, pool, kernel));
+  return transitions_of(
+      kernel, map, problem.field, starts,
+      first_rows(kernel, map, pool, {own.begin(), own.end()}, problem.start_type()));
 }
 
 /// All full trials of the pool against the chain as it is.
@@ -65,15 +64,18 @@ std::optional<OwnTrials> look_at_own_trials(const TreeChain& chain, const Proble
                                             std::uint64_t seed) {
   const RunPool& pool = chain.pool;
   std::vector<const FieldTrials*> trials;
-  std::vector<std::vector<std::int64_t>> rows;
-  const auto add = [&](const FieldTrials& of, const PoolStart& start) {
-    if (of.final_gates.empty()) return;
+  std::vector<FirstRow> starts;
+  const auto add = [&](const FieldTrials& of, const FirstRow& start) {
+    if (of.endings.empty()) return;
     trials.push_back(&of);
-    rows.push_back(first_row(chain.kernel, problem.map(), pool, start, problem.start_type()));
+    starts.push_back(start);
   };
-  add(pool.scattered.each, PoolStart{});
-  for (const StartTrials& s : pool.starts) add(s.full, s);
-  const KernelAnswers said = answers_of(chain.kernel, problem.map(), rows, problem.field, seed);
+  add(pool.scattered.each, {});
+  for (const StartTrials& s : pool.starts) add(s.full, &s);
+  const CellMap& map = problem.map();
+  const KernelAnswers said = answers_of(
+      chain.kernel, map, first_rows(chain.kernel, map, pool, starts, problem.start_type()),
+      problem.field, seed);
   if (said.walks > 0) return {};
   std::vector<TrialsAndChain> all;
   for (std::size_t i = 0; i < trials.size(); ++i) all.push_back({*trials[i], said.final[i]});
@@ -109,7 +111,9 @@ TreeChain make_tree_chain(const Problem& problem, const TreeOptions& options, co
     limit_states(chain, problem, *options.most_states, options.accuracy.seed);
   chain.own_trials = look_at_own_trials(chain, problem, options.accuracy.seed);
   if (chain.prediction) chain.prediction->own_trials = {};  // that was before states were limited
-  chain.transitions = transitions_with(problem, chain.pool, chain.kernel);
+  std::vector<const StartTrials*> own;
+  for (const StartTrials& s : chain.pool.starts) own.push_back(&s);
+  chain.transitions = transitions_with(problem, chain.pool, chain.kernel, own);
   if (chain.range) chain.transitions.front().health += chain.range->health;
   if (chain.prediction) chain.transitions.front().health += chain.prediction->health;
   return chain;
@@ -143,25 +147,26 @@ const RunArray kTrialRuns{"trial_runs", "1",
     // Only where one body made several trials.
     kTrialBody{"trial_body", "1", "number of the body that made each trial", true};
 
-/// How a run ended: by the move that it made, or without one.
-enum RunEnding : int { kForward, kToLeft, kToRight, kTrapped, kBack, kLost, kRunEndings };
+/// How a run ended, by place: its fate, of one that left with the move to the next cell. Before
+/// files knew of other cells than gates they had the first four.
+const std::vector<std::string> kRunEndings{"traversed", "exited_left", "exited_right",
+                                           "trapped",   "moved_back",  "lost_from_sight"};
+constexpr int kTrapped = 3, kBroken = 5;
 
 int ending_of(const Section& section, const CellPassage& passage) {
-  if (passage.fate != Fate::left) return passage.fate == Fate::trapped ? kTrapped : kLost;
+  if (passage.fate != Fate::left) return passage.fate == Fate::trapped ? kTrapped : kBroken;
   const Face& move = section.faces[static_cast<std::size_t>(passage.entry.face)];
-  if (move.di_y != 0) return move.di_y > 0 ? kForward : kBack;
-  return move.di_x < 0 ? kToLeft : kToRight;
+  if (move.di_y != 0) return move.di_y > 0 ? 0 : 4;
+  return move.di_x < 0 ? 1 : 2;
 }
 
 /// `others`: some ended in another way than a gate's runs do.
 RunArray ending_array(bool others) {
-  RunArray array{"run_ending",
-                 "1",
-                 "how each gate run ended",
-                 true,
-                 {"traversed", "exited_left", "exited_right", "trapped"}};
-  if (others) array.codes.insert(array.codes.end(), {"moved_back", "lost_from_sight"});
-  return array;
+  return {"run_ending",
+          "1",
+          "how each gate run ended",
+          true,
+          {kRunEndings.begin(), others ? kRunEndings.end() : kRunEndings.begin() + kTrapped + 1}};
 }
 
 RunArray face_array(const Section& section) {
@@ -235,7 +240,7 @@ std::vector<markov::NamedArray> arrays_of(const RunPool& pool, const Section& se
   for (const StartTrials& s : pool.starts)
     for (const int kind : {kFullTrial, kFirstRun}) {
       const FieldTrials& trials = kind == kFullTrial ? s.full : s.first;
-      for (std::size_t i = 0; i < trials.final_gates.size(); ++i)
+      for (std::size_t i = 0; i < trials.passed.size(); ++i)
         t.add(kind, s.start, trials.of_trial(i));
     }
   for (std::size_t i = 0; i < pool.scattered.starts.size(); ++i)
@@ -376,28 +381,24 @@ class RunReader {
                           : kind == kFullTrial ? pool.starts[own].full
                                                : pool.starts[own].first;
     trials.passages.begin(section_);
-    Costs sum{};
     for (int k = 0; k < count; ++k, ++at_) {
       const std::string run = "run " + std::to_string(at_ + 1);
-      const int ending = whole(ending_[at_], kRunEndings, run);
-      const Fate fate = ending == kTrapped ? Fate::trapped
-                        : ending == kLost  ? Fate::broken
-                                           : Fate::left;
+      const int ending = whole(ending_[at_], static_cast<double>(kRunEndings.size()), run);
+      const Fate fate = ending == kTrapped  ? Fate::trapped
+                        : ending == kBroken ? Fate::broken
+                                            : Fate::left;
       if (fate != Fate::left && k + 1 < count) refuse(run);
       const int face = whole(face_[at_], faces, run);
       const int type =
           type_ == nullptr ? 0 : whole((*type_)[at_], static_cast<double>(types_), run);
       Costs costs{};
       for (std::size_t c = 0; c < costs_.size(); ++c)
-        sum[c] += costs[c] = costs_[c] == nullptr ? std::nan("") : (*costs_[c])[at_];
+        costs[c] = costs_[c] == nullptr ? std::nan("") : (*costs_[c])[at_];
       trials.passages.push_back(
           {fate, static_cast<std::uint8_t>(type), entry(face, entry_, at_, run), costs});
       if (ending_of(section_, trials.passages[trials.passages.size() - 1]) != ending) refuse(run);
     }
     trials.passed.push_back(std::ssize(trials.passages));
-    trials.final_gates.push_back(0);
-    trials.endings.push_back({});
-    trials.costs.push_back(sum);
   }
 
   const MatrixFile& file_;
@@ -415,41 +416,24 @@ class RunReader {
   std::size_t at_ = 0;  // run
 };
 
-/// Follows trials through a field by their passages, to where and how they end there. False when
-/// they were not run in such a field.
-bool follow(const CellMap& map, const FieldParams& field, FieldTrials& trials) {
-  for (std::size_t i = 0; i < trials.final_gates.size(); ++i) {
-    int column = field.start_column(), row = 0;
-    std::optional<markov::Ending> ending;
-    const auto passages = trials.of_trial(i);
-    for (std::size_t k = 0; k < passages.size(); ++k) {
-      const CellPassage p = passages[k];
-      if (ending || p.type != map.type_of(column, row))
-        return false;  // it went on where this field has an end, or another gate
-      if (p.fate == Fate::broken) return false;
-      if (p.fate == Fate::trapped) {
-        ending = markov::Ending::trapped;
-        break;
-      }
-      const Face& move = map.section.faces[p.entry.face];
-      if (!field.contains(column + move.di_x, row + move.di_y)) {
-        ending =
-            markov::edge_before({field.columns, field.rows}, column + move.di_x, row + move.di_y);
-      } else if (k + 1 == passages.size()) {
-        ending = markov::Ending::cut_off;
-      } else {
-        column += move.di_x;
-        row += move.di_y;
-      }
+/// Follows trials through a field by their passages, to where and how they end there. Nothing is
+/// known of that when they were not run in such a field.
+void find_endings(const CellMap& map, const FieldParams& field, FieldTrials& trials) {
+  FieldTrials ended;
+  for (std::size_t i = 0; i < trials.passed.size(); ++i) {
+    RunningTrial trial(field.start_column());
+    bool goes_on = true;
+    for (const CellPassage p : trials.of_trial(i)) {
+      if (!goes_on || p.fate == Fate::broken || p.type != map.type_of(trial.column(), trial.row()))
+        return;  // it went on where this field has an end, or another gate
+      goes_on = trial.follow(map, field, {p.fate, p.entry, p.costs}, false).has_value();
     }
-    const auto visited = std::ssize(passages);
-    const bool cut = ending == markov::Ending::cut_off;
-    if (field.max_gates > 0 ? visited > field.max_gates || (cut && visited < field.max_gates) : cut)
-      return false;
-    trials.final_gates[i] = row * field.columns + column;
-    trials.endings[i] = ending;
+    if (goes_on) return;
+    trial.add_to(ended, field);
   }
-  return true;
+  trials.final_gates = std::move(ended.final_gates);
+  trials.endings = std::move(ended.endings);
+  trials.costs = std::move(ended.costs);
 }
 
 /// Trials that began in a gate of another type than trials do here are none of a start's own.
@@ -462,12 +446,9 @@ void scatter_others(RunPool& pool, const CellMap& map, int type) {
   each.passages.begin(map.section);
   for (const StartTrials& s : pool.starts)
     for (const FieldTrials* trials : {&s.full, &s.first})
-      for (std::size_t i = 0; i < trials->final_gates.size() && is_other(s); ++i) {
+      for (std::size_t i = 0; i < trials->passed.size() && is_other(s); ++i) {
         for (const CellPassage p : trials->of_trial(i)) each.passages.push_back(p);
         each.passed.push_back(std::ssize(each.passages));
-        each.final_gates.push_back(0);
-        each.endings.push_back({});
-        each.costs.push_back(trials->costs[i]);
         pool.scattered.starts.push_back(s.start);
       }
   std::erase_if(pool.starts, is_other);
@@ -479,25 +460,21 @@ RunPool pool_of(const MatrixFile& file, const Problem& problem, const std::strin
   const CellMap& map = problem.map();
   RunPool pool = RunReader(file, map.types.size(), path).read();
   scatter_others(pool, map, problem.start_type());
-  for (StartTrials& s : pool.starts) s.knows_endings = follow(map, problem.field, s.full);
+  for (StartTrials& s : pool.starts) find_endings(map, problem.field, s.full);
   return pool;
 }
 
 std::vector<Transitions> matrices_of(const Problem& problem, const RunPool& pool,
                                      const std::vector<Entry>& starts, int per_leaf) {
-  const CellMap& map = problem.map();
-  const Kernel kernel = kernel_of(map, pool, per_leaf);
-  std::vector<Entry> points;
-  std::vector<std::vector<std::int64_t>> rows;
+  std::vector<const StartTrials*> own;
   for (const Entry& entry : starts) {
-    if (std::find(points.begin(), points.end(), entry) != points.end()) continue;
-    const std::size_t own = pool.place_of(entry);
-    if (own == pool.starts.size())
+    const std::size_t place = pool.place_of(entry);
+    if (place == pool.starts.size())
       throw std::invalid_argument("matrix: a start has no runs of its own");
-    points.push_back(entry);
-    rows.push_back(first_row(kernel, map, pool, pool.starts[own], problem.start_type()));
+    if (std::find(own.begin(), own.end(), &pool.starts[place]) == own.end())
+      own.push_back(&pool.starts[place]);
   }
-  return transitions_of(kernel, map, problem.field, points, rows);
+  return transitions_with(problem, pool, kernel_of(problem.map(), pool, per_leaf), own);
 }
 
 }  // namespace gatewalk::lattice

@@ -44,8 +44,8 @@ struct TreeChain {
 /// Part of the accuracy asked for a range that error bars of a single start are to keep.
 inline constexpr double kPartForOne = 0.5;
 
-/// The runs of a pool of entries in this section as tables of a matrix file, and back. Starts know
-/// how their full trials end where these were run in the scene's field. Throws markov::BadFile
+/// The runs of a pool of entries in this section as tables of a matrix file, and back. How full
+/// trials of a start end is known where they were run in the scene's field. Throws markov::BadFile
 /// naming `path` when they do not add up.
 [[nodiscard]] std::vector<markov::NamedArray> arrays_of(const RunPool& pool,
                                                         const dynamics::Section& section);

@@ -52,9 +52,6 @@ RunPool pool_of_bodies(const RunPool& pool, const Section& section,
     if (body < 0) continue;
     half.scattered.starts.push_back(pool.scattered.starts[i]);
     to.bodies.push_back(body);
-    to.final_gates.push_back(from.final_gates[i]);
-    to.endings.push_back(from.endings[i]);
-    to.costs.push_back(from.costs[i]);
     for (const CellPassage passage : from.of_trial(i)) to.passages.push_back(passage);
     to.passed.push_back(std::ssize(to.passages));
   }
@@ -78,14 +75,9 @@ std::vector<SeenTrial> seen_trials(const Problem& problem, const RunPool& half, 
         why = &so_far.other_type;
       if (why != &so_far.unwatched) break;
       ++at.gates;
-      markov::Exit exit{markov::Exit::kTrapped, 0, 0};
-      if (passage.fate == Fate::left) {
-        const Face& face =
-            problem.map().section.faces[static_cast<std::size_t>(passage.entry.face)];
-        exit = {0, face.di_x, face.di_y};
-      }
-      seen.ending = markov::follow({field.columns, field.rows}, exit, at.gates == field.max_gates,
-                                   column, row);
+      seen.ending = markov::follow({field.columns, field.rows},
+                                   exit_of(problem.map().section, passage.fate, passage.entry),
+                                   at.gates == field.max_gates, column, row);
       at.cell = cell();
       if (seen.ending) break;
       at.entry = passage.entry;

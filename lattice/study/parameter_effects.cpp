@@ -347,7 +347,7 @@ ParameterEffects parameter_effects(const Problem& problem, RunPool& pool, markov
   const double leaf = std::max(per_leaf * std::sqrt(runs / static_cast<double>(had)),
                                2.0 * runs / most_states(problem.field));  // with mirror images
   const auto chain =
-      analysed_chain(problem, pool, pool.starts[own], static_cast<int>(std::ceil(leaf)));
+      analysed_chain(problem, pool, &pool.starts[own], static_cast<int>(std::ceil(leaf)));
   ParameterEffects out = parameter_effects(problem, chain, target, options, work);
   out.health += runner.health;
   out.added_runs = runner.gate_runs;

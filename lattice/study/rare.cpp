@@ -328,7 +328,7 @@ class Pool {
         run_in(plain, kPoolTrials / parts, most_runs / parts);
       }
     }
-    if (problem.check) problem.check(std::ssize(start().full.final_gates), seed, health_, work);
+    if (problem.check) problem.check(std::ssize(start().full.passed), seed, health_, work);
   }
 
   /// Leaves of so many entries at least.
@@ -339,7 +339,7 @@ class Pool {
   [[nodiscard]] markov::FieldChain chain(const Kernel& kernel, const Problem& problem) const {
     const CellMap& map = problem.map();
     return chain_of(kernel, map, problem.field,
-                    {first_row(kernel, map, pool_, start(), problem.start_type())});
+                    first_rows(kernel, map, pool_, {&start()}, problem.start_type()));
   }
   [[nodiscard]] std::int64_t gate_runs() const { return gate_runs_; }
   [[nodiscard]] const Health& health() const { return health_; }

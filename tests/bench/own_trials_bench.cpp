@@ -100,8 +100,8 @@ class Study {
 
   void say(const char* how, const Kernel& kernel, const CellMap& map) const {
     const StartTrials& s = pool_.starts.front();
-    const auto row = first_row(kernel, map, pool_, s, problem_.start_type());
-    const auto chain = answers_of(kernel, map, {row}, problem_.field, seed_).final.front();
+    const auto row = first_rows(kernel, map, pool_, {&s}, problem_.start_type());
+    const auto chain = answers_of(kernel, map, row, problem_.field, seed_).final.front();
     const OwnTrials own = *own_trials({{s.full, chain}}, problem_.field, seed_);
     std::printf("%s,%g,%lld,%.5f,%.4f,%d\n", how, accuracy_, static_cast<long long>(own.trials),
                 total_variation(chain.final_cells, truth_), own.p, own.differs());

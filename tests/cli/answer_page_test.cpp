@@ -51,7 +51,7 @@ class Made {
  public:
   explicit Made(std::int64_t trials)
       : prediction(lattice::predict_pooled(problem, pool, {problem.start}, {.trials = trials})),
-        chain(lattice::analysed_chain(problem, pool, pool.begin(problem.start))),
+        chain(lattice::analysed_chain(problem, pool, pool.first_row(problem.start))),
         outcomes(lattice::chain_outcomes(chain, problem.field)) {}
 
   lattice::Problem problem = lattice::problem_of(open_scene());

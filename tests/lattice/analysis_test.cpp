@@ -145,7 +145,7 @@ TEST(Analysis, LeavesOfOneRunTakeWhatTheTrialsTook) {
   const RunPool pool = pool_of_trials(scene, 300);
   const FieldGates gates = gates_of(scene);
   const Kernel kernel = kernel_of(gates.map(), pool, 1);
-  const CostedChain c = costed_chain(kernel, gates.map(), scene.field, pool, pool.starts[0]);
+  const CostedChain c = costed_chain(kernel, gates.map(), scene.field, pool, &pool.starts[0]);
   const auto totals = markov::walk_totals(c.chain, {5, 3}, c.start, 8, c.rewards);
   FieldCosts own(bin_of_durations(scene.gate));
   own.add(pool.starts[0].full);
@@ -260,7 +260,7 @@ TEST(Analysis, AgreesWithTheFullDynamics) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 20'000);
   const Analysis a =
-      analyze(problem_of(scene), analysed_chain(problem_of(scene), pool, pool.starts.front()), {});
+      analyze(problem_of(scene), analysed_chain(problem_of(scene), pool, &pool.starts.front()), {});
   FieldCosts costs(bin_of_durations(scene.gate));
   FieldTrials each;
   (void)run_field(scene.gate, scene.field, scene.start, 777, {0, 20'000}, &each);
@@ -288,7 +288,7 @@ TEST(Analysis, ChancesOfStartsAreThoseOfTheMirror) {
   Scene scene = open_scene();
   RunPool pool = pool_of_trials(scene, 200);  // all starts are told
   const auto starts_of = [&](Ending target) {
-    return analyze(problem_of(scene), analysed_chain(problem_of(scene), pool, pool.starts.front()),
+    return analyze(problem_of(scene), analysed_chain(problem_of(scene), pool, &pool.starts.front()),
                    {.target = target})
         .starts;
   };
@@ -333,7 +333,7 @@ TEST(Analysis, ChancesOfStartsAreThoseOfTheMirror) {
 TEST(Analysis, StartsAreThePartsOfStatesAndImages) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 2000);
-  const AnalysedChain chain = analysed_chain(problem_of(scene), pool, pool.starts.front());
+  const AnalysedChain chain = analysed_chain(problem_of(scene), pool, &pool.starts.front());
   const Analysis a = analyze(problem_of(scene), chain, {});
   const StateSpace& space = chain.space;
   using Key = std::pair<decltype(StateRange::at), std::int64_t>;  // range, runs
@@ -468,7 +468,7 @@ TEST(Analysis, ALargeChangeTakesNoMoreThanThereIs) {
 TEST(Analysis, TellsOfEachChainThatItHasWalked) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 500);
-  const AnalysedChain chain = analysed_chain(problem_of(scene), pool, pool.starts.front());
+  const AnalysedChain chain = analysed_chain(problem_of(scene), pool, &pool.starts.front());
   std::vector<std::int64_t> told;
   const Work work{[&](std::string_view, std::int64_t done, std::int64_t total) {
     EXPECT_EQ(total, kTrialGroups + 1);
@@ -487,7 +487,7 @@ TEST(Analysis, TellsOfEachChainThatItHasWalked) {
 TEST(Analysis, DrawnPlacesStandForAllThatArePassed) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 2000);
-  const AnalysedChain chain = analysed_chain(problem_of(scene), pool, pool.starts.front());
+  const AnalysedChain chain = analysed_chain(problem_of(scene), pool, &pool.starts.front());
   const Passages passages(chain.chain, scene.field, Ending::far_edge, {});
   double draws = 0.0, to_target = 0.0;
   passages.each([&](const Passages::Place& place, double share) {
@@ -512,7 +512,7 @@ TEST(Analysis, PlacesTellWhereWalksEnd) {
   const RunPool pool = pool_of_trials(scene, 2000);
   for (const int max_gates : {0, 4}) {
     scene.field.max_gates = max_gates;
-    const CostedChain c = analysed_chain(problem_of(scene), pool, pool.starts.front()).chain;
+    const CostedChain c = analysed_chain(problem_of(scene), pool, &pool.starts.front()).chain;
     const auto ends = final_cells(c, scene.field, {c, scene.field, Ending::far_edge, {}});
     const auto exact = markov::predict(c.chain, {scene.field.columns, scene.field.rows}, {c.start},
                                        {.max_cells = max_gates});
@@ -524,7 +524,7 @@ TEST(Analysis, PlacesTellWhereWalksEnd) {
 TEST(Analysis, MorePartsLoseLess) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 2000);
-  const AnalysedChain chain = analysed_chain(problem_of(scene), pool, pool.starts.front());
+  const AnalysedChain chain = analysed_chain(problem_of(scene), pool, &pool.starts.front());
   const Passages passages(chain.chain, scene.field, Ending::far_edge, {});
   const auto lumped = [&](const LumpingParts& parts) {
     return lumped_chain(chain, gates_of(scene).map(), scene.field, passages, parts).value();
@@ -549,7 +549,7 @@ TEST(Analysis, IsTheSameOnAnyNumberOfThreads) {
   for (std::size_t i = 0; i < few.size(); ++i)
     EXPECT_EQ(few[i].elasticity.mean, many[i].elasticity.mean);
   const auto run = [&] {
-    return analyze(problem_of(scene), analysed_chain(problem_of(scene), pool, pool.starts.front()),
+    return analyze(problem_of(scene), analysed_chain(problem_of(scene), pool, &pool.starts.front()),
                    {});
   };
   const Analysis one = test::on_threads(1, run), three = test::on_threads(3, run);

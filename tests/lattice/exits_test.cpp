@@ -103,14 +103,14 @@ TEST(Exits, OfPredictionsAddUpToTheEndingsByEitherWay) {
   Scene scene = leaving_scene();
   const RunPool pool = pool_of_runs(scene, 2000);
   const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool, 8);
-  const std::vector<std::int64_t> row =
-      first_row(kernel, FieldGates(scene.gate).map(), pool, pool.starts[0], 0);
+  const markov::Counts row =
+      first_rows(kernel, FieldGates(scene.gate).map(), pool, {&pool.starts[0]}, 0);
   scene.field.max_gates = 400'000;  // so that exact answers would take long
   const KernelAnswers by_walks =
-      answers_of(kernel, FieldGates(scene.gate).map(), {row}, scene.field, 1);
+      answers_of(kernel, FieldGates(scene.gate).map(), row, scene.field, 1);
   ASSERT_GT(by_walks.walks, 1'000'000);
   const auto exact =
-      markov::predict(chain_of(kernel, FieldGates(scene.gate).map(), scene.field, {row}), {3, 2},
+      markov::predict(chain_of(kernel, FieldGates(scene.gate).map(), scene.field, row), {3, 2},
                       {{1, 0, kernel.space.size()}}, {.max_cells = 1000})
           .front();
   const ExitShares walked = exit_shares(by_walks.final.front()), of_exact = exit_shares(exact);

@@ -110,8 +110,8 @@ TEST(OwnTrials, AMirrorThatIsNoneIsFoundOut) {
   (void)run_field(problem.cells, problem.field, problem.start, 3, {0, 4000}, &s.full);
   const auto answer_by = [&](const CellMap& map) {
     const Kernel kernel = kernel_of(map, pool);
-    return answers_of(kernel, map, {first_row(kernel, map, pool, pool.starts[0], 0)}, problem.field,
-                      1)
+    return answers_of(kernel, map, first_rows(kernel, map, pool, {&pool.starts[0]}, 0),
+                      problem.field, 1)
         .final[0];
   };
   CellMap mirrored = problem.map();

@@ -48,8 +48,8 @@ TEST(RunPool, LeavesOfOneRunGiveTheTrialsThemselves) {
   RunPool pool;
   pool.starts.push_back(some_trials(scene, 200));
   const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool, 1);
-  const auto row = first_row(kernel, FieldGates(scene.gate).map(), pool, pool.starts[0], 0);
-  const auto p = markov::predict(chain_of(kernel, FieldGates(scene.gate).map(), scene.field, {row}),
+  const auto row = first_rows(kernel, FieldGates(scene.gate).map(), pool, {&pool.starts[0]}, 0);
+  const auto p = markov::predict(chain_of(kernel, FieldGates(scene.gate).map(), scene.field, row),
                                  {9, 9}, {{4, 0, kernel.space.size()}}, {.max_cells = 13});
   const auto own = shares_of(pool.starts[0].full, scene.field);
   EXPECT_LT(total_variation(p[0].final_cells, own.final_cells), 1e-12);
@@ -120,17 +120,15 @@ TEST(RunPool, AStartWithoutRunsHasThoseOfItsLeaf) {
     const CellPassage first = pool.starts[0].full.of_trial(i).front();
     if (first.fate != Fate::left) continue;
     const Entry entry = first.entry;
-    const PoolStart start{entry};
     const int leaf = kernel.space.index_of(entry).state;
-    std::vector<std::int64_t> row(static_cast<std::size_t>(counts.cols()), 0);
-    std::vector<CostSums> costs(row.size());
-    for (auto k = counts.outerIndexPtr()[leaf]; k < counts.outerIndexPtr()[leaf + 1]; ++k) {
-      const auto output = static_cast<std::size_t>(counts.innerIndexPtr()[k]);
-      row[output] = counts.valuePtr()[k];
-      costs[output] = sums[0][static_cast<std::size_t>(k)];
-    }
-    EXPECT_EQ(first_row(kernel, map, pool, start, 0), row);
-    EXPECT_EQ(first_cost_sums(kernel, sums, map, pool, start, 0), costs);
+    const auto begin = sums[0].begin();
+    const std::vector<CostSums> costs(begin + counts.outerIndexPtr()[leaf],
+                                      begin + counts.outerIndexPtr()[leaf + 1]);
+    const markov::Counts row = first_rows(kernel, map, pool, {entry}, 0);
+    ASSERT_EQ(row.rows(), 1);
+    EXPECT_EQ((Eigen::MatrixXd(row.cast<double>())),
+              (Eigen::MatrixXd(counts.row(leaf).cast<double>())));
+    EXPECT_EQ(first_cost_sums(kernel, sums, map, pool, entry, 0), costs);
     EXPECT_GT(counts.row(leaf).sum(), 0);
   }
 }
@@ -190,10 +188,11 @@ TEST(RunPool, TransitionsAreTheCounts) {
   pool.starts.push_back(some_trials(scene, 50));
   const Kernel kernel = kernel_of(map, pool, 7);
   const int n = kernel.space.size();
-  std::vector<std::int64_t> first(static_cast<std::size_t>(n) + 1, 0);
-  first[1] = 4;
-  first[static_cast<std::size_t>(kernel.space.trapped())] = 3;
-  const auto all = transitions_of(kernel, map, scene.field, {entry_of(kStart)}, {first});
+  markov::Counts first(1, n + 1);
+  first.insert(0, 1) = 4;
+  first.insert(0, kernel.space.trapped()) = 3;
+  first.makeCompressed();
+  const auto all = transitions_of(kernel, map, scene.field, {entry_of(kStart)}, first);
   ASSERT_EQ(all.size(), 1U);
   const Transitions& t = all[0];
   ASSERT_EQ(t.space.size(), n + 1);
@@ -216,8 +215,8 @@ TEST(RunPool, AStartInTheMiddleHasMirrorImagesInItsRow) {
   RunPool pool;
   pool.starts.push_back(some_trials(scene, 100, {0, 0, 0, 15}));
   const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool);
-  const auto row = first_row(kernel, FieldGates(scene.gate).map(), pool, pool.starts[0], 0);
-  EXPECT_EQ(std::accumulate(row.begin(), row.end(), std::int64_t{0}), 200);
+  const auto row = first_rows(kernel, FieldGates(scene.gate).map(), pool, {&pool.starts[0]}, 0);
+  EXPECT_EQ(row.sum(), 200);
   EXPECT_EQ(pool.gate_runs(), std::ssize(pool.starts[0].full.passages));
 }
 
@@ -585,8 +584,8 @@ TEST(PoolChains, ManyStartsByTheAdjointAreAnsweredAsOneByOne) {
     pool.starts.push_back(some_trials(scene, 64, entry_state(scene.gate, start)));
   }
   const auto asked = [&](const std::vector<std::size_t>& places) {
-    std::vector<PoolStart> starts;
-    for (const std::size_t place : places) starts.emplace_back(pool.starts[place]);
+    std::vector<FirstRow> starts;
+    for (const std::size_t place : places) starts.emplace_back(&pool.starts[place]);
     return starts;
   };
   PoolChains chains(FieldGates(scene.gate).map(), scene.field, 5, all.size(), 1);
@@ -692,7 +691,7 @@ TEST(TreeChain, AFileGivesBackMatrixRunsAndAnswer) {
   EXPECT_EQ(pool.starts[0].full.endings, chain.pool.starts[0].full.endings);
   Scene wider = scene;
   wider.field.max_gates = 0;
-  EXPECT_FALSE(pool_of(file, problem_of(wider), path).starts[0].knows_endings);
+  EXPECT_TRUE(pool_of(file, problem_of(wider), path).starts[0].full.endings.empty());
   EXPECT_EQ(matrices_of(problem_of(scene), pool, {entry_of(kStart), entry_of({0, 0, 0, 15})},
                         chain.per_leaf)
                 .front()

@@ -482,7 +482,7 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   for (std::size_t type = 0; type < 3; ++type)
     EXPECT_EQ(matrices[type].rows, chain.transitions[type].rows) << type;
   RunPool pool = pool_of(*m.file, problem_of(m.scene), path);
-  EXPECT_TRUE(pool.starts[0].knows_endings);
+  EXPECT_EQ(std::ssize(pool.starts[0].full.endings), std::ssize(pool.starts[0].full.passed));
   EXPECT_EQ(pool.starts[0].full.final_gates, chain.pool.starts[0].full.final_gates);
   const auto p =
       predict_pooled(problem_of(m.scene), pool, {dynamics::entry_of(kStart)}, {.accuracy = 0.08});

@@ -48,6 +48,25 @@ TEST(Chain, RowsAreCountsOverTheirSum) {
   EXPECT_EQ(chain.unsampled_rows(), 0);
 }
 
+TEST(Chain, RowsOfStartsStandBehindTheOthers) {
+  Counts counts(2, 2), starts(2, 2);
+  counts.coeffRef(0, 1) = 5;
+  counts.coeffRef(1, 0) = 2;
+  starts.coeffRef(1, 0) = 3;
+  starts.coeffRef(1, 1) = 1;
+  const Chain chain = Chain::from_counts(counts, kTwoExits, starts);
+  EXPECT_EQ(chain.inputs(), 4);
+  EXPECT_EQ(chain.matrix().coeff(0, 1), 1.0);
+  EXPECT_EQ(chain.matrix().coeff(1, 0), 1.0);
+  EXPECT_FALSE(chain.is_sampled(2));
+  EXPECT_EQ(chain.matrix().coeff(3, 0), 0.75);
+  EXPECT_EQ(chain.matrix().coeff(3, 1), 0.25);
+  starts.coeffRef(0, 0) = -1;
+  EXPECT_REFUSED(Chain::from_counts(counts, kTwoExits, starts), "row 2 (counted from 0): count -1");
+  EXPECT_REFUSED(Chain::from_counts(counts, kTwoExits, Counts(1, 3)),
+                 "rows of 3 outputs cannot stand behind rows of 2");
+}
+
 TEST(Chain, AnAllZeroRowIsUnsampled) {
   Counts counts(3, 2);
   counts.coeffRef(0, 1) = 4;
