@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <memory>
 #include <utility>
 
@@ -256,8 +255,8 @@ void require_active(const Options& options, const lattice::Scene& scene) {
     const auto keys = lattice::keys_set_by(o);
     return std::find(keys.begin(), keys.end(), key) != keys.end();
   });
-  if (options.has("matrix") && is_matrix(options.text("matrix")) && options.text("scene").empty() &&
-      !is_set) {
+  if (options.has("matrix") && options.file(options.text("matrix")).is_matrix() &&
+      options.text("scene").empty() && !is_set) {
     options.warn(
         fmt::format("{} (its scene): {}{} is of the full dynamics: a chain always has \"active\"",
                     options.text("matrix"), key, value));
@@ -267,12 +266,6 @@ void require_active(const Options& options, const lattice::Scene& scene) {
   throw UsageError(fmt::format(
       "{}: {}{} is not permitted for a chain: it has \"active\", gatewalk lattice the others",
       given == scene.named.end() ? scene.source : given->second, key, value));
-}
-
-bool is_matrix(const std::string& path) {
-  std::array<char, 8> begin{};
-  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
-  return std::string_view(begin.data(), begin.size()) == "\x89HDF\r\n\x1a\n";
 }
 
 namespace {
@@ -323,10 +316,11 @@ lattice::SceneMatrix read_matrix(const Options& options, const std::string& matr
                                  const std::string& scene_path,
                                  const std::vector<std::string>& overrides) {
   const LoadedMatrix* const loaded = options.loaded(matrix_path);
+  const lattice::TomlFile* const other = scene_path.empty() ? nullptr : &options.file(scene_path);
   lattice::SceneMatrix m =
       loaded && loaded->scene
-          ? lattice::scene_matrix(loaded->file, *loaded->scene, matrix_path, scene_path, overrides)
-          : lattice::read_scene_matrix(matrix_path, scene_path, overrides);
+          ? lattice::scene_matrix(loaded->file, *loaded->scene, matrix_path, other, overrides)
+          : lattice::read_scene_matrix(matrix_path, other, overrides);
   if (!scene_path.empty())  // a matrix's own scene names every key
     for (const std::string& text :
          lattice::keys_without_effect(m.scene, lattice::RunsFrom::everywhere))

@@ -71,9 +71,6 @@ void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Optio
 /// and warns of that of a matrix's own scene. Throws UsageError.
 void require_active(const Options& options, const lattice::Scene& scene);
 
-/// Whether the file begins as a matrix does (HDF5).
-[[nodiscard]] bool is_matrix(const std::string& path);
-
 /// lattice::settle_method; warns of keys without effect and of a choice that did not meet the
 /// tolerance, and says what the scene leaves out.
 [[nodiscard]] std::optional<lattice::Settled> settle_method(const Options& options,

@@ -28,7 +28,6 @@
 #include "cli/terminal/gnuplot.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
-#include "lattice/scene/map_file.h"
 #include "lattice/scene/scene.h"
 #include "lattice/text/edit_distance.h"
 #include "lattice/text/text_stream.h"
@@ -89,18 +88,6 @@ std::string shell_quoted(const std::string& word) {
 }
 
 using Strings = std::vector<std::string>;
-
-/// The map that a file names, if it is a scene. (What a pipe holds is read only once.)
-std::string map_named_in(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error) || is_matrix(path)) return "";
-  try {
-    return lattice::map_file_in(lattice::scene_text(path),
-                                std::filesystem::path(path).parent_path().string());
-  } catch (const lattice::SceneError&) {  // no scene, or none that can be read
-    return "";
-  }
-}
 
 /// Of an option that is meant to be given once, the last one counts; says so.
 Strings keep_last(std::vector<po::option>& given, const po::options_description& all) {
@@ -273,6 +260,7 @@ struct Options::State {
   std::function<void(const Description&)> given_out;
   std::shared_ptr<const dynamics::Cell> cell;
   std::vector<std::shared_ptr<const LoadedMatrix>> loaded;
+  std::map<std::string, lattice::TomlFile> files;  // opened so far, by path
 
   std::optional<std::set<std::string>> divided;  // stages; none: nothing is kept
   CommandWords words;
@@ -458,6 +446,7 @@ struct Options::NamedFile {
     if (id || other.id) return id == other.id;
     return !place.empty() && place == other.place;
   }
+  [[nodiscard]] bool is_regular() const { return id.has_value(); }
 
  private:
   std::optional<FileId> id;
@@ -469,8 +458,8 @@ std::vector<Options::NamedFile> Options::inputs() const {
   const auto add = [&](const std::string& name, const std::string& path) {
     if (path.empty() || path == "-") return;
     files.emplace_back(name + " " + path, path);
-    if (loaded(path)) return;  // a matrix names no map
-    if (const std::string map = map_named_in(path); !map.empty())
+    if (loaded(path) || !files.back().is_regular()) return;  // what a pipe holds is read only once
+    if (const std::string map = this->file(path).map_file(); !map.empty())
       files.emplace_back(fmt::format("{} (the map of {})", map, path), map);
   };
   const auto each = [&](const std::string& option, const auto& take) {
@@ -556,7 +545,8 @@ void Options::check_files() {
   const bool takes_parts =
       !state_->positional_help.empty() && state_->positional_help.front().first == "part";
   for (const NamedFile& input : others)
-    if (!takes_parts && !loaded(input.path) && PieceFile::is_one(input.path))
+    if (!takes_parts && input.is_regular() && !loaded(input.path) &&
+        PieceFile::begins(file(input.path).bytes()))
       throw UsageError(input.name +
                        ": holds pieces of a run: gatewalk merge makes one run of all parts, or its "
                        "command with --resume goes on");
@@ -640,7 +630,7 @@ bool Options::parse(const Arguments& arguments) {
     state_->output_files.push_back({"csv", Content::text});
     state_->has_table = true;
   }
-  reads("set", [](const std::string& given) { return lattice::map_file_in(given, ""); });
+  reads("set", [](const std::string& given) { return lattice::TomlFile(given, "").map_file(); });
   if (arguments.helped) {
     arguments.helped(help());
     return false;
@@ -767,8 +757,15 @@ std::vector<std::string> Options::texts(const std::string& name) const {
 
 std::uint64_t Options::seed() const { return state_->values["seed"].as<Seed>().value; }
 
+const lattice::TomlFile& Options::file(const std::string& path) const {
+  const auto found = state_->files.find(path);
+  return found != state_->files.end()
+             ? found->second
+             : state_->files.emplace(path, lattice::TomlFile::read(path)).first->second;
+}
+
 lattice::Scene Options::read_scene() const {
-  return lattice::read_scene(text("scene"), overrides());
+  return lattice::read_scene(file(text("scene")), overrides());
 }
 
 std::string Options::canonical() const { return state_->canonical; }

@@ -24,7 +24,8 @@ class Cell;
 }
 namespace gatewalk::lattice {
 struct Scene;
-}
+class TomlFile;
+}  // namespace gatewalk::lattice
 
 namespace gatewalk::cli {
 
@@ -172,6 +173,8 @@ class Options {
   [[nodiscard]] std::uint64_t seed() const;
   /// Those of --set.
   [[nodiscard]] std::vector<std::string> overrides() const { return texts("set"); }
+  /// A file by its path: opened once, whoever asks for it.
+  [[nodiscard]] const lattice::TomlFile& file(const std::string& path) const;
   /// The scene of SCENE and --set. Throws lattice::SceneError.
   [[nodiscard]] lattice::Scene read_scene() const;
 

@@ -76,8 +76,7 @@ std::optional<NumberRanges> ranges_of(const Options& options, const Subject& s,
   if (std::ssize(given) > most)
     throw UsageError(fmt::format("{}: at most {} numbers can vary", shown, most));
   if (!s.scene) return NumberRanges{ranges_in_program(options, s, given, shown)};
-  lattice::RangedScene scene(lattice::scene_text(s.path), s.path, options.overrides(), given,
-                             shown);
+  lattice::RangedScene scene(options.file(s.path), options.overrides(), given, shown);
   for (const lattice::NumberRange& r : scene.ranges()) {
     if (s.given && r.key.starts_with("start."))
       throw UsageError(

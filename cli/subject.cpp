@@ -56,7 +56,7 @@ void put_problem(Subject& s, const Options& options) {
 }
 
 Subject open_scene(const Options& options, const std::string& path) {
-  Subject s{.path = path, .scene = lattice::read_scene(path, options.overrides())};
+  Subject s{.path = path, .scene = lattice::read_scene(options.file(path), options.overrides())};
   s.pool.emplace();
   s.how = accuracy_of(options);
   put_problem(s, options);
@@ -188,7 +188,7 @@ Subject open_program(const Options& options, const std::string& path) {
   Subject s{.path = path};
   const std::vector<std::string> overrides = overrides_of(options, false);
   s.how = accuracy_of(options);
-  if (is_matrix(path)) {
+  if (options.file(path).is_matrix()) {
     if (!parameters_of(options).empty())
       throw UsageError(fmt::format(
           "--set parameters: {} holds runs of the program with its own: make a matrix with these",
@@ -201,7 +201,7 @@ Subject open_program(const Options& options, const std::string& path) {
     s.how.per_leaf = entries_per_leaf(*s.file, path);
     if (!options.has("accuracy")) s.how.accuracy = accuracy_of(*s.file, path);
   } else {
-    s.cells = lattice::read_cell_file(path, overrides);
+    s.cells = lattice::read_cell_file(options.file(path), overrides);
     s.pool.emplace();
   }
   const std::shared_ptr<const dynamics::Cell> cell = cell_of(options);
@@ -289,7 +289,7 @@ lattice::Scene read_other(const Options& options) {
   const std::vector<std::string> versus = options.texts("versus");
   overrides.insert(overrides.end(), versus.begin(), versus.end());
   try {
-    return lattice::read_scene(options.text("scene"), overrides);
+    return lattice::read_scene(options.file(options.text("scene")), overrides);
   } catch (const lattice::SceneError& e) {  // it names overrides as --set gives them
     const std::string what = e.what();
     for (const std::string& key : versus)
@@ -323,7 +323,7 @@ Subject other_group(const Options& options, const Subject& s, const std::string&
 std::optional<Subject> versus(const Options& options, const Subject& s) {
   if (!options.has("versus")) return {};
   if (const std::vector<std::string> given = options.texts("versus");
-      given.size() == 1 && is_matrix(given.front()))
+      given.size() == 1 && options.file(given.front()).is_matrix())
     return other_group(options, s, given.front());
   for (const std::string& text : options.texts("versus")) {
     if (text.find('=') != text.npos) continue;
@@ -333,7 +333,7 @@ std::optional<Subject> versus(const Options& options, const Subject& s) {
         (!std::filesystem::exists(text, error)
              ? ": there is no such file; must be the matrix of another group's recorded runs, or "
                "KEY=VALUE, for example forces.random_N=20"
-         : is_matrix(text)
+         : options.file(text).is_matrix()
              ? ": a matrix of another group's recorded runs is given once, and alone"
              : ": is no matrix; of two scenes give each key in which the other one differs, as "
                "--versus KEY=VALUE"));
@@ -448,7 +448,8 @@ Provenance Subject::provenance(const Options& options) const {
 Subject open_subject(const Options& options, const std::string& name) {
   const std::string path = options.text(name);
   const LoadedMatrix* const loaded = options.loaded(path);
-  const bool program = has_cell(options), matrix = !program && (loaded || is_matrix(path)),
+  const bool program = has_cell(options),
+             matrix = !program && (loaded || options.file(path).is_matrix()),
              of_cells = program || (loaded ? !loaded->scene : matrix && lattice::is_of_cells(path));
   if (const std::string second = second_scene(options, name);
       !second.empty() && (!matrix || of_cells))

@@ -110,7 +110,8 @@ int build_recorded(const Options& options) {
          {"accuracy", "gate-runs", "starts", "start", "states", "trials", "first-trial", "bins",
           "strict", "shard", "part", "checkpoint", "resume", "max-time"},
          "for recorded runs");
-  lattice::CellFile cells = lattice::read_cell_file(options.text("cell"), options.overrides());
+  lattice::CellFile cells =
+      lattice::read_cell_file(options.file(options.text("cell")), options.overrides());
   lattice::RecordedRuns runs = lattice::read_runs(options.text("scene"), cells);
   for (const std::string& text : runs.remarks) options.warn(options.text("scene") + ": " + text);
   const auto unknown = runs.unknown;

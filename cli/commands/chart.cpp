@@ -27,7 +27,7 @@ std::string label_of(const std::string& path) {
 void require_chartable(const Options& options, const std::vector<std::string>& paths) {
   std::set<std::string> labels;
   for (const std::string& path : paths) {
-    const lattice::Scene scene = lattice::read_scene(path, options.overrides());
+    const lattice::Scene scene = lattice::read_scene(options.file(path), options.overrides());
     try {
       dynamics::require_reference(scene.gate);
     } catch (const dynamics::InvalidParameter& e) {
@@ -98,7 +98,7 @@ int run_chart(const Arguments& arguments) {
   std::string table;
   try {
     for (const std::string& path : paths) {
-      const lattice::Scene scene = lattice::read_scene(path, options.overrides());
+      const lattice::Scene scene = lattice::read_scene(options.file(path), options.overrides());
       how.label = label_of(path);
       result.charts.push_back(
           dynamics::work_precision(scene.gate, scene.start, how, options.work()));

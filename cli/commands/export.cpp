@@ -243,7 +243,8 @@ int run_export(const Arguments& arguments) {
     if (!options.text("scene").empty())
       throw UsageError("SCENE has no meaning beside --gate: a gate's matrix knows no field");
   }
-  if (!is_matrix(options.text("matrix"))) (void)read_matrix(options);  // says what it is instead
+  if (!options.file(options.text("matrix")).is_matrix())
+    (void)read_matrix(options);  // says what it is instead
   const Exported exported = options.has("gate")                ? export_gate(options, form)
                             : form == ExportForm::trajectories ? export_trials(options)
                                                                : export_field(options, form);

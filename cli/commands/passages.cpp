@@ -97,7 +97,8 @@ int run_passages(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   if (!options.has("cell")) throw UsageError("the cells are not said: --cell CELL.toml");
   const auto cutting = cut_options(options);
-  lattice::CellFile cell = lattice::read_cell_file(options.text("cell"), options.overrides());
+  lattice::CellFile cell =
+      lattice::read_cell_file(options.file(options.text("cell")), options.overrides());
   lattice::require_measurable(cell);
   CutResult result{lattice::read_tracks(options.texts("tracks"), track_options(options)),
                    std::move(cell)};

@@ -110,7 +110,7 @@ std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& 
       for (const std::string& set : options.overrides())
         if (!set.starts_with(lattice::kParameters)) overrides.push_back(set);
       overrides.push_back(range.key + "=" + lattice::toml_float(end));
-      (void)lattice::read_cell_file(s.path, overrides);
+      (void)lattice::read_cell_file(options.file(s.path), overrides);
     }
     ranges.push_back({c, range.low, range.high});
   }
@@ -131,7 +131,7 @@ int plan_start(const Options& options, Subject s) {
   take_choice_rounds(options, how);
   const auto given = options.texts("over");
   if (s.scene)
-    how.ranges = ranges_in({lattice::scene_text(s.path), s.path, options.overrides(),
+    how.ranges = ranges_in({options.file(s.path), options.overrides(),
                             given.empty() ? usual_ranges(*s.scene) : given, "--over"});
   else
     how.ranges = ranges_in(given, options, s);

@@ -4,7 +4,6 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/scene.h"
 #include "cli/subject.h"
-#include "lattice/scene/map_file.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -37,8 +36,8 @@ int run_power(const Arguments& arguments) {
   options.add_texts("versus", "KEY=VALUE",
                     "the scene to tell this one from has this key otherwise (may be repeated); or "
                     "a matrix of another group's recorded runs");
-  options.reads("versus", [](const std::string& given) {
-    return is_matrix(given) ? given : lattice::map_file_in(given, "");
+  options.reads("versus", [&options](const std::string& given) {
+    return options.file(given).is_matrix() ? given : lattice::TomlFile(given, "").map_file();
   });
   options.add_count("trials", "N",
                     "also: what N trials show (with --versus, N of each scene), at most 100000");

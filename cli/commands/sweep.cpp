@@ -66,13 +66,13 @@ int run_sweep(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   const std::string csv = options.text("csv");
   const dynamics::TrialRange trials = options.trial_range();
-  const std::string source = options.text("scene"), text = lattice::scene_text(source);
-  const lattice::Scene scene = lattice::parse_scene(text, source, options.overrides());
+  const lattice::TomlFile& file = options.file(options.text("scene"));
+  const lattice::Scene scene = lattice::read_scene(file, options.overrides());
   const auto axes = lattice::sweep_axes(scene.sweep, options.texts("vary"));
   refuse_overridden(axes, options.overrides());
   if (options.has("figure") && axes.size() > 2)
     throw UsageError(fmt::format("--figure: shows one key or two, {} are varied", axes.size()));
-  auto points = lattice::sweep_points({text, source, options.overrides(), axes});
+  auto points = lattice::sweep_points({file, options.overrides(), axes});
   for (const std::string& remark : remarks_on(points, options.talk())) options.warn(remark);
 
   lattice::run_sweep(points, trials, options.seed(), options.work(),

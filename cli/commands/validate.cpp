@@ -256,7 +256,8 @@ int run_validate(const Arguments& arguments) {
       "gates later (Chapman-Kolmogorov), and implied time scales; with --observed instead what was "
       "counted, with intervals, beside both");
   if (!options.parse(arguments)) return kFine;
-  if (!has_cell(options) && lattice::is_of_cells(options.text("scene")))
+  const std::string path = options.text("scene");
+  if (!has_cell(options) && options.file(path).is_matrix() && lattice::is_of_cells(path))
     return validate_recorded(options);
   lattice::ValidationOptions how{.trials = options.has("trials") ? options.trials() : 100,
                                  .walks = {},

@@ -29,7 +29,7 @@ int run_walk(const Arguments& arguments) {
   options.add_figure("where walks end, and how");
   if (!options.parse(arguments)) return kFine;
   const std::string path = options.text("matrix");
-  if (!is_matrix(path)) (void)read_matrix(options);  // says what it is instead
+  if (!options.file(path).is_matrix()) (void)read_matrix(options);  // says what it is instead
   Subject s = open_subject(options, "matrix");
   const ChainFromStart from = chain_from_start(options, s);
   const std::int64_t walks = options.count("walks");

@@ -37,17 +37,22 @@ double seconds_of(const std::string& text) {
       fmt::format("--max-time {}: must be a time, such as 90s, 45min, 3h or 2d", text));
 }
 
-/// What the file at `path` holds.
-void describe_input(Fields& out, const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  in.exceptions(std::ios_base::badbit);  // what cannot be read is no end
-  std::vector<char> buffer(std::size_t{1} << 16);
+/// What the file at `path` holds; `read`: what is in memory of it.
+void describe_input(Fields& out, const std::string& path, const lattice::TomlFile& read) {
   std::uint64_t bytes = 0;
   uLong check = ::crc32_z(0, nullptr, 0);
-  while (in.read(buffer.data(), std::ssize(buffer)), in.gcount() > 0) {
-    const auto n = static_cast<std::size_t>(in.gcount());
-    check = ::crc32_z(check, reinterpret_cast<const Bytef*>(buffer.data()), n);
+  const auto add = [&](const char* data, std::size_t n) {
+    check = ::crc32_z(check, reinterpret_cast<const Bytef*>(data), n);
     bytes += n;
+  };
+  if (read.is_whole()) {
+    add(read.bytes().data(), read.bytes().size());
+  } else {
+    std::ifstream in(path, std::ios::binary);
+    in.exceptions(std::ios_base::badbit);  // what cannot be read is no end
+    std::vector<char> buffer(std::size_t{1} << 16);
+    while (in.read(buffer.data(), std::ssize(buffer)), in.gcount() > 0)
+      add(buffer.data(), static_cast<std::size_t>(in.gcount()));
   }
   out.text({"file", "path of the file"}, path);
   out.count({"bytes", "byte", "size of the file"}, bytes);
@@ -78,7 +83,9 @@ void describe_head(Fields& out, const Options& options) {
   out.texts({"outputs", "words that say where the result goes"}, words.outputs);
   out.text({"main_output", "option of the main output"}, words.main_output);
   out.text({"scene", "the scene, as TOML"}, scene_of(options));
-  out.list({"inputs", "files that the command reads"}, options.files_read(), describe_input);
+  out.list(
+      {"inputs", "files that the command reads"}, options.files_read(),
+      [&](Fields& f, const std::string& path) { describe_input(f, path, options.file(path)); });
   out.texts({"others", "what else shapes the result, and is no word"}, words.others);
   out.optional(options.has("shard"), [&](Fields& part) {
     const Shard shard = shard_of(options.text("shard"));

@@ -73,8 +73,10 @@ bool PieceFile::is_one(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe is read only once
   std::ifstream in(path, std::ios::binary);
   std::string start(sizeof kFirstLine - 1, '\0');
-  return in.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kFirstLine;
+  return in.read(start.data(), static_cast<std::streamsize>(start.size())) && begins(start);
 }
+
+bool PieceFile::begins(std::string_view bytes) { return bytes.starts_with(kFirstLine); }
 
 std::string piece_head(const std::string& path) {
   if (!std::ifstream(path, std::ios::binary))

@@ -35,6 +35,8 @@ class PieceFile {
   /// Reads the records, not their bytes. Throws markov::BadFile when it is no file of pieces.
   explicit PieceFile(const std::string& path);
   [[nodiscard]] static bool is_one(const std::string& path);
+  /// Whether a file that begins so is one.
+  [[nodiscard]] static bool begins(std::string_view bytes);
 
   [[nodiscard]] const std::string& path() const { return path_; }
   /// As piece_head.

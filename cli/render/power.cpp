@@ -13,7 +13,6 @@
 #include "cli/render/pooled_prediction.h"
 #include "cli/render/text.h"
 #include "cli/render/text_table.h"
-#include "lattice/scene/map_file.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -520,20 +520,10 @@ std::string quoted_toml(const std::string& text) {
   return out.str();
 }
 
-}  // namespace
-
-CellFile read_cell_file(const std::string& path, const std::vector<std::string>& overrides) {
-  if (has_ending(path, ".csv"))
-    throw SceneError(path +
-                     ": is a table, and no file of cells, which is TOML (lattice/cells/README.md); "
-                     "with --cell CELL.toml the table stands before it");
-  return parse_cell_file(scene_text(path), path == "-" ? "standard input" : path, overrides);
-}
-
-CellFile parse_cell_file(std::string_view text, const std::string& name,
-                         const std::vector<std::string>& overrides) {
+CellFile cell_file_of(const TomlFile& toml, const std::vector<std::string>& overrides) {
+  const std::string& name = toml.name();
   const Origin origin = [&name](std::size_t line) { return name + ":" + std::to_string(line); };
-  const toml::table document = parse_toml_file(text, name, "a file of cells");
+  const toml::table& document = document_of(toml, "a file of cells");
   const toml::table* const cell_table = document["cell"].as_table();
   if (!cell_table) {
     require_tables(document, origin);
@@ -596,6 +586,25 @@ CellFile parse_cell_file(std::string_view text, const std::string& name,
     throw SceneError(name + ": " + error.what());
   }
   return file;
+}
+
+}  // namespace
+
+CellFile read_cell_file(const std::string& path, const std::vector<std::string>& overrides) {
+  return read_cell_file(TomlFile::read(path), overrides);
+}
+
+CellFile read_cell_file(const TomlFile& file, const std::vector<std::string>& overrides) {
+  if (has_ending(file.name(), ".csv"))
+    throw SceneError(file.name() +
+                     ": is a table, and no file of cells, which is TOML (lattice/cells/README.md); "
+                     "with --cell CELL.toml the table stands before it");
+  return cell_file_of(file, overrides);
+}
+
+CellFile parse_cell_file(std::string_view text, const std::string& name,
+                         const std::vector<std::string>& overrides) {
+  return cell_file_of(TomlFile(std::string(text), name), overrides);
 }
 
 std::string to_toml(const CellFile& file) {

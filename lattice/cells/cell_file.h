@@ -11,6 +11,7 @@
 #include "dynamics/cells/cell_map.h"
 #include "lattice/field.h"
 #include "lattice/scene/terrain.h"
+#include "lattice/scene/toml_file.h"
 
 namespace gatewalk::lattice {
 
@@ -34,6 +35,10 @@ struct CellFile {
 /// file, line, key and what is allowed.
 [[nodiscard]] CellFile read_cell_file(const std::string& path,
                                       const std::vector<std::string>& overrides = {});
+/// The same of a file that is open already.
+[[nodiscard]] CellFile read_cell_file(const TomlFile& file,
+                                      const std::vector<std::string>& overrides = {});
+/// The same of text already in memory; `name` stands for the file in messages.
 [[nodiscard]] CellFile parse_cell_file(std::string_view text, const std::string& name,
                                        const std::vector<std::string>& overrides = {});
 /// The complete file, every key in a fixed order; numbers with the digits that read back the same.

@@ -86,18 +86,18 @@ Scene own_scene(const MatrixFile& file, const std::string& path) {
   return parse_scene(stored->second, path + " (its scene)");
 }
 
-SceneMatrix read_scene_matrix(const std::string& matrix_path, const std::string& scene_path,
+SceneMatrix read_scene_matrix(const std::string& matrix_path, const TomlFile* other,
                               const std::vector<std::string>& overrides) {
   auto file = std::make_shared<const MatrixFile>(read_matrix(matrix_path));
   const Scene own = own_scene(*file, matrix_path);
-  return scene_matrix(std::move(file), own, matrix_path, scene_path, overrides);
+  return scene_matrix(std::move(file), own, matrix_path, other, overrides);
 }
 
 SceneMatrix scene_matrix(std::shared_ptr<const MatrixFile> file, const Scene& own,
-                         const std::string& matrix_path, const std::string& scene_path,
+                         const std::string& matrix_path, const TomlFile* other,
                          const std::vector<std::string>& overrides) {
   const auto wanted = [&] {
-    if (!scene_path.empty()) return read_scene(scene_path, overrides);
+    if (other) return read_scene(*other, overrides);
     if (overrides.empty()) return own;
     return parse_scene(file->text.at("scene"), matrix_path + " (its scene)", overrides);
   };

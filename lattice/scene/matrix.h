@@ -44,18 +44,16 @@ struct SceneMatrix {
   std::shared_ptr<const MatrixFile> file;
   Scene scene;
 };
-/// The matrix file with the scene at `scene_path`, or (empty) the one stored in the file. Throws
+/// The matrix file with another scene, or (null) the one stored in the file. Throws
 /// markov::BadFile, SceneError, and std::invalid_argument when the given scene's physics are not
 /// those the matrix was built with.
-[[nodiscard]] SceneMatrix read_scene_matrix(const std::string& matrix_path,
-                                            const std::string& scene_path,
+[[nodiscard]] SceneMatrix read_scene_matrix(const std::string& matrix_path, const TomlFile* other,
                                             const std::vector<std::string>& overrides);
 /// The scene stored in a file read from there. Throws markov::BadFile.
 [[nodiscard]] Scene own_scene(const MatrixFile& file, const std::string& path);
 /// read_scene_matrix of a file that is in memory, `own` its own_scene.
 [[nodiscard]] SceneMatrix scene_matrix(std::shared_ptr<const MatrixFile> file, const Scene& own,
-                                       const std::string& matrix_path,
-                                       const std::string& scene_path,
+                                       const std::string& matrix_path, const TomlFile* other,
                                        const std::vector<std::string>& overrides);
 
 /// As chain_start; `name` ("the start") begins the message. Throws std::invalid_argument when the

@@ -24,12 +24,9 @@ std::optional<double> number_in(std::string_view text) {
 
 }  // namespace
 
-RangedScene::RangedScene(std::string text, std::string source, std::vector<std::string> overrides,
+RangedScene::RangedScene(TomlFile file, std::vector<std::string> overrides,
                          const std::vector<std::string>& ranges, std::string option)
-    : text_(std::move(text)),
-      source_(std::move(source)),
-      overrides_(std::move(overrides)),
-      option_(std::move(option)) {
+    : file_(std::move(file)), overrides_(std::move(overrides)), option_(std::move(option)) {
   for (const std::string& given : ranges) add(given);
   // A key may be permitted at its ends and not between them: whole numbers.
   constexpr double kWithin = 0.381966;
@@ -77,7 +74,7 @@ Scene RangedScene::at(const std::vector<double>& point) const {
     all.push_back(r.key + "=" + shortest(r.at(point[k])));
   }
   try {
-    return parse_scene(text_, source_, all);
+    return read_scene(file_, all);
   } catch (const SceneError& e) {  // it names overrides as --set gives them
     const std::string what = e.what();
     for (const NumberRange& r : ranges_)

@@ -23,11 +23,11 @@ struct NumberRange {
 
 class RangedScene {
  public:
-  /// A scene as text, what messages call it, its overrides, and the ranges, each "KEY=LOW:HIGH".
+  /// A scene's file, its overrides, and the ranges, each "KEY=LOW:HIGH".
   /// Throws SceneError for what cannot be read, a key that is varied twice or overridden, and
   /// ranges in which the scene is not permitted everywhere, as far as all ends and one point within
   /// tell. `option` begins messages about ranges ("--over").
-  RangedScene(std::string text, std::string source, std::vector<std::string> overrides,
+  RangedScene(TomlFile file, std::vector<std::string> overrides,
               const std::vector<std::string>& ranges, std::string option);
   [[nodiscard]] const std::vector<NumberRange>& ranges() const { return ranges_; }
   /// At a point of the unit cube: 0 the low end of a range, 1 the high one. Throws SceneError.
@@ -36,7 +36,7 @@ class RangedScene {
  private:
   void add(const std::string& given);
 
-  std::string text_, source_;
+  TomlFile file_;
   std::vector<std::string> overrides_;
   std::vector<NumberRange> ranges_;
   std::string option_;

@@ -5,21 +5,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <deque>
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <memory>
 #include <utility>
 #include <variant>
 
 #include "dynamics/disc/methods/method.h"
-#include "lattice/scene/map_file.h"
 #include "lattice/scene/scene_bins.h"
 #include "lattice/scene/scene_terrain.h"
 #include "lattice/scene/toml_settings.h"
@@ -31,7 +27,6 @@
 namespace gatewalk::lattice {
 namespace {
 
-constexpr std::string_view kStandardInput = "standard input";
 constexpr std::size_t kLongestCompared = 100;  // bytes of an unknown key
 
 // ---- The table of keys
@@ -443,31 +438,6 @@ void check_start(const Scene& scene, const Settings& settings) {
   });
 }
 
-SceneError unreadable(const std::string& name) {
-  return SceneError(name + ": cannot be read: " + std::strerror(errno));
-}
-
-std::string read_all(std::FILE* file, const std::string& name) {
-  std::string text(kMostSceneBytes + 1, '\0');  // one more than allowed, so that this is noticed
-  errno = 0;
-  text.resize(std::fread(text.data(), 1, text.size(), file));
-  if (std::ferror(file)) throw unreadable(name);
-  return text;
-}
-
-std::string read_file(const std::string& path) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             std::fclose);
-  if (!file) throw unreadable(path);
-  return read_all(file.get(), path);
-}
-
-/// It can be read but once, and some commands ask for their scene again.
-const std::string& text_of_standard_input() {
-  static const std::string text = read_all(stdin, std::string(kStandardInput));
-  return text;
-}
-
 }  // namespace
 
 std::vector<std::string> keys_set_by(const std::string& given) {
@@ -499,35 +469,22 @@ std::string known_key(const std::string& given, const std::string& origin) {
 }
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
-  return parse_scene(scene_text(path), path, overrides);
-}
-
-std::string scene_text(const std::string& path) {
-  std::string text = path == "-" ? text_of_standard_input() : read_file(path);
-  if (text.starts_with("\x89HDF"))
-    throw SceneError(path + ": is a matrix (HDF5), not a scene (TOML)");
-  return text;
-}
-
-std::string map_file_in(std::string_view text, const std::string& folder) {
-  try {
-    const toml::table document = parse_toml(text, [](std::size_t) { return std::string(); });
-    const auto file = document[kTerrainTable]["map_file"].value<std::string>();
-    return file ? (std::filesystem::path(folder) / *file).string() : "";
-  } catch (const SceneError&) {
-    return "";
-  }
+  return read_scene(TomlFile::read(path), overrides);
 }
 
 Scene parse_scene(std::string_view text, std::string name,
                   const std::vector<std::string>& overrides) {
-  if (name == "-") name = kStandardInput;
+  return read_scene(TomlFile(std::string(text), std::move(name)), overrides);
+}
+
+Scene read_scene(const TomlFile& file, const std::vector<std::string>& overrides) {
+  const std::string& name = file.name();
   const Origin origin = [&name](std::size_t line) { return name + ":" + std::to_string(line); };
   if (has_ending(name, ".csv"))
     throw SceneError(name +
                      ": is a table, and no scene: of recorded runs gatewalk build TABLE --cell "
                      "CELL.toml -o MATRIX.nc makes a chain");
-  const toml::table document = parse_toml_file(text, name, "a scene");
+  const toml::table& document = document_of(file, "a scene");
   if (document["cell"].is_table())
     throw SceneError(name +
                      ": has cells of another kind, [cell]: --cell-program COMMAND says who "

@@ -15,6 +15,7 @@
 #include "dynamics/disc/params.h"
 #include "lattice/field.h"
 #include "lattice/scene/terrain.h"
+#include "lattice/scene/toml_file.h"
 
 namespace gatewalk::lattice {
 
@@ -54,11 +55,10 @@ class SceneError : public std::runtime_error {
 /// value behind the first '=' (text may stand without quotes); the last one of a key wins. Throws
 /// SceneError.
 [[nodiscard]] Scene read_scene(const std::string& path, const std::vector<std::string>& overrides);
+/// The same of a file that is open already.
+[[nodiscard]] Scene read_scene(const TomlFile& file, const std::vector<std::string>& overrides);
 
-/// The text of a scene file (-: of standard input), for parse_scene. Throws SceneError.
-[[nodiscard]] std::string scene_text(const std::string& path);
-
-/// The same for text already in memory; `name` stands for the file in messages.
+/// The same of text already in memory; `name` stands for the file in messages.
 [[nodiscard]] Scene parse_scene(std::string_view text, std::string name,
                                 const std::vector<std::string>& overrides = {});
 

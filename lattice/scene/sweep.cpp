@@ -120,7 +120,7 @@ std::vector<SweepPoint> sweep_points(const SweepPlan& plan) {
     for (std::size_t i = 0; i < plan.axes.size(); ++i)
       overrides.push_back(plan.axes[i].key + "=" + p.values[i]);
     try {
-      p.scene = parse_scene(plan.text, plan.source, overrides);
+      p.scene = read_scene(plan.file, overrides);
     } catch (const SceneError& e) {  // it names overrides as --set gives them
       const std::string what = e.what();
       for (std::size_t i = 0; i < plan.axes.size(); ++i)

@@ -34,9 +34,9 @@ struct SweepPoint {
   dynamics::GateTally tally;
 };
 
-/// A scene as text and how it is varied.
+/// A scene's file and how it is varied.
 struct SweepPlan {
-  std::string text, source;  // of the scene file, and what messages call it
+  TomlFile file;
   std::vector<std::string> overrides;
   std::vector<SweepAxis> axes;
 };

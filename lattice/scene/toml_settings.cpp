@@ -51,14 +51,6 @@ toml::table parse_toml(std::string_view text, const Origin& origin) {
   }
 }
 
-toml::table parse_toml_file(std::string_view text, const std::string& name,
-                            const std::string& what) {
-  if (text.size() > kMostSceneBytes)
-    throw SceneError(name + ": is too large for " + what + ": more than " +
-                     std::to_string(kMostSceneBytes) + " bytes");
-  return parse_toml(text, [&](std::size_t line) { return name + ":" + std::to_string(line); });
-}
-
 Override parse_override(const std::string& given,
                         const std::function<bool(std::string_view key)>& is_text) {
   const std::string begin = "--set " + printable(given);

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "lattice/scene/toml_file.h"
+
 namespace gatewalk::lattice {
 
 /// `origin(line)` is how a message begins: "scenes/x.toml:12" or "--set terrain.seed=6".
@@ -17,9 +19,9 @@ using Origin = std::function<std::string(std::size_t line)>;
 /// Throws SceneError naming the line of a text that is no TOML, and what is wrong there.
 [[nodiscard]] toml::table parse_toml(std::string_view text, const Origin& origin);
 inline constexpr std::size_t kMostSceneBytes = 1 << 20;
-/// The same for a whole file; `what` is one, such as "a scene". Throws also where it is too large.
-[[nodiscard]] toml::table parse_toml_file(std::string_view text, const std::string& name,
-                                          const std::string& what);
+/// What a file has, as TOML; `what` is one, such as "a scene". Throws SceneError for what is none,
+/// cannot be read or is too large.
+[[nodiscard]] const toml::table& document_of(const TomlFile& file, const std::string& what);
 
 /// "KEY=VALUE" as TOML has it.
 struct Override {

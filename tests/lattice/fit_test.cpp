@@ -441,12 +441,12 @@ TEST(Fit, KeepsEachHillOfOneNumber) {
 // 95 % of either number lie in [298, 406]; the hills are at (306, 399) and (399, 306).
 TEST(Fit, AFieldThatIsItsMirrorImageHasBothHills) {
   const RangedScene scene(
-      "forces = { propulsion_N = 7.0, random_N = 4.0 }\n"
-      "run = { method = \"moreau\" }\n"
-      "field = { columns = 1, rows = 2, max_gates = 0 }\n"
-      "start = { x_m = 0.0, vy_m_per_s = 14.0 }\n",
-      "mirrored.toml", {},
-      {"beams.stiffness_left_Nm_per_rad=50:900", "beams.stiffness_right_Nm_per_rad=50:900"},
+      TomlFile("forces = { propulsion_N = 7.0, random_N = 4.0 }\n"
+               "run = { method = \"moreau\" }\n"
+               "field = { columns = 1, rows = 2, max_gates = 0 }\n"
+               "start = { x_m = 0.0, vy_m_per_s = 14.0 }\n",
+               "mirrored.toml"),
+      {}, {"beams.stiffness_left_Nm_per_rad=50:900", "beams.stiffness_right_Nm_per_rad=50:900"},
       "free");
   Observed o;
   o.seen.endings[static_cast<std::size_t>(markov::Ending::far_edge)] = 30;

@@ -45,10 +45,10 @@ TEST(SweepAxes, RefusesWhatMakesNoGrid) {
 }
 
 TEST(Sweep, RunsTheGateAtEveryPointUnderTheSameNoise) {
-  const SweepPlan plan{"forces.random_N = 20\n[sweep]\n\"forces.propulsion_N\" = \"6,8\"",
-                       "x.toml",
-                       {"beams.damping_Nms_per_rad=10"},
-                       sweep_axes({}, {"forces.propulsion_N=6,8", "start.x_m=-1,0,1"})};
+  const SweepPlan plan{
+      TomlFile("forces.random_N = 20\n[sweep]\n\"forces.propulsion_N\" = \"6,8\"", "x.toml"),
+      {"beams.damping_Nms_per_rad=10"},
+      sweep_axes({}, {"forces.propulsion_N=6,8", "start.x_m=-1,0,1"})};
   std::vector<SweepPoint> points = sweep_points(plan);
   ASSERT_EQ(points.size(), 6u);
   EXPECT_EQ(points[1].values, (Values{"6", "0"}));  // the last axis runs fastest

@@ -13,7 +13,6 @@
 #include <string>
 
 #include "lattice/pool/tree_chain.h"
-#include "lattice/scene/map_file.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/statistics/compare.h"
@@ -120,12 +119,15 @@ TEST(Terrain, AMapMayBeAFileBesideTheScene) {
 }
 
 TEST(Terrain, TheFileThatASceneNamesIsKnownWithoutReadingIt) {
-  EXPECT_EQ(map_file_in("[terrain]\nmap_file = \"map.csv\"\n", "scenes"), "scenes/map.csv");
-  EXPECT_EQ(map_file_in("terrain.map_file = '/a/map.csv'", "scenes"), "/a/map.csv");
+  const auto map_file_in = [](const std::string& text, const std::string& name) {
+    return TomlFile(text, name).map_file();
+  };
+  EXPECT_EQ(map_file_in("[terrain]\nmap_file = \"map.csv\"\n", "scenes/a.toml"), "scenes/map.csv");
+  EXPECT_EQ(map_file_in("terrain.map_file = '/a/map.csv'", "scenes/a.toml"), "/a/map.csv");
   EXPECT_EQ(map_file_in("terrain = { map_file = \"map.csv\" }", ""), "map.csv");
   for (const char* other : {"", "[terrain]\nmap = [\".\"]\n", "terrain.map_file = 3",
                             "map_file = \"map.csv\"", "terrain = 1", "no scene", "[[["})
-    EXPECT_EQ(map_file_in(other, "scenes"), "") << other;
+    EXPECT_EQ(map_file_in(other, "scenes/a.toml"), "") << other;
 }
 
 // A pixel is a gate; the upper row is the far side.
@@ -476,7 +478,7 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   put_matrices(file, scene, chain.transitions);
   write_matrix(path, file);
 
-  const SceneMatrix m = read_scene_matrix(path, "", {});
+  const SceneMatrix m = read_scene_matrix(path, nullptr, {});
   EXPECT_EQ(m.file->types.size(), 2U);
   const auto matrices = matrices_of(*m.file, m.scene);
   for (std::size_t type = 0; type < 3; ++type)
@@ -509,11 +511,10 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   EXPECT_EQ(others.gate_runs(), chain.pool.gate_runs());
 
   // Another scene's types are refused by name.
-  const std::string scene_path = testing::TempDir() + "terrain.toml";
-  std::ofstream(scene_path) << to_toml(scene);
+  const TomlFile other(to_toml(scene), "terrain.toml");
   const auto message = [&](const std::string& override) {
     try {
-      (void)read_scene_matrix(path, scene_path, {override});
+      (void)read_scene_matrix(path, &other, {override});
     } catch (const std::invalid_argument& e) {
       return std::string(e.what());
     }

@@ -157,7 +157,7 @@ TEST(Units, OfWhatIsVaried) {
   const auto axes = sweep_axes(parse_scene("[sweep]\nbody.radius_m = \"1:2:5\"\n", "x.toml").sweep,
                                {"body.radius_cm=100,200"});
   ASSERT_EQ(axes.size(), 1u);  // it replaces the file's
-  const auto points = sweep_points({"", "x.toml", {}, axes});
+  const auto points = sweep_points({TomlFile("", "x.toml"), {}, axes});
   ASSERT_EQ(points.size(), 2u);
   EXPECT_EQ(points[1].scene.gate.body.radius, 2.0);
   EXPECT_THROW((void)sweep_axes({}, {"body.radius_cm=1,2", "body.radius_m=1,2"}), SceneError);

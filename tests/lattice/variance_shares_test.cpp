@@ -88,7 +88,7 @@ TEST(VarianceShares, RefuseTooFewTrials) {
 
 RangedScene ranged(const std::vector<std::string>& ranges,
                    const std::vector<std::string>& overrides = {}) {
-  return {"body.mass_kg = 2.0\n", "a.toml", overrides, ranges, "--over"};
+  return {TomlFile("body.mass_kg = 2.0\n", "a.toml"), overrides, ranges, "--over"};
 }
 std::string refusal_of_ranges(const std::vector<std::string>& ranges,
                               const std::vector<std::string>& overrides = {}) {
