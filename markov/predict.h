@@ -72,8 +72,7 @@ struct PredictOptions {
   ///   elimination up to 512 MiB.
   /// direct: solve_directly().
   /// klu: solve_absorption().
-  /// plain: propagate().
-  enum class Solver { automatic, steps, rows, direct, klu, plain };
+  enum class Solver { automatic, steps, rows, direct, klu };
   Solver solver = Solver::automatic;
 
   /// How `rows` finds the visits of a row: by elimination of its columns, which takes as long
@@ -86,8 +85,8 @@ struct PredictOptions {
   /// Without limit: the share of all walks that may be left walking (`remainder`; elimination may
   /// leave more where rounding lets it not do better). None: 1e-12 for `rows`, else 1e-13.
   std::optional<double> tolerance = std::nullopt;
-  /// Without limit: steps after which `steps` and `plain` stop (the caller reads `remainder`), and
-  /// moves within one row after which `rows` by sums gives up.
+  /// Without limit: steps after which `steps` stops (the caller reads `remainder`), and moves
+  /// within one row after which `rows` by sums gives up.
   int max_steps = 1'000'000;
 
   [[nodiscard]] double tolerance_of(Solver used) const {
@@ -159,12 +158,6 @@ class AdjointPredictor {
   Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
       answers_;  // (outputs x 1 + ends): draws, then the chance of each end
 };
-
-/// The plain reference: forward propagation, Eq. (16) applied once per cell and step. With
-/// options.max_cells: exact after so many steps, fewer if nobody walks any more. Without: steps
-/// until at most the tolerance still walks, or max_steps are done. Memory: 2 cells x n_in numbers.
-[[nodiscard]] FinalDistribution propagate(const FieldChain& chain, const Field& field,
-                                          const Start& start, const PredictOptions& options = {});
 
 /// Without limit, by sparse elimination of one reachable (cell, input) pair after the other, in the
 /// blocks and the order that SuiteSparse KLU finds. As in absorbing.h nothing is subtracted

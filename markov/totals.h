@@ -63,7 +63,7 @@ struct WalkTolerance {
 };
 
 /// First and second moments, exact: propagated with the shares of the walks. With a limit of cells
-/// step by step, as markov::propagate does; without, row by row, the draws of a walk are not told
+/// step by step, as Solver::steps does; without, row by row, the draws of a walk are not told
 /// apart (`each` is told of draw 1), and a row is left after 10^5 sweeps at the latest. Where moves
 /// lead to a row below, step by step until no more than `tolerance.all` of the walks are on their
 /// way, or 10^5 steps are done. Where walks circle so long that more are left, and states are few

@@ -21,7 +21,7 @@ import prepare
 # A user of the installed libraries looks for these first.
 CPP = ["dynamics::Transitions", "dynamics::StateSpace", "dynamics::GateParams", "dynamics::add_trials",
        "lattice::make_chain", "lattice::chain_start", "lattice::predict_pooled", "markov::Chain", "markov::FieldChain",
-       "markov::Counts", "markov::propagate", "markov::Ending", "markov::Exit"]
+       "markov::Counts", "markov::solve_directly", "markov::Ending", "markov::Exit"]
 LOADS = {"script": "src", "img": "src", "iframe": "src", "source": "src", "video": "src", "audio": "src",
          "embed": "src", "object": "data", "image": "href", "use": "href"}
 NOT_LOADED = ("canonical", "index", "search", "next", "prev", "author", "copyright")

@@ -98,7 +98,7 @@ std::unique_ptr<const PredictionPlan> plan_of(FieldChain field_chain) {
       if (std::max(exit.di_x, exit.di_y) > kFarthest || std::min(exit.di_x, exit.di_y) < -kFarthest)
         throw std::invalid_argument("predict: a move of (" + std::to_string(exit.di_x) + ", " +
                                     std::to_string(exit.di_y) + ") cells is more than " +
-                                    std::to_string(kFarthest) + "; solver plain takes it");
+                                    std::to_string(kFarthest) + "; solver klu takes it");
       const auto next = static_cast<std::size_t>(exit.next_input);
       is_entered[next] = 1;
       if (exit.di_y > 0) from_below[next] = 1;
@@ -127,9 +127,7 @@ std::unique_ptr<const PredictionPlan> plan_of(FieldChain field_chain) {
 }
 
 /// Whether nothing is prepared for it.
-bool is_plain(Solver solver) {
-  return solver == Solver::klu || solver == Solver::plain || solver == Solver::direct;
-}
+bool is_unprepared(Solver solver) { return solver == Solver::klu || solver == Solver::direct; }
 
 void require_no_limit(const std::string& solver, const PredictOptions& options) {
   if (options.max_cells != 0)
@@ -153,6 +151,21 @@ MaybePredicted in_groups(const std::vector<Start>& starts, std::int64_t size, Ru
 
 }  // namespace
 
+CellProbabilities trapped_cells(const FinalDistribution& d) {
+  CellProbabilities cells = d.final_cells;
+  for (const CellEndings& c : d.mixed_cells)
+    cells.data()[c.cell] = c.by_ending[static_cast<std::size_t>(Ending::trapped)];
+  return cells;
+}
+
+CellProbabilities departed_cells(const FinalDistribution& d) {
+  CellProbabilities cells = CellProbabilities::Zero(d.final_cells.rows(), d.final_cells.cols());
+  for (const CellEndings& c : d.mixed_cells)
+    for (const Ending edge : kEdges)
+      cells.data()[c.cell] += c.by_ending[static_cast<std::size_t>(edge)];
+  return cells;
+}
+
 Predictor::Predictor(FieldChain chain) : plan_(plan_of(std::move(chain))) {}
 
 Predictor::~Predictor() = default;
@@ -162,7 +175,8 @@ bool Predictor::can_go_by_rows() const { return plan_->lowest >= 0; }
 std::vector<FinalDistribution> Predictor::predict_all(const Field& field,
                                                       const std::vector<Start>& starts,
                                                       const PredictOptions& options) const {
-  if (is_plain(options.solver)) return markov::predict(plan_->field_chain, field, starts, options);
+  if (is_unprepared(options.solver))
+    return markov::predict(plan_->field_chain, field, starts, options);
   for (const Start& s : starts) validate(plan_->field_chain, field, s, options.max_cells);
   const bool by_rows =
       options.solver == Solver::rows ||
@@ -205,15 +219,12 @@ FinalDistribution Predictor::predict(const Field& field, const Start& start,
 std::vector<FinalDistribution> predict(const FieldChain& chain, const Field& field,
                                        const std::vector<Start>& starts,
                                        const PredictOptions& options) {
-  if (!is_plain(options.solver)) return Predictor(chain).predict_all(field, starts, options);
-  if (options.solver != Solver::plain)
-    require_no_limit(options.solver == Solver::klu ? "klu" : "direct", options);
+  if (!is_unprepared(options.solver)) return Predictor(chain).predict_all(field, starts, options);
+  require_no_limit(options.solver == Solver::klu ? "klu" : "direct", options);
   std::vector<FinalDistribution> all;
   for (const Start& s : starts) {
     if (options.solver == Solver::klu) {
       all.push_back(solve_absorption(chain, field, s));
-    } else if (options.solver == Solver::plain) {
-      all.push_back(propagate(chain, field, s, options));
     } else {
       auto one = solve_directly(chain, field, s);
       if (!one) throw std::runtime_error("predict: the field is too large for solver direct");

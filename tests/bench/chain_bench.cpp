@@ -19,6 +19,7 @@
 #include "lattice/scene/matrix.h"
 #include "markov/markov.h"
 #include "scenes.h"
+#include "tests/support/propagation.h"
 
 namespace {
 
@@ -145,8 +146,9 @@ int run(int argc, char** argv) {
     const Field field{side, side};
     const Start start{side / 2, 0, input};
     const std::string at = "/" + std::to_string(side) + "x" + std::to_string(side);
-    const FinalDistribution limited = markov::propagate(chain, field, start, {.max_cells = kGates});
-    const FinalDistribution unlimited = markov::propagate(chain, field, start);
+    const FinalDistribution limited =
+        markov::test::propagate(chain, field, start, {.max_cells = kGates});
+    const FinalDistribution unlimited = markov::test::propagate(chain, field, start);
     write_global(folder + "chain_" + std::to_string(side) + ".mtx", chain, field);
     write_answer(folder + "limited_" + std::to_string(side) + ".txt", limited);
     write_answer(folder + "unlimited_" + std::to_string(side) + ".txt", unlimited);
@@ -154,13 +156,8 @@ int run(int argc, char** argv) {
     if (side == 3) continue;
     add_exact("13 gates/gatewalk predict" + at, limited,
               [&, field, start] { return predictor.predict(field, start, {.max_cells = kGates}); });
-    add_exact("13 gates/gatewalk propagate (plain)" + at, limited, [&, field, start] {
-      return markov::propagate(chain, field, start, {.max_cells = kGates});
-    });
     add_exact("no limit/gatewalk predict" + at, unlimited,
               [&, field, start] { return predictor.predict(field, start); });
-    add_exact("no limit/gatewalk propagate (plain)" + at, unlimited,
-              [&, field, start] { return markov::propagate(chain, field, start); });
     add_exact("no limit/gatewalk KLU" + at, unlimited,
               [&, field, start] { return markov::solve_absorption(chain, field, start); });
   }

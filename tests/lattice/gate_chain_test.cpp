@@ -335,14 +335,16 @@ TEST_F(MatrixOnDisk, CarriesRefinedSpacesToThePrediction) {
     EXPECT_EQ(chain.unsampled_rows(), 0);
     const auto start = chain_start(back.transitions.space, field, {0, {4, 5, 12}});
     EXPECT_FALSE(start.clamped);
-    const auto f = markov::propagate(chain, cells, start.start, {.max_cells = field.max_gates});
+    const auto f =
+        markov::predict(chain, cells, {start.start}, {.max_cells = field.max_gates}).front();
     // markov/predict/reference.h: nothing is normalised, and some 1e-16 a row over 13 steps is what
     // is lost.
     EXPECT_NEAR(f.final_cells.sum() + f.remainder, 1.0, 1e-12);
     EXPECT_NEAR(f.trapped + f.left_field + f.cut_off + f.unsampled + f.remainder, 1.0, 1e-12);
     EXPECT_GT((f.final_cells > 0.0).count(), 3);  // it went somewhere
     const auto direct =
-        markov::propagate(make_chain(t), cells, start.start, {.max_cells = field.max_gates});
+        markov::predict(make_chain(t), cells, {start.start}, {.max_cells = field.max_gates})
+            .front();
     EXPECT_TRUE((f.final_cells == direct.final_cells).all());
   }
 }

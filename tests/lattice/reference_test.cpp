@@ -401,8 +401,9 @@ TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
     }
     if (revisited) continue;  // one state, two ways on: no chain can follow that
     ++followed;
-    const auto walked = markov::propagate(make_chain(path), {field.columns, field.rows},
-                                          first.start, {.max_cells = field.max_gates});
+    const auto walked = markov::predict(make_chain(path), {field.columns, field.rows},
+                                        {first.start}, {.max_cells = field.max_gates})
+                            .front();
     EXPECT_NEAR(walked.final_cells(gate / 9, gate % 9), 1.0, 1e-12);
     EXPECT_NEAR(walked.trapped, t.trapped == 5, 1e-12);
     EXPECT_NEAR(walked.left_field, t.left_field == 5, 1e-12);

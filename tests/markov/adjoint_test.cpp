@@ -6,6 +6,7 @@
 
 #include "chains.h"
 #include "tests/support/instruction_sets.h"
+#include "tests/support/propagation.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -14,6 +15,7 @@ using test::lattice_counts;
 using test::lattice_exits;
 using test::leaps;
 using test::never_down;
+using test::propagate;
 
 std::vector<std::int64_t> row_of(const Counts& counts, int row) {
   std::vector<std::int64_t> dense(static_cast<std::size_t>(counts.cols()));
@@ -55,7 +57,7 @@ TEST(Adjoint, SaysWhatPropagationSays) {
         const AdjointPredictor adjoint(chain, c.field, c.column, c.row, c.max_cells);
         for (const int input : {0, 12, 86}) {
           const auto expected =
-              test::propagate_plainly(chain, c.field, {c.column, c.row, input}, c.max_cells);
+              propagate(chain, c.field, {c.column, c.row, input}, {.max_cells = c.max_cells});
           const auto found = adjoint.predict(row_of(counts, input));
           SCOPED_TRACE(std::to_string(c.field.columns) + " x " + std::to_string(c.field.rows) +
                        ", " + std::to_string(c.max_cells) + " cells, input " +
@@ -83,7 +85,7 @@ TEST(Adjoint, OfManyStates) {
   const AdjointPredictor adjoint(chain, field, 2, 0, 6);
   for (const int input : {0, 4321, kStates - 1})
     expect_near(adjoint.predict(row_of(counts, input)),
-                test::propagate_plainly(chain, field, {2, 0, input}, 6), 1e-14);
+                propagate(chain, field, {2, 0, input}, {.max_cells = 6}), 1e-14);
 }
 
 // Most cells of a long row cannot be reached.
@@ -101,7 +103,7 @@ TEST(Adjoint, LeavesOutWhatCannotBeReached) {
     const auto found =
         AdjointPredictor(chain, c.field, c.column, 0, c.max_cells).predict(row_of(counts, 0));
     EXPECT_NEAR(found.final_cells.sum(), 1.0, 1e-12);
-    expect_near(found, test::propagate_plainly(chain, c.field, {c.column, 0, 0}, c.max_cells),
+    expect_near(found, propagate(chain, c.field, {c.column, 0, 0}, {.max_cells = c.max_cells}),
                 1e-13);
   }
 }

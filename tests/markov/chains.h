@@ -4,9 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstdint>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -161,72 +159,6 @@ inline void expect_endings_add_up(const FinalDistribution& d) {
     for (const double part : c.by_ending) mass += part;
     EXPECT_NEAR(mass, d.final_cells.data()[c.cell], kFewEps);
   }
-}
-
-/// The rule of a step as walk.h words it: no boxes, no sparse rows, and digits to spare.
-inline FinalDistribution propagate_plainly(const Chain& chain, const Field& field,
-                                           const Start& start, int max_cells) {
-  using State = std::array<int, 3>;          // column, row, input
-  const Eigen::MatrixXd p = chain.matrix();  // (n_in x n_out)
-  long double draws = 0;
-  std::map<std::array<int, 2>, std::array<long double, kEndings>> final_cells;  // by Ending
-  const auto end = [&](Ending why, int column, int row, long double mass) {
-    final_cells[{row, column}][static_cast<std::size_t>(why)] += mass;
-  };
-  std::map<State, long double> walking = {{{start.column, start.row, start.input}, 1.0L}};
-  for (int visited = 1; !walking.empty(); ++visited) {
-    std::map<State, long double> next;
-    for (const auto& [state, mass] : walking) {
-      const auto [column, row, input] = state;
-      if (p.row(input).sum() == 0.0) {
-        end(Ending::unsampled, column, row, mass);
-        continue;
-      }
-      draws += mass;
-      for (int output = 0; output < chain.outputs(); ++output) {
-        const long double m = mass * p(input, output);
-        if (m == 0) continue;
-        const Exit& exit = chain.exits()[static_cast<std::size_t>(output)];
-        const int c = column + exit.di_x;
-        const int r = row + exit.di_y;
-        const bool is_inside = c >= 0 && c < field.columns && r >= 0 && r < field.rows;
-        if (exit.next_input == Exit::kTrapped)
-          end(Ending::trapped, column, row, m);
-        else if (!is_inside)
-          end(r >= field.rows ? Ending::far_edge
-              : r < 0         ? Ending::near_edge
-              : c < 0         ? Ending::left_edge
-                              : Ending::right_edge,
-              column, row, m);
-        else if (visited == max_cells)
-          end(Ending::cut_off, column, row, m);
-        else
-          next[{c, r, exit.next_input}] += m;
-      }
-    }
-    walking = std::move(next);
-  }
-  FinalDistribution d;
-  d.final_cells = CellProbabilities::Zero(field.rows, field.columns);
-  std::array<long double, kEndings> all{};
-  for (const auto& [cell, parts] : final_cells) {
-    CellEndings here{std::int64_t{cell[0]} * field.columns + cell[1], {}};
-    long double mass = 0;
-    for (std::size_t e = 0; e < kEndings; ++e) {
-      here.by_ending[e] = static_cast<double>(parts[e]);
-      all[e] += parts[e];
-      mass += parts[e];
-    }
-    d.final_cells(cell[0], cell[1]) = static_cast<double>(mass);
-    if (mass > parts[0]) d.mixed_cells.push_back(here);
-  }
-  for (std::size_t e = 0; e < kEndings; ++e) d.endings[e] = static_cast<double>(all[e]);
-  d.trapped = d.endings[static_cast<std::size_t>(Ending::trapped)];
-  d.cut_off = d.endings[static_cast<std::size_t>(Ending::cut_off)];
-  d.unsampled = d.endings[static_cast<std::size_t>(Ending::unsampled)];
-  for (const Ending edge : kEdges) d.left_field += d.endings[static_cast<std::size_t>(edge)];
-  d.mean_steps = static_cast<double>(draws);
-  return d;
 }
 
 inline constexpr auto kFar = static_cast<std::size_t>(Ending::far_edge);

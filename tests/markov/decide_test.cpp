@@ -11,6 +11,7 @@
 
 #include "markov/predict.h"
 #include "tests/markov/chains.h"
+#include "tests/support/propagation.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -20,6 +21,7 @@ using test::matrix;
 using test::crossing;
 using test::few;
 using test::kFar;
+using test::propagate;
 using test::random_chain;
 
 /// From column 0 in state 0 to column 1 in state 1, and back, for ever.

@@ -10,6 +10,7 @@
 
 #include "markov/predict.h"
 #include "tests/markov/chains.h"
+#include "tests/support/propagation.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -28,10 +29,8 @@ FieldChain random_field(test::Words& words, const Field& field, int types) {
 
 double crosses(const FieldChain& chain, const Field& field, const Start& start, int max_cells,
                const std::vector<int>& map) {
-  PredictOptions how;
-  how.max_cells = max_cells;
-  how.solver = PredictOptions::Solver::plain;
-  return predict(FieldChain::by_cell(chain.chains(), field.columns, map), field, {start}, how)[0]
+  return test::propagate(FieldChain::by_cell(chain.chains(), field.columns, map), field, start,
+                         {.max_cells = max_cells})
       .endings[kFar];
 }
 

@@ -14,12 +14,14 @@
 #include "markov/predict.h"
 #include "tests/markov/chains.h"
 #include "tests/markov/fractions.h"
+#include "tests/support/propagation.h"
 
 namespace gatewalk::markov {
 namespace {
 
 using RowMethod = PredictOptions::RowMethod;
 using Solver = PredictOptions::Solver;
+using test::propagate;
 using test::Rational;
 
 constexpr Field kThreeByThree{3, 3};
@@ -81,8 +83,8 @@ INSTANTIATE_TEST_SUITE_P(
     All, ExactFractions,
     testing::Values(Route{"automatic", Solver::automatic}, Route{"steps", Solver::steps},
                     Route{"rows_by_elimination", Solver::rows, RowMethod::elimination},
-                    Route{"rows_by_sums", Solver::rows, RowMethod::sums}, Route{"klu", Solver::klu},
-                    Route{"propagate", Solver::plain}),
+                    Route{"rows_by_sums", Solver::rows, RowMethod::sums},
+                    Route{"klu", Solver::klu}),
     [](const auto& param) { return std::string(param.param.name); });
 
 TEST_P(ExactFractions, OfAUniformField) {

@@ -15,9 +15,12 @@
 #include "markov/predict.h"
 #include "markov/walk.h"
 #include "tests/support/long.h"
+#include "tests/support/propagation.h"
 
 namespace gatewalk::markov {
 namespace {
+
+using test::propagate;
 
 using RowMethod = PredictOptions::RowMethod;
 using Solver = PredictOptions::Solver;

@@ -8,11 +8,13 @@
 #include <vector>
 
 #include "tests/markov/chains.h"
+#include "tests/support/propagation.h"
 
 namespace gatewalk::markov {
 namespace {
 
 using test::matrix;
+using test::propagate;
 
 constexpr double kFewEps = 1e-15;
 

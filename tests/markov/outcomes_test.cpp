@@ -5,9 +5,12 @@
 
 #include "markov/totals.h"
 #include "tests/markov/chains.h"
+#include "tests/support/propagation.h"
 
 namespace gatewalk::markov {
 namespace {
+
+using test::propagate;
 
 struct OutcomesCase {
   Field field;

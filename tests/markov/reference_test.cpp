@@ -11,6 +11,7 @@
 
 #include "chains.h"
 #include "markov/walk.h"
+#include "tests/support/propagation.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -22,12 +23,18 @@ using test::lattice_counts;
 using test::lattice_exits;
 using test::matrix;
 using test::nearly_closed;
-using test::propagate_plainly;
+using test::propagate;
 using RowMethod = PredictOptions::RowMethod;
 using Solver = PredictOptions::Solver;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr std::array kLimits = {1, 2, 3, 13};
+
+FinalDistribution by_steps(const FieldChain& chain, const Field& field, const Start& start,
+                           PredictOptions options = {}) {
+  options.solver = Solver::steps;
+  return predict(chain, field, {start}, options).front();
+}
 
 double ends(const FinalDistribution& d) {
   return d.trapped + d.left_field + d.cut_off + d.unsampled;
@@ -101,7 +108,7 @@ Chain knuths_die() {
 TEST(Exact, KnuthsDieIsFair) {
   const Chain die = knuths_die();
   const Field table{7, 1};
-  for (const FinalDistribution& d : {solve_absorption(die, table, {}), propagate(die, table, {})}) {
+  for (const FinalDistribution& d : {solve_absorption(die, table, {}), by_steps(die, table, {})}) {
     expect_whole(d);
     EXPECT_EQ(d.final_cells(0, 0), 0.0);
     for (int face = 1; face <= 6; ++face) {
@@ -147,7 +154,7 @@ TEST(Exact, GamblersRuin) {
       // Stopped early or late, the truth lies between the sum and the sum plus the remainder.
       if (column != 80) continue;
       for (const double tolerance : {0.5, 1e-6, 1e-13}) {
-        const FinalDistribution d = propagate(chain, {length, 1}, start, {.tolerance = tolerance});
+        const FinalDistribution d = by_steps(chain, {length, 1}, start, {.tolerance = tolerance});
         expect_whole(d);
         EXPECT_LE(d.remainder, tolerance);
         EXPECT_LE(d.final_cells(0, length - 1), wins + 1e-12);
@@ -170,7 +177,7 @@ TEST(Exact, TwoStateLoopIsGeometric) {
   EXPECT_NEAR(solved.final_cells(0, 1), pa * (1 - pb) / (1 - pa * pb), 4 * kEps);
   EXPECT_NEAR(solved.mean_steps, (1 + pa) / (1 - pa * pb), 8 * kEps);
   for (int n = 1; n <= 20; ++n) {
-    const FinalDistribution even = propagate(chain, field, {}, {.max_cells = 2 * n});
+    const FinalDistribution even = by_steps(chain, field, {}, {.max_cells = 2 * n});
     const double on = std::pow(pa * pb, n);
     EXPECT_NEAR(even.cut_off, on, 4 * kEps);
     EXPECT_NEAR(even.final_cells(0, 0), (1 - pa) * rounds(n), 4 * kEps);
@@ -178,7 +185,7 @@ TEST(Exact, TwoStateLoopIsGeometric) {
     EXPECT_NEAR(even.mean_steps, (1 + pa) * rounds(n), 16 * kEps);
     EXPECT_EQ(even.steps, 2 * n);
     EXPECT_EQ(even.remainder, 0.0);
-    const FinalDistribution odd = propagate(chain, field, {}, {.max_cells = 2 * n - 1});
+    const FinalDistribution odd = by_steps(chain, field, {}, {.max_cells = 2 * n - 1});
     EXPECT_NEAR(odd.cut_off, on / pb, 4 * kEps);
   }
 }
@@ -198,8 +205,8 @@ TEST(Exact, WhereAStepEnds) {
     wanted.left_field = left;
     wanted.cut_off = cut;
     wanted.unsampled = unsampled;
+    expect_near(by_steps(chain, field, start, {.max_cells = max_cells}), wanted, 0.0);
     expect_near(propagate(chain, field, start, {.max_cells = max_cells}), wanted, 0.0);
-    expect_near(propagate_plainly(chain, field, start, max_cells), wanted, 0.0);
     if (max_cells == 0) expect_near(solve_absorption(chain, field, start), wanted, 2 * kEps);
     expect_walks_agree(chain, field, start, max_cells, wanted, 1000);
   };
@@ -215,8 +222,8 @@ TEST(Exact, WhereAStepEnds) {
     expect({1, 0, 1}, max_cells, {0, 1, 0}, 0, 0, 0, 1);  // starts unsampled
     expect({1, 0, 2}, max_cells, {0, 1, 0}, 1, 0, 0, 0);  // trapped at once
   }
-  EXPECT_EQ(propagate(chain, field, {1, 0, 1}, {.max_cells = 5}).mean_steps, 0.0);
-  EXPECT_EQ(propagate(chain, field, {1, 0, 1}, {.max_cells = 5}).steps, 0);
+  EXPECT_EQ(by_steps(chain, field, {1, 0, 1}, {.max_cells = 5}).mean_steps, 0.0);
+  EXPECT_EQ(by_steps(chain, field, {1, 0, 1}, {.max_cells = 5}).steps, 0);
 }
 
 // Up 1/2, left and right 1/8, trapped 1/4, from the middle of the first row of 3 x 3 cells. A row
@@ -238,8 +245,6 @@ TEST(Exact, EndingsOfThreeByThreeAreFractions) {
   };
   const auto expect_all = [&](int max_cells, double far, double side, double trapped, double cut) {
     constexpr double kBound = 1e-12;  // what may still walk
-    expect(propagate_plainly(chain, field, start, max_cells == 0 ? 100 : max_cells), far, side,
-           trapped, cut, kBound);
     expect(propagate(chain, field, start, {.max_cells = max_cells}), far, side, trapped, cut,
            kBound);
     expect(predictor.predict(field, start, {.max_cells = max_cells, .solver = Solver::steps}), far,
@@ -266,7 +271,7 @@ TEST(Exact, EndingsOfThreeByThreeAreFractions) {
   expect_all(2, 0.0, 1 / 64.0, 7 / 16.0, 17 / 32.0);
   // Who leaves is last seen at the edges: over the far one from row 2, over the sides from columns
   // 0, 2.
-  const FinalDistribution d = propagate(chain, field, start);
+  const FinalDistribution d = by_steps(chain, field, start);
   const CellProbabilities departed = departed_cells(d), trapped = trapped_cells(d);
   EXPECT_EQ(departed(0, 1), 0.0);
   EXPECT_EQ(departed(1, 1), 0.0);
@@ -279,15 +284,16 @@ TEST(Exact, EndingsOfThreeByThreeAreFractions) {
 
 // ---- Second routes on chains of the paper's shape ----
 
-TEST(Exact, PropagationIsThePlainReference) {
+TEST(Exact, PredictionIsThePlainPropagation) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const Chain chain = lattice_chain(seed, {3, 30, 61});
     for (const int max_cells : kLimits) {
       for (const Start& start : {kBottomCentre, Start{0, 8, 40}, Start{8, 0, 86}}) {
-        const FinalDistribution d = propagate(chain, kNineByNine, start, {.max_cells = max_cells});
+        const FinalDistribution d = by_steps(chain, kNineByNine, start, {.max_cells = max_cells});
         expect_whole(d);
         EXPECT_EQ(d.remainder, 0.0);
-        const FinalDistribution plain = propagate_plainly(chain, kNineByNine, start, max_cells);
+        const FinalDistribution plain =
+            propagate(chain, kNineByNine, start, {.max_cells = max_cells});
         // Positive numbers only: an eps or so for each of up to 13 steps.
         expect_near(d, plain, 8 * kEps);
         EXPECT_NEAR(d.mean_steps / plain.mean_steps, 1.0, 8 * kEps);
@@ -298,7 +304,7 @@ TEST(Exact, PropagationIsThePlainReference) {
 
 TEST(Exact, PropagationSolveAndWalksAgree) {
   const Chain chain = lattice_chain(7, {20, 70});
-  const FinalDistribution far = propagate(chain, kNineByNine, kBottomCentre);
+  const FinalDistribution far = by_steps(chain, kNineByNine, kBottomCentre);
   const FinalDistribution solved = solve_absorption(chain, kNineByNine, kBottomCentre);
   expect_whole(far);
   expect_whole(solved);
@@ -311,7 +317,7 @@ TEST(Exact, PropagationSolveAndWalksAgree) {
   expect_walks_agree(chain, kNineByNine, kBottomCentre, 0, solved, 1'000'000);
   for (const int max_cells : kLimits) {
     expect_walks_agree(chain, kNineByNine, kBottomCentre, max_cells,
-                       propagate(chain, kNineByNine, kBottomCentre, {.max_cells = max_cells}),
+                       by_steps(chain, kNineByNine, kBottomCentre, {.max_cells = max_cells}),
                        300'000);
   }
 }
@@ -323,9 +329,9 @@ TEST(Exact, EachEmptiedRowIsReportedWithItsMass) {
   for (int row = 0; row < 87; ++row) {
     const Chain chain = lattice_chain(1, {row});
     EXPECT_EQ(chain.unsampled_rows(), 1);
-    const FinalDistribution d = propagate(chain, field, start, {.max_cells = 13});
+    const FinalDistribution d = by_steps(chain, field, start, {.max_cells = 13});
     expect_whole(d);
-    expect_near(d, propagate_plainly(chain, field, start, 13), 8 * kEps);
+    expect_near(d, propagate(chain, field, start, {.max_cells = 13}), 8 * kEps);
     // Some mass enters every row that some output leads to.
     EXPECT_GT(d.unsampled, 0.0) << "row " << row;
     mass_of_all += d.unsampled;
@@ -342,8 +348,8 @@ TEST(Exact, PartlyEmptyFieldsAndLongMoves) {
   for (int j = 0; j < 5; ++j) counts.coeffRef(0, j) = j + 1;
   const Chain chain = Chain::from_counts(counts, exits);
   for (const int max_cells : kLimits) {
-    expect_near(propagate(chain, {4, 3}, {1, 1, 0}, {.max_cells = max_cells}),
-                propagate_plainly(chain, {4, 3}, {1, 1, 0}, max_cells), 8 * kEps);
+    expect_near(by_steps(chain, {4, 3}, {1, 1, 0}, {.max_cells = max_cells}),
+                propagate(chain, {4, 3}, {1, 1, 0}, {.max_cells = max_cells}), 8 * kEps);
   }
 }
 
@@ -428,12 +434,12 @@ TEST(Exact, RowsThatDifferAreTheDenseSolution) {
       const Field field{3, 3};
       for (const int max_cells : {1, 2, 5, 0}) {
         const FinalDistribution brute = densely(each, field, start, max_cells);
-        const FinalDistribution d = propagate(rows, field, start, {.max_cells = max_cells});
+        const FinalDistribution d = by_steps(rows, field, start, {.max_cells = max_cells});
         expect_whole(d);
         expect_near(d, brute, d.remainder + 1e-13);
         if (max_cells == 0) expect_near(solve_absorption(rows, field, start), brute, 1e-13);
         if (of_row == std::vector{1, 1, 1})
-          expect_near(propagate(chains[1], field, start, {.max_cells = max_cells}), d, 0.0);
+          expect_near(by_steps(chains[1], field, start, {.max_cells = max_cells}), d, 0.0);
       }
     }
   }
@@ -446,8 +452,8 @@ TEST(Exact, RefusesRowsThatDoNotFit) {
   EXPECT_THROW((void)FieldChain::by_row({one}, {0, 1}), std::invalid_argument);
   EXPECT_THROW((void)FieldChain::by_row({one}, {-1}), std::invalid_argument);
   const FieldChain rows = FieldChain::by_row({one, one}, {0, 1});
-  EXPECT_NO_THROW((void)propagate(rows, {3, 2}, {}, {.max_cells = 1}));
-  EXPECT_THROW((void)propagate(rows, {3, 1}, {}, {.max_cells = 1}), std::invalid_argument);
+  EXPECT_NO_THROW((void)by_steps(rows, {3, 2}, {}, {.max_cells = 1}));
+  EXPECT_THROW((void)by_steps(rows, {3, 1}, {}, {.max_cells = 1}), std::invalid_argument);
   EXPECT_THROW((void)solve_absorption(rows, {3, 3}, {}), std::invalid_argument);
 }
 
@@ -462,7 +468,7 @@ TEST(Exact, AClosedLoopHasNoSolution) {
   const Chain chain = Chain::from_probabilities(matrix(4, 5, entries),
                                                 {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {}});
   EXPECT_THROW((void)solve_absorption(chain, {1, 1}, {}), std::runtime_error);
-  const FinalDistribution d = propagate(chain, {1, 1}, {}, {.tolerance = 1e-13, .max_steps = 100});
+  const FinalDistribution d = by_steps(chain, {1, 1}, {}, {.tolerance = 1e-13, .max_steps = 100});
   EXPECT_EQ(d.steps, 100);
   EXPECT_EQ(d.trapped, 0.5);
   EXPECT_NEAR(d.remainder, 0.5, 100 * kEps);
@@ -470,7 +476,7 @@ TEST(Exact, AClosedLoopHasNoSolution) {
   EXPECT_THROW((void)solve_absorption(chain, {1, 1}, {0, 0, 1}), std::runtime_error);
   const Chain one = Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{0, 0, 0}});
   EXPECT_THROW((void)solve_absorption(one, {1, 1}, {}), std::runtime_error);
-  EXPECT_EQ(propagate(one, {1, 1}, {}, {.tolerance = 0.0, .max_steps = 7}).remainder, 1.0);
+  EXPECT_EQ(by_steps(one, {1, 1}, {}, {.tolerance = 0.0, .max_steps = 7}).remainder, 1.0);
   // Rounding may make the sum of its row 1 +- 1e-16: no less a loop.
   for (const double p : {1.0 / 6, 0.1, 0.3, 1.0 / 7}) {
     const Chain parts =
@@ -492,18 +498,18 @@ TEST(Exact, TheConditionGateKeepsSixDigits) {
 }
 
 TEST(Exact, AnEscapeOf1e300IsNotLost) {
-  EXPECT_NEAR(propagate(nearly_closed(1e-300), {2, 1}, {}, {.max_cells = 13}).trapped / 13e-300,
-              1.0, 16 * kEps);
+  EXPECT_NEAR(by_steps(nearly_closed(1e-300), {2, 1}, {}, {.max_cells = 13}).trapped / 13e-300, 1.0,
+              16 * kEps);
 }
 
 TEST(Exact, RefusesWhatMakesNoSense) {
   const Chain chain = ruin(0.5);
-  EXPECT_THROW((void)propagate(chain, {3, 1}, {3, 0, 0}, {.max_cells = 1}), std::invalid_argument);
-  EXPECT_THROW((void)propagate(chain, {3, 1}, {}, {.max_cells = -1}), std::invalid_argument);
-  EXPECT_THROW((void)propagate(chain, {3, 1}, {}, {.tolerance = -1e-9}), std::invalid_argument);
-  EXPECT_THROW((void)propagate(chain, {3, 1}, {}, {.tolerance = std::nan("")}),
+  EXPECT_THROW((void)by_steps(chain, {3, 1}, {3, 0, 0}, {.max_cells = 1}), std::invalid_argument);
+  EXPECT_THROW((void)by_steps(chain, {3, 1}, {}, {.max_cells = -1}), std::invalid_argument);
+  EXPECT_THROW((void)by_steps(chain, {3, 1}, {}, {.tolerance = -1e-9}), std::invalid_argument);
+  EXPECT_THROW((void)by_steps(chain, {3, 1}, {}, {.tolerance = std::nan("")}),
                std::invalid_argument);
-  EXPECT_THROW((void)propagate(chain, {3, 1}, {}, {.tolerance = 1e-9, .max_steps = -1}),
+  EXPECT_THROW((void)by_steps(chain, {3, 1}, {}, {.tolerance = 1e-9, .max_steps = -1}),
                std::invalid_argument);
   EXPECT_THROW((void)solve_absorption(chain, {3, 1}, {0, 1, 0}), std::invalid_argument);
 }

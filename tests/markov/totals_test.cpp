@@ -12,10 +12,13 @@
 #include "markov/paths.h"
 #include "markov/quasi_stationary.h"
 #include "tests/markov/chains.h"
+#include "tests/support/propagation.h"
 #include "tests/support/threads.h"
 
 namespace gatewalk::markov {
 namespace {
+
+using test::propagate;
 
 using namespace test;
 

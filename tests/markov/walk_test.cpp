@@ -15,6 +15,7 @@
 #include "chains.h"
 #include "markov/predict.h"
 #include "tests/support/instruction_sets.h"
+#include "tests/support/propagation.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -25,6 +26,7 @@ using test::kNineByNine;
 using test::lattice_counts;
 using test::lattice_exits;
 using test::matrix;
+using test::propagate;
 
 constexpr std::uint64_t kLastWord = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint64_t kLongSeed = 0xfedcba98'76543210;
