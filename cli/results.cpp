@@ -112,8 +112,10 @@ PlannedField plan() {
   PlannedField example{.shown = lattice::Scene(),
                        .actions = {""},
                        .methods = {{}},
-                       .plan = {.policy = policy, .alone = {{}}, .gains = {{}}},
+                       .plan = {{}, policy},
                        .thrift = lattice::ThriftOptions()};
+  example.plan.alone.resize(1);
+  example.plan.gains.resize(1);
   example.plan.usage.resize(gates_in(example.shown.field));
   example.plan.by_cell = lattice::Plan::ByCell{.policy = policy};
   example.plan.front.push_back({.policy = policy});
@@ -125,7 +127,7 @@ FoundStart found_start() {
                      .own = {},
                      .ranges = {{0, 0.0, 1.0}},
                      .columns = {0},
-                     .found = {.best = {}, .space = states(), .chances = {.field = {1, 1}}}};
+                     .found = {{}, {states(), {.field = {1, 1}}}, {}}};
   example.found.chances.inputs = example.found.space.size();
   example.found.chances.value.resize(static_cast<std::size_t>(example.found.space.size()));
   return example;

@@ -31,22 +31,22 @@ struct BestStartOptions {
   std::uint64_t seed = 1;
 };
 
-struct BestStart {
+/// Chances to cross by a chain, of what bodies enter.
+struct StartChances {
+  dynamics::StateSpace space;
+  markov::Decisions chances;
+
+  /// From there.
+  [[nodiscard]] double chance(const TrialStart& start) const;
+};
+
+/// With the chances by the chain that it was chosen by last.
+struct BestStart : ChoiceSummary, StartChances {
   TrialStart best;  // the problem's own unless another is better by more than a standard error
   bool own = false;
   /// New trials in full, by which nothing was chosen: from the best start, and from the problem's.
   Crossings crossings{}, crossings_of_own{};
   Gain gain{};
-  /// The chain that it was chosen by last: what bodies enter, and their chances to cross.
-  dynamics::StateSpace space;
-  markov::Decisions chances;
-  int rounds = 0;
-  bool settled = false;  // the last round gained less than half of the accuracy, and than chance
-  std::int64_t gate_runs = 0;  // of all
-  dynamics::Health health{};   // the same
-
-  /// Chance to cross from there, by that chain.
-  [[nodiscard]] double chance(const TrialStart& start) const;
 };
 
 /// Trials from starts anywhere in the ranges make a chain of trees; a first passage says what it

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How many trials crossed the field, and how many more than others under the same noise.
+/// How many trials crossed the field, and how many more than others under the same noise; and how a
+/// search for what crosses most went.
 
 #include <array>
 #include <cmath>
@@ -43,5 +44,13 @@ struct Spent {
 };
 /// `cost`: by Section::costs. Throws std::invalid_argument for fewer than two trials.
 [[nodiscard]] Spent spent_by(const FieldTrials& trials, std::size_t cost);
+
+/// How a search for the best of something went: rounds of trials, and of choosing again.
+struct ChoiceSummary {
+  int rounds = 0;
+  bool settled = false;  // the last round gained less than half of the accuracy, and than chance
+  std::int64_t gate_runs = 0;  // of all trials
+  dynamics::Health health{};   // of the same
+};
 
 }  // namespace gatewalk::lattice

@@ -26,7 +26,7 @@ struct FieldDesignOptions {
   std::uint64_t seed = 1;
 };
 
-struct DesignedField {
+struct DesignedField : ChoiceSummary {
   std::vector<int> type_of_cell{};  // (rows x columns), the near row first
   /// The maps that searches ended at, by the chain that this one was chosen by (of the field as it
   /// was: by the one with the largest leaves), the best first. That chain's chances to cross have
@@ -37,10 +37,6 @@ struct DesignedField {
   /// the same ways: of the changed field, and of the field as it was.
   Crossings crossings{}, before{};
   Gain gain{};
-  int rounds = 0;        // of trials and choosing again
-  bool settled = false;  // the last round gained less than half of the accuracy, and than chance
-  std::int64_t gate_runs = 0;  // of all
-  dynamics::Health health{};   // the same
 };
 
 /// Trials through cells of all types that may stand there fill a matrix for each type over common

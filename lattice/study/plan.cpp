@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -14,7 +16,7 @@
 #include "dynamics/base/share.h"
 #include "lattice/gate_chain.h"
 #include "lattice/pool/run_pool.h"
-#include "lattice/study/chosen_trials.h"
+#include "lattice/study/choice_rounds.h"
 #include "markov/design.h"
 
 namespace gatewalk::lattice {
@@ -76,12 +78,11 @@ class Planner {
         cells_(cells_of(actions)),
         options_(options),
         work_(work),
-        trials_("plan", cells_, first_, options.seed, work),
-        count_(trials_for(options.accuracy)) {}
+        rounds_("plan", Purpose::plan, cells_, first_, options.accuracy, options.most_runs,
+                options.seed, work) {}
 
   [[nodiscard]] Plan carry_out() {
-    trials_.add(
-        run([&](const Place& at, const Entry&) { return any(at); }, actions() * count_ / 2));
+    rounds_.add(run(any(), actions() * rounds_.count() / 2));
     Tried best = best_for(0.0, {});
     std::vector<Tried> front;
     if (options_.thrift) {
@@ -100,98 +101,42 @@ class Planner {
   }
 
  private:
-  static constexpr std::uint64_t kTries = 4;  // other actions are tried: once in so many cells
   static constexpr double kMostBytesByCell = 2.0e9;  // of values, as markov::design has them
   static constexpr double kMostSearched = 1.0e9;     // values by draws, of all maps: some seconds
 
   [[nodiscard]] int actions() const { return static_cast<int>(actions_.size()); }
-  [[nodiscard]] std::uint64_t word(const Place& at, std::uint64_t what) const {
-    return trials_.word(Purpose::plan, at, what);
-  }
-  [[nodiscard]] int any(const Place& at) const {
-    return static_cast<int>(word(at, 0) % static_cast<std::uint64_t>(actions()));
+  /// Any action with the same chance.
+  [[nodiscard]] ActionChoice any() const {
+    return [this](const Place& at, const Entry&) {
+      return static_cast<int>(rounds_.word(at, 0) % static_cast<std::uint64_t>(actions()));
+    };
   }
   [[nodiscard]] static ActionChoice choice_of(const Policy& policy) {
     return [&policy](const Place& at, const Entry& entry) { return policy.action(at, entry); };
   }
 
-  /// A plan, what a unit of the cost was worth when it was chosen, and what trials say that it was
-  /// chosen by.
+  /// A plan, the price that it was chosen for, and what trials say that it was chosen by.
   struct Tried {
     Plan plan;
     double price = 0.0;
     std::int64_t crossed = 0;
-    double spent = 0.0;    // of all these trials
-    double squares = 0.0;  // of what each was worth at the price
-
-    [[nodiscard]] double value(double at_price) const {
-      return static_cast<double>(crossed) - at_price * spent;
-    }
+    double spent = 0.0;
+    bool worth_little = false;  // at this price
   };
-  [[nodiscard]] Tried tried(Plan plan, double price, const FieldTrials& trials) const {
-    Tried all{.plan = std::move(plan),
-              .price = price,
-              .crossed = crossings_of(trials).crossed,
-              .squares = squares(trials, price)};
-    for (const Costs& costs : trials.costs)
-      if (options_.thrift) all.spent += costs[options_.thrift->cost];
-    return all;
-  }
-
-  /// Rare crossings gain little of all trials, but much beside chance.
-  [[nodiscard]] bool little(double gained, double squares) const {
-    return gained <= 0.5 * options_.accuracy * static_cast<double>(count_) &&
-           gained <= 2.0 * std::sqrt(squares);
-  }
-  [[nodiscard]] double value_of(const FieldTrials& trials, std::size_t i, double price) const {
-    double value = trials.endings[i] == markov::Ending::far_edge ? 1.0 : 0.0;
-    if (price > 0.0) value -= price * trials.costs[i][options_.thrift->cost];
-    return value;
-  }
-  [[nodiscard]] double squares(const FieldTrials& trials, double price) const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < trials.endings.size(); ++i) {
-      const double value = value_of(trials, i, price);
-      sum += value * value;
-    }
-    return sum;
-  }
-  /// Chooses, runs what was chosen, adds its runs, and so on. `known`: plans to begin with.
+  /// `known`: plans to begin with.
   [[nodiscard]] Tried best_for(double price, std::vector<Plan> known) {
-    for (;;) {
-      std::vector<Plan> plans;
-      for (const int times : kLeafSizes) plans.push_back(choose(times * options_.per_leaf, price));
-      // First, so that of several as good ones the simplest is taken.
-      for (int a = actions(); a-- > 0;) plans.insert(plans.begin(), always(a, plans.back()));
-      for (Plan& plan : known) plans.push_back(std::move(plan));
-      ++rounds_;
-      std::vector<FieldTrials> trials;
-      std::vector<Tried> all;
-      const std::int64_t first = trials_.next();
-      for (Plan& plan : plans) {
-        trials_.go_back_to(first);
-        trials.push_back(run(choice_of(plan.policy), count_));
-        all.push_back(tried(std::move(plan), price, trials.back()));
-      }
-      const auto less = [price](const Tried& a, const Tried& b) {
-        return a.value(price) < b.value(price);
-      };
-      const auto most = std::max_element(all.begin(), all.end(), less);
-      const auto winner = static_cast<std::size_t>(most - all.begin());
-      const bool settled = !known.empty() && little(most->value(price) - all.back().value(price),
-                                                    squares(trials[winner], price));
-      trials_.add(trials[winner]);
-      Tried best = std::move(*most);
-      best.plan.settled = settled;
-      if (settled || trials_.gate_runs() >= options_.most_runs) return best;
-      trials_.add(run(
-          [&](const Place& at, const Entry& entry) {
-            return word(at, 1) % kTries == 0 ? any(at) : best.plan.policy.action(at, entry);
-          },
-          count_));
-      known.clear();
-      known.push_back(std::move(best.plan));
-    }
+    const ChoiceAim aim{.price = price, .cost = options_.thrift ? options_.thrift->cost : 0};
+    auto round = rounds_.choose_best(
+        aim, [&] { return choose(price); },
+        [&](const Plan& plan) { return run(choice_of(plan.policy)); },
+        [&](const Plan& plan) { return run(rounds_.mostly(choice_of(plan.policy), any())); },
+        std::move(known));
+    const FieldTrials& trials = round.trials[round.winner].each;
+    Tried best{std::move(round.candidates[round.winner]), price, crossings_of(trials).crossed,
+               total_of(trials, aim.cost),
+               rounds_.is_little(aim.worth(trials), aim.squares(trials))};
+    best.plan.settled = round.settled;
+    return best;
   }
 
   /// The policies whose chance to cross less a price for each unit of the cost is the largest, for
@@ -201,7 +146,7 @@ class Planner {
   void find_front(std::vector<Tried>& front) {
     const ThriftOptions& thrift = *options_.thrift;
     const auto has_room = [&] {
-      return std::ssize(front) < thrift.points && trials_.gate_runs() < options_.most_runs;
+      return std::ssize(front) < thrift.points && rounds_.has_runs_left();
     };
     const auto tell = [&] {
       work_.tell("policies that take less", std::ssize(front), thrift.points);
@@ -211,7 +156,7 @@ class Planner {
       const Tried& last = front.back();
       const double price = static_cast<double>(last.crossed) / last.spent;
       Tried next = best_for(price, {last.plan});
-      if (little(next.value(price), next.squares) || next.spent >= last.spent) {
+      if (next.worth_little || next.spent >= last.spent) {
         front_finished_ = true;
         break;
       }
@@ -240,7 +185,7 @@ class Planner {
   /// for, or those whose chances differ most.
   [[nodiscard]] std::optional<std::size_t> widest(const std::vector<Tried>& front,
                                                   const std::vector<char>& closed) const {
-    const double asked = options_.thrift->chance * static_cast<double>(count_);
+    const double asked = options_.thrift->chance * static_cast<double>(rounds_.count());
     std::optional<std::size_t> best;
     std::int64_t most = 0;
     for (std::size_t i = 0; i + 1 < front.size(); ++i) {
@@ -254,35 +199,28 @@ class Planner {
     return best;
   }
 
-  [[nodiscard]] FieldTrials run(const ActionChoice& choice, std::int64_t count) {
-    return trials_.run(types_of(first_, actions(), choice), count);
+  [[nodiscard]] ScatteredTrials run(const ActionChoice& choice, std::int64_t count) {
+    return rounds_.run({first_.start, types_of(first_, actions(), choice)}, count);
+  }
+  [[nodiscard]] ScatteredTrials run(const ActionChoice& choice) {
+    return run(choice, rounds_.count());
   }
 
-  [[nodiscard]] double bytes_of(const StateSpace& space) const {
-    return 2.0 * std::max(1, first_.field.max_gates) * first_.field.columns * first_.field.rows *
-           space.size();
-  }
-
-  [[nodiscard]] static markov::Gains crossing() {
-    markov::Gains gains;
-    gains.ending[static_cast<std::size_t>(markov::Ending::far_edge)] = 1.0;
-    return gains;
-  }
-  /// The same less what passages take. A state that an action was never tried in is worth less than
-  /// any that it was tried in.
+  /// To cross gains 1, less what passages take at this price. A state that an action was never
+  /// tried in is worth less than any that it was tried in.
   [[nodiscard]] markov::Gains gains_of(const Kernel& kernel, double price) const {
-    markov::Gains gains = crossing();
+    markov::Gains gains = gain_of_crossing();
     if (price == 0.0) return gains;
-    const auto sums = cost_sums(kernel, cells_.map, trials_.pool());
+    const auto sums = cost_sums(kernel, cells_.map, rounds_.pool());
     std::vector<std::vector<double>> mean(kernel.counts.size());  // by type and state
     double most = 0.0;
     for (std::size_t type = 0; type < mean.size(); ++type) {
-      auto of = sums[type].begin();
+      auto passages = sums[type].begin();
       for (int state = 0; state < kernel.space.size(); ++state) {
         double runs = 0.0, spent = 0.0;
         for (markov::Counts::InnerIterator it(kernel.counts[type], state); it; ++it) {
           runs += static_cast<double>(it.value());
-          spent += of++->sum[options_.thrift->cost];
+          spent += passages++->sum[options_.thrift->cost];
         }
         mean[type].push_back(spent / runs);
         if (runs == 0.0) continue;
@@ -303,30 +241,38 @@ class Planner {
     return gains;
   }
 
-  [[nodiscard]] Plan choose(int per_leaf, double price) const {
-    Kernel kernel = kernel_of(cells_.map, trials_.pool(), per_leaf);
+  /// Each action all the time, first, so that of several plans that are as good the simplest wins;
+  /// then what chains with leaves of each size choose.
+  [[nodiscard]] std::vector<Plan> choose(double price) const {
+    std::vector<Plan> chosen, plans;
+    for (const int size : kLeafSizes) chosen.push_back(choose_by(size, price));
+    for (int a = 0; a < actions(); ++a) plans.push_back(always(a, chosen.back()));
+    std::move(chosen.begin(), chosen.end(), std::back_inserter(plans));
+    return plans;
+  }
+
+  [[nodiscard]] Kernel kernel_with(int leaf_size) const {
+    return kernel_of(cells_.map, rounds_.pool(), leaf_size * options_.per_leaf);
+  }
+  [[nodiscard]] Plan choose_by(int leaf_size, double price) const {
+    Kernel kernel = kernel_with(leaf_size);
     const int kept = options_.thrift ? options_.thrift->points : 1;
-    if ((3.0 + kept) * bytes_of(kernel.space) > kMostDecisionBytes)  // of three sizes of leaves too
-      throw std::runtime_error(
-          "plan: decisions for so many cells, states and gates do not fit into memory; a smaller "
-          "field.max_gates (0: no limit) needs less");
-    std::vector<std::size_t> all;
-    for (std::size_t a = 0; a < actions_.size(); ++a) all.push_back(a);
-    markov::Decisions best = decide_among(all, kernel, gains_of(kernel, price));
+    if ((3.0 + kept) * 2.0 * numbers_of(first_.field, kernel.space) > kMostDecisionBytes)
+      throw too_large("plan: decisions for");  // of three sizes of leaves, and those kept
+    std::vector<std::size_t> every_action(actions_.size());
+    std::iota(every_action.begin(), every_action.end(), 0);
+    markov::Decisions best = decide_among(every_action, kernel, gains_of(kernel, price));
     const double says = at_start(best, kernel.space);
-    Plan plan{.policy = {std::move(kernel.space), std::move(best)}, .chain_says = says};
-    if (options_.robust) {
-      plan.worst_case = says;
-      plan.chain_says = std::nan("");
-    }
+    Plan plan{{}, {std::move(kernel.space), std::move(best)}, says};
+    if (options_.robust) plan.worst_case = std::exchange(plan.chain_says, std::nan(""));
     return plan;
   }
 
   /// What an action all the time is worth in the worst case. Small leaves doubt all, large ones
   /// forget too much.
   [[nodiscard]] double worst_alone(std::size_t action) const {
-    const Kernel kernel = kernel_of(cells_.map, trials_.pool(), kLeafSizes[1] * options_.per_leaf);
-    return at_start(decide_among({action}, kernel, crossing()), kernel.space);
+    const Kernel kernel = kernel_with(kLeafSizes[1]);
+    return at_start(decide_among({action}, kernel, gain_of_crossing()), kernel.space);
   }
 
   [[nodiscard]] double at_start(const markov::Decisions& d, const StateSpace& space) const {
@@ -336,6 +282,7 @@ class Planner {
   [[nodiscard]] markov::Decisions decide_among(const std::vector<std::size_t>& actions,
                                                const Kernel& kernel,
                                                const markov::Gains& gains) const {
+    const std::vector<markov::Chain> by_type = chains_of(kernel);
     std::vector<markov::FieldChain> chains;
     markov::Doubt doubt;
     if (options_.robust) doubt.deviations = kNormal95;
@@ -344,7 +291,7 @@ class Planner {
       auto& runs = doubt.runs.emplace_back();
       for (std::size_t t = 0; t < first_.map().types.size(); ++t) {
         const std::size_t type = t * actions_.size() + a;
-        of_types.push_back(markov::Chain::from_counts(kernel.counts[type], exits_of(kernel.space)));
+        of_types.push_back(by_type[type]);
         runs.push_back(runs_of(kernel.counts[type], cells_.map.types[type].symmetric));
       }
       chains.push_back(field_chain(first_.map(), std::move(of_types)));
@@ -374,11 +321,11 @@ class Planner {
       maps.push_back(std::move(*searched));
     std::optional<Policy> best;
     std::int64_t most = -1;
-    const std::int64_t first = trials_.next();
+    const std::int64_t first = rounds_.next();
     for (const std::vector<int>& map : maps) {
       Policy policy = by_cell(map);
-      trials_.go_back_to(first);
-      if (const std::int64_t crossed = crossings_of(run(choice_of(policy), count_)).crossed;
+      rounds_.go_back_to(first);
+      if (const std::int64_t crossed = crossings_of(run(choice_of(policy)).each).crossed;
           crossed > most) {
         most = crossed;
         best = std::move(policy);
@@ -391,35 +338,32 @@ class Planner {
   /// action everywhere. None where there is no memory or time for it.
   [[nodiscard]] std::optional<std::vector<int>> search_by_cell(bool& finished) const {
     const FieldParams& field = first_.field;
-    const Kernel kernel = kernel_of(cells_.map, trials_.pool(), 8 * options_.per_leaf);
+    const Kernel kernel = kernel_with(kLeafSizes[1]);
     finished = false;
     const double draws = field.max_gates > 0 ? field.max_gates : field.columns + field.rows;
     const double most_solves =
         kMostSearched / (draws * field.columns * field.rows * kernel.space.size());
-    if (4.0 * bytes_of(kernel.space) > kMostBytesByCell ||  // a number for a decision
+    if (8.0 * numbers_of(first_.field, kernel.space) > kMostBytesByCell ||
         most_solves < 2.0 * actions())
       return {};
-    std::vector<markov::Chain> chains;
-    for (const markov::Counts& counts : kernel.counts)
-      chains.push_back(markov::Chain::from_counts(counts, exits_of(kernel.space)));
     std::vector<std::vector<int>> everywhere(actions_.size());
     for (int row = 0; row < field.rows; ++row)
       for (int column = 0; column < field.columns; ++column)
         for (int a = 0; a < actions(); ++a)
           everywhere[static_cast<std::size_t>(a)].push_back(cells_.map.type_of(column, row) + a);
-    markov::DesignOptions how{.max_cells = field.max_gates,
-                              .most_changes = field.columns * field.rows,
-                              .from = {everywhere.begin() + 1, everywhere.end()}};
+    markov::DesignOptions search{.max_cells = field.max_gates,
+                                 .most_changes = field.columns * field.rows,
+                                 .from = {everywhere.begin() + 1, everywhere.end()}};
     for (int type = 0; type < std::ssize(cells_.map.types); ++type)
-      how.kind_of_type.push_back(type / actions());
-    how.told = [this](std::size_t search) {
-      work_.tell("searches for actions by gate", static_cast<std::int64_t>(search), actions());
+      search.kind_of_type.push_back(type / actions());
+    search.told = [this](std::size_t done) {
+      work_.tell("searches for actions by gate", static_cast<std::int64_t>(done), actions());
     };
-    how.most_solves = static_cast<std::int64_t>(most_solves);
+    search.most_solves = static_cast<std::int64_t>(most_solves);
     markov::Designs best = markov::design(
-        markov::FieldChain::by_cell(std::move(chains), field.columns, everywhere.front()),
+        markov::FieldChain::by_cell(chains_of(kernel), field.columns, everywhere.front()),
         {field.columns, field.rows}, chain_start(kernel.space, field, first_.start).start,
-        crossing(), how);
+        gain_of_crossing(), search);
     finished = best.finished;
     std::vector<int> action = std::move(best.optima.front().type_of_cell);
     for (int& type : action) type %= actions();
@@ -442,10 +386,11 @@ class Planner {
 
   [[nodiscard]] static Plan always(int action, const Plan& like) {
     const markov::Decisions& d = like.policy.decisions;
-    return {.policy = {like.policy.space,
-                       {.field = d.field, .inputs = d.inputs, .max_cells = d.max_cells},
-                       action},
-            .chain_says = std::nan("")};
+    return {{},
+            {like.policy.space,
+             {.field = d.field, .inputs = d.inputs, .max_cells = d.max_cells},
+             action},
+            std::nan("")};
   }
 
   /// Whether the policy takes `action_in(column, row)` in every cell, however a body enters.
@@ -465,13 +410,13 @@ class Planner {
 
   /// By trials that nothing was chosen by.
   void judge(Plan& plan, std::vector<Tried> front) {
-    const std::int64_t first = trials_.next();
-    const FieldTrials own = run(choice_of(plan.policy), count_);
+    const std::int64_t first = rounds_.next();
+    const FieldTrials own = run(choice_of(plan.policy)).each;
     plan.crossings = crossings_of(own);
     plan.usage = usage_of(own);
     if (plan.by_cell) {
-      trials_.go_back_to(first);
-      const FieldTrials by_cell = run(choice_of(plan.by_cell->policy), count_);
+      rounds_.go_back_to(first);
+      const FieldTrials by_cell = run(choice_of(plan.by_cell->policy)).each;
       plan.by_cell->crossings = crossings_of(by_cell);
       const markov::Decisions& d = plan.by_cell->policy.decisions;
       const bool same = always_takes(plan.policy, [&](int column, int row) {
@@ -480,15 +425,15 @@ class Planner {
       plan.by_cell->worth = same ? Gain::over_itself() : gain_over(own, by_cell);
     }
     for (int a = 0; a < actions(); ++a) {
-      trials_.go_back_to(first);
-      const FieldTrials alone = run([a](const Place&, const Entry&) { return a; }, count_);
+      rounds_.go_back_to(first);
+      const FieldTrials alone = run([a](const Place&, const Entry&) { return a; }).each;
       plan.alone.push_back(crossings_of(alone));
       const bool same = always_takes(plan.policy, [a](int, int) { return a; });
       plan.gains.push_back(same ? Gain::over_itself() : gain_over(own, alone));
     }
     for (Tried& point : front) {
-      trials_.go_back_to(first);
-      const FieldTrials trials = run(choice_of(point.plan.policy), count_);
+      rounds_.go_back_to(first);
+      const FieldTrials trials = run(choice_of(point.plan.policy)).each;
       plan.front.push_back({point.price, std::move(point.plan.policy), crossings_of(trials),
                             spent_by(trials, options_.thrift->cost)});
     }
@@ -502,9 +447,7 @@ class Planner {
         plan.front.erase(plan.front.begin() + static_cast<std::ptrdiff_t>(i));
     plan.front_finished = front_finished_;
     plan.front_refused = front_refused_;
-    plan.rounds = rounds_;
-    plan.gate_runs = trials_.gate_runs();
-    plan.health = trials_.health();
+    static_cast<ChoiceSummary&>(plan) = rounds_.summary(plan.settled);
     for (const Action& a : actions_)
       if (a.problem.check)
         a.problem.check(plan.gate_runs / (10 * std::ssize(actions_)), options_.seed, plan.health,
@@ -535,9 +478,7 @@ class Planner {
   CellField cells_;
   const PlanOptions& options_;
   const Work& work_;
-  ChosenTrials trials_;
-  std::int64_t count_;  // trials of a plan in a round
-  int rounds_ = 0;
+  ChoiceRounds rounds_;
   bool front_finished_ = false;
   std::string front_refused_;
 };
@@ -579,7 +520,7 @@ FieldTally policy_trials(const std::vector<Action>& actions, const Policy& polic
     if (action < 0 || action >= n) throw std::out_of_range("policy: takes an action of others");
     return action;
   };
-  const CellChoice types = types_of(first, n, choice);
+  const TypeChoice types{first.start, types_of(first, n, choice)};
   FieldTally tally = field_trials(
       first.field, trials,
       [&](TrialRange range, FieldTrials& each) {
@@ -594,10 +535,7 @@ FieldTally policy_trials(const std::vector<Action>& actions, const Policy& polic
 }
 
 Plan make_plan(const std::vector<Action>& actions, const PlanOptions& options, const Work& work) {
-  if (!(options.accuracy >= 0.001 && options.accuracy < 0.5))
-    throw std::invalid_argument("plan: accuracy must lie in [0.001, 0.5)");
-  if (options.per_leaf < 1 || options.per_leaf > 1'000'000)
-    throw std::invalid_argument("plan: leaves of 1 to 1000000 entries");
+  require_choice_options("plan", options.accuracy, options.per_leaf);
   require_actions(actions);
   if (options.robust && options.thrift)
     throw std::invalid_argument("plan: robust policies that take less are not found");

@@ -75,7 +75,7 @@ struct FrontPoint {
   Spent spent{};          // by the same
 };
 
-struct Plan {
+struct Plan : ChoiceSummary {
   Policy policy;
   /// Chance to cross by the chain that it was chosen by, too good where that takes chance for
   /// skill; NaN where one action alone crossed oftest, and of robust policies.
@@ -107,10 +107,6 @@ struct Plan {
   bool front_finished = false;  // nothing was found that takes less for each crossing than its end
   std::string front_refused{};  // why no more of it was looked for; mostly empty
   std::vector<double> usage{};  // (actions x cells) how often it is taken there, per trial
-  int rounds = 0;               // of trials and choosing again
-  bool settled = false;  // the last round gained less than half of the accuracy, and than chance
-  std::int64_t gate_runs = 0;  // of all
-  dynamics::Health health{};   // the same
 };
 
 /// Trials in which bodies try all actions fill a matrix for each over common states. The best

@@ -11,7 +11,7 @@
 
 #include "lattice/scene/scene_problem.h"
 #include "lattice/scene/terrain.h"
-#include "lattice/study/chosen_trials.h"
+#include "lattice/study/choice_rounds.h"
 #include "lattice/study/plan.h"
 
 namespace gatewalk::lattice {
@@ -119,12 +119,12 @@ TEST(Recording, DoesWhatAPolicySays) {
   const dynamics::CellField cells = cells_of(actions);
   const Problem& first = actions.front().problem;
   FieldTrials counted{.final_gates = {}, .keep_passages = true};
-  (void)chosen_trials(
-      cells, first,
-      [&](const Place& at, const dynamics::Entry& entry) {
-        return first.map().type_of(at.column, at.row) * 3 + action(at, entry);
-      },
-      4, {0, 30}, counted);
+  (void)chosen_trials(cells, first,
+                      {first.start,
+                       [&](const Place& at, const dynamics::Entry& entry) {
+                         return first.map().type_of(at.column, at.row) * 3 + action(at, entry);
+                       }},
+                      4, {0, 30}, counted);
   const Recordings all =
       record_trials(s, {.seed = 4,
                         .trials = 30,
