@@ -84,9 +84,8 @@ ExitShares exit_shares(const markov::FinalDistribution& d) {
   for (std::size_t side = 0; side < kSides.size(); ++side) {
     shares[side].assign(static_cast<std::size_t>(side == kFarSide ? columns : d.final_cells.rows()),
                         0.0);
-    for (const markov::CellEndings& c : d.mixed_cells)
-      shares[side][place_on(side, c.cell, columns)] +=
-          c.by_ending[static_cast<std::size_t>(kSides[side])];
+    for (const auto& c : d.mixed_cells)
+      shares[side][place_on(side, c.cell, columns)] += c[kSides[side]];
   }
   return shares;
 }

@@ -3,7 +3,9 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <mutex>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -69,7 +71,7 @@ void require_whole(const RunTrials& piece, const std::vector<std::uint8_t>& endi
                                        : each.passed.size() == endings.size() &&
                                              each.passed.back() == std::ssize(each.passages));
   for (const std::int32_t gate : each.final_gates)
-    is_whole = is_whole && gate >= 0 && gate < piece.tally.final_gates.size();
+    is_whole = is_whole && gate >= 0 && gate < piece.tally.final_cells.size();
   for (const std::uint8_t ending : endings)
     is_whole = is_whole && (ending < markov::kEndings || ending == broken);
   std::int64_t before = 0;
@@ -78,31 +80,36 @@ void require_whole(const RunTrials& piece, const std::vector<std::uint8_t>& endi
   if (!is_whole) throw std::runtime_error("a kept piece has trials that there are not");
 }
 
-void FieldTally::count(Eigen::Index gate, std::optional<markov::Ending> ending) {
-  const bool is_trapped = ending == markov::Ending::trapped,
-             is_cut_off = ending == markov::Ending::cut_off;
-  const bool departed = ending && !is_trapped && !is_cut_off;
-  ++final_gates.data()[gate];
-  trapped_gates.data()[gate] += is_trapped;
-  departed_gates.data()[gate] += departed;
-  if (ending) ++endings[static_cast<std::size_t>(*ending)];
-  trapped += is_trapped;
-  left_field += departed;
-  cut_off += is_cut_off;
-  broken += !ending;
+std::int64_t FieldTally::broken() const {
+  return trials - std::accumulate(endings.begin(), endings.end(), std::int64_t{0});
+}
+
+void FieldTally::count(const std::vector<std::int32_t>& gates,
+                       const std::vector<std::optional<markov::Ending>>& how) {
+  markov::Ends<std::int64_t> these;
+  these.final_cells = markov::CellCounts::Zero(final_cells.rows(), final_cells.cols());
+  auto& mixed = these.mixed_cells;
+  for (std::size_t i = 0; i < gates.size(); ++i) {
+    ++these.final_cells.data()[gates[i]];
+    if (how[i]) ++these.endings[static_cast<std::size_t>(*how[i])];
+    if (how[i] != markov::Ending::trapped) mixed.push_back({gates[i]});
+  }
+  const auto before = [](const auto& a, const auto& b) { return a.cell < b.cell; };
+  std::sort(mixed.begin(), mixed.end(), before);
+  mixed.erase(std::unique(mixed.begin(), mixed.end()), mixed.end());
+  for (std::size_t i = 0; i < gates.size(); ++i) {
+    const markov::CellEndings<std::int64_t> here{gates[i]};
+    const auto cell = std::lower_bound(mixed.begin(), mixed.end(), here, before);
+    if (how[i] && cell != mixed.end() && cell->cell == here.cell) ++(*cell)[*how[i]];
+  }
+  Ends::operator+=(these);
+  trials += std::ssize(gates);
 }
 
 FieldTally& FieldTally::operator+=(const FieldTally& o) {
   held.add(o.held);
-  final_gates += o.final_gates;
+  Ends::operator+=(o);
   trials += o.trials;
-  trapped += o.trapped;
-  left_field += o.left_field;
-  cut_off += o.cut_off;
-  broken += o.broken;
-  for (std::size_t e = 0; e < endings.size(); ++e) endings[e] += o.endings[e];
-  trapped_gates += o.trapped_gates;
-  departed_gates += o.departed_gates;
   for (std::size_t f = 0; f < entries.size(); ++f) {
     entries[f] += o.entries[f];
     clamped[f] += o.clamped[f];
@@ -137,10 +144,6 @@ std::optional<Entry> RunningTrial::follow(const CellMap& map, const FieldParams&
   return passage.next;
 }
 
-void RunningTrial::add_to(FieldTally& tally) const {
-  tally.count(row_ * tally.final_gates.cols() + column_, ending_);
-}
-
 void RunningTrial::add_to(FieldTrials& each, const FieldParams& field) const {
   each.final_gates.push_back(row_ * field.columns + column_);
   each.endings.push_back(ending_);
@@ -154,8 +157,13 @@ FieldTally tally_of(const std::vector<RunningTrial>& trials, const CellMap& map,
                     const FieldParams& field, TrialRange range, FieldTrials* each) {
   FieldTally tally(field);
   tally.held.add(range);
-  tally.trials = range.count;
-  for (const RunningTrial& t : trials) t.add_to(tally);
+  std::vector<std::int32_t> gates;
+  std::vector<std::optional<markov::Ending>> how;
+  for (const RunningTrial& t : trials) {
+    gates.push_back(t.row() * field.columns + t.column());
+    how.push_back(t.ending());
+  }
+  tally.count(gates, how);
   if (each == nullptr) return tally;
   if (each->keep_passages) each->passages.begin(map.section);
   for (const RunningTrial& t : trials) t.add_to(*each, field);

@@ -21,29 +21,22 @@ namespace gatewalk::lattice {
 /// Moves from cell to cell, by the face that is entered.
 using FaceCounts = std::array<std::int64_t, dynamics::kMostFaces>;
 
-/// Counts of trials through the field. Tallies add in any order.
-struct FieldTally {
-  markov::CellCounts final_gates;  // (rows x columns), last gate inside the field
+/// Counts of trials through the field, of which none ends `unsampled`. Tallies add in any order.
+struct FieldTally : markov::Ends<std::int64_t> {
   std::int64_t trials = 0;
   dynamics::TrialSet held;  // which
-  std::int64_t trapped = 0;
-  std::int64_t left_field = 0;
-  std::int64_t cut_off = 0;  // max_gates gates visited, would have gone on
-  std::int64_t broken = 0;   // a run in it stopped being finite
-  /// The same by markov::Ending, of which no trial is `unsampled`; the four edges: left_field.
-  std::array<std::int64_t, markov::kEndings> endings{};
-  markov::CellCounts trapped_gates,
-      departed_gates;       // of final_gates: trapped there; left the field from there
   FaceCounts entries{};     // of the moves inside the field
   FaceCounts clamped{};     // of these, outside every bin, if that was asked for
   dynamics::Health health;  // over all passages
 
-  explicit FieldTally(const FieldParams& f)
-      : final_gates(markov::CellCounts::Zero(f.rows, f.columns)),
-        trapped_gates(final_gates),
-        departed_gates(final_gates) {}
-  /// Counts a trial that ended in this gate; without an ending it broke.
-  void count(Eigen::Index gate, std::optional<markov::Ending> ending);
+  explicit FieldTally(const FieldParams& f) {
+    final_cells = markov::CellCounts::Zero(f.rows, f.columns);
+  }
+  /// Trials with a run that stopped being finite: they have a final cell, and no ending.
+  [[nodiscard]] std::int64_t broken() const;
+  /// Counts trials by the gate in which each ended (row * columns + column), and how.
+  void count(const std::vector<std::int32_t>& gates,
+             const std::vector<std::optional<markov::Ending>>& how);
   /// Throws std::invalid_argument, and changes nothing, when a trial would be counted twice.
   FieldTally& operator+=(const FieldTally& other);
 };
@@ -100,12 +93,11 @@ void each_part(Archive& archive, RunTrials& piece) {
           tally.entries, tally.clamped, tally.health);
   if constexpr (Archive::reads) {
     require_whole(piece, endings, kBroken);
-    tally.trials = tally.held.count();
-    for (std::size_t i = 0; i < endings.size(); ++i) {
+    for (const std::uint8_t read : endings) {
       auto& ending = each.endings.emplace_back();
-      if (endings[i] != kBroken) ending = static_cast<markov::Ending>(endings[i]);
-      tally.count(each.final_gates[i], ending);
+      if (read != kBroken) ending = static_cast<markov::Ending>(read);
     }
+    tally.count(each.final_gates, each.endings);
   }
 }
 
@@ -184,7 +176,6 @@ class RunningTrial {
                                                       bool keep_passages) {
     return follow(map, field, passage, keep_passages, map.type_of(column_, row_));
   }
-  void add_to(FieldTally& tally) const;
   void add_to(FieldTrials& each, const FieldParams& field) const;
 
   [[nodiscard]] std::int32_t column() const { return column_; }

@@ -31,6 +31,7 @@
 #include "markov/decide.h"
 #include "markov/design.h"
 #include "markov/diffusion.h"
+#include "markov/ends.h"
 #include "markov/field_states.h"
 #include "markov/first_passage.h"
 #include "markov/formats/counts.h"

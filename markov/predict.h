@@ -8,32 +8,14 @@
 #include <optional>
 #include <vector>
 
-#include "markov/chain.h"
+#include "markov/ends.h"
 
 namespace gatewalk::markov {
 
-using CellProbabilities = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// What ended in one cell.
-struct CellEndings {
-  std::int64_t cell = 0;                     // row * columns + column
-  std::array<double, kEndings> by_ending{};  // by Ending
-};
-
-/// final_cells.sum() + remainder == 1 and trapped + left_field + cut_off + unsampled + remainder
+/// Shares of all walks. final_cells.sum() + remainder == 1 and the sum of all endings + remainder
 /// == 1, both within 1e-12 as long as mean_steps times what a row's sum lacks from 1 (counts: some
 /// 1e-16) stays below that: nothing is normalised.
-struct FinalDistribution {
-  CellProbabilities final_cells;  // (rows x columns)
-  double trapped = 0.0;
-  double left_field = 0.0;
-  double cut_off = 0.0;    // visited max_cells cells and would have gone on
-  double unsampled = 0.0;  // entered a state whose row was never sampled
-  /// The same by Ending; its four edges together are left_field.
-  std::array<double, kEndings> endings{};
-  /// Cells in which walks ended otherwise than trapped, in ascending order. In all others, all of
-  /// final_cells was trapped.
-  std::vector<CellEndings> mixed_cells;
+struct FinalDistribution : Ends<double> {
   /// Still walking when the sum was stopped; of a solve, what its solution leaves unaccounted for;
   /// and `endless`. As that would end at most once, it bounds the errors of all cells together, and
   /// of each number above.
@@ -48,11 +30,6 @@ struct FinalDistribution {
   int steps = 0;            // propagation steps done (0 for a solve)
   double operations = 0.0;  // products that Solver::direct took; 0 for any other
 };
-
-/// Shares of all walks that were trapped in each cell; that left the field from it (rows x
-/// columns).
-[[nodiscard]] CellProbabilities trapped_cells(const FinalDistribution& d);
-[[nodiscard]] CellProbabilities departed_cells(const FinalDistribution& d);
 
 /// How a prediction is made: the limit of cells, the route to the answer, and when it stops. All
 /// defaults stand here.

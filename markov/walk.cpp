@@ -56,11 +56,6 @@ struct WalkRules {
   Word key[2], input;  // of the stream
 };
 
-/// How many walks of a pool ended so; all others left over the left edge.
-struct PoolEndings {
-  std::int64_t trapped, far_edge, right_edge, near_edge, cut_off, unsampled;
-};
-
 constexpr int kMostLanes = 8;
 constexpr int kTogether = 4;  // registers of Philox blocks: a round waits long for its products
 constexpr int kPool = 2048;   // walks
@@ -222,41 +217,6 @@ void carry_out_moves(const WalkRules& rules, int next_word, bool last_time, Pool
   pool.first_ended = first_ended;
 }
 
-/// Counts how those in `ended` ended. A number below 0, and a last column or row less one beyond
-/// it, have their top bit set.
-void count_endings(const WalkRules& rules, const Pool& pool, PoolEndings& counts) {
-  const D d;
-  const V last_column = low_half(all(rules.corner)), last_row = high_half(all(rules.corner));
-  V trapped = hn::Zero(d), far = trapped, right = trapped, near = trapped, cut_off = trapped,
-    unsampled = trapped;
-  for (int i = pool.first_ended; i < Pool::kRoom; i += lanes()) {
-    const auto there = hn::FirstN(d, static_cast<std::size_t>(Pool::kRoom - i));
-    // Behind the last walk: a move that is no ending at all, from the first cell to itself.
-    const V move = hn::IfThenElse(there, hn::LoadU(d, pool.ended.move + i), all(kStay));
-    const V cell = hn::IfThenElseZero(there, hn::LoadU(d, pool.ended.cell + i));
-    const V column = hn::Sub(hn::Add(low_half(cell), hn::And(move, all(0x3ff))), all(kReach));
-    const V row =
-        hn::Sub(hn::Add(high_half(cell), hn::And(high_half(move), all(0x3ff))), all(kReach));
-    const V above = hn::ShiftRight<63>(hn::Sub(last_row, row)), below = hn::ShiftRight<63>(row);
-    far = hn::Add(far, above);
-    near = hn::Add(near, below);
-    right = hn::Add(
-        right, hn::AndNot(hn::Or(above, below), hn::ShiftRight<63>(hn::Sub(last_column, column))));
-    const auto add = [&](V& sum, Word ending) HWY_ATTR {
-      sum = hn::Sub(sum, hn::VecFromMask(d, hn::Eq(move, all(ending))));
-    };
-    add(trapped, kEndTrapped);
-    add(cut_off, kEndCutOff);
-    add(unsampled, kEndUnsampled);
-  }
-  const auto sum = [&](V v) HWY_ATTR {
-    alignas(64) Word of_lane[kMostLanes];
-    hn::Store(v, d, of_lane);
-    return static_cast<std::int64_t>(std::accumulate(of_lane, of_lane + lanes(), Word{0}));
-  };
-  counts = {sum(trapped), sum(far), sum(right), sum(near), sum(cut_off), sum(unsampled)};
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace gatewalk::markov
 HWY_AFTER_NAMESPACE();
@@ -266,7 +226,6 @@ namespace gatewalk::markov {
 HWY_EXPORT(fill_words);
 HWY_EXPORT(draw_moves);
 HWY_EXPORT(carry_out_moves);
-HWY_EXPORT(count_endings);
 
 namespace {
 
@@ -275,26 +234,9 @@ __extension__ using Wide = unsigned __int128;
 }  // namespace
 
 WalkTally& WalkTally::operator+=(const WalkTally& other) {
-  if (final_cells.size() == 0) {
-    final_cells = other.final_cells;
-    trapped_cells = other.trapped_cells;
-    departed_cells = other.departed_cells;
-  } else if (other.final_cells.size() != 0) {
-    if (final_cells.rows() != other.final_cells.rows() ||
-        final_cells.cols() != other.final_cells.cols()) {
-      throw std::invalid_argument("tallies of different fields cannot be added");
-    }
-    final_cells += other.final_cells;
-    trapped_cells += other.trapped_cells;
-    departed_cells += other.departed_cells;
-  }
+  Ends::operator+=(other);
   walks += other.walks;
-  trapped += other.trapped;
-  left_field += other.left_field;
-  cut_off += other.cut_off;
-  unsampled += other.unsampled;
   still_walking += other.still_walking;
-  for (std::size_t e = 0; e < kEndings; ++e) endings[e] += other.endings[e];
   steps += other.steps;
   return *this;
 }
@@ -413,14 +355,16 @@ int Walker::draw(int row, Word word) const {
   return pick(row, word);
 }
 
-/// What one call of walk() asks for.
+/// What one call of walk() asks for, or a part of it.
 struct Walker::Job {
+  static constexpr std::int64_t kMostWalks = std::numeric_limits<std::int32_t>::max();
+
   Field field;
   Start start;
   int limit;
   bool limit_ends;  // of the field: it cuts walks off; else they are still walking there
   Word seed;
-  WalkRange range;
+  WalkRange range;                   // of kMostWalks at most
   std::int32_t* final_cell_of_walk;  // may be null
 
   [[nodiscard]] std::int64_t cells() const { return std::int64_t{field.columns} * field.rows; }
@@ -428,34 +372,20 @@ struct Walker::Job {
 
 /// What one thread has counted.
 struct Walker::Counters {
-  static constexpr std::int64_t kTrappedThere = 0, kDepartedThere = 1, kOthers = 2, kKinds = 3;
-  static constexpr std::int64_t kStopped = kKinds;  // still walking: counts in no cell
-  std::vector<std::int64_t> by_cell;                // (kKinds x cells)
-  std::array<std::int64_t, kEndings> endings{};
-  std::int64_t steps = 0;
+  std::vector<std::int32_t> by_cell;  // (cells x kEndings)
+  std::int64_t still_walking = 0, steps = 0;
 
-  explicit Counters(std::int64_t cells) : by_cell(static_cast<std::size_t>(kKinds * cells)) {}
+  explicit Counters(std::int64_t cells) : by_cell(static_cast<std::size_t>(cells) * kEndings) {}
 
-  void count(const Job& job, std::int64_t kind, std::int64_t column, std::int64_t row,
+  void count(const Job& job, Ending why, std::int64_t column, std::int64_t row,
              std::int64_t number) {
     const std::int64_t cell = row * job.field.columns + column;
-    if (kind != kStopped) ++by_cell[static_cast<std::size_t>(kind * job.cells() + cell)];
+    if (why == Ending::cut_off && !job.limit_ends)
+      ++still_walking;
+    else
+      ++by_cell[static_cast<std::size_t>(cell) * kEndings + static_cast<std::size_t>(why)];
     if (job.final_cell_of_walk)
       job.final_cell_of_walk[number - job.range.first] = static_cast<std::int32_t>(cell);
-  }
-  [[nodiscard]] std::int64_t& at(Ending e) { return endings[static_cast<std::size_t>(e)]; }
-
-  void add_to(WalkTally& tally) const {
-    const std::int64_t cells = tally.final_cells.size();
-    const auto of = [&](std::int64_t kind) {
-      return Eigen::Map<const CellCounts>(by_cell.data() + kind * cells, tally.final_cells.rows(),
-                                          tally.final_cells.cols());
-    };
-    tally.final_cells += of(kTrappedThere) + of(kDepartedThere) + of(kOthers);
-    tally.trapped_cells += of(kTrappedThere);
-    tally.departed_cells += of(kDepartedThere);
-    for (std::size_t e = 0; e < kEndings; ++e) tally.endings[e] += endings[e];
-    tally.steps += steps;
   }
 };
 
@@ -464,15 +394,13 @@ void Walker::walk_plainly(const Job& job, std::int64_t first, std::int64_t last,
   for (std::int64_t number = first; number < last; ++number) {
     std::int64_t column = job.start.column;
     std::int64_t row = job.start.row;
-    std::int64_t kind = Counters::kOthers;
     int input = job.start.input;
-    const auto row_here = [&] {
-      return input + (types_ ? types_->type_of(column, row) * types_->inputs() : 0);
-    };
+    std::optional<Ending> ending;
     r123::Philox4x64::ctr_type words;
-    for (Word drawn = 0;; ++drawn) {
-      if (!chain_.is_sampled(row_here())) {
-        ++counters.at(Ending::unsampled);
+    for (Word drawn = 0; !ending; ++drawn) {
+      const int matrix_row = input + (types_ ? types_->type_of(column, row) * types_->inputs() : 0);
+      if (!chain_.is_sampled(matrix_row)) {
+        ending = Ending::unsampled;
         break;
       }
       if (drawn % 4 == 0) {
@@ -481,33 +409,35 @@ void Walker::walk_plainly(const Job& job, std::int64_t first, std::int64_t last,
             {{job.seed, kWalkStream}});
       }
       ++counters.steps;
-      const int output = pick(row_here(), words[static_cast<std::size_t>(drawn % 4)]);
+      const int output = pick(matrix_row, words[static_cast<std::size_t>(drawn % 4)]);
       const Exit& exit = chain_.exits()[static_cast<std::size_t>(output)];
-      if (exit.next_input == Exit::kTrapped) {
-        ++counters.at(Ending::trapped);
-        kind = Counters::kTrappedThere;
-        break;
-      }
-      const std::int64_t next_column = column + exit.di_x;
-      const std::int64_t next_row = row + exit.di_y;
-      if (next_column < 0 || next_column >= job.field.columns || next_row < 0 ||
-          next_row >= job.field.rows) {
-        ++counters.at(edge_before(job.field, next_column, next_row));
-        kind = Counters::kDepartedThere;
-        break;
-      }
-      if (drawn + 1 == static_cast<Word>(job.limit)) {
-        ++counters.at(Ending::cut_off);
-        if (!job.limit_ends) kind = Counters::kStopped;
-        break;
-      }
-      column = next_column;
-      row = next_row;
+      ending = follow(job.field, exit, drawn + 1 == static_cast<Word>(job.limit), column, row);
       input = exit.next_input;
     }
-    counters.count(job, kind, column, row, number);
+    counters.count(job, *ending, column, row, number);
   }
 }
+
+namespace {
+
+/// How a walk ended whose last move was `move`, from `cell`: without a jump, since walks end in no
+/// order.
+Ending ending_of(const Field& field, Word cell, Word move) {
+  // By bits: beyond the last row, before the first, left of the first column; and behind these how
+  // those end that have no move.
+  constexpr std::array kEndingsOf{Ending::right_edge, Ending::far_edge,  Ending::near_edge,
+                                  Ending::far_edge,   Ending::left_edge, Ending::far_edge,
+                                  Ending::near_edge,  Ending::far_edge,  Ending::trapped,
+                                  Ending::unsampled,  Ending::cut_off};
+  const auto half = [](Word word) { return static_cast<std::int64_t>(word & 0xffffffff); };
+  const std::int64_t column = half(cell) + half(move & 0x3ff) - kReach,
+                     row = half(cell >> 32) + half(move >> 32 & 0x3ff) - kReach;
+  const Word over = static_cast<Word>(row >= field.rows) + 2 * static_cast<Word>(row < 0) +
+                    4 * static_cast<Word>(column < 0);
+  return kEndingsOf[over + (move >> 63) * (8 + (move >> 10 & 3))];
+}
+
+}  // namespace
 
 void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last,
                            Counters& counters) const {
@@ -538,27 +468,13 @@ void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last
     }
 
     for (int i = pool.first_ended; i < Pool::kRoom; ++i) {
-      const Word cell = pool.ended.cell[i], move = pool.ended.move[i];
-      static_assert(Counters::kTrappedThere == 0 && Counters::kDepartedThere == 1 &&
-                    Counters::kOthers == 2);
-      const auto kind = static_cast<std::int64_t>(move != kEndTrapped)
-                        << (move >> 63);  // without a jump
-      const bool stopped = !job.limit_ends && move == kEndCutOff;
-      counters.count(
-          job, stopped ? Counters::kStopped : kind, static_cast<std::int64_t>(cell & 0xffffffff),
-          static_cast<std::int64_t>(cell >> 32), static_cast<std::int64_t>(pool.ended.number[i]));
+      const Word cell = pool.ended.cell[i];
+      const Ending why = ending_of(job.field, cell, pool.ended.move[i]);
+      counters.steps -= why == Ending::unsampled;  // there is nothing to draw from
+      counters.count(job, why, static_cast<std::int64_t>(cell & 0xffffffff),
+                     static_cast<std::int64_t>(cell >> 32),
+                     static_cast<std::int64_t>(pool.ended.number[i]));
     }
-    PoolEndings ended;
-    HWY_DYNAMIC_DISPATCH(count_endings)(rules, pool, ended);
-    counters.at(Ending::trapped) += ended.trapped;
-    counters.at(Ending::far_edge) += ended.far_edge;
-    counters.at(Ending::right_edge) += ended.right_edge;
-    counters.at(Ending::near_edge) += ended.near_edge;
-    counters.at(Ending::cut_off) += ended.cut_off;
-    counters.at(Ending::unsampled) += ended.unsampled;
-    counters.at(Ending::left_edge) += walks - ended.trapped - ended.far_edge - ended.right_edge -
-                                      ended.near_edge - ended.cut_off - ended.unsampled;
-    counters.steps -= ended.unsampled;  // there is nothing to draw from
   }
 }
 
@@ -576,14 +492,24 @@ WalkTally Walker::run(bool in_lanes, const Field& field, const Start& start, int
   }
   if (final_cell_of_walk) final_cell_of_walk->resize(static_cast<std::size_t>(range.count));
   const bool limited = max_cells > 0;
-  const Job job{field,
-                start,
-                limited ? max_cells : kMostCells,
-                limited,
-                seed,
-                range,
-                final_cell_of_walk ? final_cell_of_walk->data() : nullptr};
+  WalkTally total;
+  std::int64_t done = 0;
+  do {
+    const std::int64_t count = std::min(range.count - done, Job::kMostWalks);
+    total += run(in_lanes, {field,
+                            start,
+                            limited ? max_cells : kMostCells,
+                            limited,
+                            seed,
+                            {range.first + done, count},
+                            final_cell_of_walk ? final_cell_of_walk->data() + done : nullptr});
+    done += count;
+  } while (done < range.count);
+  return total;
+}
 
+WalkTally Walker::run(bool in_lanes, const Job& job) const {
+  const WalkRange& range = job.range;
   tbb::enumerable_thread_specific<Counters> counters(job.cells());
   const std::int64_t pools = range.count / kPool + (range.count % kPool > 0);
   tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, pools),
@@ -596,20 +522,26 @@ WalkTally Walker::run(bool in_lanes, const Field& field, const Start& start, int
                       else
                         walk_plainly(job, first, last, counters.local());
                     });
-  WalkTally total;
-  for (CellCounts* cells : {&total.final_cells, &total.trapped_cells, &total.departed_cells})
-    *cells = CellCounts::Zero(field.rows, field.columns);
-  for (const Counters& of_thread : counters) of_thread.add_to(total);
-  // Cells or lanes count them alike; but the field cuts nobody off that has no limit.
-  if (!limited)
-    std::swap(total.still_walking, total.endings[static_cast<std::size_t>(Ending::cut_off)]);
-  const auto ended = [&](Ending e) { return total.endings[static_cast<std::size_t>(e)]; };
-  total.walks = range.count;
-  total.trapped = ended(Ending::trapped);
-  total.cut_off = ended(Ending::cut_off);
-  total.unsampled = ended(Ending::unsampled);
-  for (const Ending edge : kEdges) total.left_field += ended(edge);
-  return total;
+  WalkTally tally;
+  tally.walks = range.count;
+  tally.final_cells = CellCounts::Zero(job.field.rows, job.field.columns);
+  for (const Counters& of_thread : counters) {
+    tally.still_walking += of_thread.still_walking;
+    tally.steps += of_thread.steps;
+  }
+  for (std::int64_t at = 0; at < job.cells(); ++at) {
+    CellEndings<std::int64_t> cell{at};
+    for (const Counters& of_thread : counters)
+      for (std::size_t e = 0; e < kEndings; ++e)
+        cell.by_ending[e] += of_thread.by_cell[static_cast<std::size_t>(at) * kEndings + e];
+    std::int64_t& all = tally.final_cells.data()[at];
+    for (std::size_t e = 0; e < kEndings; ++e) {
+      all += cell.by_ending[e];
+      tally.endings[e] += cell.by_ending[e];
+    }
+    if (all > cell[Ending::trapped]) tally.mixed_cells.push_back(cell);
+  }
+  return tally;
 }
 
 WalkTally Walker::walk(const Field& field, const Start& start, int max_cells, Word seed,

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "markov/chain.h"
+#include "markov/ends.h"
 
 namespace gatewalk::markov {
 
@@ -19,23 +19,11 @@ struct WalkRange {
   std::int64_t count = 0;
 };
 
-using CellCounts = Eigen::Array<std::int64_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// trapped + left_field + cut_off + unsampled + still_walking == walks; of those that ended, all
-/// but still_walking, final_cells.sum().
-struct WalkTally {
-  CellCounts final_cells;  // (rows x columns), last cell inside the field of those that ended
+/// How walks ended, all but those still walking: the sum of all endings is walks - still_walking.
+struct WalkTally : Ends<std::int64_t> {
   std::int64_t walks = 0;
-  std::int64_t trapped = 0;        // ended by a trapped output
-  std::int64_t left_field = 0;     // moved out of the field
-  std::int64_t cut_off = 0;        // max_cells cells visited, would have gone on
-  std::int64_t unsampled = 0;      // entered a state whose row was never sampled
   std::int64_t still_walking = 0;  // without max_cells: followed for kMostCells cells, not ended
-  /// The same by Ending; the four edges: left_field. Those still walking have none.
-  std::array<std::int64_t, kEndings> endings{};
-  CellCounts trapped_cells,
-      departed_cells;      // of final_cells: trapped there; left the field from there
-  std::int64_t steps = 0;  // draws over all walks
+  std::int64_t steps = 0;          // draws over all walks
   /// Throws std::invalid_argument if both have cells, of different fields.
   WalkTally& operator+=(const WalkTally& other);
 };
@@ -84,6 +72,7 @@ class Walker {
   [[nodiscard]] WalkTally run(bool in_lanes, const Field& field, const Start& start, int max_cells,
                               std::uint64_t seed, WalkRange range,
                               std::vector<std::int32_t>* final_cell_of_walk) const;
+  [[nodiscard]] WalkTally run(bool in_lanes, const Job& job) const;
   void walk_plainly(const Job& job, std::int64_t first, std::int64_t last,
                     Counters& counters) const;
   void walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last,

@@ -25,7 +25,7 @@ DirectRows direct_rows(const Options& options, const lattice::Problem& deep, int
                         tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)]);
   std::int64_t behind = 0;  // last gates; those of bodies over the far edge are among them
   for (int r = row - 1; r > 0; --r) {
-    behind += tally.final_gates.row(r).sum();
+    behind += tally.final_cells.row(r).sum();
     direct.entered[static_cast<std::size_t>(r) - 1] = behind;
   }
   return direct;

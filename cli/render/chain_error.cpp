@@ -149,7 +149,7 @@ void describe_start_of(Fields& out, const ChainErrorChart& chart, std::size_t s)
             [&](Fields& floor) { describe(floor, t.floor); });
         describe_fates(f, t.tally);
         f.grid({"final_gates", "1", "number of trials by the gate in which they end"},
-               t.tally.final_gates);
+               t.tally.final_cells);
       });
   out.list({"direct_simulation", "error of direct simulation with fewer trials than the truth"},
            chart.direct[s], [](Fields& f, const DirectSimulation& d) {

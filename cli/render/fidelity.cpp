@@ -63,7 +63,7 @@ void describe(Fields& out, const FidelityVariant& v, const FidelityRun& run) {
   out.object({"fates", "shares of trials by how they ended"}, [&](Fields& f) {
     describe_fates(f, t);
     f.number({"not_finite", "1", "share of trials with a run that stopped being finite numbers"},
-             share(t.broken, t));
+             share(t.broken(), t));
   });
   out.optional(run.change.has_value(), [&](Fields& f) {
     const PairedChange change = run.change.value_or(PairedChange());
@@ -78,7 +78,7 @@ void describe(Fields& out, const FidelityVariant& v, const FidelityRun& run) {
             "final gates compared with the first run's, trial by trial with shared random numbers"),
         [&](Fields& pairs) { cli::describe(pairs, change.in_pairs); });
   });
-  out.grid({"final_gates", "1", "number of trials by the gate in which they end"}, t.final_gates);
+  out.grid({"final_gates", "1", "number of trials by the gate in which they end"}, t.final_cells);
   describe_status(out, t.health);
 }
 
@@ -129,8 +129,8 @@ std::string csv_of(const FidelityStudy& study) {
       const lattice::Comparison &a = c.apart, &p = c.in_pairs;
       csv.row(s.start.d, s.start.vx, s.start.vy, std::string(name_of(scene.field.fidelity)),
               scene.gate.run.method, scene.gate.run.step, static_cast<double>(t.trials),
-              run.seconds_per_trial, share(t.trapped, t), share(t.left_field, t),
-              share(t.cut_off, t), share(t.broken, t), changed(c.changed),
+              run.seconds_per_trial, share(t.trapped(), t), share(t.left_field(), t),
+              share(t.cut_off(), t), share(t.broken(), t), changed(c.changed),
               changed(a.total_variation), changed(c.uncertainty()),
               changed(a.floor_total_variation), changed(p.floor_total_variation),
               changed(a.p_total_variation), changed(p.p_total_variation), changed(a.p_energy),
@@ -164,9 +164,9 @@ std::string table_of(const FidelityStudy& study) {
           start_text(dynamics::disc_section(), dynamics::entry_of(s.start.body())),
           study.variants[v].name(),
           1e3 * run.seconds_per_trial,
-          100.0 * share(t.trapped, t),
-          100.0 * share(t.left_field, t),
-          100.0 * share(t.cut_off, t)};
+          100.0 * share(t.trapped(), t),
+          100.0 * share(t.left_field(), t),
+          100.0 * share(t.cut_off(), t)};
       if (run.change) {
         const lattice::Comparison &a = run.change->apart, &p = run.change->in_pairs;
         cells.insert(cells.end(),

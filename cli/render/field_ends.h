@@ -17,21 +17,15 @@
 
 namespace gatewalk::cli {
 
-/// Numbers of trials or walks (Cells: markov::CellCounts), or shares of all bodies as predicted
-/// (markov::CellProbabilities).
-template <class Cells>
-struct FieldEnds {
-  using Number = typename Cells::Scalar;
-
-  double bodies = 1.0;                             // that the numbers are of; shares are of 1
-  std::array<Number, markov::kEndings> endings{};  // by markov::Ending
-  lattice::EndingShares shares;                    // of the endings, as they are shown
-  Cells final_gates{}, trapped_gates{}, departed_gates{};  // (rows x columns)
-  Number trapped{}, departed{}, cut_off{};
-  Number never_sampled{}, still_walking{};  // which the endings leave out
+/// Numbers of trials or walks, or shares of all bodies as predicted (Number: double).
+template <class Number>
+struct FieldEnds : markov::Ends<Number> {
+  double bodies = 1.0;           // that the numbers are of; shares are of 1
+  lattice::EndingShares shares;  // of the endings, as they are shown
+  Number still_walking{};        // which the endings leave out, as those never sampled
 
   /// Cells as shares of all bodies.
-  [[nodiscard]] markov::CellProbabilities share_of(const Cells& cells) const {
+  [[nodiscard]] markov::CellProbabilities share_of(const markov::CellNumbers<Number>& cells) const {
     return cells.template cast<double>() / bodies;
   }
   /// The keys "endings" and "endings_95".
@@ -51,12 +45,12 @@ struct FieldEnds {
 void describe_fates(Fields& out, const lattice::FieldTally& tally);
 void describe_fates(Fields& out, const markov::FinalDistribution& f);
 
-[[nodiscard]] FieldEnds<markov::CellCounts> ends_of(const lattice::FieldTally& tally,
-                                                    const lattice::FieldParams& field);
-[[nodiscard]] FieldEnds<markov::CellCounts> ends_of(const markov::WalkTally& tally,
-                                                    const lattice::FieldParams& field);
+[[nodiscard]] FieldEnds<std::int64_t> ends_of(const lattice::FieldTally& tally,
+                                              const lattice::FieldParams& field);
+[[nodiscard]] FieldEnds<std::int64_t> ends_of(const markov::WalkTally& tally,
+                                              const lattice::FieldParams& field);
 /// `shares`: of the prediction's endings, with intervals.
-[[nodiscard]] FieldEnds<markov::CellProbabilities> ends_of(const markov::FinalDistribution& f,
-                                                           const lattice::EndingShares& shares);
+[[nodiscard]] FieldEnds<double> ends_of(const markov::FinalDistribution& f,
+                                        const lattice::EndingShares& shares);
 
 }  // namespace gatewalk::cli

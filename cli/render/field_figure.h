@@ -28,14 +28,14 @@ struct FieldPicture {
   Start start;
   std::optional<std::array<markov::CellProbabilities, 2>> gates_95;  // of final_gates: low, high
 
-  template <class Cells>
-  FieldPicture(std::string name, const FieldEnds<Cells>& ends,
+  template <class Number>
+  FieldPicture(std::string name, const FieldEnds<Number>& ends,
                std::optional<lattice::FieldExits> by_place, Start began,
                std::optional<std::array<markov::CellProbabilities, 2>> intervals = {})
       : title(std::move(name)),
-        final_gates(ends.share_of(ends.final_gates)),
-        trapped(ends.share_of(ends.trapped_gates)),
-        departed(ends.share_of(ends.departed_gates)),
+        final_gates(ends.share_of(ends.final_cells)),
+        trapped(ends.share_of(trapped_cells(ends))),
+        departed(ends.share_of(departed_cells(ends))),
         endings(ends.shares),
         exits(std::move(by_place)),
         start(std::move(began)),

@@ -31,7 +31,7 @@ void describe(Fields& out, const FieldRun& run) {
   out.count({"trials", "1", "number of trials through the field"}, tally.trials);
   ends.describe_sums(out, true);
   out.count({"not_finite", "1", "number of trials with a run that stopped being finite numbers"},
-            tally.broken);
+            tally.broken());
   out.object(
       {"entries_between_gates", "entries into gates after a body's first one, by face"},
       [&](Fields& faces) {
@@ -71,10 +71,10 @@ std::string table_of(const FieldRun& run) {
       ends_of(tally, run.shown.field)
           .table(fmt::format("of {} trials, 95 % intervals", tally.trials),
                  limits_text(run.shown) + (run.scene ? scene_line(run.scene->scene) : ""));
-  if (tally.broken > 0)
+  if (tally.broken() > 0)
     text += fmt::format(
         "stopped being finite numbers: {}\n",
-        percent(static_cast<double>(tally.broken), static_cast<double>(tally.trials), 4));
+        percent(static_cast<double>(tally.broken()), static_cast<double>(tally.trials), 4));
   return text + (run.scene ? method_line(run.scene->settled) : "") +
          table_of(exits_of(run.exits), run.shown) + table_of(run.costs, run.shown) +
          method_lines(run.may_do);
@@ -82,7 +82,7 @@ std::string table_of(const FieldRun& run) {
 
 Rest rest_of(const markov::WalkTally& tally) {
   const auto n = static_cast<double>(tally.walks);
-  return {static_cast<double>(tally.unsampled) / n, static_cast<double>(tally.still_walking) / n,
+  return {static_cast<double>(tally.unsampled()) / n, static_cast<double>(tally.still_walking) / n,
           fmt::format("after {} gates, the most that a walk is followed where field.max_gates = 0 "
                       "sets no limit",
                       markov::Walker::kMostCells)};
@@ -130,9 +130,9 @@ std::string table_of(const WalkResult& r) {
       "The intervals count chance in the walks alone: that of the matrix gatewalk predict has{}\n",
       r.start.text,
       r.foreign ? "." : ", the chain's own error (bins, memory) gatewalk validate measures.");
-  if (tally.unsampled > 0)
+  if (tally.unsampled() > 0)
     text += fmt::format("reach a state never sampled: {}\n",
-                        percent(static_cast<double>(tally.unsampled), n, 4));
+                        percent(static_cast<double>(tally.unsampled()), n, 4));
   if (tally.still_walking > 0)
     text += fmt::format("still walking after {} gates, where walks are stopped: {} %\n",
                         markov::Walker::kMostCells,

@@ -305,7 +305,7 @@ lattice::EndingShares shown_endings(lattice::EndingShares shares,
 }
 
 Rest rest_of(const markov::FinalDistribution& f) {
-  Rest rest{f.unsampled, f.remainder};
+  Rest rest{f.unsampled(), f.remainder};
   if (f.endless > 0.0) rest.stopped = "in states without a way out";
   return rest;
 }

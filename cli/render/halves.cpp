@@ -56,18 +56,18 @@ void describe(Fields& out, const HalfAgainstHalf& way) {
         f.grid({"final_gates", "1", "share of all trials by the gate in which they end"},
                way.seen_gates);
       });
-  out.object(
-      {"chain", "endings by the chain of the other half, from the same starts"}, [&](Fields& f) {
-        describe_endings(f, way.chain_endings);
-        const FieldEnds<markov::CellProbabilities> ends = ends_of(way.chain, way.chain_endings);
-        ends.describe_never_sampled(f);
-        ends.describe_still_walking(f);
-        f.number({"error_95", "1",
-                  "95 % bound of the total variation between final_gates and the truth"},
-                 way.chain_error.total_variation);
-        f.grid({"final_gates", "1", "share of all trials by the gate in which they end"},
-               way.chain.final_cells);
-      });
+  out.object({"chain", "endings by the chain of the other half, from the same starts"},
+             [&](Fields& f) {
+               describe_endings(f, way.chain_endings);
+               const FieldEnds<double> ends = ends_of(way.chain, way.chain_endings);
+               ends.describe_never_sampled(f);
+               ends.describe_still_walking(f);
+               f.number({"error_95", "1",
+                         "95 % bound of the total variation between final_gates and the truth"},
+                        way.chain_error.total_variation);
+               f.grid({"final_gates", "1", "share of all trials by the gate in which they end"},
+                      way.chain.final_cells);
+             });
   out.object({"final_gates", "final gates as observed, compared with the chain's"}, [&](Fields& f) {
     f.object({"total_variation", "total variation of the two maps of final gates"},
              [&](Fields& of) { describe(of, way.total_variation); });
@@ -178,7 +178,7 @@ std::string verdict(const HalvesValidation& v) {
     }
     if (way.differs(markov::Ending::unsampled))
       said.push_back(fmt::format("{} % of {} reach states that the chain of {} does not know",
-                                 percents(way.chain.unsampled), seen_name(w), chain_name(w)));
+                                 percents(way.chain.unsampled()), seen_name(w), chain_name(w)));
     if (way.total_variation.p_adjusted <= HalfAgainstHalf::kLevel)
       said.push_back(fmt::format("final gates of {}, {}", seen_name(w), total_variation_text(way)));
   }

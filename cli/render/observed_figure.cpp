@@ -54,7 +54,7 @@ std::vector<ComparedShare> compared_gates(const lattice::ObservedComparison& c,
                                           const lattice::StartValidation& v,
                                           const lattice::FieldParams& field) {
   constexpr std::size_t kMostRows = 20;
-  const markov::CellCounts &seen = c.seen.final_gates, &trials = v.dynamics.final_gates;
+  const markov::CellCounts &seen = c.seen.final_gates, &trials = v.dynamics.final_cells;
   const auto columns = static_cast<Eigen::Index>(field.columns);
   const std::int64_t n = seen.sum(), m = trials.sum();
   struct Gate {

@@ -37,7 +37,7 @@ std::string verdict(const lattice::StartValidation& r) {
   }
   if (j.differs(markov::Ending::unsampled))
     said.push_back(
-        fmt::format("states never sampled, {} by the chain", percent(r.exact.unsampled, 1.0, 2)));
+        fmt::format("states never sampled, {} by the chain", percent(r.exact.unsampled(), 1.0, 2)));
   const auto gates = {j.total_variation.p_adjusted, j.energy.p_adjusted, j.chi_squared.p_adjusted};
   if (std::any_of(gates.begin(), gates.end(),
                   [](double x) { return x <= lattice::Judgement::kLevel; }))
@@ -203,14 +203,14 @@ void describe(Fields& out, const lattice::StartValidation& r, const lattice::Pap
              [&](Fields& of) { describe_fates(of, r.exact); });
   });
   describe_maps(out, {"final_gates", "bodies by the gate in which they end"},
-                r.dynamics.final_gates, r.walks.final_cells, r.exact.final_cells);
+                r.dynamics.final_cells, r.walks.final_cells, r.exact.final_cells);
   describe_maps(out, {"trapped_gates", "trapped bodies by the gate in which they end"},
-                r.dynamics.trapped_gates, r.walks.trapped_cells, markov::trapped_cells(r.exact));
+                trapped_cells(r.dynamics), trapped_cells(r.walks), trapped_cells(r.exact));
   describe_maps(out,
                 {"departed_gates", "bodies that leave the field, by the gate that they leave from"},
-                r.dynamics.departed_gates, r.walks.departed_cells, markov::departed_cells(r.exact));
+                departed_cells(r.dynamics), departed_cells(r.walks), departed_cells(r.exact));
   describe_exits(out, r.dynamics_exits, r.exact_exits, shown);
-  const FieldEnds<markov::CellProbabilities> ends = ends_of(r.exact, r.exact_endings);
+  const FieldEnds<double> ends = ends_of(r.exact, r.exact_endings);
   ends.describe_never_sampled(out);
   ends.describe_still_walking(out);
   out.if_any(

@@ -36,7 +36,7 @@ Figure figure_of(const lattice::Validation& v, const ShownField& shown) {
   std::vector<ComparedGates> compared;
   for (const StartValidation& s : v.starts)
     compared.push_back(
-        {summary(s, shown), lattice::shares(s.dynamics.final_gates), s.exact.final_cells});
+        {summary(s, shown), lattice::shares(s.dynamics.final_cells), s.exact.final_cells});
   return figure_of(compared, fmt::format("final gates, {} trials", v.trials), "dynamics, %", shown,
                    panels_of(v.memory));
 }

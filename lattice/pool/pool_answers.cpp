@@ -26,8 +26,8 @@ double exact_cost(std::int64_t nonzeros, const FieldParams& field) {
                                               : std::min(cells, 2.0 * steps * steps) * steps / 2.0);
 }
 
-/// Whether answers come by walks, where they would take so long. What walks leave a single column
-/// by is not known.
+/// Whether answers come by walks, where they would take so long. A single column has few cells: it
+/// is always predicted exactly.
 bool by_walks(std::int64_t nonzeros, const FieldParams& field) {
   return field.columns > 1 && exact_cost(nonzeros, field) > kMostExact;
 }
@@ -48,45 +48,13 @@ std::int64_t kernel_runs(const RunPool& pool) {
   return runs;
 }
 
-/// What walks say, as a prediction. Over which edge walks left a corner cell follows from how many
-/// left over each edge in all; of a field of one column that cannot be told (see by_walks).
-FinalDistribution shares_of(const markov::WalkTally& tally) {
+/// What walks say, as a prediction.
+FinalDistribution prediction_of(const markov::WalkTally& tally) {
   const auto n = static_cast<double>(tally.walks);
-  FinalDistribution d;
-  d.final_cells = tally.final_cells.cast<double>() / n;
-  for (std::size_t e = 0; e < markov::kEndings; ++e)
-    d.endings[e] = static_cast<double>(tally.endings[e]) / n;
-  d.trapped = static_cast<double>(tally.trapped) / n;
-  d.left_field = static_cast<double>(tally.left_field) / n;
-  d.cut_off = static_cast<double>(tally.cut_off) / n;
-  d.unsampled = static_cast<double>(tally.unsampled) / n;
-  d.remainder = static_cast<double>(tally.still_walking) / n;
-  d.mean_steps = static_cast<double>(tally.steps) / n;
-  const Eigen::Index columns = tally.final_cells.cols(), rows = tally.final_cells.rows();
-  std::array<std::int64_t, markov::kEndings> over_sides = tally.endings;
-  for (Eigen::Index i = 0; i < tally.final_cells.size(); ++i) {
-    const auto share = [&](std::int64_t count) { return static_cast<double>(count) / n; };
-    const std::int64_t trapped = tally.trapped_cells.data()[i],
-                       departed = tally.departed_cells.data()[i], all = tally.final_cells.data()[i];
-    if (trapped == all) continue;
-    const std::size_t side = static_cast<std::size_t>(
-        i % columns == 0 ? markov::Ending::left_edge : markov::Ending::right_edge);
-    const bool last_row = i / columns == rows - 1,
-               outer = i % columns == 0 || i % columns == columns - 1;
-    // Cells are in order of their rows: in a corner, what is left of its side leaves over it.
-    const std::int64_t over_side = !outer     ? 0
-                                   : last_row ? std::min(departed, over_sides[side])
-                                              : departed;
-    over_sides[side] -= over_side;
-    markov::CellEndings cell{i};
-    cell.by_ending[static_cast<std::size_t>(markov::Ending::trapped)] = share(trapped);
-    cell.by_ending[side] = share(over_side);
-    cell.by_ending[static_cast<std::size_t>(markov::Ending::far_edge)] =
-        share(departed - over_side);
-    cell.by_ending[static_cast<std::size_t>(markov::Ending::cut_off)] =
-        share(all - trapped - departed);
-    d.mixed_cells.push_back(cell);
-  }
+  const auto share = [&](std::int64_t count) { return static_cast<double>(count) / n; };
+  FinalDistribution d{shares_of(tally, share)};
+  d.remainder = share(tally.still_walking);
+  d.mean_steps = share(tally.steps);
   return d;
 }
 
@@ -104,7 +72,7 @@ KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
   const markov::Walker walker(chain);
   KernelAnswers answers{{}, walks.count};
   for (const markov::Start& start : places)
-    answers.final.push_back(shares_of(walker.walk(cells, start, field.max_gates, seed, walks)));
+    answers.final.push_back(prediction_of(walker.walk(cells, start, field.max_gates, seed, walks)));
   return answers;
 }
 

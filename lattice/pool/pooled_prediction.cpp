@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -368,23 +367,14 @@ class PredictionRun {
 
 FinalDistribution shares_of(const FieldTrials& trials, const FieldParams& field) {
   const auto n = static_cast<double>(trials.final_gates.size());
-  FinalDistribution d;
-  d.final_cells = CellProbabilities::Zero(field.rows, field.columns);
-  std::map<std::int64_t, markov::CellEndings> mixed;
-  for (std::size_t i = 0; i < trials.final_gates.size(); ++i) {
-    const std::int32_t cell = trials.final_gates[i];
-    const auto ending = static_cast<std::size_t>(trials.endings[i].value());
-    d.final_cells.data()[cell] += 1.0 / n;
-    d.endings[ending] += 1.0 / n;
-    auto& of_cell = mixed.try_emplace(cell, markov::CellEndings{cell}).first->second;
-    of_cell.by_ending[ending] += 1.0 / n;
-  }
-  for (const auto& [cell, endings] : mixed)
-    if (endings.by_ending.front() < d.final_cells.data()[cell]) d.mixed_cells.push_back(endings);
-  d.trapped = d.endings[static_cast<std::size_t>(markov::Ending::trapped)];
-  d.cut_off = d.endings[static_cast<std::size_t>(markov::Ending::cut_off)];
-  for (const markov::Ending edge : markov::kEdges)
-    d.left_field += d.endings[static_cast<std::size_t>(edge)];
+  FieldTally tally(field);
+  tally.count(trials.final_gates, trials.endings);
+  // Added up one by one.
+  FinalDistribution d{markov::shares_of(tally, [&](std::int64_t count) {
+    double share = 0.0;
+    for (; count > 0; --count) share += 1.0 / n;
+    return share;
+  })};
   d.mean_steps = static_cast<double>(trials.passages.size()) / n;
   return d;
 }

@@ -63,7 +63,7 @@ class Asked {
     a.exact_seconds = one_thread_seconds(
         [&] { f = predictor_->predict(q.field, q.starts[start], {.max_cells = q.max_gates}); });
     a.exact = error_of(f.final_cells, truth);
-    a.never_sampled = f.unsampled;
+    a.never_sampled = f.unsampled();
     for (std::size_t w = 0; w < kChainWalks.size(); ++w) {
       markov::WalkTally walked;
       a.walk_seconds[w] = table_seconds_ + one_thread_seconds([&] {
@@ -152,16 +152,16 @@ double FieldTruth::seconds_for(double total_variation) const {
 }
 
 FieldTruth field_truth(const PaperStart& start, FieldTally tally, double seconds_per_trial) {
-  if (tally.broken > 0)
-    throw std::runtime_error(std::to_string(tally.broken) +
+  if (tally.broken() > 0)
+    throw std::runtime_error(std::to_string(tally.broken()) +
                              " trials of the full dynamics stopped being finite numbers: they are "
                              "no truth to compare with");
   FieldTruth t{start, std::move(tally)};
-  t.p = shares(t.tally.final_gates);
+  t.p = shares(t.tally.final_cells);
   t.seconds_per_trial = seconds_per_trial;
   t.floor = {
       expected_total_variation(t.p, t.tally.trials),
-      noise_floor(concentration(t.tally.final_gates), t.p.size(), t.tally.trials, 0).corrcoef};
+      noise_floor(concentration(t.tally.final_cells), t.p.size(), t.tally.trials, 0).corrcoef};
   return t;
 }
 

@@ -20,8 +20,8 @@ FieldTally run(const FidelityVariant& v, const PaperStart& start, const dynamics
 }
 
 PairedChange change_of(const FidelityRun& variant, const FidelityRun& base, std::uint64_t seed) {
-  return paired_change({variant.final_gates, variant.tally.final_gates},
-                       {base.final_gates, base.tally.final_gates}, seed);
+  return paired_change({variant.final_gates, variant.tally.final_cells},
+                       {base.final_gates, base.tally.final_cells}, seed);
 }
 
 /// Seconds per trial of every variant. The same trials by every one in turn, so that a busy moment

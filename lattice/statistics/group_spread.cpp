@@ -288,7 +288,7 @@ Error95 GroupSpread::error(std::int64_t trials, std::uint64_t seed) const {
         return drawn;
       });
   count_unseen(e, whole_.final_cells, trials);
-  e.total_variation = std::min(1.0, e.total_variation + whole_.unsampled + whole_.remainder);
+  e.total_variation = std::min(1.0, e.total_variation + whole_.unsampled() + whole_.remainder);
   return e;
 }
 

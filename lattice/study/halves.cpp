@@ -351,11 +351,6 @@ markov::FinalDistribution distribution_of(const Walked& walked, const FieldParam
       Eigen::Map<const CellProbabilities>(walked.ends.data(), field.rows, field.columns);
   for (std::size_t e = 0; e < kEndings; ++e)
     d.endings[e] = walked.ends[cells + static_cast<Eigen::Index>(e)];
-  const auto of = [&](Ending e) { return d.endings[static_cast<std::size_t>(e)]; };
-  d.trapped = of(Ending::trapped);
-  d.cut_off = of(Ending::cut_off);
-  d.unsampled = of(Ending::unsampled);
-  for (const Ending edge : markov::kEdges) d.left_field += of(edge);
   d.mean_steps = walked.gates;
   d.remainder = walked.remainder;
   return d;

@@ -172,8 +172,8 @@ ForceMemory force_memory(const RunTrials& held, const RunTrials& anew, std::uint
     if (a) ++only_held[static_cast<std::size_t>(*a)];
     if (b) ++only_anew[static_cast<std::size_t>(*b)];
   }
-  ForceMemory memory{paired_change({anew.each.final_gates, anew.tally.final_gates},
-                                   {held.each.final_gates, held.tally.final_gates}, seed),
+  ForceMemory memory{paired_change({anew.each.final_gates, anew.tally.final_cells},
+                                   {held.each.final_gates, held.tally.final_cells}, seed),
                      {}};
   for (std::size_t e = 0; e < markov::kEndings; ++e)
     memory.endings[e] =

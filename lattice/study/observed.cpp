@@ -373,10 +373,10 @@ ObservedComparison compare_observed(const SeenEndings& seen, int max_gates,
     c.endings = EndingShares(seen.endings, seen.trials()).with_limit(max_gates);
   }
   if (seen.has_gates()) {
-    c.dynamics_gates = compare(seen.final_gates, dynamics.final_gates, null_draws, seed);
+    c.dynamics_gates = compare(seen.final_gates, dynamics.final_cells, null_draws, seed);
     c.chain_gates = compare(seen.final_gates, chain.final_cells, null_draws, seed);
   }
-  c.against_dynamics = judge(seen, {dynamics.final_gates, dynamics.endings}, null_draws, seed);
+  c.against_dynamics = judge(seen, {dynamics.final_cells, dynamics.endings}, null_draws, seed);
   c.against_chain = judge(seen, chain, replicates, runs, null_draws, seed);
   // Where chance changes nothing, everything else is a finding: at any level.
   const double single_level = std::min(c.against_dynamics.single_level, Judgement::kLevel);

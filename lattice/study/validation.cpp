@@ -233,7 +233,7 @@ StartValidation validate_start(const Setup& setup, const dynamics::Entry& start,
   }
   const EndingShares exact_endings(exact, noise, max_gates);
   const FieldTally& tally = seen.trials.tally;
-  const markov::CellCounts& final_gates = tally.final_gates;
+  const markov::CellCounts& final_gates = tally.final_cells;
   const std::int64_t draws = null_draws_for(setup);
   const std::uint64_t seed = setup.options.seed;
   const double s = concentration(final_gates);

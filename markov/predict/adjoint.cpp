@@ -60,7 +60,7 @@ FinalDistribution AdjointPredictor::predict(const std::vector<std::int64_t>& cou
     answers += static_cast<double>(counts[output]) *
                answers_.row(static_cast<Eigen::Index>(output)).transpose();
   }
-  Ends ends(field_);
+  EndSums ends(field_);
   if (sum == 0)
     ends.add(Ending::unsampled, std::int64_t{start_.row} * field_.columns + start_.column, 1.0);
   else

@@ -14,7 +14,7 @@ std::optional<FinalDistribution> solve_directly(const FieldChain& chain, const F
   const std::int64_t cells = std::int64_t{field.columns} * field.rows;
   if (cells > kMostPairs / std::max(1, chain.inputs())) return {};
   if (!chain.at(start.column, start.row).is_sampled(start.input)) {
-    Ends ends(field);
+    EndSums ends(field);
     ends.add(Ending::unsampled, std::int64_t{start.row} * field.columns + start.column, 1.0);
     return ends.result();
   }

@@ -32,9 +32,9 @@ namespace gatewalk::markov {
 }
 
 /// Collects where walks end, and how.
-class Ends {
+class EndSums {
  public:
-  explicit Ends(const Field& field)
+  explicit EndSums(const Field& field)
       : field_(field),
         trapped_(static_cast<std::size_t>(field.columns) * field.rows),
         block_(trapped_.size() / kBlock + 1, kNone) {}
@@ -63,9 +63,8 @@ class Ends {
     d.final_cells.resize(field_.rows, field_.columns);
     d.mixed_cells.reserve(std::min(others_.size(), trapped_.size()));
     std::array<CompensatedSum, kEndings> sums;
-    CompensatedSum left_field;
     for (std::size_t at = 0; at < trapped_.size(); ++at) {
-      CellEndings cell{static_cast<std::int64_t>(at), {trapped_[at].value()}};
+      CellEndings<double> cell{static_cast<std::int64_t>(at), {trapped_[at].value()}};
       CompensatedSum all = trapped_[at];
       sums.front() += cell.by_ending.front();
       if (const std::int32_t block = block_[at / kBlock]; block != kNone) {
@@ -83,11 +82,6 @@ class Ends {
       d.final_cells.data()[at] = all.value();
     }
     for (std::size_t e = 0; e < kEndings; ++e) d.endings[e] = sums[e].value();
-    for (const Ending edge : kEdges) left_field += d.endings[static_cast<std::size_t>(edge)];
-    d.trapped = d.endings[static_cast<std::size_t>(Ending::trapped)];
-    d.left_field = left_field.value();
-    d.cut_off = d.endings[static_cast<std::size_t>(Ending::cut_off)];
-    d.unsampled = d.endings[static_cast<std::size_t>(Ending::unsampled)];
     return d;
   }
 

@@ -100,7 +100,7 @@ FinalDistribution solve_absorption(const FieldChain& field_chain, const Field& f
                                    const Start& start) {
   validate(field_chain, field, start, 0);
   if (!field_chain.at(start.column, start.row).is_sampled(start.input)) {
-    Ends ends(field);
+    EndSums ends(field);
     ends.add(Ending::unsampled, std::int64_t{start.row} * field.columns + start.column, 1.0);
     return ends.result();
   }
@@ -114,7 +114,8 @@ FinalDistribution solve_absorption(const FieldChain& field_chain, const Field& f
   result.rounding = rounding_bound(
       result.mean_steps, 2.0 * static_cast<double>(field_chain.inputs() + n_out + 4), n_out + 8);
   // A condition estimate does not see a closed loop of one state.
-  const double total = result.trapped + result.left_field + result.unsampled + result.remainder;
+  const double total =
+      result.trapped() + result.left_field() + result.unsampled() + result.remainder;
   if (!(std::abs(total - 1.0) <= 1e-6) || !(result.rounding >= 0.0))
     throw std::runtime_error(
         "absorption: I - Q is singular or nearly so: a walk can circle (almost) for ever, "

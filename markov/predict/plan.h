@@ -93,7 +93,7 @@ class Pace {
 /// What has ended of the walks from a start, and what is left.
 struct StartTally {
   Start start;
-  Ends ends;
+  EndSums ends;
   Pace pace;
   CompensatedSum draws, remainder;
   int steps = 0;

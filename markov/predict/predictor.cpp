@@ -151,21 +151,6 @@ MaybePredicted in_groups(const std::vector<Start>& starts, std::int64_t size, Ru
 
 }  // namespace
 
-CellProbabilities trapped_cells(const FinalDistribution& d) {
-  CellProbabilities cells = d.final_cells;
-  for (const CellEndings& c : d.mixed_cells)
-    cells.data()[c.cell] = c.by_ending[static_cast<std::size_t>(Ending::trapped)];
-  return cells;
-}
-
-CellProbabilities departed_cells(const FinalDistribution& d) {
-  CellProbabilities cells = CellProbabilities::Zero(d.final_cells.rows(), d.final_cells.cols());
-  for (const CellEndings& c : d.mixed_cells)
-    for (const Ending edge : kEdges)
-      cells.data()[c.cell] += c.by_ending[static_cast<std::size_t>(edge)];
-  return cells;
-}
-
 Predictor::Predictor(FieldChain chain) : plan_(plan_of(std::move(chain))) {}
 
 Predictor::~Predictor() = default;

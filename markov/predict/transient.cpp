@@ -67,7 +67,7 @@ Transient::Transient(const FieldChain& field_chain, const Field& field, const St
 
 FinalDistribution Transient::ended(const std::vector<double>& draws, const FieldChain& field_chain,
                                    const Field& field) const {
-  Ends all(field);
+  EndSums all(field);
   CompensatedSum mean_steps;
   const std::int64_t n_in = field_chain.inputs();
   for (std::size_t s = 0; s < draws.size(); ++s) {

@@ -77,13 +77,13 @@ void write_global(const std::string& path, const Chain& chain, const Field& fiel
 void write_answer(const std::string& path, const FinalDistribution& d) {
   auto out = file(path);
   for (const double p : d.final_cells.reshaped<Eigen::RowMajor>()) out << p << '\n';
-  out << d.trapped << '\n' << d.left_field << '\n' << d.cut_off << '\n';
+  out << d.trapped() << '\n' << d.left_field() << '\n' << d.cut_off() << '\n';
 }
 
 double difference(const FinalDistribution& a, const FinalDistribution& b) {
   return std::max({(a.final_cells - b.final_cells).abs().maxCoeff(),
-                   std::abs(a.trapped - b.trapped), std::abs(a.left_field - b.left_field),
-                   std::abs(a.cut_off - b.cut_off)});
+                   std::abs(a.trapped() - b.trapped()), std::abs(a.left_field() - b.left_field()),
+                   std::abs(a.cut_off() - b.cut_off())});
 }
 
 /// `difference` from the plain answer is measured once, outside the timing.

@@ -250,7 +250,7 @@ void budget(const std::string& matrix) {
   constexpr std::int64_t kTruth = 400'000;
   const auto truth = cross_field("moreau", kTruth, bench::kSeed + 1);
   const lattice::CellProbabilities p =
-      truth.final_gates.cast<double>() / static_cast<double>(kTruth);
+      truth.final_cells.cast<double>() / static_cast<double>(kTruth);
   const std::int64_t needed = lattice::trials_for(p, kGoal);
   line("trials_for_0.01", static_cast<double>(needed));
 
@@ -279,7 +279,7 @@ void budget(const std::string& matrix) {
     lattice::FieldTally tally(bench::kField);
     const double direct = one_thread([&] { tally = cross_field(method, needed); });
     const auto key = [&](const char* what) { return std::string(method) + "_" + what; };
-    const auto seen = tally.final_gates.cast<double>() / static_cast<double>(needed);
+    const auto seen = tally.final_cells.cast<double>() / static_cast<double>(needed);
     line(key("seconds").c_str(), direct);
     line(key("total_variation").c_str(), lattice::total_variation(seen, p));
     line(key("over_predict").c_str(), direct / predict);

@@ -154,7 +154,7 @@ Problem handed(double memory) {
 CellProbabilities shares_by_trials(const Problem& problem) {
   constexpr std::int64_t kTrials = 1'000'000;
   return shares(
-      run_field(problem.cells, problem.field, problem.start, 9001, {0, kTrials}).final_gates);
+      run_field(problem.cells, problem.field, problem.start, 9001, {0, kTrials}).final_cells);
 }
 
 CellProbabilities read_shares(const char* path, const FieldParams& field) {

@@ -116,7 +116,7 @@ TEST(CellsAhead, OfTheFirstCellAreTheStartsOwn) {
     if (!a.next.empty()) trapped += a.visits.mean * a.next.back().mean;
   const auto whole =
       lattice::predict_whole(m.problem, m.pool, {m.problem.start}, dynamics::kEntriesPerLeaf, 1);
-  EXPECT_NEAR(trapped, whole[0].trapped, 1e-12);
+  EXPECT_NEAR(trapped, whole[0].trapped(), 1e-12);
   const lattice::CellAhead& first = cells[static_cast<std::size_t>(m.problem.field.start_column())];
   EXPECT_GE(first.visits.mean, 1.0);
   for (const lattice::CellAhead& a : cells) {

@@ -82,7 +82,7 @@ TEST(ObservedFigure, GatesInWhichMostEnd) {
   e.c.seen.final_gates = markov::CellCounts::Zero(8, 3);
   e.c.seen.final_gates(0, 1) = 5;
   e.c.seen.final_gates(7, 2) = 5;
-  e.v.dynamics.final_gates = markov::CellCounts::Constant(8, 3, 10);
+  e.v.dynamics.final_cells = markov::CellCounts::Constant(8, 3, 10);
   e.v.dynamics.trials = 240;
   e.v.exact.final_cells = markov::CellProbabilities::Constant(8, 3, 0.02);
   e.v.exact.final_cells(4, 0) = 0.54;

@@ -68,7 +68,7 @@ void read_as_any(std::string_view bytes) {
   (void)accepted([&] {
     lattice::RunTrials piece{lattice::FieldTally(field), {}};
     dynamics::read_bytes(bytes, piece);
-    require(piece.tally.final_gates.sum() == std::ssize(piece.each.final_gates),
+    require(piece.tally.final_cells.sum() == std::ssize(piece.each.final_gates),
             "every trial ends in a gate");
     whole += piece.tally;
     for (std::size_t i = 0; i < piece.each.passed.size(); ++i)

@@ -23,7 +23,7 @@ constexpr double kNever = ChainSummary::kNever;
 FieldTruth truth_of(const std::array<std::int64_t, 9>& trials, double seconds_per_trial = 1.0) {
   FieldTally tally({.columns = 3, .rows = 3});
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    tally.final_gates(static_cast<int>(i) / 3, static_cast<int>(i) % 3) = trials[i];
+    tally.final_cells(static_cast<int>(i) / 3, static_cast<int>(i) % 3) = trials[i];
     tally.trials += trials[i];
   }
   return field_truth({0.0, 0.0, 15.0}, std::move(tally), seconds_per_trial);
@@ -213,7 +213,7 @@ TEST(ChainErrorChart, ChartsMatricesOfTheSameTrials) {
   const StateSpace fixed = fixed_space(scene);
   const FieldTally truth =
       run_field(scene.gate, scene.field, kStarts[0].body(), 5, {0, 100}, nullptr, &fixed);
-  EXPECT_TRUE((chart.truths[0].tally.final_gates == truth.final_gates).all());
+  EXPECT_TRUE((chart.truths[0].tally.final_cells == truth.final_cells).all());
   // 20 trials in one go: the same matrix as from the pieces that those of 10 trials need.
   Transitions whole(space);
   dynamics::add_trials(whole, scene.gate, 5, {0, 20});

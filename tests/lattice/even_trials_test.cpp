@@ -81,7 +81,7 @@ TEST(EvenTrials, EndAsPlainOnesDo) {
   const lattice::Problem problem = problem_of(calm_scene());
   constexpr std::int64_t kPlain = 40'000, kOfArray = 64, kSets = 25;
   const CellProbabilities plain =
-      shares(run_field(problem.cells, problem.field, problem.start, 8, {0, kPlain}).final_gates);
+      shares(run_field(problem.cells, problem.field, problem.start, 8, {0, kPlain}).final_cells);
   CellProbabilities mean = CellProbabilities::Zero(9, 9), squares = mean;
   constexpr double kMeans = kArrays * kSets;
   for (std::int64_t set = 0; set < kSets; ++set) {
@@ -127,7 +127,7 @@ TEST(EvenTrials, HaveLessChanceTogether) {
       ++counts.data()[ran.each.final_gates[a * kTrials + j]];
     replicates.push_back(shares(counts));
   }
-  const CellProbabilities p = shares(ran.tally.final_gates);
+  const CellProbabilities p = shares(ran.tally.final_cells);
   const double plain = (p * (1.0 - p)).sqrt().sum();
   EXPECT_LT(spread(replicates), 0.8 * plain * plain / kTrials);
 }

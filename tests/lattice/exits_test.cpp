@@ -83,11 +83,12 @@ TEST(Exits, OfTrialsAreThoseOfTheirLastGates) {
     EXPECT_GT(sum_of(counts.counts[side]), 20) << side;
     EXPECT_EQ(sum_of(counts.counts[side]), tally.endings[static_cast<std::size_t>(kSides[side])]);
   }
+  const markov::CellCounts departed = departed_cells(tally);
   // Of the first row nobody crosses, and of a column in the middle nobody leaves over a side.
-  EXPECT_EQ(counts.counts[1][0], tally.departed_gates(0, 0));
-  EXPECT_EQ(counts.counts[2][0], tally.departed_gates(0, 2));
-  EXPECT_EQ(counts.counts[kFarSide][1], tally.departed_gates(1, 1));
-  EXPECT_EQ(counts.counts[kFarSide][0] + counts.counts[1][1], tally.departed_gates(1, 0));
+  EXPECT_EQ(counts.counts[1][0], departed(0, 0));
+  EXPECT_EQ(counts.counts[2][0], departed(0, 2));
+  EXPECT_EQ(counts.counts[kFarSide][1], departed(1, 1));
+  EXPECT_EQ(counts.counts[kFarSide][0] + counts.counts[1][1], departed(1, 0));
   const FieldExits exits = exits_of(counts);
   for (std::size_t side = 0; side < kSides.size(); ++side)
     for (std::size_t i = 0; i < exits[side].share.size(); ++i) {

@@ -30,13 +30,13 @@ TEST(FidelityVariants, AreMoreauAtEveryFidelityAndTheDefaultMethod) {
 FidelityRun ending_in(const std::vector<std::int32_t>& gates) {
   FidelityRun run{FieldTally({.columns = 3, .rows = 3}), gates};
   run.tally.trials = std::ssize(gates);
-  for (const std::int32_t g : gates) ++run.tally.final_gates(g / 3, g % 3);
+  for (const std::int32_t g : gates) ++run.tally.final_cells(g / 3, g % 3);
   return run;
 }
 
 PairedChange change_of(const FidelityRun& after, const FidelityRun& before) {
-  return paired_change({after.final_gates, after.tally.final_gates},
-                       {before.final_gates, before.tally.final_gates}, 1);
+  return paired_change({after.final_gates, after.tally.final_cells},
+                       {before.final_gates, before.tally.final_cells}, 1);
 }
 
 TEST(PairedChange, CountsTrialsAndDistributionsApart) {

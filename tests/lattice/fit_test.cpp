@@ -44,7 +44,7 @@ Observed experiment(const Problem& problem, std::int64_t trials, std::uint64_t s
   const FieldTally tally =
       run_field(problem.cells, problem.field, problem.start, seed, {1'000'000'000, trials}, &each);
   Observed o;
-  o.seen = {tally.final_gates, tally.endings};
+  o.seen = {tally.final_cells, tally.endings};
   o.gates_by_ending.fill(CellCounts::Zero(kLaneRows, 1));
   for (std::size_t i = 0; i < each.endings.size(); ++i)
     ++o.gates_by_ending[static_cast<std::size_t>(*each.endings[i])](each.final_gates[i], 0);

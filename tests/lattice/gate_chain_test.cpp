@@ -340,7 +340,8 @@ TEST_F(MatrixOnDisk, CarriesRefinedSpacesToThePrediction) {
     // markov/predict/reference.h: nothing is normalised, and some 1e-16 a row over 13 steps is what
     // is lost.
     EXPECT_NEAR(f.final_cells.sum() + f.remainder, 1.0, 1e-12);
-    EXPECT_NEAR(f.trapped + f.left_field + f.cut_off + f.unsampled + f.remainder, 1.0, 1e-12);
+    EXPECT_NEAR(f.trapped() + f.left_field() + f.cut_off() + f.unsampled() + f.remainder, 1.0,
+                1e-12);
     EXPECT_GT((f.final_cells > 0.0).count(), 3);  // it went somewhere
     const auto direct =
         markov::predict(make_chain(t), cells, {start.start}, {.max_cells = field.max_gates})

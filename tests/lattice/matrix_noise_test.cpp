@@ -349,7 +349,7 @@ SeenEndings trials_of(const FinalDistribution& p, std::int64_t trials, std::uint
   std::vector<double> weights;
   std::vector<std::pair<std::int64_t, std::size_t>> what;
   std::vector<bool> is_mixed(static_cast<std::size_t>(p.final_cells.size()));
-  for (const markov::CellEndings& c : p.mixed_cells) {
+  for (const auto& c : p.mixed_cells) {
     is_mixed[static_cast<std::size_t>(c.cell)] = true;
     for (std::size_t e = 0; e < markov::kEndings; ++e) {
       weights.push_back(c.by_ending[e]);

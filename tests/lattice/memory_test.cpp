@@ -315,7 +315,7 @@ TEST(Memory, WalksAreTheTrialsInStates) {
   w.validate();
   EXPECT_EQ(w.walks(), 50);
   EXPECT_EQ(std::ssize(w.state), tally.health.runs);
-  EXPECT_EQ(std::count(w.next.begin(), w.next.end(), StateWalks::kTrapped), tally.trapped);
+  EXPECT_EQ(std::count(w.next.begin(), w.next.end(), StateWalks::kTrapped), tally.trapped());
   for (std::int64_t walk = 0; walk < 50; ++walk) EXPECT_EQ(w.state[w.begin(walk)], first);
   // A run that broke is left out, and what would come after it.
   PassageTable broken(space.section());

@@ -38,7 +38,6 @@ FinalDistribution trapped_with(double left) {
   d.final_cells = markov::CellProbabilities::Zero(1, 2);
   d.final_cells << left, 1.0 - left;
   d.endings[static_cast<std::size_t>(markov::Ending::trapped)] = 1.0;
-  d.trapped = 1.0;
   return d;
 }
 

@@ -105,7 +105,7 @@ TEST(Prediction, OfManyStartsIsOneEach) {
   const Prediction p = predict(field_of(m, "base.nc", {}), m.scene.field, {a, b}, {}, 1);
   ASSERT_EQ(p.starts.size(), 2u);
   EXPECT_EQ(p.starts[1].start.start.input, b.start.input);
-  for (const StartPrediction& s : p.starts) EXPECT_NEAR(s.final.trapped, 1 - 0.216, 1e-14);
+  for (const StartPrediction& s : p.starts) EXPECT_NEAR(s.final.trapped(), 1 - 0.216, 1e-14);
 }
 
 /// Of rows of few runs, by the face that bodies came through; without a limit of gates.

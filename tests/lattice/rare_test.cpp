@@ -77,7 +77,7 @@ std::vector<RowChance> direct(const Scene& scene, int rows, std::int64_t trials)
   };
   std::vector<RowChance> shares;
   for (int row = 1; row < rows; ++row)
-    shares.push_back(share(tally.final_gates.bottomRows(rows - row).sum()));
+    shares.push_back(share(tally.final_cells.bottomRows(rows - row).sum()));
   shares.push_back(share(tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)]));
   return shares;
 }

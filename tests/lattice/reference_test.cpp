@@ -27,8 +27,7 @@ struct Ran : FieldTally {
   explicit Ran(const FieldParams& field) : FieldTally(field) {}
   Ran& operator+=(const Ran& other) {
     FieldTally::operator+=(other);
-    each.final_gates.insert(each.final_gates.end(), other.each.final_gates.begin(),
-                            other.each.final_gates.end());
+    each.append(other.each);
     return *this;
   }
 };
@@ -42,15 +41,10 @@ Ran run(const FieldGates& gates, const FieldParams& field, TrialRange range, std
 }
 
 void expect_same(const Ran& a, const Ran& b) {
-  EXPECT_TRUE((a.final_gates == b.final_gates).all());
+  EXPECT_TRUE((a.final_cells == b.final_cells).all());
   EXPECT_EQ(a.trials, b.trials);
-  EXPECT_EQ(a.trapped, b.trapped);
-  EXPECT_EQ(a.left_field, b.left_field);
-  EXPECT_EQ(a.cut_off, b.cut_off);
-  EXPECT_EQ(a.broken, b.broken);
   EXPECT_EQ(a.endings, b.endings);
-  EXPECT_TRUE((a.trapped_gates == b.trapped_gates).all());
-  EXPECT_TRUE((a.departed_gates == b.departed_gates).all());
+  EXPECT_EQ(a.mixed_cells, b.mixed_cells);
   EXPECT_EQ(a.entries, b.entries);
   EXPECT_EQ(a.clamped, b.clamped);
   EXPECT_EQ(a.each.final_gates, b.each.final_gates);
@@ -60,30 +54,43 @@ void expect_same(const Ran& a, const Ran& b) {
   EXPECT_TRUE(test::same_bits(a.health.worst_energy_created, b.health.worst_energy_created));
 }
 
+TEST(FieldTally, CountsByGateAndEnding) {
+  using markov::Ending;
+  FieldTally tally({.columns = 2, .rows = 2});
+  tally.count({3, 0, 3, 1, 3},
+              {Ending::far_edge, Ending::trapped, Ending::trapped, std::nullopt, Ending::far_edge});
+  tally.count({0, 1}, {Ending::left_edge, Ending::trapped});
+  EXPECT_EQ(tally.trials, 7);
+  EXPECT_EQ(tally.broken(), 1);
+  EXPECT_EQ(tally.trapped(), 3);
+  EXPECT_EQ(tally.left_field(), 3);
+  using Cells = std::vector<std::int64_t>;
+  const auto numbers = [](const markov::CellCounts& cells) {
+    return Cells(cells.data(), cells.data() + cells.size());
+  };
+  EXPECT_EQ(numbers(tally.final_cells), (Cells{2, 2, 0, 3}));
+  EXPECT_EQ(numbers(trapped_cells(tally)), (Cells{1, 1, 0, 1}));
+  EXPECT_EQ(numbers(departed_cells(tally)), (Cells{1, 0, 0, 2}));
+}
+
 void expect_adds_up(const Ran& t, const FieldParams& field) {
-  EXPECT_EQ(t.final_gates.rows(), field.rows);
-  EXPECT_EQ(t.final_gates.cols(), field.columns);
-  EXPECT_EQ(t.final_gates.sum(), t.trials);
-  EXPECT_EQ(t.trapped + t.left_field + t.cut_off + t.broken, t.trials);
-  const auto of = [&](markov::Ending e) { return t.endings[static_cast<std::size_t>(e)]; };
-  EXPECT_EQ(of(markov::Ending::trapped), t.trapped);
-  EXPECT_EQ(
-      of(markov::Ending::far_edge) + of(markov::Ending::left_edge) + of(markov::Ending::right_edge),
-      t.left_field);
-  EXPECT_EQ(of(markov::Ending::cut_off), t.cut_off);
-  EXPECT_EQ(of(markov::Ending::near_edge) + of(markov::Ending::unsampled), 0);
-  EXPECT_EQ(t.trapped_gates.sum(), t.trapped);
-  EXPECT_EQ(t.departed_gates.sum(), t.left_field);
-  EXPECT_TRUE((t.trapped_gates + t.departed_gates <= t.final_gates).all());
+  EXPECT_EQ(t.final_cells.rows(), field.rows);
+  EXPECT_EQ(t.final_cells.cols(), field.columns);
+  EXPECT_EQ(t.final_cells.sum(), t.trials);
+  EXPECT_EQ(t.trapped() + t.left_field() + t.cut_off() + t.broken(), t.trials);
+  EXPECT_EQ(t[markov::Ending::near_edge] + t.unsampled(), 0);
+  EXPECT_EQ(trapped_cells(t).sum(), t.trapped());
+  EXPECT_EQ(departed_cells(t).sum(), t.left_field());
+  EXPECT_TRUE((trapped_cells(t) + departed_cells(t) <= t.final_cells).all());
   // Nobody leaves over a side but from its column, or over the far edge but from the last row.
   if (field.rows > 2 && field.columns > 2) {
-    EXPECT_EQ(t.departed_gates.block(0, 1, field.rows - 1, field.columns - 2).sum(), 0);
+    EXPECT_EQ(departed_cells(t).block(0, 1, field.rows - 1, field.columns - 2).sum(), 0);
   }
   EXPECT_EQ(static_cast<std::int64_t>(t.each.final_gates.size()), t.trials);
   markov::CellCounts again = markov::CellCounts::Zero(field.rows, field.columns);
   for (const std::int32_t gate : t.each.final_gates)
     ++again(gate / field.columns, gate % field.columns);
-  EXPECT_TRUE((again == t.final_gates).all());
+  EXPECT_TRUE((again == t.final_cells).all());
   // One run per trial and one more per crossing between gates.
   EXPECT_EQ(t.health.runs,
             t.trials + std::accumulate(t.entries.begin(), t.entries.end(), std::int64_t{0}));
@@ -116,7 +123,7 @@ TEST(RunField, TalliesAddUp) {
     expect_adds_up(t, field);
     EXPECT_TRUE(t.health.clean());
     if (field.max_gates == 0) {
-      EXPECT_EQ(t.cut_off, 0);
+      EXPECT_EQ(t.cut_off(), 0);
     }
   }
 }
@@ -125,10 +132,10 @@ TEST(RunField, OneGateIsTheStartGate) {
   const FieldParams field{9, 9, 1};
   const Ran t = run(GateParams(), field, {0, 200});
   expect_adds_up(t, field);
-  EXPECT_EQ(t.final_gates(0, 4), 200);
-  EXPECT_EQ(t.left_field, 0);
-  EXPECT_EQ(t.cut_off + t.trapped, 200);
-  EXPECT_GT(t.cut_off, 100);
+  EXPECT_EQ(t.final_cells(0, 4), 200);
+  EXPECT_EQ(t.left_field(), 0);
+  EXPECT_EQ(t.cut_off() + t.trapped(), 200);
+  EXPECT_GT(t.cut_off(), 100);
   EXPECT_EQ(t.health.runs, 200);
 }
 
@@ -136,13 +143,13 @@ TEST(RunField, FieldOfOneGateIsLeftOrKept) {
   const FieldParams field{1, 1, 13};
   const Ran t = run(GateParams(), field, {0, 200});
   expect_adds_up(t, field);
-  EXPECT_EQ(t.final_gates(0, 0), 200);
-  EXPECT_EQ(t.cut_off, 0);
-  EXPECT_EQ(t.left_field + t.trapped, 200);
-  EXPECT_GT(t.left_field, 100);
+  EXPECT_EQ(t.final_cells(0, 0), 200);
+  EXPECT_EQ(t.cut_off(), 0);
+  EXPECT_EQ(t.left_field() + t.trapped(), 200);
+  EXPECT_GT(t.left_field(), 100);
   EXPECT_EQ(t.health.runs, 200);
   // The same trials as those cut off after one gate: who would go on there leaves here.
-  EXPECT_EQ(t.left_field, run(GateParams(), {9, 9, 1}, {0, 200}).cut_off);
+  EXPECT_EQ(t.left_field(), run(GateParams(), {9, 9, 1}, {0, 200}).cut_off());
 }
 
 TEST(StreamRow, NamesAStart) {
@@ -269,7 +276,7 @@ TEST(RunField, TalliesAddInAnyOrderAndNoTrialTwice) {
   FieldTally tally = part({30, 20});
   tally += part({0, 30});
   EXPECT_EQ(tally.held, TrialSet({0, 50}));
-  EXPECT_TRUE((tally.final_gates == part({0, 50}).final_gates).all());
+  EXPECT_TRUE((tally.final_cells == part({0, 50}).final_cells).all());
   EXPECT_THROW(tally += part({49, 3}), std::invalid_argument);
   EXPECT_EQ(tally.trials, 50);
 }
@@ -376,7 +383,7 @@ TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
     const BodyState start{x, 0, 2, 15};
     const Ran t = run(p, field, {0, 5}, 1, start);
     const int gate = t.each.final_gates[0];
-    EXPECT_EQ(t.final_gates(gate / 9, gate % 9), 5);
+    EXPECT_EQ(t.final_cells(gate / 9, gate % 9), 5);
 
     // The path's states, one transition each.
     Transitions path(space);
@@ -405,9 +412,9 @@ TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
                                         {first.start}, {.max_cells = field.max_gates})
                             .front();
     EXPECT_NEAR(walked.final_cells(gate / 9, gate % 9), 1.0, 1e-12);
-    EXPECT_NEAR(walked.trapped, t.trapped == 5, 1e-12);
-    EXPECT_NEAR(walked.left_field, t.left_field == 5, 1e-12);
-    EXPECT_NEAR(walked.cut_off, t.cut_off == 5, 1e-12);
+    EXPECT_NEAR(walked.trapped(), t.trapped() == 5, 1e-12);
+    EXPECT_NEAR(walked.left_field(), t.left_field() == 5, 1e-12);
+    EXPECT_NEAR(walked.cut_off(), t.cut_off() == 5, 1e-12);
   }
   EXPECT_GE(followed, 4);
   EXPECT_GE(moves, 4 * 7);
@@ -440,9 +447,6 @@ TEST(Fidelity, ActiveIsGateByGate) {
       for (int gates = 1;; ++gates) {
         const GateRun r = run_gate(p, *method, body, force);
         add_run(plain.health, p, r);
-        plain.broken += r.ending == Ending::broken;
-        plain.trapped += r.ending == Ending::trapped;
-        if (r.ending == Ending::trapped) ++plain.trapped_gates(row, column);
         if (r.ending == Ending::trapped || r.ending == Ending::broken) break;
         const Entry crossing = crossing_of(p, r.ending, r.exit);
         const Face& move = disc_section().faces[crossing.face];
@@ -452,9 +456,6 @@ TEST(Fidelity, ActiveIsGateByGate) {
                 : column + move.di_x < 0 ? markov::Ending::left_edge
                                          : markov::Ending::right_edge;
         if (!leaves && gates == 13) why = markov::Ending::cut_off;
-        if (leaves) ++plain.departed_gates(row, column);
-        plain.left_field += leaves;
-        plain.cut_off += !leaves && gates == 13;
         if (leaves || gates == 13) break;
         ++plain.entries[crossing.face];
         plain.clamped[crossing.face] += space.index_of(crossing).clamped;
@@ -462,11 +463,10 @@ TEST(Fidelity, ActiveIsGateByGate) {
         row += move.di_y;
         body = shifted_into_next(p, r.ending, r.exit);
       }
-      ++plain.trials;
-      ++plain.endings[static_cast<std::size_t>(why)];
-      ++plain.final_gates(row, column);
       plain.each.final_gates.push_back(row * 9 + column);
+      plain.each.endings.emplace_back(why);
     }
+    plain.count(plain.each.final_gates, plain.each.endings);
     expect_same(run(p, field, {0, 60}, 6), plain);
   }
 }
@@ -479,8 +479,8 @@ TEST(Fidelity, TalliesAddUp) {
       SCOPED_TRACE(testing::Message() << field.columns << " x " << field.rows);
       const Ran t = run(p, field, {0, 60});
       expect_adds_up(t, field);
-      EXPECT_EQ(t.broken, 0);
-      EXPECT_GT(t.trapped + t.left_field, 0);
+      EXPECT_EQ(t.broken(), 0);
+      EXPECT_GT(t.trapped() + t.left_field(), 0);
       EXPECT_GT(t.health.impacts, 0);
     }
 }
@@ -493,12 +493,12 @@ TEST(Fidelity, OneGateHasNoMemory) {
   const auto tally = [&](Fidelity f) { return run(p, {1, 1, 0, f}, {0, 150}); };
   const Ran remember = tally(Fidelity::remember);
   expect_same(tally(Fidelity::all), remember);
-  EXPECT_GT(remember.trapped, 0);
-  EXPECT_GT(remember.left_field, 0);
+  EXPECT_GT(remember.trapped(), 0);
+  EXPECT_GT(remember.left_field(), 0);
   // Two ways to write one stepper: round-off may part a few trials near grazing.
   const Ran active = tally(Fidelity::active);
-  EXPECT_LE(std::abs(active.trapped - remember.trapped), 5);
-  EXPECT_LE(std::abs(active.left_field - remember.left_field), 5);
+  EXPECT_LE(std::abs(active.trapped() - remember.trapped()), 5);
+  EXPECT_LE(std::abs(active.left_field() - remember.left_field()), 5);
 }
 
 // The three share the noise: most trials end in the same gate, which those of another seed do not.
@@ -615,7 +615,7 @@ TEST(FieldTrace, IsTheTrialItself) {
     SCOPED_TRACE(e);
     EXPECT_EQ(endings[static_cast<markov::Ending>(e)], tally.endings[e]);
   }
-  EXPECT_EQ(endings[std::nullopt], tally.broken);
+  EXPECT_EQ(endings[std::nullopt], tally.broken());
 }
 
 TEST(FieldTrace, OnlyTheActiveGate) {

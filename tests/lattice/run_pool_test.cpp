@@ -170,7 +170,7 @@ TEST(RunPool, OnlyGatesInWhichNotAllAreTrappedListTheirEndings) {
   const Scene scene = fast_scene();
   const markov::FinalDistribution own = shares_of(some_trials(scene, 300).full, scene.field);
   Eigen::Index listed = 0;
-  for (const markov::CellEndings& c : own.mixed_cells) {
+  for (const auto& c : own.mixed_cells) {
     const auto& e = c.by_ending;
     EXPECT_NEAR(std::accumulate(e.begin(), e.end(), 0.0), own.final_cells.data()[c.cell], 1e-12);
     EXPECT_LT(e.front(), own.final_cells.data()[c.cell]) << c.cell;
@@ -409,7 +409,7 @@ TEST(PooledPrediction, IsAsAccurateAsItSaysAndTheSameOnAnyThreads) {
   EXPECT_TRUE(one.reached);
   EXPECT_LE(one.starts[0].error.total_variation, 0.05);
   const FieldTally truth = run_field(scene.gate, scene.field, kStart, 77, {0, 20'000});
-  EXPECT_LE(total_variation(one.starts[0].final.final_cells, shares(truth.final_gates)), 0.055);
+  EXPECT_LE(total_variation(one.starts[0].final.final_cells, shares(truth.final_cells)), 0.055);
   EXPECT_LT(one.gate_runs, 20'000);
 }
 
@@ -445,8 +445,8 @@ TEST(PooledPrediction, EntriesWhereNoRunEnteredAreInTheBar) {
   EXPECT_TRUE(known.reached);
   EXPECT_GT(known.starts[0].trials, 100);
   const FieldTally truth = run_field(scene.gate, scene.field, fast, 77, {0, 5000});
-  EXPECT_LE(total_variation(known.starts[0].final.final_cells, shares(truth.final_gates)), 0.11);
-  EXPECT_LE(total_variation(guess.starts[0].final.final_cells, shares(truth.final_gates)),
+  EXPECT_LE(total_variation(known.starts[0].final.final_cells, shares(truth.final_cells)), 0.11);
+  EXPECT_LE(total_variation(guess.starts[0].final.final_cells, shares(truth.final_cells)),
             guess.starts[0].error.total_variation);
 }
 

@@ -371,7 +371,7 @@ TEST(Terrain, TypesThatAreAlikeGiveTheBitsOfOne) {
   const Scene several = alike(), one = plain();
   EXPECT_EQ(gates_of(several).types().size(), 1U);
   const FieldTally a = field_trials(several, {0, 300}, 3), b = field_trials(one, {0, 300}, 3);
-  EXPECT_TRUE((a.final_gates == b.final_gates).all());
+  EXPECT_TRUE((a.final_cells == b.final_cells).all());
   EXPECT_EQ(a.endings, b.endings);
   RunPool here, there;
   const auto p = predict_pooled(problem_of(several), here, {dynamics::entry_of(kStart)},
@@ -390,7 +390,7 @@ TEST(Terrain, AMapOfOneTypeIsThePlainScene) {
   other.terrain->type_of_cell.assign(25, 0);
   ASSERT_EQ(gates_of(other).types().size(), 3U);
   const FieldTally a = field_trials(other, {0, 300}, 3), b = field_trials(one, {0, 300}, 3);
-  EXPECT_TRUE((a.final_gates == b.final_gates).all());
+  EXPECT_TRUE((a.final_cells == b.final_cells).all());
   RunPool here, there;
   const auto p = predict_pooled(problem_of(other), here, {dynamics::entry_of(kStart)},
                                 {.accuracy = 0.08}),
@@ -457,12 +457,12 @@ TEST(Terrain, TheChainIsThatOfItsOwnDynamics) {
       predict_pooled(problem_of(scene), pool, {dynamics::entry_of(kStart)}, {.accuracy = 0.03});
   ASSERT_TRUE(p.reached);
   const FieldTally truth = run_field(gates_of(scene), scene.field, kStart, 77, {0, 20'000});
-  const double tv = total_variation(p.starts[0].final.final_cells, shares(truth.final_gates));
+  const double tv = total_variation(p.starts[0].final.final_cells, shares(truth.final_cells));
   const double floor = expected_total_variation(p.starts[0].final.final_cells, truth.trials);
   EXPECT_LT(tv, floor + p.starts[0].error.total_variation);
   // The plain scene's field is another one.
-  EXPECT_GT(total_variation(shares(field_trials(plain(), {0, 5000}, 1).final_gates),
-                            shares(truth.final_gates)),
+  EXPECT_GT(total_variation(shares(field_trials(plain(), {0, 5000}, 1).final_cells),
+                            shares(truth.final_cells)),
             0.1);
 }
 
@@ -501,7 +501,7 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   const auto& final = exact.starts[0].final.final_cells;
   EXPECT_LT(total_variation(shares(walked.final_cells), final),
             1.5 * expected_total_variation(final, 100'000));
-  EXPECT_EQ(walked.unsampled, 0);
+  EXPECT_EQ(walked.unsampled(), 0);
 
   // In a field where another gate stands at the start, its own first runs are none.
   Scene moved = m.scene;

@@ -15,7 +15,7 @@ TEST(FieldTrials, AreThoseOfRunFieldAndChecked) {
   const dynamics::StateSpace fixed = fixed_space(scene);
   const FieldTally plain =
       run_field(scene.gate, scene.field, scene.start, 4, {0, 150}, nullptr, &fixed);
-  EXPECT_TRUE((tally.final_gates == plain.final_gates).all());
+  EXPECT_TRUE((tally.final_cells == plain.final_cells).all());
   EXPECT_EQ(tally.entries, plain.entries);
   EXPECT_EQ(tally.held, plain.held);
   EXPECT_EQ(tally.health.steps, plain.health.steps);
@@ -33,7 +33,7 @@ TEST(Walks, AreThoseOfTheWalker) {
   const markov::WalkTally plain =
       markov::Walker(make_chain(t)).walk({3, 3}, start.start, 9, 2, {0, 1000});
   EXPECT_EQ(tally.endings, plain.endings);
-  EXPECT_NEAR(static_cast<double>(tally.trapped) / 1000, 7.0 / 8, 5 * std::sqrt(7.0 / 64 / 1000));
+  EXPECT_NEAR(static_cast<double>(tally.trapped()) / 1000, 7.0 / 8, 5 * std::sqrt(7.0 / 64 / 1000));
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST(ValidateChain, ARightChainIsWithinChance) {
                                       {.trials = 250, .null_draws = 99, .seed = 3});
   ASSERT_EQ(v.starts.size(), 1u);
   const StartValidation& s = v.starts.front();
-  EXPECT_EQ(s.dynamics.final_gates(2, 1), 250);
+  EXPECT_EQ(s.dynamics.final_cells(2, 1), 250);
   EXPECT_EQ(s.walks.final_cells(2, 1), 250);  // as many walks as trials
   EXPECT_DOUBLE_EQ(s.exact.final_cells(2, 1), 1.0);
   EXPECT_EQ(s.exact_against.total_variation, 0.0);
@@ -94,7 +94,7 @@ TEST(ValidateChain, AWrongChainHasAnErrorOfItsOwn) {
   EXPECT_TRUE(s.judgement.differs(markov::Ending::far_edge));
   EXPECT_TRUE(s.judgement.differs(markov::Ending::trapped));
   EXPECT_FALSE(s.judgement.differs(markov::Ending::left_edge));
-  EXPECT_EQ(s.walks.trapped, 40);
+  EXPECT_EQ(s.walks.trapped(), 40);
   // 1 of 9 gates off by 100 trials in 100, another as much the other way.
   EXPECT_DOUBLE_EQ(s.exact_against.rmse_per_100, 100.0 * std::sqrt(2.0 / 9.0));
 }
@@ -113,7 +113,7 @@ TEST(ValidateChain, CountsTheSamplingOfTheMatrix) {
         .starts.front();
   };
   const StartValidation few = seldom_trapped(50), many = seldom_trapped(100'000);
-  EXPECT_NEAR(few.exact.trapped, many.exact.trapped, 1e-12);  // 1 - .98^3
+  EXPECT_NEAR(few.exact.trapped(), many.exact.trapped(), 1e-12);  // 1 - .98^3
   EXPECT_EQ(few.finding(), Finding::within_trials_and_matrix);
   EXPECT_EQ(many.finding(), Finding::own_error);
   EXPECT_GT(few.matrix_noise_mean, 10 * many.matrix_noise_mean);
@@ -128,7 +128,7 @@ TEST(ValidateChain, IsTheSameForAnyPieces) {
   FieldTrials each;
   const FieldTally dynamics =
       run_field(scene.gate, scene.field, kStart.body(), 5, {0, 120}, &each, &matrix.space);
-  EXPECT_TRUE((s.dynamics.final_gates == dynamics.final_gates).all());
+  EXPECT_TRUE((s.dynamics.final_cells == dynamics.final_cells).all());
   EXPECT_EQ(s.dynamics.endings, dynamics.endings);
   markov::CellCounts first = markov::CellCounts::Zero(3, 3);
   for (std::size_t t = 0; t < 100; ++t) ++first.data()[each.final_gates[t]];

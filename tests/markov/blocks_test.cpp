@@ -170,7 +170,7 @@ TEST(BlockField, StatesNeverSampled) {
   const Start start{1, 0, 0};
   const BlockField columns = block_field(chain, {1, 3}, {start});
   const auto d = coarse(columns, {3, 3}, start);
-  EXPECT_GT(d.unsampled, 0.01);
+  EXPECT_GT(d.unsampled(), 0.01);
   expect_same_in_blocks(fine(chain, {3, 3}, start), d, {1, 3}, kBound);
   EXPECT_EQ(complaint(chain, {3, 1}, start),
             "blocks: walks get into a state never sampled within a block of 3 x 1 cells");

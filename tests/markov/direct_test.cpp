@@ -81,10 +81,10 @@ TEST(Circling, WhatNeverEndsIsTold) {
   for (const Solver solver : {kAutomatic, Solver::direct}) {
     const FinalDistribution d =
         predict(FieldChain(chain), {3, 2}, {{1, 0, 0}}, {.solver = solver}).front();
-    EXPECT_EQ(d.trapped, 0.5);
+    EXPECT_EQ(d.trapped(), 0.5);
     EXPECT_EQ(d.endless, 0.5);
     EXPECT_EQ(d.remainder, 0.5);
-    EXPECT_EQ(d.left_field + d.unsampled, 0.0);
+    EXPECT_EQ(d.left_field() + d.unsampled(), 0.0);
     EXPECT_EQ(d.mean_steps, 1.0);
   }
   const FinalDistribution all = predict(FieldChain(chain), {3, 2}, {{2, 0, 1}}).front();

@@ -146,7 +146,7 @@ TEST(FieldStates, KnowStatesNeverSampled) {
     const FieldStates f = field_states(chain, kThreeByThree, {{1, 1, input}});
     const auto a = field_answer(f, absorption(absorbing_chain<double>(f)).ends);
     const auto d = propagate(chain, kThreeByThree, {1, 1, input}, {.tolerance = 1e-17});
-    EXPECT_GT(d.unsampled, 0.01);
+    EXPECT_GT(d.unsampled(), 0.01);
     for (std::size_t e = 0; e < kEndings; ++e) EXPECT_NEAR(a.endings[e], d.endings[e], 1e-14) << e;
     for (int row = 0; row < 3; ++row)
       for (int column = 0; column < 3; ++column)

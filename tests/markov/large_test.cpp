@@ -55,7 +55,7 @@ Chain keeping_on(double trapped) {
 
 void expect_whole(const FinalDistribution& d) {
   EXPECT_NEAR(d.final_cells.sum() + d.remainder, 1.0, 1e-12);
-  EXPECT_NEAR(d.trapped + d.left_field + d.cut_off + d.unsampled + d.remainder, 1.0, 1e-12);
+  EXPECT_NEAR(d.trapped() + d.left_field() + d.cut_off() + d.unsampled() + d.remainder, 1.0, 1e-12);
   EXPECT_LE(d.remainder + d.rounding, 1e-10);
 }
 
@@ -88,8 +88,9 @@ TEST(LargeField, IsAsWalked) {
   expect_as_walked(walked.colwise().sum().transpose(), d.final_cells.colwise().sum().transpose(),
                    "final columns");
   const auto n = static_cast<double>(kManyWalks);
-  const Shares fates{{static_cast<double>(tally.trapped), static_cast<double>(tally.left_field)}};
-  expect_as_walked(fates, Shares{{d.trapped, d.left_field}}, "fates");
+  const Shares fates{
+      {static_cast<double>(tally.trapped()), static_cast<double>(tally.left_field())}};
+  expect_as_walked(fates, Shares{{d.trapped(), d.left_field()}}, "fates");
   EXPECT_NEAR(static_cast<double>(tally.steps) / n / d.mean_steps, 1.0, 10 / std::sqrt(n));
 }
 
@@ -117,7 +118,7 @@ TEST(LargeField, RowsAndColumnsAreChainsOfTheirOwn) {
   const Chain chain = keeping_on(0.3);
   const auto d = Predictor(chain).predict({kSide, kSide}, {kSide / 2, 0, 12});
   expect_whole(d);
-  EXPECT_LE(d.left_field, 1e-13);
+  EXPECT_LE(d.left_field(), 1e-13);
   const auto without = [&](bool x) {
     auto exits = chain.exits();
     for (Exit& exit : exits) (x ? exit.di_x : exit.di_y) = 0;

@@ -37,7 +37,7 @@ FinalDistribution by_steps(const FieldChain& chain, const Field& field, const St
 }
 
 double ends(const FinalDistribution& d) {
-  return d.trapped + d.left_field + d.cut_off + d.unsampled;
+  return d.trapped() + d.left_field() + d.cut_off() + d.unsampled();
 }
 
 void expect_whole(const FinalDistribution& d) {
@@ -49,10 +49,10 @@ void expect_whole(const FinalDistribution& d) {
 
 void expect_near(const FinalDistribution& a, const FinalDistribution& b, double bound) {
   EXPECT_LE((a.final_cells - b.final_cells).abs().maxCoeff(), bound);
-  EXPECT_NEAR(a.trapped, b.trapped, bound);
-  EXPECT_NEAR(a.left_field, b.left_field, bound);
-  EXPECT_NEAR(a.cut_off, b.cut_off, bound);
-  EXPECT_NEAR(a.unsampled, b.unsampled, bound);
+  EXPECT_NEAR(a.trapped(), b.trapped(), bound);
+  EXPECT_NEAR(a.left_field(), b.left_field(), bound);
+  EXPECT_NEAR(a.cut_off(), b.cut_off(), bound);
+  EXPECT_NEAR(a.unsampled(), b.unsampled(), bound);
 }
 
 // Bernstein: a binomial count is further off than this with probability below 2 e^-20 = 4e-9.
@@ -66,10 +66,10 @@ void expect_binomial(std::int64_t count, std::int64_t n, double p) {
 void expect_walks_agree(const Chain& chain, const Field& field, const Start& start, int max_cells,
                         const FinalDistribution& d, std::int64_t n) {
   const WalkTally tally = Walker(chain).walk(field, start, max_cells, 11, {0, n});
-  expect_binomial(tally.trapped, n, d.trapped);
-  expect_binomial(tally.left_field, n, d.left_field);
-  expect_binomial(tally.cut_off, n, d.cut_off);
-  expect_binomial(tally.unsampled, n, d.unsampled);
+  expect_binomial(tally.trapped(), n, d.trapped());
+  expect_binomial(tally.left_field(), n, d.left_field());
+  expect_binomial(tally.cut_off(), n, d.cut_off());
+  expect_binomial(tally.unsampled(), n, d.unsampled());
   for (int row = 0; row < field.rows; ++row) {
     for (int column = 0; column < field.columns; ++column) {
       expect_binomial(tally.final_cells(row, column), n, d.final_cells(row, column));
@@ -147,7 +147,7 @@ TEST(Exact, GamblersRuin) {
       // The condition of this matrix is about n^2 = 2.6e4.
       EXPECT_NEAR(solved.final_cells(0, length - 1), wins, 3e4 * kEps);
       EXPECT_NEAR(solved.final_cells(0, 0), 1 - wins, 3e4 * kEps);
-      EXPECT_NEAR(solved.left_field, 1.0, 3e4 * kEps);
+      EXPECT_NEAR(solved.left_field(), 1.0, 3e4 * kEps);
       const double mean = p == 0.5 ? i * (n - i) : (i - n * wins) / (1 - 2 * p);
       EXPECT_NEAR(solved.mean_steps / mean, 1.0, 3e4 * kEps);
 
@@ -179,14 +179,14 @@ TEST(Exact, TwoStateLoopIsGeometric) {
   for (int n = 1; n <= 20; ++n) {
     const FinalDistribution even = by_steps(chain, field, {}, {.max_cells = 2 * n});
     const double on = std::pow(pa * pb, n);
-    EXPECT_NEAR(even.cut_off, on, 4 * kEps);
+    EXPECT_NEAR(even.cut_off(), on, 4 * kEps);
     EXPECT_NEAR(even.final_cells(0, 0), (1 - pa) * rounds(n), 4 * kEps);
     EXPECT_NEAR(even.final_cells(0, 1), pa * (1 - pb) * rounds(n) + on, 4 * kEps);
     EXPECT_NEAR(even.mean_steps, (1 + pa) * rounds(n), 16 * kEps);
     EXPECT_EQ(even.steps, 2 * n);
     EXPECT_EQ(even.remainder, 0.0);
     const FinalDistribution odd = by_steps(chain, field, {}, {.max_cells = 2 * n - 1});
-    EXPECT_NEAR(odd.cut_off, on / pb, 4 * kEps);
+    EXPECT_NEAR(odd.cut_off(), on / pb, 4 * kEps);
   }
 }
 
@@ -201,10 +201,13 @@ TEST(Exact, WhereAStepEnds) {
                           double trapped, double left, double cut, double unsampled) {
     FinalDistribution wanted;
     wanted.final_cells = Eigen::Map<CellProbabilities>(cells.data(), 1, 3);
-    wanted.trapped = trapped;
-    wanted.left_field = left;
-    wanted.cut_off = cut;
-    wanted.unsampled = unsampled;
+    const auto set = [&](Ending e, double share) {
+      wanted.endings[static_cast<std::size_t>(e)] = share;
+    };
+    set(Ending::trapped, trapped);
+    set(Ending::right_edge, left);
+    set(Ending::cut_off, cut);
+    set(Ending::unsampled, unsampled);
     expect_near(by_steps(chain, field, start, {.max_cells = max_cells}), wanted, 0.0);
     expect_near(propagate(chain, field, start, {.max_cells = max_cells}), wanted, 0.0);
     if (max_cells == 0) expect_near(solve_absorption(chain, field, start), wanted, 2 * kEps);
@@ -310,8 +313,8 @@ TEST(Exact, PropagationSolveAndWalksAgree) {
   expect_whole(solved);
   EXPECT_LE(far.remainder, 1e-13);
   EXPECT_GT(far.steps, 13);
-  EXPECT_GT(solved.unsampled, 0.0);
-  EXPECT_EQ(solved.cut_off, 0.0);
+  EXPECT_GT(solved.unsampled(), 0.0);
+  EXPECT_EQ(solved.cut_off(), 0.0);
   expect_near(far, solved, far.remainder + 64 * kEps);
   EXPECT_NEAR(far.mean_steps, solved.mean_steps, 1e-11);  // the remainder would walk some 30 on
   expect_walks_agree(chain, kNineByNine, kBottomCentre, 0, solved, 1'000'000);
@@ -333,10 +336,10 @@ TEST(Exact, EachEmptiedRowIsReportedWithItsMass) {
     expect_whole(d);
     expect_near(d, propagate(chain, field, start, {.max_cells = 13}), 8 * kEps);
     // Some mass enters every row that some output leads to.
-    EXPECT_GT(d.unsampled, 0.0) << "row " << row;
-    mass_of_all += d.unsampled;
+    EXPECT_GT(d.unsampled(), 0.0) << "row " << row;
+    mass_of_all += d.unsampled();
     const WalkTally tally = Walker(chain).walk(field, start, 13, 9, {0, 20'000});
-    expect_binomial(tally.unsampled, 20'000, d.unsampled);
+    expect_binomial(tally.unsampled(), 20'000, d.unsampled());
   }
   EXPECT_GT(mass_of_all, 1.0);  // a walk enters several rows
 }
@@ -403,15 +406,15 @@ FinalDistribution densely(const std::vector<Chain>& chain_of_row, const Field& f
   FinalDistribution d;
   d.final_cells = CellProbabilities::Zero(field.rows, field.columns);
   for (int s = 0; s < n * cells; ++s) {
-    const auto end = [&](double& why, double mass) {
-      why += mass;
+    const auto end = [&](Ending why, double mass) {
+      d.endings[static_cast<std::size_t>(why)] += mass;
       d.final_cells.data()[s / n] += mass;
     };
-    if (!sampled(s)) end(d.unsampled, visits(s) + last(s));
+    if (!sampled(s)) end(Ending::unsampled, visits(s) + last(s));
     for (const Draw& draw : draws(s)) {
-      if (draw.next == kTrapped) end(d.trapped, draw.p * (visits(s) + last(s)));
-      if (draw.next == kLeft) end(d.left_field, draw.p * (visits(s) + last(s)));
-      if (draw.next >= 0) end(d.cut_off, draw.p * last(s));
+      if (draw.next == kTrapped) end(Ending::trapped, draw.p * (visits(s) + last(s)));
+      if (draw.next == kLeft) end(Ending::left_edge, draw.p * (visits(s) + last(s)));
+      if (draw.next >= 0) end(Ending::cut_off, draw.p * last(s));
     }
   }
   return d;
@@ -470,7 +473,7 @@ TEST(Exact, AClosedLoopHasNoSolution) {
   EXPECT_THROW((void)solve_absorption(chain, {1, 1}, {}), std::runtime_error);
   const FinalDistribution d = by_steps(chain, {1, 1}, {}, {.tolerance = 1e-13, .max_steps = 100});
   EXPECT_EQ(d.steps, 100);
-  EXPECT_EQ(d.trapped, 0.5);
+  EXPECT_EQ(d.trapped(), 0.5);
   EXPECT_NEAR(d.remainder, 0.5, 100 * kEps);
   // From inside nothing else is seen: the same, and the loop of one state as well.
   EXPECT_THROW((void)solve_absorption(chain, {1, 1}, {0, 0, 1}), std::runtime_error);
@@ -498,8 +501,8 @@ TEST(Exact, TheConditionGateKeepsSixDigits) {
 }
 
 TEST(Exact, AnEscapeOf1e300IsNotLost) {
-  EXPECT_NEAR(by_steps(nearly_closed(1e-300), {2, 1}, {}, {.max_cells = 13}).trapped / 13e-300, 1.0,
-              16 * kEps);
+  EXPECT_NEAR(by_steps(nearly_closed(1e-300), {2, 1}, {}, {.max_cells = 13}).trapped() / 13e-300,
+              1.0, 16 * kEps);
 }
 
 TEST(Exact, RefusesWhatMakesNoSense) {

@@ -88,7 +88,7 @@ TEST_P(Solvers, TwoStatesInTwoCells) {
   // Left: trapped v/4. Right: of r0 3/4 leave over the right edge and 1/4 is trapped; of r1 half.
   expect_cells(d, CellProbabilities{{2.0 / 7.0, 4.0 / 7.0 + 1.0 / 7.0}});
   EXPECT_NEAR(d.endings[static_cast<std::size_t>(Ending::right_edge)], 3.0 / 7.0, bound(d));
-  EXPECT_NEAR(d.trapped, 2.0 / 7.0 + 1.0 / 7.0 + 1.0 / 7.0, bound(d));
+  EXPECT_NEAR(d.trapped(), 2.0 / 7.0 + 1.0 / 7.0 + 1.0 / 7.0, bound(d));
   EXPECT_NEAR(d.mean_steps, 8.0 / 7.0 + 4.0 / 7.0 + 2.0 / 7.0, 10 * bound(d));
 }
 
@@ -115,7 +115,7 @@ TEST_P(Solvers, ThreeByThreeCellsWithALimitOfTwo) {
   }
   const FinalDistribution d = from(drift(0.25, 0.0, 0.5), {3, 3}, {0, 0, 0}, 2);
   expect_cells(d, CellProbabilities{{0.25, 0.25, 0.0}, {0.5, 0.0, 0.0}, {0.0, 0.0, 0.0}});
-  EXPECT_NEAR(d.cut_off, 9.0 / 16.0, bound(d));
+  EXPECT_NEAR(d.cut_off(), 9.0 / 16.0, bound(d));
 }
 
 // Row 0: up with 1/2, else trapped. Row 1: to either side with 1/4 each, else trapped. A walk in

@@ -57,7 +57,7 @@ inline FinalDistribution propagate(const FieldChain& chain, const Field& field, 
   d.final_cells = CellProbabilities::Zero(field.rows, field.columns);
   std::array<long double, kEndings> all{};
   for (std::int64_t cell = 0; cell < cells; ++cell) {
-    CellEndings here{cell, {}};
+    CellEndings<double> here{cell, {}};
     long double sum = 0;
     for (std::size_t e = 0; e < kEndings; ++e) {
       const long double share = ended[static_cast<std::size_t>(cell)][e];
@@ -68,12 +68,7 @@ inline FinalDistribution propagate(const FieldChain& chain, const Field& field, 
     d.final_cells.data()[cell] = static_cast<double>(sum);
     if (sum > ended[static_cast<std::size_t>(cell)].front()) d.mixed_cells.push_back(here);
   }
-  const auto of = [&](Ending e) { return static_cast<double>(all[static_cast<std::size_t>(e)]); };
   for (std::size_t e = 0; e < kEndings; ++e) d.endings[e] = static_cast<double>(all[e]);
-  d.trapped = of(Ending::trapped);
-  d.cut_off = of(Ending::cut_off);
-  d.unsampled = of(Ending::unsampled);
-  for (const Ending edge : kEdges) d.left_field += of(edge);
   d.remainder = static_cast<double>(walking);
   d.mean_steps = static_cast<double>(draws);
   return d;
