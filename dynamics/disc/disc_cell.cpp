@@ -59,10 +59,10 @@ std::uint64_t stream_row(const GateParams& p, const BodyState& b) {
 
 Passage passage_of(const GateParams& p, const GateRun& run) {
   Passage passage{.fate = Fate::left, .next = {}, .costs = costs_of(run)};
-  if (run.ending == Ending::trapped || run.ending == Ending::broken)
-    passage.fate = run.ending == Ending::trapped ? Fate::trapped : Fate::broken;
+  if (run.outcome == Outcome::trapped || run.outcome == Outcome::broken)
+    passage.fate = run.outcome == Outcome::trapped ? Fate::trapped : Fate::broken;
   else
-    passage.next = crossing_of(p, run.ending, run.exit);
+    passage.next = crossing_of(p, run.outcome, run.exit);
   return passage;
 }
 
@@ -91,7 +91,7 @@ Passage DiscCell::pass(Body& body) const {
   const GateRun run = run_gate(p_, *method_, memory.from, memory.force);
   const Passage passage = passage_of(p_, run);
   body.entry = passage.next;
-  if (passage.fate == Fate::left) memory.from = shifted_into_next(p_, run.ending, run.exit);
+  if (passage.fate == Fate::left) memory.from = shifted_into_next(p_, run.outcome, run.exit);
   return passage;
 }
 
@@ -105,7 +105,7 @@ void DiscCell::carry_out(const NextPassage& next, Health& health, std::int64_t a
       passage = passage_of(p_, *ended);
       body.entry = passage.next;
       body.carried.put(Memory{passage.fate == Fate::left
-                                  ? shifted_into_next(p_, ended->ending, ended->exit)
+                                  ? shifted_into_next(p_, ended->outcome, ended->exit)
                                   : ended->exit,
                               slot.force});
     }

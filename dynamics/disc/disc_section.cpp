@@ -72,22 +72,16 @@ StateSpace table3_space(const GateParams& p) { return {disc_section(p), table3_b
 
 bool symmetric(const GateParams& p) { return p.beams.stiffness_left == p.beams.stiffness_right; }
 
-Entry crossing_of(const GateParams& p, Ending ending, const BodyState& exit) {
+Entry crossing_of(const GateParams& p, Outcome outcome, const BodyState& exit) {
   const bool below = exit.y < p.beams.joint_y;
   const double from_joint = std::abs(exit.y - p.beams.joint_y);
-  switch (ending) {
-    case Ending::traversed:
-      return {Boundary::enter, {exit.x, exit.vx, exit.vy}};
-    case Ending::exited_left:
-      return {below ? Boundary::right_deflect : Boundary::right_traverse,
-              {from_joint, exit.vx, exit.vy}};
-    case Ending::exited_right:
-      return {below ? Boundary::left_deflect : Boundary::left_traverse,
-              {from_joint, exit.vx, exit.vy}};
-    case Ending::trapped:
-    case Ending::broken:
-      break;
-  }
+  if (is_traversed(outcome)) return {Boundary::enter, {exit.x, exit.vx, exit.vy}};
+  if (outcome == Outcome::exited_left)
+    return {below ? Boundary::right_deflect : Boundary::right_traverse,
+            {from_joint, exit.vx, exit.vy}};
+  if (outcome == Outcome::exited_right)
+    return {below ? Boundary::left_deflect : Boundary::left_traverse,
+            {from_joint, exit.vx, exit.vy}};
   throw std::logic_error("this run did not leave its gate");
 }
 
@@ -118,11 +112,11 @@ BodyState entry_state(const GateParams& p, const Entry& entry) {
   throw std::logic_error("no such boundary");
 }
 
-BodyState shifted_into_next(const GateParams& p, Ending ending, BodyState exit) {
+BodyState shifted_into_next(const GateParams& p, Outcome outcome, BodyState exit) {
   const double width = p.gate_width();
-  if (ending == Ending::traversed) exit.y -= p.run.traverse_y;
-  if (ending == Ending::exited_left) exit.x += width;
-  if (ending == Ending::exited_right) exit.x -= width;
+  if (is_traversed(outcome)) exit.y -= p.run.traverse_y;
+  if (outcome == Outcome::exited_left) exit.x += width;
+  if (outcome == Outcome::exited_right) exit.x -= width;
   return exit;
 }
 

@@ -33,7 +33,7 @@ inline constexpr std::size_t kEntryD = 0, kEntryVx = 1, kEntryVy = 2;
 [[nodiscard]] bool symmetric(const GateParams& p);
 
 /// The entry into the next gate that ends a run. Only for runs that left the gate.
-[[nodiscard]] Entry crossing_of(const GateParams& p, Ending ending, const BodyState& exit);
+[[nodiscard]] Entry crossing_of(const GateParams& p, Outcome outcome, const BodyState& exit);
 
 /// That of a body on the lower edge of its gate, y = 0.
 [[nodiscard]] inline Entry entry_of(const BodyState& b) {
@@ -44,7 +44,7 @@ inline constexpr std::size_t kEntryD = 0, kEntryVx = 1, kEntryVy = 2;
 [[nodiscard]] BodyState entry_state(const GateParams& p, const Entry& entry);
 
 /// The same body in the frame of the gate it has moved into: nothing is rounded to the boundary.
-[[nodiscard]] BodyState shifted_into_next(const GateParams& p, Ending ending, BodyState exit);
+[[nodiscard]] BodyState shifted_into_next(const GateParams& p, Outcome outcome, BodyState exit);
 
 /// Table III: 25 EN, 30 RD, 30 LD, 1 RT, 1 LT. Distances follow the gate's size, velocities the
 /// scene's own unit of speed: the table's in the paper's scenes. RT and LT are one state each;

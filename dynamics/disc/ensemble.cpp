@@ -19,7 +19,7 @@ GateRun run_gate_trial(const GateParams& p, const Method& method, const BodyStat
 
 void GateTally::add(const GateParams& p, const GateRun& run) {
   ++trials;
-  ++counts[static_cast<std::size_t>(outcome_of(run))];
+  ++counts[static_cast<std::size_t>(run.outcome)];
   add_run(health, p, run);
 }
 

@@ -15,26 +15,6 @@ bool finite(const GateState& s) {
 
 }  // namespace
 
-Outcome outcome_of(const GateRun& run) {
-  const double left = run.watch.max_theta[kLeft], right = run.watch.max_theta[kRight];
-  if (run.out_of_work) return Outcome::broken;
-  switch (run.ending) {
-    case Ending::traversed:
-      return left > right   ? Outcome::traversed_left
-             : right > left ? Outcome::traversed_right
-                            : Outcome::traversed_even;
-    case Ending::exited_left:
-      return Outcome::exited_left;
-    case Ending::exited_right:
-      return Outcome::exited_right;
-    case Ending::trapped:
-      return Outcome::trapped;
-    case Ending::broken:
-      break;
-  }
-  return Outcome::broken;
-}
-
 void settle_energy(const GateParams& p, const BodyState& start, GateRun& run) {
   const auto kinetic = [&](const BodyState& b) {
     return 0.5 * p.body.mass * (b.vx * b.vx + b.vy * b.vy);
@@ -53,7 +33,7 @@ void add_run(Health& health, const GateParams& p, const GateRun& run) {
   health.creating_energy += w.energy_created > 1e-4 * energy_scale;
   health.fast += w.fast_steps > 0;
   health.unstable += w.unstable_steps > 0;
-  health.broken += run.ending == Ending::broken;
+  health.broken += run.outcome == Outcome::broken && !run.out_of_work;
   health.undefined_contacts += w.undefined_contacts;
   health.forced_holds += w.forced_holds;
   health.impacts += w.impacts;
@@ -64,12 +44,17 @@ void add_run(Health& health, const GateParams& p, const GateRun& run) {
   health.worst_speed = std::max(health.worst_speed, w.max_speed);
 }
 
-Ending ending(const GateParams& p, const GateState& s) {
-  if (!finite(s)) return Ending::broken;
-  if (s.body.y > p.run.traverse_y) return Ending::traversed;
-  if (s.body.x < -p.beams.joint_x) return Ending::exited_left;
-  if (s.body.x > p.beams.joint_x) return Ending::exited_right;
-  return Ending::trapped;
+Outcome outcome_of(const GateParams& p, const GateState& s, const Watch& watch) {
+  if (!finite(s)) return Outcome::broken;
+  if (s.body.y > p.run.traverse_y) {
+    const double left = watch.max_theta[kLeft], right = watch.max_theta[kRight];
+    return left > right   ? Outcome::traversed_left
+           : right > left ? Outcome::traversed_right
+                          : Outcome::traversed_even;
+  }
+  if (s.body.x < -p.beams.joint_x) return Outcome::exited_left;
+  if (s.body.x > p.beams.joint_x) return Outcome::exited_right;
+  return Outcome::trapped;
 }
 
 GateRun run_gate(const GateParams& p, const Method& method, const BodyState& start,
@@ -89,7 +74,7 @@ GateRun run_gate(const GateParams& p, const Method& method, const BodyState& sta
     if (!finite(s)) break;
   }
   run.exit = s.body;
-  run.ending = ending(p, s);
+  if (!run.out_of_work) run.outcome = outcome_of(p, s, run.watch);
   run.random_work = ledger.random_work();
   settle_energy(p, start, run);
   return run;

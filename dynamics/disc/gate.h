@@ -15,20 +15,51 @@
 
 namespace gatewalk::dynamics {
 
-/// How a run ends. `broken`: the state stopped being finite numbers; only a fault of the method.
-enum class Ending : std::uint8_t { traversed, exited_left, exited_right, trapped, broken };
+/// How a run ends, and for one that traversed by which beam. `broken`: the state stopped being
+/// finite numbers, which only a fault of the method makes, or the run was cut short.
+enum class Outcome : std::uint8_t {
+  traversed_left,   // the left beam had the larger deflection (Sec. III-B)
+  traversed_right,  // the right beam had
+  traversed_even,   // both deflected equally, to the last bit
+  exited_left,
+  exited_right,
+  trapped,
+  broken,  // not finite, or cut short
+};
+/// Its name in files and in words.
+struct OutcomeName {
+  Outcome outcome;
+  std::string_view key, words;
+};
+/// All of them, in the order of Outcome, which is that of tallies, files and tables.
+inline constexpr std::array kOutcomeNames{
+    OutcomeName{Outcome::traversed_left, "traversed_left", "traversed left"},
+    OutcomeName{Outcome::traversed_right, "traversed_right", "traversed right"},
+    OutcomeName{Outcome::traversed_even, "traversed_even", "traversed evenly"},
+    OutcomeName{Outcome::exited_left, "exited_left", "exited left"},
+    OutcomeName{Outcome::exited_right, "exited_right", "exited right"},
+    OutcomeName{Outcome::trapped, "trapped", "trapped"},
+    OutcomeName{Outcome::broken, "not_finite", "not finite"},
+};
+inline constexpr std::size_t kOutcomes = kOutcomeNames.size();
+[[nodiscard]] constexpr std::string_view name_of(Outcome outcome) {
+  return kOutcomeNames[static_cast<std::size_t>(outcome)].words;
+}
+/// By whichever beam.
+[[nodiscard]] constexpr bool is_traversed(Outcome outcome) {
+  return outcome <= Outcome::traversed_even;
+}
 
 struct GateRun {
-  Ending ending = Ending::broken;
+  Outcome outcome = Outcome::broken;
   BodyState exit;                                   // state at the end, in this gate's frame
   double seconds = 0.0;                             // simulated time
   double forward = 0.0;                             // m, from its start
   double propulsion_work = 0.0, random_work = 0.0;  // J, of the two forces
   double lost = 0.0;  // J: their work, less what the body has gained: to hits, dampers and drag,
                       // and what is left in the beams
-  bool out_of_work =
-      false;    // stopped because it took more work than was granted; `ending` means nothing
-  Watch watch;  // largest deflections, faults, work done
+  bool out_of_work = false;  // stopped because it took more work than was granted
+  Watch watch;               // largest deflections, faults, work done
 };
 
 /// Fills in forward, propulsion_work and lost, from where the run began, its exit and random_work.
@@ -58,39 +89,8 @@ static_assert(kCosts <= kMostCosts);
   return {run.seconds, run.forward, run.propulsion_work, run.random_work, run.lost};
 }
 
-/// How a run ends, and for one that traversed by which beam.
-enum class Outcome : std::uint8_t {
-  traversed_left,   // the left beam had the larger deflection (Sec. III-B)
-  traversed_right,  // the right beam had
-  traversed_even,   // both deflected equally, to the last bit
-  exited_left,
-  exited_right,
-  trapped,
-  broken,  // not finite, or cut short
-};
-/// Its name in files and in words.
-struct OutcomeName {
-  Outcome outcome;
-  std::string_view key, words;
-};
-/// All of them, in the order of Outcome, which is that of tallies, files and tables.
-inline constexpr std::array kOutcomeNames{
-    OutcomeName{Outcome::traversed_left, "traversed_left", "traversed left"},
-    OutcomeName{Outcome::traversed_right, "traversed_right", "traversed right"},
-    OutcomeName{Outcome::traversed_even, "traversed_even", "traversed evenly"},
-    OutcomeName{Outcome::exited_left, "exited_left", "exited left"},
-    OutcomeName{Outcome::exited_right, "exited_right", "exited right"},
-    OutcomeName{Outcome::trapped, "trapped", "trapped"},
-    OutcomeName{Outcome::broken, "not_finite", "not finite"},
-};
-inline constexpr std::size_t kOutcomes = kOutcomeNames.size();
-[[nodiscard]] Outcome outcome_of(const GateRun& run);
-[[nodiscard]] constexpr std::string_view name_of(Outcome outcome) {
-  return kOutcomeNames[static_cast<std::size_t>(outcome)].words;
-}
-
-/// Where a run that stopped in this state has ended; still inside is trapped.
-[[nodiscard]] Ending ending(const GateParams& p, const GateState& s);
+/// How a run has ended that stopped in this state; still inside is trapped.
+[[nodiscard]] Outcome outcome_of(const GateParams& p, const GateState& s, const Watch& watch);
 
 /// Runs one gate from `start` with both beams at rest, until the body is beyond traverse_y, beyond
 /// a side, or time_limit is over. There is no exit at the bottom: propulsion brings the body back.

@@ -162,11 +162,11 @@ class LaneRuns {
   void end(int i, const GateState& s) {
     GateRun& r = runs_[i].result;
     r.exit = s.body;
-    r.ending = ending(p_, s);
     const LaneWatches& w = watches;
     r.random_work = w.work[i];
     settle_energy(p_, runs_[i].slot.start, r);
     for (const Side side : {kLeft, kRight}) r.watch.max_theta[side] = w.max_theta[side][i];
+    r.outcome = outcome_of(p_, s, r.watch);
     r.watch.max_penetration = w.penetration[i];
     r.watch.energy_created = w.created[i];
     r.watch.max_speed = std::sqrt(w.speed_squared[i]);
@@ -190,7 +190,7 @@ class LaneRuns {
         return;
       }
       run.result.exit = b;
-      run.result.ending = ending(p_, {b, {}});
+      run.result.outcome = outcome_of(p_, {b, {}}, run.result.watch);
       ended = &run.result;
     }
     put(i, {});

@@ -46,10 +46,10 @@ RowTrials row_trials(const StateSpace& space, const GateParams& p, std::uint64_t
       [&](RunSlot& slot, const GateRun& run) {
         add_run(health.local(), p, run);
         Arrival& out = all.arrivals[static_cast<std::size_t>(slot.trial)];
-        if (run.ending == Ending::trapped) {
+        if (run.outcome == Outcome::trapped) {
           out.column = space.trapped();
-        } else if (run.ending != Ending::broken) {
-          const auto index = space.index_of(crossing_of(p, run.ending, run.exit));
+        } else if (run.outcome != Outcome::broken) {
+          const auto index = space.index_of(crossing_of(p, run.outcome, run.exit));
           out.column = index.state;
           out.clamped = index.clamped;
         }

@@ -309,12 +309,12 @@ class StableRuns {
     const auto count = [&](int k) { return static_cast<std::int64_t>(row[k][i]); };
     GateRun r;
     r.exit = s.body;
-    r.ending = ending(p_, s);
     r.seconds = run.seconds;
     r.out_of_work = run.out_of_work;
     r.random_work = row[kWork][i];
     settle_energy(p_, run.slot.start, r);
     for (const Side side : {kLeft, kRight}) r.watch.max_theta[side] = row[kMaxTheta + side][i];
+    if (!r.out_of_work) r.outcome = outcome_of(p_, s, r.watch);
     r.watch.max_penetration = row[kPenetration][i];
     r.watch.energy_created = row[kCreated][i];
     r.watch.max_speed = row[kSpeed][i];

@@ -47,7 +47,7 @@ FieldTally run_with_beams(const GateParams& p, const FieldParams& field, const C
       const auto entry = trials[i].follow(map, field, passage_of(p, run), keep);
       if (!entry) return;
       seen[i].entries.push_back(*entry);
-      stepper.go_on(run.ending);
+      stepper.go_on(run.outcome);
       if (memory == Memory::dropped) force.drop_hold();
     }
   });
@@ -115,7 +115,7 @@ FieldTrace trace_field(const FieldGates& gates, const FieldParams& field, const 
     const auto next = t.follow(map, field, passage_of(p, run), false, type);
     if (!next) break;
     type = type_at(*next);
-    from = shifted_into_next(p, run.ending, run.exit);
+    from = shifted_into_next(p, run.outcome, run.exit);
   }
   trace.ending = t.ending();
   return trace;

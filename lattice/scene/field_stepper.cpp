@@ -105,14 +105,14 @@ GateRun FieldStepper::run_gate(RandomForce& force) {
   }
   run.exit = body_;
   settle_energy(p_, start, run);
-  run.ending = finite() ? ending(p_, {body_, gates_[current_].beams}) : Ending::broken;
+  if (finite()) run.outcome = outcome_of(p_, {body_, gates_[current_].beams}, run.watch);
   return run;
 }
 
-void FieldStepper::go_on(Ending ending) {
-  const Face& move = disc_section().faces[crossing_of(p_, ending, body_).face];
+void FieldStepper::go_on(Outcome outcome) {
+  const Face& move = disc_section().faces[crossing_of(p_, outcome, body_).face];
   const std::size_t next = find(column() + move.di_x, row() + move.di_y);
-  body_ = shifted_into_next(p_, ending, body_);
+  body_ = shifted_into_next(p_, outcome, body_);
   last_ = current_;
   current_ = next;
 }

@@ -37,7 +37,7 @@ class FieldStepper {
 
   /// After a run that left its gate: the body is in the neighbour from now on. That gate must
   /// exist.
-  void go_on(dynamics::Ending ending);
+  void go_on(dynamics::Outcome outcome);
 
   /// Advances by at most `duration` seconds under lateral force `force_x` (N), stopping exactly
   /// where the body leaves its gate, or when something is no longer finite. Returns the seconds

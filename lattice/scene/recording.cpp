@@ -160,7 +160,7 @@ Recording record(const Scene& scene, std::uint64_t seed, std::int64_t trial, boo
     const auto t = dynamics::trace_gate(scene.gate, *method, scene.start, force, most_moments);
     append(r, t, 0, 0, 0);
     add_run(r.health, scene.gate, t.run);
-    r.ending = dynamics::name_of(dynamics::outcome_of(t.run));
+    r.ending = dynamics::name_of(t.run.outcome);
   }
   r.seconds = r.moments.back().time;
   return r;

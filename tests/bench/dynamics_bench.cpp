@@ -51,7 +51,7 @@ GateTally engine_trials(Make make, const GateParams& p, TrialRange range) {
       force.pass(p.run.step);
       ++run.watch.steps;
     }
-    run.ending = dynamics::ending(p, state);
+    run.outcome = dynamics::outcome_of(p, state, run.watch);
     tally.add(p, run);
   }
   return tally;

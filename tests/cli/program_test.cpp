@@ -557,10 +557,10 @@ TEST(ProgramCell, TheGateInChipmunk) {
     const Passage theirs = cell.pass(body);
     RandomForce force(p.forces, random);
     const GateRun ours = run_gate(p, *method, {0.0, 0.0, 0.0, 15.0}, force);
-    same += ours.ending == Ending::trapped
+    same += ours.outcome == Outcome::trapped
                 ? theirs.fate == Fate::trapped
                 : theirs.fate == Fate::left &&
-                      crossing_of(p, ours.ending, ours.exit).face == theirs.next.face;
+                      crossing_of(p, ours.outcome, ours.exit).face == theirs.next.face;
   }
   EXPECT_GE(same, 170) << "of 200 bodies that have the same forces";
 #else

@@ -40,7 +40,7 @@ void expect_same(const GateTally& a, const GateTally& b) {
 
 GateRun healthy_run() {
   GateRun run;
-  run.ending = Ending::trapped;
+  run.outcome = Outcome::trapped;
   run.watch.max_speed = 20.0;
   return run;
 }
@@ -75,7 +75,7 @@ TEST(Health, JudgesEachRun) {
   EXPECT_EQ(judged([](GateRun& r) { r.watch.max_penetration = 0.1001; }).penetrating, 1);
   EXPECT_EQ(judged([](GateRun& r) { r.watch.energy_created = 0.0681; }).creating_energy, 1);
   EXPECT_EQ(judged([](GateRun& r) { r.watch.fast_steps = 4; }).fast, 1);
-  EXPECT_EQ(judged([](GateRun& r) { r.ending = Ending::broken; }).broken, 1);
+  EXPECT_EQ(judged([](GateRun& r) { r.outcome = Outcome::broken; }).broken, 1);
   EXPECT_EQ(judged([](GateRun& r) { r.watch.undefined_contacts = 7; }).undefined_contacts, 7);
 }
 
@@ -125,10 +125,10 @@ TEST(GateTrials, TrialsCanBeReplayedAlone) {
                         Random(Purpose::gate, {42, 0, static_cast<std::uint64_t>(trial)}));
       const GateRun run = run_gate(p, *m, {}, force);
       const GateTally alone = run_gate_trials(p, {}, 42, {trial, 1});
-      EXPECT_EQ(alone.traversed(), run.ending == Ending::traversed);
-      EXPECT_EQ(alone[Outcome::exited_left], run.ending == Ending::exited_left);
-      EXPECT_EQ(alone[Outcome::exited_right], run.ending == Ending::exited_right);
-      EXPECT_EQ(alone[Outcome::trapped], run.ending == Ending::trapped);
+      EXPECT_EQ(alone.traversed(), is_traversed(run.outcome));
+      EXPECT_EQ(alone[Outcome::exited_left], run.outcome == Outcome::exited_left);
+      EXPECT_EQ(alone[Outcome::exited_right], run.outcome == Outcome::exited_right);
+      EXPECT_EQ(alone[Outcome::trapped], run.outcome == Outcome::trapped);
       EXPECT_TRUE(same_bits(alone.health.worst_speed, run.watch.max_speed));
       EXPECT_TRUE(same_bits(alone.health.worst_energy_created, run.watch.energy_created));
       EXPECT_EQ(alone.health.impacts, run.watch.impacts);

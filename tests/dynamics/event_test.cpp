@@ -161,7 +161,7 @@ TEST(Event, LeavesAFlightWithStrongDragAtItsMoment) {
     const BodyState start{.x = 0.0, .y = 0.0, .vx = 5.0, .vy = 130.0 + 2.0 * i};
     RandomForce force = force_of(p, 0);
     const GateRun run = run_gate(p, *method, start, force);
-    EXPECT_EQ(run.ending, Ending::traversed);
+    EXPECT_TRUE(is_traversed(run.outcome));
     EXPECT_TRUE(outside(p, run.exit));
     const double T = test::rise_time(p, start.vy, p.run.traverse_y);
     const test::FreeFlight exact = test::free_flight(p, start.x, start.vx, T);
@@ -914,7 +914,7 @@ TEST(Limits, EventMovesNothingWithoutForces) {
        {BodyState{3, 5}, BodyState{-10, 20}, BodyState{0, 20}, BodyState{-25, 20}}) {
     RandomForce force = force_of(p, 0);
     const GateRun run = run_gate(p, *method, start, force);
-    EXPECT_EQ(run.ending, Ending::trapped);
+    EXPECT_EQ(run.outcome, Outcome::trapped);
     EXPECT_EQ(run.exit.x, start.x);
     EXPECT_EQ(run.exit.y, start.y);
     EXPECT_EQ(run.exit.vx, 0.0);
@@ -1102,7 +1102,7 @@ TEST(Event, RunsAnySceneItAccepts) {
       const double seconds = test::thread_seconds() - began;
       const BodyState& b = run.exit;
       seen[i] = {false,
-                 run.ending == Ending::broken,
+                 run.outcome == Outcome::broken,
                  run.out_of_work,
                  std::isfinite(b.x + b.y + b.vx + b.vy),
                  run.watch.max_penetration,

@@ -44,15 +44,15 @@ TEST_P(Gate, EndsWhereTheBodyLeaves) {
   const double h = p.run.step;
   struct Case {
     BodyState start;
-    Ending ending;
+    Outcome outcome;
     double seconds;
   };
-  for (const Case& c : {Case{{20, 5, 10, 0}, Ending::exited_right, 0.5},
-                        Case{{-20, 5, -10, 0}, Ending::exited_left, 0.5},
-                        Case{{0, 55, 0, 10}, Ending::traversed, 0.5},
-                        Case{{0, 5, 0, -10}, Ending::trapped, 12.0}}) {
+  for (const Case& c : {Case{{20, 5, 10, 0}, Outcome::exited_right, 0.5},
+                        Case{{-20, 5, -10, 0}, Outcome::exited_left, 0.5},
+                        Case{{0, 55, 0, 10}, Outcome::traversed_even, 0.5},
+                        Case{{0, 5, 0, -10}, Outcome::trapped, 12.0}}) {
     const GateRun r = run(p, c.start);
-    EXPECT_EQ(r.ending, c.ending);
+    EXPECT_EQ(r.outcome, c.outcome);
     const double rounding = 125 * 65 * kEps;
     EXPECT_GE(r.seconds, c.seconds - rounding);
     EXPECT_LE(r.seconds, c.seconds + (whole_steps() ? h : 0.0) + rounding);
@@ -63,7 +63,7 @@ TEST_P(Gate, EndsWhereTheBodyLeaves) {
     EXPECT_NEAR(r.exit.vx, c.start.vx, slope);
     EXPECT_NEAR(r.exit.vy, c.start.vy, slope);
     EXPECT_EQ(r.watch.impacts, 0);
-    EXPECT_EQ(outside(p, r.exit), c.ending != Ending::trapped);
+    EXPECT_EQ(outside(p, r.exit), c.outcome != Outcome::trapped);
   }
 }
 
@@ -71,16 +71,16 @@ TEST_P(Gate, EndsWhereTheBodyLeaves) {
 // Method paper sees the end of the step only and calls that traversed.
 TEST_P(Gate, TheFirstBorderIsTheEnding) {
   for (const double side : {-1.0, 1.0}) {
-    const Ending beside = side < 0 ? Ending::exited_left : Ending::exited_right;
-    EXPECT_EQ(run(p, {side * 24.97, 59.99, side * 10, 10}).ending, Ending::traversed);
-    EXPECT_EQ(run(p, {side * 24.99, 59.97, side * 10, 10}).ending,
-              whole_steps() ? Ending::traversed : beside);
+    const Outcome beside = side < 0 ? Outcome::exited_left : Outcome::exited_right;
+    EXPECT_TRUE(is_traversed(run(p, {side * 24.97, 59.99, side * 10, 10}).outcome));
+    EXPECT_EQ(run(p, {side * 24.99, 59.97, side * 10, 10}).outcome,
+              whole_steps() ? Outcome::traversed_even : beside);
   }
 }
 
 TEST_P(Gate, StartOutsideEndsAtOnce) {
   const GateRun r = run(p, {30, 5, 1, 2});
-  EXPECT_EQ(r.ending, Ending::exited_right);
+  EXPECT_EQ(r.outcome, Outcome::exited_right);
   EXPECT_EQ(r.seconds, 0.0);
   EXPECT_EQ(r.watch.steps, 0);
   EXPECT_EQ(r.exit.x, 30.0);
@@ -88,7 +88,7 @@ TEST_P(Gate, StartOutsideEndsAtOnce) {
 
 TEST_P(Gate, StartOnTheBorderIsInside) {
   const GateRun r = run(p, {25, 5, -10, 0});
-  EXPECT_EQ(r.ending, Ending::exited_left);
+  EXPECT_EQ(r.outcome, Outcome::exited_left);
   EXPECT_NEAR(r.seconds, 5.0, 2 * p.run.step);
 }
 
@@ -98,7 +98,7 @@ TEST_P(Gate, TrappedMeansTheWholeTimeLimit) {
       p.run.time_limit = limit;
       p.run.step = step;
       const GateRun r = run(p, {0, 5, 0, 0});
-      EXPECT_EQ(r.ending, Ending::trapped);
+      EXPECT_EQ(r.outcome, Outcome::trapped);
       // Method paper takes whole steps, the last one beyond the limit if need be; the others end at
       // the limit, with shorter steps in the hold that it cuts. 600 spells of time are added up.
       const double steps = std::ceil(limit / step - 1e-6);
@@ -217,7 +217,7 @@ TEST(GateRun, BrokenWhenTheStateStopsBeingFinite) {
   for (const auto what : {&BodyState::x, &BodyState::y, &BodyState::vx, &BodyState::vy}) {
     RandomForce force = force_of(p);
     const GateRun r = run_gate(p, Breaking(what), {}, force);
-    EXPECT_EQ(r.ending, Ending::broken);
+    EXPECT_EQ(r.outcome, Outcome::broken);
     EXPECT_EQ(r.watch.steps, 3);
     EXPECT_NEAR(r.seconds, 0.06, 1e-15);
   }

@@ -85,7 +85,7 @@ TEST(Lanes, DoWhatThePlainMethodDoes) {
       penetrating[0] += plain.watch.max_penetration > 0.01 * scene.p.body.radius;
       penetrating[1] += lane.watch.max_penetration > 0.01 * scene.p.body.radius;
       const bool near =
-          plain.ending == lane.ending &&
+          plain.outcome == lane.outcome &&
           std::hypot(plain.exit.x - lane.exit.x, plain.exit.y - lane.exit.y) < 1e-6 &&
           std::hypot(plain.exit.vx - lane.exit.vx, plain.exit.vy - lane.exit.vy) < 1e-6;
       if (!near) {
@@ -174,7 +174,7 @@ TEST(Lanes, RunsThatEndAtOnce) {
   for (std::size_t i = 0; i < starts.size(); ++i) {
     RandomForce force = gate_force(p, 1, static_cast<std::int64_t>(i));
     const GateRun plain = run_gate(p, *method, starts[i], force);
-    EXPECT_EQ(plain.ending, runs[i].ending) << i;
+    EXPECT_EQ(plain.outcome, runs[i].outcome) << i;
     EXPECT_EQ(plain.watch.steps, runs[i].watch.steps) << i;
     EXPECT_EQ(plain.seconds, runs[i].seconds) << i;
   }

@@ -409,7 +409,7 @@ TEST(PenaltyBound, ScenesWithinItDoNotBlowUp) {
     RandomForce force(p.forces, Random(Purpose::gate, {1, 0, i}));
     const GateRun run = run_gate(p, *make_method(p), {draw.uniform(-20, 20), 0, 0, 10}, force);
     ++runs;
-    ASSERT_NE(run.ending, Ending::broken) << i;
+    ASSERT_NE(run.outcome, Outcome::broken) << i;
     // The energy of a spring at the border swings up to 40-fold about its invariant.
     const double fastest = run.watch.max_speed;
     EXPECT_LE(fastest, 100.0) << i;

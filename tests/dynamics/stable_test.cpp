@@ -770,7 +770,7 @@ TEST(Limits, NothingMovesWithoutForces) {
        {BodyState{3, 5}, BodyState{-10, 20}, BodyState{0, 20}, BodyState{-25, 20}}) {
     RandomForce force(p.forces, Random(Purpose::gate, {}));
     const GateRun run = run_gate(p, method, start, force);
-    EXPECT_EQ(run.ending, Ending::trapped);
+    EXPECT_EQ(run.outcome, Outcome::trapped);
     EXPECT_EQ(run.exit.x, start.x);
     EXPECT_EQ(run.exit.y, start.y);
     EXPECT_EQ(run.exit.vx, 0.0);
@@ -949,7 +949,7 @@ TEST(Stable, RunsAnySceneItAccepts) {
       Health health;
       add_run(health, p, run);
       seen[i] = {false,
-                 run.ending == Ending::broken,
+                 run.outcome == Outcome::broken,
                  std::isfinite(b.x + b.y + b.vx + b.vy),
                  p.beams.mass < p.body.mass,
                  health.clean(),

@@ -541,22 +541,22 @@ TEST(StateSpace, RefusesEdgesThatMakeNoBins) {
 TEST(Crossing, OfEachExit) {
   const GateParams p;
   struct Case {
-    Ending ending;
+    Outcome outcome;
     BodyState exit;
     Boundary boundary;
     double d;
     int di_x, di_y;
   };
-  using enum Ending;
+  using enum Outcome;
   using enum Boundary;
-  const Case cases[] = {{traversed, {7, 60.05, 1, 15}, enter, 7, 0, 1},
+  const Case cases[] = {{traversed_right, {7, 60.05, 1, 15}, enter, 7, 0, 1},
                         {exited_left, {-25.1, 12, -5, 3}, right_deflect, 18, -1, 0},
                         {exited_left, {-25.1, 47, -5, 3}, right_traverse, 17, -1, 0},
                         {exited_right, {25.1, 12, 5, 3}, left_deflect, 18, 1, 0},
                         {exited_right, {25.1, 47, 5, 3}, left_traverse, 17, 1, 0},
                         {exited_left, {-25.1, -4, -5, 3}, right_deflect, 34, -1, 0}};
   for (const Case& c : cases) {
-    const Entry crossing = crossing_of(p, c.ending, c.exit);
+    const Entry crossing = crossing_of(p, c.outcome, c.exit);
     EXPECT_EQ(crossing.face, c.boundary);
     EXPECT_EQ(crossing.at[kEntryD], c.d);
     EXPECT_EQ(crossing.at[kEntryVx], c.exit.vx);
@@ -570,19 +570,19 @@ TEST(Crossing, OfEachExit) {
 // Exactly at the joint's height the body is not below it.
 TEST(Crossing, AtTheJointCountsAsAbove) {
   const GateParams p;
-  const Entry at = crossing_of(p, Ending::exited_left, {-25.1, 30, -5, 0});
+  const Entry at = crossing_of(p, Outcome::exited_left, {-25.1, 30, -5, 0});
   EXPECT_EQ(at.face, Boundary::right_traverse);
   EXPECT_EQ(at.at[kEntryD], 0.0);
   const double just_below = std::nextafter(30.0, 0.0);
-  const Entry below = crossing_of(p, Ending::exited_left, {-25.1, just_below, -5, 0});
+  const Entry below = crossing_of(p, Outcome::exited_left, {-25.1, just_below, -5, 0});
   EXPECT_EQ(below.face, Boundary::right_deflect);
   EXPECT_GT(below.at[kEntryD], 0.0);
 }
 
 TEST(Crossing, RunsThatStayedInsideHaveNone) {
   const GateParams p;
-  EXPECT_THROW((void)crossing_of(p, Ending::trapped, {}), std::logic_error);
-  EXPECT_THROW((void)crossing_of(p, Ending::broken, {}), std::logic_error);
+  EXPECT_THROW((void)crossing_of(p, Outcome::trapped, {}), std::logic_error);
+  EXPECT_THROW((void)crossing_of(p, Outcome::broken, {}), std::logic_error);
 }
 
 // Round trip: the body that enters at a crossing is, on its boundary, the body that has left the
@@ -592,19 +592,19 @@ TEST(Crossing, RoundTrips) {
   Draw draw(1);
   for (int i = 0; i < 10'000; ++i) {
     const double beyond = draw.uniform(0, 0.1);
-    Ending ending = Ending::traversed;
+    Outcome outcome = Outcome::traversed_even;
     BodyState exit{draw.uniform(-25, 25), 60 + beyond, draw.uniform(-20, 20), draw.uniform(0, 20)};
     BodyState on_border = exit;
     on_border.y = 60;
     if (i % 3 != 0) {
       const double side = i % 3 == 1 ? -1.0 : 1.0;
-      ending = side < 0 ? Ending::exited_left : Ending::exited_right;
+      outcome = side < 0 ? Outcome::exited_left : Outcome::exited_right;
       exit = {side * (25 + beyond), draw.uniform(-5, 60), side * draw.uniform(0, 20),
               draw.uniform(-20, 20)};
       on_border = exit;
       on_border.x = side * 25;
     }
-    const Entry crossing = crossing_of(p, ending, exit);
+    const Entry crossing = crossing_of(p, outcome, exit);
     const Face& move = disc_section().faces[crossing.face];
     const BodyState entry = entry_state(p, crossing);
     EXPECT_NEAR(entry.x + 50 * move.di_x, on_border.x, 1e-13);
@@ -613,7 +613,7 @@ TEST(Crossing, RoundTrips) {
     EXPECT_EQ(entry.vy, exit.vy);
     EXPECT_FALSE(outside(p, entry));
 
-    const BodyState next = shifted_into_next(p, ending, exit);
+    const BodyState next = shifted_into_next(p, outcome, exit);
     EXPECT_NEAR(next.x + 50 * move.di_x, exit.x, 1e-13);
     EXPECT_NEAR(next.y + 60 * move.di_y, exit.y, 1e-13);
     EXPECT_EQ(next.vx, exit.vx);
@@ -623,7 +623,7 @@ TEST(Crossing, RoundTrips) {
 }
 
 TEST(Crossing, RunsThatStayedInsideAreNotShifted) {
-  const BodyState b = shifted_into_next(GateParams{}, Ending::trapped, {1, 2, 3, 4});
+  const BodyState b = shifted_into_next(GateParams{}, Outcome::trapped, {1, 2, 3, 4});
   EXPECT_EQ(b.x, 1);
   EXPECT_EQ(b.y, 2);
 }

@@ -36,7 +36,7 @@ TEST_P(Trace, IsTheRunItself) {
   for (const std::int64_t trial : {0, 1, 2, 6}) {
     const GateRun run = run_gate_trial(p, *make_method(p), {}, 1, trial);
     const GateTrace t = trace(p, trial);
-    EXPECT_EQ(t.run.ending, run.ending);
+    EXPECT_EQ(t.run.outcome, run.outcome);
     EXPECT_TRUE(same_bits(t.run.exit.x, run.exit.x) && same_bits(t.run.exit.vy, run.exit.vy));
     const GateState& last = t.samples.back().state;
     EXPECT_TRUE(same_bits(last.body.x, run.exit.x) && same_bits(last.body.vy, run.exit.vy));

@@ -83,8 +83,8 @@ TEST(Transitions, TrialsCanBeReplayedAlone) {
       RandomForce force(p.forces, random);
       const GateRun run = run_gate(p, *method, entry_state(p, start), force);
       int column = expected.space.trapped();
-      if (run.ending != Ending::trapped) {
-        const auto index = expected.space.index_of(crossing_of(p, run.ending, run.exit));
+      if (run.outcome != Outcome::trapped) {
+        const auto index = expected.space.index_of(crossing_of(p, run.outcome, run.exit));
         column = index.state;
         expected.clamped[row] += index.clamped;
       }
@@ -139,9 +139,9 @@ TEST(Transitions, StartFromTheEntriesOfTheirRow) {
     speeds.insert(start.at[kEntryVy]);
     RandomForce force(p.forces, random);
     const GateRun run = run_gate(p, *method, entry_state(p, start), force);
-    ++replayed[run.ending == Ending::trapped
+    ++replayed[run.outcome == Outcome::trapped
                    ? space.trapped()
-                   : space.index_of(crossing_of(p, run.ending, run.exit)).state];
+                   : space.index_of(crossing_of(p, run.outcome, run.exit)).state];
   }
   EXPECT_EQ(t.rows[row], replayed);
   EXPECT_EQ(speeds.size(), 2u);  // this seed draws both
@@ -175,9 +175,9 @@ TEST(Transitions, GiveSingleEntriesMoreRuns) {
     (void)space.sample(87, random);
     RandomForce force(p.forces, random);
     const GateRun r = run_gate(p, *method, {0, 0, 0, 15}, force);
-    ++replayed[r.ending == Ending::trapped
+    ++replayed[r.outcome == Outcome::trapped
                    ? space.trapped()
-                   : space.index_of(crossing_of(p, r.ending, r.exit)).state];
+                   : space.index_of(crossing_of(p, r.outcome, r.exit)).state];
   }
   EXPECT_EQ(whole.rows[87], replayed);
 }

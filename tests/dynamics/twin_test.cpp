@@ -49,7 +49,7 @@ TEST_P(Twins, RunsHaveTheSameBits) {
     for (std::int64_t trial = 0; trial < 12; ++trial) {
       const GateRun a = run_gate_trial(p, *method, start, 1, trial);
       const GateRun b = run_gate_trial(q, *other, twin.of(start), 1, trial);
-      ASSERT_EQ(a.ending, b.ending);
+      ASSERT_EQ(a.outcome, b.outcome);
       const BodyState exit = twin.of(a.exit);
       ASSERT_EQ(exit.x, b.exit.x);
       ASSERT_EQ(exit.y, b.exit.y);

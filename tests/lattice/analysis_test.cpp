@@ -98,7 +98,7 @@ TEST(Costs, OfLanesAreThoseOfThePlainMethod) {
           run_gate_trial(scene.gate, *made, scene.start, 3, static_cast<std::int64_t>(i));
       if (std::string_view(method) == "stable") {
         EXPECT_EQ(costs_of(in_lanes[i]), costs_of(plain)) << i;
-      } else if (in_lanes[i].ending == plain.ending) {
+      } else if (in_lanes[i].outcome == plain.outcome) {
         EXPECT_NEAR(in_lanes[i].random_work, plain.random_work,
                     1e-6 * (1.0 + std::abs(plain.random_work)))
             << i;

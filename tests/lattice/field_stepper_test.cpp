@@ -56,9 +56,9 @@ TEST(FieldStepper, PassesGatesWithoutContactOnAParabola) {
     double impacts = 0.0;
     for (int gate = 0; gate < 4; ++gate) {
       const GateRun run = stepper.run_gate(force);
-      ASSERT_EQ(run.ending, Ending::traversed);
+      ASSERT_TRUE(is_traversed(run.outcome));
       impacts += static_cast<double>(run.watch.impacts);
-      stepper.go_on(run.ending);
+      stepper.go_on(run.outcome);
       const double t = stepper.seconds();
       // Some 5000 steps of round-off in numbers up to 240.
       EXPECT_NEAR(60.0 * stepper.row() + stepper.body().y, 15 * t + 4 * t * t, 1e-9);
@@ -188,21 +188,20 @@ TEST(FieldStepper, KeepsAngularMomentumAboutASharedJoint) {
 TEST(FieldStepper, OneGateHasTheConvergedOutcomes) {
   const GateParams p = moreau(test::study(50.0), 0.004);
   constexpr int kTrials = 1500;
-  std::array<int, 5> seen{};
+  std::array<int, dynamics::kOutcomes> seen{};
   for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
     FieldStepper stepper(p, field(Fidelity::all, 1, 1), {});
     RandomForce force(p.forces, Random(Purpose::gate, {11, 0, trial}));
-    ++seen[static_cast<int>(stepper.run_gate(force).ending)];
+    ++seen[static_cast<int>(stepper.run_gate(force).outcome)];
   }
   const auto expect_share = [&](int count, double share) {
     EXPECT_NEAR(static_cast<double>(count) / kTrials, share,
                 0.01 + 4 * std::sqrt(share * (1 - share) / kTrials));
   };
-  expect_share(seen[static_cast<int>(Ending::traversed)], 0.055);
-  expect_share(
-      seen[static_cast<int>(Ending::exited_left)] + seen[static_cast<int>(Ending::exited_right)],
-      0.534);
-  expect_share(seen[static_cast<int>(Ending::trapped)], 0.410);
+  const auto of = [&](Outcome outcome) { return seen[static_cast<std::size_t>(outcome)]; };
+  expect_share(of(Outcome::traversed_left) + of(Outcome::traversed_right), 0.055);
+  expect_share(of(Outcome::exited_left) + of(Outcome::exited_right), 0.534);
+  expect_share(of(Outcome::trapped), 0.410);
 }
 
 // The same law written for two beams: method moreau, run by run. Round-off grows with every hit, so
@@ -211,7 +210,7 @@ TEST(FieldStepper, OneGateIsMethodMoreau) {
   const GateParams p = moreau();
   const auto method = make_method(p);
   constexpr int kTrials = 300;
-  std::array<int, 5> ours{}, theirs{};
+  std::array<int, dynamics::kOutcomes> ours{}, theirs{};
   int close = 0, touched = 0;
   for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
     const BodyState start{0, 0, 0, 15};
@@ -233,9 +232,9 @@ TEST(FieldStepper, OneGateIsMethodMoreau) {
                  std::abs(b.vy - s.body.vy) <
              1e-9;
     RandomForce again = noise(), once_more = noise();
-    ++theirs[static_cast<int>(run_gate(p, *method, start, again).ending)];
+    ++theirs[static_cast<int>(run_gate(p, *method, start, again).outcome)];
     FieldStepper all(p, field(Fidelity::all, 1, 1), start);
-    ++ours[static_cast<int>(all.run_gate(once_more).ending)];
+    ++ours[static_cast<int>(all.run_gate(once_more).outcome)];
   }
   EXPECT_GT(touched, kTrials / 2);
   EXPECT_GE(close, kTrials * 97 / 100);  // near grazing, round-off may decide
@@ -261,7 +260,7 @@ TEST(FieldStepper, RememberedBeamsSwingOnInClosedForm) {
   Watch watch;
   const auto step = [&] {
     (void)stepper.advance(0.0, p.run.step, watch);
-    if (outside(p, stepper.body())) stepper.go_on(Ending::traversed);
+    if (outside(p, stepper.body())) stepper.go_on(Outcome::traversed_even);
   };
   while (stepper.row() == 0) step();
   EXPECT_EQ(stepper.awake(), 1U);  // the last choice was made before the step out
@@ -311,7 +310,7 @@ TEST(FieldStepper, TheGateJustLeftStillPushes) {
     Watch before, after;
     while (!outside(p, stepper.body())) (void)stepper.advance(0.0, p.run.step, before);
     EXPECT_EQ(before.impacts, 0);
-    stepper.go_on(Ending::traversed);
+    stepper.go_on(Outcome::traversed_even);
     for (int i = 0; i < 150; ++i) (void)stepper.advance(0.0, p.run.step, after);
     EXPECT_GT(after.impacts, 0);
     EXPECT_EQ(stepper.row(), 1);
@@ -336,7 +335,7 @@ TEST(FieldStepper, ASideLeftBehindStillPushes) {
   stepper.set_beams(kMiddle, 0, {BeamState{}, {0.7, 2.0}});
   Watch watch;
   while (!outside(p, stepper.body())) (void)stepper.advance(0.0, p.run.step, watch);
-  stepper.go_on(Ending::exited_right);
+  stepper.go_on(Outcome::exited_right);
   const double before = stepper.body().vx;
   for (int i = 0; i < 100; ++i) (void)stepper.advance(0.0, p.run.step, watch);
   EXPECT_EQ(stepper.column(), kMiddle + 1);
@@ -373,7 +372,7 @@ TEST(FieldStepper, FourGatesAtMostAreWithinReach) {
   EXPECT_EQ(first.awake(), 2U);
   FieldStepper second(p, field(Fidelity::all), {24, 59.9, 0, 20});
   while (!outside(p, second.body())) (void)second.advance(0.0, p.run.step, watch);
-  second.go_on(Ending::traversed);
+  second.go_on(Outcome::traversed_even);
   (void)second.advance(0.0, 0.02, watch);
   EXPECT_EQ(second.awake(), 4U);
 
@@ -386,8 +385,8 @@ TEST(FieldStepper, FourGatesAtMostAreWithinReach) {
       const double passed = stepper.advance(force.value(), force.left(), watch);
       force.pass(passed);
       most = std::max(most, stepper.awake());
-      const Ending end = ending(p, {stepper.body(), {}});
-      if (end != Ending::trapped) stepper.go_on(end);
+      const Outcome end = outcome_of(p, {stepper.body(), {}}, {});
+      if (end != Outcome::trapped) stepper.go_on(end);
     }
   }
   EXPECT_EQ(most, 4U);
@@ -424,12 +423,12 @@ TEST(FieldStepper, MirroredFieldsGiveMirroredTrials) {
           ASSERT_TRUE(same(a.body(), test::mirrored(b.body()))) << trial << ", step " << step;
           ASSERT_EQ(wa.impacts, wb.impacts);
           crowded += wa.impacts >= 3;
-          const Ending end = ending(p, {a.body(), {}});
-          if (end == Ending::trapped) continue;
+          const Outcome end = outcome_of(p, {a.body(), {}}, {});
+          if (end == Outcome::trapped) continue;
           a.go_on(end);
-          b.go_on(end == Ending::exited_left    ? Ending::exited_right
-                  : end == Ending::exited_right ? Ending::exited_left
-                                                : end);
+          b.go_on(end == Outcome::exited_left    ? Outcome::exited_right
+                  : end == Outcome::exited_right ? Outcome::exited_left
+                                                 : end);
           ASSERT_EQ(a.column() + b.column(), 2 * kMiddle);
           ++moved;
         }
@@ -450,10 +449,10 @@ TEST(FieldStepper, TheTimeLimitIsThatOfAGate) {
   FieldStepper stepper(p, field(Fidelity::all), {0, 45, 0, 5});
   RandomForce force(p.forces, Random(Purpose::field, {}));
   const GateRun out = stepper.run_gate(force);
-  ASSERT_EQ(out.ending, Ending::traversed);
-  stepper.go_on(out.ending);
+  ASSERT_TRUE(is_traversed(out.outcome));
+  stepper.go_on(out.outcome);
   const GateRun held = stepper.run_gate(force);
-  EXPECT_EQ(held.ending, Ending::trapped);
+  EXPECT_EQ(held.outcome, Outcome::trapped);
   EXPECT_NEAR(held.seconds, 12.0, 1e-6);
   EXPECT_NEAR(stepper.seconds(), out.seconds + held.seconds, 1e-9);
 }
@@ -470,8 +469,8 @@ TEST(FieldStepper, HealthIsKept) {
       for (int gate = 0; gate < 3; ++gate) {
         const GateRun run = stepper.run_gate(force);
         add_run(health, p, run);
-        if (run.ending == Ending::trapped || stepper.row() == 8) break;
-        stepper.go_on(run.ending);
+        if (run.outcome == Outcome::trapped || stepper.row() == 8) break;
+        stepper.go_on(run.outcome);
       }
     }
     EXPECT_GT(health.runs, 30);
@@ -491,7 +490,7 @@ TEST(FieldStepper, BrokenRunsAreCalledBroken) {
   FieldStepper stepper(p, field(Fidelity::all), {0, 0, 0, 15});
   stepper.set_beams(kMiddle, 0, {BeamState{std::numeric_limits<double>::quiet_NaN(), 0.0}, {}});
   RandomForce force(p.forces, Random(Purpose::field, {}));
-  EXPECT_EQ(stepper.run_gate(force).ending, Ending::broken);
+  EXPECT_EQ(stepper.run_gate(force).outcome, Outcome::broken);
 }
 
 }  // namespace

@@ -175,14 +175,15 @@ TEST(RunField, TrialsCanBeReplayedAlone) {
     int ix = 0, iy = 0;
     for (int gates = 1;; ++gates) {
       const GateRun r = run_gate(p, *method, body, force);
-      if (r.ending == Ending::trapped) break;
-      const int to_x = ix + (r.ending == Ending::exited_right) - (r.ending == Ending::exited_left);
-      const int to_y = iy + (r.ending == Ending::traversed);
+      if (r.outcome == Outcome::trapped) break;
+      const int to_x =
+          ix + (r.outcome == Outcome::exited_right) - (r.outcome == Outcome::exited_left);
+      const int to_y = iy + is_traversed(r.outcome);
       if (std::abs(to_x) > 4 || to_y > 8 || gates == 13) break;
       const bool below = r.exit.y < 30.0;
-      ++entries[r.ending == Ending::traversed     ? 0
-                : r.ending == Ending::exited_left ? (below ? 1 : 3)
-                                                  : (below ? 2 : 4)];
+      ++entries[is_traversed(r.outcome)             ? 0
+                : r.outcome == Outcome::exited_left ? (below ? 1 : 3)
+                                                    : (below ? 2 : 4)];
       body = r.exit;
       body.x -= 50.0 * (to_x - ix);
       body.y -= 60.0 * (to_y - iy);
@@ -208,14 +209,14 @@ TEST(RunField, DrawsTheForceAnewWhenAsked) {
       BodyState body = kStart;
       for (const CellPassage passage : each.of_trial(i)) {
         const GateRun r = run_gate(p, *method, body, force);
-        ASSERT_EQ(r.ending == Ending::trapped, passage.fate == Fate::trapped) << name << ' ' << i;
-        if (r.ending == Ending::trapped) break;
-        const Entry expected = crossing_of(p, r.ending, r.exit);
+        ASSERT_EQ(r.outcome == Outcome::trapped, passage.fate == Fate::trapped) << name << ' ' << i;
+        if (r.outcome == Outcome::trapped) break;
+        const Entry expected = crossing_of(p, r.outcome, r.exit);
         EXPECT_EQ(expected.face, passage.entry.face) << name << ' ' << i;
         for (std::size_t axis = 0; axis < expected.at.size(); ++axis)
           EXPECT_NEAR(expected.at[axis], passage.entry.at[axis],
                       p.run.method == "moreau" ? 1e-6 : 0.0);
-        body = shifted_into_next(p, r.ending, r.exit);
+        body = shifted_into_next(p, r.outcome, r.exit);
         force.drop_hold();
       }
     }
@@ -309,15 +310,15 @@ TEST(RunField, GatesOfSeveralTypes) {
       const GateParams& p = gates.at(column, row);
       force.enter(p.forces);
       const GateRun r = run_gate(p, *make_method(p), body, force);
-      if (r.ending == Ending::trapped) break;
-      const Entry crossing = crossing_of(p, r.ending, r.exit);
+      if (r.outcome == Outcome::trapped) break;
+      const Entry crossing = crossing_of(p, r.outcome, r.exit);
       const Face& move = disc_section().faces[crossing.face];
       if (!field.contains(column + move.di_x, row + move.di_y) || visited == 13) break;
       crossings.push_back(crossing);
       column += move.di_x;
       row += move.di_y;
       ++(move.di_y != 0 ? upward : sideways);  // every move leads to another type
-      body = shifted_into_next(p, r.ending, r.exit);
+      body = shifted_into_next(p, r.outcome, r.exit);
     }
     EXPECT_EQ(each.final_gates[i], row * 5 + column) << i;
   }
@@ -396,13 +397,13 @@ TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
     for (int gates = 0; gates < 13; ++gates) {
       const GateRun r = run_gate(p, *method, body, quiet);
       int next = space.trapped();
-      if (r.ending != Ending::trapped)
-        next = space.index_of(crossing_of(p, r.ending, r.exit)).state;
+      if (r.outcome != Outcome::trapped)
+        next = space.index_of(crossing_of(p, r.outcome, r.exit)).state;
       if (path.trials[state] > 0 && !path.rows[state].contains(next)) revisited = true;
       ++path.rows[state][next];
       ++path.trials[state];
       if (next == space.trapped()) break;
-      body = shifted_into_next(p, r.ending, r.exit);
+      body = shifted_into_next(p, r.outcome, r.exit);
       state = next;
       ++moves;
     }
@@ -447,8 +448,8 @@ TEST(Fidelity, ActiveIsGateByGate) {
       for (int gates = 1;; ++gates) {
         const GateRun r = run_gate(p, *method, body, force);
         add_run(plain.health, p, r);
-        if (r.ending == Ending::trapped || r.ending == Ending::broken) break;
-        const Entry crossing = crossing_of(p, r.ending, r.exit);
+        if (r.outcome == Outcome::trapped || r.outcome == Outcome::broken) break;
+        const Entry crossing = crossing_of(p, r.outcome, r.exit);
         const Face& move = disc_section().faces[crossing.face];
         const bool leaves = !field.contains(column + move.di_x, row + move.di_y);
         if (leaves)
@@ -461,7 +462,7 @@ TEST(Fidelity, ActiveIsGateByGate) {
         plain.clamped[crossing.face] += space.index_of(crossing).clamped;
         column += move.di_x;
         row += move.di_y;
-        body = shifted_into_next(p, r.ending, r.exit);
+        body = shifted_into_next(p, r.outcome, r.exit);
       }
       plain.each.final_gates.push_back(row * 9 + column);
       plain.each.endings.emplace_back(why);
@@ -605,7 +606,7 @@ TEST(FieldTrace, IsTheTrialItself) {
     for (std::size_t v = 1; v < t.visits.size(); ++v) {
       const auto &from = t.visits[v - 1], &to = t.visits[v];
       EXPECT_EQ(std::abs(from.column - to.column) + to.row - from.row, 1);
-      const BodyState entry = shifted_into_next(p, from.trace.run.ending, from.trace.run.exit);
+      const BodyState entry = shifted_into_next(p, from.trace.run.outcome, from.trace.run.exit);
       EXPECT_TRUE(test::same_bits(to.trace.samples.front().state.body.x, entry.x));
       EXPECT_TRUE(test::same_bits(to.trace.samples.front().state.body.vy, entry.vy));
       EXPECT_EQ(to.trace.samples.front().state.beams[kLeft].theta, 0.0);

@@ -12,11 +12,13 @@ namespace gatewalk::test {
 /// `same_work`: gaps are evaluated in an order that the mirror image does not change.
 inline void expect_mirror_images(const dynamics::GateRun& a, const dynamics::GateRun& b,
                                  bool same_work = true) {
-  using dynamics::Ending;
-  const auto flipped = b.ending == Ending::exited_left    ? Ending::exited_right
-                       : b.ending == Ending::exited_right ? Ending::exited_left
-                                                          : b.ending;
-  ASSERT_EQ(a.ending, flipped);
+  using dynamics::Outcome;
+  const auto flipped = b.outcome == Outcome::traversed_left    ? Outcome::traversed_right
+                       : b.outcome == Outcome::traversed_right ? Outcome::traversed_left
+                       : b.outcome == Outcome::exited_left     ? Outcome::exited_right
+                       : b.outcome == Outcome::exited_right    ? Outcome::exited_left
+                                                               : b.outcome;
+  ASSERT_EQ(a.outcome, flipped);
   ASSERT_EQ(a.exit.x, -b.exit.x);
   ASSERT_EQ(a.exit.vx, -b.exit.vx);
   ASSERT_TRUE(same_bits(a.exit.y, b.exit.y));

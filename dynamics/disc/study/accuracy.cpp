@@ -133,7 +133,7 @@ Setting second_reference_setting(const GateParams& p) {
 namespace {
 
 TrialEnd end_without_column(const GateRun& run) {
-  TrialEnd end{.outcome = outcome_of(run), .exit = run.exit, .seconds = run.seconds};
+  TrialEnd end{.outcome = run.outcome, .exit = run.exit, .seconds = run.seconds};
   if (end.outcome == Outcome::traversed_even) end.outcome = Outcome::traversed_right;
   return end;
 }
@@ -145,7 +145,7 @@ TrialEnd end_of(const GateParams& p, const StateSpace& space, const GateRun& run
   end.column = end.outcome == Outcome::broken ? space.trapped() + 1
                : end.outcome == Outcome::trapped
                    ? space.trapped()
-                   : space.index_of(crossing_of(p, run.ending, run.exit)).state;
+                   : space.index_of(crossing_of(p, run.outcome, run.exit)).state;
   return end;
 }
 

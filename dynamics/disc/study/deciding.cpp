@@ -14,19 +14,9 @@ constexpr int kRuns = 20;
 constexpr std::int64_t kMostWork = 1'000'000;  // steps or evaluations; a second is too much here
 
 std::optional<GateFate> fate_of(const GateRun& run) {
-  if (run.out_of_work) return {};
-  switch (run.ending) {
-    case Ending::traversed:
-      return GateFate::crosses;
-    case Ending::exited_left:
-    case Ending::exited_right:
-      return GateFate::leaves;
-    case Ending::trapped:
-      return GateFate::trapped;
-    case Ending::broken:
-      break;
-  }
-  return {};
+  if (run.outcome == Outcome::broken) return {};
+  if (run.outcome == Outcome::trapped) return GateFate::trapped;
+  return is_traversed(run.outcome) ? GateFate::crosses : GateFate::leaves;
 }
 
 /// Of all runs alike; nothing where they differ, or cannot be run.
