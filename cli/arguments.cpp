@@ -237,7 +237,7 @@ void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Optio
   options.warn(complaint(prediction.health));
   warn_of(options, prediction, how.accuracy);
   std::vector<dynamics::Entry> all;
-  for (const lattice::StartTrials& s : pool.starts) all.push_back(s.start);
+  for (const lattice::OwnRuns& s : pool.starts) all.push_back(s.start);
   lattice::MatrixFile file = *m.file;
   dynamics::Health health = file.transitions.health;
   health += prediction.health;

@@ -20,7 +20,7 @@ void add(Trajectories& all, const dynamics::StateSpace& space, const dynamics::E
 
 Trajectories trajectories_of(const lattice::RunPool& pool, const dynamics::StateSpace& space) {
   Trajectories all;
-  for (const lattice::StartTrials& s : pool.starts)
+  for (const lattice::OwnRuns& s : pool.starts)
     for (const lattice::FieldTrials* trials : {&s.full, &s.first})
       for (std::size_t i = 0; i < trials->passed.size(); ++i)
         add(all, space, s.start, trials->of_trial(i));

@@ -28,7 +28,7 @@ void add(RecordedCounts& counts, const lattice::PassageTable& passages) {
 RecordedCounts counts_of(const lattice::RunPool& pool) {
   RecordedCounts counts{pool.bodies(), pool.trials(), pool.gate_runs()};
   add(counts, pool.scattered.each.passages);
-  for (const lattice::StartTrials& s : pool.starts) {
+  for (const lattice::OwnRuns& s : pool.starts) {
     add(counts, s.full.passages);
     add(counts, s.first.passages);
   }

@@ -76,7 +76,7 @@ std::vector<EntryTable> entries_of_leaves(const Kernel& kernel, const CellMap& m
 EntryTable first_entries(const Kernel& kernel, const CellMap& map, const RunPool& pool,
                          const FirstRow& start, TrialGroup group,
                          const std::vector<EntryTable>& of_leaves) {
-  if (const auto* const own = std::get_if<const StartTrials*>(&start))
+  if (const auto* const own = std::get_if<const OwnRuns*>(&start))
     return {map.section, {(*own)->start}};
   if (const auto* const entry = std::get_if<Entry>(&start))
     return of_leaves[static_cast<std::size_t>(kernel.space.index_of(*entry).state)];
@@ -91,7 +91,7 @@ EntryTable first_entries(const Kernel& kernel, const CellMap& map, const RunPool
 
 AnalysedChain analysed_chain(const Problem& problem, const RunPool& pool, const FirstRow& start,
                              int per_leaf) {
-  const auto* const own = std::get_if<const StartTrials*>(&start);
+  const auto* const own = std::get_if<const OwnRuns*>(&start);
   if (own ? (*own)->first_runs() == 0
           : !std::holds_alternative<Entry>(start) && pool.scattered.starts.empty())
     throw std::invalid_argument("analysis: the start has no runs of its own");

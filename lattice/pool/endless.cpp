@@ -14,13 +14,12 @@ namespace gatewalk::lattice {
 
 using namespace dynamics;
 
-ScatteredTrials endless_trials(const Cell& cell, const std::function<Entry(Random&)>& start,
-                               std::int64_t trials, int passages, std::uint64_t seed,
-                               Health& health) {
+RangeRuns endless_trials(const Cell& cell, const std::function<Entry(Random&)>& start,
+                         std::int64_t trials, int passages, std::uint64_t seed, Health& health) {
   if (trials < 1 || passages < 1)
     throw std::invalid_argument("endless trials: trials and passages must be > 0, not " +
                                 std::to_string(trials) + " and " + std::to_string(passages));
-  ScatteredTrials all;
+  RangeRuns all;
   all.starts.resize(static_cast<std::size_t>(trials));
   std::vector<PassageTable> runs(all.starts.size(), PassageTable(cell.section()));
   carry_out_trials(

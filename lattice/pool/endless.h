@@ -20,7 +20,7 @@ namespace gatewalk::lattice {
 /// through `passages` cells or until it does not get out of one. The same for any number of
 /// threads. What went wrong is added to `health`. For `RunPool::scattered`. Throws
 /// std::invalid_argument unless both numbers are > 0.
-[[nodiscard]] ScatteredTrials endless_trials(
+[[nodiscard]] RangeRuns endless_trials(
     const dynamics::Cell& cell, const std::function<dynamics::Entry(dynamics::Random&)>& start,
     std::int64_t trials, int passages, std::uint64_t seed, dynamics::Health& health);
 

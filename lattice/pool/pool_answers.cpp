@@ -44,7 +44,7 @@ bool pays_adjoint(const dynamics::CellMap& map, const FieldParams& field, std::s
 /// Runs behind the rows of kernels.
 std::int64_t kernel_runs(const RunPool& pool) {
   std::int64_t runs = std::ssize(pool.scattered.each.passages);
-  for (const StartTrials& s : pool.starts) runs += std::ssize(s.full.passages);
+  for (const OwnRuns& s : pool.starts) runs += std::ssize(s.full.passages);
   return runs;
 }
 
@@ -149,8 +149,8 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<FirstRow>& st
                    .states = chains_.front().kernel.space.size(),
                    .nonzeros = chains_.front().kernel.nonzeros()};
   for (const FirstRow& s : starts) {
-    const auto* const own = std::get_if<const StartTrials*>(&s);
-    said.unseen.push_back(own ? unseen_share(chains_.front().kernel, map_, field_, **own) : 0.0);
+    const auto* const own = std::get_if<const OwnRuns*>(&s);
+    said.unseen.push_back(own ? missing_mass(chains_.front().kernel, map_, field_, **own) : 0.0);
   }
   const bool with_kernels = !by_walks_ || chains_.front().adjoint;
   if (with_kernels) said.kernels = said.groups;

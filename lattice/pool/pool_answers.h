@@ -30,7 +30,7 @@ struct PoolAnswers {
   /// The same with the first runs of all trials in every group: what the kernel alone makes. Empty
   /// where answers come by walks.
   std::vector<std::vector<markov::FinalDistribution>> kernels;
-  std::vector<double> unseen;  // (starts) unseen_share()
+  std::vector<double> unseen;  // (starts) missing_mass()
   int states = 0;
   std::int64_t nonzeros = 0;
 };

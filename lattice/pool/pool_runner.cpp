@@ -26,16 +26,16 @@ PoolRunner::PoolRunner(const Problem& problem, std::uint64_t seed, std::int64_t 
       work_(work),
       lays_noise_(lays_noise(problem.cells)) {}
 
-void PoolRunner::run_full(StartTrials& s, std::int64_t count) {
+void PoolRunner::run_full(OwnRuns& s, std::int64_t count) {
   run({"full trials", true, kFullOwn, [&s](std::int64_t) { return s.start; }, true}, count, s.full);
 }
 
-void PoolRunner::run_first(StartTrials& s, std::int64_t count) {
+void PoolRunner::run_first(OwnRuns& s, std::int64_t count) {
   run({"first runs", false, kFirstOwn, [&s](std::int64_t) { return s.start; }, true}, count,
       s.first);
 }
 
-void PoolRunner::run_scattered(ScatteredTrials& s, const StartRange& starts, std::int64_t count) {
+void PoolRunner::run_scattered(RangeRuns& s, const StartRange& starts, std::int64_t count) {
   run({"scattered trials", true, kScatteredOwn, [&](std::int64_t i) { return drawn(starts, i); },
        false},
       count, s.each);

@@ -36,9 +36,9 @@ class PoolRunner {
 
   /// Full trials from the start; runs through its first gate only; trials from anywhere in a range.
   /// At least kLeastTrials are run whatever `count`. Throws std::runtime_error when a run broke.
-  void run_full(StartTrials& s, std::int64_t count);
-  void run_first(StartTrials& s, std::int64_t count);
-  void run_scattered(ScatteredTrials& s, const StartRange& starts, std::int64_t count);
+  void run_full(OwnRuns& s, std::int64_t count);
+  void run_first(OwnRuns& s, std::int64_t count);
+  void run_scattered(RangeRuns& s, const StartRange& starts, std::int64_t count);
   /// Start number `i` in the range.
   [[nodiscard]] dynamics::Entry drawn(const StartRange& starts, std::int64_t i) const;
 

@@ -80,7 +80,7 @@ StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, std:
 }
 
 /// The same, or the shares of the start's own trials where these are the more certain.
-StartAnswer answer_of(const FieldParams& field, const StartTrials& s, std::int64_t pooled,
+StartAnswer answer_of(const FieldParams& field, const OwnRuns& s, std::int64_t pooled,
                       FinalDistribution whole, double chance, double unseen,
                       const std::vector<FinalDistribution>& groups,
                       const std::vector<FinalDistribution>& kernels, std::uint64_t seed) {
@@ -208,7 +208,7 @@ class PredictionRun {
       const std::int64_t part = runner_.runs_left() / to_place--;
       places_.push_back(pool_.place_of(entry));
       if (places_.back() < pool_.starts.size()) continue;
-      StartTrials& s = pool_.starts.emplace_back();
+      OwnRuns& s = pool_.starts.emplace_back();
       s.start = entry;
       if (has_kernel)
         runner_.run_first(s, options_.first_runs.value_or(std::min(kLeastFirstRuns, part)));
@@ -284,7 +284,7 @@ class PredictionRun {
     double wanted = std::accumulate(costs.begin(), costs.end(), 0.0);
     for (std::size_t i = 0; i < orders.size() && runner_.may_go_on(); wanted -= costs[i++]) {
       const Order& o = orders[i];
-      StartTrials& s = pool_.starts[places_[o.start]];
+      OwnRuns& s = pool_.starts[places_[o.start]];
       const double part = std::min(1.0, static_cast<double>(runner_.runs_left()) / wanted);
       if (o.full > 0.0) runner_.run_full(s, static_cast<std::int64_t>(part * o.full));
       if (const double more = more_first(o, (1.0 - part) * o.full);
@@ -487,12 +487,12 @@ PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& 
   // The starts that it is tried on; their runs are not kept.
   RunPool tried;
   for (int k = 0; k < kTried; ++k) {
-    StartTrials& s = tried.starts.emplace_back();
+    OwnRuns& s = tried.starts.emplace_back();
     s.start = runner.drawn(range, -1 - k);
     runner.run_first(s, kFirstRuns);
   }
   std::vector<FirstRow> all;
-  for (const StartTrials& s : tried.starts) all.emplace_back(&s);
+  for (const OwnRuns& s : tried.starts) all.emplace_back(&s);
   runner.run_scattered(pool.scattered, range, options.trials.value_or(kBegin));
   if (options.trials) work.end_part();
   PoolChains chains(problem.map(), problem.field, options.per_leaf, kTried, options.seed);

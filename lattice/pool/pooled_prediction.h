@@ -46,7 +46,7 @@ struct StartAnswer {
                                  // of all where walks make the answer
   double unseen =
       0.0;  // share of first runs that enter the second gate where no run of the pool
-            // did (unseen_share): the chain's error bars have it on top, corrcoef then has none
+            // did (missing_mass): the chain's error bars have it on top, corrcoef then has none
   double trials_error_95 = 1.0;  // total variation, of the trials' own shares
   EndingShares endings{std::array<double, markov::kEndings>{}};
   FieldExits exits{};

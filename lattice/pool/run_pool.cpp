@@ -39,7 +39,7 @@ void each_run(const FieldTrials& trials, TrialGroup group, std::size_t skipped, 
 
 template <class Use>
 void each_kernel_run(const RunPool& pool, TrialGroup group, Use use) {
-  for (const StartTrials& s : pool.starts)
+  for (const OwnRuns& s : pool.starts)
     each_run(
         s.full, group, 1, [&](std::int64_t) { return s.start; }, use);
   each_run(
@@ -155,19 +155,19 @@ std::int64_t Kernel::nonzeros() const {
 
 std::size_t RunPool::place_of(const Entry& start) const {
   const auto own = std::find_if(starts.begin(), starts.end(),
-                                [&](const StartTrials& s) { return s.start == start; });
+                                [&](const OwnRuns& s) { return s.start == start; });
   return static_cast<std::size_t>(own - starts.begin());
 }
 
 std::int64_t RunPool::gate_runs() const {
   std::int64_t runs = std::ssize(scattered.each.passages);
-  for (const StartTrials& s : starts) runs += s.gate_runs();
+  for (const OwnRuns& s : starts) runs += s.gate_runs();
   return runs;
 }
 
 std::int64_t RunPool::trials() const {
   std::int64_t trials = std::ssize(scattered.starts);
-  for (const StartTrials& s : starts) trials += std::ssize(s.full.passed);
+  for (const OwnRuns& s : starts) trials += std::ssize(s.full.passed);
   return trials;
 }
 
@@ -265,8 +265,8 @@ bool SeenEntries::holds(std::size_t box, const Entry& entry) const {
   return true;
 }
 
-double unseen_share(const Kernel& kernel, const CellMap& map, const FieldParams& field,
-                    const StartTrials& start) {
+double missing_mass(const Kernel& kernel, const CellMap& map, const FieldParams& field,
+                    const OwnRuns& start) {
   if (field.max_gates == 1 || start.first_runs() == 0) return 0.0;
   // First runs that enter each box, by type of the gate entered.
   std::vector<std::vector<std::int64_t>> here;
@@ -398,7 +398,7 @@ void each_first_run(const Kernel& kernel, const CellMap& map, const RunPool& poo
   const StateSpace& space = kernel.space;
   const auto use_entry = [&](const Entry& entry) { use_leaf(space.index_of(entry).state); };
   if (const auto* const entry = std::get_if<Entry>(&start)) return use_entry(*entry);
-  if (const auto* const own = std::get_if<const StartTrials*>(&start)) {
+  if (const auto* const own = std::get_if<const OwnRuns*>(&start)) {
     const bool in_the_middle = mirrored(space.section(), (*own)->start) == (*own)->start;
     for (const FieldTrials* trials : {&(*own)->full, &(*own)->first})
       each_first_run(map, space, *trials, in_the_middle, group, use_run);

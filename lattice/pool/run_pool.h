@@ -22,7 +22,7 @@
 namespace gatewalk::lattice {
 
 /// Trials from one start (y = 0) with their passages; field.fidelity "active".
-struct StartTrials {
+struct OwnRuns {
   dynamics::Entry start{};
   FieldTrials full{.final_gates = {}, .keep_passages = true};
   FieldTrials first{.final_gates = {}, .keep_passages = true};  // that ran through one gate only
@@ -37,18 +37,18 @@ struct StartTrials {
 };
 
 /// Trials that start anywhere: all their runs are pooled.
-struct ScatteredTrials {
+struct RangeRuns {
   std::vector<dynamics::Entry> starts;  // (trials)
   FieldTrials each{.final_gates = {}, .keep_passages = true};
 };
 
 /// Where the chain's row of a start comes from: the start's own first runs, the runs of the leaf
 /// that holds an entry, or (monostate) the first runs of all scattered trials.
-using FirstRow = std::variant<std::monostate, const StartTrials*, dynamics::Entry>;
+using FirstRow = std::variant<std::monostate, const OwnRuns*, dynamics::Entry>;
 
 struct RunPool {
-  std::vector<StartTrials> starts;
-  ScatteredTrials scattered;
+  std::vector<OwnRuns> starts;
+  RangeRuns scattered;
 
   /// Place of a start among `starts`; their number if it is none.
   [[nodiscard]] std::size_t place_of(const dynamics::Entry& start) const;
@@ -151,8 +151,8 @@ struct Kernel {
 
 /// The share of the start's first runs that enter the next gate of the field where no run of the
 /// kernel did, less what chance alone would make: what the kernel says of these is a guess.
-[[nodiscard]] double unseen_share(const Kernel& kernel, const dynamics::CellMap& map,
-                                  const FieldParams& field, const StartTrials& start);
+[[nodiscard]] double missing_mass(const Kernel& kernel, const dynamics::CellMap& map,
+                                  const FieldParams& field, const OwnRuns& start);
 
 /// The kernel's rows, and behind them `first_rows`, which nothing leads to: they are those of the
 /// gate in which trials start.

@@ -18,7 +18,7 @@ std::vector<markov::FinalDistribution> answers(const Problem& problem, const Run
                                                const Kernel& kernel, std::uint64_t seed) {
   const CellMap& map = problem.map();
   std::vector<FirstRow> starts;
-  for (const StartTrials& s : pool.starts) starts.emplace_back(&s);
+  for (const OwnRuns& s : pool.starts) starts.emplace_back(&s);
   if (starts.empty()) starts.emplace_back();
   return answers_of(kernel, map, first_rows(kernel, map, pool, starts, problem.start_type()),
                     problem.field, seed)
@@ -50,9 +50,9 @@ void limit_states(TreeChain& chain, const Problem& problem, int most, std::uint6
 /// With the starts of these trials as states of their own.
 std::vector<Transitions> transitions_with(const Problem& problem, const RunPool& pool,
                                           const Kernel& kernel,
-                                          const std::vector<const StartTrials*>& own) {
+                                          const std::vector<const OwnRuns*>& own) {
   std::vector<Entry> starts;
-  for (const StartTrials* s : own) starts.push_back(s->start);
+  for (const OwnRuns* s : own) starts.push_back(s->start);
   const CellMap& map = problem.map();
   return transitions_of(
       kernel, map, problem.field, starts,
@@ -71,7 +71,7 @@ std::optional<OwnTrials> look_at_own_trials(const TreeChain& chain, const Proble
     starts.push_back(start);
   };
   add(pool.scattered.each, {});
-  for (const StartTrials& s : pool.starts) add(s.full, &s);
+  for (const OwnRuns& s : pool.starts) add(s.full, &s);
   const CellMap& map = problem.map();
   const KernelAnswers said = answers_of(
       chain.kernel, map, first_rows(chain.kernel, map, pool, starts, problem.start_type()),
@@ -111,8 +111,8 @@ TreeChain make_tree_chain(const Problem& problem, const TreeOptions& options, co
     limit_states(chain, problem, *options.most_states, options.accuracy.seed);
   chain.own_trials = look_at_own_trials(chain, problem, options.accuracy.seed);
   if (chain.prediction) chain.prediction->own_trials = {};  // that was before states were limited
-  std::vector<const StartTrials*> own;
-  for (const StartTrials& s : chain.pool.starts) own.push_back(&s);
+  std::vector<const OwnRuns*> own;
+  for (const OwnRuns& s : chain.pool.starts) own.push_back(&s);
   chain.transitions = transitions_with(problem, chain.pool, chain.kernel, own);
   if (chain.range) chain.transitions.front().health += chain.range->health;
   if (chain.prediction) chain.transitions.front().health += chain.prediction->health;
@@ -237,7 +237,7 @@ struct RunTables {
 
 std::vector<markov::NamedArray> arrays_of(const RunPool& pool, const Section& section) {
   RunTables t(section);
-  for (const StartTrials& s : pool.starts)
+  for (const OwnRuns& s : pool.starts)
     for (const int kind : {kFullTrial, kFirstRun}) {
       const FieldTrials& trials = kind == kFullTrial ? s.full : s.first;
       for (std::size_t i = 0; i < trials.passed.size(); ++i)
@@ -327,7 +327,7 @@ class RunReader {
       pool.starts.emplace_back().start = start;
     for (std::size_t i = 0; i < runs_.size(); ++i) read_trial(i, pool);
     if (at_ != ending_.size()) refuse("runs of no trial");
-    for (const StartTrials& s : pool.starts)
+    for (const OwnRuns& s : pool.starts)
       if (s.first_runs() == 0) refuse("a start of its own without runs");
     return pool;
   }
@@ -438,13 +438,13 @@ void find_endings(const CellMap& map, const FieldParams& field, FieldTrials& tri
 
 /// Trials that began in a gate of another type than trials do here are none of a start's own.
 void scatter_others(RunPool& pool, const CellMap& map, int type) {
-  const auto is_other = [&](const StartTrials& s) {
+  const auto is_other = [&](const OwnRuns& s) {
     const FieldTrials& any = s.full.passages.empty() ? s.first : s.full;
     return any.passages[0].type != type;
   };
   FieldTrials& each = pool.scattered.each;
   each.passages.begin(map.section);
-  for (const StartTrials& s : pool.starts)
+  for (const OwnRuns& s : pool.starts)
     for (const FieldTrials* trials : {&s.full, &s.first})
       for (std::size_t i = 0; i < trials->passed.size() && is_other(s); ++i) {
         for (const CellPassage p : trials->of_trial(i)) each.passages.push_back(p);
@@ -460,13 +460,13 @@ RunPool pool_of(const MatrixFile& file, const Problem& problem, const std::strin
   const CellMap& map = problem.map();
   RunPool pool = RunReader(file, map.types.size(), path).read();
   scatter_others(pool, map, problem.start_type());
-  for (StartTrials& s : pool.starts) find_endings(map, problem.field, s.full);
+  for (OwnRuns& s : pool.starts) find_endings(map, problem.field, s.full);
   return pool;
 }
 
 std::vector<Transitions> matrices_of(const Problem& problem, const RunPool& pool,
                                      const std::vector<Entry>& starts, int per_leaf) {
-  std::vector<const StartTrials*> own;
+  std::vector<const OwnRuns*> own;
   for (const Entry& entry : starts) {
     const std::size_t place = pool.place_of(entry);
     if (place == pool.starts.size())

@@ -54,13 +54,13 @@ class Starter {
            std::sqrt(variance(one) + variance(other));
   }
 
-  [[nodiscard]] ScatteredTrials run(const TrialStart& start) {
+  [[nodiscard]] RangeRuns run(const TrialStart& start) {
     return rounds_.run({start.entry, {}, [&start](std::int64_t) { return start; }},
                        rounds_.count());
   }
 
   /// Trials from starts anywhere, or where a chain says that they do better.
-  [[nodiscard]] ScatteredTrials explore(std::int64_t count) {
+  [[nodiscard]] RangeRuns explore(std::int64_t count) {
     const StartOfTrial start = [&](std::int64_t trial) {
       Random random(Purpose::plan, {options_.seed, 0, static_cast<std::uint64_t>(trial)});
       TrialStart best = drawn(random);
@@ -70,7 +70,7 @@ class Starter {
           best = other;
       return best;
     };
-    ScatteredTrials trials = rounds_.run({own_.entry, {}, start}, count);
+    RangeRuns trials = rounds_.run({own_.entry, {}, start}, count);
     drawn_.insert(drawn_.end(), trials.starts.begin(), trials.starts.end());
     return trials;
   }

@@ -61,8 +61,8 @@ ChoiceRounds::ChoiceRounds(std::string study, Purpose purpose, const CellField& 
       work_(work),
       count_(static_cast<std::int64_t>(std::ceil(std::pow(kNormal95 / (2.0 * accuracy), 2.0)))) {}
 
-ScatteredTrials ChoiceRounds::run(const TypeChoice& choice, std::int64_t count) {
-  ScatteredTrials trials;
+RangeRuns ChoiceRounds::run(const TypeChoice& choice, std::int64_t count) {
+  RangeRuns trials;
   for (std::int64_t i = 0; i < count; ++i)
     trials.starts.push_back(choice.from ? choice.from(next_ + i).entry : choice.start);
   const RunTrials none{FieldTally(first_.field), {.final_gates = {}, .keep_passages = true}};
@@ -86,7 +86,7 @@ ScatteredTrials ChoiceRounds::run(const TypeChoice& choice, std::int64_t count) 
   return trials;
 }
 
-void ChoiceRounds::add(const ScatteredTrials& trials) {
+void ChoiceRounds::add(const RangeRuns& trials) {
   pool_.scattered.starts.insert(pool_.scattered.starts.end(), trials.starts.begin(),
                                 trials.starts.end());
   pool_.scattered.each.append(trials.each);

@@ -54,7 +54,7 @@ struct ChoiceAim {
 template <class Candidate>
 struct ChoiceRound {
   std::vector<Candidate> candidates;
-  std::vector<ScatteredTrials> trials{};
+  std::vector<RangeRuns> trials{};
   std::size_t winner = 0;
   bool settled = false;  // it gained little over the best before
 };
@@ -91,7 +91,7 @@ class ChoiceRounds {
       }
       const auto most = std::max_element(worth.begin(), worth.end());
       round.winner = static_cast<std::size_t>(most - worth.begin());
-      const ScatteredTrials &winner = round.trials[round.winner], &before = round.trials.back();
+      const RangeRuns &winner = round.trials[round.winner], &before = round.trials.back();
       round.settled = !first_choice && is_little(*most - worth.back(),
                                                  aim.squares((aim.rarely ? before : winner).each));
       add(winner);
@@ -103,7 +103,7 @@ class ChoiceRounds {
   }
 
   /// The next `count` trials. Throws std::runtime_error when a run broke.
-  [[nodiscard]] ScatteredTrials run(const TypeChoice& choice, std::int64_t count);
+  [[nodiscard]] RangeRuns run(const TypeChoice& choice, std::int64_t count);
   /// Trials of a candidate: so many that a chance of one half has an interval of twice the
   /// accuracy.
   [[nodiscard]] std::int64_t count() const { return count_; }
@@ -113,7 +113,7 @@ class ChoiceRounds {
 
   /// Into the pool. Of several runs of the same trials one only: a run that is twice in a leaf says
   /// nothing new.
-  void add(const ScatteredTrials& trials);
+  void add(const RangeRuns& trials);
   [[nodiscard]] const RunPool& pool() const { return pool_; }
 
   /// Chance that the noise of the trials knows nothing of.

@@ -67,7 +67,7 @@ class FieldDesigner {
   [[nodiscard]] CellChoice types_of(const Map& map) const {
     return [this, &map](const Place& at, const Entry&) { return map[cell_of(at)]; };
   }
-  [[nodiscard]] ScatteredTrials run(const CellChoice& types) {
+  [[nodiscard]] RangeRuns run(const CellChoice& types) {
     return rounds_.run({problem_.start, types}, rounds_.count());
   }
 

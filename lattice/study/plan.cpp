@@ -199,12 +199,10 @@ class Planner {
     return best;
   }
 
-  [[nodiscard]] ScatteredTrials run(const ActionChoice& choice, std::int64_t count) {
+  [[nodiscard]] RangeRuns run(const ActionChoice& choice, std::int64_t count) {
     return rounds_.run({first_.start, types_of(first_, actions(), choice)}, count);
   }
-  [[nodiscard]] ScatteredTrials run(const ActionChoice& choice) {
-    return run(choice, rounds_.count());
-  }
+  [[nodiscard]] RangeRuns run(const ActionChoice& choice) { return run(choice, rounds_.count()); }
 
   /// To cross gains 1, less what passages take at this price. A state that an action was never
   /// tried in is worth less than any that it was tried in.

@@ -345,7 +345,7 @@ class Pool {
   [[nodiscard]] const Health& health() const { return health_; }
 
  private:
-  [[nodiscard]] const StartTrials& start() const { return pool_.starts.front(); }
+  [[nodiscard]] const OwnRuns& start() const { return pool_.starts.front(); }
 
   static constexpr std::int64_t kFirst = 100;  // then a runner knows how many gates a trial takes
 

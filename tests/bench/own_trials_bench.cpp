@@ -99,7 +99,7 @@ class Study {
   using Sources = std::set<std::size_t>;
 
   void say(const char* how, const Kernel& kernel, const CellMap& map) const {
-    const StartTrials& s = pool_.starts.front();
+    const OwnRuns& s = pool_.starts.front();
     const auto row = first_rows(kernel, map, pool_, {&s}, problem_.start_type());
     const auto chain = answers_of(kernel, map, row, problem_.field, seed_).final.front();
     const OwnTrials own = *own_trials({{s.full, chain}}, problem_.field, seed_);

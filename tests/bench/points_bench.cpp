@@ -43,9 +43,9 @@ double variance(const std::vector<Numbers>& replicates) {
 Numbers numbers_of(const markov::CellProbabilities& p) { return {p.data(), p.data() + p.size()}; }
 
 /// Trials without points, from the start.
-StartTrials plain_trials(const Problem& problem, const FieldParams& field, std::int64_t count,
-                         std::uint64_t seed) {
-  StartTrials s;
+OwnRuns plain_trials(const Problem& problem, const FieldParams& field, std::int64_t count,
+                     std::uint64_t seed) {
+  OwnRuns s;
   s.start = problem.start;
   (void)run_field(problem.cells, field, problem.start, seed, {0, count}, &s.full);
   return s;
@@ -57,7 +57,7 @@ class FirstGate {
  public:
   explicit FirstGate(const Problem& problem) : problem_(problem), field_(problem.field) {
     field_.max_gates = 1;
-    const StartTrials pilot = plain_trials(problem, field_, 20'000, 77);
+    const OwnRuns pilot = plain_trials(problem, field_, 20'000, 77);
     std::map<int, std::vector<dynamics::Entry>> by_face;
     for (const CellPassage p : pilot.full.passages.rows())
       if (p.fate == dynamics::Fate::left) by_face[p.entry.face].push_back(p.entry);
@@ -93,10 +93,9 @@ class FirstGate {
   std::map<int, dynamics::Entry> medians_;
 };
 
-StartTrials runner_trials(const Problem& problem, bool first, std::int64_t count,
-                          std::uint64_t seed) {
+OwnRuns runner_trials(const Problem& problem, bool first, std::int64_t count, std::uint64_t seed) {
   const dynamics::Work work;
-  StartTrials s;
+  OwnRuns s;
   s.start = problem.start;
   PoolRunner runner(problem, seed, std::numeric_limits<std::int64_t>::max(), work);
   if (first)
@@ -152,8 +151,8 @@ void cost(const Problem& problem, bool first, std::int64_t trials) {
     for (const int with : {0, 1}) {
       const auto seed = static_cast<std::uint64_t>(1000 + r);
       const dynamics::Stopwatch watch;
-      const StartTrials s = with == 0 ? plain_trials(problem, field, trials, seed)
-                                      : runner_trials(problem, first, trials, seed);
+      const OwnRuns s = with == 0 ? plain_trials(problem, field, trials, seed)
+                                  : runner_trials(problem, first, trials, seed);
       least[with] =
           std::min(least[with], 1e6 * watch.seconds() / static_cast<double>(s.gate_runs()));
     }

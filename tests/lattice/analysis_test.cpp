@@ -40,8 +40,8 @@ Scene open_scene() {
   return scene;
 }
 
-StartTrials some_trials(const Scene& scene, std::int64_t n) {
-  StartTrials s;
+OwnRuns some_trials(const Scene& scene, std::int64_t n) {
+  OwnRuns s;
   s.start = entry_of(scene.start);
   (void)run_field(gates_of(scene), scene.field, scene.start, 9, {0, n}, &s.full);
   return s;

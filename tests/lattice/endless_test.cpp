@@ -39,7 +39,7 @@ CellMap map_of(const Cell& cell) { return {cell.section(), {{cell.is_symmetric()
 TEST(Endless, TrialsGoOnFromCellToCell) {
   const FunctionCell cell = persistent(0.5);
   Health health;
-  const ScatteredTrials trials = endless_trials(cell, anywhere, 50, 6, 3, health);
+  const RangeRuns trials = endless_trials(cell, anywhere, 50, 6, 3, health);
   EXPECT_EQ(health.runs, 300);
   ASSERT_EQ(trials.starts.size(), 50u);
   for (std::size_t i = 0; i < 50; ++i) {

@@ -163,7 +163,7 @@ class InThrees : public KeptPieces {
 TEST(EvenTrials, OfARunnerAreTheSameInPieces) {
   const lattice::Problem problem = problem_of(calm_scene());
   const auto trials_of = [&](const Work& work) {
-    StartTrials s;
+    OwnRuns s;
     s.start = problem.start;
     PoolRunner runner(problem, 4, 1 << 30, work);
     runner.run_full(s, 100);                     // plain
@@ -186,7 +186,7 @@ TEST(EvenTrials, OfSeveralBatchesAreTheSameInPieces) {
                                  {"run.method=moreau", "run.step_s=0.01"});
   const lattice::Problem problem = problem_of(scene);
   const auto trials_of = [&](const Work& work) {
-    ScatteredTrials s;
+    RangeRuns s;
     PoolRunner runner(problem, 4, 1 << 30, work);
     runner.most_of_array = 200;
     runner.run_scattered(s, usual_range(problem), PoolRunner::kLeastEven);
@@ -208,7 +208,7 @@ TEST(EvenTrials, ARunnerCanBeStopped) {
   work.told = [](std::string_view, std::int64_t done, std::int64_t total) {
     if (2 * done > total) throw Stop();
   };
-  StartTrials s;
+  OwnRuns s;
   s.start = problem.start;
   PoolRunner runner(problem, 4, 1 << 30, work);
   EXPECT_THROW(runner.run_full(s, PoolRunner::kLeastEven), Stop);

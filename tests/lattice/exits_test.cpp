@@ -36,7 +36,7 @@ Scene leaving_scene() {
 
 RunPool pool_of_runs(const Scene& scene, std::int64_t n) {
   RunPool pool;
-  StartTrials& s = pool.starts.emplace_back();
+  OwnRuns& s = pool.starts.emplace_back();
   s.start = dynamics::entry_of(scene.start);
   (void)run_field(scene.gate, scene.field, scene.start, 9, {0, n}, &s.full);
   return pool;

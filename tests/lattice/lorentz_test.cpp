@@ -133,7 +133,7 @@ TEST(Lorentz, EntriesInTheLongRunAreThoseOfTheInvariantMeasure) {
   constexpr std::int64_t kMany = 20'000;
   const auto chi_squared_after = [&](int passages) {
     dynamics::Health health;
-    const ScatteredTrials trials = endless_trials(
+    const RangeRuns trials = endless_trials(
         cell(),
         [](dynamics::Random& random) {
           return dynamics::Entry{0, {kGap * 0.2 * random.uniform(), 0.2 * random.uniform()}};

@@ -104,7 +104,7 @@ TEST(OwnTrials, TrialsThatAreTheAnswerAreNotCheckedByThemselves) {
 TEST(OwnTrials, AMirrorThatIsNoneIsFoundOut) {
   const Problem problem = problem_of(unlike_beams());
   RunPool pool;
-  StartTrials& s = pool.starts.emplace_back();
+  OwnRuns& s = pool.starts.emplace_back();
   s.start = problem.start;
   (void)run_field(problem.cells, problem.field, problem.start, 3, {0, 4000}, &s.full);
   const auto answer_by = [&](const CellMap& map) {

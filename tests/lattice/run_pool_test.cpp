@@ -34,8 +34,8 @@ Scene fast_scene() {
   return scene;
 }
 
-StartTrials some_trials(const Scene& scene, std::int64_t n, BodyState from = kStart) {
-  StartTrials s;
+OwnRuns some_trials(const Scene& scene, std::int64_t n, BodyState from = kStart) {
+  OwnRuns s;
   s.start = entry_of(from);
   (void)run_field(scene.gate, scene.field, from, 9, {0, n}, &s.full);
   return s;
@@ -89,7 +89,7 @@ TEST(RunPool, CountsAreThoseOfTheRuns) {
           wanted(kernel.space.index_of(turned(from)).state, column) += 1.0;
         }
       };
-      const StartTrials& s = pool.starts[0];
+      const OwnRuns& s = pool.starts[0];
       for (auto i = static_cast<std::size_t>(group.group); i < 150;
            i += static_cast<std::size_t>(group.of)) {
         const auto runs = s.full.of_trial(i);
@@ -495,10 +495,10 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   // Other trials of the same start, through the first gate only.
   FieldParams one_gate = scene.field;
   one_gate.max_gates = 1;
-  StartTrials again;
+  OwnRuns again;
   again.start = pool.starts[0].start;
   (void)run_field(scene.gate, one_gate, kStart, 10, {0, 1000}, &again.first);
-  EXPECT_LT(unseen_share(kernel, FieldGates(scene.gate).map(), scene.field, again), 0.01);
+  EXPECT_LT(missing_mass(kernel, FieldGates(scene.gate).map(), scene.field, again), 0.01);
   std::int64_t go_on = 0;
   PassageTable elsewhere(disc_section());
   for (CellPassage p : again.first.passages.rows()) {
@@ -510,11 +510,11 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   }
   again.first.passages = elsewhere;
   ASSERT_GT(go_on, 200);
-  EXPECT_NEAR(unseen_share(kernel, FieldGates(scene.gate).map(), scene.field, again),
+  EXPECT_NEAR(missing_mass(kernel, FieldGates(scene.gate).map(), scene.field, again),
               static_cast<double>(go_on) / 1000, 0.1);
   FieldParams last_row = scene.field;
   last_row.rows = 1;  // who leaves upwards has crossed: nothing more is to be known of that
-  EXPECT_EQ(unseen_share(kernel, FieldGates(scene.gate).map(), last_row, again), 0.0);
+  EXPECT_EQ(missing_mass(kernel, FieldGates(scene.gate).map(), last_row, again), 0.0);
 }
 
 TEST(PooledPrediction, StopsAtTheLimitOfRunsAndSaysSo) {

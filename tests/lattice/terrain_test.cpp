@@ -405,7 +405,7 @@ TEST(Terrain, AMapOfOneTypeIsThePlainScene) {
 TEST(Terrain, KernelsCountTheRunsOfEachType) {
   const Scene scene = mixed();
   const FieldGates gates = gates_of(scene);
-  StartTrials s;
+  OwnRuns s;
   s.start = dynamics::entry_of(kStart);
   (void)run_field(gates, scene.field, kStart, 9, {0, 400}, &s.full);
   RunPool pool;
