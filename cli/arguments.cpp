@@ -114,7 +114,7 @@ void fix_trials(const Options& options, lattice::AccuracyOptions& how, std::int6
   }
 }
 
-void warn_of(const Options& options, const std::optional<lattice::OwnTrials>& own) {
+void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>& own) {
   if (own && own->differs())
     options.warn(fmt::format(
         "the full trials end otherwise than their chain says: {} in total variation of the final "
@@ -124,7 +124,7 @@ void warn_of(const Options& options, const std::optional<lattice::OwnTrials>& ow
 }
 
 void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy) {
-  warn_of(options, prediction.own_trials);
+  warn_of(options, prediction.hausman_check);
   if (prediction.reached) return;
   double worst = 0.0;
   for (const lattice::StartAnswer& a : prediction.starts)

@@ -42,7 +42,7 @@ void add_accuracy(Options& options, const std::string& by_default = "0.02");
 /// Of trees: --trials, if it is given, instead of an accuracy; parts need it.
 void fix_trials(const Options& options, lattice::AccuracyOptions& how, std::int64_t starts);
 /// Warns where a chain errs by its own full trials.
-void warn_of(const Options& options, const std::optional<lattice::OwnTrials>& own);
+void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>& own);
 /// The same, and where the accuracy was not reached.
 void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy);
 

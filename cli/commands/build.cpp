@@ -72,7 +72,7 @@ int build_tree(const Options& options, const lattice::Scene& scene, const Settle
                 .method = settled},
                chain.transitions);
   options.remark("built in " + fixed(watch.seconds(), 2) + " s");
-  warn_of(options, chain.own_trials);
+  warn_of(options, chain.hausman_check);
   if (how.accuracy.trials) return status;
   if (chain.prediction) warn_of(options, *chain.prediction, how.accuracy.accuracy);
   if (chain.range && !chain.range->reached)
@@ -148,7 +148,7 @@ int build_program(const Options& options) {
   const StateRecord states = record_of(chain, s.how.accuracy);
   give_out_cells(options, std::move(chain.transitions), *s.cells, chain.pool, states, health,
                  "gatewalk counts of passages through cells that another program carries out");
-  warn_of(options, chain.own_trials);
+  warn_of(options, chain.hausman_check);
   if (!how.accuracy.trials) warn_of(options, *chain.prediction, s.how.accuracy);
   return status_of(options, health);
 }

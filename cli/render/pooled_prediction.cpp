@@ -80,7 +80,7 @@ void describe(Fields& out, const RunsPrediction& runs, bool given) {
       runs.accuracy);
   out.flag({"reached", "whether error_95 is at most accuracy, for all starts"}, p.reached);
   out.optional(given, [&](Fields& f) { describe_error(f, worst_error(p)); });
-  describe_own_trials(out, p.own_trials);
+  describe_hausman_check(out, p.hausman_check);
   out.count({"gate_runs", "1", "gate runs that this command simulated"}, p.gate_runs);
   out.count({"states", "1", "number of states of the chain"}, p.states);
   out.count({"nonzeros", "1", "transition probabilities of the chain that are not 0"}, p.nonzeros);
@@ -122,8 +122,9 @@ std::string table_of(const lattice::StartAnswer& a, const ShownField& shown) {
 
 std::string table_of(const RunsPrediction& runs) {
   const lattice::PooledPrediction& p = runs.prediction;
-  std::string text = fmt::format("{}{} gate runs, {} states, {} s", own_trials_text(p.own_trials),
-                                 p.gate_runs, p.states, fixed(p.seconds, 2));
+  std::string text =
+      fmt::format("{}{} gate runs, {} states, {} s", hausman_check_text(p.hausman_check),
+                  p.gate_runs, p.states, fixed(p.seconds, 2));
   if (const double direct = direct_seconds(p); std::isfinite(direct))
     text += fmt::format("; direct simulation would take some {} s", fixed(direct, 2));
   text += "\n" + method_line(runs.method);
@@ -131,12 +132,12 @@ std::string table_of(const RunsPrediction& runs) {
                        : text;
 }
 
-void describe_own_trials(Fields& out, const std::optional<lattice::OwnTrials>& own) {
+void describe_hausman_check(Fields& out, const std::optional<lattice::HausmanCheck>& own) {
   out.maybe(Label("own_trials",
                   "test: full trials of all starts against the chain's answers; null: no such "
                   "trials, or walks")
                 .shared(),
-            own, [](Fields& f, const lattice::OwnTrials& o) {
+            own, [](Fields& f, const lattice::HausmanCheck& o) {
               f.count({"trials", "1", "number of full trials"}, o.trials);
               f.number({"total_variation", "1",
                         "total variation between the final gates of these trials and the chain's"},
@@ -150,7 +151,7 @@ void describe_own_trials(Fields& out, const std::optional<lattice::OwnTrials>& o
             });
 }
 
-std::string own_trials_text(const std::optional<lattice::OwnTrials>& own) {
+std::string hausman_check_text(const std::optional<lattice::HausmanCheck>& own) {
   if (!own) return "";
   return fmt::format("check: its {} full trials themselves are {} away, chance makes {} ({}){}\n",
                      own->trials, fixed(own->total_variation, 4),

@@ -35,8 +35,8 @@ void describe(Fields& out, const RunsPrediction& runs, bool given);
 /// The key "error_95".
 void describe_error(Fields& out, double error_95);
 /// The key "own_trials": what a chain's own full trials say of it; null where there are none.
-void describe_own_trials(Fields& out, const std::optional<lattice::OwnTrials>& own);
+void describe_hausman_check(Fields& out, const std::optional<lattice::HausmanCheck>& own);
 /// The same as a line; empty where there are none.
-[[nodiscard]] std::string own_trials_text(const std::optional<lattice::OwnTrials>& own);
+[[nodiscard]] std::string hausman_check_text(const std::optional<lattice::HausmanCheck>& own);
 
 }  // namespace gatewalk::cli

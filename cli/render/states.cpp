@@ -128,10 +128,10 @@ TreeRecord trees_in(const Json& json, const Section& section) {
     trees.range->worst_kernel_error_95 = number_in(range.at("worst_kernel_error_95"));
   }
   if (json.contains("own_trials")) {
-    trees.own_trials.emplace();
+    trees.hausman_check.emplace();
     if (const Json& own = json.at("own_trials"); !own.is_null())
-      *trees.own_trials = lattice::OwnTrials{own.at("trials"), own.at("total_variation"),
-                                             own.at("chance_total_variation"), own.at("p")};
+      *trees.hausman_check = lattice::HausmanCheck{own.at("trials"), own.at("total_variation"),
+                                                   own.at("chance_total_variation"), own.at("p")};
   }
   return trees;
 }
@@ -170,7 +170,7 @@ std::string lines_of(const TreeRecord& trees, const StateRecord& s) {
   if (trees.states_bias > 0.0)
     text += fmt::format("fewer states than the runs allow: total variation {} of the final gates\n",
                         fixed(trees.states_bias, 4));
-  return text + own_trials_text(trees.own_trials.value_or(std::nullopt)) +
+  return text + hausman_check_text(trees.hausman_check.value_or(std::nullopt)) +
          "a row has few runs and is noisy by itself: a prediction averages over all of them\n";
 }
 
@@ -217,7 +217,7 @@ StateRecord record_of(const lattice::TreeChain& c, double accuracy) {
                    .accuracy = accuracy,
                    .range = c.range,
                    .states_bias = c.states_bias,
-                   .own_trials = c.own_trials};
+                   .hausman_check = c.hausman_check};
   if (c.prediction) {
     trees.error_95.emplace();
     for (const lattice::StartAnswer& a : c.prediction->starts)
@@ -312,8 +312,8 @@ void describe(Fields& out, const StateRecord& s) {
     f.number({"states_bias", "1",
               "total variation of the final gates that a limit of states causes; 0: no limit"},
              trees.states_bias);
-    f.optional(trees.own_trials.has_value(), [&](Fields& own) {
-      describe_own_trials(own, trees.own_trials.value_or(std::nullopt));
+    f.optional(trees.hausman_check.has_value(), [&](Fields& own) {
+      describe_hausman_check(own, trees.hausman_check.value_or(std::nullopt));
     });
   });
   if (recorded) put_states(out);

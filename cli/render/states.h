@@ -35,7 +35,7 @@ struct TreeRecord {
   std::optional<lattice::PooledRange> range{};
   double states_bias = 0.0;
   /// None: the file does not say, as those of version 1.0.0.
-  std::optional<std::optional<lattice::OwnTrials>> own_trials{};
+  std::optional<std::optional<lattice::HausmanCheck>> hausman_check{};
 };
 
 /// The states of a chain, as the attribute "state_space" of its matrix file describes them.

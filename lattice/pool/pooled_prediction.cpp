@@ -175,7 +175,7 @@ class PredictionRun {
     result_.reached = open_.empty();
     result_.gate_runs = runner_.gate_runs;
     result_.run_seconds = runner_.seconds;
-    result_.own_trials = look_at_own_trials();
+    result_.hausman_check = look_at_own_trials();
     result_.seconds = watch_.seconds();
     tbb::parallel_for(std::size_t{0}, result_.starts.size(), [&](std::size_t k) {
       result_.starts[k].direct_seconds = direct_seconds(result_.starts[k], runner_, options_.seed);
@@ -186,13 +186,13 @@ class PredictionRun {
   }
 
  private:
-  [[nodiscard]] std::optional<OwnTrials> look_at_own_trials() const {
+  [[nodiscard]] std::optional<HausmanCheck> look_at_own_trials() const {
     if (by_walks_) return {};
     std::vector<TrialsAndChain> of;
     for (std::size_t k = 0; k < result_.starts.size(); ++k)
       if (const StartAnswer& a = result_.starts[k]; a.trials > 0 && !a.from_trials)
         of.push_back({pool_.starts[places_[k]].full, a.final});
-    return own_trials(of, problem_.field, options_.seed);
+    return hausman_check(of, problem_.field, options_.seed);
   }
 
   [[nodiscard]] std::vector<std::size_t> all() const {

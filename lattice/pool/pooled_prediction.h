@@ -11,7 +11,7 @@
 
 #include "dynamics/base/work.h"
 #include "lattice/exits.h"
-#include "lattice/pool/own_trials.h"
+#include "lattice/pool/hausman_check.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/statistics/group_spread.h"
 
@@ -60,7 +60,7 @@ struct PooledPrediction {
   std::vector<StartAnswer> starts;
   bool reached = true;  // all answers are as accurate as was asked for
   /// The full trials of all starts whose answer is the chain's, and exact, against the chain.
-  std::optional<OwnTrials> own_trials{};
+  std::optional<HausmanCheck> hausman_check{};
   std::int64_t gate_runs = 0;  // made now
   int states = 0;
   std::int64_t nonzeros = 0;

@@ -60,8 +60,8 @@ std::vector<Transitions> transitions_with(const Problem& problem, const RunPool&
 }
 
 /// All full trials of the pool against the chain as it is.
-std::optional<OwnTrials> look_at_own_trials(const TreeChain& chain, const Problem& problem,
-                                            std::uint64_t seed) {
+std::optional<HausmanCheck> look_at_own_trials(const TreeChain& chain, const Problem& problem,
+                                               std::uint64_t seed) {
   const RunPool& pool = chain.pool;
   std::vector<const FieldTrials*> trials;
   std::vector<FirstRow> starts;
@@ -79,7 +79,7 @@ std::optional<OwnTrials> look_at_own_trials(const TreeChain& chain, const Proble
   if (said.walks > 0) return {};
   std::vector<TrialsAndChain> all;
   for (std::size_t i = 0; i < trials.size(); ++i) all.push_back({*trials[i], said.final[i]});
-  return own_trials(all, problem.field, seed);
+  return hausman_check(all, problem.field, seed);
 }
 
 }  // namespace
@@ -109,8 +109,9 @@ TreeChain make_tree_chain(const Problem& problem, const TreeOptions& options, co
                   .range = std::move(range)};
   if (options.most_states)
     limit_states(chain, problem, *options.most_states, options.accuracy.seed);
-  chain.own_trials = look_at_own_trials(chain, problem, options.accuracy.seed);
-  if (chain.prediction) chain.prediction->own_trials = {};  // that was before states were limited
+  chain.hausman_check = look_at_own_trials(chain, problem, options.accuracy.seed);
+  if (chain.prediction)
+    chain.prediction->hausman_check = {};  // that was before states were limited
   std::vector<const OwnRuns*> own;
   for (const OwnRuns& s : chain.pool.starts) own.push_back(&s);
   chain.transitions = transitions_with(problem, chain.pool, chain.kernel, own);

@@ -31,7 +31,7 @@ struct TreeChain {
   /// Total variation of the final gates that the limit of states makes; 0 without one.
   double states_bias = 0.0;
   /// All full trials of the pool against this chain; none where answers come by walks.
-  std::optional<OwnTrials> own_trials{};
+  std::optional<HausmanCheck> hausman_check{};
 };
 
 /// A chain that gives the starts an error bar of the accuracy, and any start of the range half of

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Are wrong chains found out by the full trials that they were made from
-/// (lattice/pool/own_trials.h)?
+/// (lattice/pool/hausman_check.h)?
 ///   own_trials_bench FIRST CHAINS ACCURACY TRUTH SCENE [KEY=VALUE ...]
 ///   own_trials_bench FIRST CHAINS ACCURACY MEMORY
 /// makes so many pools of trials from seed FIRST on, as `predict --accuracy` does, and of each a
@@ -102,7 +102,7 @@ class Study {
     const OwnRuns& s = pool_.starts.front();
     const auto row = first_rows(kernel, map, pool_, {&s}, problem_.start_type());
     const auto chain = answers_of(kernel, map, row, problem_.field, seed_).final.front();
-    const OwnTrials own = *own_trials({{s.full, chain}}, problem_.field, seed_);
+    const HausmanCheck own = *hausman_check({{s.full, chain}}, problem_.field, seed_);
     std::printf("%s,%g,%lld,%.5f,%.4f,%d\n", how, accuracy_, static_cast<long long>(own.trials),
                 total_variation(chain.final_cells, truth_), own.p, own.differs());
   }

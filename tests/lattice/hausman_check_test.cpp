@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/pool/own_trials.h"
+#include "lattice/pool/hausman_check.h"
 
 #include <gtest/gtest.h>
 
@@ -41,15 +41,15 @@ FinalDistribution trapped_with(double left) {
   return d;
 }
 
-TEST(OwnTrials, ByHand) {
+TEST(HausmanCheck, ByHand) {
   const FieldParams field{.columns = 2, .rows = 1};
   const auto half = trapped_with(0.5);
   const auto of = [&](std::int64_t left) {
     const FieldTrials trials = trapped_in(left, 100 - left);
-    return own_trials({{trials, half}}, field, 1).value();
+    return hausman_check({{trials, half}}, field, 1).value();
   };
   // 45 of 100 where 50 are said: |45 - 50| or more of Binomial(100, 1/2) has the chance 0.3682.
-  const OwnTrials alike = of(45);
+  const HausmanCheck alike = of(45);
   EXPECT_EQ(alike.trials, 100);
   EXPECT_NEAR(alike.total_variation, 0.05, 1e-12);
   EXPECT_NEAR(alike.chance_total_variation, 0.0398, 0.003);  // E|X - 50| / 100
@@ -61,19 +61,19 @@ TEST(OwnTrials, ByHand) {
 }
 
 // 40 trials of which a quarter is said to end left, 60 of which three quarters are: 55 in all.
-TEST(OwnTrials, OfSeveralStartsTogether) {
+TEST(HausmanCheck, OfSeveralStartsTogether) {
   const FieldParams field{.columns = 2, .rows = 1};
   const FieldTrials few = trapped_in(10, 30), many = trapped_in(45, 15), none;
   const auto quarter = trapped_with(0.25), most = trapped_with(0.75);
-  const OwnTrials right = own_trials({{few, quarter}, {many, most}}, field, 1).value();
+  const HausmanCheck right = hausman_check({{few, quarter}, {many, most}}, field, 1).value();
   EXPECT_EQ(right.trials, 100);
   EXPECT_NEAR(right.total_variation, 0.0, 1e-12);
   EXPECT_EQ(right.p, 1.0);
-  EXPECT_NEAR(own_trials({{few, most}, {many, quarter}}, field, 1)->total_variation, 0.1, 1e-12);
-  EXPECT_FALSE(own_trials({{none, most}}, field, 1).has_value());
+  EXPECT_NEAR(hausman_check({{few, most}, {many, quarter}}, field, 1)->total_variation, 0.1, 1e-12);
+  EXPECT_FALSE(hausman_check({{none, most}}, field, 1).has_value());
 }
 
-TEST(OwnTrials, RightChainsAreLeftAlone) {
+TEST(HausmanCheck, RightChainsAreLeftAlone) {
   const Scene scene = unlike_beams();
   int alarms = 0, checked = 0;
   constexpr int kSeeds = 25;
@@ -81,27 +81,27 @@ TEST(OwnTrials, RightChainsAreLeftAlone) {
     RunPool pool;
     const auto p = predict_pooled(problem_of(scene), pool, {entry_of(scene.start)},
                                   {.accuracy = 0.1, .seed = seed});
-    ASSERT_NE(p.own_trials.has_value(), p.starts[0].from_trials) << seed;
-    if (!p.own_trials) continue;
-    EXPECT_EQ(p.own_trials->trials, p.starts[0].trials);
-    alarms += p.own_trials->differs();
+    ASSERT_NE(p.hausman_check.has_value(), p.starts[0].from_trials) << seed;
+    if (!p.hausman_check) continue;
+    EXPECT_EQ(p.hausman_check->trials, p.starts[0].trials);
+    alarms += p.hausman_check->differs();
     ++checked;
   }
   EXPECT_GE(checked, kSeeds - 3);
   EXPECT_LE(alarms, 1);
 }
 
-TEST(OwnTrials, TrialsThatAreTheAnswerAreNotCheckedByThemselves) {
+TEST(HausmanCheck, TrialsThatAreTheAnswerAreNotCheckedByThemselves) {
   const Scene scene = read_scene(std::string(GATEWALK_SCENES) + "/walker.toml", {});
   RunPool pool;
   const auto p = predict_pooled(problem_of(scene), pool, {entry_of(scene.start)},
                                 {.accuracy = 0.1, .seed = 1});
   EXPECT_TRUE(p.starts[0].from_trials);
-  EXPECT_FALSE(p.own_trials.has_value());
+  EXPECT_FALSE(p.hausman_check.has_value());
 }
 
 // Beams of unlike stiffness, counted as if they were mirror images of each other.
-TEST(OwnTrials, AMirrorThatIsNoneIsFoundOut) {
+TEST(HausmanCheck, AMirrorThatIsNoneIsFoundOut) {
   const Problem problem = problem_of(unlike_beams());
   RunPool pool;
   OwnRuns& s = pool.starts.emplace_back();
@@ -117,12 +117,12 @@ TEST(OwnTrials, AMirrorThatIsNoneIsFoundOut) {
   ASSERT_FALSE(mirrored.types[0].symmetric);
   mirrored.types[0].symmetric = true;
   const auto right = answer_by(problem.map()), wrong = answer_by(mirrored);
-  EXPECT_FALSE(own_trials({{s.full, right}}, problem.field, 1)->differs());
-  EXPECT_TRUE(own_trials({{s.full, wrong}}, problem.field, 1)->differs());
+  EXPECT_FALSE(hausman_check({{s.full, right}}, problem.field, 1)->differs());
+  EXPECT_TRUE(hausman_check({{s.full, wrong}}, problem.field, 1)->differs());
 }
 
 // One state for each face cannot be right; the trials say so, from a range of starts and from one.
-TEST(OwnTrials, StatesThatAreTooFewAreFoundOut) {
+TEST(HausmanCheck, StatesThatAreTooFewAreFoundOut) {
   const Problem problem = problem_of(unlike_beams());
   for (const bool all : {true, false}) {
     TreeOptions options{.accuracy = {.trials = 4000}};
@@ -130,9 +130,9 @@ TEST(OwnTrials, StatesThatAreTooFewAreFoundOut) {
       options.range = usual_range(problem);
     else
       options.starts = {problem.start};
-    const auto right = make_tree_chain(problem, options).own_trials;
+    const auto right = make_tree_chain(problem, options).hausman_check;
     options.most_states = 5;
-    const auto wrong = make_tree_chain(problem, options).own_trials;
+    const auto wrong = make_tree_chain(problem, options).hausman_check;
     ASSERT_TRUE(right && wrong);
     EXPECT_GE(right->trials, 4000);
     EXPECT_FALSE(right->differs()) << right->p;

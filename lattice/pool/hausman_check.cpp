@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/pool/own_trials.h"
+#include "lattice/pool/hausman_check.h"
 
 #include "lattice/statistics/compare.h"
 
@@ -20,8 +20,8 @@ FinalDistribution mean_of(const std::vector<TrialsAndChain>& all, double trials)
 
 }  // namespace
 
-std::optional<OwnTrials> own_trials(const std::vector<TrialsAndChain>& all,
-                                    const FieldParams& field, std::uint64_t seed) {
+std::optional<HausmanCheck> hausman_check(const std::vector<TrialsAndChain>& all,
+                                          const FieldParams& field, std::uint64_t seed) {
   constexpr std::int64_t kDraws = 999;
   FieldTally tally(field);
   for (const TrialsAndChain& one : all) tally.count(one.trials.final_gates, one.trials.endings);
@@ -29,10 +29,10 @@ std::optional<OwnTrials> own_trials(const std::vector<TrialsAndChain>& all,
   if (trials == 0) return {};
   const FinalDistribution chain = mean_of(all, static_cast<double>(trials));
   const Judgement j = judge({tally.final_cells, tally.endings}, chain, {chain}, 0, kDraws, seed);
-  return OwnTrials{.trials = trials,
-                   .total_variation = j.total_variation.seen,
-                   .chance_total_variation = j.chance_total_variation,
-                   .p = j.p};
+  return HausmanCheck{.trials = trials,
+                      .total_variation = j.total_variation.seen,
+                      .chance_total_variation = j.chance_total_variation,
+                      .p = j.p};
 }
 
 }  // namespace gatewalk::lattice

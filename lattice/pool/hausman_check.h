@@ -17,7 +17,7 @@ namespace gatewalk::lattice {
 /// the same shares from the same runs, so that the difference varies less than the trials' own
 /// shares would. The p-value is that of as many draws from the chain's answer (Judgement: final
 /// gates and endings): rather too large than too small.
-struct OwnTrials {
+struct HausmanCheck {
   static constexpr double kLevel = 0.01;
 
   std::int64_t trials = 0;
@@ -35,7 +35,8 @@ struct TrialsAndChain {
 };
 
 /// All together, in one test. None: there are no trials.
-[[nodiscard]] std::optional<OwnTrials> own_trials(const std::vector<TrialsAndChain>& all,
-                                                  const FieldParams& field, std::uint64_t seed);
+[[nodiscard]] std::optional<HausmanCheck> hausman_check(const std::vector<TrialsAndChain>& all,
+                                                        const FieldParams& field,
+                                                        std::uint64_t seed);
 
 }  // namespace gatewalk::lattice
