@@ -27,6 +27,6 @@
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/statistics/gates_ahead.h"
 #include "lattice/statistics/independence.h"
-#include "lattice/statistics/looked_at.h"
 #include "lattice/statistics/matrix_noise.h"
+#include "lattice/statistics/multiple_tests.h"
 #include "lattice/statistics/power.h"

@@ -231,7 +231,7 @@ std::string verdict(const MemoryStudy& study) {
 
 }  // namespace
 
-void describe(Fields& out, const lattice::LookedAt::Test& test) {
+void describe(Fields& out, const lattice::MultipleTests::Test& test) {
   out.number({"value", "1", "observed value of the statistic"}, test.seen);
   out.number({"p", "1", "p-value: how often chance makes the statistic as large"}, test.p);
   out.number({"p_adjusted", "1", "p-value, corrected for testing all statistics"}, test.p_adjusted);

@@ -12,7 +12,7 @@
 namespace gatewalk::cli {
 
 /// The keys of one of several statistics that were looked at together.
-void describe(Fields& out, const lattice::LookedAt::Test& test);
+void describe(Fields& out, const lattice::MultipleTests::Test& test);
 
 /// Every question with its p-values, statistics, size and power; the "verdict" of all.
 void describe(Fields& out, const lattice::MemoryStudy& study);

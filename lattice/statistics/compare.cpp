@@ -376,7 +376,7 @@ Judgement judgement_of(const std::vector<Tests>& all) {
   std::vector<double> tv, rows;
   for (std::size_t k = 0; k + 1 < all.size(); ++k) tv.push_back(all[k][0]);
   for (const Tests& t : all) rows.insert(rows.end(), t.begin(), t.end());
-  const LookedAt looked(rows, std::tuple_size_v<Tests>);
+  const MultipleTests looked(rows, std::tuple_size_v<Tests>);
   Judgement j;
   j.null_draws = std::ssize(all) - 1;
   std::tie(j.chance_total_variation, j.chance_total_variation_95) = mean_and_95(tv);

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lattice/statistics/looked_at.h"
+#include "lattice/statistics/multiple_tests.h"
 #include "markov/predict.h"
 #include "markov/walk.h"
 
@@ -101,7 +101,7 @@ struct SeenEndings {
 /// by more than chance in the trials and in the matrix together makes? Draw k of the null takes as
 /// many trials from what a resampled matrix predicts, and sets them against the prediction.
 struct Judgement {
-  using Test = LookedAt::Test;
+  using Test = MultipleTests::Test;
   static constexpr double kLevel = 0.05;
 
   /// Of the final gates; energy NaN above kMostEnergyGates. NaN here and below: not counted.

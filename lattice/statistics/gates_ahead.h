@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "lattice/statistics/looked_at.h"
+#include "lattice/statistics/multiple_tests.h"
 
 namespace gatewalk::lattice {
 
@@ -48,7 +48,7 @@ struct GatesAhead {
     std::vector<double> seen, predicted;             // (ways x ways + 1) shares of all runs, by the
                                                      // way now and the way then; last: trapped
     std::vector<std::array<double, 2>> excess_95{};  // of seen - predicted; chance as in the null
-    LookedAt::Test total_variation;                  // of the two
+    MultipleTests::Test total_variation;             // of the two
     double chance = 0.0, chance_95 = 0.0;  // the null's total variation: mean, and 95 % of it
     /// Implied time scales -k / ln |eigenvalue| of where walks are k = `gates` later by where they
     /// are now (way by way, the longest first), in gates; 95 % of the null's about the prediction.

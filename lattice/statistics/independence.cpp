@@ -262,7 +262,7 @@ Independence test_independence(std::span<const LabelledRun> runs,
   if (result.states == 0) return result;
 
   const Pooled pooled = pooled_of(strata);
-  const LookedAt looked(all_statistics(strata, pooled, options), kStatistics);
+  const MultipleTests looked(all_statistics(strata, pooled, options), kStatistics);
   result.pooled = looked.tests[kPooled];
   result.strongest = looked.tests[kStrongest];
   result.state_by_state = looked.tests[kStateByState];

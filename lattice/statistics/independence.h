@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "lattice/statistics/looked_at.h"
+#include "lattice/statistics/multiple_tests.h"
 
 namespace gatewalk::lattice {
 
@@ -33,17 +33,17 @@ struct Independence {
   /// Generalised Cochran-Mantel-Haenszel statistic (general association; Landis, Heyman and Koch,
   /// Int. Stat. Rev. 46, 1978): counts less expected, summed over the states, against their
   /// covariance. Sees what goes the same way in all states.
-  LookedAt::Test pooled{.seen = 0.0, .p = 1.0, .p_adjusted = 1.0};
+  MultipleTests::Test pooled{.seen = 0.0, .p = 1.0, .p_adjusted = 1.0};
   int degrees = 0;             // of its chi-squared distribution
   double p_chi_squared = 1.0;  // by that distribution
   /// The largest of the same differences, each over its standard deviation, and whose it is. -1:
   /// none has counts enough.
-  LookedAt::Test strongest{.seen = 0.0, .p = 1.0, .p_adjusted = 1.0};
+  MultipleTests::Test strongest{.seen = 0.0, .p = 1.0, .p_adjusted = 1.0};
   int label = -1, outcome = -1;
   double more = 0.0;  // share of the label's runs by which its outcome is more often than expected
   /// Squared differences, summed over the states. Sees what goes another way in each state, where
   /// states have many runs.
-  LookedAt::Test state_by_state{.seen = 0.0, .p = 1.0, .p_adjusted = 1.0};
+  MultipleTests::Test state_by_state{.seen = 0.0, .p = 1.0, .p_adjusted = 1.0};
   double p = 1.0;  // of the three together
   std::int64_t null_draws = 0;
 

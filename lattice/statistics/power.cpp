@@ -14,7 +14,7 @@
 #include "dynamics/base/random.h"
 #include "lattice/statistics/gate_statistics.h"
 #include "lattice/statistics/log_gamma.h"
-#include "lattice/statistics/looked_at.h"
+#include "lattice/statistics/multiple_tests.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -301,7 +301,7 @@ void SimulatedTest::calibrate(const Eigen::VectorXd& null, double level,
   const std::size_t statistics = drawn.front().size();
   std::vector<double> all;
   for (const Row& row : drawn) all.insert(all.end(), row.begin(), row.end());
-  single_level_ = single_level.value_or(LookedAt(all, statistics).single_level(level));
+  single_level_ = single_level.value_or(MultipleTests(all, statistics).single_level(level));
   null_.resize(statistics);
   for (std::size_t s = 0; s < statistics; ++s) {
     for (const Row& row : drawn) null_[s].push_back(std::isnan(row[s]) ? -1.0 : row[s]);

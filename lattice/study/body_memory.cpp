@@ -108,7 +108,7 @@ BodyMemory body_memory(const Problem& problem, const RunPool& pool, int per_leaf
   const Eigen::VectorXd difference = seen.rowwise().sum();
   const auto [together, strongest, at] = statistics(difference);
   all.insert(all.end(), {together, strongest});
-  const LookedAt looked(all, 2);
+  const MultipleTests looked(all, 2);
   found.together = looked.tests[0];
   found.strongest = looked.tests[1];
   found.p = looked.p;

@@ -6,7 +6,7 @@
 
 #include "lattice/pool/run_pool.h"
 #include "lattice/problem.h"
-#include "lattice/statistics/looked_at.h"
+#include "lattice/statistics/multiple_tests.h"
 
 namespace gatewalk::lattice {
 
@@ -17,8 +17,10 @@ struct BodyMemory {
   static constexpr double kLevel = 0.05;
 
   std::int64_t runs = 0, states = 0;  // that can tell: two faces before and two outcomes were seen
-  LookedAt::Test together;   // squared differences over their variances, of all faces and outcomes
-  LookedAt::Test strongest;  // the largest difference over its standard deviation, and whose it is
+  MultipleTests::Test
+      together;  // squared differences over their variances, of all faces and outcomes
+  MultipleTests::Test
+      strongest;  // the largest difference over its standard deviation, and whose it is
   int face = -1, outcome = -1;  // outcome: a face, or behind them trapped; -1: there is none
   double more = 0.0;  // share of that face's runs by which that outcome is more often than expected
   double p = 1.0;     // of both

@@ -580,7 +580,7 @@ HalvesValidation validate_halves(const Problem& problem, const RunPool& pool,
   }
   for (std::size_t w = 0; w < 2; ++w) add_statistics(all, parts[w].seen_less_chain);
 
-  const LookedAt looked(all, 2 * kOfOneWay);
+  const MultipleTests looked(all, 2 * kOfOneWay);
   v.p = looked.p;
   for (std::size_t w = 0; w < 2; ++w) {
     HalfAgainstHalf& way = v.ways[w];

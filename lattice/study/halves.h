@@ -13,7 +13,7 @@
 #include "lattice/problem.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/statistics/group_spread.h"
-#include "lattice/statistics/looked_at.h"
+#include "lattice/statistics/multiple_tests.h"
 #include "markov/predict.h"
 
 namespace gatewalk::lattice {
@@ -52,9 +52,9 @@ struct HalfAgainstHalf {
   /// What chance in the bodies of both halves makes of them: means; and 95 % have no more.
   double chance_corrcoef = 0.0, chance_rmse_per_100 = 0.0;
   double chance_total_variation = 0.0, chance_total_variation_95 = 0.0;
-  std::array<double, markov::kEndings> chance_95{};      // of the difference of an ending's shares
-  LookedAt::Test total_variation;                        // of the final gates
-  std::array<LookedAt::Test, markov::kEndings> endings;  // |difference of the shares|
+  std::array<double, markov::kEndings> chance_95{};  // of the difference of an ending's shares
+  MultipleTests::Test total_variation;               // of the final gates
+  std::array<MultipleTests::Test, markov::kEndings> endings;  // |difference of the shares|
 
   [[nodiscard]] bool differs(markov::Ending e) const {
     return endings[static_cast<std::size_t>(e)].p_adjusted <= kLevel;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/statistics/looked_at.h"
+#include "lattice/statistics/multiple_tests.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,7 @@ std::pair<double, double> mean_and_95(std::vector<double> values) {
   return {mean, *at_95};
 }
 
-LookedAt::LookedAt(const std::vector<double>& all, std::size_t statistics) {
+MultipleTests::MultipleTests(const std::vector<double>& all, std::size_t statistics) {
   const std::size_t rows = all.size() / statistics;
   const auto of_all = static_cast<double>(rows);
   std::vector<std::int64_t> of_seen;
@@ -59,7 +59,7 @@ LookedAt::LookedAt(const std::vector<double>& all, std::size_t statistics) {
   }
 }
 
-double LookedAt::single_level(double level) const {
+double MultipleTests::single_level(double level) const {
   const auto of_all = static_cast<double>(least_.size());
   const auto beyond = static_cast<std::size_t>(level * of_all);  // ranks that may be found
   const std::int64_t rank =

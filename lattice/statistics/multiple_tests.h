@@ -12,7 +12,7 @@ namespace gatewalk::lattice {
 [[nodiscard]] std::pair<double, double> mean_and_95(std::vector<double> values);
 
 /// What looking at several statistics finds.
-struct LookedAt {
+struct MultipleTests {
   /// Of one statistic: what was seen, how often the null reaches it, and that p-value adjusted for
   /// looking at all of them (single-step minP of Westfall and Young, from the same draws): how
   /// often the null makes any of the p-values as small. At least 1 / (draws + 1); NaN where it is
@@ -25,7 +25,7 @@ struct LookedAt {
 
   /// `all`: (draws + 1 x statistics) row by row, the null's draws and in the last row what was
   /// seen. Statistics grow with the difference.
-  LookedAt(const std::vector<double>& all, std::size_t statistics);
+  MultipleTests(const std::vector<double>& all, std::size_t statistics);
 
   /// The largest p-value of a single statistic that is found at `level` when all are looked at; 0:
   /// there are too few draws for any.
