@@ -71,10 +71,10 @@ void describe_by_chance(Fields& out, double mean, double q95) {
       });
 }
 
-void describe(Fields& out, const lattice::Judgement& j) {
+void describe(Fields& out, const lattice::JointTest& j) {
   out.flag({"differs", "verdict: whether p is at most the level"}, j.differs());
   out.number({"p", "1", "p-value of all statistics together: the smallest of p_adjusted"}, j.p);
-  out.number({"level", "1", "level of significance of the verdict"}, lattice::Judgement::kLevel);
+  out.number({"level", "1", "level of significance of the verdict"}, lattice::JointTest::kLevel);
   out.object(
       {"p_adjusted", "p-value of each statistic, corrected for testing all; null: no counts of it"},
       [&](Fields& p) {

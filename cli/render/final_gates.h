@@ -14,7 +14,7 @@
 
 namespace gatewalk::lattice {
 struct Comparison;
-struct Judgement;
+struct JointTest;
 struct PairedChange;
 }  // namespace gatewalk::lattice
 
@@ -25,7 +25,7 @@ void describe(Fields& out, const lattice::Comparison& c);
 /// The keys of what a change makes of the final gates of the same trials.
 void describe_change(Fields& out, const lattice::PairedChange& change);
 /// The keys of one test of all statistics.
-void describe(Fields& out, const lattice::Judgement& j);
+void describe(Fields& out, const lattice::JointTest& j);
 
 /// A map of a command with --netcdf: null in fields of more gates than kMostGatesInJson.
 inline constexpr Eigen::Index kMostGatesInJson = 100'000;

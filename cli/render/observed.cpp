@@ -16,7 +16,7 @@
 namespace gatewalk::cli {
 namespace {
 
-using lattice::Judgement;
+using lattice::JointTest;
 
 /// A difference that experiments should see, as a share.
 constexpr double kFewAreEnough = 0.25;
@@ -28,7 +28,7 @@ constexpr std::array<const char*, kEndingNames.size()> kDo{
     "cross", "leave by the left side", "leave by the right side", "are trapped", "are cut off"};
 
 /// The smallest adjusted p-value of the final gates; NaN: they were not counted.
-double p_of_gates(const Judgement& j) {
+double p_of_gates(const JointTest& j) {
   double least = std::nan("");
   for (const double p :
        {j.total_variation.p_adjusted, j.energy.p_adjusted, j.chi_squared.p_adjusted})
@@ -37,7 +37,7 @@ double p_of_gates(const Judgement& j) {
 }
 
 /// "fewer cross, 10.00 [4.22, 19.07] % of them, 28.10 % by the model; final gates, ..."
-std::string differences(const lattice::ObservedComparison& c, const Judgement& j,
+std::string differences(const lattice::ObservedComparison& c, const JointTest& j,
                         const lattice::EndingShares& model) {
   std::vector<std::string> said;
   for (std::size_t e = 0; e < kEndingNames.size(); ++e) {
@@ -48,7 +48,7 @@ std::string differences(const lattice::ObservedComparison& c, const Judgement& j
                                with_interval(c.endings.share[at], c.endings.interval[at]),
                                fixed(100.0 * model.share[at], 2)));
   }
-  if (p_of_gates(j) <= Judgement::kLevel)
+  if (p_of_gates(j) <= JointTest::kLevel)
     said.push_back(fmt::format("they end in other gates, total variation {} (chance: {})",
                                fixed(j.total_variation.seen, 3),
                                fixed(j.chance_total_variation, 3)));
@@ -56,7 +56,7 @@ std::string differences(const lattice::ObservedComparison& c, const Judgement& j
   return fmt::format("{}", fmt::join(said, "; "));
 }
 
-void describe(Fields& out, const Judgement& j, const std::optional<lattice::Comparison>& gates) {
+void describe(Fields& out, const JointTest& j, const std::optional<lattice::Comparison>& gates) {
   describe(out, j);
   out.object(
       {"p_endings", "p-value of the share of each ending, not corrected for testing several"},
@@ -103,7 +103,7 @@ void describe(Fields& out, const lattice::LeastDifferences& least,
 std::string gates_part(const lattice::ObservedComparison& c) {
   TextTable table(
       {{"", -14}, {"", 8, 3}, {"", 0}, {"", 9, 3}, {"", 0}, {"", 9, 3}, {"", 0}, {"", 9}});
-  const auto row = [&](const char* name, const lattice::Comparison& k, const Judgement& j) {
+  const auto row = [&](const char* name, const lattice::Comparison& k, const JointTest& j) {
     table.row({name, k.corrcoef, fmt::format(" ({})", fixed(k.floor.corrcoef, 3)), k.rmse_per_100,
                fmt::format(" ({})", fixed(k.floor.rmse_per_100, 3)), k.total_variation,
                fmt::format(" ({}, {})", fixed(j.chance_total_variation, 3),
@@ -150,7 +150,7 @@ std::string from_on(const std::optional<double>& total_variation) {
 
 /// One sentence; p-values belong to the differences that it names.
 std::string verdict_of(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
-  const Judgement &d = c.against_dynamics, &k = c.against_chain;
+  const JointTest &d = c.against_dynamics, &k = c.against_chain;
   const std::string these = fmt::format("these {} trials ", c.seen.trials()),
                     in_dynamics = fmt::format("the dynamics by more than chance ({})", p_of(d)),
                     in_chain = fmt::format("the chain ({})", p_of(k));

@@ -16,12 +16,12 @@
 
 namespace gatewalk::cli {
 
-std::string p_of(const lattice::Judgement& j) {
+std::string p_of(const lattice::JointTest& j) {
   return j.p < 0.001 ? "p < 0.001" : "p = " + fixed(j.p, 3);
 }
 
 std::string verdict(const lattice::StartValidation& r) {
-  const lattice::Judgement& j = r.judgement;
+  const lattice::JointTest& j = r.joint_test;
   if (r.finding() != lattice::Finding::own_error)
     return fmt::format(
         "the chain agrees with the dynamics as far as these trials and this matrix can tell ({})",
@@ -40,7 +40,7 @@ std::string verdict(const lattice::StartValidation& r) {
         fmt::format("states never sampled, {} by the chain", percent(r.exact.unsampled(), 1.0, 2)));
   const auto gates = {j.total_variation.p_adjusted, j.energy.p_adjusted, j.chi_squared.p_adjusted};
   if (std::any_of(gates.begin(), gates.end(),
-                  [](double x) { return x <= lattice::Judgement::kLevel; }))
+                  [](double x) { return x <= lattice::JointTest::kLevel; }))
     said.push_back(fmt::format("final gates, total variation {} (chance: {})",
                                fixed(j.total_variation.seen, 3),
                                fixed(j.chance_total_variation, 3)));
@@ -135,7 +135,7 @@ void describe(Fields& out, const lattice::StartValidation& r, const lattice::Pap
       {"trials_and_matrix",
        "test of chain against dynamics, with the sampling noise of trials and matrix"},
       [&](Fields& f) {
-        describe(f, r.judgement);
+        describe(f, r.joint_test);
         f.count({"resampled_matrices", "1", "resampled matrices behind the test"}, r.resampled);
       });
   out.object({"start", "how bodies enter the field"}, [&](Fields& f) {
@@ -246,13 +246,13 @@ std::string endings_table(const lattice::Validation& v, const StartTexts& labels
       for (const EndingName& e : names) {
         const auto at = static_cast<std::size_t>(e.ending);
         line.emplace_back(with_interval(shares.share[at], shares.interval[at]) +
-                          (marked && r.judgement.differs(e.ending) ? "*" : " "));
+                          (marked && r.joint_test.differs(e.ending) ? "*" : " "));
       }
       return line;
     };
     table.row(cells("dynamics", r.dynamics_endings, false));
     std::vector<TextCell> chain = cells("chain", r.exact_endings, true);
-    chain.emplace_back(p_text(r.judgement.p));
+    chain.emplace_back(p_text(r.joint_test.p));
     table.row(chain);
     verdicts += fmt::format("{}  | {}\n", labels.texts[k], verdict(r));
     if (const std::string rest = rest_warning(rest_of(r.exact), "by the chain "); !rest.empty())
@@ -319,7 +319,7 @@ std::string final_gates_table(const lattice::Validation& v, const StartTexts& la
                  c.floor.rmse_per_100, c.total_variation, c.floor_total_variation,
                  r.matrix_noise_mean, chance});
     };
-    row("exact chain", r.exact_against, r.judgement.chance_total_variation);
+    row("exact chain", r.exact_against, r.joint_test.chance_total_variation);
     row(fmt::format("{} walks", v.walks), r.walks_against, kUnknown);
   }
   return fmt::format(

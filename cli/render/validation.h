@@ -48,7 +48,7 @@ void describe(Fields& out, const ValidateResult& result);
 /// One sentence: whether the chain agrees with the dynamics from one start.
 [[nodiscard]] std::string verdict(const lattice::StartValidation& r);
 /// "p = 0.034", "p < 0.001"
-[[nodiscard]] std::string p_of(const lattice::Judgement& j);
+[[nodiscard]] std::string p_of(const lattice::JointTest& j);
 
 /// Maps of the final gates: dynamics, chain, and their difference, a row per start; below them the
 /// Chapman-Kolmogorov test. Throws

@@ -28,7 +28,8 @@ std::optional<HausmanCheck> hausman_check(const std::vector<TrialsAndChain>& all
   const std::int64_t trials = tally.trials;
   if (trials == 0) return {};
   const FinalDistribution chain = mean_of(all, static_cast<double>(trials));
-  const Judgement j = judge({tally.final_cells, tally.endings}, chain, {chain}, 0, kDraws, seed);
+  const JointTest j =
+      joint_test({tally.final_cells, tally.endings}, chain, {chain}, 0, kDraws, seed);
   return HausmanCheck{.trials = trials,
                       .total_variation = j.total_variation.seen,
                       .chance_total_variation = j.chance_total_variation,

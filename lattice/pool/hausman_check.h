@@ -15,7 +15,7 @@ namespace gatewalk::lattice {
 
 /// In the manner of Hausman's test (1978): where the chain is right it is the better estimate of
 /// the same shares from the same runs, so that the difference varies less than the trials' own
-/// shares would. The p-value is that of as many draws from the chain's answer (Judgement: final
+/// shares would. The p-value is that of as many draws from the chain's answer (JointTest: final
 /// gates and endings): rather too large than too small.
 struct HausmanCheck {
   static constexpr double kLevel = 0.01;

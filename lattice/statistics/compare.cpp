@@ -342,7 +342,7 @@ std::array<std::vector<Eigen::Index>, markov::kEndings> rare_places(
 }
 
 constexpr std::size_t kGateTests = 3;
-/// Statistics, as Judgement lists them; NaN: not asked for.
+/// Statistics, as JointTest lists them; NaN: not asked for.
 using Tests = std::array<double, kGateTests + markov::kEndings>;
 
 Tests nothing_asked() {
@@ -372,16 +372,16 @@ Endings shares_of(const SeenEndings& seen) {
 }
 
 /// The verdict on the last row, which was seen; the rows before it are the null's.
-Judgement judgement_of(const std::vector<Tests>& all) {
+JointTest judgement_of(const std::vector<Tests>& all) {
   std::vector<double> tv, rows;
   for (std::size_t k = 0; k + 1 < all.size(); ++k) tv.push_back(all[k][0]);
   for (const Tests& t : all) rows.insert(rows.end(), t.begin(), t.end());
   const MultipleTests looked(rows, std::tuple_size_v<Tests>);
-  Judgement j;
+  JointTest j;
   j.null_draws = std::ssize(all) - 1;
   std::tie(j.chance_total_variation, j.chance_total_variation_95) = mean_and_95(tv);
   j.p = looked.p;
-  j.single_level = looked.single_level(Judgement::kLevel);
+  j.single_level = looked.single_level(JointTest::kLevel);
   j.total_variation = looked.tests[0];
   j.energy = looked.tests[1];
   j.chi_squared = looked.tests[2];
@@ -400,9 +400,9 @@ bool SeenEndings::has_endings() const {
   return std::any_of(endings.begin(), endings.end(), [](std::int64_t n) { return n > 0; });
 }
 
-Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& prediction,
-                const std::vector<markov::FinalDistribution>& replicates, std::int64_t runs,
-                std::int64_t null_draws, std::uint64_t seed) {
+JointTest joint_test(const SeenEndings& seen, const markov::FinalDistribution& prediction,
+                     const std::vector<markov::FinalDistribution>& replicates, std::int64_t runs,
+                     std::int64_t null_draws, std::uint64_t seed) {
   const CellProbabilities& base = prediction.final_cells;
   if (seen.has_gates())
     require_same_shape(seen.final_gates.rows(), seen.final_gates.cols(), base.rows(), base.cols());
@@ -461,8 +461,8 @@ Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& predic
   return judgement_of(all);
 }
 
-Judgement judge(const SeenEndings& seen, const SeenEndings& other, std::int64_t null_draws,
-                std::uint64_t seed) {
+JointTest joint_test(const SeenEndings& seen, const SeenEndings& other, std::int64_t null_draws,
+                     std::uint64_t seed) {
   const bool gates = seen.has_gates() && other.has_gates(),
              endings = seen.has_endings() && other.has_endings();
   const std::int64_t n = seen.trials(), m = other.trials();

@@ -100,7 +100,7 @@ struct SeenEndings {
 /// One test of "the chain is right": do trials of the dynamics differ from the chain's prediction
 /// by more than chance in the trials and in the matrix together makes? Draw k of the null takes as
 /// many trials from what a resampled matrix predicts, and sets them against the prediction.
-struct Judgement {
+struct JointTest {
   using Test = MultipleTests::Test;
   static constexpr double kLevel = 0.05;
 
@@ -127,16 +127,17 @@ struct Judgement {
 /// (Then n trials are unlike the runs in a kind of outcome as often as if all were dealt out anew:
 /// once or more in n / (runs + n).) Throws std::invalid_argument for fields of different sizes, no
 /// trials or no draws.
-[[nodiscard]] Judgement judge(const SeenEndings& seen, const markov::FinalDistribution& prediction,
-                              const std::vector<markov::FinalDistribution>& replicates,
-                              std::int64_t runs, std::int64_t null_draws, std::uint64_t seed);
+[[nodiscard]] JointTest joint_test(const SeenEndings& seen,
+                                   const markov::FinalDistribution& prediction,
+                                   const std::vector<markov::FinalDistribution>& replicates,
+                                   std::int64_t runs, std::int64_t null_draws, std::uint64_t seed);
 
 /// One test of "both samples come from one distribution", in what both have counted: permutation
 /// test, the pooled trials dealt out anew (of more than kMostDealt together drawn anew). Gates and
 /// endings are dealt out each for themselves, as an experiment may not say which belong together:
 /// p-values adjusted for looking at all are those of independent tables, rather too large
 /// than too small. Throws std::invalid_argument as the other.
-[[nodiscard]] Judgement judge(const SeenEndings& seen, const SeenEndings& other,
-                              std::int64_t null_draws, std::uint64_t seed);
+[[nodiscard]] JointTest joint_test(const SeenEndings& seen, const SeenEndings& other,
+                                   std::int64_t null_draws, std::uint64_t seed);
 
 }  // namespace gatewalk::lattice

@@ -26,7 +26,7 @@ inline constexpr std::int64_t kMostPlanned = 100'000;
 // ---- Shares: the exact binomial ----
 
 /// How often the share among `trials` is found to differ from the one that is expected, two-sided
-/// by the distance of both as in judge(), if the true share is `truth`.
+/// by the distance of both as in joint_test(), if the true share is `truth`.
 [[nodiscard]] double power_of_share(std::int64_t trials, double expected, double truth,
                                     double level);
 /// How often two samples of so many trials each are found to differ in their shares: the
@@ -63,16 +63,16 @@ struct Outcomes {
   Differences differences;
   std::int64_t draws = 0;  // that are affordable
 };
-/// Final gates that one of the two can reach, and the statistics of judge(); the second's shares
-/// are on the same gates.
+/// Final gates that one of the two can reach, and the statistics of joint_test(); the second's
+/// shares are on the same gates.
 [[nodiscard]] Outcomes gate_outcomes(const CellProbabilities& prediction);
 [[nodiscard]] std::pair<Outcomes, Eigen::VectorXd> gate_outcomes(const CellProbabilities& first,
                                                                  const CellProbabilities& second);
 /// Endings, and the differences of their shares.
 [[nodiscard]] Outcomes ending_outcomes(const std::array<double, markov::kEndings>& prediction);
 
-/// The test of judge() for samples of one size: its critical values from draws of the null, found
-/// once for many experiments.
+/// The test of joint_test() for samples of one size: its critical values from draws of the null,
+/// found once for many experiments.
 class SimulatedTest {
  public:
   /// A sample of `trials` against outcomes that are known exactly. `single_level`: the largest p of

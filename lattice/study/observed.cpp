@@ -376,10 +376,10 @@ ObservedComparison compare_observed(const SeenEndings& seen, int max_gates,
     c.dynamics_gates = compare(seen.final_gates, dynamics.final_cells, null_draws, seed);
     c.chain_gates = compare(seen.final_gates, chain.final_cells, null_draws, seed);
   }
-  c.against_dynamics = judge(seen, {dynamics.final_cells, dynamics.endings}, null_draws, seed);
-  c.against_chain = judge(seen, chain, replicates, runs, null_draws, seed);
+  c.against_dynamics = joint_test(seen, {dynamics.final_cells, dynamics.endings}, null_draws, seed);
+  c.against_chain = joint_test(seen, chain, replicates, runs, null_draws, seed);
   // Where chance changes nothing, everything else is a finding: at any level.
-  const double single_level = std::min(c.against_dynamics.single_level, Judgement::kLevel);
+  const double single_level = std::min(c.against_dynamics.single_level, JointTest::kLevel);
   c.least = least_differences(seen, chain, single_level, seed);
   return c;
 }

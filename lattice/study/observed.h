@@ -60,12 +60,12 @@ struct ObservedComparison {
   SeenEndings seen;
   EndingShares endings{std::array<double, markov::kEndings>{}};  // where they were counted
   std::optional<Comparison> dynamics_gates{}, chain_gates{};     // where gates were counted
-  Judgement against_dynamics, against_chain;
+  JointTest against_dynamics, against_chain;
   LeastDifferences least;  // from the chain's prediction, taken as exact
 };
 
-/// `max_gates` is the model's; `replicates` and `runs` as judge() takes them. Throws
-/// std::invalid_argument as judge(), and where somebody was cut off without a limit of gates.
+/// `max_gates` is the model's; `replicates` and `runs` as joint_test() takes them. Throws
+/// std::invalid_argument as joint_test(), and where somebody was cut off without a limit of gates.
 [[nodiscard]] ObservedComparison compare_observed(
     const SeenEndings& seen, int max_gates, const FieldTally& dynamics,
     const markov::FinalDistribution& chain,

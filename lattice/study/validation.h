@@ -59,7 +59,7 @@ enum class Finding {
   within_trials_and_matrix,  // chance in the trials and in the sampling of the matrix does
   own_error,                 // more than both: the chain itself is off (bins, memory)
 };
-/// `differs`: what the one test of trials and matrix says (Judgement); the total variation of the
+/// `differs`: what the one test of trials and matrix says (JointTest); the total variation of the
 /// final gates from the exact chain's, and what 95 % of samples of that chain have no more than.
 [[nodiscard]] Finding finding_of(bool differs, double total_variation, double floor_95);
 
@@ -85,7 +85,7 @@ struct StartValidation {
   Comparison walks_against{}, exact_against{};  // the dynamics' final gates against these
   PaperSized paper_sized{};
   NoiseFloor floor_100_exact{}, floor_100_walks{};  // of 100 trials, against exact and 100 walks
-  Judgement judgement{};
+  JointTest joint_test{};
   std::int64_t resampled = 0;                             // matrices behind the two:
   double matrix_noise_mean = 0.0, matrix_noise_sd = 0.0;  // total variation of their predictions
   EndingShares dynamics_endings, walks_endings, exact_endings;
@@ -95,7 +95,7 @@ struct StartValidation {
   std::optional<ObservedComparison> observed{};  // if there is an experiment
 
   [[nodiscard]] Finding finding() const {
-    return finding_of(judgement.differs(), exact_against.total_variation,
+    return finding_of(joint_test.differs(), exact_against.total_variation,
                       exact_against.floor_total_variation_95);
   }
 };

@@ -43,7 +43,7 @@ struct Experiment {
           .paper_sized = {},
           .floor_100_exact = {},
           .floor_100_walks = {},
-          .judgement = {},
+          .joint_test = {},
           .dynamics_endings = none(),
           .walks_endings = none(),
           .exact_endings = none(),

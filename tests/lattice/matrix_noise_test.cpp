@@ -390,8 +390,8 @@ TEST(Judge, PValuesAreUniformUnderTheNull) {
     for (int i = 0; i < kRepeats; ++i) {
       const auto number = static_cast<std::uint64_t>(i);
       const Transitions t = simulated(runs, 5000 + number);
-      const Judgement j = judge(trials_of(right, trials, number), predicted(t),
-                                replicates(t, number, kMatrices), 0, kDraws, number);
+      const JointTest j = joint_test(trials_of(right, trials, number), predicted(t),
+                                     replicates(t, number, kMatrices), 0, kDraws, number);
       all.push_back(j.p);
       tv.push_back(j.total_variation.p);
       energy.push_back(j.energy.p);
@@ -424,7 +424,7 @@ TEST(Judge, NamesTheEndingThatDiffers) {
   }
   const SeenEndings seen = trials_of(predicted(other), 20'000, 1);
   const Transitions fine = simulated(100'000, 1), coarse = simulated(20, 1);
-  const Judgement j = judge(seen, predicted(fine), replicates(fine, 1, 199), 0, 199, 1);
+  const JointTest j = joint_test(seen, predicted(fine), replicates(fine, 1, 199), 0, 199, 1);
   EXPECT_TRUE(j.differs());
   EXPECT_TRUE(j.differs(Ending::far_edge));
   EXPECT_TRUE(j.differs(Ending::trapped));
@@ -432,8 +432,8 @@ TEST(Judge, NamesTheEndingThatDiffers) {
   EXPECT_EQ(j.total_variation.p, 1.0 / 200);
   EXPECT_GT(j.total_variation.seen, j.chance_total_variation_95);
   EXPECT_GT(j.chance_total_variation_95, j.chance_total_variation);
-  const Judgement with_coarse =
-      judge(seen, predicted(coarse), replicates(coarse, 1, 199), 0, 199, 1);
+  const JointTest with_coarse =
+      joint_test(seen, predicted(coarse), replicates(coarse, 1, 199), 0, 199, 1);
   EXPECT_GT(with_coarse.chance_total_variation, 5 * j.chance_total_variation);
   EXPECT_GT(with_coarse.p, j.p);
 }
@@ -443,8 +443,8 @@ TEST(Judge, IsTheSmallestAdjustedPValue) {
   const FinalDistribution right = predicted(truth());
   for (std::uint64_t i = 0; i < 40; ++i) {
     const Transitions t = simulated(200, 9000 + i);
-    const Judgement j =
-        judge(trials_of(right, 400, 100 + i), predicted(t), replicates(t, i, 60), 0, 99, i);
+    const JointTest j =
+        joint_test(trials_of(right, 400, 100 + i), predicted(t), replicates(t, i, 60), 0, 99, i);
     double least =
         std::min({j.total_variation.p_adjusted, j.energy.p_adjusted, j.chi_squared.p_adjusted});
     for (const auto& e : j.endings) {
@@ -485,7 +485,7 @@ TEST(Judge, WhatNoRunShowedIsNoDifferenceByItself) {
     SeenEndings seen{sampled(truth, kTrials, 1000, i), {}};
     seen.endings[static_cast<std::size_t>(Ending::right_edge)] = seen.final_gates(0, 2);
     seen.endings[static_cast<std::size_t>(Ending::trapped)] = kTrials - seen.final_gates(0, 2);
-    p.push_back(judge(seen, chain, others, kRuns, 199, i).p);
+    p.push_back(joint_test(seen, chain, others, kRuns, 199, i).p);
   }
   const auto at_most = [&](double level) {
     return std::count_if(p.begin(), p.end(), [&](double x) { return x <= level; });
@@ -501,17 +501,17 @@ TEST(Judge, SameBitsForAnyThreadsAndRefusals) {
   const auto others = replicates(t, 2, 20);
   const SeenEndings seen = trials_of(p, 300, 3);
   const auto on = [&](int threads) {
-    return test::on_threads(threads, [&] { return judge(seen, p, others, 0, 99, 4); });
+    return test::on_threads(threads, [&] { return joint_test(seen, p, others, 0, 99, 4); });
   };
-  const Judgement a = on(1), b = on(3);
+  const JointTest a = on(1), b = on(3);
   EXPECT_EQ(a.p, b.p);
   EXPECT_EQ(a.energy.p, b.energy.p);
   EXPECT_EQ(a.chance_total_variation, b.chance_total_variation);
-  EXPECT_THROW((void)judge(seen, p, others, 0, 0, 4), std::invalid_argument);
-  EXPECT_THROW((void)judge(seen, p, {}, 0, 9, 4), std::invalid_argument);
-  EXPECT_THROW((void)judge({CellCounts::Zero(4, 5), {}}, p, others, 0, 9, 4),
+  EXPECT_THROW((void)joint_test(seen, p, others, 0, 0, 4), std::invalid_argument);
+  EXPECT_THROW((void)joint_test(seen, p, {}, 0, 9, 4), std::invalid_argument);
+  EXPECT_THROW((void)joint_test({CellCounts::Zero(4, 5), {}}, p, others, 0, 9, 4),
                std::invalid_argument);
-  EXPECT_THROW((void)judge({CellCounts::Ones(5, 4), {}}, p, others, 0, 9, 4),
+  EXPECT_THROW((void)joint_test({CellCounts::Ones(5, 4), {}}, p, others, 0, 9, 4),
                std::invalid_argument);
 }
 

@@ -393,7 +393,7 @@ SeenEndings three(bool first) {
 // Three here, three there: 2 of the 20 ways to deal them are as far apart.
 TEST(JudgeTwoSamples, PermutationsOfAHandfulAreExact) {
   constexpr int kDraws = 9999;
-  const Judgement j = judge(three(true), three(false), kDraws, 1);
+  const JointTest j = joint_test(three(true), three(false), kDraws, 1);
   const double four_errors = 4 * std::sqrt(0.1 * 0.9 / kDraws);
   EXPECT_NEAR(j.total_variation.p, 0.1, four_errors);
   EXPECT_NEAR(j.endings[0].p, 0.1, four_errors);
@@ -419,7 +419,8 @@ TEST(JudgeTwoSamples, FindsNoMoreThanTheLevelWhereNothingDiffers) {
   for (const bool together : {true, false}) {
     double found = 0.0;
     for (std::uint64_t k = 0; k < kRepeats; ++k)
-      found += judge(sample(60, 1, k, together), sample(400, 2, k, together), 199, k).differs();
+      found +=
+          joint_test(sample(60, 1, k, together), sample(400, 2, k, together), 199, k).differs();
     EXPECT_LE(found / kRepeats, 0.05 + 4 * std::sqrt(0.05 * 0.95 / kRepeats)) << together;
     RecordProperty(together ? "found_together" : "found_apart", std::to_string(found / kRepeats));
   }
@@ -427,12 +428,13 @@ TEST(JudgeTwoSamples, FindsNoMoreThanTheLevelWhereNothingDiffers) {
 
 TEST(JudgeTwoSamples, RefusesWhatHasNothingInCommon) {
   const SeenEndings seen = three(true);
-  EXPECT_THROW((void)judge(seen, SeenEndings{{}, {}}, 9, 1), std::invalid_argument);
-  EXPECT_THROW((void)judge(SeenEndings{seen.final_gates, {}}, SeenEndings{{}, seen.endings}, 9, 1),
+  EXPECT_THROW((void)joint_test(seen, SeenEndings{{}, {}}, 9, 1), std::invalid_argument);
+  EXPECT_THROW(
+      (void)joint_test(SeenEndings{seen.final_gates, {}}, SeenEndings{{}, seen.endings}, 9, 1),
+      std::invalid_argument);
+  EXPECT_THROW((void)joint_test(seen, SeenEndings{CellCounts::Ones(2, 1), {}}, 9, 1),
                std::invalid_argument);
-  EXPECT_THROW((void)judge(seen, SeenEndings{CellCounts::Ones(2, 1), {}}, 9, 1),
-               std::invalid_argument);
-  EXPECT_THROW((void)judge(seen, seen, 0, 1), std::invalid_argument);
+  EXPECT_THROW((void)joint_test(seen, seen, 0, 1), std::invalid_argument);
 }
 
 }  // namespace

@@ -209,8 +209,8 @@ TEST(HardestToSee, HasTheTotalVariationAndTheLeastChiSquared) {
   EXPECT_FALSE(hardest_to_see(Eigen::VectorXd::Ones(1), 0.1));
 }
 
-// At the number of trials that is recommended judge() itself finds 80 % of such experiments, and
-// without a difference no more than 5 %.
+// At the number of trials that is recommended joint_test() itself finds 80 % of such experiments,
+// and without a difference no more than 5 %.
 TEST(TrialsForTotalVariation, KeepWhatTheyPromise) {
   constexpr std::uint64_t kRepeats = 400;
   const CellProbabilities base = some_gates();
@@ -220,7 +220,8 @@ TEST(TrialsForTotalVariation, KeepWhatTheyPromise) {
   const auto found = [&](const CellProbabilities& p, std::uint64_t seed) {
     double count = 0.0;
     for (std::uint64_t k = 0; k < kRepeats; ++k)
-      count += judge({sampled(p, n, seed, k), {}}, known(base), {known(base)}, 0, 399, k).differs();
+      count +=
+          joint_test({sampled(p, n, seed, k), {}}, known(base), {known(base)}, 0, 399, k).differs();
     return count / kRepeats;
   };
   const double error = std::sqrt(0.8 * 0.2 / kRepeats);
@@ -243,8 +244,8 @@ TEST(TrialsForTwo, KeepWhatTheyPromise) {
   const auto found = [&](const CellProbabilities& p, std::uint64_t seed) {
     double count = 0.0;
     for (std::uint64_t k = 0; k < kRepeats; ++k)
-      count +=
-          judge({sampled(a, n, seed, k), {}}, {sampled(p, n, seed + 1, k), {}}, 399, k).differs();
+      count += joint_test({sampled(a, n, seed, k), {}}, {sampled(p, n, seed + 1, k), {}}, 399, k)
+                   .differs();
     return count / kRepeats;
   };
   const double seen = found(b, 21), without = found(a, 31);

@@ -91,9 +91,9 @@ TEST(ValidateChain, AWrongChainHasAnErrorOfItsOwn) {
   const StartValidation& s = v.starts.front();
   EXPECT_EQ(s.exact_against.total_variation, 1.0);  // start gate against last row
   EXPECT_EQ(s.finding(), Finding::own_error);
-  EXPECT_TRUE(s.judgement.differs(markov::Ending::far_edge));
-  EXPECT_TRUE(s.judgement.differs(markov::Ending::trapped));
-  EXPECT_FALSE(s.judgement.differs(markov::Ending::left_edge));
+  EXPECT_TRUE(s.joint_test.differs(markov::Ending::far_edge));
+  EXPECT_TRUE(s.joint_test.differs(markov::Ending::trapped));
+  EXPECT_FALSE(s.joint_test.differs(markov::Ending::left_edge));
   EXPECT_EQ(s.walks.trapped(), 40);
   // 1 of 9 gates off by 100 trials in 100, another as much the other way.
   EXPECT_DOUBLE_EQ(s.exact_against.rmse_per_100, 100.0 * std::sqrt(2.0 / 9.0));
