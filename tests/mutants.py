@@ -40,7 +40,7 @@ KERNELS = {
     "markov/predict/by_rows.cpp": {"markov": "RowSum.*:Exact.*:Predictor.*:LargeField.*:Outcomes.*"},
     "markov/predict/by_steps.cpp": {"markov": "Exact.*:Predictor.*:Adjoint.*:Outcomes.*"},
     "lattice/even_trials.cpp": {"lattice": "EvenTrials.*:RunPool.*", "cli": "ProgramCell.*"},
-    "lattice/pool/passages.cpp": {"lattice": "Analysis.*:Costs.*:Terrain.*"},
+    "lattice/pool/reactive_visits.cpp": {"lattice": "Analysis.*:Costs.*:Terrain.*"},
     "lattice/pool/pooled_prediction.cpp": {"lattice": TREES},
     "lattice/pool/run_pool.cpp": {"lattice": TREES},
     "lattice/pool/tree_chain.cpp": {"lattice": TREES},

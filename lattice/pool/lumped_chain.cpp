@@ -42,7 +42,7 @@ void cut(std::span<int> states, std::size_t axis, int parts, const std::vector<E
 }  // namespace
 
 std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain, const dynamics::CellMap& map,
-                                        const FieldParams& field, const Passages& passages,
+                                        const FieldParams& field, const ReactiveVisits& passages,
                                         const LumpingParts& parts) {
   const CostedChain& c = chain.chain;
   const markov::Field cells{field.columns, field.rows};

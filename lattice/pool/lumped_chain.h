@@ -8,7 +8,7 @@
 #include "lattice/field.h"
 #include "lattice/gate_chain.h"
 #include "lattice/pool/costed_chain.h"
-#include "lattice/pool/passages.h"
+#include "lattice/pool/reactive_visits.h"
 
 namespace gatewalk::lattice {
 
@@ -30,7 +30,7 @@ struct LumpedChain {
 [[nodiscard]] std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain,
                                                       const dynamics::CellMap& map,
                                                       const FieldParams& field,
-                                                      const Passages& passages,
+                                                      const ReactiveVisits& passages,
                                                       const LumpingParts& parts);
 
 }  // namespace gatewalk::lattice

@@ -15,7 +15,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "lattice/pool/passages.h"
+#include "lattice/pool/reactive_visits.h"
 #include "lattice/statistics/group_spread.h"
 #include "lattice/statistics/share_95.h"
 
@@ -146,8 +146,8 @@ class StatesMeeting {
 /// to end so as its image to end so in the mirror: the mean of both, where their states overlap.
 std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const CellMap& map,
                                            const FieldParams& field, int start_face,
-                                           const Passages& passages,
-                                           const std::vector<Passages>& groups) {
+                                           const ReactiveVisits& passages,
+                                           const std::vector<ReactiveVisits>& groups) {
   const CostedChain& c = chain.chain;
   const StateSpace& space = chain.space;
   const markov::Ending target = passages.chance().ending(), image = mirrored(target);
@@ -295,10 +295,10 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
     };
   };
   work.tell("analysis", 0, kParts);
-  const auto all = all_passages(chain, field, options.target, {.told = tell(kTrialGroups)},
-                                {.places = false, .tolerance = kGroupTolerance, .told = tell(1.0)},
-                                "analysis", {});
-  const Passages& passages = all.whole;
+  const auto all = all_reactive_visits(
+      chain, field, options.target, {.told = tell(kTrialGroups)},
+      {.places = false, .tolerance = kGroupTolerance, .told = tell(1.0)}, "analysis", {});
+  const ReactiveVisits& passages = all.whole;
   const auto& groups = all.groups;
   markov::FrequentPaths paths;
   std::optional<LumpedChain> lumped;
@@ -327,7 +327,7 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
     const auto bodies = static_cast<double>(chain.bodies);
     std::vector<double> parts;
     RunsBehind runs{bodies * share(out.totals), {}};
-    for (const Passages& g : groups) {
+    for (const ReactiveVisits& g : groups) {
       parts.push_back(value(g.totals()));
       runs.groups.push_back(bodies / kTrialGroups * share(g.totals()));
     }
@@ -375,7 +375,7 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
     out.state_trapping.resize(static_cast<std::size_t>(space.size()));
     out.type_trapping.resize(map.types.size());
   }
-  passages.each([&](const Passages::Place& place, double visits) {
+  passages.each([&](const ReactiveVisits::Place& place, double visits) {
     const auto type =
         static_cast<std::size_t>(map.type_of(static_cast<int>(place.cell % field.columns),
                                              static_cast<int>(place.cell / field.columns)));

@@ -53,8 +53,8 @@ double most_states(const FieldParams& field) {
 
 class Parameters {
  public:
-  Parameters(const Problem& problem, const AnalysedChain& chain, const Passages& passages,
-             const std::vector<Passages>& groups, const ParameterOptions& options)
+  Parameters(const Problem& problem, const AnalysedChain& chain, const ReactiveVisits& passages,
+             const std::vector<ReactiveVisits>& groups, const ParameterOptions& options)
       : field_(problem.field), cells_(problem.cells), options_(options) {
     add_samples(chain, passages, options.runs);
     for (std::size_t g = 0; g < groups.size(); ++g)
@@ -147,11 +147,11 @@ class Parameters {
   /// Samples of one chain: that of all trials, or of a group of them.
   struct Part {
     const StateSpace& space;
-    const Passages& passages;
+    const ReactiveVisits& passages;
   };
   struct Sample {
     std::size_t part;
-    Passages::Place place;
+    ReactiveVisits::Place place;
     int type;
     Entry entry;
     double weight;  // of walks there
@@ -165,13 +165,13 @@ class Parameters {
             {options_.seed, static_cast<std::uint64_t>(what), static_cast<std::uint64_t>(sample)}};
   }
 
-  void add_samples(const AnalysedChain& chain, const Passages& passages, std::int64_t count) {
+  void add_samples(const AnalysedChain& chain, const ReactiveVisits& passages, std::int64_t count) {
     parts_.push_back({chain.space, passages});
     if (!(passages.at_start() > 0.0)) return;  // of a group: nothing is known
-    const Passages::Draws draws(passages);
+    const ReactiveVisits::Draws draws(passages);
     for (std::int64_t i = 0; i < count; ++i) {  // one from each of so many equal parts
       Random random = drawn(Draw::place, samples_.size());
-      const Passages::Place place =
+      const ReactiveVisits::Place place =
           draws.place((static_cast<double>(i) + random.uniform()) / static_cast<double>(count));
       const auto column = static_cast<int>(place.cell % field_.columns),
                  row = static_cast<int>(place.cell / field_.columns);
@@ -294,9 +294,9 @@ ParameterEffects parameter_effects(const Problem& problem, const AnalysedChain& 
   if (problem.is_recorded())
     throw std::invalid_argument("parameters: runs were recorded, there is no cell to change");
   const std::size_t numbers = problem.cells.cells.front()->numbers().size();
-  const auto [passages, groups] =
-      all_passages(chain, problem.field, target, {.costs = false},
-                   {.costs = false, .tolerance = kGroupTolerance}, "chain for parameters", work);
+  const auto [passages, groups] = all_reactive_visits(
+      chain, problem.field, target, {.costs = false},
+      {.costs = false, .tolerance = kGroupTolerance}, "chain for parameters", work);
   ParameterEffects out{.chance = passages.at_start(), .effects = {}, .health = {}};
   if (passages.at_start() > 0.0) {
     Parameters parameters(problem, chain, passages, groups, options);

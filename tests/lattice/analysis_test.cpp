@@ -14,8 +14,8 @@
 #include "dynamics/disc/runs.h"
 #include "lattice/field_costs.h"
 #include "lattice/pool/lumped_chain.h"
-#include "lattice/pool/passages.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/pool/reactive_visits.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/study/parameter_effects.h"
 #include "lattice/study/trials.h"
@@ -474,32 +474,33 @@ TEST(Analysis, TellsOfEachChainThatItHasWalked) {
     EXPECT_EQ(total, kTrialGroups + 1);
     told.push_back(done);
   }};
-  const auto all = all_passages(chain, scene.field, Ending::far_edge, {.costs = false},
-                                {.costs = false}, "chains", work);
+  const auto all = all_reactive_visits(chain, scene.field, Ending::far_edge, {.costs = false},
+                                       {.costs = false}, "chains", work);
   ASSERT_EQ(std::ssize(told), kTrialGroups + 2);
   for (std::int64_t i = 0; i < std::ssize(told); ++i)
     EXPECT_EQ(told[static_cast<std::size_t>(i)], i);
   EXPECT_EQ(std::ssize(all.groups), kTrialGroups);
-  EXPECT_EQ(all.whole.at_start(),
-            Passages(chain.chain, scene.field, Ending::far_edge, {.costs = false}).at_start());
+  EXPECT_EQ(
+      all.whole.at_start(),
+      ReactiveVisits(chain.chain, scene.field, Ending::far_edge, {.costs = false}).at_start());
 }
 
 TEST(Analysis, DrawnPlacesStandForAllThatArePassed) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 2000);
   const AnalysedChain chain = analysed_chain(problem_of(scene), pool, &pool.starts.front());
-  const Passages passages(chain.chain, scene.field, Ending::far_edge, {});
+  const ReactiveVisits passages(chain.chain, scene.field, Ending::far_edge, {});
   double draws = 0.0, to_target = 0.0;
-  passages.each([&](const Passages::Place& place, double share) {
+  passages.each([&](const ReactiveVisits::Place& place, double share) {
     draws += share;
     to_target += share * passages.chance(place);
   });
   EXPECT_NEAR(draws, passages.totals().visits.sum(), 1e-9);
-  const Passages::Draws drawn(passages);
+  const ReactiveVisits::Draws drawn(passages);
   constexpr int kDraws = 20'000;
   double mean = 0.0, of_target = 0.0;
   for (int i = 0; i < kDraws; ++i) {
-    const Passages::Place place = drawn.place((i + 0.5) / kDraws);
+    const ReactiveVisits::Place place = drawn.place((i + 0.5) / kDraws);
     mean += drawn.weight(place) / kDraws;
     of_target += drawn.weight(place) * passages.chance(place) / kDraws;
   }
@@ -525,7 +526,7 @@ TEST(Analysis, MorePartsLoseLess) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 2000);
   const AnalysedChain chain = analysed_chain(problem_of(scene), pool, &pool.starts.front());
-  const Passages passages(chain.chain, scene.field, Ending::far_edge, {});
+  const ReactiveVisits passages(chain.chain, scene.field, Ending::far_edge, {});
   const auto lumped = [&](const LumpingParts& parts) {
     return lumped_chain(chain, gates_of(scene).map(), scene.field, passages, parts).value();
   };

@@ -18,7 +18,7 @@ namespace gatewalk::lattice {
 
 /// How often walks pass each state of each cell at each draw (without limit of gates: at any draw),
 /// and the chance of the target from there.
-class Passages {
+class ReactiveVisits {
  public:
   struct Parts {
     bool costs = true;   // else totals() has no quantities, which are most of the time
@@ -28,8 +28,8 @@ class Passages {
   };
   /// Without limit of gates walks are followed until those left are few beside the ones that end in
   /// the target. Throws as markov::EndingChance and walk_totals.
-  Passages(const CostedChain& c, const FieldParams& field, markov::Ending target,
-           const Parts& parts);
+  ReactiveVisits(const CostedChain& c, const FieldParams& field, markov::Ending target,
+                 const Parts& parts);
 
   struct Place {
     int draw = 1;
@@ -63,7 +63,7 @@ class Passages {
   /// the target, half of each.
   class Draws {
    public:
-    explicit Draws(const Passages& passages);
+    explicit Draws(const ReactiveVisits& passages);
     /// The place of a number in (0, 1).
     [[nodiscard]] Place place(double uniform) const;
     /// The mean of weight * f over places drawn is the sum of share * f over all places.
@@ -72,7 +72,7 @@ class Passages {
     }
 
    private:
-    const Passages& passages_;
+    const ReactiveVisits& passages_;
     std::vector<std::size_t> passed_;      // of shares_, those with places
     std::vector<double> all_, to_target_;  // sums of shares up to each place of these
   };
@@ -96,23 +96,25 @@ class Passages {
 /// Groups of trials make intervals, which are known to two or three digits.
 inline constexpr double kGroupTolerance = 1e-6;
 
-struct AllPassages {
-  Passages whole;
-  std::vector<Passages> groups;
+struct AllReactiveVisits {
+  ReactiveVisits whole;
+  std::vector<ReactiveVisits> groups;
 };
 
 /// Of the chain and of its groups, on all threads. `work` is told of each that is done, as `what`,
 /// by any thread, but one at a time.
-[[nodiscard]] AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
-                                       markov::Ending target, const Passages::Parts& of_whole,
-                                       const Passages::Parts& of_groups, std::string_view what,
-                                       const dynamics::Work& work);
+[[nodiscard]] AllReactiveVisits all_reactive_visits(const AnalysedChain& chain,
+                                                    const FieldParams& field, markov::Ending target,
+                                                    const ReactiveVisits::Parts& of_whole,
+                                                    const ReactiveVisits::Parts& of_groups,
+                                                    std::string_view what,
+                                                    const dynamics::Work& work);
 
 /// Share of a state's draws that are trapped, by type of cell and state.
 [[nodiscard]] std::vector<std::vector<double>> trapped_shares(const markov::FieldChain& field);
 
 /// (rows x columns) Where walks end, of their places.
 [[nodiscard]] markov::CellProbabilities final_cells(const CostedChain& c, const FieldParams& field,
-                                                    const Passages& passages);
+                                                    const ReactiveVisits& passages);
 
 }  // namespace gatewalk::lattice

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/pool/passages.h"
+#include "lattice/pool/reactive_visits.h"
 
 #include <tbb/parallel_for.h>
 
@@ -11,8 +11,8 @@
 
 namespace gatewalk::lattice {
 
-Passages::Passages(const CostedChain& c, const FieldParams& field, markov::Ending target,
-                   const Parts& parts)
+ReactiveVisits::ReactiveVisits(const CostedChain& c, const FieldParams& field,
+                               markov::Ending target, const Parts& parts)
     : chance_(c.chain, {field.columns, field.rows}, target, field.max_gates, parts.tolerance,
               c.start),
       at_start_(
@@ -50,7 +50,7 @@ Passages::Passages(const CostedChain& c, const FieldParams& field, markov::Endin
   tell(1.0);
 }
 
-Passages::Draws::Draws(const Passages& passages) : passages_(passages) {
+ReactiveVisits::Draws::Draws(const ReactiveVisits& passages) : passages_(passages) {
   double all = 0.0, to_target = 0.0;
   for (std::size_t layer = 0; layer < passages.shares_.size(); ++layer) {
     if (passages.shares_[layer].empty()) continue;
@@ -64,7 +64,7 @@ Passages::Draws::Draws(const Passages& passages) : passages_(passages) {
   }
 }
 
-Passages::Place Passages::Draws::place(double uniform) const {
+ReactiveVisits::Place ReactiveVisits::Draws::place(double uniform) const {
   const auto& sums = uniform < 0.5 ? all_ : to_target_;
   const double part = (uniform < 0.5 ? uniform : uniform - 0.5) * 2.0 * sums.back();
   const auto at = std::min<std::ptrdiff_t>(
@@ -74,13 +74,13 @@ Passages::Place Passages::Draws::place(double uniform) const {
   return place;
 }
 
-AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
-                         markov::Ending target, const Passages::Parts& of_whole,
-                         const Passages::Parts& of_groups, std::string_view what,
-                         const dynamics::Work& work) {
+AllReactiveVisits all_reactive_visits(const AnalysedChain& chain, const FieldParams& field,
+                                      markov::Ending target, const ReactiveVisits::Parts& of_whole,
+                                      const ReactiveVisits::Parts& of_groups, std::string_view what,
+                                      const dynamics::Work& work) {
   std::vector<const CostedChain*> chains{&chain.chain};
   for (const AnalysedChain& group : chain.groups) chains.push_back(&group.chain);
-  std::vector<std::optional<Passages>> parts(chains.size());
+  std::vector<std::optional<ReactiveVisits>> parts(chains.size());
   std::mutex telling;
   std::int64_t done = 0;
   work.tell(what, 0, std::ssize(chains));
@@ -89,7 +89,7 @@ AllPassages all_passages(const AnalysedChain& chain, const FieldParams& field,
     const std::lock_guard lock(telling);
     work.tell(what, ++done, std::ssize(chains));
   });
-  AllPassages all{std::move(*parts.front()), {}};
+  AllReactiveVisits all{std::move(*parts.front()), {}};
   for (std::size_t k = 1; k < parts.size(); ++k) all.groups.push_back(std::move(*parts[k]));
   return all;
 }
@@ -107,7 +107,7 @@ std::vector<std::vector<double>> trapped_shares(const markov::FieldChain& field)
 }
 
 markov::CellProbabilities final_cells(const CostedChain& c, const FieldParams& field,
-                                      const Passages& passages) {
+                                      const ReactiveVisits& passages) {
   const markov::FieldChain& chain = c.chain;
   const markov::Field cells{field.columns, field.rows};
   markov::CellProbabilities ends = markov::CellProbabilities::Zero(field.rows, field.columns);
@@ -125,7 +125,7 @@ markov::CellProbabilities final_cells(const CostedChain& c, const FieldParams& f
     for (int input = 0; input < one.inputs(); ++input)
       all_sampled = all_sampled && one.is_sampled(input);
   }
-  passages.each([&](const Passages::Place& place, double share) {
+  passages.each([&](const ReactiveVisits::Place& place, double share) {
     const std::int64_t column = place.cell % field.columns, row = place.cell / field.columns;
     double& here = ends.data()[place.cell];
     const bool is_last = place.draw == field.max_gates;
