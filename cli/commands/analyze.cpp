@@ -15,7 +15,7 @@
 #include "cli/render/text.h"
 #include "cli/subject.h"
 #include "lattice/gate_chain.h"
-#include "lattice/pool/costed_chain.h"
+#include "lattice/pool/chain_with_rewards.h"
 #include "lattice/pool/lumped_chain.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/statistics/ending_shares.h"

@@ -44,7 +44,7 @@ void cut(std::span<int> states, std::size_t axis, int parts, const std::vector<E
 std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain, const dynamics::CellMap& map,
                                         const FieldParams& field, const ReactiveVisits& passages,
                                         const LumpingParts& parts) {
-  const CostedChain& c = chain.chain;
+  const ChainWithRewards& c = chain.chain;
   const markov::Field cells{field.columns, field.rows};
   const std::vector<double>& visits = passages.state_visits();
   std::vector<Entry> places;

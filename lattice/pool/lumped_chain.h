@@ -7,7 +7,7 @@
 
 #include "lattice/field.h"
 #include "lattice/gate_chain.h"
-#include "lattice/pool/costed_chain.h"
+#include "lattice/pool/chain_with_rewards.h"
 #include "lattice/pool/reactive_visits.h"
 
 namespace gatewalk::lattice {

@@ -11,7 +11,7 @@
 
 namespace gatewalk::lattice {
 
-ReactiveVisits::ReactiveVisits(const CostedChain& c, const FieldParams& field,
+ReactiveVisits::ReactiveVisits(const ChainWithRewards& c, const FieldParams& field,
                                markov::Ending target, const Parts& parts)
     : chance_(c.chain, {field.columns, field.rows}, target, field.max_gates, parts.tolerance,
               c.start),
@@ -78,7 +78,7 @@ AllReactiveVisits all_reactive_visits(const AnalysedChain& chain, const FieldPar
                                       markov::Ending target, const ReactiveVisits::Parts& of_whole,
                                       const ReactiveVisits::Parts& of_groups, std::string_view what,
                                       const dynamics::Work& work) {
-  std::vector<const CostedChain*> chains{&chain.chain};
+  std::vector<const ChainWithRewards*> chains{&chain.chain};
   for (const AnalysedChain& group : chain.groups) chains.push_back(&group.chain);
   std::vector<std::optional<ReactiveVisits>> parts(chains.size());
   std::mutex telling;
@@ -106,7 +106,7 @@ std::vector<std::vector<double>> trapped_shares(const markov::FieldChain& field)
   return shares;
 }
 
-markov::CellProbabilities final_cells(const CostedChain& c, const FieldParams& field,
+markov::CellProbabilities final_cells(const ChainWithRewards& c, const FieldParams& field,
                                       const ReactiveVisits& passages) {
   const markov::FieldChain& chain = c.chain;
   const markov::Field cells{field.columns, field.rows};

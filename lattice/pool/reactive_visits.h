@@ -10,7 +10,7 @@
 
 #include "dynamics/base/work.h"
 #include "lattice/field.h"
-#include "lattice/pool/costed_chain.h"
+#include "lattice/pool/chain_with_rewards.h"
 #include "markov/committor.h"
 #include "markov/totals.h"
 
@@ -28,7 +28,7 @@ class ReactiveVisits {
   };
   /// Without limit of gates walks are followed until those left are few beside the ones that end in
   /// the target. Throws as markov::EndingChance and walk_totals.
-  ReactiveVisits(const CostedChain& c, const FieldParams& field, markov::Ending target,
+  ReactiveVisits(const ChainWithRewards& c, const FieldParams& field, markov::Ending target,
                  const Parts& parts);
 
   struct Place {
@@ -114,7 +114,8 @@ struct AllReactiveVisits {
 [[nodiscard]] std::vector<std::vector<double>> trapped_shares(const markov::FieldChain& field);
 
 /// (rows x columns) Where walks end, of their places.
-[[nodiscard]] markov::CellProbabilities final_cells(const CostedChain& c, const FieldParams& field,
+[[nodiscard]] markov::CellProbabilities final_cells(const ChainWithRewards& c,
+                                                    const FieldParams& field,
                                                     const ReactiveVisits& passages);
 
 }  // namespace gatewalk::lattice

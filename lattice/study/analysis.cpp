@@ -148,7 +148,7 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Cel
                                            const FieldParams& field, int start_face,
                                            const ReactiveVisits& passages,
                                            const std::vector<ReactiveVisits>& groups) {
-  const CostedChain& c = chain.chain;
+  const ChainWithRewards& c = chain.chain;
   const StateSpace& space = chain.space;
   const markov::Ending target = passages.chance().ending(), image = mirrored(target);
   const bool in_mirror = same_in_mirror(map, field);
@@ -166,7 +166,7 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Cel
     all.push_back({chain.groups[g].space, groups[g].chance()});
   if (in_mirror && image != target)
     for (std::size_t k = 0; k < all.size(); ++k) {
-      const CostedChain& one = k == 0 ? c : chain.groups[k - 1].chain;
+      const ChainWithRewards& one = k == 0 ? c : chain.groups[k - 1].chain;
       all[k].of_image.emplace(one.chain, cells, image, field.max_gates, markov::kRowTolerance,
                               one.start);
     }
@@ -278,7 +278,7 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
   const Stopwatch watch;
   const CellMap& map = problem.map();
   const FieldParams& field = problem.field;
-  const CostedChain& c = chain.chain;
+  const ChainWithRewards& c = chain.chain;
   const StateSpace& space = chain.space;
   const markov::Field cells{field.columns, field.rows};
 

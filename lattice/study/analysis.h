@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "lattice/pool/costed_chain.h"
+#include "lattice/pool/chain_with_rewards.h"
 #include "lattice/pool/lumped_chain.h"
 #include "lattice/problem.h"
 #include "lattice/statistics/group_spread.h"

@@ -40,7 +40,7 @@ AtStart at_start(const markov::FirstPassages& f, const markov::Start& start) {
 
 FirstPassage first_passage(const FieldParams& field, const AnalysedChain& chain,
                            const markov::PassageTarget& target) {
-  const auto passages_of = [&](const CostedChain& c) {
+  const auto passages_of = [&](const ChainWithRewards& c) {
     return markov::first_passages(c.chain, {field.columns, field.rows}, target, field.max_gates,
                                   times_of(c.rewards));
   };
@@ -51,7 +51,7 @@ FirstPassage first_passage(const FieldParams& field, const AnalysedChain& chain,
       target.holds(std::int64_t{start.row} * field.columns + start.column, start.input);
   std::vector<AtStart> groups(target.input || is_there ? 0 : chain.groups.size());
   tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
-    const CostedChain& c = chain.groups[g].chain;
+    const ChainWithRewards& c = chain.groups[g].chain;
     groups[g] = at_start(passages_of(c), c.start);
   });
   std::vector<double> chances, gates, times;

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "lattice/pool/costed_chain.h"
+#include "lattice/pool/chain_with_rewards.h"
 #include "lattice/problem.h"
 #include "lattice/statistics/group_spread.h"
 #include "markov/first_passage.h"

@@ -145,7 +145,8 @@ TEST(Analysis, LeavesOfOneRunTakeWhatTheTrialsTook) {
   const RunPool pool = pool_of_trials(scene, 300);
   const FieldGates gates = gates_of(scene);
   const Kernel kernel = kernel_of(gates.map(), pool, 1);
-  const CostedChain c = costed_chain(kernel, gates.map(), scene.field, pool, &pool.starts[0]);
+  const ChainWithRewards c =
+      chain_with_rewards(kernel, gates.map(), scene.field, pool, &pool.starts[0]);
   const auto totals = markov::walk_totals(c.chain, {5, 3}, c.start, 8, c.rewards);
   FieldCosts own(bin_of_durations(scene.gate));
   own.add(pool.starts[0].full);
@@ -513,7 +514,7 @@ TEST(Analysis, PlacesTellWhereWalksEnd) {
   const RunPool pool = pool_of_trials(scene, 2000);
   for (const int max_gates : {0, 4}) {
     scene.field.max_gates = max_gates;
-    const CostedChain c = analysed_chain(problem_of(scene), pool, &pool.starts.front()).chain;
+    const ChainWithRewards c = analysed_chain(problem_of(scene), pool, &pool.starts.front()).chain;
     const auto ends = final_cells(c, scene.field, {c, scene.field, Ending::far_edge, {}});
     const auto exact = markov::predict(c.chain, {scene.field.columns, scene.field.rows}, {c.start},
                                        {.max_cells = max_gates});

@@ -16,20 +16,21 @@ namespace gatewalk::lattice {
 
 /// A field's chain from one start, with what its draws take: the quantities are those of
 /// Section::costs.
-struct CostedChain {
+struct ChainWithRewards {
   markov::FieldChain chain;
   markov::Rewards rewards;
   markov::Start start;
 };
 /// From the runs of one group of the trials, and that group's first runs from `start`, whose row is
 /// the last one.
-[[nodiscard]] CostedChain costed_chain(const Kernel& kernel, const dynamics::CellMap& map,
-                                       const FieldParams& field, const RunPool& pool,
-                                       const FirstRow& start, TrialGroup group = {});
+[[nodiscard]] ChainWithRewards chain_with_rewards(const Kernel& kernel,
+                                                  const dynamics::CellMap& map,
+                                                  const FieldParams& field, const RunPool& pool,
+                                                  const FirstRow& start, TrialGroup group = {});
 
 /// What is analysed.
 struct AnalysedChain {
-  CostedChain chain;
+  ChainWithRewards chain;
   dynamics::StateSpace space;  // of its states; of trees without the start, whose row follows
   /// An entry into a gate that belongs to the state, drawn: of those seen, in gates of any type; of
   /// bins anywhere in the bin.

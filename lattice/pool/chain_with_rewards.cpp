@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/pool/costed_chain.h"
+#include "lattice/pool/chain_with_rewards.h"
 
 #include <tbb/parallel_for.h>
 
@@ -32,8 +32,9 @@ std::vector<markov::Reward> rewards_of(const std::vector<std::int64_t>& counts,
 
 }  // namespace
 
-CostedChain costed_chain(const Kernel& kernel, const CellMap& map, const FieldParams& field,
-                         const RunPool& pool, const FirstRow& start, TrialGroup group) {
+ChainWithRewards chain_with_rewards(const Kernel& kernel, const CellMap& map,
+                                    const FieldParams& field, const RunPool& pool,
+                                    const FirstRow& start, TrialGroup group) {
   const int start_type = map.type_of(field.start_column(), 0);
   const auto sums = cost_sums(kernel, map, pool, group);
   const markov::Counts first = first_rows(kernel, map, pool, {start}, start_type, {group});
@@ -98,7 +99,7 @@ AnalysedChain analysed_chain(const Problem& problem, const RunPool& pool, const 
   const CellMap& map = problem.map();
   const auto chain_of_group = [&](TrialGroup group) -> AnalysedChain {
     Kernel kernel = kernel_of(map, pool, per_leaf, group);
-    CostedChain chain = costed_chain(kernel, map, problem.field, pool, start, group);
+    ChainWithRewards chain = chain_with_rewards(kernel, map, problem.field, pool, start, group);
     auto entries = entries_of_leaves(kernel, map, pool, group);
     entries.push_back(first_entries(kernel, map, pool, start, group, entries));
     const auto type = static_cast<std::size_t>(problem.start_type());
