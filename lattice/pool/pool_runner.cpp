@@ -125,7 +125,7 @@ void PoolRunner::run_even(const Begun& begun, std::int64_t count, FieldTrials& a
         for (std::int64_t at = items.first; at < items.first + items.count;) {
           const std::int64_t batch = at / kArrays, array = at % kArrays,
                              some = std::min(kArrays - array, items.first + items.count - at);
-          const EvenTrials trials{done + batch * kArrays * of_array,
+          const RqmcTrials trials{done + batch * kArrays * of_array,
                                   of_array,
                                   static_cast<int>(array),
                                   static_cast<int>(some),

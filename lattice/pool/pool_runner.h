@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "lattice/even_trials.h"
 #include "lattice/pool/run_pool.h"
 #include "lattice/problem.h"
+#include "lattice/rqmc_trials.h"
 #include "lattice/statistics/group_spread.h"
 
 namespace gatewalk::lattice {
@@ -29,7 +29,7 @@ class PoolRunner {
   PoolRunner(const Problem& problem, std::uint64_t seed, std::int64_t most_runs,
              const dynamics::Work& work);
 
-  /// Noise is laid by points where cells can do that (even_trials.h): that of the first passages
+  /// Noise is laid by points where cells can do that (rqmc_trials.h): that of the first passages
   /// from a start, and in rounds of kLeastEven trials or more that of all. There `count` is rounded
   /// up, for arrays of one size.
   static constexpr std::int64_t kLeastEven = 4096;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// How much chance is left where noise is laid by points (lattice/even_trials.h), and what that
+/// How much chance is left where noise is laid by points (lattice/rqmc_trials.h), and what that
 /// costs:
 ///   points_bench SCENE [KEY=VALUE ...]
 /// prints lines "what,trials,replicates,plain,points": variances over replicates, plain and with
@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "lattice/even_trials.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/rqmc_trials.h"
 #include "lattice/scene/scene_problem.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/even_trials.h"
+#include "lattice/rqmc_trials.h"
 
 #include <tbb/parallel_for.h>
 
@@ -82,7 +82,7 @@ void put_in_order(const Section& section, std::span<Entering> part) {
 /// Trials on their way, all at the same step.
 class Arrays {
  public:
-  Arrays(const CellField& cells, const FieldParams& field, const EvenTrials& trials,
+  Arrays(const CellField& cells, const FieldParams& field, const RqmcTrials& trials,
          std::uint64_t seed)
       : cells_(cells), field_(field), trials_(trials) {
     const auto count = static_cast<std::size_t>(trials.count());
@@ -185,7 +185,7 @@ class Arrays {
 
   const CellField& cells_;
   const FieldParams& field_;
-  const EvenTrials& trials_;
+  const RqmcTrials& trials_;
   std::vector<RunningTrial> running_;
   std::vector<Body> bodies_;
   std::vector<Random> scrambles_;                // by array
@@ -197,7 +197,7 @@ class Arrays {
 }  // namespace
 
 FieldTally run_even_field(const CellField& cells, const FieldParams& field,
-                          const EvenTrials& trials, std::uint64_t seed, FieldTrials* each,
+                          const RqmcTrials& trials, std::uint64_t seed, FieldTrials* each,
                           const std::function<void(std::int64_t)>& tick) {
   constexpr std::int64_t kFew = 1024;  // fewer at once leave lanes idle
   cells.map.require_fits(field.columns, field.rows);

@@ -21,7 +21,7 @@ inline constexpr int kArrays = 8;
 /// sequence.
 class FirstPoints {
  public:
-  /// `numbers`: of the trials' streams, as EvenTrials has them.
+  /// `numbers`: of the trials' streams, as RqmcTrials has them.
   FirstPoints(std::uint64_t seed, std::uint64_t stream, std::int64_t numbers);
   [[nodiscard]] dynamics::Point operator()(std::int64_t i) const;
 
@@ -33,7 +33,7 @@ class FirstPoints {
 [[nodiscard]] bool lays_noise(const dynamics::CellField& cells);
 
 /// Some arrays of trials that are run together.
-struct EvenTrials {
+struct RqmcTrials {
   std::int64_t first = 0;               // number of the first trial of all arrays
   std::int64_t of_array = 0;            // trials
   int array = 0, arrays = kArrays;      // which; trial first + kArrays j + a is the j-th of array a
@@ -53,7 +53,7 @@ struct EvenTrials {
 /// array by array, and does not count moves between gates. `tick(trials that have ended)` is called
 /// a few times a second; it may throw to stop.
 [[nodiscard]] FieldTally run_even_field(const dynamics::CellField& cells, const FieldParams& field,
-                                        const EvenTrials& trials, std::uint64_t seed,
+                                        const RqmcTrials& trials, std::uint64_t seed,
                                         FieldTrials* each,
                                         const std::function<void(std::int64_t)>& tick);
 

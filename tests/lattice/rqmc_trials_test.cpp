@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/even_trials.h"
+#include "lattice/rqmc_trials.h"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ struct Ran {
   FieldTally tally;
   FieldTrials each{.final_gates = {}, .keep_passages = true};
 };
-Ran run(const lattice::Problem& problem, EvenTrials trials, std::uint64_t seed = 1) {
+Ran run(const lattice::Problem& problem, RqmcTrials trials, std::uint64_t seed = 1) {
   const FirstPoints points(seed, 5, trials.numbers);
   trials.points = &points;
   trials.start = [&](std::int64_t) { return problem.start; };
@@ -55,14 +55,14 @@ bool same(const FieldTrials& a, const FieldTrials& b) {
   return a.passages.size() == b.passages.size();
 }
 
-TEST(EvenTrials, AreTheSameInAnyCompanyOnAnyThreads) {
+TEST(RqmcTrials, AreTheSameInAnyCompanyOnAnyThreads) {
   const lattice::Problem problem = problem_of(calm_scene());
-  const EvenTrials all{.first = 16, .of_array = 200};
+  const RqmcTrials all{.first = 16, .of_array = 200};
   const Ran together = on_threads(1, [&] { return run(problem, all); });
   FieldTrials parts{.final_gates = {}, .keep_passages = true};
   std::int64_t runs = 0;
   for (const auto& [array, arrays] : {std::pair(0, 3), std::pair(3, 4), std::pair(7, 1)}) {
-    EvenTrials some = all;
+    RqmcTrials some = all;
     some.array = array;
     some.arrays = arrays;
     const Ran ran = on_threads(3, [&] { return run(problem, some); });
@@ -77,7 +77,7 @@ TEST(EvenTrials, AreTheSameInAnyCompanyOnAnyThreads) {
 
 // The law of a trial does not know of the others: means of arrays, which are independent, lie about
 // the shares of plain trials.
-TEST(EvenTrials, EndAsPlainOnesDo) {
+TEST(RqmcTrials, EndAsPlainOnesDo) {
   const lattice::Problem problem = problem_of(calm_scene());
   constexpr std::int64_t kPlain = 40'000, kOfArray = 64, kSets = 25;
   const CellProbabilities plain =
@@ -114,7 +114,7 @@ double spread(const std::vector<CellProbabilities>& replicates) {
 }
 
 // Binomial noise makes the same sum 1 of as many plain trials.
-TEST(EvenTrials, HaveLessChanceTogether) {
+TEST(RqmcTrials, HaveLessChanceTogether) {
   Scene scene = calm_scene();
   scene.start = {23, 0, -11, 16};
   const lattice::Problem problem = problem_of(scene);
@@ -132,7 +132,7 @@ TEST(EvenTrials, HaveLessChanceTogether) {
   EXPECT_LT(spread(replicates), 0.8 * plain * plain / kTrials);
 }
 
-TEST(EvenTrials, FirstPointsGoOnWhereTheyWere) {
+TEST(RqmcTrials, FirstPointsGoOnWhereTheyWere) {
   const FirstPoints points(1, 2, 0);
   EXPECT_EQ(points(3), points(3));
   EXPECT_NE(points(3), points(4));   // another array
@@ -160,7 +160,7 @@ class InThrees : public KeptPieces {
   std::size_t bytes_ = 0;
 };
 
-TEST(EvenTrials, OfARunnerAreTheSameInPieces) {
+TEST(RqmcTrials, OfARunnerAreTheSameInPieces) {
   const lattice::Problem problem = problem_of(calm_scene());
   const auto trials_of = [&](const Work& work) {
     OwnRuns s;
@@ -181,7 +181,7 @@ TEST(EvenTrials, OfARunnerAreTheSameInPieces) {
 }
 
 // Trials from anywhere, in a field of two types, in several batches.
-TEST(EvenTrials, OfSeveralBatchesAreTheSameInPieces) {
+TEST(RqmcTrials, OfSeveralBatchesAreTheSameInPieces) {
   const Scene scene = read_scene(std::string(GATEWALK_SCENES) + "/mixed.toml",
                                  {"run.method=moreau", "run.step_s=0.01"});
   const lattice::Problem problem = problem_of(scene);
@@ -201,7 +201,7 @@ TEST(EvenTrials, OfSeveralBatchesAreTheSameInPieces) {
   EXPECT_TRUE(same(whole, trials_of(work)));
 }
 
-TEST(EvenTrials, ARunnerCanBeStopped) {
+TEST(RqmcTrials, ARunnerCanBeStopped) {
   const lattice::Problem problem = problem_of(calm_scene());
   struct Stop {};
   Work work;
@@ -215,7 +215,7 @@ TEST(EvenTrials, ARunnerCanBeStopped) {
   EXPECT_TRUE(s.full.final_gates.empty());
 }
 
-TEST(EvenTrials, AreOfCellsThatLayNoise) {
+TEST(RqmcTrials, AreOfCellsThatLayNoise) {
   CellField gates = problem_of(calm_scene()).cells, none;
   EXPECT_TRUE(lays_noise(gates));
   EXPECT_FALSE(lays_noise(none));
