@@ -9,7 +9,7 @@
 #include "cli/render/analysis.h"
 #include "cli/render/shown_field.h"
 #include "cli/render/start.h"
-#include "lattice/study/outlook.h"
+#include "lattice/study/by_start_and_cell.h"
 
 namespace gatewalk::cli {
 

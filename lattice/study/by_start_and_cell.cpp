@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/study/outlook.h"
+#include "lattice/study/by_start_and_cell.h"
 
 #include <tbb/parallel_for.h>
 
