@@ -9,7 +9,7 @@
 ///   statistics/   of shares, trials and chains, whatever the cells are:
 ///     compare.h       corrcoef, RMSE, total variation, noise floors, p-values
 ///     matrix_noise.h  what the sampling of a matrix does to its predictions
-///     looked_at.h     several statistics judged together
+///     multiple_tests.h several statistics judged together
 ///     independence.h, gates_ahead.h  does a chain forget what matters?
 ///     ending_shares.h how trials, walks or a prediction end, with intervals
 ///     draws.h         binomial and multinomial counts

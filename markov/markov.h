@@ -20,7 +20,7 @@
 ///   A chain for each type of cell -> which cells to change (design.h)
 ///   Small fields exactly, in any kind of number (absorbing.h, field_states.h), blocks of cells as
 ///              cells (blocks.h), states taken together (lumping.h)
-/// Walks and exact results tell the same four ends apart: trapped, left the field, cut off at the
+/// Walks and exact results are Ends (ends.h), which tell apart: trapped, left the field, cut off at the
 /// cell limit, entered a state that was never sampled. The final cell is the last one inside.
 /// What a state means, and how large a cell is, this module does not know.
 // clang-format on
