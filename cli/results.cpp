@@ -13,7 +13,7 @@
 #include "cli/render/files.h"
 #include "cli/render/fit.h"
 #include "cli/render/gate_runs.h"
-#include "cli/render/halves.h"
+#include "cli/render/cross_validation.h"
 #include "cli/render/landscape.h"
 #include "cli/render/matrix.h"
 #include "cli/render/meaning.h"
@@ -222,7 +222,7 @@ void describe_validate(Fields& out) {
   lattice::GatesAhead::Step& step = memory.ahead.steps.emplace_back();
   step.seen = step.predicted = {0.0, 0.0};
   step.excess_95.resize(2);
-  HalvesResult of_runs;
+  CrossValidationResult of_runs;
   of_runs.section = dynamics::disc_section();
   out.either(
       true, [&](Fields& f) { describe(f, of_scene); }, [&](Fields& f) { describe(f, of_runs); });

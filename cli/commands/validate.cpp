@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "cli/arguments.h"
+#include "cli/render/cross_validation.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/halves.h"
 #include "cli/render/matrix.h"
 #include "cli/render/prediction.h"
 #include "cli/render/validation.h"
@@ -189,10 +189,11 @@ int validate_recorded(const Options& options) {
                      "against, and no bodies whose steps could be told apart");
   if (s.pool->scattered.each.bodies.empty())
     throw UsageError(path + ": its runs were not recorded: --cell-program says who makes more");
-  lattice::HalvesOptions how{.null_draws = {}, .seed = options.seed(), .per_leaf = s.how.per_leaf};
+  lattice::CrossValidationOptions how{
+      .null_draws = {}, .seed = options.seed(), .per_leaf = s.how.per_leaf};
   if (options.has("null-draws")) how.null_draws = options.count("null-draws", 1, kMostNullDraws);
-  const HalvesResult result{
-      .halves = lattice::validate_halves(s.problem, *s.pool, how, options.work()),
+  const CrossValidationResult result{
+      .validation = lattice::cross_validate(s.problem, *s.pool, how, options.work()),
       .memory = lattice::body_memory(s.problem, *s.pool, how.per_leaf, how.null_draws.value_or(999),
                                      how.seed),
       .section = s.problem.map().section,
@@ -203,8 +204,8 @@ int validate_recorded(const Options& options) {
     options.warn(fmt::format("these are {} bodies: of fewer than {} p may come out too small",
                              s.pool->bodies(), kChecked));
   options.give_out(result, table_of(result) + table_of(*s.pool));
-  for (const std::string& rest : rest_warnings(result.halves)) options.warn(rest);
-  options.draw([&] { return figure_of(result.halves, s.shown()); });
+  for (const std::string& rest : rest_warnings(result.validation)) options.warn(rest);
+  options.draw([&] { return figure_of(result.validation, s.shown()); });
   return kFine;
 }
 

@@ -112,4 +112,10 @@ double gamma(double shape, Random& random) {
   }
 }
 
+Eigen::VectorXd random_signs(Eigen::Index count, dynamics::Random& random) {
+  Eigen::VectorXd signs(count);
+  for (double& sign : signs) sign = random.uniform() < 0.5 ? -1.0 : 1.0;
+  return signs;
+}
+
 }  // namespace gatewalk::lattice

@@ -3,6 +3,7 @@
 /// Counts drawn at once instead of trial by trial: binomial and multinomial; and gamma. From own
 /// samplers (the standard library's differ between vendors).
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 
@@ -23,5 +24,8 @@ void multinomial(std::int64_t trials, std::span<const double> weights,
 /// Of the gamma distribution with this shape (> 0) and scale 1 (Marsaglia and Tsang, ACM Trans.
 /// Math. Softw. 26, 2000). Several of them over their sum are a draw from a Dirichlet distribution.
 [[nodiscard]] double gamma(double shape, dynamics::Random& random);
+
+/// 1 or -1 each, with the same chance (Rademacher weights).
+[[nodiscard]] Eigen::VectorXd random_signs(Eigen::Index count, dynamics::Random& random);
 
 }  // namespace gatewalk::lattice

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "dynamics/base/random.h"
+#include "lattice/statistics/draws.h"
 #include "markov/dense.h"
 
 namespace gatewalk::lattice {
@@ -26,9 +27,10 @@ constexpr double kLeastVariance = 5.0;
 /// The runs that can tell, state by state.
 struct Strata {
   int labels = 0, outcomes = 0;
-  std::vector<std::int32_t> label, outcome;  // (runs)
-  std::vector<std::size_t> ends;             // (states) behind the last run of each
-  std::vector<double> expected;  // (states x labels x outcomes) by dealing out at random
+  std::vector<std::int32_t> label, outcome, cluster;  // (runs)
+  std::vector<std::size_t> ends;                      // (states) behind the last run of each
+  /// (states x labels x outcomes) by dealing out at random; without clusters.
+  std::vector<double> expected;
 
   [[nodiscard]] int cells() const { return labels * outcomes; }
   [[nodiscard]] std::size_t begin(std::size_t s) const { return s == 0 ? 0 : ends[s - 1]; }
@@ -43,17 +45,20 @@ Eigen::VectorXd tally(const std::vector<std::int32_t>& numbers, std::size_t begi
   return n;
 }
 
-Strata strata_of(std::span<const LabelledRun> runs) {
-  Strata strata;
+Strata strata_of(std::span<const LabelledRun> runs, const IndependenceOptions& options) {
+  Strata strata{options.labels, options.outcomes, {}, {}, {}, {}, {}};
   std::vector<LabelledRun> sorted(runs.begin(), runs.end());
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const LabelledRun& a, const LabelledRun& b) { return a.state < b.state; });
   for (const LabelledRun& r : sorted) {
     if (r.state < 0 || r.label < 0 || r.outcome < 0)
       throw std::invalid_argument("independence: states, labels and outcomes count from 0");
+    if (options.clusters > 0 && (r.cluster < 0 || r.cluster >= options.clusters))
+      throw std::invalid_argument("independence: there is no such cluster");
     strata.labels = std::max(strata.labels, r.label + 1);
     strata.outcomes = std::max(strata.outcomes, r.outcome + 1);
-    if (std::max(strata.labels, strata.outcomes) > 64 || strata.cells() > 64)
+    if (options.clusters == 0 &&
+        (std::max(strata.labels, strata.outcomes) > 64 || strata.cells() > 64))
       throw std::invalid_argument("independence: more than 64 labels times outcomes");
   }
   for (auto from = sorted.begin(); from != sorted.end();) {
@@ -65,11 +70,12 @@ Strata strata_of(std::span<const LabelledRun> runs) {
     for (auto r = from; tells && r != to; ++r) {
       strata.label.push_back(r->label);
       strata.outcome.push_back(r->outcome);
+      strata.cluster.push_back(r->cluster);
     }
     if (tells) strata.ends.push_back(strata.label.size());
     from = to;
   }
-  for (std::size_t s = 0; s < strata.ends.size(); ++s) {
+  for (std::size_t s = 0; options.clusters == 0 && s < strata.ends.size(); ++s) {
     const auto l = tally(strata.label, strata.begin(s), strata.ends[s], strata.labels);
     const auto o = tally(strata.outcome, strata.begin(s), strata.ends[s], strata.outcomes);
     for (int i = 0; i < strata.labels; ++i)
@@ -82,6 +88,7 @@ Strata strata_of(std::span<const LabelledRun> runs) {
 /// What the null makes of the pooled differences.
 struct Pooled {
   Eigen::MatrixXd covariance;  // (cells x cells)
+  Eigen::VectorXd deviation;   // (cells) 0: of too few counts
   Eigen::MatrixXd whitening;   // (degrees x cells): whitened differences are as standard normals
   Eigen::MatrixXd planted;     // (labels x outcomes) what a memory of total variation 1 adds
 
@@ -130,7 +137,7 @@ Eigen::MatrixXd whitening_of(const Eigen::MatrixXd& v) {
 
 Pooled pooled_of(const Strata& strata) {
   const int cells = strata.cells(), outcomes = strata.outcomes;
-  Pooled pooled{Eigen::MatrixXd::Zero(cells, cells), {}, {}};
+  Pooled pooled{Eigen::MatrixXd::Zero(cells, cells), {}, {}, {}};
   const auto all = strata.label.size();
   const Eigen::VectorXd side = halves_of(tally(strata.label, 0, all, strata.labels));
   Eigen::VectorXd shifted = Eigen::VectorXd::Zero(strata.labels);  // runs, by label
@@ -150,6 +157,8 @@ Pooled pooled_of(const Strata& strata) {
     shifted += of_labels * side;
   }
   pooled.whitening = whitening_of(pooled.covariance);
+  pooled.deviation = pooled.covariance.diagonal().unaryExpr(
+      [](double x) { return x < kLeastVariance ? 0.0 : std::sqrt(x); });
 
   Eigen::VectorXd common = tally(strata.outcome, 0, all, outcomes), direction = 0.0 * common;
   Eigen::Index first = 0, second = 0;
@@ -182,20 +191,23 @@ PooledDifferences differences(const Strata& strata, const std::vector<std::int32
   return d;
 }
 
-/// The largest difference over its standard deviation: which, and how large; -1: none.
-std::pair<int, double> strongest(const Pooled& pooled, const Eigen::VectorXd& d) {
-  int at = -1;
-  double most = 0.0;
-  for (Eigen::Index i = 0; i < d.size(); ++i) {
-    const double variance = pooled.covariance(i, i);
-    if (variance < kLeastVariance) continue;
-    const double size = std::abs(d[i]) / std::sqrt(variance);
-    if (at >= 0 && size <= most) continue;
-    at = static_cast<int>(i);
-    most = size;
+/// Differences over their standard deviations, but those without one.
+struct Sizes {
+  double squares = 0.0;  // of all together
+  double largest = 0.0;
+  int strongest = -1;  // whose it is; -1: none has a deviation
+
+  Sizes(const Eigen::VectorXd& d, const Eigen::VectorXd& deviation) {
+    for (Eigen::Index i = 0; i < d.size(); ++i) {
+      if (deviation[i] == 0.0) continue;
+      const double size = std::abs(d[i]) / deviation[i];
+      squares += size * size;
+      if (strongest >= 0 && size <= largest) continue;
+      strongest = static_cast<int>(i);
+      largest = size;
+    }
   }
-  return {at, most};
-}
+};
 
 /// The statistics of every draw of the null, and in the last row what was seen.
 std::vector<double> all_statistics(const Strata& strata, const Pooled& pooled,
@@ -212,7 +224,7 @@ std::vector<double> all_statistics(const Strata& strata, const Pooled& pooled,
     const PooledDifferences d = differences(strata, outcome);
     double* const row = &all[k * kStatistics];
     row[kPooled] = (pooled.whitening * d.pooled).squaredNorm();
-    row[kStrongest] = strongest(pooled, d.pooled).second;
+    row[kStrongest] = Sizes(d.pooled, pooled.deviation).largest;
     row[kStateByState] = d.squares;
   });
   return all;
@@ -244,23 +256,19 @@ void measure(Independence& result, const Pooled& pooled, double single_level) {
   if (least <= 1.0) result.seen_at_90 = least;  // no total variation is more
 }
 
-}  // namespace
+/// Fills in whose the largest difference is. `label_runs`: of each label.
+void name_strongest(Independence& result, const Strata& strata, const Eigen::VectorXd& seen,
+                    const Eigen::VectorXd& deviation, const Eigen::VectorXd& label_runs) {
+  const int at = Sizes(seen, deviation).strongest;
+  if (at < 0) return;
+  result.label = at / strata.outcomes;
+  result.outcome = at % strata.outcomes;
+  result.more = seen[at] / label_runs[result.label];
+}
 
-Independence test_independence(std::span<const LabelledRun> runs,
-                               const IndependenceOptions& options) {
-  if (options.null_draws < 1)
-    throw std::invalid_argument("independence: null_draws must be at least 1");
-  if (!(options.level > 0.0 && options.level < 1.0))
-    throw std::invalid_argument("independence: level must lie between 0 and 1");
-  const Strata strata = strata_of(runs);
-  Independence result;
-  result.runs = std::ssize(strata.label);
-  result.states = std::ssize(strata.ends);
-  result.null_draws = options.null_draws;
-  result.memory = result.memory_low = result.memory_high = kNoNumber;
-  result.seen_at_90 = std::numeric_limits<double>::infinity();
-  if (result.states == 0) return result;
-
+/// Each run is its own: outcomes are dealt out anew.
+void test_by_dealing(Independence& result, const Strata& strata,
+                     const IndependenceOptions& options) {
   const Pooled pooled = pooled_of(strata);
   const MultipleTests looked(all_statistics(strata, pooled, options), kStatistics);
   result.pooled = looked.tests[kPooled];
@@ -270,14 +278,77 @@ Independence test_independence(std::span<const LabelledRun> runs,
   result.degrees = pooled.degrees();
   result.p_chi_squared = boost::math::cdf(
       boost::math::complement(boost::math::chi_squared(result.degrees), result.pooled.seen));
-  const Eigen::VectorXd seen = differences(strata, strata.outcome).pooled;
-  if (const int at = strongest(pooled, seen).first; at >= 0) {
-    result.label = at / strata.outcomes;
-    result.outcome = at % strata.outcomes;
-    const auto n = tally(strata.label, 0, strata.label.size(), strata.labels);
-    result.more = seen[at] / n[result.label];
-  }
+  name_strongest(result, strata, differences(strata, strata.outcome).pooled, pooled.deviation,
+                 tally(strata.label, 0, strata.label.size(), strata.labels));
   measure(result, pooled, looked.single_level(options.level));
+}
+
+/// Shares of each number in [begin, end).
+Eigen::VectorXd shares(const std::vector<std::int32_t>& numbers, std::size_t begin, std::size_t end,
+                       int count) {
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(count);
+  for (std::size_t i = begin; i < end; ++i)
+    share[numbers[i]] += 1.0 / static_cast<double>(end - begin);
+  return share;
+}
+
+/// Each cluster's sum of differences keeps its sign or changes it.
+void test_by_signs(Independence& result, const Strata& strata, const IndependenceOptions& options) {
+  // (cells x clusters) Counts less expected; as drawn, with the chance that a state's few runs take
+  // away by being their own mean given back.
+  Eigen::MatrixXd by_cluster = Eigen::MatrixXd::Zero(strata.cells(), options.clusters),
+                  drawn = by_cluster;
+  Eigen::VectorXd label_runs = Eigen::VectorXd::Zero(strata.labels);
+  for (std::size_t s = 0; s < strata.ends.size(); ++s) {
+    const double n = strata.size(s);
+    const auto l = shares(strata.label, strata.begin(s), strata.ends[s], strata.labels);
+    const auto o = shares(strata.outcome, strata.begin(s), strata.ends[s], strata.outcomes);
+    label_runs += n * l;
+    for (std::size_t r = strata.begin(s); r < strata.ends[s]; ++r)
+      for (int i = 0; i < strata.labels; ++i)
+        for (int j = 0; j < strata.outcomes; ++j) {
+          const double part = ((strata.label[r] == i) - l[i]) * ((strata.outcome[r] == j) - o[j]);
+          by_cluster(i * strata.outcomes + j, strata.cluster[r]) += part;
+          drawn(i * strata.outcomes + j, strata.cluster[r]) += part * std::sqrt(n / (n - 1.0));
+        }
+  }
+  const Eigen::VectorXd deviation = drawn.rowwise().norm(), seen = by_cluster.rowwise().sum();
+  std::vector<double> all;
+  const auto add = [&](const Eigen::VectorXd& d) {
+    const Sizes sizes(d, deviation);
+    all.insert(all.end(), {sizes.squares, sizes.largest});
+  };
+  for (std::int64_t k = 0; k < options.null_draws; ++k) {
+    dynamics::Random random(dynamics::Purpose::memory,
+                            {options.seed, options.number, static_cast<std::uint64_t>(k)});
+    add(drawn * random_signs(options.clusters, random));
+  }
+  add(seen);
+  const MultipleTests looked(all, 2);
+  result.pooled = looked.tests[0];
+  result.strongest = looked.tests[1];
+  result.p = looked.p;
+  name_strongest(result, strata, seen, deviation, label_runs);
+}
+
+}  // namespace
+
+Independence test_independence(std::span<const LabelledRun> runs,
+                               const IndependenceOptions& options) {
+  if (options.null_draws < 1)
+    throw std::invalid_argument("independence: null_draws must be at least 1");
+  if (!(options.level > 0.0 && options.level < 1.0))
+    throw std::invalid_argument("independence: level must lie between 0 and 1");
+  const Strata strata = strata_of(runs, options);
+  Independence result;
+  result.runs = std::ssize(strata.label);
+  result.states = std::ssize(strata.ends);
+  result.null_draws = options.null_draws;
+  result.memory = result.memory_low = result.memory_high = kNoNumber;
+  result.seen_at_90 = std::numeric_limits<double>::infinity();
+  if (result.states == 0) return result;
+
+  (options.clusters > 0 ? test_by_signs : test_by_dealing)(result, strata, options);
   return result;
 }
 

@@ -152,6 +152,34 @@ MemoryStudy study_memory(const StateWalks& walks, const StateSpace& space,
   return study;
 }
 
+Independence body_memory(const Problem& problem, const RunPool& pool, int per_leaf,
+                         std::int64_t null_draws, std::uint64_t seed) {
+  constexpr std::uint64_t kBodySigns = 0x626f6479'00000001;  // "body"
+  const StateSpace space = kernel_of(problem.map(), pool, per_leaf).space;
+  const FieldTrials& trials = pool.scattered.each;
+  const int faces = static_cast<int>(problem.map().section.faces.size());
+  std::vector<LabelledRun> runs;  // but those of trials' first cells
+  for (std::size_t i = 0; i < trials.passed.size(); ++i) {
+    int before = -1;
+    dynamics::Entry entry = pool.scattered.starts[i];
+    for (const CellPassage passage : trials.of_trial(i)) {
+      if (passage.fate == dynamics::Fate::broken) break;
+      if (before >= 0)
+        runs.push_back({passage.type * space.size() + space.index_of(entry).state, before,
+                        passage.fate == dynamics::Fate::trapped ? faces : passage.entry.face,
+                        trials.bodies[i]});
+      before = entry.face;
+      entry = passage.entry;
+    }
+  }
+  return test_independence(runs, {.null_draws = null_draws,
+                                  .seed = seed,
+                                  .number = kBodySigns,
+                                  .clusters = static_cast<int>(pool.bodies()),
+                                  .labels = faces,
+                                  .outcomes = faces + 1});
+}
+
 PairedDifference paired_difference(std::int64_t only_first, std::int64_t only_second,
                                    std::int64_t trials) {
   const double n = static_cast<double>(trials) + 2.0;

@@ -13,6 +13,8 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/cells/state_space.h"
+#include "lattice/pool/run_pool.h"
+#include "lattice/problem.h"
 #include "lattice/reference.h"
 #include "lattice/statistics/gates_ahead.h"
 #include "lattice/statistics/independence.h"
@@ -83,6 +85,14 @@ struct MemoryOptions {
 [[nodiscard]] MemoryStudy study_memory(const StateWalks& walks, const dynamics::StateSpace& space,
                                        const MemoryOptions& options,
                                        const dynamics::Work& work = {});
+
+// ---- The memory of bodies ----
+
+/// Of recorded runs, whether the face of the cell before (label) tells more of a run's outcome (a
+/// face, or behind them trapped) than its state and type do. Runs of one body are a cluster. Throws
+/// std::invalid_argument for no draws.
+[[nodiscard]] Independence body_memory(const Problem& problem, const RunPool& pool, int per_leaf,
+                                       std::int64_t null_draws, std::uint64_t seed);
 
 // ---- The force's memory ----
 

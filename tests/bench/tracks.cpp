@@ -23,8 +23,8 @@
 #include "lattice/cells/cut_tracks.h"
 #include "lattice/cells/recorded_pool.h"
 #include "lattice/pool/pooled_prediction.h"
-#include "lattice/study/body_memory.h"
-#include "lattice/study/halves.h"
+#include "lattice/study/cross_validation.h"
+#include "lattice/study/memory.h"
 
 using namespace gatewalk;
 using dynamics::Purpose;
@@ -274,14 +274,15 @@ void many_films(const std::string& cell_path, const std::string& path, int first
       out << ',' << a.endings.share[e] << ',' << a.endings.interval[e][0] << ','
           << a.endings.interval[e][1];
     }
-    const auto halves = lattice::validate_halves(problem, pool, {.null_draws = 999, .seed = seed});
-    for (const auto& way : halves.ways)
+    const auto halves = lattice::cross_validate(problem, pool, {.null_draws = 999, .seed = seed});
+    for (const auto& fold : halves.folds)
       for (const auto& [ending, name] : kNames) {
         const auto e = static_cast<std::size_t>(ending);
-        out << ',' << way.seen.share[e] << ',' << way.chain.endings[e] << ',' << way.chance_95[e];
+        out << ',' << fold.seen.share[e] << ',' << fold.chain.endings[e] << ','
+            << fold.chance_95[e];
       }
-    for (const auto& way : halves.ways)
-      out << ',' << way.total_variation.seen << ',' << way.chance_total_variation_95;
+    for (const auto& fold : halves.folds)
+      out << ',' << fold.total_variation.seen << ',' << fold.chance_total_variation_95;
     out << ',' << halves.p << ','
         << lattice::body_memory(problem, pool, dynamics::kEntriesPerLeaf, 999, seed).p << '\n'
         << std::flush;

@@ -169,6 +169,31 @@ TEST(Memory, PooledStatisticByHand) {
   EXPECT_EQ(i.label, -1);  // too few for a strongest one
 }
 
+// The same table of clusters: each run's part in a count is 1/4 or -1/4, six parts have one sign
+// and two the other. Of 8 clusters the variance of their sum is 8 / 16 * 8 / 7, and 74 of 256 signs
+// make at least as much; of 4 clusters of two like runs 10 of 16; of one cluster all do.
+TEST(Memory, SignsOfClustersByHand) {
+  for (const int clusters : {8, 4, 1}) {
+    std::vector<LabelledRun> runs;
+    for (int i = 0; i < 8; ++i)
+      runs.push_back({7, i % 2, i < 6 ? i % 2 : 1 - i % 2, i * clusters / 8});
+    runs.push_back({2, 0, 0, 0});  // a state that cannot tell
+    const Independence i = test_independence(
+        runs, {.null_draws = 9999, .clusters = clusters, .labels = 3, .outcomes = 4});
+    EXPECT_EQ(i.runs, 8);
+    EXPECT_EQ(i.label, 0);
+    EXPECT_EQ(i.outcome, 0);
+    EXPECT_NEAR(i.more, 0.25, 1e-12);
+    const double variance = (clusters == 8 ? 4.0 : 8.0) / 7.0;
+    EXPECT_NEAR(i.pooled.seen, 4.0 / variance, 1e-12);
+    EXPECT_NEAR(i.strongest.seen, 1.0 / std::sqrt(variance), 1e-12);
+    const double p = clusters == 8 ? 74.0 / 256.0 : clusters == 4 ? 10.0 / 16.0 : 1.0;
+    EXPECT_NEAR(i.pooled.p, p, 0.02);
+    EXPECT_EQ(i.p, i.pooled.p);
+    EXPECT_TRUE(std::isnan(i.memory));
+  }
+}
+
 TEST(Memory, NothingToTellIsNoMemory) {
   const Independence i = test_independence(std::vector<LabelledRun>{{0, 1, 0}, {0, 1, 2}}, {});
   EXPECT_EQ(i.runs, 0);
@@ -283,6 +308,7 @@ TEST(Memory, SameBitsForAnyThreadsAndRefusals) {
   const std::vector<LabelledRun> negative{{0, -1, 0}}, many{{0, 64, 1}};
   EXPECT_THROW((void)test_independence(negative, {}), std::invalid_argument);
   EXPECT_THROW((void)test_independence(many, {}), std::invalid_argument);
+  EXPECT_THROW((void)test_independence({{{0, 0, 0, 2}}}, {.clusters = 2}), std::invalid_argument);
   EXPECT_THROW((void)test_independence({}, {.null_draws = 0}), std::invalid_argument);
   EXPECT_THROW((void)test_independence({}, {.level = 1.0}), std::invalid_argument);
   EXPECT_THROW((void)gates_ahead(w, 9, 9, 1), std::invalid_argument);

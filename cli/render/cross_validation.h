@@ -10,23 +10,23 @@
 #include "cli/render/provenance.h"
 #include "cli/render/recorded.h"
 #include "cli/render/shown_field.h"
-#include "lattice/study/body_memory.h"
-#include "lattice/study/halves.h"
+#include "lattice/study/cross_validation.h"
+#include "lattice/study/memory.h"
 
 namespace gatewalk::cli {
 
 /// The result of `validate` of recorded runs.
-struct HalvesResult {
-  lattice::HalvesValidation halves;
-  lattice::BodyMemory memory;
+struct CrossValidationResult {
+  lattice::CrossValidation validation;
+  lattice::Independence memory;
   dynamics::Section section;
   RecordedCounts recorded;
   Provenance made_by;
 };
-void describe(Fields& out, const HalvesResult& result);
+void describe(Fields& out, const CrossValidationResult& result);
 /// Of each chain whose endings leave something out (rest_warning).
-[[nodiscard]] std::vector<std::string> rest_warnings(const lattice::HalvesValidation& v);
-[[nodiscard]] std::string table_of(const HalvesResult& result);
-[[nodiscard]] Figure figure_of(const lattice::HalvesValidation& v, const ShownField& shown);
+[[nodiscard]] std::vector<std::string> rest_warnings(const lattice::CrossValidation& v);
+[[nodiscard]] std::string table_of(const CrossValidationResult& result);
+[[nodiscard]] Figure figure_of(const lattice::CrossValidation& v, const ShownField& shown);
 
 }  // namespace gatewalk::cli

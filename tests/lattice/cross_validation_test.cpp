@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One half of the bodies against the other: no finding where nothing is amiss, however trials are
 // watched; planted differences and memories are found.
-#include "lattice/study/halves.h"
+#include "lattice/study/cross_validation.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 
 #include "dynamics/base/random.h"
 #include "lattice/cells/recorded_pool.h"
-#include "lattice/study/body_memory.h"
+#include "lattice/study/memory.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -104,13 +104,13 @@ int straight_on(const Walker& w, Random& random) {
 }
 
 struct Found {
-  HalvesValidation halves;
-  BodyMemory memory;
+  CrossValidation validation;
+  Independence memory;
 };
 Found found_in(const RecordedRuns& runs, std::uint64_t seed) {
   const RunPool pool = pool_of(runs);
   const Problem problem = problem_of(cells(), pool);
-  return {validate_halves(problem, pool, {.null_draws = 999, .seed = seed}),
+  return {cross_validate(problem, pool, {.null_draws = 999, .seed = seed}),
           body_memory(problem, pool, kEntriesPerLeaf, 499, seed)};
 }
 
@@ -121,20 +121,20 @@ std::array<int, 2> expected_999(int of, double share) {
 }
 
 // However trials are watched: most of these leave the view, or are lost, before they end.
-TEST(Halves, ChanceIsFoundAsOftenAsItIsAskedFor) {
+TEST(CrossValidation, ChanceIsFoundAsOftenAsItIsAskedFor) {
   constexpr int kSeeds = 300;
   std::array<int, 4> halves{}, memory{};  // p in each quarter
   int differ = 0, remember = 0, held = 0, seen_to_end = 0, trials = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const Found f = found_in(walked(80, seed, plainly), seed);
-    ++halves[static_cast<std::size_t>(std::min(3.0, 4.0 * f.halves.p))];
+    ++halves[static_cast<std::size_t>(std::min(3.0, 4.0 * f.validation.p))];
     ++memory[static_cast<std::size_t>(std::min(3.0, 4.0 * f.memory.p))];
-    differ += f.halves.differs();
-    remember += f.memory.remembers();
-    for (const HalfAgainstHalf& way : f.halves.ways) {
-      seen_to_end += static_cast<int>(way.seen_so_far.to_end);
-      trials += static_cast<int>(way.seen_so_far.trials);
-      held += way.total_variation.seen <= way.chance_total_variation_95;
+    differ += f.validation.differs();
+    remember += f.memory.p <= MemoryStudy::kLevel;
+    for (const Fold& fold : f.validation.folds) {
+      seen_to_end += static_cast<int>(fold.watched.to_end);
+      trials += static_cast<int>(fold.watched.trials);
+      held += fold.total_variation.seen <= fold.chance_total_variation_95;
     }
   }
   EXPECT_LT(seen_to_end, trials / 2);
@@ -158,41 +158,42 @@ int hardly_on(const Walker&, Random& random) {
   return u < 0.9 ? kS : u < 0.95 ? kW : kE;
 }
 
-TEST(Halves, RareEndingsRaiseNoAlarm) {
+TEST(CrossValidation, RareEndingsRaiseNoAlarm) {
   constexpr int kSeeds = 100;
   int differ = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const RunPool pool = pool_of(walked(80, seed, hardly_on, 5, 4));
     const Problem problem = problem_of(cells(), pool);
-    differ += validate_halves(problem, pool, {.null_draws = 499, .seed = seed}).differs();
+    differ += cross_validate(problem, pool, {.null_draws = 499, .seed = seed}).differs();
   }
   EXPECT_LE(differ, expected_999(kSeeds, 0.05)[1]);
 }
 
-TEST(Halves, ADifferenceBetweenBodiesIsFound) {
+TEST(CrossValidation, ADifferenceBetweenBodiesIsFound) {
   int differ = 0, remember = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Found f = found_in(walked(200, seed, left_or_right_handed, 5, 4), seed);
-    differ += f.halves.differs();
-    remember += f.memory.remembers();
+    differ += f.validation.differs();
+    remember += f.memory.p <= MemoryStudy::kLevel;
   }
   EXPECT_GE(differ, 16);
   EXPECT_GE(remember, 18);
 }
 
-TEST(Halves, AMemoryIsFound) {
+TEST(CrossValidation, AMemoryIsFound) {
   int remember = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const RunPool pool = pool_of(walked(200, seed, straight_on, 5, 4));
-    const BodyMemory memory =
+    const Independence memory =
         body_memory(problem_of(cells(), pool), pool, kEntriesPerLeaf, 499, seed);
-    remember += memory.remembers() && memory.more > 0.05 && memory.face == memory.outcome;
+    remember +=
+        memory.p <= MemoryStudy::kLevel && memory.more > 0.05 && memory.label == memory.outcome;
   }
   EXPECT_GE(remember, 19);
 }
 
 // Nothing is guessed of what was not seen: trials of which no passage ends cannot differ.
-TEST(Halves, WhatWasNotSeenDoesNotDiffer) {
+TEST(CrossValidation, WhatWasNotSeenDoesNotDiffer) {
   RecordedRuns runs;
   runs.passages.begin(cells().map.section);
   for (std::int32_t body = 0; body < 40; ++body) {
@@ -205,33 +206,33 @@ TEST(Halves, WhatWasNotSeenDoesNotDiffer) {
     runs.trials.push_back({{kS, {0.1, 0.0, 0.0}}, body, begin + 1, 1});
   }
   const Found f = found_in(runs, 1);
-  EXPECT_EQ(f.halves.p, 1.0);
-  for (const HalfAgainstHalf& way : f.halves.ways) {
-    EXPECT_EQ(way.bodies, 20);
-    EXPECT_EQ(way.seen_so_far.trials, 20);
-    EXPECT_EQ(way.seen_so_far.left_out, 20);
-    EXPECT_EQ(way.seen_so_far.unwatched, 20);
-    EXPECT_EQ(way.total_variation.seen, 0.0);
-    EXPECT_NEAR(way.chain.endings[static_cast<std::size_t>(markov::Ending::far_edge)], 1.0, 1e-12);
+  EXPECT_EQ(f.validation.p, 1.0);
+  for (const Fold& fold : f.validation.folds) {
+    EXPECT_EQ(fold.bodies, 20);
+    EXPECT_EQ(fold.watched.trials, 20);
+    EXPECT_EQ(fold.watched.left_out, 20);
+    EXPECT_EQ(fold.watched.unwatched, 20);
+    EXPECT_EQ(fold.total_variation.seen, 0.0);
+    EXPECT_NEAR(fold.chain.endings[static_cast<std::size_t>(markov::Ending::far_edge)], 1.0, 1e-12);
   }
-  EXPECT_EQ(f.memory.face, -1);
+  EXPECT_EQ(f.memory.label, -1);
   EXPECT_EQ(f.memory.p, 1.0);
 }
 
-TEST(Halves, AreThoseOfTheSeed) {
+TEST(CrossValidation, AreThoseOfTheSeed) {
   const RecordedRuns runs = walked(60, 5, plainly);
-  const HalvesValidation a = found_in(runs, 3).halves, b = found_in(runs, 3).halves,
-                         c = found_in(runs, 4).halves;
+  const CrossValidation a = found_in(runs, 3).validation, b = found_in(runs, 3).validation,
+                        c = found_in(runs, 4).validation;
   EXPECT_EQ(a.p, b.p);
-  EXPECT_EQ(a.ways[0].total_variation.seen, b.ways[0].total_variation.seen);
-  EXPECT_NE(a.ways[0].total_variation.seen, c.ways[0].total_variation.seen);
-  EXPECT_NEAR(a.ways[1].seen_gates.sum(), 1.0, 1e-12);
-  EXPECT_NEAR(a.ways[1].chain.final_cells.sum(), 1.0, 1e-12);
+  EXPECT_EQ(a.folds[0].total_variation.seen, b.folds[0].total_variation.seen);
+  EXPECT_NE(a.folds[0].total_variation.seen, c.folds[0].total_variation.seen);
+  EXPECT_NEAR(a.folds[1].seen_gates.sum(), 1.0, 1e-12);
+  EXPECT_NEAR(a.folds[1].chain.final_cells.sum(), 1.0, 1e-12);
 }
 
-TEST(Halves, TooFewBodiesAreRefused) {
+TEST(CrossValidation, TooFewBodiesAreRefused) {
   const RunPool pool = pool_of(walked(31, 1, plainly));
-  EXPECT_THROW((void)validate_halves(problem_of(cells(), pool), pool, {}), std::invalid_argument);
+  EXPECT_THROW((void)cross_validate(problem_of(cells(), pool), pool, {}), std::invalid_argument);
 }
 
 }  // namespace

@@ -18,14 +18,14 @@
 
 namespace gatewalk::lattice {
 
-struct HalvesOptions {
+struct CrossValidationOptions {
   std::optional<std::int64_t> null_draws{};  // behind the p-values; 999 to 1999, by the work
   std::uint64_t seed = 1;                    // of the halves, and of the draws
   int per_leaf = dynamics::kEntriesPerLeaf;
 };
 
 /// How far the trials that are predicted were seen.
-struct SeenSoFar {
+struct Watched {
   std::int64_t trials = 0;  // compared: one passage of each is known at least
   std::int64_t to_end = 0;  // of them: seen until they end in the field
   std::int64_t unwatched = 0, lost = 0, other_type = 0;  // or until nobody looked, they were lost,
@@ -38,10 +38,10 @@ struct SeenSoFar {
 /// chain goes on from the last entry seen, so that nothing differs there: only what was seen can.
 /// If the chain is right both have the same mean, wherever watching ended, as long as that was
 /// decided by what had been seen until then.
-struct HalfAgainstHalf {
+struct Fold {
   std::int64_t bodies = 0, chain_bodies = 0;
   int states = 0;  // of the chain
-  SeenSoFar seen_so_far;
+  Watched watched;
   CellProbabilities seen_gates;                               // final gates
   EndingShares seen{std::array<double, markov::kEndings>{}};  // intervals: chance in its bodies
   markov::FinalDistribution chain;  // from the same starts; without its mixed_cells
@@ -62,12 +62,12 @@ struct HalfAgainstHalf {
   static constexpr double kLevel = 0.05;
 };
 
-struct HalvesValidation {
-  std::array<HalfAgainstHalf, 2> ways;  // the second half as seen, the first half's chain; and back
-  double p = 1.0;                       // of both ways and all statistics together
+struct CrossValidation {
+  std::array<Fold, 2> folds;  // the second half as seen, the first half's chain; and back
+  double p = 1.0;             // of both folds and all statistics together
   std::int64_t null_draws = 0;
 
-  [[nodiscard]] bool differs() const { return p <= HalfAgainstHalf::kLevel; }
+  [[nodiscard]] bool differs() const { return p <= Fold::kLevel; }
 };
 
 /// Bodies are dealt out into two halves at random. Such halves are alike whatever the chain is
@@ -79,8 +79,8 @@ struct HalvesValidation {
 /// others. Throws std::invalid_argument for pools of fewer than 2 kLeastBodies bodies, for halves
 /// without a passage that the field could have, and where cells times states are too many.
 inline constexpr int kMostParts = 100;
-[[nodiscard]] HalvesValidation validate_halves(const Problem& problem, const RunPool& pool,
-                                               const HalvesOptions& options,
-                                               const dynamics::Work& work = {});
+[[nodiscard]] CrossValidation cross_validate(const Problem& problem, const RunPool& pool,
+                                             const CrossValidationOptions& options,
+                                             const dynamics::Work& work = {});
 
 }  // namespace gatewalk::lattice
