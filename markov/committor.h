@@ -28,14 +28,13 @@ inline constexpr double kRowTolerance = 1e-12;
 
 /// Row by row from the far edge; within a row by sweeps to both sides until no value changes by
 /// more than `tolerance` of it (in a row of cells of one type that walks soon leave in registers,
-/// to that tolerance of each value). Where moves lead to a row below: by elimination of all states
-/// (absorbing.h) if they are few, else by sweeps over all rows until, besides, no more than
-/// `tolerance` of the walks from any state are still on their way. Relative accuracy is that of
-/// sums of positive numbers, however small the values: nothing is subtracted. A row never sampled
-/// ends as `unsampled`. Walks that can never end have no ending: the chance is 0. Throws
-/// std::invalid_argument for fields of another size than the chain's, std::runtime_error where
-/// walks circle so long that 10^5 sweeps do not do, and kMostDenseStates (field_states.h) are too
-/// few for all states.
+/// to that tolerance of each value). Where moves lead to a row below: by sweeps over all rows
+/// until, besides, no more than `tolerance` of the walks from any state are still on their way. Of
+/// few states then, and wherever 10^5 sweeps do not do, by the elimination of first_passages
+/// (first_passage.h). Relative accuracy is that of sums of positive numbers, however small the
+/// values: nothing is subtracted. A row never sampled ends as `unsampled`. Walks that can never end
+/// have no ending: the chance is 0. Throws std::invalid_argument for fields of another size than
+/// the chain's, and as first_passages.
 [[nodiscard]] Committor committor(const FieldChain& chain, const Field& field,
                                   Ending ending = Ending::far_edge,
                                   double tolerance = kRowTolerance);

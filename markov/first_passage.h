@@ -39,8 +39,8 @@ struct FirstPassages {
 };
 
 /// Of walks that start there and may visit so many cells (0: no limit). With a limit by the
-/// backward recursion, exact. Without it by elimination of all (cell, state) pairs, as in
-/// absorbing.h and in the order of solve_directly(): nothing is subtracted, so every number is
+/// backward recursion, exact. Without it by elimination of all (cell, state) pairs in the
+/// order of solve_directly(): nothing is subtracted, so every number is
 /// right to some n roundings of its own size. Larger fields go by sweeps, row by row where no move
 /// leads to a row below, until numbers change by no more than 1e-13 of themselves and no more than
 /// 1e-13 of the walks are on their way. `rewards`: as of walk_totals, not negative. Throws

@@ -137,7 +137,7 @@ class AdjointPredictor {
 };
 
 /// Without limit, by sparse elimination of one reachable (cell, input) pair after the other, in the
-/// blocks and the order that SuiteSparse KLU finds. As in absorbing.h nothing is subtracted
+/// blocks and the order that SuiteSparse KLU finds. Nothing is subtracted
 /// (Grassmann, Taksar and Heyman 1985), so digits hold however seldom a walk ends, and walks that
 /// can never end are told apart (`endless`). None where it would take more than `most_operations`
 /// products, or more than some 10^7 pairs are in the field.

@@ -67,7 +67,7 @@ struct WalkTolerance {
 /// apart (`each` is told of draw 1), and a row is left after 10^5 sweeps at the latest. Where moves
 /// lead to a row below, step by step until no more than `tolerance.all` of the walks are on their
 /// way, or 10^5 steps are done. Where walks circle so long that more are left, and states are few
-/// (1000), all is found by elimination (absorbing.h). In large fields without limit, whose rows are
+/// (1000), all is found by elimination. In large fields without limit, whose rows are
 /// of one type each, visits, endings and the means of all walks are exact to `tolerance.of_row` of
 /// each row, the other moments those of walks drawn with `seed`: 2^16 of all, and, where
 /// `tolerance.chance` is of fewer than 2^12 of these, so many of those that end so. Without rewards

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 /// Sparse elimination of walks without limit of cells, block by block, with nothing subtracted
-/// (absorbing.h): expected visits by what enters, and values by what states themselves are worth.
+/// (Grassmann, Taksar and Heyman 1985): expected visits by what enters, and values by what states
+/// themselves are worth.
 
 #include <cstddef>
 #include <cstdint>

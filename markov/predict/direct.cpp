@@ -7,18 +7,7 @@
 
 namespace gatewalk::markov {
 
-std::optional<FinalDistribution> solve_directly(const FieldChain& chain, const Field& field,
-                                                const Start& start, double most_operations) {
-  validate(chain, field, start, 0);
-  constexpr std::int64_t kMostPairs = 20'000'000;
-  const std::int64_t cells = std::int64_t{field.columns} * field.rows;
-  if (cells > kMostPairs / std::max(1, chain.inputs())) return {};
-  if (!chain.at(start.column, start.row).is_sampled(start.input)) {
-    EndSums ends(field);
-    ends.add(Ending::unsampled, std::int64_t{start.row} * field.columns + start.column, 1.0);
-    return ends.result();
-  }
-  Transient t(chain, field, start);
+std::optional<ExpectedDraws> expected_draws(Transient& t, double most_operations) {
   const std::vector<char> ends = can_end(t);
   const Blocks blocks = blocks_of(t);
   if (blocks.begin.empty()) return {};  // no memory
@@ -28,7 +17,8 @@ std::optional<FinalDistribution> solve_directly(const FieldChain& chain, const F
       block_of[static_cast<std::size_t>(blocks.order[static_cast<std::size_t>(i)])] = b;
 
   // First what enters a state from blocks before its own, then its visits.
-  std::vector<double> draws(t.states.size(), 0.0);
+  ExpectedDraws found{std::vector<double>(t.states.size(), 0.0)};
+  std::vector<double>& draws = found.by_state;
   draws.front() = 1.0;
   BlockElimination elimination(t.states.size());
   CompensatedSum endless;
@@ -52,11 +42,30 @@ std::optional<FinalDistribution> solve_directly(const FieldChain& chain, const F
       }
     }
   }
-  FinalDistribution result = t.ended(draws, chain, field);
-  result.endless = result.remainder = endless.value();
-  // As in absorbing.h: each answer to some n roundings of its own size.
+  found.endless = endless.value();
+  found.operations = most_operations - left;
+  return found;
+}
+
+std::optional<FinalDistribution> solve_directly(const FieldChain& chain, const Field& field,
+                                                const Start& start, double most_operations) {
+  validate(chain, field, start, 0);
+  constexpr std::int64_t kMostPairs = 20'000'000;
+  const std::int64_t cells = std::int64_t{field.columns} * field.rows;
+  if (cells > kMostPairs / std::max(1, chain.inputs())) return {};
+  if (!chain.at(start.column, start.row).is_sampled(start.input)) {
+    EndSums ends(field);
+    ends.add(Ending::unsampled, std::int64_t{start.row} * field.columns + start.column, 1.0);
+    return ends.result();
+  }
+  Transient t(chain, field, start);
+  const auto draws = expected_draws(t, most_operations);
+  if (!draws) return {};
+  FinalDistribution result = t.ended(draws->by_state, chain, field);
+  result.endless = result.remainder = draws->endless;
+  // Each answer is right to some n roundings of its own size (Grassmann, Taksar and Heyman 1985).
   result.rounding = 1e-15 * static_cast<double>(t.states.size());
-  result.operations = most_operations - left;
+  result.operations = draws->operations;
   return result;
 }
 

@@ -14,9 +14,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "markov/absorbing.h"
-#include "markov/field_states.h"
+#include "markov/first_passage.h"
 #include "markov/predict/large_totals.h"
+#include "markov/predict/transient.h"
 #include "markov/walk.h"
 
 namespace gatewalk::markov {
@@ -331,74 +331,56 @@ bool is_large(const FieldChain& chain, const Field& field, double large) {
 std::optional<WalkTotals> totals_by_elimination(const FieldChain& chain, const Field& field,
                                                 const Start& start, const Rewards& rewards,
                                                 const EachState& each) {
-  const FieldStates f = field_states(chain, field, {start});
-  std::optional<Absorption<double>> solved;
-  try {
-    solved = absorption(absorbing_chain<double>(f));
-  } catch (const std::exception&) {  // a walk that never ends, or too little leaves a state
-    return {};
-  }
-  const std::ptrdiff_t n = std::ssize(f.states);
-  std::array<std::vector<double>, kEndings> chance;  // of an ending, by state
-  chance.fill(std::vector<double>(static_cast<std::size_t>(n), 0.0));
-  for (std::ptrdiff_t i = 0; i < n; ++i)
-    for (std::size_t k = 0; k < f.ends.size(); ++k)
-      chance[static_cast<std::size_t>(f.ends[k].why)][static_cast<std::size_t>(i)] +=
-          solved->ends(i, static_cast<std::ptrdiff_t>(k));
-
+  constexpr double kMostOperations = 2e9;
+  Transient t(chain, field, start);
+  const auto draws = expected_draws(t, kMostOperations);
+  if (!draws || draws->endless > 0.0) return {};
   WalkTotals out;
   out.visits = CellProbabilities::Zero(field.rows, field.columns);
-  for (std::ptrdiff_t i = 0; i < n; ++i) {
-    const Start& at = f.states[static_cast<std::size_t>(i)];
-    if (!chain.at(at.column, at.row).is_sampled(at.input)) continue;
-    out.visits(at.row, at.column) += solved->visits(0, i);
-    if (each)
-      each(1, std::int64_t{at.row} * field.columns + at.column, at.input, solved->visits(0, i));
+  const std::int64_t inputs = chain.inputs();
+  for (std::size_t s = 0; s < t.states.size(); ++s) {
+    const std::int64_t cell = t.states[s] / inputs;
+    out.visits.data()[cell] += draws->by_state[s];
+    if (each) each(1, cell, static_cast<int>(t.states[s] % inputs), draws->by_state[s]);
   }
-  for (std::size_t e = 0; e < kEndings; ++e) out.endings[e] = chance[e].front();
-
-  // What a draw takes: of draws (no quantity) one.
-  const auto taken = [&](std::optional<std::size_t> quantity, const FieldStates::Draw& draw) {
-    if (draw.output == FieldStates::Draw::kNone) return std::array{0.0, 0.0};
-    if (!quantity) return std::array{1.0, 1.0};
-    const Start& at = f.states[static_cast<std::size_t>(draw.from)];
-    const auto type = static_cast<std::size_t>(chain.type_of(at.column, at.row));
-    const Probabilities& p = chain.chains()[type].matrix();
-    const auto *const begin = p.innerIndexPtr() + p.outerIndexPtr()[at.input],
-                      *const end = p.innerIndexPtr() + p.outerIndexPtr()[at.input + 1];
-    const auto nonzero =
-        static_cast<std::size_t>(std::lower_bound(begin, end, draw.output) - p.innerIndexPtr());
-    const Reward& r = rewards[type][*quantity];
-    return std::array{r.mean[nonzero], r.square[nonzero]};
-  };
-  const auto moments = [&](std::optional<std::size_t> quantity, std::size_t e) {
-    const auto ends_so = [&](const FieldStates::Draw& draw) {
-      const auto to = static_cast<std::size_t>(draw.to);
-      if (!draw.is_end) return chance[e][to];
-      return static_cast<std::size_t>(f.ends[to].why) == e ? 1.0 : 0.0;
-    };
-    std::vector<double> next(static_cast<std::size_t>(n), 0.0), sum(next);  // by state
-    for (const FieldStates::Draw& draw : f.draws)
-      next[static_cast<std::size_t>(draw.from)] +=
-          draw.p * taken(quantity, draw)[0] * ends_so(draw);
-    for (std::ptrdiff_t i = 0; i < n; ++i)
-      for (std::ptrdiff_t j = 0; j < n; ++j)
-        sum[static_cast<std::size_t>(i)] +=
-            solved->visits(i, j) * next[static_cast<std::size_t>(j)];
-    double square = 0.0;
-    for (const FieldStates::Draw& draw : f.draws) {
-      const auto [mean, mean_square] = taken(quantity, draw);
-      const double later = draw.is_end ? 0.0 : sum[static_cast<std::size_t>(draw.to)];
-      square += solved->visits(0, draw.from) * draw.p *
-                (mean_square * ends_so(draw) + 2.0 * mean * later);
-    }
-    return Moments{out.endings[e], sum.front(), square};
-  };
   out.totals.resize(quantities_of(chain, rewards));
   for (std::size_t e = 0; e < kEndings; ++e) {
+    const auto ending = static_cast<Ending>(e);
+    const FirstPassages ends = first_passages(chain, field, {.ending = ending}, 0, rewards);
+    out.endings[e] = ends.chance[ends.at(start)];
     if (out.endings[e] == 0.0) continue;
-    out.draws[e] = moments({}, e);
-    for (std::size_t q = 0; q < out.totals.size(); ++q) out.totals[q][e] = moments(q, e);
+    // Of the walks from a pair of a cell and a state: what those that end so take (none: draws).
+    const auto taken = [&](std::optional<std::size_t> q, std::size_t pair) {
+      if (!(ends.chance[pair] > 0.0)) return 0.0;
+      return ends.chance[pair] * (q ? ends.totals[*q] : ends.draws)[pair];
+    };
+    const auto moments = [&](std::optional<std::size_t> q) {
+      double square = 0.0;
+      for (std::size_t s = 0; s < t.states.size(); ++s) {
+        const std::int64_t cell = t.states[s] / inputs;
+        const int type = chain.type_of(cell % field.columns, cell / field.columns);
+        const Chain& here = chain.chains()[static_cast<std::size_t>(type)];
+        const std::int64_t input = t.states[s] % inputs;
+        auto nonzero = static_cast<std::size_t>(here.matrix().outerIndexPtr()[input]);
+        for (Probabilities::InnerIterator it(here.matrix(), input); it; ++it, ++nonzero) {
+          const Exit& exit = here.exits()[static_cast<std::size_t>(it.col())];
+          std::int64_t column = cell % field.columns, row = cell / field.columns;
+          auto why = follow(field, exit, false, column, row);
+          if (!why && !chain.at(column, row).is_sampled(exit.next_input)) why = Ending::unsampled;
+          const auto next = static_cast<std::size_t>((row * field.columns + column) * inputs +
+                                                     std::max(exit.next_input, 0));
+          const double so = why ? (*why == ending ? 1.0 : 0.0) : ends.chance[next],
+                       later = why ? 0.0 : taken(q, next);
+          const Reward* const r = q ? &rewards[static_cast<std::size_t>(type)][*q] : nullptr;
+          const double mean = r ? r->mean[nonzero] : 1.0,
+                       mean_square = r ? r->square[nonzero] : 1.0;
+          square += draws->by_state[s] * it.value() * (mean_square * so + 2.0 * mean * later);
+        }
+      }
+      return Moments{out.endings[e], taken(q, ends.at(start)), square};
+    };
+    out.draws[e] = moments({});
+    for (std::size_t q = 0; q < out.totals.size(); ++q) out.totals[q][e] = moments(q);
   }
   return out;
 }

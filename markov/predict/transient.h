@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 /// The walks from a start without limit of cells, as equations: (cell, input) pairs that are
-/// reached, and what each passes on. For the two solvers that go pair by pair.
+/// reached, and what each passes on. For the solvers that go pair by pair.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "markov/predict.h"
@@ -21,5 +22,14 @@ struct Transient : PassedOn {
   [[nodiscard]] FinalDistribution ended(const std::vector<double>& draws, const FieldChain& chain,
                                         const Field& field) const;
 };
+
+struct ExpectedDraws {
+  std::vector<double> by_state;
+  double endless = 0.0;     // share of the walks that can never end; their draws are not counted
+  double operations = 0.0;  // products
+};
+/// Of walks that begin in the first state, block by block. None where it would take more than
+/// `most_operations`.
+[[nodiscard]] std::optional<ExpectedDraws> expected_draws(Transient& t, double most_operations);
 
 }  // namespace gatewalk::markov
