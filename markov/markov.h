@@ -18,21 +18,18 @@
 ///              how walks spread over an endless lattice (diffusion.h)
 ///   A chain for each action -> which to take in each cell and state, so that walks end best (decide.h)
 ///   A chain for each type of cell -> which cells to change (design.h)
-///   Small fields exactly, in any kind of number (absorbing.h, field_states.h), blocks of cells as
-///              cells (blocks.h), states taken together (lumping.h)
+///   States taken together (lumping.h)
 /// Walks and exact results are Ends (ends.h), which tell apart: trapped, left the field, cut off at the
 /// cell limit, entered a state that was never sampled. The final cell is the last one inside.
 /// What a state means, and how large a cell is, this module does not know.
 // clang-format on
 
-#include "markov/blocks.h"
 #include "markov/chain.h"
 #include "markov/committor.h"
 #include "markov/decide.h"
 #include "markov/design.h"
 #include "markov/diffusion.h"
 #include "markov/ends.h"
-#include "markov/field_states.h"
 #include "markov/first_passage.h"
 #include "markov/formats/counts.h"
 #include "markov/lumping.h"

@@ -2,7 +2,7 @@
 /// One body of tests for all kinds of number: exact fractions say what is right, doubles must be
 /// within some roundings of it, enclosures must hold it.
 
-#include "markov/absorbing.h"
+#include "tests/support/absorbing.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "markov/blocks.h"
+#include "tests/support/blocks.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "markov/predict.h"
-#include "tests/markov/blocks_support.h"
 #include "tests/markov/chains.h"
 
 namespace gatewalk::markov {

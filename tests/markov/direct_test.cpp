@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "markov/field_states.h"
 #include "tests/markov/chains.h"
+#include "tests/support/field_states.h"
 
 namespace gatewalk::markov {
 namespace {

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "markov/committor.h"
-#include "markov/field_states.h"
 #include "markov/predict.h"
 #include "tests/markov/chains.h"
 #include "tests/markov/fractions.h"
+#include "tests/support/field_states.h"
 #include "tests/support/propagation.h"
 
 namespace gatewalk::markov {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "markov/committor.h"
-#include "markov/field_states.h"
 #include "tests/markov/chains.h"
+#include "tests/support/field_states.h"
 
 namespace gatewalk::markov {
 namespace {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "markov/enclosure.h"
+#include "tests/support/enclosure.h"
 
 namespace gatewalk::markov::test {
 

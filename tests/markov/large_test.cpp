@@ -9,11 +9,10 @@
 #include <iostream>
 #include <utility>
 
-#include "blocks_support.h"
 #include "chains.h"
-#include "markov/blocks.h"
 #include "markov/predict.h"
 #include "markov/walk.h"
+#include "tests/support/blocks.h"
 #include "tests/support/long.h"
 #include "tests/support/propagation.h"
 
