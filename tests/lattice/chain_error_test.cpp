@@ -23,8 +23,9 @@ constexpr double kNever = ChainSummary::kNever;
 FieldTruth truth_of(const std::array<std::int64_t, 9>& trials, double seconds_per_trial = 1.0) {
   FieldTally tally({.columns = 3, .rows = 3});
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    tally.final_cells(static_cast<int>(i) / 3, static_cast<int>(i) % 3) = trials[i];
-    tally.trials += trials[i];
+    const auto n = static_cast<std::size_t>(trials[i]);
+    tally.count(std::vector(n, static_cast<std::int32_t>(i)),
+                std::vector(n, std::optional(markov::Ending::trapped)));
   }
   return field_truth({0.0, 0.0, 15.0}, std::move(tally), seconds_per_trial);
 }
@@ -45,7 +46,7 @@ TEST(FieldTruth, IsToldFromAsTwoSamplesAreFromEachOther) {
 
 TEST(FieldTruth, IsNoneOfBrokenTrials) {
   FieldTally tally({.columns = 3, .rows = 3});
-  tally.broken = 1;
+  tally.count({4}, {std::nullopt});
   EXPECT_THROW((void)field_truth({}, tally, 1.0), std::runtime_error);
 }
 

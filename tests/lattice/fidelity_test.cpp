@@ -29,8 +29,7 @@ TEST(FidelityVariants, AreMoreauAtEveryFidelityAndTheDefaultMethod) {
 /// Trials of a field of 3 x 3 gates that end in these.
 FidelityRun ending_in(const std::vector<std::int32_t>& gates) {
   FidelityRun run{FieldTally({.columns = 3, .rows = 3}), gates};
-  run.tally.trials = std::ssize(gates);
-  for (const std::int32_t g : gates) ++run.tally.final_cells(g / 3, g % 3);
+  run.tally.count(gates, std::vector(gates.size(), std::optional(markov::Ending::trapped)));
   return run;
 }
 

@@ -345,7 +345,7 @@ TEST(Plan, APolicyRunsWithTheNoiseOfFieldTrials) {
   hard.always = 1;
   const FieldTally always = policy_trials(actions, hard, {0, 500}, 8),
                    own = field_trials(actions[1].problem, {0, 500}, 8);
-  EXPECT_TRUE((always.final_cells == own.final_gates).all());
+  EXPECT_TRUE((always.final_cells == own.final_cells).all());
   hard.always = 2;
   EXPECT_THROW((void)policy_trials(actions, hard, {0, 10}, 8), std::out_of_range);
   std::vector<Action> longer = actions;

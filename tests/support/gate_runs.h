@@ -34,7 +34,7 @@ inline bool same_number(double a, double b) { return same_bits(a, b) || (a != a 
 
 inline void expect_same_bits(const dynamics::GateRun& a, const dynamics::GateRun& b) {
   using dynamics::kLeft, dynamics::kRight;
-  EXPECT_EQ(a.ending, b.ending);
+  EXPECT_EQ(a.outcome, b.outcome);
   EXPECT_TRUE(same_number(a.exit.x, b.exit.x) && same_number(a.exit.y, b.exit.y));
   EXPECT_TRUE(same_number(a.exit.vx, b.exit.vx) && same_number(a.exit.vy, b.exit.vy));
   EXPECT_TRUE(same_number(a.seconds, b.seconds));
