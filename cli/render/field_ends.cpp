@@ -63,7 +63,7 @@ void FieldEnds<Number>::describe_gates(Fields& out, const GateLimits* limits) co
 template <class Number>
 void FieldEnds<Number>::describe_sums(Fields& out, bool with_intervals) const {
   constexpr auto kCutOff = static_cast<std::size_t>(markov::Ending::cut_off);
-  each_fate(this->trapped(), this->left_field(), this->cut_off(), [&](const Field& f, Number n) {
+  each_fate(this->trapped(), departed, this->cut_off(), [&](const Field& f, Number n) {
     if constexpr (std::integral<Number>)
       if (with_intervals)
         return out.counted(f, n, bodies,
@@ -99,7 +99,7 @@ std::string FieldEnds<Number>::table(const std::string& of, const std::string& a
   return fmt::format("{}{}{}{}departed {}\n", endings_text(shares, of), about,
                      map_of(share_of(this->final_cells)),
                      map_of_trapped(share_of(trapped_cells(*this))),
-                     percent(static_cast<double>(this->left_field()), bodies, 2));
+                     percent(static_cast<double>(departed), bodies, 2));
 }
 
 namespace {

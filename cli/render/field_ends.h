@@ -23,6 +23,7 @@ struct FieldEnds : markov::Ends<Number> {
   double bodies = 1.0;           // that the numbers are of; shares are of 1
   lattice::EndingShares shares;  // of the endings, as they are shown
   Number still_walking{};        // which the endings leave out, as those never sampled
+  Number departed = this->left_field();
 
   /// Cells as shares of all bodies.
   [[nodiscard]] markov::CellProbabilities share_of(const markov::CellNumbers<Number>& cells) const {

@@ -45,7 +45,11 @@ void describe_error(Fields& out, double error_95) {
 }
 
 void describe(Fields& out, const lattice::StartAnswer& a, const ShownField& shown) {
-  const auto ends = ends_of(a.final, a.endings);
+  FieldEnds<double> ends = ends_of(a.final, a.endings);
+  if (a.from_trials) {  // whose shares are added up one by one
+    ends.departed = 0.0;
+    for (const markov::Ending edge : markov::kEdges) ends.departed += a.final[edge];
+  }
   ends.describe_endings(out);
   ends.describe_gates(out, &a.gates_95);
   ends.describe_sums(out);

@@ -286,17 +286,17 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
 
 namespace {
 
-/// What a trial can come to: an ending in a gate.
-struct Outcome {
+/// What a trial can come to.
+struct GateEnding {
   Eigen::Index place;  // of the gate in the support
   std::size_t ending;
   double probability;
 };
 
 /// What a trial of the predicted chain may come to. Where a gate is not mixed, all were trapped.
-std::vector<Outcome> outcomes_of(const markov::FinalDistribution& prediction,
-                                 const Support& support) {
-  std::vector<Outcome> outcomes;
+std::vector<GateEnding> outcomes_of(const markov::FinalDistribution& prediction,
+                                    const Support& support) {
+  std::vector<GateEnding> outcomes;
   const Eigen::VectorXd expected = on_support(prediction.final_cells, support);
   auto mixed = prediction.mixed_cells.begin();
   for (Eigen::Index i = 0; i < expected.size(); ++i) {
@@ -326,7 +326,7 @@ std::array<std::vector<Eigen::Index>, markov::kEndings> rare_places(
   const auto gates = static_cast<Eigen::Index>(support.gates.size());
   std::array<Eigen::VectorXd, markov::kEndings> shows;
   shows.fill(Eigen::VectorXd::Zero(gates));
-  for (const Outcome& o : outcomes_of(prediction, support))
+  for (const GateEnding& o : outcomes_of(prediction, support))
     shows[o.ending][o.place] += o.probability * static_cast<double>(runs);
   std::array<std::vector<Eigen::Index>, markov::kEndings> places;
   for (const Ending ending : {Ending::trapped, Ending::far_edge, Ending::left_edge,
@@ -436,7 +436,7 @@ JointTest joint_test(const SeenEndings& seen, const markov::FinalDistribution& p
   all.back() = tests(on_support(sample, support), shares_of(seen));
   tbb::parallel_for(std::int64_t{0}, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, kJudgements, static_cast<std::uint64_t>(k)});
-    std::vector<Outcome> drawn =
+    std::vector<GateEnding> drawn =
         outcomes_of(replicates[static_cast<std::size_t>(k) % replicates.size()], support);
     for (std::size_t e = 0; e < markov::kEndings; ++e) {
       if (left_open[e].empty()) continue;
@@ -445,7 +445,7 @@ JointTest joint_test(const SeenEndings& seen, const markov::FinalDistribution& p
         drawn.push_back({place, e, share / static_cast<double>(left_open[e].size())});
     }
     std::vector<double> weights;
-    for (const Outcome& o : drawn) weights.push_back(o.probability);
+    for (const GateEnding& o : drawn) weights.push_back(o.probability);
     std::vector<std::int64_t> counts(weights.size());
     multinomial(n, weights, counts, random);
     Eigen::VectorXd gates = Eigen::VectorXd::Zero(expected.size());
