@@ -6,6 +6,7 @@
 #include "cli/render/analysis.h"
 #include "cli/render/best_start.h"
 #include "cli/render/chain_error.h"
+#include "cli/render/cross_validation.h"
 #include "cli/render/cut_tracks.h"
 #include "cli/render/design.h"
 #include "cli/render/fidelity.h"
@@ -13,7 +14,6 @@
 #include "cli/render/files.h"
 #include "cli/render/fit.h"
 #include "cli/render/gate_runs.h"
-#include "cli/render/cross_validation.h"
 #include "cli/render/landscape.h"
 #include "cli/render/matrix.h"
 #include "cli/render/meaning.h"
@@ -68,7 +68,6 @@ FieldRun trials() {
   const lattice::Scene scene;
   return {.shown = ShownField(scene),
           .costs = lattice::FieldCosts(1.0),
-          .exits = lattice::ExitCounts(scene.field),
           .tally = lattice::FieldTally(scene.field)};
 }
 

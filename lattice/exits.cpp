@@ -14,6 +14,20 @@ std::size_t place_on(std::size_t side, std::int64_t cell, std::int64_t columns) 
   return static_cast<std::size_t>(side == kFarSide ? cell % columns : cell / columns);
 }
 
+/// Who left at each place, by kSides.
+template <class Number>
+std::array<std::vector<Number>, kSides.size()> by_place(const markov::Ends<Number>& ends) {
+  const Eigen::Index columns = ends.final_cells.cols();
+  std::array<std::vector<Number>, kSides.size()> places;
+  for (std::size_t side = 0; side < kSides.size(); ++side) {
+    places[side].assign(
+        static_cast<std::size_t>(side == kFarSide ? columns : ends.final_cells.rows()), Number{});
+    for (const auto& c : ends.mixed_cells)
+      places[side][place_on(side, c.cell, columns)] += c[kSides[side]];
+  }
+  return places;
+}
+
 /// `interval_of(own share, shares of the others)` for every place.
 template <class IntervalOf>
 FieldExits with_intervals(const ExitShares& own, const std::vector<ExitShares>& others,
@@ -39,26 +53,13 @@ std::vector<double> exit_bounds(double width, double length, const FieldParams& 
   return bounds;
 }
 
-ExitCounts::ExitCounts(const FieldParams& field) {
-  for (std::size_t side = 0; side < kSides.size(); ++side)
-    counts[side].assign(static_cast<std::size_t>(side == kFarSide ? field.columns : field.rows), 0);
-}
-
-void ExitCounts::add(const FieldTrials& each) {
-  const auto columns = std::ssize(counts[kFarSide]);
-  for (std::size_t i = 0; i < each.endings.size(); ++i)
-    for (std::size_t side = 0; side < kSides.size(); ++side)
-      if (each.endings[i] == kSides[side])
-        ++counts[side][place_on(side, each.final_gates[i], columns)];
-  trials += std::ssize(each.endings);
-}
-
-FieldExits exits_of(const ExitCounts& c) {
+FieldExits exits_of(const FieldTally& trials) {
   FieldExits exits;
+  const auto counts = by_place(trials);
   for (std::size_t side = 0; side < kSides.size(); ++side)
-    for (const std::int64_t count : c.counts[side]) {
-      exits[side].share.push_back(static_cast<double>(count) / static_cast<double>(c.trials));
-      exits[side].interval.push_back(dynamics::share_interval(count, c.trials));
+    for (const std::int64_t count : counts[side]) {
+      exits[side].share.push_back(static_cast<double>(count) / static_cast<double>(trials.trials));
+      exits[side].interval.push_back(dynamics::share_interval(count, trials.trials));
     }
   return exits;
 }
@@ -78,17 +79,7 @@ FieldExits within_sides(FieldExits exits, const EndingShares& endings) {
   return exits;
 }
 
-ExitShares exit_shares(const markov::FinalDistribution& d) {
-  const Eigen::Index columns = d.final_cells.cols();
-  ExitShares shares;
-  for (std::size_t side = 0; side < kSides.size(); ++side) {
-    shares[side].assign(static_cast<std::size_t>(side == kFarSide ? columns : d.final_cells.rows()),
-                        0.0);
-    for (const auto& c : d.mixed_cells)
-      shares[side][place_on(side, c.cell, columns)] += c[kSides[side]];
-  }
-  return shares;
-}
+ExitShares exit_shares(const markov::FinalDistribution& d) { return by_place(d); }
 
 FieldExits exits_of(const ExitShares& prediction, const std::vector<ExitShares>& resampled,
                     const Evidence& from) {

@@ -25,15 +25,6 @@ inline constexpr std::size_t kFarSide = 0;
 [[nodiscard]] std::vector<double> exit_bounds(double width, double length, const FieldParams& field,
                                               std::size_t side);
 
-/// Trials by the place at which they left the field.
-struct ExitCounts {
-  std::array<std::vector<std::int64_t>, kSides.size()> counts;  // by kSides (places)
-  std::int64_t trials = 0;
-
-  explicit ExitCounts(const FieldParams& field);
-  void add(const FieldTrials& trials);
-};
-
 /// Shares of all bodies that leave at each place of a side, with 95 % intervals (NaN: none).
 struct SideExits {
   std::vector<double> share;
@@ -42,7 +33,7 @@ struct SideExits {
 using FieldExits = std::array<SideExits, kSides.size()>;  // by kSides
 
 /// With Jeffreys' intervals.
-[[nodiscard]] FieldExits exits_of(const ExitCounts& counts);
+[[nodiscard]] FieldExits exits_of(const FieldTally& trials);
 
 /// A part of a side is never more than the side: no place's interval reaches beyond that of its
 /// ending. Alone it may: where few tell of a place, or nothing but the number of trials does.

@@ -29,11 +29,10 @@ FieldRun run_gates(const Options& options) {
                dynamics::entry_of(scene.scene.start),
                options.provenance(scene.scene),
                lattice::FieldCosts(lattice::bin_of_durations(scene.scene.gate)),
-               lattice::ExitCounts(field),
                scene,
                lattice::FieldTally(field)};
   run.tally = lattice::field_trials(scene.scene, options.trial_range(), options.seed(),
-                                    options.work(), lattice::added_to(run.costs, run.exits));
+                                    options.work(), lattice::added_to(run.costs));
   options.work().end_part();
   return run;
 }
@@ -45,7 +44,6 @@ FieldRun empty_run(const Options& options, const Subject& s) {
           s.problem.start,
           s.provenance(options),
           lattice::FieldCosts(s.bin_of_durations(options)),
-          lattice::ExitCounts(field),
           std::nullopt,
           lattice::FieldTally(field)};
 }
@@ -60,7 +58,7 @@ FieldRun run_cells(const Options& options) {
   lattice::RecordedRuns runs;
   runs.passages.begin(s.problem.map().section);
   const bool keep = options.has("passages");
-  const lattice::TakeTrials add = lattice::added_to(run.costs, run.exits);
+  const lattice::TakeTrials add = lattice::added_to(run.costs);
   run.tally = lattice::field_trials(
       s.problem, options.trial_range(), options.seed(), options.work(),
       [&](const lattice::FieldTrials& each) {
@@ -91,7 +89,7 @@ FieldRun run_policy(const Options& options) {
   FieldRun run = empty_run(options, s);
   run.may_do = {all.names(), std::move(all.methods)};
   run.tally = lattice::policy_trials(all.actions, policy, options.trial_range(), options.seed(),
-                                     options.work(), lattice::added_to(run.costs, run.exits));
+                                     options.work(), lattice::added_to(run.costs));
   options.work().end_part();
   return run;
 }
@@ -129,7 +127,7 @@ int run_lattice(const Arguments& arguments) {
   const FieldRun run = field_run(options);
   const double seconds = watch.seconds();
   const FieldPicture picture(fmt::format("full dynamics, {} trials", run.tally.trials),
-                             ends_of(run.tally, run.shown.field), lattice::exits_of(run.exits),
+                             ends_of(run.tally, run.shown.field), lattice::exits_of(run.tally),
                              run.start);
   if (options.has("netcdf"))
     options.write(options.text("netcdf"), netcdf_of({picture}, run.shown.map.section, run.made_by));

@@ -55,7 +55,7 @@ void describe(Fields& out, const FieldRun& run) {
   });
   describe_method(out, run.scene ? run.scene->settled : std::nullopt);
   describe_status(out, tally.health);
-  describe_exits(out, exits_of(run.exits), run.shown);
+  describe_exits(out, exits_of(run.tally), run.shown);
   describe_costs(out, run.costs, run.shown);
   out.optional(!run.may_do.actions.empty(), [&](Fields& f) {
     f.texts({"actions", "under a policy: names of the actions among which bodies choose"},
@@ -76,7 +76,7 @@ std::string table_of(const FieldRun& run) {
         "stopped being finite numbers: {}\n",
         percent(static_cast<double>(tally.broken()), static_cast<double>(tally.trials), 4));
   return text + (run.scene ? method_line(run.scene->settled) : "") +
-         table_of(exits_of(run.exits), run.shown) + table_of(run.costs, run.shown) +
+         table_of(exits_of(run.tally), run.shown) + table_of(run.costs, run.shown) +
          method_lines(run.may_do);
 }
 

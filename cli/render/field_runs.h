@@ -11,7 +11,6 @@
 #include "cli/render/provenance.h"
 #include "cli/render/shown_field.h"
 #include "cli/render/start.h"
-#include "lattice/exits.h"
 #include "lattice/field_costs.h"
 #include "lattice/gate_chain.h"
 #include "lattice/reference.h"
@@ -30,7 +29,6 @@ struct FieldRun {
   dynamics::Entry start{};
   Provenance made_by{};
   lattice::FieldCosts costs;
-  lattice::ExitCounts exits;
   std::optional<RunScene> scene{};  // of gates
   lattice::FieldTally tally;
   ActionMethods may_do{};  // under a policy

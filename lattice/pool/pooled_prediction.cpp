@@ -89,21 +89,16 @@ StartAnswer answer_of(const FieldParams& field, const OwnRuns& s, std::int64_t p
   a.start = s.start;
   a.trials = std::ssize(s.full.endings);
   if (a.trials == 0) return a;
-  CellCounts counts = CellCounts::Zero(field.rows, field.columns);
-  for (const std::int32_t cell : s.full.final_gates) ++counts.data()[cell];
-  const Error95 of_trials = error_of_shares(counts, seed);
+  FieldTally tally(field);
+  tally.count(s.full.final_gates, s.full.endings);
+  const Error95 of_trials = error_of_shares(tally.final_cells, seed);
   a.trials_error_95 = of_trials.total_variation;
   a.from_trials = a.trials_error_95 < 0.95 * a.error.total_variation;
   if (!a.from_trials) return a;
   a.error = of_trials;
   a.final = shares_of(s.full, field);
-  std::array<std::int64_t, markov::kEndings> endings{};
-  for (const auto& e : s.full.endings)
-    if (e) ++endings[static_cast<std::size_t>(*e)];
-  a.endings = EndingShares(endings, a.trials).with_limit(field.max_gates);
-  ExitCounts exits(field);
-  exits.add(s.full);
-  a.exits = exits_of(exits);
+  a.endings = EndingShares(tally.endings, a.trials).with_limit(field.max_gates);
+  a.exits = exits_of(tally);
   a.gates_95 = {a.final.final_cells, a.final.final_cells};
   const auto never = interval_of_share(0.0, static_cast<double>(a.trials));
   for (Eigen::Index i = 0; i < a.final.final_cells.size(); ++i) {

@@ -23,11 +23,8 @@ FieldTally field_trials(const FieldParams& field, dynamics::TrialRange trials,
   return tally;
 }
 
-TakeTrials added_to(FieldCosts& costs, ExitCounts& exits) {
-  return [&](const FieldTrials& each) {
-    costs.add(each);
-    exits.add(each);
-  };
+TakeTrials added_to(FieldCosts& costs) {
+  return [&](const FieldTrials& each) { costs.add(each); };
 }
 
 FieldTally field_trials(const Problem& problem, dynamics::TrialRange trials, std::uint64_t seed,

@@ -6,7 +6,6 @@
 #include <functional>
 
 #include "dynamics/base/work.h"
-#include "lattice/exits.h"
 #include "lattice/field_costs.h"
 #include "lattice/gate_chain.h"
 #include "lattice/problem.h"
@@ -18,8 +17,8 @@ namespace gatewalk::lattice {
 using RunTrialRange = std::function<FieldTally(dynamics::TrialRange range, FieldTrials& each)>;
 /// Takes trials in the order of their numbers, a piece at a time.
 using TakeTrials = std::function<void(const FieldTrials& each)>;
-/// Adds what they took to `costs`, and where they left the field to `exits`, which outlive it.
-[[nodiscard]] TakeTrials added_to(FieldCosts& costs, ExitCounts& exits);
+/// Adds what they took to `costs`, which outlive it.
+[[nodiscard]] TakeTrials added_to(FieldCosts& costs);
 
 /// Trials through the field, each of which `take` is handed, if given. Pieces can be kept. Throws
 /// as `run`.

@@ -127,7 +127,6 @@ TimedWalks walk(const Setup& setup, const markov::Start& start) {
 
 struct TimedTrials {
   RunTrials trials;  // `each` only for a study of the force
-  ExitCounts exits;
   PaperSized paper_sized{};
   double seconds = 0.0;
 };
@@ -135,7 +134,7 @@ struct TimedTrials {
 /// Their walks through the states are added to `remembered`.
 TimedTrials run_trials(const Setup& setup, const dynamics::Entry& start, const markov::Start& place,
                        const markov::FinalDistribution& exact, StateWalks& remembered) {
-  TimedTrials seen{{FieldTally(setup.problem.field), {}}, ExitCounts(setup.problem.field)};
+  TimedTrials seen{{FieldTally(setup.problem.field), {}}};
   BlocksOf100 blocks(exact.final_cells, setup.walks, [&](std::int64_t first, std::int64_t n) {
     std::vector<std::int32_t> cells;
     (void)setup.walker.walk(setup.field(), place, setup.problem.field.max_gates, setup.options.seed,
@@ -158,7 +157,6 @@ TimedTrials run_trials(const Setup& setup, const dynamics::Entry& start, const m
         FieldTrials& each = piece.each;
         seen.trials.tally += piece.tally;
         blocks.add(each.final_gates);
-        seen.exits.add(each);
         if (setup.options.force_memory) seen.trials.each.append(each);
         each.passed.resize(
             std::clamp<std::int64_t>(kMostRemembered - taken, 0, std::ssize(each.passed)));
@@ -256,7 +254,7 @@ StartValidation validate_start(const Setup& setup, const dynamics::Entry& start,
       .dynamics_endings = EndingShares(tally.endings, tally.trials).with_limit(max_gates),
       .walks_endings = EndingShares(walked.tally.endings, walked.tally.walks).with_limit(max_gates),
       .exact_endings = exact_endings,
-      .dynamics_exits = exits_of(seen.exits),
+      .dynamics_exits = exits_of(tally),
       .exact_exits =
           within_sides(exits_of(exit_shares(exact), resampled_exits, noise.from()), exact_endings),
       .dynamics_seconds = seen.seconds,

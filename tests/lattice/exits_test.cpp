@@ -76,30 +76,35 @@ TEST(Exits, OfTrialsAreThoseOfTheirLastGates) {
   const Scene scene = leaving_scene();
   FieldTrials each;
   const FieldTally tally = run_field(scene.gate, scene.field, scene.start, 3, {0, 2000}, &each);
-  ExitCounts counts(scene.field);
-  counts.add(each);
-  EXPECT_EQ(counts.trials, 2000);
+  const FieldExits exits = exits_of(tally);
+  std::array<std::vector<std::int64_t>, kSides.size()> counts;
+  for (std::size_t i = 0; i < each.endings.size(); ++i)
+    for (std::size_t side = 0; side < kSides.size(); ++side) {
+      counts[side].resize(exits[side].share.size());
+      const int column = each.final_gates[i] % 3, row = each.final_gates[i] / 3;
+      if (each.endings[i] == kSides[side])
+        ++counts[side][static_cast<std::size_t>(side == kFarSide ? column : row)];
+    }
   for (std::size_t side = 0; side < kSides.size(); ++side) {
-    EXPECT_GT(sum_of(counts.counts[side]), 20) << side;
-    EXPECT_EQ(sum_of(counts.counts[side]), tally.endings[static_cast<std::size_t>(kSides[side])]);
+    EXPECT_GT(sum_of(counts[side]), 20) << side;
+    EXPECT_EQ(sum_of(counts[side]), tally[kSides[side]]);
   }
   const markov::CellCounts departed = departed_cells(tally);
   // Of the first row nobody crosses, and of a column in the middle nobody leaves over a side.
-  EXPECT_EQ(counts.counts[1][0], departed(0, 0));
-  EXPECT_EQ(counts.counts[2][0], departed(0, 2));
-  EXPECT_EQ(counts.counts[kFarSide][1], departed(1, 1));
-  EXPECT_EQ(counts.counts[kFarSide][0] + counts.counts[1][1], departed(1, 0));
-  const FieldExits exits = exits_of(counts);
+  EXPECT_EQ(counts[1][0], departed(0, 0));
+  EXPECT_EQ(counts[2][0], departed(0, 2));
+  EXPECT_EQ(counts[kFarSide][1], departed(1, 1));
+  EXPECT_EQ(counts[kFarSide][0] + counts[1][1], departed(1, 0));
   for (std::size_t side = 0; side < kSides.size(); ++side)
     for (std::size_t i = 0; i < exits[side].share.size(); ++i) {
-      EXPECT_EQ(exits[side].share[i], static_cast<double>(counts.counts[side][i]) / 2000.0);
+      EXPECT_EQ(exits[side].share[i], static_cast<double>(counts[side][i]) / 2000.0);
       EXPECT_LE(exits[side].interval[i][0], exits[side].share[i]);
       EXPECT_GT(exits[side].interval[i][1], exits[side].share[i]);
     }
 }
 
-// Walks know of a gate only how many left the field from it: what is made of that must be what the
-// exact chain says, also of the corners, from where some cross and some leave over a side.
+// Walks and the exact chain tell by gate and side alike who leaves the field,
+// also from the corners, from where some cross and some leave over a side.
 TEST(Exits, OfPredictionsAddUpToTheEndingsByEitherWay) {
   Scene scene = leaving_scene();
   const RunPool pool = pool_of_runs(scene, 2000);
