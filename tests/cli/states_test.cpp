@@ -39,7 +39,7 @@ const std::string kAnyStart =
     R"("accuracy":0.02,"starts_of_their_own":[],"range":{"d_m":[-25.0,25.0],)"
     R"("vx_m_per_s":[-25.0,25.0],"vy_m_per_s":[10.0,20.0],"tried_on_starts":7,)"
     R"("kernel_error_95":0.20407777101013685,"worst_kernel_error_95":null},"states_bias":0.0,)"
-    R"("hausman_check":null})";
+    R"("own_trials":null})";
 const std::string kRecorded =
     R"({"bins":"tree","entries_per_leaf":7,"gate_runs":40,"starts_of_their_own":[],"range":null,)"
     R"("states_bias":0.0,"states":9})";
@@ -50,8 +50,8 @@ StateRecord read(const std::string& attribute) {
 
 TEST(StateRecord, AttributesAreReadAsTheyWereWritten) {
   for (const std::string& attribute :
-       {kBins, kTrees + R"(,"hausman_check":)" + kOwnTrials + "}",
-        kTrees + R"(,"hausman_check":null})", kTrees + "}", kAnyStart, kRecorded,
+       {kBins, kTrees + R"(,"own_trials":)" + kOwnTrials + "}",
+        kTrees + R"(,"own_trials":null})", kTrees + "}", kAnyStart, kRecorded,
         std::string(R"({"bins":"imported","states":87})"),
         std::string(R"({"bins":"imported","states":8,"probabilities":true})")})
     EXPECT_EQ(attribute_of(read(attribute)), attribute);
