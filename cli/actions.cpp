@@ -36,7 +36,7 @@ std::shared_ptr<const dynamics::Cell> cell_with(const lattice::Terrain::Type& ac
   return cell;
 }
 
-Actions program_actions(const Options& options, const Subject& s) {
+Actions program_actions(const Options& options, const lattice::Source& s) {
   const lattice::CellFile& file = *s.cells;
   require_two(file.actions.size(), file.source, "the cell as it is");
   const auto* const program = dynamic_cast<const ProgramCell*>(s.problem.cells.cells.front().get());
@@ -47,7 +47,7 @@ Actions program_actions(const Options& options, const Subject& s) {
   for (const lattice::Terrain::Type& action : file.actions) {
     all.actions.push_back({action.name, s.problem});
     const auto& cell = all.actions.back().problem.cells.cells.front() = cell_with(action, *program);
-    const std::string words = action.name + ": " + told_by(*cell);
+    const std::string words = action.name + ": " + text_of(*cell);
     options.depends_on(words);
     told += fmt::format("# {}\n", words);
   }
@@ -58,7 +58,7 @@ Actions program_actions(const Options& options, const Subject& s) {
 
 }  // namespace
 
-void require_file_for(const Subject& s) {
+void require_file_for(const lattice::Source& s) {
   require_file_for(s.scene ? policy_field(*s.scene) : policy_field(*s.cells, ""));
 }
 
@@ -88,7 +88,7 @@ Actions actions_of(const Options& options, const lattice::Scene& scene,
   return all;
 }
 
-Actions actions_of(const Options& options, const Subject& s) {
+Actions actions_of(const Options& options, const lattice::Source& s) {
   return s.scene ? actions_of(options, *s.scene, s.problem.start) : program_actions(options, s);
 }
 

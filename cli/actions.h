@@ -9,7 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/exchange/policy_file.h"
-#include "cli/subject.h"
+#include "cli/source_options.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/settle.h"
 #include "lattice/study/plan.h"
@@ -30,9 +30,9 @@ struct Actions {
                                  const dynamics::Entry& start);
 /// Of a scene, or of cells of a program, from its start. Throws UsageError also for numbers that
 /// the program does not have, or does not permit.
-[[nodiscard]] Actions actions_of(const Options& options, const Subject& s);
+[[nodiscard]] Actions actions_of(const Options& options, const lattice::Source& s);
 
 /// Of the field's policies, before there are any: as of a PolicyField.
-void require_file_for(const Subject& s);
+void require_file_for(const lattice::Source& s);
 
 }  // namespace gatewalk::cli

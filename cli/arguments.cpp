@@ -10,16 +10,17 @@
 #include <memory>
 #include <utility>
 
-#include "cli/loaded_matrix.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/matrix.h"
 #include "cli/render/meaning.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
-#include "cli/subject.h"
+#include "cli/source_options.h"
 #include "dynamics/base/work.h"
+#include "lattice/cells/start_text.h"
 #include "lattice/pool/pool_runner.h"
+#include "lattice/pool/states_info.h"
 #include "lattice/scene/units.h"
 #include "lattice/text/digits.h"
 
@@ -31,16 +32,20 @@ void add_starts(Options& options, const std::string& by_default) {
   options.add_texts("start", "D,VX,VY", help);
 }
 
-std::vector<lattice::PaperStart> given_starts(const Options& options) {
-  std::vector<lattice::PaperStart> starts;
+std::vector<dynamics::Entry> given_starts(const Options& options) {
+  std::vector<dynamics::Entry> starts;
   for (const std::string& text : options.texts("start"))
     starts.push_back(
-        lattice::start_at(*parse_start(text, dynamics::disc_section(), StartsFrom::first_face)));
+        *lattice::start_in(text, lattice::scene_section(), lattice::StartsBy::first_face));
   return starts;
 }
 
-std::vector<lattice::PaperStart> starts_of(const Options& options, const lattice::Scene& scene) {
-  return options.has("start") ? given_starts(options) : lattice::usual_starts(scene);
+std::vector<dynamics::Entry> starts_of(const Options& options, const lattice::Scene& scene) {
+  if (options.has("start")) return given_starts(options);
+  std::vector<dynamics::Entry> starts;
+  for (const lattice::PaperStart& s : lattice::table_iv_starts(scene)) starts.push_back(s.start);
+  if (starts.empty()) starts.push_back(lattice::own_start(scene));
+  return starts;
 }
 
 void add_bins(Options& options) {
@@ -90,12 +95,13 @@ void add_accuracy(Options& options, const std::string& by_default) {
   options.add_count("gate-runs", "N", "but not many more gate runs than N, whatever the accuracy");
 }
 
-lattice::AccuracyOptions accuracy_of(const Options& options) {
-  lattice::AccuracyOptions how;
-  if (options.has("accuracy")) how.accuracy = options.number("accuracy");
-  if (!(how.accuracy > 0.0 && how.accuracy < 1.0))
-    throw UsageError(
-        fmt::format("--accuracy {}: must lie between 0 and 1, such as 0.01", digits(how.accuracy)));
+lattice::AccuracyOptions accuracy_of(const Options& options, lattice::AccuracyOptions how) {
+  if (options.has("accuracy")) {
+    how.accuracy = options.number("accuracy");
+    if (!(how.accuracy > 0.0 && how.accuracy < 1.0))
+      throw UsageError(fmt::format("--accuracy {}: must lie between 0 and 1, such as 0.01",
+                                   digits(how.accuracy)));
+  }
   if (options.has("gate-runs")) how.most_runs = options.count("gate-runs");
   how.seed = options.seed();
   return how;
@@ -166,9 +172,9 @@ lattice::TreeOptions tree_options(const Options& options, const lattice::Scene& 
   how.range = range_of(options, scene);
   if (options.has("states"))
     how.most_states = static_cast<int>(options.count("states", 1, dynamics::kMostStates));
-  for (const lattice::PaperStart& s : given_starts(options)) how.starts.push_back(s.entry());
-  lattice::require_inside(given_starts(options), scene);
-  if (how.starts.empty() && !how.range) how.starts = {lattice::own_start(scene).entry()};
+  how.starts = given_starts(options);
+  lattice::require_inside(how.starts, scene);
+  if (how.starts.empty() && !how.range) how.starts = {lattice::own_start(scene)};
   if (scene.field.fidelity != lattice::Fidelity::active)
     options.warn(fmt::format(
         "field.fidelity = \"{}\" is of the full dynamics: a chain always has \"active\"",
@@ -176,96 +182,28 @@ lattice::TreeOptions tree_options(const Options& options, const lattice::Scene& 
   return how;
 }
 
-namespace {
-
-/// Of a matrix of trees; none of another one.
-std::optional<TreeRecord> recorded_trees(const lattice::MatrixFile& file, const std::string& path) {
-  const auto states = recorded_states(file, path);
-  return states ? states->trees : std::nullopt;
-}
-
-}  // namespace
-
-double accuracy_of(const lattice::MatrixFile& file, const std::string& path) {
-  const auto trees = recorded_trees(file, path);
-  if (!trees || !trees->accuracy) return lattice::AccuracyOptions{}.accuracy;
-  return *trees->accuracy * (trees->range ? lattice::kPartForOne : 1.0);
-}
-
 void warn_of_range(const Options& options, const lattice::MatrixFile& file, const std::string& path,
                    const std::vector<dynamics::Entry>& starts) {
-  const auto trees = recorded_trees(file, path);
-  if (!trees || !trees->range) return;
-  const auto& coordinates = file.transitions.space.section().coordinates;
-  const auto& own = file.transitions.space.points();
-  dynamics::StateRange built = trees->range->range;
-  built.face = starts.empty() ? 0 : starts.front().face;
-  const auto count = std::count_if(starts.begin(), starts.end(), [&](const dynamics::Entry& entry) {
-    if (std::find(own.begin(), own.end(), entry) != own.end()) return false;
-    for (std::size_t axis = 0; axis < coordinates.size(); ++axis)
-      if (entry.at[axis] < built.at[axis][0] || entry.at[axis] > built.at[axis][1]) return true;
-    return false;
-  });
-  if (count > 0)
-    options.warn(fmt::format("{} outside the range that {} was built for: {}",
-                             counted(count, "start lies", "starts lie"), path,
-                             text_of(file.transitions.space.section(), built)));
+  const lattice::TreeInfo trees = lattice::tree_info(file, path);
+  const dynamics::StateSpace& space = file.transitions.space;
+  const std::int64_t outside = trees.outside(space, starts);
+  if (outside == 0) return;
+  dynamics::StateRange built = trees.range->range;
+  built.face = starts.front().face;
+  options.warn(fmt::format("{} outside the range that {} was built for: {}",
+                           counted(outside, "start lies", "starts lie"), path,
+                           text_of(space.section(), built)));
 }
 
-int entries_per_leaf(const lattice::MatrixFile& file, const std::string& path) {
-  return recorded_trees(file, path).value_or(TreeRecord()).entries_per_leaf;
-}
-
-void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Options& options,
-                   const std::vector<dynamics::Entry>& starts) {
-  if (!lattice::has_runs(*m.file)) return;
+void add_starts(const Options& options, lattice::SceneMatrix& m, const std::string& path,
+                const std::vector<dynamics::Entry>& starts) {
   warn_of_range(options, *m.file, path, starts);
-  const lattice::Problem problem = lattice::problem_of(m.scene);
-  lattice::RunPool pool = lattice::pool_of(*m.file, problem, path);
-  std::vector<dynamics::Entry> unknown;
-  for (const dynamics::Entry& entry : starts)
-    if (pool.place_of(entry) == pool.starts.size()) unknown.push_back(entry);
-  if (unknown.empty()) return;
-  lattice::AccuracyOptions how;
-  how.accuracy = accuracy_of(*m.file, path);
-  how.most_runs = std::max<std::int64_t>(100'000, pool.gate_runs());
-  how.per_leaf = entries_per_leaf(*m.file, path);
-  how.seed = options.seed();
-  const auto prediction = lattice::predict_pooled(problem, pool, unknown, how, options.work());
+  const auto prediction = lattice::add_starts(m, path, starts, options.seed(), options.work());
+  if (!prediction) return;
   options.remark(
-      fmt::format("{} gate runs from starts that {} does not know", prediction.gate_runs, path));
-  options.warn(complaint(prediction.health));
-  warn_of(options, prediction, how.accuracy);
-  std::vector<dynamics::Entry> all;
-  for (const lattice::OwnRuns& s : pool.starts) all.push_back(s.start);
-  lattice::MatrixFile file = *m.file;
-  dynamics::Health health = file.transitions.health;
-  health += prediction.health;
-  lattice::put_matrices(file, m.scene, lattice::matrices_of(problem, pool, all, how.per_leaf));
-  file.transitions.health = health;
-  m.file = std::make_shared<const lattice::MatrixFile>(std::move(file));
-}
-
-void require_active(const Options& options, const lattice::Scene& scene) {
-  if (scene.field.fidelity == lattice::Fidelity::active) return;
-  const std::string key = "field.fidelity",
-                    value = fmt::format(" = \"{}\"", lattice::name_of(scene.field.fidelity));
-  const auto overrides = options.overrides();
-  const bool is_set = std::any_of(overrides.begin(), overrides.end(), [&](const std::string& o) {
-    const auto keys = lattice::keys_set_by(o);
-    return std::find(keys.begin(), keys.end(), key) != keys.end();
-  });
-  if (options.has("matrix") && options.file(options.text("matrix")).is_matrix() &&
-      options.text("scene").empty() && !is_set) {
-    options.warn(
-        fmt::format("{} (its scene): {}{} is of the full dynamics: a chain always has \"active\"",
-                    options.text("matrix"), key, value));
-    return;
-  }
-  const auto given = scene.named.find(key);
-  throw UsageError(fmt::format(
-      "{}: {}{} is not permitted for a chain: it has \"active\", gatewalk lattice the others",
-      given == scene.named.end() ? scene.source : given->second, key, value));
+      fmt::format("{} gate runs from starts that {} does not know", prediction->gate_runs, path));
+  options.warn(complaint(prediction->health));
+  warn_of(options, *prediction, lattice::tree_info(*m.file, path).accuracy_of_one());
 }
 
 namespace {
@@ -284,14 +222,17 @@ bool is_about_push(const Options& options, const lattice::Scene& scene) {
 
 }  // namespace
 
+void warn_of_keys(const Options& options, const lattice::Scene& scene, lattice::RunsFrom from) {
+  for (const std::string& text : lattice::keys_without_effect(scene, from)) options.warn(text);
+  if (!options.talk()) return;
+  options.warn(lattice::derived_keys(scene));
+  if (is_about_push(options, scene)) options.warn(lattice::push_is_followed(scene));
+  options.warn(far_from_walkers_line(scene));
+}
+
 std::optional<lattice::Settled> settle_method(const Options& options, lattice::Scene& scene,
                                               lattice::RunsFrom from) {
-  for (const std::string& text : lattice::keys_without_effect(scene, from)) options.warn(text);
-  if (options.talk()) {
-    options.warn(lattice::derived_keys(scene));
-    if (is_about_push(options, scene)) options.warn(lattice::push_is_followed(scene));
-    options.warn(far_from_walkers_line(scene));
-  }
+  warn_of_keys(options, scene, from);
   auto settled = lattice::settle_method(scene, from, options.seed(), options.work());
   if (settled) options.warn(complaint(*settled));
   return settled;
@@ -308,25 +249,23 @@ lattice::States states_of(const Options& options, const lattice::Scene& scene,
   return states;
 }
 
-lattice::SceneMatrix read_matrix(const Options& options) {
-  return read_matrix(options, options.text("matrix"), options.text("scene"), options.overrides());
+void warn_of_faults(const Options& options, const lattice::MatrixFile& file,
+                    const std::string& path) {
+  if (const std::string faults = faults_recorded(recorded_health(file)); !faults.empty())
+    options.warn(fmt::format("the runs that made {}: {}", path, faults));
 }
 
-lattice::SceneMatrix read_matrix(const Options& options, const std::string& matrix_path,
-                                 const std::string& scene_path,
+lattice::SceneMatrix read_matrix(const Options& options, const std::string& path,
+                                 const lattice::TomlFile* scene,
                                  const std::vector<std::string>& overrides) {
-  const LoadedMatrix* const loaded = options.loaded(matrix_path);
-  const lattice::TomlFile* const other = scene_path.empty() ? nullptr : &options.file(scene_path);
+  const lattice::SourceFile& file = options.file(path);
   lattice::SceneMatrix m =
-      loaded && loaded->scene
-          ? lattice::scene_matrix(loaded->file, *loaded->scene, matrix_path, other, overrides)
-          : lattice::read_scene_matrix(matrix_path, other, overrides);
-  if (!scene_path.empty())  // a matrix's own scene names every key
+      lattice::scene_matrix(file.matrix(), file.own_scene(), path, scene, overrides);
+  if (scene)  // a matrix's own scene names every key
     for (const std::string& text :
          lattice::keys_without_effect(m.scene, lattice::RunsFrom::everywhere))
       options.warn(text);
-  if (const std::string faults = faults_recorded(recorded_health(*m.file)); !faults.empty())
-    options.warn(fmt::format("the runs that made {}: {}", matrix_path, faults));
+  warn_of_faults(options, *m.file, path);
   return m;
 }
 
@@ -342,11 +281,10 @@ lattice::ChainStart checked_start(const Options& options, const dynamics::StateS
   return start;
 }
 
-void require_inside_bins(const Options& options, const std::vector<lattice::PaperStart>& starts,
+void require_inside_bins(const Options& options, const std::vector<dynamics::Entry>& starts,
                          const lattice::Scene& scene, const dynamics::StateSpace& space) {
-  for (const lattice::PaperStart& s : starts)
-    (void)checked_start(options, space, scene.field, s.entry(),
-                        "start" + start_text(space.section(), s.entry()));
+  for (const dynamics::Entry& s : starts)
+    (void)checked_start(options, space, scene.field, s, "start" + start_text(space.section(), s));
 }
 
 lattice::ChainStart ready_start(const Options& options,

@@ -21,11 +21,13 @@ void add_starts(Options& options,
                 const std::string& by_default =
                     "the scene's start; in the paper's field, in whatever units, with "
                     "the paper's start, the four of Table IV");
-/// Those given of a scene's; none without --start. Throws UsageError for a malformed one.
-[[nodiscard]] std::vector<lattice::PaperStart> given_starts(const Options& options);
-/// The starts given, else lattice::usual_starts. Throws UsageError for a malformed one.
-[[nodiscard]] std::vector<lattice::PaperStart> starts_of(const Options& options,
-                                                         const lattice::Scene& scene);
+/// Those given of a scene's; none without --start. Throws std::invalid_argument for a malformed
+/// one.
+[[nodiscard]] std::vector<dynamics::Entry> given_starts(const Options& options);
+/// The starts given, else in the paper's field with the paper's start those of Table IV, else the
+/// scene's own. Throws std::invalid_argument for a malformed one.
+[[nodiscard]] std::vector<dynamics::Entry> starts_of(const Options& options,
+                                                     const lattice::Scene& scene);
 
 /// Declares --bins.
 void add_bins(Options& options);
@@ -37,8 +39,9 @@ void add_bins(Options& options);
 
 /// Declares --accuracy and --gate-runs.
 void add_accuracy(Options& options, const std::string& by_default = "0.02");
-/// Of these. Throws UsageError for an accuracy outside (0, 1).
-[[nodiscard]] lattice::AccuracyOptions accuracy_of(const Options& options);
+/// Of these and --seed, else as in `how`. Throws UsageError for an accuracy outside (0, 1).
+[[nodiscard]] lattice::AccuracyOptions accuracy_of(const Options& options,
+                                                   lattice::AccuracyOptions how = {});
 /// Of trees: --trials, if it is given, instead of an accuracy; parts need it.
 void fix_trials(const Options& options, lattice::AccuracyOptions& how, std::int64_t starts);
 /// Warns where a chain errs by its own full trials.
@@ -59,20 +62,13 @@ void warn_of(const Options& options, const lattice::PooledPrediction& prediction
 void warn_of_range(const Options& options, const lattice::MatrixFile& file, const std::string& path,
                    const std::vector<dynamics::Entry>& starts);
 
-/// The accuracy for one start that a matrix of trees was made for.
-[[nodiscard]] double accuracy_of(const lattice::MatrixFile& file, const std::string& path);
-[[nodiscard]] int entries_per_leaf(const lattice::MatrixFile& file, const std::string& path);
-/// A matrix of trees, in which each of these starts is a state of its own: trials are added
-/// for those that it does not know, which is said. Other matrices stay as they are.
-void add_starts_to(lattice::SceneMatrix& m, const std::string& path, const Options& options,
-                   const std::vector<dynamics::Entry>& starts);
+/// lattice::add_starts; says what it added, and warns as of any prediction.
+void add_starts(const Options& options, lattice::SceneMatrix& m, const std::string& path,
+                const std::vector<dynamics::Entry>& starts);
 
-/// A chain has field.fidelity "active" alone: refuses another one that a scene or --set asks for,
-/// and warns of that of a matrix's own scene. Throws UsageError.
-void require_active(const Options& options, const lattice::Scene& scene);
-
-/// lattice::settle_method; warns of keys without effect and of a choice that did not meet the
-/// tolerance, and says what the scene leaves out.
+/// Warns of keys without effect, and says what the scene leaves out.
+void warn_of_keys(const Options& options, const lattice::Scene& scene, lattice::RunsFrom from);
+/// lattice::settle_method behind warn_of_keys; warns of a choice that did not meet the tolerance.
 [[nodiscard]] std::optional<lattice::Settled> settle_method(const Options& options,
                                                             lattice::Scene& scene,
                                                             lattice::RunsFrom from);
@@ -80,13 +76,12 @@ void require_active(const Options& options, const lattice::Scene& scene);
 [[nodiscard]] lattice::States states_of(const Options& options, const lattice::Scene& scene,
                                         const lattice::BinsChoice& choice,
                                         const std::vector<dynamics::BodyState>& starts);
-/// The file of MATRIX with the scene of SCENE and --set (lattice::read_scene_matrix); warns when it
-/// was made by runs that showed faults.
-[[nodiscard]] lattice::SceneMatrix read_matrix(const Options& options);
-/// The same for any file.
-[[nodiscard]] lattice::SceneMatrix read_matrix(const Options& options,
-                                               const std::string& matrix_path,
-                                               const std::string& scene_path,
+/// Warns when a matrix was made by runs that showed faults.
+void warn_of_faults(const Options& options, const lattice::MatrixFile& file,
+                    const std::string& path);
+/// lattice::scene_matrix of a file; warns of keys without effect in another scene, and of faults.
+[[nodiscard]] lattice::SceneMatrix read_matrix(const Options& options, const std::string& path,
+                                               const lattice::TomlFile* scene,
                                                const std::vector<std::string>& overrides);
 /// lattice::start_in_bins; warns when the start lies beyond every entry that open bins were made
 /// from.
@@ -94,7 +89,7 @@ lattice::ChainStart checked_start(const Options& options, const dynamics::StateS
                                   const lattice::FieldParams& field, const dynamics::Entry& entry,
                                   const std::string& name);
 /// The same for each of them.
-void require_inside_bins(const Options& options, const std::vector<lattice::PaperStart>& starts,
+void require_inside_bins(const Options& options, const std::vector<dynamics::Entry>& starts,
                          const lattice::Scene& scene, const dynamics::StateSpace& space);
 /// As checked_start. Remarks when the start lies on an edge of its bin: then another bin would
 /// serve it as well.

@@ -7,34 +7,30 @@
 
 namespace gatewalk::cli {
 
-ChainFromStart chain_from_start(const Options& options, Subject& s) {
+StartedChain chain_from_start(const Options& options, lattice::Source& s) {
   if (s.is_recorded() && s.pool) {
-    auto kernel = lattice::kernel_of(s.problem.map(), *s.pool, s.how.per_leaf);
+    auto kernel = lattice::kernel_of(s.problem.map(), *s.pool, s.accuracy.per_leaf);
     const int row = kernel.space.size();  // of the start, behind those of the kernel
     return {lattice::chain_of(
                 kernel, s.problem.map(), s.problem.field,
                 lattice::first_rows(kernel, s.problem.map(), *s.pool,
                                     {s.pool->first_row(s.starts.front())}, s.problem.start_type())),
             {s.problem.field.start_column(), 0, row},
-            {std::nullopt, s.starts.front(), title_of(s.problem.map().section, s.starts.front())},
+            std::nullopt,
             true,
             std::move(kernel.space)};
   }
   if (s.scene) {
     lattice::SceneMatrix m = s.matrix();
-    add_starts_to(m, s.path, options, s.entries());
+    add_starts(options, m, s.path, s.entries());
     s.file = std::move(m.file);
   }
   const std::vector<dynamics::Transitions> matrices = s.matrices();
   const dynamics::StateSpace& space = matrices.front().space;
   const lattice::ChainStart start =
       ready_start(options, matrices, s.problem, s.entries().front(), "the start");
-  const ShownState state = shown_state(start, space);
-  return {lattice::make_chain(s.problem.map(), matrices),
-          start.start,
-          {state, {}, state.bin},
-          s.file->transitions.health.clean(),
-          space};
+  return {lattice::make_chain(s.problem.map(), matrices), start.start, shown_state(start, space),
+          s.file->transitions.health.clean(), space};
 }
 
 }  // namespace gatewalk::cli

@@ -1,54 +1,25 @@
 // SPDX-License-Identifier: MIT
-#include "cli/command.h"
-
 #include <fmt/core.h>
-#include <sys/stat.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <boost/program_options.hpp>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <iostream>
-#include <map>
-#include <optional>
 #include <typeinfo>
 
-#include "cli/arguments.h"
+#include "cli/command_state.h"
 #include "cli/kept/kept_options.h"
 #include "cli/kept/ranks.h"
-#include "cli/loaded_matrix.h"
-#include "cli/render/json.h"
-#include "cli/render/numbers.h"
 #include "cli/render/text_table.h"
-#include "cli/terminal/backup.h"
-#include "cli/terminal/gnuplot.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
-#include "lattice/scene/scene.h"
 #include "lattice/text/edit_distance.h"
 #include "lattice/text/text_stream.h"
 #include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {
-
-namespace po = boost::program_options;
-
-/// A whole number on the command line, up to kMostCount either way.
-struct Count {
-  std::int64_t value = 0;
-};
-/// A finite number on the command line.
-struct Number {
-  double value = 0.0;
-};
-/// A seed on the command line.
-struct Seed {
-  std::uint64_t value = 1;
-};
 namespace {
 
 std::string memory_advice;
@@ -61,22 +32,6 @@ bool shapes_nothing(const std::string& name) {
          name == "max-time" || name == "shard" || name == "part";
 }
 
-/// An option as users write it.
-std::string shown(const std::string& name) { return name == "output" ? "-o" : "--" + name; }
-
-std::string upper_case(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(), ::toupper);
-  return name;
-}
-
-/// A regular file by what no other one has, whatever its names. None for what cannot be lost:
-/// pipes, devices, nothing at all.
-using FileId = std::pair<dev_t, ino_t>;
-std::optional<FileId> id_of(int rc, const struct stat& found) {
-  if (rc != 0 || !S_ISREG(found.st_mode)) return {};
-  return FileId(found.st_dev, found.st_ino);
-}
-
 std::string shell_quoted(const std::string& word) {
   const bool plain = !word.empty() && word.find_first_not_of(
                                           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
@@ -86,8 +41,6 @@ std::string shell_quoted(const std::string& word) {
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
 }
-
-using Strings = std::vector<std::string>;
 
 /// Of an option that is meant to be given once, the last one counts; says so.
 Strings keep_last(std::vector<po::option>& given, const po::options_description& all) {
@@ -245,46 +198,6 @@ std::string kind_of(const po::value_semantic& value) {
 
 }  // namespace
 
-struct Options::State {
-  std::string synopsis, about, example;
-  po::options_description own{"Options"}, shared{"Shared options"}, hidden;
-  po::positional_options_description positions;
-  std::vector<std::pair<std::string, std::string>> positional_help;
-  std::vector<std::string> required;
-  po::variables_map values;
-  std::vector<po::option> given;
-  std::string canonical;
-  std::string no_scene;  // why there is no --set, if there is none
-  std::optional<dynamics::Work> work;
-  std::function<void(const std::string&)> warned;
-  std::function<void(const Description&)> given_out;
-  std::shared_ptr<const dynamics::Cell> cell;
-  std::vector<std::shared_ptr<const LoadedMatrix>> loaded;
-  std::map<std::string, lattice::TomlFile> files;  // opened so far, by path
-
-  std::optional<std::set<std::string>> divided;  // stages; none: nothing is kept
-  CommandWords words;
-  std::unique_ptr<KeptRun> kept;
-  int thrown_before = std::uncaught_exceptions();
-
-  struct Output {
-    std::string name;
-    Content content = Content::text;
-  };
-  std::vector<Output> output_files{{"json", Content::text}};
-  std::vector<std::string> folder_files;  // what is written into the folder of --output
-  std::vector<std::pair<std::string, std::function<std::string(const std::string&)>>> reads;
-  bool has_table = false;                 // --csv is that of all commands
-  std::map<std::string, Backup> backups;  // by the file that is replaced
-  std::string needs_output;               // what to call the value of -o, if it must be given
-
-  template <class T>
-  void add(const std::string& name, po::typed_value<T>* value, const std::string& shown,
-           const std::string& help) {
-    own.add_options()(name.c_str(), value->value_name(shown), help.c_str());
-  }
-};
-
 Options::Options(std::string synopsis, std::string about, std::string example)
     : state_(std::make_unique<State>()) {
   state_->synopsis = std::move(synopsis);
@@ -426,166 +339,6 @@ void Options::without_scene(const std::string& reason) { state_->no_scene = reas
 
 // ---- What is given ----
 
-/// A file by how the command line names it.
-struct Options::NamedFile {
-  std::string name, path;
-
-  NamedFile(std::string shown_as, std::string file)
-      : name(std::move(shown_as)), path(std::move(file)) {
-    struct stat found = {};
-    id = path == "-" ? id_of(::fstat(STDOUT_FILENO, &found), found)
-                     : id_of(::stat(path.c_str(), &found), found);
-    if (id || path == "-") return;
-    std::error_code error;  // then the place stays empty
-    place = std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
-  }
-
-  /// By identity, so that links and other spellings do not hide it; by place where there is none
-  /// yet.
-  [[nodiscard]] bool is_same(const NamedFile& other) const {
-    if (id || other.id) return id == other.id;
-    return !place.empty() && place == other.place;
-  }
-  [[nodiscard]] bool is_regular() const { return id.has_value(); }
-
- private:
-  std::optional<FileId> id;
-  std::filesystem::path place;
-};
-
-std::vector<Options::NamedFile> Options::inputs() const {
-  std::vector<NamedFile> files;
-  const auto add = [&](const std::string& name, const std::string& path) {
-    if (path.empty() || path == "-") return;
-    files.emplace_back(name + " " + path, path);
-    if (loaded(path) || !files.back().is_regular()) return;  // what a pipe holds is read only once
-    if (const std::string map = this->file(path).map_file(); !map.empty())
-      files.emplace_back(fmt::format("{} (the map of {})", map, path), map);
-  };
-  const auto each = [&](const std::string& option, const auto& take) {
-    if (!has(option)) return;
-    const boost::any& value = state_->values[option].value();
-    if (const auto* one = boost::any_cast<std::string>(&value)) take(*one);
-    if (const auto* many = boost::any_cast<Strings>(&value))
-      for (const std::string& one : *many) take(one);
-  };
-  for (const auto& [name, help] : state_->positional_help)
-    each(name, [&, &name = name](const std::string& path) { add(upper_case(name), path); });
-  for (const auto& [name, file_in] : state_->reads)
-    each(name, [&, &name = name, &file_in = file_in](const std::string& value) {
-      add(shown(name), file_in(value));
-    });
-  return files;
-}
-
-void Options::check_values_given() const {
-  for (const po::option& option : state_->given) {
-    if (option.position_key >= 0) continue;
-    const std::string& name = option.string_key;
-    const bool is_output = (name == "output" && !state_->needs_output.empty()) ||
-                           std::any_of(state_->output_files.begin(), state_->output_files.end(),
-                                       [&](const State::Output& o) { return o.name == name; });
-    for (const std::string& value : option.value)
-      if (value.starts_with("--") || (is_output && value.size() > 1 && value[0] == '-'))
-        throw UsageError(fmt::format(
-            "{} {}: looks like an option, so the value of {} is missing{}", shown(name), value,
-            shown(name),
-            is_output ? fmt::format("; write ./{} for a file of that name", value) : ""));
-  }
-}
-
-void Options::check_files() {
-  if (!state_->needs_output.empty() && !has("output"))
-    throw UsageError(
-        fmt::format("missing -o {}: gatewalk {}", state_->needs_output, state_->synopsis));
-  for (const auto& [name, file_in] : state_->reads)
-    if (has(name) && state_->values[name].value().type() == typeid(std::string) &&
-        text(name).empty())
-      throw UsageError(shown(name) + " needs a file name");
-
-  std::vector<NamedFile> outputs;
-  std::string takes_stdout;
-  for (const State::Output& output : state_->output_files) {
-    if (!has(output.name)) continue;
-    if (text(output.name) == "/dev/stdout")
-      state_->values.find(output.name)->second.value() = std::string("-");
-    const std::string path = text(output.name), option = shown(output.name);
-    if (path.empty()) throw UsageError(option + " needs a file name");
-    for (const char* ending : {".xlsx", ".xls", ".ods", ".parquet"})
-      if (lattice::has_ending(path, ending))
-        throw UsageError(fmt::format(
-            "{} {}: no {} is written; tables are CSV, which spreadsheets read: a name in .csv",
-            option, path, ending));
-    if (path != "-") {
-      outputs.emplace_back(option + " " + path, path);
-      continue;
-    }
-    if (output.content == Content::binary)
-      throw UsageError(option + " cannot go to standard output: it needs a file of its own");
-    if (!takes_stdout.empty())
-      throw UsageError(fmt::format("{} - and {} -: only one thing can go to standard output",
-                                   takes_stdout, option));
-    takes_stdout = option;
-  }
-  const bool has_folder = !state_->needs_output.empty() && state_->needs_output == "DIR";
-  const std::string folder = has_folder ? text("output") : "";
-  if (has_folder && (folder.empty() || folder == "-"))
-    throw UsageError("-o needs the name of a folder");
-  for (const std::string& file : state_->folder_files) {
-    const std::string path = (std::filesystem::path(folder) / file).string();
-    outputs.emplace_back(path + " (in the folder of -o)", path);
-  }
-
-  const auto refuse_same = [](const NamedFile& a, const NamedFile& b) {
-    if (a.is_same(b))
-      throw UsageError(fmt::format("{} and {} are the same file: an output needs a file of its own",
-                                   a.name, b.name));
-  };
-  std::vector<NamedFile> others = inputs();
-  const bool takes_parts =
-      !state_->positional_help.empty() && state_->positional_help.front().first == "part";
-  for (const NamedFile& input : others)
-    if (!takes_parts && input.is_regular() && !loaded(input.path) &&
-        PieceFile::begins(file(input.path).bytes()))
-      throw UsageError(input.name +
-                       ": holds pieces of a run: gatewalk merge makes one run of all parts, or its "
-                       "command with --resume goes on");
-  others.emplace_back("standard output", "-");
-  for (const NamedFile& input : others)
-    if (input.path != "-") refuse_same(input, others.back());
-  for (const NamedFile& output : outputs) {
-    for (const NamedFile& other : others) refuse_same(other, output);
-    others.push_back(output);
-  }
-
-  const auto require_replaceable = [&](const std::string& path) {
-    require_writable(path);
-    if (path != "-" && !has("force")) (void)Backup(path);
-  };
-  const auto check = [](const std::string& option, const auto& act) {
-    try {
-      act();
-    } catch (const std::runtime_error& e) {
-      throw UsageError(option + ": " + e.what());
-    }
-  };
-  for (const State::Output& output : state_->output_files)
-    if (has(output.name))
-      check(shown(output.name), [&] { require_replaceable(text(output.name)); });
-  if (has("figure")) {
-    if (!can_be_drawn(text("figure")))
-      throw UsageError(fmt::format("--figure {}: must end in .svg, .pdf or .png", text("figure")));
-    check("--figure", require_gnuplot);
-  }
-  if (!has_folder) return;
-  check("-o", [&] {
-    require_possible_folder(folder);
-    if (!std::filesystem::is_directory(folder)) return;
-    for (const std::string& file : state_->folder_files)
-      require_replaceable((std::filesystem::path(folder) / file).string());
-  });
-}
-
 CommandHelp Options::help() const {
   CommandHelp help{state_->synopsis, state_->about, state_->example, {}, {}};
   for (const auto& [name, text] : state_->positional_help)
@@ -616,7 +369,7 @@ bool Options::parse(const Arguments& arguments) {
   state_->warned = arguments.warned;
   state_->given_out = arguments.given_out;
   state_->cell = arguments.cell;
-  state_->loaded = arguments.loaded;
+  for (const auto& file : arguments.files) state_->files.emplace(file->path(), file);
   state_->words.parts = arguments.parts;
   (state_->no_scene.empty() ? state_->own : state_->hidden)
       .add_options()("set", po::value<Strings>()->composing()->value_name("KEY=VALUE"),
@@ -757,35 +510,9 @@ std::vector<std::string> Options::texts(const std::string& name) const {
 
 std::uint64_t Options::seed() const { return state_->values["seed"].as<Seed>().value; }
 
-const lattice::TomlFile& Options::file(const std::string& path) const {
-  const auto found = state_->files.find(path);
-  return found != state_->files.end()
-             ? found->second
-             : state_->files.emplace(path, lattice::TomlFile::read(path)).first->second;
-}
-
-lattice::Scene Options::read_scene() const {
-  return lattice::read_scene(file(text("scene")), overrides());
-}
+const std::shared_ptr<const dynamics::Cell>& Options::cell() const { return state_->cell; }
 
 std::string Options::canonical() const { return state_->canonical; }
-
-Provenance Options::provenance() const {
-  Provenance p{.command = canonical(),
-               .seed = {},
-               .scene = {},
-               .derived = {},
-               .parts = part_names(state_->words.parts)};
-  if (has("seed")) p.seed = seed();
-  return p;
-}
-
-Provenance Options::provenance(const lattice::Scene& scene) const {
-  Provenance p = provenance();
-  p.scene = lattice::to_toml(scene);
-  p.derived = scene.derived;
-  return p;
-}
 
 bool Options::talk() const { return !has("quiet") && is_first_rank(); }
 
@@ -811,114 +538,13 @@ dynamics::Work Options::work() const {
   return *state_->work;
 }
 
-std::vector<std::string> Options::files_read() const {
-  Strings paths;
-  for (const NamedFile& file : inputs()) paths.push_back(file.path);
-  return paths;
-}
-
 const CommandWords& Options::words() const { return state_->words; }
 
 void Options::depends_on(const std::string& text) const { state_->words.others.push_back(text); }
 
-void Options::warn(const std::string& text) const {
-  if (text.empty()) return;
-  if (state_->warned)
-    state_->warned(text);
-  else
-    std::cerr << "gatewalk: " << text << "\n";
-}
-
-void Options::remark(const std::string& text) const {
-  if (talk() && ::isatty(STDERR_FILENO) == 1) warn(text);
-}
-
-// ---- What is given out ----
-
-const std::shared_ptr<const dynamics::Cell>& Options::cell() const { return state_->cell; }
-
-const LoadedMatrix* Options::loaded(const std::string& path) const {
-  for (const auto& matrix : state_->loaded)
-    if (matrix->path == path) return matrix.get();
-  return nullptr;
-}
-
-void Options::give_out(const Description& describe, const std::string& table, int indent) const {
-  const std::string csv = state_->has_table ? text("csv") : "";
-  if (!state_->given_out && is_first_rank()) {
-    const bool to_stdout = text("json") == "-" || csv == "-";
-    if (!to_stdout && ((text("json").empty() && csv.empty()) || talk()))
-      write_text_atomically("-", table);
-    if (has("json")) write(text("json"), result_json(describe, indent));
-  }
-  if (!csv.empty()) write(csv, table_of_numbers(describe));
-  if (state_->given_out) state_->given_out(with_format_version(describe));
-}
-
-void Options::keep_old(const std::string& path) const {
-  if (path != "-" && !has("force") && is_first_rank()) state_->backups.try_emplace(path, path);
-}
-
-void Options::write(const std::string& path, std::string_view text) const {
-  if (!is_first_rank()) return;
-  keep_old(path);
-  write_text_atomically(path, text);
-}
-
-void Options::draw(const std::function<Figure()>& picture) const {
-  if (!has("figure") || !is_first_rank()) return;
-  try {
-    keep_old(text("figure"));
-    cli::draw(text("figure"), picture(), about());
-  } catch (const std::runtime_error& e) {
-    throw std::runtime_error(fmt::format("no figure: {}; the numbers are written", e.what()));
-  }
-}
-
-AboutFigure Options::about() const {
-  return {"gatewalk " + state_->synopsis.substr(0, state_->synopsis.find(' ')), canonical()};
-}
-
 std::string out_of_memory() {
   return "out of memory; files that are written already are whole and stay" +
          (memory_advice.empty() ? "" : ". Less is needed with: " + memory_advice);
-}
-
-ResultFolder::ResultFolder(const Options& options, const std::vector<std::string>& files)
-    : options_(options), folder_(options.text("output")), files_(files) {
-  require_folder(folder_);
-}
-
-void ResultFolder::write(const std::string& csv_file, const std::string& csv,
-                         const std::string& json_file, const Description& describe) const {
-  for (const std::string& file : files_)
-    if (file.ends_with(".svg")) {
-      options_.keep_old(path(file));
-      std::filesystem::remove(path(file));
-    }
-  options_.write(path(csv_file), csv);
-  options_.write(path(json_file), result_json(describe));
-}
-
-void ResultFolder::draw(const std::string& file, const Figure& figure) const {
-  try {
-    options_.keep_old(path(file));
-    cli::draw(path(file), figure, options_.about());
-  } catch (const std::runtime_error& e) {
-    throw std::runtime_error(
-        fmt::format("no figure: {}; the other files in {} are written", e.what(), folder_));
-  }
-}
-
-std::string ResultFolder::path(const std::string& file) const {
-  return (std::filesystem::path(folder_) / file).string();
-}
-
-int exit_status(const Options& options, bool clean) {
-  if (clean || !options.has("strict")) return kFine;
-  options.warn(
-      "--strict: the result's status is not clean, so the exit status is 1; the result is written");
-  return kFailure;
 }
 
 }  // namespace gatewalk::cli

@@ -24,12 +24,11 @@ class Cell;
 }
 namespace gatewalk::lattice {
 struct Scene;
-class TomlFile;
+struct Source;
+class SourceFile;
 }  // namespace gatewalk::lattice
 
 namespace gatewalk::cli {
-
-struct LoadedMatrix;
 
 /// A command's help page, part by part.
 struct CommandHelp {
@@ -47,7 +46,7 @@ struct CommandHelp {
 
 /// The words behind a command's name. A program that calls a command, such as the Python module,
 /// also says who is told of progress and warnings, who takes the result, which cell --cell-program
-/// means, and which matrix files are in memory and need not be read again.
+/// means, and which files are open already and need not be read again.
 struct Arguments {
   Arguments(std::vector<std::string> given) : words(std::move(given)) {}  // NOLINT: the usual case
   Arguments(std::initializer_list<std::string> given) : words(given) {}
@@ -58,7 +57,7 @@ struct Arguments {
   std::vector<std::string> parts{};  // files that hold all its work (merge)
   std::function<void(const Description&)> given_out = nullptr;
   std::shared_ptr<const dynamics::Cell> cell = nullptr;
-  std::vector<std::shared_ptr<const LoadedMatrix>> loaded{};
+  std::vector<std::shared_ptr<const lattice::SourceFile>> files{};
   std::function<void(const CommandHelp&)> helped = nullptr;  // the help page, and nothing else
 };
 
@@ -174,14 +173,12 @@ class Options {
   /// Those of --set.
   [[nodiscard]] std::vector<std::string> overrides() const { return texts("set"); }
   /// A file by its path: opened once, whoever asks for it.
-  [[nodiscard]] const lattice::TomlFile& file(const std::string& path) const;
+  [[nodiscard]] const lattice::SourceFile& file(const std::string& path) const;
   /// The scene of SCENE and --set. Throws lattice::SceneError.
   [[nodiscard]] lattice::Scene read_scene() const;
 
   /// Arguments::cell.
   [[nodiscard]] const std::shared_ptr<const dynamics::Cell>& cell() const;
-  /// The one of Arguments::loaded that is of this path; null where it must be read.
-  [[nodiscard]] const LoadedMatrix* loaded(const std::string& path) const;
 
   /// Progress lines and remarks are wanted.
   [[nodiscard]] bool talk() const;
@@ -204,6 +201,7 @@ class Options {
   /// Where the result of this command comes from.
   [[nodiscard]] Provenance provenance() const;
   [[nodiscard]] Provenance provenance(const lattice::Scene& scene) const;
+  [[nodiscard]] Provenance provenance(const lattice::Source& source) const;
 
   /// Gives the result to Arguments::given_out; without it prints it: JSON where --json says, the
   /// table on standard output otherwise; with --json FILE the table too, unless --quiet. `indent`

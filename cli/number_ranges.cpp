@@ -9,6 +9,7 @@
 
 #include "cli/cells/program.h"
 #include "lattice/scene/scene_problem.h"
+#include "lattice/scene/table4.h"
 #include "lattice/scene/terrain.h"
 
 namespace gatewalk::cli {
@@ -19,7 +20,8 @@ std::string parameter_of(const lattice::NumberRange& range) {
 }
 
 /// The ranges of numbers of a program. Throws UsageError for those that it does not permit.
-std::vector<lattice::NumberRange> ranges_in_program(const Options& options, const Subject& s,
+std::vector<lattice::NumberRange> ranges_in_program(const Options& options,
+                                                    const lattice::Source& s,
                                                     const std::vector<std::string>& given,
                                                     const std::string& option) {
   const auto* const program = dynamic_cast<const ProgramCell*>(s.problem.cells.cells.front().get());
@@ -51,7 +53,7 @@ std::vector<lattice::NumberRange> ranges_in_program(const Options& options, cons
 }
 
 /// The problem with the program's cell at a point of the ranges.
-lattice::Problem program_at(const NumberRanges& ranges, const Subject& s,
+lattice::Problem program_at(const NumberRanges& ranges, const lattice::Source& s,
                             const std::vector<double>& point) {
   std::vector<dynamics::Cell::Number> numbers;
   for (std::size_t k = 0; k < point.size(); ++k)
@@ -64,7 +66,7 @@ lattice::Problem program_at(const NumberRanges& ranges, const Subject& s,
 
 }  // namespace
 
-std::optional<NumberRanges> ranges_of(const Options& options, const Subject& s,
+std::optional<NumberRanges> ranges_of(const Options& options, const lattice::Source& s,
                                       const std::string& option, int most) {
   const auto given = options.texts(option);
   const std::string shown = "--" + option;
@@ -76,9 +78,9 @@ std::optional<NumberRanges> ranges_of(const Options& options, const Subject& s,
   if (std::ssize(given) > most)
     throw UsageError(fmt::format("{}: at most {} numbers can vary", shown, most));
   if (!s.scene) return NumberRanges{ranges_in_program(options, s, given, shown)};
-  lattice::RangedScene scene(options.file(s.path), options.overrides(), given, shown);
+  lattice::RangedScene scene(options.file(s.path).toml(), options.overrides(), given, shown);
   for (const lattice::NumberRange& r : scene.ranges()) {
-    if (s.given && r.key.starts_with("start."))
+    if (s.starts_given && r.key.starts_with("start."))
       throw UsageError(
           fmt::format("{} {}: varies the scene's start, and --start gives another", shown, r.key));
     if (s.scene->gate.run.method == "auto" && r.key.starts_with("run."))
@@ -88,7 +90,7 @@ std::optional<NumberRanges> ranges_of(const Options& options, const Subject& s,
   return NumberRanges{scene.ranges(), std::move(scene)};
 }
 
-lattice::Scene scene_at(const NumberRanges& ranges, const Subject& s,
+lattice::Scene scene_at(const NumberRanges& ranges, const lattice::Source& s,
                         const std::vector<double>& point) {
   lattice::Scene scene = ranges.scene->at(point);
   if (s.settled) {
@@ -97,20 +99,22 @@ lattice::Scene scene_at(const NumberRanges& ranges, const Subject& s,
     scene.gate.run.step = chosen.step;
     scene.gate.run.event_tolerance = chosen.event_tolerance;
   }
-  if (s.given) {
-    const auto& at = (*s.starts.front()).at;
-    scene.start = {at[0], 0.0, at[1], at[2]};
+  if (s.starts_given) {
+    scene.start = lattice::body_at(*s.starts.front());
   }
   return scene;
 }
 
-lattice::ProblemAt problem_at(const NumberRanges& ranges, const Subject& s, CellTypes types) {
+lattice::ProblemAt problem_at(const NumberRanges& ranges, const lattice::Source& s,
+                              CellTypes types) {
   return [&ranges, &s, types](const std::vector<double>& point) {
     if (!ranges.scene) return program_at(ranges, s, point);
     lattice::Scene scene = scene_at(ranges, s, point);
-    if (scene.gate.run.method == "auto") scene.gate.run.method = "paper";  // not chosen yet
-    return types == CellTypes::all ? lattice::problem_with_all_types(scene)
-                                   : lattice::problem_of(scene);
+    const auto from =
+        types == CellTypes::all ? lattice::RunsFrom::all_types : lattice::RunsFrom::everywhere;
+    lattice::Problem problem = lattice::problem_without_cells(scene, from);
+    if (scene.gate.run.method != "auto") lattice::put_cells(problem, scene, from);
+    return problem;  // without cells while the method is not chosen
   };
 }
 

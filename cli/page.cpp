@@ -16,6 +16,7 @@
 #include "cli/render/version.h"
 #include "cli/web/embedded.h"
 #include "cli/web/html.h"
+#include "lattice/cells/start_text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -31,7 +32,7 @@ struct PageStates {
 };
 
 /// Through which a start may be.
-std::vector<int> start_faces(const Subject& s) {
+std::vector<int> start_faces(const lattice::Source& s) {
   if (s.scene) return {s.problem.start.face};
   std::vector<int> all(s.problem.map().section.faces.size());
   std::iota(all.begin(), all.end(), 0);
@@ -39,7 +40,7 @@ std::vector<int> start_faces(const Subject& s) {
 }
 
 /// Every state of a matrix of bins, by gatewalk predict's own answers.
-PageStates states_of_bins(const Options& options, const Subject& s) {
+PageStates states_of_bins(const Options& options, const lattice::Source& s) {
   const dynamics::Transitions& own = s.file->transitions;
   const dynamics::StateSpace& space = own.space;
   const lattice::FieldParams& field = s.problem.field;
@@ -65,28 +66,29 @@ PageStates states_of_bins(const Options& options, const Subject& s) {
   return out;
 }
 
-PageStates states_of_trees(const Subject& s, const lattice::RunPool& pool,
+PageStates states_of_trees(const lattice::Source& s, const lattice::RunPool& pool,
                            const lattice::AnalysedChain& chain,
                            const lattice::ChainOutcomes& outcomes) {
   return {chain.space,
-          lattice::start_states(s.problem, pool, chain, outcomes, start_faces(s), s.how.per_leaf,
-                                kMostNumbers),
+          lattice::start_states(s.problem, pool, chain, outcomes, start_faces(s),
+                                s.accuracy.per_leaf, kMostNumbers),
           pool.gate_runs()};
 }
 
-/// The chain of the subject's first start; of trees with groups.
-lattice::AnalysedChain chain_from(const Subject& s, const lattice::RunPool& pool) {
-  return lattice::analysed_chain(s.problem, pool, pool.first_row(s.starts.front()), s.how.per_leaf);
+/// The chain of the source's first start; of trees with groups.
+lattice::AnalysedChain chain_from(const lattice::Source& s, const lattice::RunPool& pool) {
+  return lattice::analysed_chain(s.problem, pool, pool.first_row(s.starts.front()),
+                                 s.accuracy.per_leaf);
 }
-lattice::AnalysedChain chain_from(const Subject& s) {
+lattice::AnalysedChain chain_from(const lattice::Source& s) {
   if (s.pool) return chain_from(s, *s.pool);
   return lattice::analysed_chain(
       s.problem, s.matrices(),
       lattice::chain_start(s.file->transitions.space, s.problem.field, *s.starts.front()).start);
 }
 
-/// Of the subject's file, if it has one; `chain` is that of its pool now.
-PageStates states_of(const Options& options, const Subject& s,
+/// Of the source's file, if it has one; `chain` is that of its pool now.
+PageStates states_of(const Options& options, const lattice::Source& s,
                      const std::optional<lattice::RunPool>& of_file,
                      const lattice::AnalysedChain& chain, const lattice::ChainOutcomes& outcomes) {
   if (!s.pool) return states_of_bins(options, s);
@@ -99,9 +101,9 @@ PageStates states_of(const Options& options, const Subject& s,
 }
 
 /// What gatewalk analyze says of this chain.
-AnalysedField analysis_of(const Options& options, const Subject& s,
+AnalysedField analysis_of(const Options& options, const lattice::Source& s,
                           const lattice::AnalysedChain& chain) {
-  return {.shown = s.shown(),
+  return {.shown = ShownField(s),
           .analysis = lattice::analyze(
               s.problem, chain,
               {.lumping = lattice::LumpingParts(s.problem.map().section.coordinates.size(), 1),
@@ -109,8 +111,8 @@ AnalysedField analysis_of(const Options& options, const Subject& s,
               options.work())};
 }
 
-std::string name_of_field(const Subject& s) {
-  const lattice::FieldParams field = s.shown().field;
+std::string name_of_field(const lattice::Source& s) {
+  const lattice::FieldParams field = ShownField(s).field;
   return fmt::format("Through {} x {} {}", field.columns, field.rows, s.scene ? "gates" : "cells");
 }
 
@@ -123,12 +125,12 @@ void add_page(Options& options) {
                       Options::Content::binary);
 }
 
-void check_page(const Options& options, const Subject& s) {
+void check_page(const Options& options, const lattice::Source& s) {
   if (!options.has("page")) return;
   refuse(options, {"row"}, "beside --page");
   if (!has_pages())
     throw UsageError("--page: needs pages: this gatewalk was built without (GATEWALK_PAGES=OFF)");
-  if (s.foreign)
+  if (s.is_imported)
     throw UsageError(fmt::format(
         "--page: {} was made elsewhere: a page is of a scene, or of a matrix of gatewalk build",
         s.path));
@@ -140,15 +142,16 @@ void check_page(const Options& options, const Subject& s) {
                     kMostGates, field.columns, field.rows));
 }
 
-std::optional<lattice::RunPool> runs_of_file(const Options& options, const Subject& s) {
+std::optional<lattice::RunPool> runs_of_file(const Options& options, const lattice::Source& s) {
   if (!options.has("page") || !s.file) return {};
   return s.pool;
 }
 
-std::vector<PageStart> page_starts(const lattice::PooledPrediction& prediction) {
-  std::vector<PageStart> starts;
+std::vector<PageAnswer> page_answers(const lattice::PooledPrediction& prediction) {
+  std::vector<PageAnswer> starts;
   for (const lattice::StartAnswer& a : prediction.starts)
-    starts.push_back({.start = a.as_seen ? Start() : Start(a.start),
+    starts.push_back({.start = a.as_seen ? std::optional<dynamics::Entry>()
+                                         : std::optional<dynamics::Entry>(a.start),
                       .final = a.final,
                       .endings = a.endings,
                       .gates_95 = a.gates_95,
@@ -158,8 +161,9 @@ std::vector<PageStart> page_starts(const lattice::PooledPrediction& prediction) 
   return starts;
 }
 
-std::vector<PageStart> page_starts(const lattice::Prediction& prediction, const Subject& s) {
-  std::vector<PageStart> starts;
+std::vector<PageAnswer> page_answers(const lattice::Prediction& prediction,
+                                     const lattice::Source& s) {
+  std::vector<PageAnswer> starts;
   for (std::size_t k = 0; k < s.starts.size(); ++k) {
     const lattice::StartPrediction& p = prediction.starts[k];
     const auto row = static_cast<std::size_t>(p.start.start.input);
@@ -173,9 +177,9 @@ std::vector<PageStart> page_starts(const lattice::Prediction& prediction, const 
   return starts;
 }
 
-void write_page(const Options& options, const Subject& s,
+void write_page(const Options& options, const lattice::Source& s,
                 const std::optional<lattice::RunPool>& of_file,
-                const std::vector<PageStart>& starts, const AnalysedField* analysis) {
+                const std::vector<PageAnswer>& starts, const AnalysedField* analysis) {
   if (!options.has("page")) return;
   const lattice::AnalysedChain chain = chain_from(s);
   const lattice::ChainOutcomes outcomes =
@@ -183,7 +187,7 @@ void write_page(const Options& options, const Subject& s,
   const PageStates states = states_of(options, s, of_file, chain, outcomes);
   const std::int64_t bodies = s.pool ? s.pool->bodies() : 0,
                      gate_runs = s.pool ? s.pool->gate_runs() : states.gate_runs;
-  const ShownField shown = s.shown();
+  const ShownField shown = ShownField(s);
   std::optional<AnalysedField> made_here;
   if (!analysis) analysis = &made_here.emplace(analysis_of(options, s, chain));
   const AnswerPage page{.title = name_of_field(s),
@@ -202,10 +206,10 @@ void write_page(const Options& options, const Subject& s,
                                   .is_matrix = s.file != nullptr,
                                   .can_run = !s.is_recorded() && s.pool.has_value()},
                         .analysis = *analysis};
-  const Provenance made_by = s.provenance(options);
+  const Provenance made_by = options.provenance(s);
   const std::string words =
       endings_text(shown_endings(starts.front().endings, starts.front().final),
-                   "of bodies from " + title_of(shown.map.section, starts.front().start)) +
+                   "of bodies from " + lattice::title_of(shown.map.section, starts.front().start)) +
       rest_text(rest_of(starts.front().final));
   const auto text_of_page = [&](bool gates_95) {
     return filled(carried_file("answer.html"),

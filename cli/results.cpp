@@ -73,7 +73,8 @@ FieldRun trials() {
 
 PredictResult prediction() {
   const lattice::EndingShares shares{std::array<double, markov::kEndings>{}};
-  PredictResult example{.shown = ShownField(lattice::Scene()), .given = {Start()}};
+  PredictResult example{.shown = ShownField(lattice::Scene()),
+                        .given = {std::optional<dynamics::Entry>()}};
   example.of_matrix.emplace().states.resize(1);
   example.of_matrix->prediction.starts.resize(1, {.shares = shares});
   example.of_runs.emplace().prediction.starts.resize(1);

@@ -357,6 +357,26 @@ std::vector<int> shown_order(const StateSpace& space) {
   return order;
 }
 
+std::vector<std::int64_t> counts_per_run(const MatrixFile& file) {
+  std::vector<std::int64_t> all;
+  for (const markov::NamedArray& array : file.arrays)
+    if (array.name == kCountsPerRun && std::ssize(array.values) == file.transitions.space.size())
+      for (const double n : array.values) all.push_back(n > 1.0 ? 2 : 1);
+  return all;
+}
+
+std::optional<dynamics::Entry> named_state(const MatrixFile& file, const std::string& text) {
+  const dynamics::StateSpace& space = file.transitions.space;
+  for (int s = 0; s < std::ssize(space.section().named); ++s) {
+    const dynamics::NamedEntries& state = space.section().named[static_cast<std::size_t>(s)];
+    if (text != state.name && text != std::to_string(state.number)) continue;
+    dynamics::Entry entry{space.face(s)};
+    entry.at[0] = state.number;
+    return entry;
+  }
+  return {};
+}
+
 std::string comment_on_counts(const CellMap& map, const StateSpace& space) {
   const bool any = std::any_of(map.types.begin(), map.types.end(),
                                [](const CellMap::Type& type) { return type.symmetric; });

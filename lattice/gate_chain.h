@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,15 @@ struct MatrixFile;
 /// that name.
 void name_states(MatrixFile& file, std::vector<std::string> names);
 inline constexpr const char* kNumberOfState = "number_of_state";
+/// A state that the file names, by its name or its number in the table that names it; none where
+/// there is none.
+[[nodiscard]] std::optional<dynamics::Entry> named_state(const MatrixFile& file,
+                                                         const std::string& text);
+/// By state, how many counts a run of such a file makes in its row; empty where nothing says so.
+/// Then neighbouring rows that are equal are the same runs, as in the matrices of trees that say
+/// it.
+[[nodiscard]] std::vector<std::int64_t> counts_per_run(const MatrixFile& file);
+inline constexpr const char* kCountsPerRun = "counts_per_run";
 /// A state's number in the order in which results show states: that of the table that a chain from
 /// elsewhere was made of; else, and of "trapped", its own.
 [[nodiscard]] int shown_number(const dynamics::StateSpace& space, int state);

@@ -13,7 +13,7 @@
 #include "cli/render/analysis.h"
 #include "cli/render/matrix.h"
 #include "cli/render/text.h"
-#include "cli/subject.h"
+#include "cli/source_options.h"
 #include "lattice/gate_chain.h"
 #include "lattice/pool/chain_with_rewards.h"
 #include "lattice/pool/lumped_chain.h"
@@ -62,7 +62,7 @@ struct AnalysedSubject {
 };
 
 /// Throws UsageError, before any work, where even so few states take too much memory.
-void require_room(const Subject& s, int states) {
+void require_room(const lattice::Source& s, int states) {
   if (states <= lattice::most_analysed_states(s.problem)) return;
   const lattice::FieldParams& field = s.problem.field;
   throw UsageError(fmt::format(
@@ -72,13 +72,13 @@ void require_room(const Subject& s, int states) {
 }
 
 /// From gate runs, to which more are added until the error bar says enough.
-AnalysedSubject chain_of_runs(const Options& options, Subject& s) {
+AnalysedSubject chain_of_runs(const Options& options, lattice::Source& s) {
   constexpr int kFewestStates = 100;
   require_room(s, kFewestStates);
   auto prediction = predict(options, s);
   const lattice::StartAnswer& answer = prediction.starts.front();
   const int per_leaf =
-      lattice::leaf_of_analysis(s.problem, *s.pool, s.how.per_leaf, prediction.states);
+      lattice::leaf_of_analysis(s.problem, *s.pool, s.accuracy.per_leaf, prediction.states);
   AnalysedSubject c{.chain = lattice::analysed_chain(s.problem, *s.pool,
                                                      s.pool->first_row(s.starts.front()), per_leaf),
                     .answer = {.endings = answer.endings,
@@ -91,7 +91,7 @@ AnalysedSubject chain_of_runs(const Options& options, Subject& s) {
                                .health = prediction.health,
                                .method = s.settled},
                     .clean = status_of(options, prediction.health) == kFine};
-  if (per_leaf != s.how.per_leaf)
+  if (per_leaf != s.accuracy.per_leaf)
     options.warn(
         fmt::format("the analysis has {} states, not {}, so that it takes no more than 8 GiB: what "
                     "it says beside the endings is coarser than they are",
@@ -101,7 +101,7 @@ AnalysedSubject chain_of_runs(const Options& options, Subject& s) {
 }
 
 /// From a matrix of bins.
-AnalysedSubject chain_of_bins(const Options& options, const Subject& s) {
+AnalysedSubject chain_of_bins(const Options& options, const lattice::Source& s) {
   refuse(options, {"accuracy", "gate-runs"},
          fmt::format("for {}: it has bins, and keeps no gate runs that could be added to", s.path));
   require_room(s, s.file->transitions.space.size());
@@ -123,7 +123,7 @@ AnalysedSubject chain_of_bins(const Options& options, const Subject& s) {
 }
 
 /// What the numbers of the cells change; nothing where the chain cannot tell.
-lattice::ParameterEffects effects_of(const lattice::ParameterOptions& how, Subject& s,
+lattice::ParameterEffects effects_of(const lattice::ParameterOptions& how, lattice::Source& s,
                                      const AnalysedSubject& c, const lattice::Analysis& analysis,
                                      const dynamics::Work& work) {
   if (how.runs == 0 || s.is_recorded()) return {};
@@ -133,8 +133,8 @@ lattice::ParameterEffects effects_of(const lattice::ParameterOptions& how, Subje
     return none;
   }
   if (!s.pool) return lattice::parameter_effects(s.problem, *c.chain, analysis.target, how, work);
-  return lattice::parameter_effects(s.problem, *s.pool, analysis.target, how, s.how.per_leaf,
-                                    s.how.most_runs - c.answer.gate_runs, work);
+  return lattice::parameter_effects(s.problem, *s.pool, analysis.target, how, s.accuracy.per_leaf,
+                                    s.accuracy.most_runs - c.answer.gate_runs, work);
 }
 
 /// States of a matrix that bodies enter: without those of its starts.
@@ -143,11 +143,11 @@ int entered_states(const dynamics::StateSpace& space) {
 }
 
 /// The state of a matrix by its name or its number; none if no state has it.
-std::optional<int> state_named(const Subject& s, const std::string& text) {
+std::optional<int> state_named(const lattice::Source& s, const std::string& text) {
   if (!s.file) return {};
   const dynamics::StateSpace& space = s.file->transitions.space;
-  if (s.foreign) {
-    const auto entry = foreign_start(*s.file, text);
+  if (s.is_imported) {
+    const auto entry = lattice::named_state(*s.file, text);
     return entry ? std::optional(space.index_of(*entry).state) : std::nullopt;
   }
   const std::vector<std::string> names = lattice::state_names(*s.file);
@@ -177,7 +177,7 @@ std::optional<std::int64_t> cell_named(const lattice::FieldParams& field, const 
 }
 
 /// What --first-passage asks for; none without it. Throws UsageError naming what is allowed.
-std::optional<PassageAsked> first_passage_asked(const Options& options, const Subject& s) {
+std::optional<PassageAsked> first_passage_asked(const Options& options, const lattice::Source& s) {
   if (!options.has("first-passage")) return {};
   const std::string text = options.text("first-passage");
   const auto state = state_named(s, text);
@@ -211,7 +211,7 @@ std::optional<PassageAsked> first_passage_asked(const Options& options, const Su
 /// it. Throws UsageError for a state of the file where the chain has other states now.
 std::optional<PassageResult> first_passage_of(const Options& options,
                                               const std::optional<PassageAsked>& asked,
-                                              const Subject& s, const AnalysedSubject& c) {
+                                              const lattice::Source& s, const AnalysedSubject& c) {
   if (!asked) return {};
   const dynamics::StateSpace& space = c.chain->space;
   const bool same_states = !s.file || (space.trees() == s.file->transitions.space.trees() &&
@@ -222,8 +222,8 @@ std::optional<PassageResult> first_passage_of(const Options& options,
                     "others now: build the matrix for this accuracy, field and start first",
                     asked->text));
   PassageResult result{*asked, lattice::first_passage(s.problem.field, *c.chain, asked->target),
-                       s.foreign ? lattice::state_names(*s.file) : lattice::state_names(space),
-                       lattice::shown_order(s.foreign ? s.file->transitions.space : space)};
+                       s.is_imported ? lattice::state_names(*s.file) : lattice::state_names(space),
+                       lattice::shown_order(s.is_imported ? s.file->transitions.space : space)};
   if (asked->target.ending)  // one number has one interval
     result.found.chance.interval =
         c.answer.endings.interval[static_cast<std::size_t>(*asked->target.ending)];
@@ -235,7 +235,7 @@ std::optional<PassageResult> first_passage_of(const Options& options,
 }
 
 /// The scene over the ranges of --over; none without them. Throws UsageError and SceneError.
-std::optional<NumberRanges> over_of(const Options& options, const Subject& s) {
+std::optional<NumberRanges> over_of(const Options& options, const lattice::Source& s) {
   auto ranges = ranges_of(options, s, "over", lattice::kMostVaried);
   if (!options.has("over-trials")) return ranges;
   if (!ranges) throw UsageError("--over-trials: is for --over");
@@ -246,8 +246,8 @@ std::optional<NumberRanges> over_of(const Options& options, const Subject& s) {
 
 /// How much of the variance of the target's chance each number of --over makes; none without it.
 std::optional<RangedShares> shares_of(const Options& options,
-                                      const std::optional<NumberRanges>& ranges, const Subject& s,
-                                      markov::Ending target) {
+                                      const std::optional<NumberRanges>& ranges,
+                                      const lattice::Source& s, markov::Ending target) {
   if (!ranges) return {};
   lattice::VarianceSharesOptions how{.seed = options.seed()};
   if (options.has("over-trials")) how.trials = options.count("over-trials");
@@ -323,20 +323,21 @@ int run_analyze(const Arguments& arguments) {
   lattice::AnalysisOptions how{.target = target_of(options),
                                .paths = static_cast<std::size_t>(options.count("paths", 0, 1000)),
                                .seed = options.seed()};
-  Subject s = open_subject(options, "matrix");
+  lattice::Source s = open_source(options, "matrix");
   check_page(options, s);
   if (s.is_recorded())
-    refuse(options, {"trials", "step"},
-           "for " + s.path +
-               (s.foreign ? ", a chain that was made elsewhere" : ", whose runs were recorded"));
+    refuse(
+        options, {"trials", "step"},
+        "for " + s.path +
+            (s.is_imported ? ", a chain that was made elsewhere" : ", whose runs were recorded"));
   how.lumping = lumping_of(options, s.problem.map().section);
   const auto ranges = over_of(options, s);
   const auto passage = first_passage_asked(options, s);
-  s.settle(options);
+  choose_method(options, s);
   const auto of_file = runs_of_file(options, s);
   AnalysedSubject c = s.pool ? chain_of_runs(options, s) : chain_of_bins(options, s);
   const dynamics::Work work = options.work();
-  AnalysedField result{.shown = s.shown(),
+  AnalysedField result{.shown = ShownField(s),
                        .start = s.starts.front(),
                        .answer = c.answer,
                        .analysis = lattice::analyze(s.problem, *c.chain, how, work),
@@ -346,7 +347,7 @@ int run_analyze(const Arguments& arguments) {
   if (s.pool) c.chain.reset();  // that for parameters is larger
   result.parameters = effects_of(parameters, s, c, analysis, work);
   if (options.has("trials")) {
-    lattice::FieldCosts costs(s.bin_of_durations(options));
+    lattice::FieldCosts costs(s.bin_of_durations(options.seed()));
     auto tally = lattice::field_trials(s.problem, {0, options.trials()}, options.seed(), work,
                                        [&](const lattice::FieldTrials& each) { costs.add(each); });
     result.direct = DirectTrials{std::move(tally), std::move(costs)};
@@ -357,15 +358,15 @@ int run_analyze(const Arguments& arguments) {
     clean = status_of(options, health, where) == kFine && clean;
   };
   if (result.shares) look_at(result.shares->found.health, "at the points of --over ");
-  result.made_by = s.provenance(options);
+  result.made_by = options.provenance(s);
   options.give_out(result, table_of(result));
   options.warn(rest_warning(c.answer.rest));
   if (const std::string why = analysis.why_unfinished(); !why.empty())
     options.warn("gates visited, visits, times and costs are not known: " + why);
   look_at(result.parameters.health, "in gates with changed numbers ");
   if (result.direct) look_at(result.direct->tally.health, "");
-  const std::vector<PageStart> starts =
-      c.of_runs ? page_starts(*c.of_runs) : page_starts(*c.of_bins, s);
+  const std::vector<PageAnswer> starts =
+      c.of_runs ? page_answers(*c.of_runs) : page_answers(*c.of_bins, s);
   write_page(options, s, of_file, starts, &result);
   options.draw([&] { return figure_of(result); });
   return exit_status(options, clean);

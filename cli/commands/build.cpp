@@ -12,7 +12,7 @@
 #include "cli/render/states.h"
 #include "cli/render/text.h"
 #include "cli/render/version.h"
-#include "cli/subject.h"
+#include "cli/source_options.h"
 #include "dynamics/base/work.h"
 #include "lattice/cells/cell_matrix.h"
 
@@ -111,23 +111,24 @@ int build_recorded(const Options& options) {
           "strict", "shard", "part", "checkpoint", "resume", "max-time"},
          "for recorded runs");
   lattice::CellFile cells =
-      lattice::read_cell_file(options.file(options.text("cell")), options.overrides());
+      lattice::read_cell_file(options.file(options.text("cell")).toml(), options.overrides());
   lattice::RecordedRuns runs = lattice::read_runs(options.text("scene"), cells);
   for (const std::string& text : runs.remarks) options.warn(options.text("scene") + ": " + text);
   const auto unknown = runs.unknown;
   const lattice::RunPool pool = lattice::pool_of(std::move(runs));
   const lattice::Problem problem = lattice::problem_of(cells, pool);
-  for (const std::string& text : doubts(pool, problem)) options.warn(text);
-  if (const std::string text = far_from_faces(pool, problem); !text.empty()) options.warn(text);
+  for (const std::string& text : lattice::doubts_of(pool, problem)) options.warn(text);
+  if (const std::string text = lattice::far_from_faces(pool, problem); !text.empty())
+    options.warn(text);
   const auto& costs = problem.map().section.costs;
   for (std::size_t c = 0; c < costs.size(); ++c)
     if (unknown[c] > 0)
       options.warn(fmt::format("{} is blank in {} passages: analyze gives none of it", costs[c].key,
                                unknown[c]));
   auto matrices = lattice::cell_matrices(problem, pool, dynamics::kEntriesPerLeaf);
-  const StateRecord states{.kind = "tree",
-                           .states = matrices.front().space.size(),
-                           .trees = TreeRecord{.gate_runs = pool.gate_runs()}};
+  const StateRecord states{
+      {.kind = "tree", .trees = lattice::TreeInfo{.gate_runs = pool.gate_runs()}},
+      matrices.front().space.size()};
   give_out_cells(options, std::move(matrices), cells, pool, states, {},
                  "gatewalk counts of passages through recorded cells");
   return kFine;
@@ -137,19 +138,19 @@ int build_recorded(const Options& options) {
 int build_program(const Options& options) {
   refuse(options, {"cell", "first-trial", "bins", "starts"},
          "for cells that another program carries out");
-  const Subject s = open_program(options, options.text("scene"));
+  const lattice::Source s = open_source(options, "scene");
   if (s.file) throw UsageError(s.path + ": is a matrix already");
-  lattice::TreeOptions how{.accuracy = s.how, .starts = s.entries()};
+  lattice::TreeOptions how{.accuracy = s.accuracy, .starts = s.entries()};
   if (options.has("states"))
     how.most_states = static_cast<int>(options.count("states", 1, dynamics::kMostStates));
   fix_trials(options, how.accuracy, std::ssize(how.starts));
   lattice::TreeChain chain = lattice::make_tree_chain(s.problem, how, options.work());
   const dynamics::Health health = chain.transitions.front().health;
-  const StateRecord states = record_of(chain, s.how.accuracy);
+  const StateRecord states = record_of(chain, s.accuracy.accuracy);
   give_out_cells(options, std::move(chain.transitions), *s.cells, chain.pool, states, health,
                  "gatewalk counts of passages through cells that another program carries out");
   warn_of(options, chain.hausman_check);
-  if (!how.accuracy.trials) warn_of(options, *chain.prediction, s.how.accuracy);
+  if (!how.accuracy.trials) warn_of(options, *chain.prediction, s.accuracy.accuracy);
   return status_of(options, health);
 }
 

@@ -10,6 +10,7 @@
 #include "cli/render/work_precision.h"
 #include "cli/terminal/interrupt.h"
 #include "dynamics/base/work.h"
+#include "lattice/cells/source.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/settle.h"
 
@@ -27,7 +28,8 @@ std::string label_of(const std::string& path) {
 void require_chartable(const Options& options, const std::vector<std::string>& paths) {
   std::set<std::string> labels;
   for (const std::string& path : paths) {
-    const lattice::Scene scene = lattice::read_scene(options.file(path), options.overrides());
+    const lattice::Scene scene =
+        lattice::read_scene(options.file(path).toml(), options.overrides());
     try {
       dynamics::require_reference(scene.gate);
     } catch (const dynamics::InvalidParameter& e) {
@@ -98,7 +100,8 @@ int run_chart(const Arguments& arguments) {
   std::string table;
   try {
     for (const std::string& path : paths) {
-      const lattice::Scene scene = lattice::read_scene(options.file(path), options.overrides());
+      const lattice::Scene scene =
+          lattice::read_scene(options.file(path).toml(), options.overrides());
       how.label = label_of(path);
       result.charts.push_back(
           dynamics::work_precision(scene.gate, scene.start, how, options.work()));

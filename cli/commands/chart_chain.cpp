@@ -60,9 +60,8 @@ int run_chart_chain(const Arguments& arguments) {
   options.add_figure("the figure of the folder");
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = options.read_scene();
-  const std::vector<lattice::PaperStart> starts = starts_of(options, scene);
+  const std::vector<dynamics::Entry> starts = starts_of(options, scene);
   lattice::require_inside(starts, scene);
-  (void)lattice::entries_at(starts);
   const auto bins = lattice::usual_bins(scene).kind;
   if (bins != lattice::BinsChoice::Kind::automatic)
     require_inside_bins(options, starts, scene, lattice::fixed_space(scene));

@@ -30,8 +30,13 @@ int run_chart_field(const Arguments& arguments) {
     throw UsageError(
         "run.method = \"auto\" is not permitted for chart-field, which runs method moreau: "
         "name a method, and give moreau's step as run.step_s");
-  const std::vector<lattice::PaperStart> starts = starts_of(options, scene);
-  lattice::require_inside(starts, scene);
+  // The scene's own start may lie inside the gate.
+  std::vector<dynamics::BodyState> starts{scene.start};
+  if (scene.start.y == 0.0 || options.has("start")) {
+    const std::vector<dynamics::Entry> entries = starts_of(options, scene);
+    lattice::require_inside(entries, scene);
+    starts = lattice::bodies_at(entries);
+  }
   const auto variants = lattice::fidelity_variants(scene);
   const lattice::FidelityOptions how{starts, options.trials(), options.seed()};
   const ResultFolder folder(options, files);

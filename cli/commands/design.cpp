@@ -9,7 +9,7 @@
 #include "cli/render/plan.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
-#include "cli/subject.h"
+#include "cli/source_options.h"
 #include "dynamics/base/work.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/text/toml_text.h"
@@ -57,7 +57,7 @@ int run_design(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   lattice::FieldDesignOptions how{.least = options.has("least")};
   take_choice_rounds(options, how);
-  Subject s = field_to_run(options, "a field is designed");
+  lattice::Source s = field_to_run(options, "a field is designed");
   if (!s.scene) throw UsageError(s.path + ": is no scene of gates");
   if (!s.scene->terrain || s.scene->terrain->types.empty())
     throw UsageError(s.path +
@@ -73,17 +73,17 @@ int run_design(const Arguments& arguments) {
   const dynamics::Stopwatch watch;
   lattice::DesignedField design = lattice::design_field(problem, how, options.work());
   lattice::Scene changed = with_gates(*s.scene, design.type_of_cell);
-  if (s.given) changed.start = {problem.start.at[0], 0.0, problem.start.at[1], problem.start.at[2]};
+  if (s.starts_given) changed.start = lattice::body_at(problem.start);
   const DesignedScene designed{
       *s.scene,  std::move(changed), problem.map().section, problem.start,        how,
-      s.settled, std::move(design),  watch.seconds(),       s.provenance(options)};
+      s.settled, std::move(design),  watch.seconds(),       options.provenance(s)};
   options.give_out(designed, table_of(designed));
   if (options.has("output"))
     options.write(options.text("output"), lattice::scene_file(designed.after));
   const lattice::Crossings &with = designed.design.crossings, &without = designed.design.before;
   options.warn(few_crossings(with.crossed > without.crossed ? with : without));
   warn_of_choice_rounds(options, designed.design.settled, designed.design.gate_runs);
-  options.warn(too_few_gates(s.shown()));
+  options.warn(too_few_gates(ShownField(s)));
   const int exit = status_of(options, designed.design.health);
   options.draw([&] { return figure_of(designed); });
   return exit;

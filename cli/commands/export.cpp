@@ -14,9 +14,10 @@
 #include "cli/render/files.h"
 #include "cli/render/matrix.h"
 #include "cli/render/version.h"
-#include "cli/subject.h"
+#include "cli/source_options.h"
 #include "cli/terminal/output.h"
 #include "lattice/cells/cell_matrix.h"
+#include "lattice/cells/start_text.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/text/toml_text.h"
 
@@ -96,9 +97,9 @@ struct Exported {
 };
 
 Exported export_field(const Options& options, ExportForm form) {
-  Subject s = open_subject(options, "matrix");
+  lattice::Source s = open_source(options, "matrix");
   if (s.starts.size() > 1) throw UsageError("--start: a chain has one");
-  const ChainFromStart from = chain_from_start(options, s);
+  const StartedChain from = chain_from_start(options, s);
   const lattice::FieldParams& field = s.problem.field;
   const auto chain =
       markov::explicit_chain(from.chain, {field.columns, field.rows}, from.start, field.max_gates);
@@ -108,7 +109,7 @@ Exported export_field(const Options& options, ExportForm form) {
   } else if (form == ExportForm::drn) {
     options.write(output, drn_of(chain));
   } else if (form == ExportForm::prism) {
-    const dynamics::StateSpace& space = s.foreign ? s.file->transitions.space : from.space;
+    const dynamics::StateSpace& space = s.is_imported ? s.file->transitions.space : from.space;
     std::vector<int> numbers;
     for (int state = 0; state < space.size(); ++state)
       numbers.push_back(lattice::shown_number(space, state));
@@ -118,23 +119,26 @@ Exported export_field(const Options& options, ExportForm form) {
     options.write(output, files.transitions);
   } else {
     const std::vector<std::string> names =
-        s.foreign ? lattice::state_names(*s.file) : lattice::state_names(from.space);
+        s.is_imported ? lattice::state_names(*s.file) : lattice::state_names(from.space);
     const std::vector<std::string> all = names_of(chain, names);
     write_table(options, form, table_of(chain), all, all, states_csv(chain, names));
   }
   return {{.states = chain.size(),
            .transitions = std::ssize(chain.target),
            .first_ending = chain.ends(),
-           .made_by = s.provenance(options)},
+           .made_by = options.provenance(s)},
           fmt::format("{} states, {} transitions; state 0 is {}, the last {} are endings\n",
-                      chain.size(), chain.target.size(), from.shown.text, kEndingLabels.size())};
+                      chain.size(), chain.target.size(),
+                      from.state ? from.state->bin
+                                 : lattice::title_of(s.problem.map().section, s.starts.front()),
+                      kEndingLabels.size())};
 }
 
 /// Counts per run of each row; `rows` may be those of one type of gate. Empty: a run is one count.
 std::vector<std::int64_t> counts_per_run_of(const Options& options, const lattice::MatrixFile& file,
                                             const dynamics::Transitions& rows) {
-  if (!rows.space.has_trees()) return counts_per_run(file);
-  const Subject s = open_subject(options, "matrix");
+  if (!rows.space.has_trees()) return lattice::counts_per_run(file);
+  const lattice::Source s = open_source(options, "matrix");
   const std::vector<dynamics::Transitions> matrices = s.matrices();
   const auto at = std::find_if(matrices.begin(), matrices.end(),
                                [&](const auto& m) { return m.rows == rows.rows; });
@@ -144,7 +148,7 @@ std::vector<std::int64_t> counts_per_run_of(const Options& options, const lattic
 
 Exported export_gate(const Options& options, ExportForm form) {
   const std::string path = options.text("matrix");
-  const lattice::MatrixFile file = lattice::read_any_matrix(path);
+  const lattice::MatrixFile& file = *options.file(path).matrix();
   const auto type = file.types.find(options.text("type"));
   if (options.has("type") && type == file.types.end())
     throw UsageError(fmt::format("--type {}: {} has no such type", options.text("type"), path));
@@ -178,20 +182,21 @@ Exported export_gate(const Options& options, ExportForm form) {
 }
 
 Exported export_trials(const Options& options) {
-  const Subject s = open_subject(options, "matrix");
+  const lattice::Source s = open_source(options, "matrix");
   if (!s.pool)
     throw UsageError(fmt::format(
         "{}: keeps no trials: it was not made of trees or recorded runs{}", s.path,
-        s.foreign ? ", and of trajectories import keeps the counts of their steps, which --gate "
-                    "--counts -o FILE.mtx writes"
-                  : ""));
+        s.is_imported
+            ? ", and of trajectories import keeps the counts of their steps, which --gate "
+              "--counts -o FILE.mtx writes"
+            : ""));
   const dynamics::StateSpace& space = s.file->transitions.space;
   const Trajectories all = trajectories_of(*s.pool, space);
   const std::string output = options.text("output");
   options.write(stem_of(output) + ".states.csv", states_csv(*s.file, {}));
   options.write(output, lattice::has_ending(output, ".npz") ? npz_of(all) : text_of(all));
   return {
-      {.states = space.size(), .trajectories = std::ssize(all), .made_by = s.provenance(options)},
+      {.states = space.size(), .trajectories = std::ssize(all), .made_by = options.provenance(s)},
       fmt::format("{} trajectories through {} states; {} is trapped\n", all.size(), space.size(),
                   space.size())};
 }
@@ -243,8 +248,8 @@ int run_export(const Arguments& arguments) {
     if (!options.text("scene").empty())
       throw UsageError("SCENE has no meaning beside --gate: a gate's matrix knows no field");
   }
-  if (!options.file(options.text("matrix")).is_matrix())
-    (void)read_matrix(options);  // says what it is instead
+  if (const lattice::SourceFile& file = options.file(options.text("matrix")); !file.is_matrix())
+    (void)file.matrix();  // says what it is instead
   const Exported exported = options.has("gate")                ? export_gate(options, form)
                             : form == ExportForm::trajectories ? export_trials(options)
                                                                : export_field(options, form);

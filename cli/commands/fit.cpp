@@ -9,7 +9,7 @@
 #include "cli/arguments.h"
 #include "cli/number_ranges.h"
 #include "cli/render/observed.h"
-#include "cli/subject.h"
+#include "cli/source_options.h"
 #include "lattice/cells/recorded_pool.h"
 #include "lattice/study/fit_data.h"
 
@@ -64,9 +64,9 @@ void require_effect(const NumberRanges& ranges, lattice::RunsFrom from) {
       if (text.starts_with(r.key + " ")) throw UsageError("--free " + text);
 }
 
-lattice::FitData of_passages(const Options& options, const Subject& s, const NumberRanges& ranges,
-                             const lattice::ProblemAt& at, const std::string& path,
-                             std::int64_t trials) {
+lattice::FitData of_passages(const Options& options, const lattice::Source& s,
+                             const NumberRanges& ranges, const lattice::ProblemAt& at,
+                             const std::string& path, std::int64_t trials) {
   for (const lattice::NumberRange& r : ranges.each)
     if (r.key.starts_with("start.") || r.key.starts_with("field."))
       throw UsageError(
@@ -131,9 +131,9 @@ lattice::FitData of_trials(const Options& options, const lattice::Problem& probl
 /// What an experiment saw, from tables of counts or of trials, as lattice::read_observed, or one of
 /// passages; and warns of what it leaves out. `at`: with types_in(paths). Throws UsageError, and
 /// std::invalid_argument.
-lattice::FitData data_to_fit(const Options& options, const Subject& s, const NumberRanges& ranges,
-                             const lattice::ProblemAt& at, const std::vector<std::string>& paths,
-                             std::int64_t trials) {
+lattice::FitData data_to_fit(const Options& options, const lattice::Source& s,
+                             const NumberRanges& ranges, const lattice::ProblemAt& at,
+                             const std::vector<std::string>& paths, std::int64_t trials) {
   const auto found = std::find_if(paths.begin(), paths.end(), is_of_passages);
   const bool passages = found != paths.end();
   if (passages && paths.size() > 1)
@@ -197,7 +197,7 @@ int run_fit(const Arguments& arguments) {
   options.add_strict();
   options.add_figure("the posterior of each number and of each pair");
   if (!options.parse(arguments)) return kFine;
-  Subject s = field_to_run(options, "what was seen is");
+  lattice::Source s = field_to_run(options, "what was seen is");
   const auto ranges = ranges_of(options, s, "free", lattice::kMostFitted);
   if (!ranges) throw UsageError("--free KEY=LOW:HIGH says which numbers are to be found: give one");
   const auto numbers = static_cast<int>(ranges->each.size());
@@ -214,10 +214,10 @@ int run_fit(const Arguments& arguments) {
     scenes = files_of_draws(options, options.count("scenes", 1, kMostScenes));
   const lattice::ProblemAt at = problem_at(*ranges, s, types_in(seen));
   const lattice::FitData data = data_to_fit(options, s, *ranges, at, seen, how.trials);
-  s.settle(options);
+  choose_method(options, s);
   const FittedScene fitted{ranges->each, s.problem.field, s.settled,
                            lattice::fit(numbers, at, data, how, options.work()),
-                           s.provenance(options)};
+                           options.provenance(s)};
   const lattice::Fit& fit = fitted.fit;
   options.give_out(fitted, table_of(fitted));
   if (options.has("draws")) options.write(options.text("draws"), draws_csv(fitted));

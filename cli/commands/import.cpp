@@ -73,7 +73,7 @@ int run_import(const Arguments& arguments) {
     cells.start = entry_of(states, k, cells.map.section);
   }
   dynamics::Transitions t = transitions_of(matrix, states, cells);
-  const StateRecord space{.states = t.space.size(), .are_probabilities = matrix.probabilities};
+  const StateRecord space{{.are_probabilities = matrix.probabilities}, t.space.size()};
   understood.insert(understood.end(), matrix.table.understood.begin(),
                     matrix.table.understood.end());
   lattice::MatrixFile file = matrix_file(std::move(t), states,
@@ -91,7 +91,7 @@ int run_import(const Arguments& arguments) {
   const std::string output = options.text("output");
   options.keep_old(output);
   lattice::write_matrix(output, file);
-  const std::vector<std::int64_t> per_run = counts_per_run(file);
+  const std::vector<std::int64_t> per_run = lattice::counts_per_run(file);
   if (std::count(per_run.begin(), per_run.end(), 2) > 0)
     lines +=
         "runs are counted with their mirror images (counts_per_run): intervals count each run "

@@ -9,7 +9,7 @@
 #include "cli/render/field_runs.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
-#include "cli/subject.h"
+#include "cli/source_options.h"
 #include "dynamics/base/work.h"
 #include "lattice/cells/recorded_pool.h"
 #include "lattice/scene/scene_trials.h"
@@ -38,21 +38,21 @@ FieldRun run_gates(const Options& options) {
 }
 
 /// A run of no trial yet.
-FieldRun empty_run(const Options& options, const Subject& s) {
+FieldRun empty_run(const Options& options, const lattice::Source& s) {
   const lattice::FieldParams& field = s.problem.field;
-  return {s.shown(),
+  return {ShownField(s),
           s.problem.start,
-          s.provenance(options),
-          lattice::FieldCosts(s.bin_of_durations(options)),
+          options.provenance(s),
+          lattice::FieldCosts(s.bin_of_durations(options.seed())),
           std::nullopt,
           lattice::FieldTally(field)};
 }
 
 /// Trials through any cells; writes the tables of --passages and --cell-file.
 FieldRun run_cells(const Options& options) {
-  Subject s = open_subject(options, "scene");
+  lattice::Source s = open_source(options, "scene");
   if (s.file) throw UsageError(s.path + ": is a matrix, and bodies are to be run: give a scene");
-  s.settle(options);
+  choose_method(options, s);
   FieldRun run = empty_run(options, s);
   if (s.scene) run.scene = RunScene{*s.scene, s.settled};
   lattice::RecordedRuns runs;
@@ -79,7 +79,7 @@ FieldRun run_cells(const Options& options) {
 /// Trials of bodies that do what a policy says.
 FieldRun run_policy(const Options& options) {
   refuse(options, {"passages", "cell-file"}, "with --policy");
-  Subject s = open_subject(options, "scene");
+  lattice::Source s = open_source(options, "scene");
   if (s.file)
     throw UsageError(s.path +
                      ": is a matrix, and bodies that do what a policy says are to be run: "

@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/render/cut_tracks.h"
 #include "lattice/cells/cut_tracks.h"
+#include "lattice/cells/source.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
@@ -98,7 +99,7 @@ int run_passages(const Arguments& arguments) {
   if (!options.has("cell")) throw UsageError("the cells are not said: --cell CELL.toml");
   const auto cutting = cut_options(options);
   lattice::CellFile cell =
-      lattice::read_cell_file(options.file(options.text("cell")), options.overrides());
+      lattice::read_cell_file(options.file(options.text("cell")).toml(), options.overrides());
   lattice::require_measurable(cell);
   CutResult result{lattice::read_tracks(options.texts("tracks"), track_options(options)),
                    std::move(cell)};

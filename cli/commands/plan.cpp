@@ -16,7 +16,7 @@
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
-#include "cli/subject.h"
+#include "cli/source_options.h"
 #include "dynamics/base/work.h"
 #include "dynamics/disc/disc_section.h"
 #include "dynamics/disc/study/meaning.h"
@@ -93,7 +93,7 @@ std::vector<lattice::CoordinateRange> ranges_in(const lattice::RangedScene& rang
 
 /// The ranges of --over in a start of a cell file. Throws UsageError and as what reads the file.
 std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& given,
-                                                const Options& options, const Subject& s) {
+                                                const Options& options, const lattice::Source& s) {
   std::vector<lattice::CoordinateRange> ranges;
   const std::vector<dynamics::Coordinate>& coordinates = s.problem.map().section.coordinates;
   for (const std::string& text : given) {
@@ -110,7 +110,7 @@ std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& 
       for (const std::string& set : options.overrides())
         if (!set.starts_with(lattice::kParameters)) overrides.push_back(set);
       overrides.push_back(range.key + "=" + lattice::toml_float(end));
-      (void)lattice::read_cell_file(options.file(s.path), overrides);
+      (void)lattice::read_cell_file(options.file(s.path).toml(), overrides);
     }
     ranges.push_back({c, range.low, range.high});
   }
@@ -122,7 +122,7 @@ std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& 
 
 /// Of a scene without actions: the start from which bodies cross most often. `s`: as field_to_run
 /// gives it. Returns the exit status. Throws UsageError.
-int plan_start(const Options& options, Subject s) {
+int plan_start(const Options& options, lattice::Source s) {
   for (const char* other : {"policy", "gate-policy", "least", "points", "chance", "robust"})
     if (options.has(other))
       throw UsageError(fmt::format(
@@ -131,26 +131,26 @@ int plan_start(const Options& options, Subject s) {
   take_choice_rounds(options, how);
   const auto given = options.texts("over");
   if (s.scene)
-    how.ranges = ranges_in({options.file(s.path), options.overrides(),
+    how.ranges = ranges_in({options.file(s.path).toml(), options.overrides(),
                             given.empty() ? usual_ranges(*s.scene) : given, "--over"});
   else
     how.ranges = ranges_in(given, options, s);
-  if (s.given && !given.empty())
+  if (s.starts_given && !given.empty())
     throw UsageError("--over: varies the scene's start, and --start gives another");
   const lattice::FieldParams& field = s.problem.field;
   if (s.problem.map().types.size() > 1)
     for (int column = 0; column < field.columns; ++column) how.columns.push_back(column);
   else
     how.columns = {field.start_column()};
-  s.settle(options);
+  choose_method(options, s);
   const dynamics::Stopwatch watch;
   lattice::BestStart found = lattice::best_start(s.problem, how, options.work());
-  const FoundStart shown{s.shown(),        s.problem.start, how.ranges, how.columns,
-                         std::move(found), watch.seconds(), s.settled,  s.provenance(options)};
+  const FoundStart shown{ShownField(s),    s.problem.start, how.ranges, how.columns,
+                         std::move(found), watch.seconds(), s.settled,  options.provenance(s)};
   options.give_out(shown, table_of(shown) + method_line(s.settled));
   options.warn(few_crossings(shown.found.crossings));
   warn_of_choice_rounds(options, shown.found.settled, shown.found.gate_runs);
-  options.warn(too_few_gates(s.shown()));
+  options.warn(too_few_gates(ShownField(s)));
   const int exit = status_of(options, shown.found.health);
   options.draw([&] { return figure_of(shown); });
   return exit;
@@ -196,20 +196,20 @@ int run_plan(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   lattice::PlanOptions how;
   take_choice_rounds(options, how);
-  Subject s = field_to_run(options, "a plan is made");
+  lattice::Source s = field_to_run(options, "a plan is made");
   if ((s.scene ? s.scene->actions : s.cells->actions).empty())
     return plan_start(options, std::move(s));
   if (options.has("over"))
     throw UsageError(fmt::format("--over: is for a scene without actions; {} has some", s.path));
-  how.thrift = thrift_of(options, s.shown());
+  how.thrift = thrift_of(options, ShownField(s));
   how.robust = options.has("robust");
   if (how.robust && how.thrift) throw UsageError("--robust: not with --least");
   if (options.has("policy") || options.has("gate-policy")) require_file_for(s);
   Actions all = actions_of(options, s);
   const dynamics::Stopwatch watch;
   lattice::Plan plan = lattice::make_plan(all.actions, how, options.work());
-  const PlannedField planned{s.shown(),       all.names(), std::move(all.methods), std::move(plan),
-                             watch.seconds(), how.thrift,  s.provenance(options)};
+  const PlannedField planned{ShownField(s),   all.names(), std::move(all.methods), std::move(plan),
+                             watch.seconds(), how.thrift,  options.provenance(s)};
   options.give_out(planned, table_of(planned));
   if (options.has("policy"))
     options.write(options.text("policy"), policy_text(chosen_policy(planned), all.made_for));
@@ -231,7 +231,7 @@ int run_plan(const Arguments& arguments) {
   else if (how.thrift && !planned.plan.front_finished)
     options.warn("--least: the search was not finished; --gate-runs and --points allow more");
   warn_of_choice_rounds(options, planned.plan.settled, planned.plan.gate_runs);
-  options.warn(too_few_gates(s.shown()));
+  options.warn(too_few_gates(ShownField(s)));
   const int exit = status_of(options, planned.plan.health);
   options.draw([&] { return figure_of(planned); });
   return exit;

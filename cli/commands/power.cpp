@@ -3,13 +3,13 @@
 #include "cli/arguments.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/scene.h"
-#include "cli/subject.h"
+#include "cli/source_options.h"
 
 namespace gatewalk::cli {
 namespace {
 
-void require_error_bars(const Subject& s) {
-  if (s.foreign)
+void require_error_bars(const lattice::Source& s) {
+  if (s.is_imported)
     throw UsageError(s.path +
                      ": is a chain that was made elsewhere: its error bars are of its "
                      "counts, not of trials, which plans of experiments are made with");
@@ -55,16 +55,13 @@ int run_power(const Arguments& arguments) {
       .trials = {},
       .seed = options.seed()};
   if (options.has("trials")) how.trials = options.count("trials", 1, lattice::kMostPlanned);
-  Subject s = open_subject(options, "scene");
+  lattice::Source s = open_source(options, "scene");
   require_error_bars(s);
   auto other = versus(options, s);
   if (other) require_error_bars(*other);
-  s.settle(options);
-  if (other && other->scene) {  // what is to be said of a scene's keys has been said
-    other->settled = lattice::settle_method(*other->scene, lattice::RunsFrom::everywhere,
-                                            options.seed(), options.work());
-    other->problem = lattice::problem_of(*other->scene);
-  }
+  choose_method(options, s);
+  // What is to be said of a scene's keys has been said.
+  if (other) other->choose_method(options.seed(), options.work());
   const auto first = predict(options, s);
   const auto second = other ? std::optional(predict(options, *other)) : std::nullopt;
   const dynamics::Work work = options.work();
@@ -75,7 +72,7 @@ int run_power(const Arguments& arguments) {
                      .plan = lattice::plan_experiment(answer, how),
                      .health = first.health,
                      .method = s.settled,
-                     .made_by = s.provenance(options)};
+                     .made_by = options.provenance(s)};
   if (second) {
     const lattice::StartAnswer& versus = second->starts.front();
     result.versus = {options.texts("versus"), versus, lattice::tell_apart(answer, versus, how),
@@ -84,7 +81,7 @@ int run_power(const Arguments& arguments) {
   }
   work.tell("power of experiments", 1, 1);
   options.give_out(result, table_of(result));
-  options.warn(too_few_gates(s.shown()));
+  options.warn(too_few_gates(ShownField(s)));
   options.warn(rest_warning(rest_of(answer.final)));
   if (result.versus)
     options.warn(rest_warning(rest_of(result.versus->prediction.final), "with --versus "));

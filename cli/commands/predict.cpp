@@ -15,8 +15,9 @@
 #include "cli/render/prediction.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
-#include "cli/subject.h"
+#include "cli/source_options.h"
 #include "lattice/cells/recorded_pool.h"
+#include "lattice/cells/start_text.h"
 #include "lattice/scene/row_matrices.h"
 #include "lattice/study/prediction.h"
 
@@ -46,7 +47,7 @@ lattice::RowMatrix parse_rows(const Options& options, const std::string& text) {
   }
   if (at != end) throw wrong();
   const std::string path = text.substr(equals + 1);
-  return {first, last, path, read_matrix(options, path, "", {})};
+  return {first, last, path, read_matrix(options, path, nullptr, {})};
 }
 
 /// The rows whose gates are those of other matrices, as --row says. Throws UsageError.
@@ -69,25 +70,26 @@ markov::PredictOptions::Solver solver_of(const Options& options) {
 
 /// Gives out the result, and warns of what its endings leave out.
 template <class Answer>
-void tell(const Options& options, const Subject& s, const PredictResult& result,
+void tell(const Options& options, const lattice::Source& s, const PredictResult& result,
           const std::vector<Answer>& answers) {
   options.give_out(result, table_of(result));
   options.warn(too_few_gates(result.shown));
   for (std::size_t k = 0; k < answers.size(); ++k)
-    options.warn(rest_warning(rest_of(answers[k].final), s.where(k)));
+    options.warn(rest_warning(rest_of(answers[k].final), where(s, k)));
 }
 
 /// The file of --netcdf and the figure, if they are asked for: a map for each start.
 template <class Answer>
-void show(const Options& options, const Subject& s, const PredictResult& result,
+void show(const Options& options, const lattice::Source& s, const PredictResult& result,
           const std::vector<Answer>& answers, lattice::EndingShares Answer::*shares,
           std::array<markov::CellProbabilities, 2> Answer::*gates_95 = nullptr) {
   const auto& [columns, rows, max_gates, fidelity] = result.shown.field;
   std::vector<FieldPicture> pictures;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     pictures.emplace_back(
-        fmt::format("prediction, {} x {} {}{}", columns, rows, s.scene ? "gates" : "cells",
-                    s.given ? ", " + title_of(s.problem.map().section, s.starts[i]) : ""),
+        fmt::format(
+            "prediction, {} x {} {}{}", columns, rows, s.scene ? "gates" : "cells",
+            s.starts_given ? ", " + lattice::title_of(s.problem.map().section, s.starts[i]) : ""),
         ends_of(answers[i].final, answers[i].*shares), answers[i].exits, s.starts[i]);
     if (gates_95 != nullptr) pictures.back().gates_95 = answers[i].*gates_95;
   }
@@ -97,27 +99,28 @@ void show(const Options& options, const Subject& s, const PredictResult& result,
   options.draw([&] { return figure_of(pictures, result.shown); });
 }
 
-PredictResult empty_result(const Options& options, const Subject& s) {
-  return {.shown = s.shown(),
-          .given = s.given ? s.starts : std::vector<Start>(),
-          .made_by = s.provenance(options)};
+PredictResult empty_result(const Options& options, const lattice::Source& s) {
+  return {.shown = ShownField(s),
+          .given = s.starts_given ? s.starts : std::vector<std::optional<dynamics::Entry>>(),
+          .made_by = options.provenance(s)};
 }
 
 /// Predicts with the runs that there are and, unless they were recorded, with more of them until
 /// the error bar keeps the accuracy. Returns the exit status.
-int predict_from_runs(const Options& options, Subject& s) {
+int predict_from_runs(const Options& options, lattice::Source& s) {
   const auto of_file = runs_of_file(options, s);
   lattice::PooledPrediction made = predict(options, s);
   PredictResult result = empty_result(options, s);
-  result.of_runs = {.prediction = std::move(made), .accuracy = s.how.accuracy, .method = s.settled};
+  result.of_runs = {
+      .prediction = std::move(made), .accuracy = s.accuracy.accuracy, .method = s.settled};
   const lattice::PooledPrediction& prediction = result.of_runs->prediction;
   if (s.is_recorded())
-    result.of_runs->recorded = {
-        counts_of(*s.pool),
-        lattice::lost_bounds(s.problem, *s.pool, s.starts.front(), s.how.per_leaf, options.seed())};
+    result.of_runs->recorded = {counts_of(*s.pool),
+                                lattice::lost_bounds(s.problem, *s.pool, s.starts.front(),
+                                                     s.accuracy.per_leaf, options.seed())};
   tell(options, s, result, prediction.starts);
   const int exit = status_of(options, prediction.health);
-  write_page(options, s, of_file, page_starts(prediction));
+  write_page(options, s, of_file, page_answers(prediction));
   show(options, s, result, prediction.starts, &lattice::StartAnswer::endings,
        &lattice::StartAnswer::gates_95);
   return exit;
@@ -125,7 +128,7 @@ int predict_from_runs(const Options& options, Subject& s) {
 
 /// Predicts what infinitely many walks with a matrix as it is would give, in the rows of `others`
 /// with these. Returns the exit status.
-int predict_from_matrix(const Options& options, const Subject& s,
+int predict_from_matrix(const Options& options, const lattice::Source& s,
                         const std::vector<lattice::RowMatrix>& others) {
   const std::string solver = options.text("solver");
   const lattice::CountedField gates =
@@ -147,7 +150,7 @@ int predict_from_matrix(const Options& options, const Subject& s,
         .solver = solver,
         .status = recorded_health(*s.file),
         .probabilities = gates.exact,
-        .foreign = s.foreign};
+        .foreign = s.is_imported};
   const lattice::Prediction& prediction = of.prediction;
   for (const lattice::ChainStart& start : starts)
     of.states.push_back(shown_state(start, s.file->transitions.space));
@@ -157,7 +160,7 @@ int predict_from_matrix(const Options& options, const Subject& s,
   tell(options, s, result, prediction.starts);
   options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
   const int exit = exit_status(options, faults_recorded(of.status).empty());
-  write_page(options, s, s.pool, page_starts(prediction, s));
+  write_page(options, s, s.pool, page_answers(prediction, s));
   show(options, s, result, prediction.starts, &lattice::StartPrediction::shares);
   return exit;
 }
@@ -208,7 +211,7 @@ int run_predict(const Arguments& arguments) {
     throw UsageError(fmt::format("--figure: shows at most {} starts, these are {}", kMostPictures,
                                  starts.size()));
   (void)solver_of(options);
-  Subject s = open_subject(options, "matrix");
+  lattice::Source s = open_source(options, "matrix");
   check_page(options, s);
   const bool no_runs = options.has("first-runs") && options.count("first-runs", 0) == 0,
              by_solver = options.text("solver") != "auto",
@@ -218,16 +221,16 @@ int run_predict(const Arguments& arguments) {
     refuse(options, {"first-runs"},
            fmt::format("for {}: it is for a matrix of a scene, or (above 0) of a cell program",
                        s.path));
-  if (!s.file || (!s.scene && !s.foreign)) {
+  if (!s.file || (!s.scene && !s.is_imported)) {
     refuse(options, {"row"}, fmt::format("for {}: it is for a matrix of a scene", s.path));
     if (by_solver)
       throw UsageError(
           fmt::format("--solver has no meaning for {}: it is for a matrix of a scene", s.path));
   }
-  if (s.foreign)
+  if (s.is_imported)
     refuse(options, {"row"}, fmt::format("for {}: it is for a matrix of a scene", s.path));
   if (s.file && s.scene) warn_of_range(options, *s.file, s.path, s.entries());
-  if (s.file && (s.foreign || (s.scene && as_it_is))) {
+  if (s.file && (s.is_imported || (s.scene && as_it_is))) {
     const std::string why = fmt::format(
         "for {}, which keeps no gate runs that could be added to (or --row, --solver, --first-runs "
         "0 asks for the matrix as it is)",
@@ -237,8 +240,8 @@ int run_predict(const Arguments& arguments) {
     return predict_from_matrix(options, s, other_rows(options));
   }
   if (options.has("first-runs"))
-    s.how.first_runs = options.count("first-runs", lattice::PoolRunner::kLeastTrials);
-  s.settle(options);
+    s.accuracy.first_runs = options.count("first-runs", lattice::PoolRunner::kLeastTrials);
+  choose_method(options, s);
   return predict_from_runs(options, s);
 }
 

@@ -6,33 +6,14 @@
 #include "cli/arguments.h"
 #include "cli/render/health.h"
 #include "cli/render/text.h"
-#include "cli/subject.h"
+#include "cli/source_options.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {
 namespace {
 
-/// How many of so many trials enter the rows; none without --trials.
-DirectRows direct_rows(const Options& options, const lattice::Problem& deep, int row) {
-  DirectRows direct;
-  if (!options.has("trials")) return direct;
-  direct.trials = options.trials();
-  const dynamics::Stopwatch watch;
-  const auto tally =
-      lattice::field_trials(deep, {0, direct.trials}, options.seed(), options.work());
-  direct.seconds = watch.seconds();
-  direct.entered.assign(static_cast<std::size_t>(row),
-                        tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)]);
-  std::int64_t behind = 0;  // last gates; those of bodies over the far edge are among them
-  for (int r = row - 1; r > 0; --r) {
-    behind += tally.final_cells.row(r).sum();
-    direct.entered[static_cast<std::size_t>(r) - 1] = behind;
-  }
-  return direct;
-}
-
 /// The problem with so many rows, and no limit of gates.
-lattice::Problem up_to_row(const Subject& s, int row) {
+lattice::Problem up_to_row(const lattice::Source& s, int row) {
   return s.scene ? lattice::problem_of(lattice::up_to_row(*s.scene, row))
                  : lattice::up_to_row(s.problem, row);
 }
@@ -80,21 +61,23 @@ int run_rare(const Arguments& arguments) {
   }
   if (!(how.accuracy > 0.0 && how.accuracy < 1.0))
     throw UsageError("--accuracy: must lie between 0 and 1");
-  Subject subject = open_subject(options, "scene");
-  if (subject.file)
-    throw UsageError(subject.path + ": is a matrix, and new bodies are to be run: give a scene");
+  lattice::Source source = open_source(options, "scene");
+  if (source.file)
+    throw UsageError(source.path + ": is a matrix, and new bodies are to be run: give a scene");
   how.row = options.has("row") ? static_cast<int>(options.count("row", 1, 10001))
-                               : subject.problem.field.rows;
-  if (subject.scene) (void)lattice::up_to_row(*subject.scene, how.row);  // refuses before a pilot
-  subject.settle(options);
-  const lattice::Problem deep = up_to_row(subject, how.row);
+                               : source.problem.field.rows;
+  if (source.scene) (void)lattice::up_to_row(*source.scene, how.row);  // refuses before a pilot
+  choose_method(options, source);
+  const lattice::Problem deep = up_to_row(source, how.row);
   RareResult result{.event = lattice::rare_event(deep, how, options.work()),
-                    .direct = direct_rows(options, deep, how.row),
-                    .method = subject.settled,
-                    .made_by = subject.provenance(options)};
+                    .direct = {},
+                    .method = source.settled,
+                    .made_by = options.provenance(source)};
+  if (options.has("trials"))
+    result.direct = lattice::direct_rows(deep, options.trials(), options.seed(), options.work());
   options.work().end_part();
 
-  options.give_out(result, table_of(result, subject.problem.field));
+  options.give_out(result, table_of(result, source.problem.field));
   if (const lattice::Splitting& s = result.event.splitting; !(s.rows.back().probability > 0.0))
     options.warn(
         fmt::format("none of {} trials entered row {}; --gate-runs N goes on for so many gate runs",

@@ -19,7 +19,7 @@ int run_show(const Arguments& arguments) {
   options.without_scene("a matrix keeps its scene");
   if (!options.parse(arguments)) return kFine;
   const std::string path = options.text("matrix");
-  ShownMatrix matrix{path, lattice::read_any_matrix(path)};
+  ShownMatrix matrix{path, lattice::read_matrix(path)};
   lattice::MatrixFile& file = matrix.file;
   if (options.has("type")) {
     const auto type = file.types.find(options.text("type"));

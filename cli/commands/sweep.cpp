@@ -11,6 +11,7 @@
 #include "cli/render/sweep.h"
 #include "cli/terminal/output.h"
 #include "dynamics/base/work.h"
+#include "lattice/cells/source.h"
 #include "lattice/scene/units.h"
 
 namespace gatewalk::cli {
@@ -66,7 +67,7 @@ int run_sweep(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   const std::string csv = options.text("csv");
   const dynamics::TrialRange trials = options.trial_range();
-  const lattice::TomlFile& file = options.file(options.text("scene"));
+  const lattice::TomlFile& file = options.file(options.text("scene")).toml();
   const lattice::Scene scene = lattice::read_scene(file, options.overrides());
   const auto axes = lattice::sweep_axes(scene.sweep, options.texts("vary"));
   refuse_overridden(axes, options.overrides());

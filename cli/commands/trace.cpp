@@ -104,7 +104,7 @@ int run_trace(const Arguments& arguments) {
   std::optional<lattice::Settled> settled;
   ActionMethods may_do;
   if (options.has("policy")) {
-    Actions all = actions_of(options, scene, lattice::own_start(scene).entry());
+    Actions all = actions_of(options, scene, lattice::own_start(scene));
     std::vector<std::string> names = all.names();
     wanted.chosen =
         lattice::chosen_gates(names, std::move(all.scenes),

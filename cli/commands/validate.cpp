@@ -11,7 +11,7 @@
 #include "cli/render/matrix.h"
 #include "cli/render/prediction.h"
 #include "cli/render/validation.h"
-#include "cli/subject.h"
+#include "cli/source_options.h"
 #include "dynamics/base/work.h"
 #include "lattice/cells/cell_matrix.h"
 #include "lattice/problem.h"
@@ -37,22 +37,23 @@ struct ChainUnderTest {
 };
 
 ChainUnderTest of_scene(const Options& options, lattice::Scene scene,
-                        std::vector<lattice::PaperStart> papers) {
+                        std::vector<dynamics::Entry> starts) {
   ChainUnderTest tested{.problem = lattice::problem_of(scene),
-                        .starts = lattice::entries_at(papers),
+                        .starts = std::move(starts),
                         .result = {.shown = scene,
-                                   .papers = std::move(papers),
                                    .like_table4 = lattice::like_table4(scene),
                                    .made_by = options.provenance(scene)}};
+  if (!options.has("observed") && !options.has("start"))
+    tested.result.papers = lattice::table_iv_starts(scene);
   tested.scene = std::move(scene);
   return tested;
 }
 
 /// An experiment is of the scene's start, or of the one that is given.
-std::vector<lattice::PaperStart> starts_for(const Options& options, const lattice::Scene& scene) {
+std::vector<dynamics::Entry> starts_for(const Options& options, const lattice::Scene& scene) {
   if (!options.has("observed")) return starts_of(options, scene);
   auto starts = options.has("start") ? given_starts(options)
-                                     : std::vector<lattice::PaperStart>{lattice::own_start(scene)};
+                                     : std::vector<dynamics::Entry>{lattice::own_start(scene)};
   if (starts.size() > 1)
     throw UsageError(
         fmt::format("--observed: the counts belong to one start, --start gives {}", starts.size()));
@@ -91,14 +92,14 @@ void put_observed(ChainUnderTest& tested, const Options& options,
 /// The chain of the file of --matrix.
 ChainUnderTest read_chain(const Options& options) {
   const std::string path = options.text("matrix");
-  lattice::SceneMatrix m = read_matrix(options, path, options.text("scene"), options.overrides());
-  auto papers = starts_for(options, m.scene);
-  lattice::require_inside(papers, m.scene);
-  const auto starts = lattice::entries_at(papers);
+  lattice::SceneMatrix m =
+      read_matrix(options, path, &options.file(options.text("scene")).toml(), options.overrides());
+  auto starts = starts_for(options, m.scene);
+  lattice::require_inside(starts, m.scene);
   auto observed = experiment_of(options, m.scene.field);
-  add_starts_to(m, path, options, starts);
-  require_inside_bins(options, papers, m.scene, m.file->transitions.space);
-  ChainUnderTest tested = of_scene(options, m.scene, std::move(papers));
+  add_starts(options, m, path, starts);
+  require_inside_bins(options, starts, m.scene, m.file->transitions.space);
+  ChainUnderTest tested = of_scene(options, m.scene, std::move(starts));
   put_observed(tested, options, std::move(observed));
   tested.result.matrix = {.matrices = lattice::matrices_of(*m.file, m.scene),
                           .path = path,
@@ -124,19 +125,17 @@ ChainUnderTest build_chain(const Options& options) {
   const std::int64_t trials = options.has("matrix-trials") ? options.count("matrix-trials") : 100;
   lattice::Scene scene = options.read_scene();
   const lattice::BinsChoice choice = bins_choice(options, scene, options.has("matrix-trials"));
-  auto papers = starts_for(options, scene);
-  lattice::require_inside(papers, scene);
-  const auto bodies = lattice::bodies_at(papers);
-  (void)lattice::entries_at(papers);
+  auto starts = starts_for(options, scene);
+  lattice::require_inside(starts, scene);
   auto observed = experiment_of(options, scene.field);
   const bool tree = choice.kind == lattice::BinsChoice::Kind::tree;
   if (tree && options.has("matrix-trials"))
     throw UsageError("--matrix-trials is of runs per state of bins: --bins tree takes --accuracy");
   if (!tree) refuse(options, {"accuracy", "gate-runs"}, "for bins: it is for --bins tree");
   if (!tree && choice.kind != lattice::BinsChoice::Kind::automatic)
-    require_inside_bins(options, papers, scene, lattice::fixed_space(scene));
+    require_inside_bins(options, starts, scene, lattice::fixed_space(scene));
   auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
-  ChainUnderTest tested = of_scene(options, std::move(scene), std::move(papers));
+  ChainUnderTest tested = of_scene(options, std::move(scene), std::move(starts));
   put_observed(tested, options, std::move(observed));
   ValidatedMatrix& matrix = tested.result.matrix;
   matrix.method = std::move(settled);
@@ -144,7 +143,8 @@ ChainUnderTest build_chain(const Options& options) {
     put_tree(tested, options);
     return tested;
   }
-  const lattice::States states = states_of(options, *tested.scene, choice, bodies);
+  const lattice::States states =
+      states_of(options, *tested.scene, choice, lattice::bodies_at(tested.starts));
   for (const std::string& text : complaints(states)) options.warn(text);
   matrix.matrices =
       lattice::build_matrices(*tested.scene, states, {0, trials}, options.seed(), options.work());
@@ -157,10 +157,10 @@ ChainUnderTest build_chain(const Options& options) {
 ChainUnderTest program_chain(const Options& options) {
   refuse(options, {"bins", "matrix", "matrix-trials"},
          "for cells that another program carries out");
-  Subject s = open_program(options, options.text("scene"));
+  lattice::Source s = open_source(options, "scene");
   ChainUnderTest tested{.problem = s.problem,
                         .starts = s.entries(),
-                        .result = {.shown = s.shown(), .made_by = s.provenance(options)}};
+                        .result = {.shown = ShownField(s), .made_by = options.provenance(s)}};
   if (options.has("observed") && tested.starts.size() > 1)
     throw UsageError("--observed: the counts belong to one start");
   put_observed(tested, options, experiment_of(options, tested.problem.field));
@@ -182,15 +182,15 @@ int validate_recorded(const Options& options) {
          {"matrix", "matrix-trials", "observed", "trials", "walks", "accuracy", "gate-runs",
           "start", "bins", "memory", "strict", "shard", "part", "checkpoint", "resume", "max-time"},
          fmt::format("for {}, of whose bodies one half is held against the other", path));
-  const Subject s = open_subject(options, "scene");
-  if (s.foreign)
+  const lattice::Source s = open_source(options, "scene");
+  if (s.is_imported)
     throw UsageError(path +
                      ": is a chain that was made elsewhere: there are no trials to hold it "
                      "against, and no bodies whose steps could be told apart");
   if (s.pool->scattered.each.bodies.empty())
     throw UsageError(path + ": its runs were not recorded: --cell-program says who makes more");
   lattice::CrossValidationOptions how{
-      .null_draws = {}, .seed = options.seed(), .per_leaf = s.how.per_leaf};
+      .null_draws = {}, .seed = options.seed(), .per_leaf = s.accuracy.per_leaf};
   if (options.has("null-draws")) how.null_draws = options.count("null-draws", 1, kMostNullDraws);
   const CrossValidationResult result{
       .validation = lattice::cross_validate(s.problem, *s.pool, how, options.work()),
@@ -198,14 +198,14 @@ int validate_recorded(const Options& options) {
                                      how.seed),
       .section = s.problem.map().section,
       .recorded = counts_of(*s.pool),
-      .made_by = s.provenance(options)};
+      .made_by = options.provenance(s)};
   constexpr std::int64_t kChecked = 200;  // results/tracks
   if (s.pool->bodies() < kChecked)
     options.warn(fmt::format("these are {} bodies: of fewer than {} p may come out too small",
                              s.pool->bodies(), kChecked));
   options.give_out(result, table_of(result) + table_of(*s.pool));
   for (const std::string& rest : rest_warnings(result.validation)) options.warn(rest);
-  options.draw([&] { return figure_of(result.validation, s.shown()); });
+  options.draw([&] { return figure_of(result.validation, ShownField(s)); });
   return kFine;
 }
 
@@ -257,8 +257,8 @@ int run_validate(const Arguments& arguments) {
       "gates later (Chapman-Kolmogorov), and implied time scales; with --observed instead what was "
       "counted, with intervals, beside both");
   if (!options.parse(arguments)) return kFine;
-  const std::string path = options.text("scene");
-  if (!has_cell(options) && options.file(path).is_matrix() && lattice::is_of_cells(path))
+  if (const lattice::SourceFile& file = options.file(options.text("scene"));
+      !has_cell(options) && file.is_matrix() && file.is_of_cells())
     return validate_recorded(options);
   lattice::ValidationOptions how{.trials = options.has("trials") ? options.trials() : 100,
                                  .walks = {},

@@ -29,11 +29,12 @@ int run_walk(const Arguments& arguments) {
   options.add_figure("where walks end, and how");
   if (!options.parse(arguments)) return kFine;
   const std::string path = options.text("matrix");
-  if (!options.file(path).is_matrix()) (void)read_matrix(options);  // says what it is instead
-  Subject s = open_subject(options, "matrix");
-  const ChainFromStart from = chain_from_start(options, s);
+  if (!options.file(path).is_matrix())
+    (void)options.file(path).matrix();  // says what it is instead
+  lattice::Source s = open_source(options, "matrix");
+  const StartedChain from = chain_from_start(options, s);
   const std::int64_t walks = options.count("walks");
-  const ShownField shown = s.shown();
+  const ShownField shown = ShownField(s);
   const dynamics::Stopwatch watch;
   const auto tally =
       lattice::walks(from.chain, shown.field, from.start, walks, options.seed(), options.work());
@@ -41,10 +42,11 @@ int run_walk(const Arguments& arguments) {
 
   const WalkResult result{.shown = shown,
                           .tally = tally,
-                          .start = from.shown,
-                          .foreign = s.foreign,
+                          .state = from.state,
+                          .start = from.state ? std::nullopt : s.starts.front(),
+                          .foreign = s.is_imported,
                           .matrix_status = recorded_health(*s.file),
-                          .made_by = s.provenance(options)};
+                          .made_by = options.provenance(s)};
   const FieldPicture picture(fmt::format("chain, {} walks", walks), ends_of(tally, shown.field), {},
                              s.starts.front());
   if (options.has("netcdf"))

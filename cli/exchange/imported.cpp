@@ -21,8 +21,6 @@ namespace {
 
 using lattice::shortest;
 
-constexpr const char* kCountsPerRun = "counts_per_run";
-
 /// "ahead", "right": what a move is called where nobody names the face.
 std::string name_of_move(int x, int y) {
   if (x == 0 && y == 1) return "ahead";
@@ -212,10 +210,10 @@ std::vector<ForeignState> read_states(const std::string& path,
     const auto name = file.column("name");
     ForeignState s{name ? std::string(file[*name]) : std::string(), field("face"), whole("move_x"),
                    whole("move_y")};
-    if (file.column(kCountsPerRun)) {
-      s.counts_per_run = whole(kCountsPerRun);
+    if (file.column(lattice::kCountsPerRun)) {
+      s.counts_per_run = whole(lattice::kCountsPerRun);
       if (s.counts_per_run != 1 && s.counts_per_run != 2)
-        refuse(std::string(kCountsPerRun) +
+        refuse(std::string(lattice::kCountsPerRun) +
                " must be 1, or 2 where a run is counted with its mirror "
                "image");
     }
@@ -265,7 +263,7 @@ std::string states_csv(const lattice::MatrixFile& file,
   std::string text = "state,name,face,move_x,move_y";
   for (const dynamics::Coordinate& c : section.coordinates)
     text += fmt::format(",{0}_low,{0}_high", c.key);
-  if (!counts_per_run.empty()) text += std::string(",") + kCountsPerRun;
+  if (!counts_per_run.empty()) text += std::string(",") + lattice::kCountsPerRun;
   const std::vector<std::string> names = lattice::state_names(file);
   for (const int s : lattice::shown_order(space)) {
     const dynamics::Face& face = section.faces[static_cast<std::size_t>(space.face(s))];
@@ -430,33 +428,12 @@ lattice::MatrixFile matrix_file(dynamics::Transitions t, const std::vector<Forei
                          "number of each state in the table it was made of", std::move(number),
                          "input_state", true});
   if (per_run.front() > 0.0)
-    file.arrays.push_back({kCountsPerRun, "1",
+    file.arrays.push_back({lattice::kCountsPerRun, "1",
                            "counts that a run makes in the row of each state; 2: its own and its "
                            "mirror image's; neighbouring rows that are equal are the same runs",
                            std::move(per_run), "input_state", true});
   lattice::name_states(file, std::move(names));
   return file;
-}
-
-std::vector<std::int64_t> counts_per_run(const lattice::MatrixFile& file) {
-  std::vector<std::int64_t> all;
-  for (const markov::NamedArray& array : file.arrays)
-    if (array.name == kCountsPerRun && std::ssize(array.values) == file.transitions.space.size())
-      for (const double n : array.values) all.push_back(n > 1.0 ? 2 : 1);
-  return all;
-}
-
-std::optional<dynamics::Entry> foreign_start(const lattice::MatrixFile& file,
-                                             const std::string& text) {
-  const dynamics::StateSpace& space = file.transitions.space;
-  for (int s = 0; s < std::ssize(space.section().named); ++s) {
-    const dynamics::NamedEntries& state = space.section().named[static_cast<std::size_t>(s)];
-    if (text != state.name && text != std::to_string(state.number)) continue;
-    dynamics::Entry entry{space.face(s)};
-    entry.at[0] = state.number;
-    return entry;
-  }
-  return {};
 }
 
 }  // namespace gatewalk::cli

@@ -66,12 +66,5 @@ struct ForeignMatrix {
 [[nodiscard]] lattice::MatrixFile matrix_file(dynamics::Transitions t,
                                               const std::vector<ForeignState>& states,
                                               std::map<std::string, std::string> text);
-/// By state, how many counts a run of such a file makes in its row; empty where nothing says so.
-/// Then neighbouring rows that are equal are the same runs, as in the matrices of trees that say
-/// it.
-[[nodiscard]] std::vector<std::int64_t> counts_per_run(const lattice::MatrixFile& file);
-/// The state of such a file by its name or number; none where there is none.
-[[nodiscard]] std::optional<dynamics::Entry> foreign_start(const lattice::MatrixFile& file,
-                                                           const std::string& text);
 
 }  // namespace gatewalk::cli

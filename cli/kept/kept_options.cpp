@@ -18,7 +18,7 @@
 #include "cli/render/json.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
-#include "lattice/scene/scene.h"
+#include "lattice/cells/source.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -83,9 +83,10 @@ void describe_head(Fields& out, const Options& options) {
   out.texts({"outputs", "words that say where the result goes"}, words.outputs);
   out.text({"main_output", "option of the main output"}, words.main_output);
   out.text({"scene", "the scene, as TOML"}, scene_of(options));
-  out.list(
-      {"inputs", "files that the command reads"}, options.files_read(),
-      [&](Fields& f, const std::string& path) { describe_input(f, path, options.file(path)); });
+  out.list({"inputs", "files that the command reads"}, options.files_read(),
+           [&](Fields& f, const std::string& path) {
+             describe_input(f, path, options.file(path).toml());
+           });
   out.texts({"others", "what else shapes the result, and is no word"}, words.others);
   out.optional(options.has("shard"), [&](Fields& part) {
     const Shard shard = shard_of(options.text("shard"));

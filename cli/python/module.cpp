@@ -18,13 +18,12 @@
 
 #include "cli/commands.h"
 #include "cli/exchange/sparse_table.h"
-#include "cli/loaded_matrix.h"
 #include "cli/python/python_cell.h"
 #include "cli/python/python_fields.h"
 #include "cli/render/schema.h"
 #include "cli/render/version.h"
 #include "dynamics/cells/check_cell.h"
-#include "lattice/gate_chain.h"
+#include "lattice/cells/source.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::python {
@@ -75,14 +74,16 @@ thread_local bool Turn::is_mine_ = false;
 class Matrix {
  public:
   explicit Matrix(const std::string& path)
-      : loaded_([&] {
+      : source_([&] {
           const Turn turn;
-          return std::make_shared<const cli::LoadedMatrix>(cli::load_matrix(path));
+          lattice::SourceFile source(path);
+          source.keep_in_memory();
+          return std::make_shared<const lattice::SourceFile>(std::move(source));
         }()) {
     add("", file().transitions);
     for (const auto& [name, transitions] : file().types) add(name, transitions);
   }
-  [[nodiscard]] const std::shared_ptr<const cli::LoadedMatrix>& loaded() const { return loaded_; }
+  [[nodiscard]] const std::shared_ptr<const lattice::SourceFile>& source() const { return source_; }
   [[nodiscard]] std::vector<std::string> types() const {
     std::vector<std::string> names;
     for (const auto& [name, type] : types_) names.push_back(name);
@@ -149,13 +150,13 @@ class Matrix {
     markov::Counts counts;
     markov::Probabilities probabilities;
   };
-  [[nodiscard]] const lattice::MatrixFile& file() const { return *loaded_->file; }
+  [[nodiscard]] const lattice::MatrixFile& file() const { return *source_->matrix(); }
   void add(const std::string& name, const dynamics::Transitions& t) {
     const std::vector<int> order = lattice::shown_order(t.space);
     types_.emplace(name, Type{cli::in_order(t.counts(), order),
                               cli::in_order(lattice::make_chain(t).matrix(), order)});
   }
-  std::shared_ptr<const cli::LoadedMatrix> loaded_;
+  std::shared_ptr<const lattice::SourceFile> source_;
   std::map<std::string, Type> types_;  // "": the first, or only one
 };
 
@@ -199,7 +200,7 @@ py::tuple run(const std::string& name, std::vector<std::string> words, const py:
     result = to_python(describe);
   };
   if (!cell.is_none()) arguments.cell = std::make_shared<PythonCell>(cell);
-  for (const Matrix* matrix : matrices) arguments.loaded.push_back(matrix->loaded());
+  for (const Matrix* matrix : matrices) arguments.files.push_back(matrix->source());
   int status = 0;
   {
     const Turn turn;

@@ -46,7 +46,7 @@ struct AnalysedAnswer {
 /// The result of `analyze`.
 struct AnalysedField {
   ShownField shown;
-  Start start{};
+  std::optional<dynamics::Entry> start{};
   AnalysedAnswer answer{};
   lattice::Analysis analysis;
   lattice::ParameterEffects parameters{};

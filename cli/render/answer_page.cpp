@@ -214,7 +214,7 @@ void describe_cells(Fields& out, const AnswerPage& page, Eigen::Index cells, boo
   });
 }
 
-void describe(Fields& out, const PageStart& s, const dynamics::Section& section) {
+void describe(Fields& out, const PageAnswer& s, const dynamics::Section& section) {
   describe_start(out, section, s.start);
   out.text(Label("answer_from", "what the answer is from").one_of({"chain", "trials", "matrix"}),
            s.from);
@@ -262,7 +262,7 @@ void describe(Fields& out, const AnswerPage& page, bool gates_95) {
     places.push_back({&s.endings, &s.gates, &s.gates_95});
   std::vector<lattice::EndingShares> told;
   told.reserve(page.starts.size());
-  for (const PageStart& s : page.starts) {
+  for (const PageAnswer& s : page.starts) {
     told.push_back(shown_endings(s.endings, s.final));
     places.push_back({&told.back(), &s.final.final_cells, &s.gates_95});
   }
@@ -290,7 +290,7 @@ void describe(Fields& out, const AnswerPage& page, bool gates_95) {
   });
   describe_states(out, page);
   out.list({"starts", "that were asked about"}, page.starts,
-           [&](Fields& f, const PageStart& s) { describe(f, s, section); });
+           [&](Fields& f, const PageAnswer& s) { describe(f, s, section); });
   out.object({"answers", "of each state, and behind them of each start"}, [&](Fields& f) {
     describe(f, {"endings", "by ending"}, ending_table(places, back));
     describe(f, {"gates", "by final gate"}, gate_table(places, cells), gates_95);

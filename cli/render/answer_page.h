@@ -14,8 +14,8 @@
 namespace gatewalk::cli {
 
 /// What is told of one start by its own runs (of bins: by its state).
-struct PageStart {
-  Start start;
+struct PageAnswer {
+  std::optional<dynamics::Entry> start;
   const markov::FinalDistribution& final;
   lattice::EndingShares endings;
   std::array<markov::CellProbabilities, 2> gates_95{};  // without intervals: empty
@@ -36,8 +36,8 @@ struct PageChain {
 struct AnswerPage {
   std::string title;
   const ShownField& shown;
-  const lattice::Scene* scene;    // whose gates are drawn to scale; null: other cells
-  std::vector<PageStart> starts;  // one at least; the cells' bodies have the first one
+  const lattice::Scene* scene;     // whose gates are drawn to scale; null: other cells
+  std::vector<PageAnswer> starts;  // one at least; the cells' bodies have the first one
   const dynamics::StateSpace& space;
   std::vector<int> faces;  // through which starts may be
   const lattice::StartStates& states;

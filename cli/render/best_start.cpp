@@ -13,6 +13,7 @@
 #include "cli/render/start.h"
 #include "cli/render/text.h"
 #include "cli/render/text_table.h"
+#include "lattice/cells/start_text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -133,7 +134,7 @@ std::string table_of(const FoundStart& f) {
   const auto line = [&](const char* name, const lattice::TrialStart& start,
                         const lattice::Crossings& crossings) {
     table.row({name, with_interval(crossings.share(), crossings.interval_95()),
-               "   " + title_of(f.shown.map.section, start.entry) +
+               "   " + lattice::title_of(f.shown.map.section, start.entry) +
                    (several ? ", " + column_text(f, start.column) : "")});
   };
   line("  best", found.best, found.crossings);

@@ -137,7 +137,7 @@ void describe(Fields& out, const ChainSummary& summary, const ChainErrorChart& c
 
 void describe_start_of(Fields& out, const ChainErrorChart& chart, std::size_t s) {
   const FieldTruth& t = chart.truths[s];
-  describe_start(out, dynamics::disc_section(), t.start.entry());
+  describe_start(out, dynamics::disc_section(), t.start);
   out.object(
       {"truth", "trials of the full dynamics, from which errors are measured"}, [&](Fields& f) {
         f.count({"trials", "1", "trials of the full dynamics"}, t.tally.trials);
@@ -308,9 +308,9 @@ std::string block_of(const ChainErrorChart& chart, std::size_t s, std::size_t fi
 }  // namespace
 
 std::string name_of(const FieldTruth& truth) {
-  const lattice::PaperStart& start = truth.start;
+  const dynamics::BodyState start = lattice::body_at(truth.start);
   const Sized speed = readable_unit("m/s", std::max(std::abs(start.vx), std::abs(start.vy)));
-  return fmt::format("start d = {}, v = ({}, {}) {}", quantity(start.d, "m"),
+  return fmt::format("start d = {}, v = ({}, {}) {}", quantity(start.x, "m"),
                      digits(start.vx / speed.size), digits(start.vy / speed.size), speed.name);
 }
 
@@ -360,14 +360,14 @@ std::string csv_of(const ChainErrorChart& chart) {
       "bins_total_variation,formula_total_variation,formula_corrcoef,truth_floor_total_variation,"
       "truth_floor_corrcoef,clamped_share,rows_never_sampled,never_sampled_share");
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
-    const lattice::PaperStart& start = chart.truths[s].start;
+    const dynamics::BodyState start = lattice::body_at(chart.truths[s].start);
     const FinalGateError& floor = chart.truths[s].floor;
     for (const ChainPoint& p : chart.points) {
       const ChainAnswer& a = p.answers[s];
       const ChainCurve& curve = chart.curves[p.curve];
       const auto line = [&](const std::string& answer, double seconds, const FinalGateError& e,
                             double sd, double sampling, double bins) {
-        csv.row(start.d, start.vx, start.vy, answer, curve.factor, curve.space.size(),
+        csv.row(start.x, start.vx, start.vy, answer, curve.factor, curve.space.size(),
                 row_starts(curve), p.trials, p.runs, p.matrices, p.build_seconds, seconds,
                 p.build_seconds + seconds, e.total_variation, sd, e.corrcoef, sampling, bins,
                 kUnknown, kUnknown, floor.total_variation, floor.corrcoef, p.clamped_share,
@@ -379,12 +379,12 @@ std::string csv_of(const ChainErrorChart& chart) {
              kUnknown, kUnknown);
     }
     for (const lattice::TreePoint& p : chart.trees[s])
-      csv.row(start.d, start.vx, start.vy, "tree", kUnknown, p.states, "visited", kUnknown,
+      csv.row(start.x, start.vx, start.vy, "tree", kUnknown, p.states, "visited", kUnknown,
               p.gate_runs, lattice::kTreePredictions, kUnknown, kUnknown, p.seconds,
               p.error.total_variation, kUnknown, p.error.corrcoef, kUnknown, kUnknown, kUnknown,
               kUnknown, floor.total_variation, floor.corrcoef, kUnknown, kUnknown, kUnknown);
     for (const DirectSimulation& d : chart.direct[s])
-      csv.row(start.d, start.vx, start.vy, "direct simulation", kUnknown, kUnknown, kUnknown,
+      csv.row(start.x, start.vx, start.vy, "direct simulation", kUnknown, kUnknown, kUnknown,
               d.trials, kUnknown, kUnknown, kUnknown, d.seconds, d.seconds, d.drawn.total_variation,
               kUnknown, d.drawn.corrcoef, kUnknown, kUnknown, d.formula.total_variation,
               d.formula.corrcoef, floor.total_variation, floor.corrcoef, kUnknown, kUnknown,

@@ -45,7 +45,7 @@ std::string sentence(const FidelityOfStart& s) {
       "active is enough",
       fmt::format("{} trials cannot tell whether active is enough", s.runs[0].tally.trials),
       "active is not enough"};
-  return fmt::format("Start {}, {}, {}: {}: {}, {}.", digits(s.start.d), digits(s.start.vx),
+  return fmt::format("Start {}, {}, {}: {}: {}, {}.", digits(s.start.x), digits(s.start.vx),
                      digits(s.start.vy), words[static_cast<int>(s.active_is())],
                      about("remember", *s.runs[1].change), about("all", *s.runs[2].change));
 }
@@ -94,7 +94,7 @@ void describe(Fields& out, const FidelityResult& result) {
       lattice::kSmallChange);
   out.list_of({"starts", "one for each start"}, study.starts.size(), [&](Fields& f, std::size_t i) {
     const FidelityOfStart& s = study.starts[i];
-    describe_start(f, dynamics::disc_section(), dynamics::entry_of(s.start.body()));
+    describe_start(f, dynamics::disc_section(), dynamics::entry_of(s.start));
     const Sufficiency active = s.active_is();
     f.flag(
         {"active_is_enough",
@@ -127,7 +127,7 @@ std::string csv_of(const FidelityStudy& study) {
         return run.change ? x : kUnknown;  // an empty field
       };
       const lattice::Comparison &a = c.apart, &p = c.in_pairs;
-      csv.row(s.start.d, s.start.vx, s.start.vy, std::string(name_of(scene.field.fidelity)),
+      csv.row(s.start.x, s.start.vx, s.start.vy, std::string(name_of(scene.field.fidelity)),
               scene.gate.run.method, scene.gate.run.step, static_cast<double>(t.trials),
               run.seconds_per_trial, share(t.trapped(), t), share(t.left_field(), t),
               share(t.cut_off(), t), share(t.broken(), t), changed(c.changed),
@@ -160,13 +160,12 @@ std::string table_of(const FidelityStudy& study) {
     for (std::size_t v = 0; v < study.variants.size(); ++v) {
       const FidelityRun& run = s.runs[v];
       const FieldTally& t = run.tally;
-      std::vector<TextCell> cells{
-          start_text(dynamics::disc_section(), dynamics::entry_of(s.start.body())),
-          study.variants[v].name(),
-          1e3 * run.seconds_per_trial,
-          100.0 * share(t.trapped(), t),
-          100.0 * share(t.left_field(), t),
-          100.0 * share(t.cut_off(), t)};
+      std::vector<TextCell> cells{start_text(dynamics::disc_section(), dynamics::entry_of(s.start)),
+                                  study.variants[v].name(),
+                                  1e3 * run.seconds_per_trial,
+                                  100.0 * share(t.trapped(), t),
+                                  100.0 * share(t.left_field(), t),
+                                  100.0 * share(t.cut_off(), t)};
       if (run.change) {
         const lattice::Comparison &a = run.change->apart, &p = run.change->in_pairs;
         cells.insert(cells.end(),
@@ -238,7 +237,7 @@ Figure figure_of(const FidelityStudy& study) {
     const lattice::FidelityOfStart& of = study.starts[s];
     const double first = kRow * static_cast<double>(s) + 0.5 * (kRow - 3 * kLine);
     tics.push_back(
-        {fmt::format("{}, {}, {}", digits(of.start.d), digits(of.start.vx), digits(of.start.vy)),
+        {fmt::format("{}, {}, {}", digits(of.start.x), digits(of.start.vx), digits(of.start.vy)),
          first + 1.5 * kLine});
     for (std::size_t v = 0; v < variants; ++v) {
       const FidelityRun& run = of.runs[v];

@@ -25,12 +25,12 @@ struct FieldPicture {
   markov::CellProbabilities final_gates, trapped, departed;  // (rows x columns)
   lattice::EndingShares endings;
   std::optional<lattice::FieldExits> exits;
-  Start start;
+  std::optional<dynamics::Entry> start;
   std::optional<std::array<markov::CellProbabilities, 2>> gates_95;  // of final_gates: low, high
 
   template <class Number>
   FieldPicture(std::string name, const FieldEnds<Number>& ends,
-               std::optional<lattice::FieldExits> by_place, Start began,
+               std::optional<lattice::FieldExits> by_place, std::optional<dynamics::Entry> began,
                std::optional<std::array<markov::CellProbabilities, 2>> intervals = {})
       : title(std::move(name)),
         final_gates(ends.share_of(ends.final_cells)),

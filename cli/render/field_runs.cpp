@@ -10,6 +10,7 @@
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "dynamics/base/share.h"
+#include "lattice/cells/start_text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -98,17 +99,16 @@ void describe(Fields& out, const WalkResult& r) {
   ends.describe_never_sampled(out);
   ends.describe_still_walking(out, still_walking_95(r.tally, r.shown.field));
   out.count({"gates_visited", "1", "number of gates visited by all walks together"}, r.tally.steps);
-  const bool as_seen = !r.start.state && !r.start.entry;
+  const bool as_seen = !r.state && !r.start;
   out.object_or_text(
       {"start_state",
        "state in which walks start; recorded runs: their start, or \"as seen\" for all first "
        "entries"},
       as_seen ? std::optional<std::string>("as seen") : std::nullopt, [&](Fields& f) {
-        f.optional(r.start.state.has_value(), [&](Fields& of_chain) {
-          describe(of_chain, r.start.state.value_or(ShownState()));
-        });
-        f.optional(r.start.entry.has_value(), [&](Fields& recorded) {
-          describe(recorded, r.shown.map.section, r.start.entry.value_or(dynamics::Entry()));
+        f.optional(r.state.has_value(),
+                   [&](Fields& of_chain) { describe(of_chain, r.state.value_or(ShownState())); });
+        f.optional(r.start.has_value(), [&](Fields& recorded) {
+          describe(recorded, r.shown.map.section, r.start.value_or(dynamics::Entry()));
         });
       });
   out.maybe(Label("matrix_status",
@@ -128,7 +128,7 @@ std::string table_of(const WalkResult& r) {
   text += fmt::format(
       "start: {}\n"
       "The intervals count chance in the walks alone: that of the matrix gatewalk predict has{}\n",
-      r.start.text,
+      r.state ? r.state->bin : lattice::title_of(r.shown.map.section, r.start),
       r.foreign ? "." : ", the chain's own error (bins, memory) gatewalk validate measures.");
   if (tally.unsampled() > 0)
     text += fmt::format("reach a state never sampled: {}\n",

@@ -40,7 +40,8 @@ void describe(Fields& out, const FieldRun& run);
 struct WalkResult {
   ShownField shown;
   markov::WalkTally tally{};
-  WalkStart start{};
+  std::optional<ShownState> state{};       // in which walks start; of recorded runs none, but ...
+  std::optional<dynamics::Entry> start{};  // ... an entry, or (none) all first ones that were seen
   bool foreign = false;  // the chain was made elsewhere: it has no trials beside it
   std::optional<dynamics::Health> matrix_status{};
   Provenance made_by{};

@@ -215,8 +215,8 @@ auto record_in(const lattice::MatrixFile& file, const std::string& path, const s
 
 std::optional<StateRecord> recorded_states(const lattice::MatrixFile& file,
                                            const std::string& path) {
-  return record_in(file, path, "state_space", [&](const Json& json) {
-    return state_record(json, file.transitions.space.section());
+  return record_in(file, path, lattice::kStatesText, [&](const Json&) {
+    return state_record(file.text.at(lattice::kStatesText), file.transitions.space.section());
   });
 }
 

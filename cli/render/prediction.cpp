@@ -11,6 +11,7 @@
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
+#include "lattice/cells/start_text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -140,7 +141,7 @@ std::string table_of(const PredictResult& r) {
   const std::size_t starts = std::max<std::size_t>(1, r.given.size());
   for (std::size_t k = 0; k < starts; ++k) {
     if (!r.given.empty())
-      text += (k > 0 ? "\n" : "") + title_of(r.shown.map.section, r.given[k]) + "\n";
+      text += (k > 0 ? "\n" : "") + lattice::title_of(r.shown.map.section, r.given[k]) + "\n";
     text += r.of_runs ? table_of(r.of_runs->prediction.starts[k], r.shown)
                       : table_of(r.of_matrix->prediction.starts[k], r.of_matrix->states[k].bin,
                                  *r.of_matrix, r.shown);

@@ -37,7 +37,8 @@ struct MatrixPrediction {
 /// The result of `predict`: of one of two kinds.
 struct PredictResult {
   ShownField shown;
-  std::vector<Start> given{};  // starts that were asked for; none: the scene's own
+  std::vector<std::optional<dynamics::Entry>>
+      given{};  // starts that were asked for; none: the scene's own
   std::optional<MatrixPrediction> of_matrix{};
   std::optional<RunsPrediction> of_runs{};
   Provenance made_by{};

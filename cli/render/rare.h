@@ -15,17 +15,10 @@
 
 namespace gatewalk::cli {
 
-/// Direct simulation beside it: how many of the trials entered rows 1, 2, ...
-struct DirectRows {
-  std::int64_t trials = 0;  // 0: none were asked for
-  std::vector<std::int64_t> entered;
-  double seconds = 0.0;
-};
-
 /// The result of `rare`.
 struct RareResult {
   lattice::RareEvent event;
-  DirectRows direct;
+  lattice::DirectRows direct;  // beside it; no trials where none were asked for
   std::optional<lattice::Settled> method;
   Provenance made_by;
 };

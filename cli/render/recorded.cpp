@@ -57,34 +57,6 @@ std::string table_of(const RecordedCounts& counts) {
                      counts.lost);
 }
 
-std::string far_from_faces(const lattice::RunPool& pool, const lattice::Problem& problem) {
-  const dynamics::Coordinate& place = problem.map().section.coordinates.front();
-  const double large = std::max(problem.width, problem.length);
-  double farthest = 0.0;
-  lattice::each_entry(pool, {}, [&](const dynamics::Entry& entry, int) {
-    farthest = std::max(farthest, std::abs(entry.at[0]));
-  });
-  if (place.unit != "m" || farthest <= large) return "";
-  return place.name + " is up to " + digits(farthest) + " m, and a cell is " + digits(large) +
-         " m large: is it in metres, and measured on the face?";
-}
-
-std::vector<std::string> doubts(const lattice::RunPool& pool, const lattice::Problem& problem) {
-  std::vector<std::string> said;
-  if (pool.bodies() < lattice::kLeastBodies)
-    said.push_back(fmt::format("no error bars: they need {} bodies at least, these are {}",
-                               lattice::kLeastBodies, pool.bodies()));
-  std::vector<bool> entered(problem.map().section.faces.size(), false);
-  lattice::each_entry(pool, {}, [&](const dynamics::Entry& entry, int) {
-    entered[static_cast<std::size_t>(entry.face)] = true;
-  });
-  for (std::size_t f = 0; f < entered.size(); ++f)
-    if (!entered[f])
-      said.push_back("nobody was seen to enter by face " + problem.map().section.faces[f].name +
-                     ": what would become of such a body is not known");
-  return said;
-}
-
 void describe_lost_bounds(Fields& out, const lattice::LostBounds& bounds) {
   out.optional(bounds.lost > 0.0, [&](Fields& f) {
     f.object(

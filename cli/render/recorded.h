@@ -22,13 +22,6 @@ void describe(Fields& out, const RecordedCounts& counts);
 void describe_recorded(Fields& out, const RecordedCounts& counts);
 [[nodiscard]] std::string table_of(const RecordedCounts& counts);
 [[nodiscard]] std::string table_of(const lattice::RunPool& pool);
-/// What they cannot tell, a sentence each: few bodies, faces that nobody entered by.
-/// Whether places on the faces are farther off than a cell is large. Empty: none is.
-[[nodiscard]] std::string far_from_faces(const lattice::RunPool& pool,
-                                         const lattice::Problem& problem);
-[[nodiscard]] std::vector<std::string> doubts(const lattice::RunPool& pool,
-                                              const lattice::Problem& problem);
-
 /// The key "lost_bounds", where anybody was lost.
 void describe_lost_bounds(Fields& out, const lattice::LostBounds& bounds);
 /// Empty where nobody was lost.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dynamics/cells/cell_map.h"
-#include "lattice/cells/cell_file.h"
+#include "lattice/cells/source.h"
 #include "lattice/field.h"
 #include "lattice/scene/scene.h"
 
@@ -23,6 +23,8 @@ struct ShownField {
 
   ShownField(const lattice::Scene& scene);  // NOLINT(google-explicit-constructor)
   explicit ShownField(const lattice::CellFile& cells);
+  explicit ShownField(const lattice::Source& source)
+      : ShownField(source.scene ? ShownField(*source.scene) : ShownField(*source.cells)) {}
 };
 
 }  // namespace gatewalk::cli

@@ -45,31 +45,19 @@ void describe(Fields& out, const dynamics::Section& section, const dynamics::Sta
 }
 
 void describe_start(Fields& out, const Label& l, const dynamics::Section& section,
-                    const Start& start) {
+                    const std::optional<dynamics::Entry>& start) {
   out.object_or_text(l.shared("start"),
                      start ? std::nullopt : std::optional<std::string>("as seen"),
                      [&](Fields& f) { describe(f, section, start.value_or(dynamics::Entry())); });
 }
 
-void describe_start(Fields& out, const dynamics::Section& section, const Start& start) {
+void describe_start(Fields& out, const dynamics::Section& section,
+                    const std::optional<dynamics::Entry>& start) {
   describe_start(
       out,
       {"start",
        "how bodies enter the field; \"as seen\": by all first entries of the recorded runs"},
       section, start);
-}
-
-std::string title_of(const dynamics::Section& section, const Start& start) {
-  if (!start) return "start: all entries that were seen first";
-  if (const std::string name = name_of(section, *start); !name.empty()) return "start " + name;
-  std::string title = "start";
-  if (start->face != 0) title += " " + section.faces[static_cast<std::size_t>(start->face)].name;
-  for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis) {
-    const dynamics::Coordinate& c = section.coordinates[axis];
-    title += fmt::format("{}{} {}{}", axis > 0 ? ", " : " ", c.name, digits(start->at[axis], 6),
-                         dynamics::behind_number(c.unit));
-  }
-  return title;
 }
 
 StartTexts::StartTexts(const dynamics::Section& section, const std::vector<dynamics::Entry>& starts)

@@ -11,20 +11,15 @@
 
 namespace gatewalk::cli {
 
-/// Where bodies start that are asked about: an entry, or (none) as bodies were seen to enter first.
-using Start = std::optional<dynamics::Entry>;
-
 /// The keys of an entry: its coordinates' own, with "face" where it is not the first one, and its
 /// "name" where it has one. Of a range [from, to] each.
 void describe(Fields& out, const dynamics::Section& section, const dynamics::Entry& entry);
 void describe(Fields& out, const dynamics::Section& section, const dynamics::StateRange& range);
 /// An object of these, the key "start" of most results; "as seen" where there is no entry.
 void describe_start(Fields& out, const Label& l, const dynamics::Section& section,
-                    const Start& start);
-void describe_start(Fields& out, const dynamics::Section& section, const Start& start);
-/// "start d 4 m, vx 5 m/s, vy 10 m/s"; with the face's name where it is not the first one.
-[[nodiscard]] std::string title_of(const dynamics::Section& section, const Start& start);
-
+                    const std::optional<dynamics::Entry>& start);
+void describe_start(Fields& out, const dynamics::Section& section,
+                    const std::optional<dynamics::Entry>& start);
 /// "  23  -11   16": columns as wide as the numbers of all starts need, every digit of them.
 struct StartTexts {
   std::string header;              // "   d   vx   vy"
@@ -44,12 +39,5 @@ struct ShownState {
 /// Its keys, and the key "start_state" with these.
 void describe(Fields& out, const ShownState& state);
 void describe_start_state(Fields& out, const ShownState& state);
-
-/// Where walks of a chain start: in a state, or (none) in a row of their own, for this entry.
-struct WalkStart {
-  std::optional<ShownState> state{};
-  Start entry{};
-  std::string text{};
-};
 
 }  // namespace gatewalk::cli

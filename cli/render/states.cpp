@@ -58,7 +58,7 @@ void describe(Fields& out, const BinRecord& bins) {
 }
 
 /// Recorded runs have no accuracy that was asked for.
-bool is_of_recorded_runs(const TreeRecord& trees) { return !trees.accuracy; }
+bool is_of_recorded_runs(const lattice::TreeInfo& trees) { return !trees.accuracy; }
 
 void describe(Fields& out, const lattice::PooledRange& range, const Section& section) {
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
@@ -110,32 +110,6 @@ BinRecord bins_in(const Json& json) {
   return bins;
 }
 
-TreeRecord trees_in(const Json& json, const Section& section) {
-  TreeRecord trees{.entries_per_leaf = json.at("entries_per_leaf"),
-                   .gate_runs = json.at("gate_runs"),
-                   .states_bias = number_in(json.at("states_bias"))};
-  if (json.contains("accuracy")) trees.accuracy = json.at("accuracy");
-  if (json.contains("error_95")) {
-    trees.error_95.emplace();
-    for (const Json& error : json.at("error_95")) trees.error_95->push_back(number_in(error));
-  }
-  if (const Json& range = json.at("range"); !range.is_null()) {
-    trees.range.emplace();
-    for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
-      trees.range->range.at[axis] = range.at(section.coordinates[axis].key);
-    trees.range->tried_on = range.at("tried_on_starts");
-    trees.range->kernel_error_95 = number_in(range.at("kernel_error_95"));
-    trees.range->worst_kernel_error_95 = number_in(range.at("worst_kernel_error_95"));
-  }
-  if (json.contains("own_trials")) {
-    trees.hausman_check.emplace();
-    if (const Json& own = json.at("own_trials"); !own.is_null())
-      *trees.hausman_check = lattice::HausmanCheck{own.at("trials"), own.at("total_variation"),
-                                                   own.at("chance_total_variation"), own.at("p")};
-  }
-  return trees;
-}
-
 // ---- In words ----
 
 /// "4,5,10", "W:0.1,0": as --start gives it.
@@ -158,7 +132,7 @@ std::string starts_text(const StateRecord& s) {
   return text;
 }
 
-std::string lines_of(const TreeRecord& trees, const StateRecord& s) {
+std::string lines_of(const lattice::TreeInfo& trees, const StateRecord& s) {
   std::string text =
       fmt::format("states: {} (leaves of trees with {} entries or more{}) from {} gate runs\n",
                   s.states, trees.entries_per_leaf, starts_text(s), trees.gate_runs);
@@ -202,48 +176,27 @@ StateRecord record_of(const lattice::States& s) {
     bins.rows_without_entries =
         std::count_if(s.entries.begin(), s.entries.end() - std::ssize(s.space.points()),
                       [](const auto& seen) { return seen.empty(); });
-  return {.kind = s.choice.name(),
-          .states = s.space.size(),
-          .are_open = s.space.open(),
-          .section = s.space.section(),
-          .starts = s.space.points(),
-          .bins = std::move(bins)};
+  return {{.kind = s.choice.name()}, s.space.size(),   s.space.open(),
+          s.space.section(),         s.space.points(), std::move(bins)};
 }
 
 StateRecord record_of(const lattice::TreeChain& c, double accuracy) {
   const StateSpace& space = c.transitions.front().space;
-  TreeRecord trees{.entries_per_leaf = c.per_leaf,
-                   .gate_runs = c.pool.gate_runs(),
-                   .accuracy = accuracy,
-                   .range = c.range,
-                   .states_bias = c.states_bias,
-                   .hausman_check = c.hausman_check};
-  if (c.prediction) {
-    trees.error_95.emplace();
-    for (const lattice::StartAnswer& a : c.prediction->starts)
-      trees.error_95->push_back(a.error.total_variation);
-  }
-  return {.kind = "tree",
-          .states = space.size(),
-          .are_open = true,
-          .section = space.section(),
-          .starts = space.points(),
-          .trees = std::move(trees)};
+  return {{.kind = "tree", .trees = lattice::tree_info(c, accuracy)},
+          space.size(),
+          true,
+          space.section(),
+          space.points()};
 }
 
-StateRecord state_record(const Json& attribute, const Section& section) {
-  StateRecord s{.kind = attribute.at("bins"),
-                .states = attribute.at("states"),
-                .are_open = attribute.value("outermost_bins", "") == "open",
-                .section = section,
-                .are_probabilities = attribute.value("probabilities", false)};
+StateRecord state_record(const std::string& attribute, const Section& section) {
+  const Json json = parsed_json(attribute);
+  StateRecord s{lattice::states_info(attribute, section), json.at("states"),
+                json.value("outermost_bins", "") == "open", section};
   if (s.is_imported()) return s;
-  for (const Json& start : attribute.at("starts_of_their_own"))
+  for (const Json& start : json.at("starts_of_their_own"))
     s.starts.push_back(start_in(start, section));
-  if (s.kind == "tree")
-    s.trees = trees_in(attribute, section);
-  else
-    s.bins = bins_in(attribute);
+  if (!s.trees) s.bins = bins_in(json);
   return s;
 }
 
@@ -253,7 +206,7 @@ std::string attribute_of(const StateRecord& states) {
 
 void describe(Fields& out, const StateRecord& s) {
   const BinRecord bins = s.bins.value_or(BinRecord());
-  const TreeRecord trees = s.trees.value_or(TreeRecord());
+  const lattice::TreeInfo trees = s.trees.value_or(lattice::TreeInfo());
   const bool recorded = s.trees && is_of_recorded_runs(trees);
   const auto put_states = [&](Fields& f) {
     f.count({"states", "1", "number of states of the chain"}, s.states);

@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "cli/render/fields.h"
-#include "cli/render/json_fwd.h"
 #include "dynamics/disc/disc_section.h"
-#include "lattice/pool/tree_chain.h"
+#include "lattice/pool/states_info.h"
 #include "lattice/scene/bins.h"
 
 namespace gatewalk::cli {
@@ -26,36 +25,20 @@ struct BinRecord {
   dynamics::Resolution resolution{};
 };
 
-/// What is recorded of states that are leaves of trees.
-struct TreeRecord {
-  int entries_per_leaf = dynamics::kEntriesPerLeaf;
-  std::int64_t gate_runs = 0;
-  std::optional<double> accuracy{};               // that was asked for; none of recorded runs
-  std::optional<std::vector<double>> error_95{};  // by start
-  std::optional<lattice::PooledRange> range{};
-  double states_bias = 0.0;
-  /// None: the file does not say, as those of version 1.0.0.
-  std::optional<std::optional<lattice::HausmanCheck>> hausman_check{};
-};
-
 /// The states of a chain, as the attribute "state_space" of its matrix file describes them.
-struct StateRecord {
-  std::string kind = "imported";  // "paper", "auto", "scene"; "tree"; "imported": from elsewhere
+struct StateRecord : lattice::StatesInfo {
   int states = 0;
   bool are_open = false;                                 // the outermost bins
   dynamics::Section section = dynamics::disc_section();  // of the starts
   std::vector<dynamics::Entry> starts{};                 // that are states of their own
   std::optional<BinRecord> bins{};
-  std::optional<TreeRecord> trees{};
-  bool are_probabilities = false;  // of a chain from elsewhere: without counts
-
-  [[nodiscard]] bool is_imported() const { return kind == "imported"; }
 };
 [[nodiscard]] StateRecord record_of(const lattice::States& states);
 [[nodiscard]] StateRecord record_of(const lattice::TreeChain& chain, double accuracy);
 /// Of an attribute, in a file of cells with this section. Throws Json::exception and
 /// std::invalid_argument for one that is damaged.
-[[nodiscard]] StateRecord state_record(const Json& attribute, const dynamics::Section& section);
+[[nodiscard]] StateRecord state_record(const std::string& attribute,
+                                       const dynamics::Section& section);
 /// The attribute.
 [[nodiscard]] std::string attribute_of(const StateRecord& states);
 

@@ -126,8 +126,8 @@ void describe_maps(Fields& out, const Label& label, const markov::CellCounts& dy
   });
 }
 
-void describe(Fields& out, const lattice::StartValidation& r, const lattice::PaperStart& paper,
-              const ShownField& shown) {
+void describe(Fields& out, const lattice::StartValidation& r,
+              const std::optional<lattice::PaperStart>& paper, const ShownField& shown) {
   out.text({"verdict",
             "sentence: whether the chain differs from the dynamics by more than sampling noise"},
            verdict(r));
@@ -145,11 +145,11 @@ void describe(Fields& out, const lattice::StartValidation& r, const lattice::Pap
            r.chain_start.clamped);
   });
   out.if_any(
-      {"paper", "values that the paper prints for this start in Table IV"}, paper.corrcoef,
-      [&](Fields& printed, const auto& value) {
-        printed.number({"corrcoef", "1", "correlation of the final gates as printed"}, value);
+      {"paper", "values that the paper prints for this start in Table IV"}, paper,
+      [](Fields& printed, const lattice::PaperStart& p) {
+        printed.number({"corrcoef", "1", "correlation of the final gates as printed"}, p.corrcoef);
         printed.number({"rmse_per_100", "trials per 100", "RMSE of the final gates as printed"},
-                       paper.rmse.value_or(kUnknown));
+                       p.rmse);
       });
   out.object({"exact", "final gates of the dynamics compared with the exact chain's"},
              [&](Fields& f) {
@@ -282,8 +282,8 @@ std::string table4_table(const ValidateResult& result, const StartTexts& labels)
   for (std::size_t k = 0; k < result.validation.starts.size(); ++k) {
     const lattice::StartValidation& r = result.validation.starts[k];
     const lattice::PaperSized& p = r.paper_sized;
-    const auto printed = [&](std::optional<double> lattice::PaperStart::*x) {
-      return (result.like_table4 ? result.papers[k].*x : std::nullopt).value_or(kUnknown);
+    const auto printed = [&](double lattice::PaperStart::*x) {
+      return result.like_table4 && !result.papers.empty() ? result.papers[k].*x : kUnknown;
     };
     table.row({labels.texts[k], printed(&lattice::PaperStart::corrcoef), with_sd(p.exact_corrcoef),
                r.floor_100_exact.corrcoef, with_sd(p.walks_corrcoef),
@@ -380,7 +380,7 @@ void describe(Fields& out, const ValidateResult& result) {
              "resampled matrices left out of the intervals because bodies circle too long in them"},
             v.left_out.matrices);
   out.list_of({"starts", "results of each start"}, v.starts.size(), [&](Fields& f, std::size_t k) {
-    describe(f, v.starts[k], result.papers.empty() ? lattice::PaperStart() : result.papers[k],
+    describe(f, v.starts[k], result.papers.empty() ? std::nullopt : std::optional(result.papers[k]),
              result.shown);
   });
   out.object(

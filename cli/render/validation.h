@@ -36,8 +36,7 @@ struct ValidateResult {
   lattice::Validation validation{};
   ValidatedMatrix matrix{};
   ShownField shown;
-  /// The validation's starts with what the paper prints of them; none of other cells than its gate.
-  std::vector<lattice::PaperStart> papers{};
+  std::vector<lattice::PaperStart> papers{};  // where the starts are those of Table IV: these
   bool like_table4 = false;  // the scene is the paper's: its figures belong beside ours
   ObservedFiles observed{};
   Provenance made_by{};

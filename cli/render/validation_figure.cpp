@@ -12,6 +12,7 @@
 #include "cli/render/text.h"
 #include "cli/render/type_marks.h"
 #include "cli/render/validation.h"
+#include "lattice/cells/start_text.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -22,9 +23,9 @@ using markov::CellProbabilities;
 constexpr double kMapWidth = 130, kGap = 16, kLeft = 64, kHead = 46;
 
 std::string summary(const StartValidation& v, const ShownField& shown) {
-  return fmt::format("{}: total variation {} (chance: {})", title_of(shown.map.section, v.start),
-                     fixed(v.exact_against.total_variation, 3),
-                     fixed(v.exact_against.floor_total_variation, 3));
+  return fmt::format(
+      "{}: total variation {} (chance: {})", lattice::title_of(shown.map.section, v.start),
+      fixed(v.exact_against.total_variation, 3), fixed(v.exact_against.floor_total_variation, 3));
 }
 
 }  // namespace

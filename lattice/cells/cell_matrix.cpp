@@ -14,22 +14,7 @@ CellFile cells_in(const std::map<std::string, std::string>& text, const std::str
   return parse_cell_file(text.at(kCellText), path + " (its cells)", overrides);
 }
 
-MatrixFile read_file(const std::string& path) {
-  return read_matrix(path, [&](const std::map<std::string, std::string>& text) {
-    if (!text.contains(kCellText)) throw markov::BadFile(path + ": holds no cells");
-    return cells_in(text, path, {}).map.section;
-  });
-}
-
 }  // namespace
-
-bool is_of_cells(const std::string& path) {
-  return markov::text_of_counts(path, kCellText).has_value();
-}
-
-CellMatrix read_cell_matrix(const std::string& path, const std::vector<std::string>& overrides) {
-  return cell_matrix(std::make_shared<const MatrixFile>(read_file(path)), path, overrides);
-}
 
 CellMatrix cell_matrix(std::shared_ptr<const MatrixFile> file, const std::string& path,
                        const std::vector<std::string>& overrides) {
@@ -72,7 +57,7 @@ MatrixFile cell_matrix_file(std::vector<dynamics::Transitions> matrices, CellFil
   return file;
 }
 
-MatrixFile read_any_matrix(const std::string& path) {
+MatrixFile read_matrix(const std::string& path) {
   return read_matrix(path, [&](const std::map<std::string, std::string>& text) {
     return text.contains(kCellText) ? cells_in(text, path, {}).map.section : scene_section();
   });

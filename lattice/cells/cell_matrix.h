@@ -16,9 +16,6 @@ namespace gatewalk::lattice {
 /// The key of a matrix file's text that has the cell file.
 inline constexpr const char* kCellText = "cell";
 
-/// Whether a file is a matrix of such cells.
-[[nodiscard]] bool is_of_cells(const std::string& path);
-
 /// What such a file holds. The field and start are the cell file's, with overrides.
 struct CellMatrix {
   std::shared_ptr<const MatrixFile> file;
@@ -26,13 +23,11 @@ struct CellMatrix {
   std::optional<RunPool> pool;  // none of a chain that was made elsewhere
   Problem problem;
 };
-/// Throws markov::BadFile, and SceneError for an override that is not permitted.
-[[nodiscard]] CellMatrix read_cell_matrix(const std::string& path,
-                                          const std::vector<std::string>& overrides = {});
-/// The same of a file, read from there, that is in memory.
+/// Of a matrix of such cells that was read from there. Throws markov::BadFile, and SceneError for
+/// an override that is not permitted.
 [[nodiscard]] CellMatrix cell_matrix(std::shared_ptr<const MatrixFile> file,
                                      const std::string& path,
-                                     const std::vector<std::string>& overrides);
+                                     const std::vector<std::string>& overrides = {});
 
 /// The matrices of a pool, by type, without starts of their own.
 [[nodiscard]] std::vector<dynamics::Transitions> cell_matrices(const Problem& problem,
@@ -46,7 +41,7 @@ struct CellMatrix {
 [[nodiscard]] std::vector<dynamics::Transitions> matrices_of(const MatrixFile& file,
                                                              const CellFile& cells);
 
-/// The section of a matrix file of any cells: of the cell file, or of a disc in its gate.
-[[nodiscard]] MatrixFile read_any_matrix(const std::string& path);
+/// A matrix file of any cells, whose section is that of its cell file, or of a disc in its gate.
+[[nodiscard]] MatrixFile read_matrix(const std::string& path);
 
 }  // namespace gatewalk::lattice

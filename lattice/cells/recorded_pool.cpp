@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/cells/recorded_pool.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <limits>
 #include <string>
@@ -87,6 +89,36 @@ Problem problem_of(const CellFile& cells, const RunPool& pool) {
                             : std::array{-half, half};
     }
   return problem;
+}
+
+std::string far_from_faces(const RunPool& pool, const Problem& problem) {
+  const dynamics::Coordinate& place = problem.map().section.coordinates.front();
+  const double large = std::max(problem.width, problem.length);
+  double farthest = 0.0;
+  each_entry(pool, {}, [&](const dynamics::Entry& entry, int) {
+    farthest = std::max(farthest, std::abs(entry.at[0]));
+  });
+  if (place.unit != "m" || farthest <= large) return "";
+  return fmt::format(
+      "{} is up to {:.7g} m, and a cell is {:.7g} m large: is it in metres, and measured on the "
+      "face?",
+      place.name, farthest, large);
+}
+
+std::vector<std::string> doubts_of(const RunPool& pool, const Problem& problem) {
+  std::vector<std::string> said;
+  if (pool.bodies() < kLeastBodies)
+    said.push_back(fmt::format("no error bars: they need {} bodies at least, these are {}",
+                               kLeastBodies, pool.bodies()));
+  std::vector<bool> entered(problem.map().section.faces.size(), false);
+  each_entry(pool, {}, [&](const dynamics::Entry& entry, int) {
+    entered[static_cast<std::size_t>(entry.face)] = true;
+  });
+  for (std::size_t f = 0; f < entered.size(); ++f)
+    if (!entered[f])
+      said.push_back("nobody was seen to enter by face " + problem.map().section.faces[f].name +
+                     ": what would become of such a body is not known");
+  return said;
 }
 
 double lost_share(const RunPool& pool) {

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "lattice/cells/recorded.h"
 #include "lattice/pool/pooled_prediction.h"
@@ -25,6 +27,11 @@ void add_trials(RecordedRuns& runs, const FieldTrials& each, const dynamics::Ent
 /// The field of the cells; there are none to run. Faces without a usual range get that of the
 /// entries seen, or one scale about 0 where there was none: nothing leads to such a state.
 [[nodiscard]] Problem problem_of(const CellFile& cells, const RunPool& pool);
+
+/// What recorded runs cannot tell, a sentence each: few bodies, faces that nobody entered by.
+[[nodiscard]] std::vector<std::string> doubts_of(const RunPool& pool, const Problem& problem);
+/// Whether places on the faces are farther off than a cell is large. Empty: none is.
+[[nodiscard]] std::string far_from_faces(const RunPool& pool, const Problem& problem);
 
 /// What became of bodies that were lost from sight, if one may guess: all were trapped, or all left
 /// as another body did that entered by the same state (drawn; those of states that nobody is known

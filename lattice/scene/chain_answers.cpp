@@ -151,7 +151,7 @@ double FieldTruth::seconds_for(double total_variation) const {
   return seconds_per_trial * n * all / (all - n);
 }
 
-FieldTruth field_truth(const PaperStart& start, FieldTally tally, double seconds_per_trial) {
+FieldTruth field_truth(const dynamics::Entry& start, FieldTally tally, double seconds_per_trial) {
   if (tally.broken() > 0)
     throw std::runtime_error(std::to_string(tally.broken()) +
                              " trials of the full dynamics stopped being finite numbers: they are "
@@ -170,7 +170,7 @@ ChainAnswers ask_matrices(const std::vector<Transitions>& matrices, const FieldP
                           const Work& work) {
   Questions q{{field.columns, field.rows}, field.max_gates, {}, truths, seed};
   for (const FieldTruth& t : truths)
-    q.starts.push_back(chain_start(matrices[0].space, field, t.start.entry()).start);
+    q.starts.push_back(chain_start(matrices[0].space, field, t.start).start);
 
   // The first one alone, for its times.
   const std::int64_t count = std::ssize(matrices);

@@ -25,7 +25,7 @@ void add_to_mean(FinalGateError& mean, const FinalGateError& e, double n);
 
 /// Full dynamics from one start: what every error is taken against.
 struct FieldTruth {
-  PaperStart start{};
+  dynamics::Entry start{};
   FieldTally tally;
   CellProbabilities p{};  // shares of the final gates
   double seconds_per_trial = 0.0;
@@ -39,7 +39,7 @@ struct FieldTruth {
   [[nodiscard]] double seconds_for(double total_variation) const;
 };
 /// Throws std::runtime_error when trials broke: they are no truth.
-[[nodiscard]] FieldTruth field_truth(const PaperStart& start, FieldTally tally,
+[[nodiscard]] FieldTruth field_truth(const dynamics::Entry& start, FieldTally tally,
                                      double seconds_per_trial);
 
 /// Numbers of walks whose errors stand beside the exact prediction's.

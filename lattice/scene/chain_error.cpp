@@ -103,11 +103,11 @@ std::vector<ChainCurve> curves_of(const Scene& scene, const std::vector<double>&
 /// Begins the truths: as many trials as it takes to time one.
 void begin_truths(ChainErrorChart& chart, const Scene& scene, const Work& work) {
   const StateSpace space = fixed_space(scene);
-  for (const PaperStart& start : chart.options.starts) {
+  for (const dynamics::Entry& start : chart.options.starts) {
     FieldTruth t{start, FieldTally(scene.field)};
     t.seconds_per_trial =
         seconds_per_item(work, chart.options.truth_trials, 10, [&](TrialRange range) {
-          t.tally += run_field(scene.gate, scene.field, start.body(), chart.options.seed, range,
+          t.tally += run_field(scene.gate, scene.field, body_at(start), chart.options.seed, range,
                                nullptr, &space);
         });
     chart.truths.push_back(std::move(t));
@@ -121,17 +121,17 @@ void see_entries(ChainErrorChart& chart, const Scene& scene, const Work& work) {
     return;
   const StateSpace space = fixed_space(scene);
   std::vector<dynamics::Entry> seen;
-  for (const PaperStart& start : chart.options.starts) {
+  for (const dynamics::Entry& start : chart.options.starts) {
     work.in_pieces("pilot", chart.pilot_trials, [&](TrialRange range) {
       FieldTrials each{.final_gates = {}, .keep_passages = true};
       chart.health +=
-          run_field(scene.gate, scene.field, start.body(), chart.options.seed,
+          run_field(scene.gate, scene.field, body_at(start), chart.options.seed,
                     {chart.options.truth_trials + range.first, range.count}, &each, &space)
               .health;
       const auto entries = each.entries();
       seen.insert(seen.end(), entries.begin(), entries.end());
     });
-    seen.insert(seen.end(), chart.pilot_trials, dynamics::entry_of(start.body()));
+    seen.insert(seen.end(), chart.pilot_trials, start);
   }
   for (ChainCurve& c : chart.curves)
     if (c.visited) c.entries = dynamics::entries_of(c.space, seen);
@@ -173,7 +173,7 @@ void finish_truths(ChainErrorChart& chart, const Scene& scene, TimedWork& work) 
     const std::int64_t done = t.tally.trials;
     work.in_pieces(
         1e3 * t.seconds_per_trial, chart.options.truth_trials - done, [&](TrialRange range) {
-          t.tally += run_field(scene.gate, scene.field, t.start.body(), chart.options.seed,
+          t.tally += run_field(scene.gate, scene.field, body_at(t.start), chart.options.seed,
                                {done + range.first, range.count}, nullptr, &space);
         });
     t = field_truth(t.start, std::move(t.tally), t.seconds_per_trial);
@@ -255,7 +255,7 @@ std::vector<TreePoint> tree_points(const ChainErrorChart& chart, const Scene& sc
       const double cpu = one_thread_seconds([&] {
         const dynamics::Stopwatch watch;
         RunPool pool;
-        made = predict_pooled(problem, pool, {truth.start.entry()},
+        made = predict_pooled(problem, pool, {truth.start},
                               {.accuracy = accuracy,
                                .most_runs = chart.options.runs_limit,
                                .seed = chart.options.seed + static_cast<std::uint64_t>(k)},
@@ -317,7 +317,6 @@ ChainErrorPlan plan_chain_error(const Scene& scene, const ChainErrorOptions& opt
                                 const Work& work) {
   require_no_terrain(scene, "a chart of the chain's error");
   ChainErrorPlan plan{options, usual_bins(scene)};
-  (void)entries_at(options.starts);  // refuses starts inside the gate
   const std::vector<dynamics::BodyState> bodies = bodies_at(options.starts);
   const bool from_pilot = plan.bins.kind == BinsChoice::Kind::automatic;
   plan.pilot_trials = options.visited.value_or(from_pilot ? kPilotTrials : 0);

@@ -78,7 +78,7 @@ inline constexpr std::array<std::int64_t, 10> kChainTrials{10,  20,   50,   100,
                                                            500, 1000, 2000, 5000, 10'000};
 
 struct ChainErrorOptions {
-  std::vector<PaperStart> starts;  // at y = 0
+  std::vector<dynamics::Entry> starts;
   std::vector<double> factors{0.5, 1.0, 2.0,
                               4.0};     // bins per axis, as a multiple of the usual ones
   std::int64_t truth_trials = 100'000;  // of the full dynamics, per start

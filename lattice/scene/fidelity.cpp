@@ -14,9 +14,10 @@ namespace {
 constexpr std::int64_t kTimedTrials = 64;
 constexpr std::int64_t kTimedAtOnce = 16;
 
-FieldTally run(const FidelityVariant& v, const PaperStart& start, const dynamics::StateSpace& space,
-               std::uint64_t seed, dynamics::TrialRange range, FieldTrials* each = nullptr) {
-  return run_field(v.scene.gate, v.scene.field, start.body(), seed, range, each, &space);
+FieldTally run(const FidelityVariant& v, const dynamics::BodyState& start,
+               const dynamics::StateSpace& space, std::uint64_t seed, dynamics::TrialRange range,
+               FieldTrials* each = nullptr) {
+  return run_field(v.scene.gate, v.scene.field, start, seed, range, each, &space);
 }
 
 PairedChange change_of(const FidelityRun& variant, const FidelityRun& base, std::uint64_t seed) {
@@ -27,7 +28,7 @@ PairedChange change_of(const FidelityRun& variant, const FidelityRun& base, std:
 /// Seconds per trial of every variant. The same trials by every one in turn, so that a busy moment
 /// of the machine hits them alike.
 std::vector<double> time_trials(const std::vector<FidelityVariant>& variants,
-                                const PaperStart& start, const dynamics::StateSpace& space,
+                                const dynamics::BodyState& start, const dynamics::StateSpace& space,
                                 const FidelityOptions& options, const dynamics::Work& work) {
   const std::int64_t timed = std::min(options.trials, kTimedTrials);
   const std::int64_t pieces = (timed + kTimedAtOnce - 1) / kTimedAtOnce;
@@ -50,8 +51,9 @@ std::vector<double> time_trials(const std::vector<FidelityVariant>& variants,
   return least;
 }
 
-FidelityOfStart run_start(const std::vector<FidelityVariant>& variants, const PaperStart& start,
-                          const FidelityOptions& options, const dynamics::Work& work) {
+FidelityOfStart run_start(const std::vector<FidelityVariant>& variants,
+                          const dynamics::BodyState& start, const FidelityOptions& options,
+                          const dynamics::Work& work) {
   const auto space = dynamics::table3_space(variants[0].scene.gate);
   FidelityOfStart all{start, {}};
   for (const FidelityVariant& v : variants) {
@@ -113,7 +115,7 @@ FidelityStudy compare_fidelities(const std::vector<FidelityVariant>& variants,
                       static_cast<int>(tbb::global_control::active_value(
                           tbb::global_control::max_allowed_parallelism)),
                       {}};
-  for (const PaperStart& start : options.starts)
+  for (const dynamics::BodyState& start : options.starts)
     study.starts.push_back(run_start(variants, start, options, work));
   return study;
 }

@@ -12,7 +12,6 @@
 #include "dynamics/base/work.h"
 #include "lattice/reference.h"
 #include "lattice/scene/scene.h"
-#include "lattice/scene/table4.h"
 #include "lattice/statistics/paired_change.h"
 
 namespace gatewalk::lattice {
@@ -38,7 +37,7 @@ struct FidelityRun {
 };
 
 struct FidelityOfStart {
-  PaperStart start;
+  dynamics::BodyState start;
   std::vector<FidelityRun> runs;  // as the variants
 
   /// Whether active is enough from here: the worse of what remember and all say.
@@ -58,7 +57,7 @@ struct FidelityStudy {
 };
 
 struct FidelityOptions {
-  std::vector<PaperStart> starts;
+  std::vector<dynamics::BodyState> starts;
   std::int64_t trials = 100;  // per start and variant
   std::uint64_t seed = 1;
 };

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/scene/matrix.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
 #include "dynamics/disc/row_trials.h"
+#include "lattice/pool/states_info.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/scene/settle.h"
 #include "markov/formats/counts.h"
@@ -12,16 +14,6 @@
 namespace gatewalk::lattice {
 
 const dynamics::Section& scene_section() { return dynamics::disc_section(); }
-
-MatrixFile read_matrix(const std::string& path) {
-  return read_matrix(path, [&](const std::map<std::string, std::string>& text) {
-    if (text.contains("cell"))
-      throw markov::BadFile(
-          path +
-          ": is a chain of recorded runs, or of another program's cells, and not of a scene");
-    return scene_section();
-  });
-}
 
 void require_unbroken(const dynamics::Transitions& t) {
   if (t.health.broken > 0)
@@ -86,13 +78,6 @@ Scene own_scene(const MatrixFile& file, const std::string& path) {
   return parse_scene(stored->second, path + " (its scene)");
 }
 
-SceneMatrix read_scene_matrix(const std::string& matrix_path, const TomlFile* other,
-                              const std::vector<std::string>& overrides) {
-  auto file = std::make_shared<const MatrixFile>(read_matrix(matrix_path));
-  const Scene own = own_scene(*file, matrix_path);
-  return scene_matrix(std::move(file), own, matrix_path, other, overrides);
-}
-
 SceneMatrix scene_matrix(std::shared_ptr<const MatrixFile> file, const Scene& own,
                          const std::string& matrix_path, const TomlFile* other,
                          const std::vector<std::string>& overrides) {
@@ -116,6 +101,33 @@ SceneMatrix scene_matrix(std::shared_ptr<const MatrixFile> file, const Scene& ow
   }
   scene.gate = own.gate;  // the same, or the method that "auto" was settled to
   return {std::move(file), std::move(scene)};
+}
+
+std::optional<PooledPrediction> add_starts(SceneMatrix& m, const std::string& path,
+                                           const std::vector<dynamics::Entry>& starts,
+                                           std::uint64_t seed, const dynamics::Work& work) {
+  if (!has_runs(*m.file)) return {};
+  const Problem problem = problem_of(m.scene);
+  RunPool pool = pool_of(*m.file, problem, path);
+  std::vector<dynamics::Entry> unknown;
+  for (const dynamics::Entry& entry : starts)
+    if (pool.place_of(entry) == pool.starts.size()) unknown.push_back(entry);
+  if (unknown.empty()) return {};
+  const TreeInfo trees = tree_info(*m.file, path);
+  const AccuracyOptions how{.accuracy = trees.accuracy_of_one(),
+                            .most_runs = std::max<std::int64_t>(100'000, pool.gate_runs()),
+                            .per_leaf = trees.entries_per_leaf,
+                            .seed = seed};
+  PooledPrediction prediction = predict_pooled(problem, pool, unknown, how, work);
+  std::vector<dynamics::Entry> all;
+  for (const OwnRuns& s : pool.starts) all.push_back(s.start);
+  MatrixFile file = *m.file;
+  dynamics::Health health = file.transitions.health;
+  health += prediction.health;
+  put_matrices(file, m.scene, matrices_of(problem, pool, all, how.per_leaf));
+  file.transitions.health = health;
+  m.file = std::make_shared<const MatrixFile>(std::move(file));
+  return prediction;
 }
 
 std::string entry_bins(const dynamics::StateSpace& space, int face) {

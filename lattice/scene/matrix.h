@@ -3,20 +3,19 @@
 /// Matrices with the scene they belong to: building one, taking one from a file.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "dynamics/base/work.h"
 #include "lattice/gate_chain.h"
+#include "lattice/pool/pooled_prediction.h"
 #include "lattice/scene/bins.h"
 
 namespace gatewalk::lattice {
 
 /// The section of matrices of scenes: a disc in its gate.
 [[nodiscard]] const dynamics::Section& scene_section();
-
-/// As read_matrix, of any cells.
-[[nodiscard]] MatrixFile read_matrix(const std::string& path);
 
 /// Throws std::runtime_error when a run of the matrix broke.
 void require_unbroken(const dynamics::Transitions& t);
@@ -44,17 +43,20 @@ struct SceneMatrix {
   std::shared_ptr<const MatrixFile> file;
   Scene scene;
 };
-/// The matrix file with another scene, or (null) the one stored in the file. Throws
-/// markov::BadFile, SceneError, and std::invalid_argument when the given scene's physics are not
-/// those the matrix was built with.
-[[nodiscard]] SceneMatrix read_scene_matrix(const std::string& matrix_path, const TomlFile* other,
-                                            const std::vector<std::string>& overrides);
 /// The scene stored in a file read from there. Throws markov::BadFile.
 [[nodiscard]] Scene own_scene(const MatrixFile& file, const std::string& path);
-/// read_scene_matrix of a file that is in memory, `own` its own_scene.
+/// The matrix of a file with another scene, or (null) its `own`. Throws SceneError, and
+/// std::invalid_argument when the other scene's physics are not those the matrix was built with.
 [[nodiscard]] SceneMatrix scene_matrix(std::shared_ptr<const MatrixFile> file, const Scene& own,
                                        const std::string& matrix_path, const TomlFile* other,
                                        const std::vector<std::string>& overrides);
+/// Of a matrix of trees: makes each of these starts a state of its own, by new trials from those
+/// that it does not know. What these predict; none where it knows all. Other matrices stay as they
+/// are.
+[[nodiscard]] std::optional<PooledPrediction> add_starts(SceneMatrix& m, const std::string& path,
+                                                         const std::vector<dynamics::Entry>& starts,
+                                                         std::uint64_t seed,
+                                                         const dynamics::Work& work = {});
 
 /// As chain_start; `name` ("the start") begins the message. Throws std::invalid_argument when the
 /// start lies outside the chain's bins.

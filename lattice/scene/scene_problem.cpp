@@ -6,47 +6,58 @@
 #include <utility>
 #include <vector>
 
-#include "lattice/scene/settle.h"
 #include "lattice/scene/table4.h"
 
 namespace gatewalk::lattice {
 
 namespace {
 
-/// Of gates with these names.
-Problem problem_of(const Scene& scene, const FieldGates& gates, std::vector<std::string> names,
-                   RunsFrom from) {
-  Problem problem{.cells = gates.cells(),
-                  .field = scene.field,
-                  .start = own_start(scene).entry(),
-                  .width = scene.gate.gate_width(),
-                  .length = scene.gate.gate_length(),
-                  .types = std::move(names),
-                  .source = scene.source,
-                  .check = {}};
-  problem.field.fidelity = Fidelity::active;
-  problem.check = [scene, from](std::int64_t trials, std::uint64_t seed, dynamics::Health& health,
-                                const dynamics::Work& work) {
-    check_outcomes(scene, from, seed, trials, health, work);
-  };
+FieldGates gates_of(const Scene& scene, RunsFrom from) {
+  return from == RunsFrom::all_types ? all_gates_of(scene) : gates_of(scene);
+}
+
+std::vector<std::string> names_of_types(const Scene& scene, RunsFrom from) {
+  std::vector<std::string> names{std::string(kOwnGate)};
+  const std::vector<int> types = gate_types(scene);
+  for (std::size_t i = 0; scene.terrain && i < scene.terrain->types.size(); ++i)
+    if (from == RunsFrom::all_types || types[i] >= std::ssize(names))
+      names.push_back(scene.terrain->types[i].name);
+  return names;
+}
+
+Problem complete_problem(const Scene& scene, RunsFrom from) {
+  Problem problem = problem_without_cells(scene, from);
+  put_cells(problem, scene, from);
   return problem;
 }
 
 }  // namespace
 
-Problem problem_of(const Scene& scene) {
-  std::vector<std::string> names{std::string(kOwnGate)};
-  const std::vector<int> types = gate_types(scene);
-  for (std::size_t i = 0; i < types.size(); ++i)
-    if (types[i] >= std::ssize(names)) names.push_back(scene.terrain->types[i].name);
-  return problem_of(scene, gates_of(scene), std::move(names), RunsFrom::everywhere);
+Problem problem_without_cells(const Scene& scene, RunsFrom from) {
+  Problem problem{.cells = {gates_of(scene, from).map(), {}},
+                  .field = scene.field,
+                  .start = own_start(scene),
+                  .width = scene.gate.gate_width(),
+                  .length = scene.gate.gate_length(),
+                  .types = names_of_types(scene, from),
+                  .source = scene.source,
+                  .check = {}};
+  problem.field.fidelity = Fidelity::active;
+  return problem;
 }
 
+void put_cells(Problem& problem, const Scene& scene, RunsFrom from) {
+  problem.cells = gates_of(scene, from).cells();
+  problem.check = [scene, from](std::int64_t trials, std::uint64_t seed, dynamics::Health& health,
+                                const dynamics::Work& work) {
+    check_outcomes(scene, from, seed, trials, health, work);
+  };
+}
+
+Problem problem_of(const Scene& scene) { return complete_problem(scene, RunsFrom::everywhere); }
+
 Problem problem_with_all_types(const Scene& scene) {
-  std::vector<std::string> names{std::string(kOwnGate)};
-  if (scene.terrain)
-    for (const Terrain::Type& type : scene.terrain->types) names.push_back(type.name);
-  return problem_of(scene, all_gates_of(scene), std::move(names), RunsFrom::all_types);
+  return complete_problem(scene, RunsFrom::all_types);
 }
 
 Scene up_to_row(const Scene& scene, int row) {

@@ -8,64 +8,48 @@
 #include "lattice/text/digits.h"
 
 namespace gatewalk::lattice {
-namespace {
-
-/// Table IV's starts, in the scene's own units.
-std::vector<PaperStart> table_iv(const dynamics::GateParams& p) {
-  std::vector<PaperStart> starts{{0, 0, 15, 0.914, 1.018},
-                                 {23, -11, 16, 0.9097, 1.133},
-                                 {4, 5, 10, 0.8929, 1.252},
-                                 {-17, 13, 12, 0.9026, 0.9813}};
-  const dynamics::Scale unit = dynamics::scale_of(p);
+std::vector<PaperStart> table_iv_starts(const Scene& scene) {
+  std::vector<PaperStart> starts{{{0, {0, 0, 15}}, 0.914, 1.018},
+                                 {{0, {23, -11, 16}}, 0.9097, 1.133},
+                                 {{0, {4, 5, 10}}, 0.8929, 1.252},
+                                 {{0, {-17, 13, 12}}, 0.9026, 0.9813}};
+  const dynamics::Scale unit = dynamics::scale_of(scene.gate);
   for (PaperStart& s : starts) {
-    s.d *= unit.length;
-    s.vx *= unit.speed();
-    s.vy *= unit.speed();
+    s.start.at[dynamics::kEntryD] *= unit.length;
+    s.start.at[dynamics::kEntryVx] *= unit.speed();
+    s.start.at[dynamics::kEntryVy] *= unit.speed();
   }
+  const dynamics::BodyState &own = scene.start, first = body_at(starts.front().start);
+  const bool the_papers = own.x == 0.0 && own.y == 0.0 && own.vx == 0.0 &&
+                          std::abs(own.vy - first.vy) <= 1e-12 * first.vy;
+  if (!the_papers || scene.terrain || !papers_field(scene)) starts.clear();
   return starts;
 }
 
-}  // namespace
-
-PaperStart own_start(const Scene& scene) {
-  const dynamics::BodyState& own = scene.start;
-  return {own.x, own.vx, own.vy, {}, {}, own.y};
-}
-
-std::vector<PaperStart> usual_starts(const Scene& scene) {
-  const std::vector<PaperStart> papers = table_iv(scene.gate);
-  const dynamics::BodyState &own = scene.start, first = papers.front().body();
-  const bool the_papers = own.x == 0.0 && own.y == 0.0 && own.vx == 0.0 &&
-                          std::abs(own.vy - first.vy) <= 1e-12 * first.vy;
-  if (the_papers && !scene.terrain && papers_field(scene)) return papers;
-  return {own_start(scene)};
-}
-
-dynamics::Entry PaperStart::entry() const {
-  if (y != 0.0)
+dynamics::Entry own_start(const Scene& scene) {
+  if (scene.start.y != 0.0)
     throw std::invalid_argument(
-        "start.y_m = " + toml_float(y) +
+        "start.y_m = " + toml_float(scene.start.y) +
         " is not permitted for a chain: its states are entries from below, start.y_m must be 0");
-  return dynamics::entry_of(body());
+  return dynamics::entry_of(scene.start);
 }
 
-std::vector<dynamics::Entry> entries_at(const std::vector<PaperStart>& starts) {
-  std::vector<dynamics::Entry> entries;
-  for (const PaperStart& s : starts) entries.push_back(s.entry());
-  return entries;
+dynamics::BodyState body_at(const dynamics::Entry& entry) {
+  return {entry.at[dynamics::kEntryD], 0.0, entry.at[dynamics::kEntryVx],
+          entry.at[dynamics::kEntryVy]};
 }
 
-std::vector<dynamics::BodyState> bodies_at(const std::vector<PaperStart>& starts) {
+std::vector<dynamics::BodyState> bodies_at(const std::vector<dynamics::Entry>& entries) {
   std::vector<dynamics::BodyState> bodies;
-  for (const PaperStart& s : starts) bodies.push_back(s.body());
+  for (const dynamics::Entry& entry : entries) bodies.push_back(body_at(entry));
   return bodies;
 }
 
-void require_inside(const std::vector<PaperStart>& starts, const Scene& scene) {
+void require_inside(const std::vector<dynamics::Entry>& starts, const Scene& scene) {
   const double side = scene.gate.beams.joint_x;
-  for (const PaperStart& s : starts)
-    if (!(std::abs(s.d) < side))
-      throw std::invalid_argument("--start: d = " + toml_float(s.d) +
+  for (const dynamics::Entry& s : starts)
+    if (const double d = s.at[dynamics::kEntryD]; !(std::abs(d) < side))
+      throw std::invalid_argument("--start: d = " + toml_float(d) +
                                   " m must lie inside the gate, (-" + toml_float(side) + ", " +
                                   toml_float(side) + ")");
 }

@@ -13,6 +13,7 @@
 #include "dynamics/base/share.h"
 #include "lattice/gate_chain.h"
 #include "lattice/pool/pool_runner.h"
+#include "lattice/study/trials.h"
 #include "markov/committor.h"
 
 namespace gatewalk::lattice {
@@ -427,6 +428,22 @@ RareEvent rare_event(const Problem& problem, const SplittingOptions& options, co
   event.splitting.health += pool.health();
   event.seconds = watch.seconds();
   return event;
+}
+
+DirectRows direct_rows(const Problem& problem, std::int64_t trials, std::uint64_t seed,
+                       const dynamics::Work& work) {
+  const dynamics::Stopwatch watch;
+  const FieldTally tally = field_trials(problem, {0, trials}, seed, work);
+  DirectRows direct{.trials = trials, .entered = {}, .seconds = watch.seconds()};
+  const int rows = problem.field.rows;
+  direct.entered.assign(static_cast<std::size_t>(rows),
+                        tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)]);
+  std::int64_t behind = 0;  // last gates; those of bodies over the far edge are among them
+  for (int row = rows - 1; row > 0; --row) {
+    behind += tally.final_cells.row(row).sum();
+    direct.entered[static_cast<std::size_t>(row) - 1] = behind;
+  }
+  return direct;
 }
 
 }  // namespace gatewalk::lattice

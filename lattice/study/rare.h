@@ -79,4 +79,14 @@ struct RareEvent {
 [[nodiscard]] RareEvent rare_event(const Problem& problem, const SplittingOptions& options,
                                    const dynamics::Work& work = {});
 
+/// Direct simulation: how many trials entered rows 1, 2, ...
+struct DirectRows {
+  std::int64_t trials = 0;
+  std::vector<std::int64_t> entered;  // (field.rows), the last: crossed the field
+  double seconds = 0.0;
+};
+/// Runs them; nobody may move back to a row before. Throws as field_trials.
+[[nodiscard]] DirectRows direct_rows(const Problem& problem, std::int64_t trials,
+                                     std::uint64_t seed, const dynamics::Work& work = {});
+
 }  // namespace gatewalk::lattice

@@ -670,29 +670,6 @@ void write_counts(const std::string& path, const CountsFile& file) {
   replace_file(path, {image.data(), image.size()});
 }
 
-std::optional<std::string> text_of_counts(const std::string& path, const std::string& name) {
-  try {
-    const InputFile opened(path);
-    check_kind(opened);
-    if (!has_its_checksum(opened)) return {};
-  } catch (const std::runtime_error&) {
-    return {};
-  }
-  silence_hdf5();
-  int nc = -1;
-  if (nc_open(path.c_str(), NC_NOWRITE, &nc) != NC_NOERR) return {};
-  std::optional<std::string> found;
-  nc_type type = NC_NAT;
-  std::size_t length = 0;
-  if (nc_inq_att(nc, NC_GLOBAL, name.c_str(), &type, &length) == NC_NOERR && type == NC_CHAR &&
-      length <= kMostTextBytes) {
-    std::string text(length, '\0');
-    if (nc_get_att_text(nc, NC_GLOBAL, name.c_str(), text.data()) == NC_NOERR) found = text;
-  }
-  nc_close(nc);
-  return found;
-}
-
 std::string diagnose_counts(const std::string& path) {
   constexpr unsigned kPatience = 5;  // seconds
   int ends[2];

@@ -15,7 +15,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -79,11 +78,6 @@ void write_counts(const std::string& path, const CountsFile& file);
 /// altered. The checksum is taken in constant memory, before the file is read; one above 1 GiB is
 /// refused.
 [[nodiscard]] CountsFile read_counts(const std::string& path);
-
-/// One of the texts of a file; none where it has none, is not ours, or was altered: the checksum is
-/// taken before HDF5 sees the file. Looks at nothing else.
-[[nodiscard]] std::optional<std::string> text_of_counts(const std::string& path,
-                                                        const std::string& name);
 
 /// What is wrong with a file of a bad checksum, for people: "row 12 (counted from 0): counts add up
 /// to ...", or that its content adds up all the same. Empty where nothing in it can be read. Looks

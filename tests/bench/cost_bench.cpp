@@ -23,8 +23,8 @@
 #include <vector>
 
 #include "dynamics/disc/row_trials.h"
+#include "lattice/cells/cell_matrix.h"
 #include "lattice/scene/disc_field.h"
-#include "lattice/scene/matrix.h"
 #include "lattice/scene/scene.h"
 #include "markov/markov.h"
 #include "scenes.h"

@@ -17,11 +17,11 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/loaded_matrix.h"
 #include "cli/render/json_value.h"
 #include "dynamics/cells/cell.h"
 #include "lattice/cells/cell_file.h"
 #include "lattice/cells/recorded_pool.h"
+#include "lattice/cells/source.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/reference.h"
 #include "lattice/scene/scene_problem.h"
@@ -39,17 +39,18 @@ double milliseconds(const F& f) {
 }
 
 void predict(const std::string& path, int times) {
-  const auto loaded = std::make_shared<const cli::LoadedMatrix>(cli::load_matrix(path));
-  const lattice::Problem problem = lattice::problem_of(*loaded->scene);
+  const auto source = std::make_shared<lattice::SourceFile>(path);
+  source->keep_in_memory();
+  const lattice::Problem problem = lattice::problem_of(source->own_scene());
   const auto by_library = [&] {
-    lattice::RunPool pool = *loaded->pool;
+    lattice::RunPool pool = *source->runs();
     lattice::AccuracyOptions how;
     how.accuracy = 0.5;  // no new runs
     (void)lattice::predict_pooled(problem, pool, {problem.start}, how);
   };
   const auto by_command = [&] {
     cli::Arguments arguments{path, "--quiet", "--json=-"};
-    arguments.loaded = {loaded};
+    arguments.files = {source};
     arguments.given_out = [](const cli::Description& describe) { (void)cli::json_of(describe); };
     arguments.work = dynamics::Work{};
     (void)cli::run_predict(arguments);

@@ -49,8 +49,8 @@ TEST(Imported, ShowsStatesInTheOrderOfTheirTable) {
   EXPECT_EQ(counts.coeff(0, 1), 5);
   EXPECT_EQ(counts.coeff(1, 2), 4);
   EXPECT_EQ(counts.coeff(2, 3), 1);
-  EXPECT_EQ(foreign_start(file, "1")->at[0], 1.0);
-  EXPECT_EQ(foreign_start(file, "aside")->face, foreign_start(file, "1")->face);
+  EXPECT_EQ(lattice::named_state(file, "1")->at[0], 1.0);
+  EXPECT_EQ(lattice::named_state(file, "aside")->face, lattice::named_state(file, "1")->face);
   // Other numbers than one of each state are none of a table.
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::vector<double>& wrong :

@@ -45,7 +45,7 @@ const std::string kRecorded =
     R"("states_bias":0.0,"states":9})";
 
 StateRecord read(const std::string& attribute) {
-  return state_record(parsed_json(attribute), dynamics::disc_section());
+  return state_record(attribute, dynamics::disc_section());
 }
 
 TEST(StateRecord, AttributesAreReadAsTheyWereWritten) {

@@ -36,8 +36,7 @@ std::string unpacked(const std::string& path) {
 }
 
 Fate fate_of_matrix(const std::string& path) {
-  if (lattice::is_of_cells(path)) return silent;
-  // Not read_any_matrix, which looks in a child process what is wrong.
+  // Not read_matrix, which looks in a child process what is wrong.
   return fuzz::accepted([&] { return markov::read_counts(path); }) ? silent : refused;
 }
 
@@ -88,7 +87,7 @@ int flip(const std::string& path, int flips) {
   const std::string copy = fuzz::file_of(whole, ".flipped");
   const bool is_pieces = cli::PieceFile::is_one(copy), is_picture = whole.starts_with(kPng);
   const auto picture = is_picture ? picture_of(copy, whole) : lattice::GreyPicture();
-  if (!is_pieces && !is_picture) (void)lattice::read_any_matrix(copy);  // it is one
+  if (!is_pieces && !is_picture) (void)lattice::read_matrix(copy);  // it is one
   const auto pieces = is_pieces ? std::optional(Pieces(copy)) : std::nullopt;
   std::mt19937_64 random(1);
   int fates[kFates] = {};

@@ -2,6 +2,9 @@
 // A matrix file as it is: nearly all that is not one is refused by its checksum, before HDF5 sees
 // it. matrix_content has what a good checksum lets through.
 #include "lattice/scene/matrix.h"
+
+#include <memory>
+
 #include "lattice/cells/cell_matrix.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/scene/scene_problem.h"
@@ -12,7 +15,7 @@
 namespace gatewalk::fuzz {
 
 void use_matrix(const std::string& path) {
-  const auto file = accepted([&] { return lattice::read_any_matrix(path); });
+  const auto file = accepted([&] { return lattice::read_matrix(path); });
   if (!file) return;
   const dynamics::Transitions& t = file->transitions;
   for (std::size_t row = 0; row < t.rows.size(); ++row) {
@@ -21,7 +24,8 @@ void use_matrix(const std::string& path) {
     require(sum == t.trials[row] && t.clamped[row] <= sum, "counts of a row add up to its trials");
   }
   if (file->text.contains(lattice::kCellText)) {
-    (void)accepted([&] { return lattice::read_cell_matrix(path).problem.field.rows; });
+    const auto shared = std::make_shared<const lattice::MatrixFile>(*file);
+    (void)accepted([&] { return lattice::cell_matrix(shared, path).problem.field.rows; });
   } else {
     (void)accepted([&] {
       const lattice::Scene scene = lattice::own_scene(*file, path);
@@ -31,7 +35,7 @@ void use_matrix(const std::string& path) {
   }
   const std::string again = file_of("", ".again.nc");
   lattice::write_matrix(again, *file);
-  const lattice::MatrixFile other = lattice::read_any_matrix(again);
+  const lattice::MatrixFile other = lattice::read_matrix(again);
   require(other.transitions.rows == t.rows && other.transitions.trials == t.trials &&
               other.text == file->text && other.types.size() == file->types.size(),
           "a matrix that was written and read is the same");
@@ -39,7 +43,6 @@ void use_matrix(const std::string& path) {
 
 void matrix(std::string_view bytes) {
   const std::string path = file_of(bytes, ".nc");
-  (void)accepted([&] { return lattice::is_of_cells(path); });
   // First without read_matrix, which looks in a child process what is wrong.
   if (accepted([&] { return markov::read_counts(path); })) use_matrix(path);
 }

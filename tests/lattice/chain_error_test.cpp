@@ -27,7 +27,7 @@ FieldTruth truth_of(const std::array<std::int64_t, 9>& trials, double seconds_pe
     tally.count(std::vector(n, static_cast<std::int32_t>(i)),
                 std::vector(n, std::optional(markov::Ending::trapped)));
   }
-  return field_truth({0.0, 0.0, 15.0}, std::move(tally), seconds_per_trial);
+  return field_truth({0, {0.0, 0.0, 15.0}}, std::move(tally), seconds_per_trial);
 }
 
 TEST(FieldTruth, IsToldFromAsTwoSamplesAreFromEachOther) {
@@ -160,7 +160,7 @@ TEST(ChainSummary, SaysThatAChainNeverPays) {
   EXPECT_EQ(s.starts_to_pay, kNever);
 }
 
-const std::vector<PaperStart> kStarts{{0.0, 0.0, 15.0}};
+const std::vector<dynamics::Entry> kStarts{{0, {0.0, 0.0, 15.0}}};
 
 TEST(ChainErrorPlan, HasTheTrialsWithinTheLimitOfRuns) {
   const Scene scene = parse_scene("", "scene");
@@ -182,8 +182,6 @@ TEST(ChainErrorPlan, HasTheTrialsWithinTheLimitOfRuns) {
   plan = plan_chain_error(scene, options);
   EXPECT_TRUE(plan.empty());
   EXPECT_THROW((void)chart_chain_error(scene, plan), std::invalid_argument);
-  options.starts[0].y = 1.0;
-  EXPECT_THROW((void)plan_chain_error(scene, options), std::invalid_argument);
 }
 
 TEST(ChainErrorPlan, MakesBinsOfWhatAPilotSees) {
@@ -213,7 +211,7 @@ TEST(ChainErrorChart, ChartsMatricesOfTheSameTrials) {
   EXPECT_EQ(chart.points[1].runs, 460);
   const StateSpace fixed = fixed_space(scene);
   const FieldTally truth =
-      run_field(scene.gate, scene.field, kStarts[0].body(), 5, {0, 100}, nullptr, &fixed);
+      run_field(scene.gate, scene.field, body_at(kStarts[0]), 5, {0, 100}, nullptr, &fixed);
   EXPECT_TRUE((chart.truths[0].tally.final_cells == truth.final_cells).all());
   // 20 trials in one go: the same matrix as from the pieces that those of 10 trials need.
   Transitions whole(space);

@@ -89,7 +89,7 @@ TEST(FidelityStudy, RunsTheTrialsOfTheFullDynamics) {
       fidelity_variants(parse_scene("field = { rows = 3, columns = 3 }", "scene"));
   std::vector<std::string> told;
   const FidelityStudy study =
-      compare_fidelities(variants, {{{0.0, 0.0, 15.0}, {4.0, 5.0, 10.0}}, 10, 7},
+      compare_fidelities(variants, {{{0.0, 0.0, 0.0, 15.0}, {4.0, 0.0, 5.0, 10.0}}, 10, 7},
                          {[&](std::string_view what, std::int64_t done, std::int64_t) {
                            if (done == 0) told.emplace_back(what);
                          }});
@@ -101,7 +101,7 @@ TEST(FidelityStudy, RunsTheTrialsOfTheFullDynamics) {
       const Scene& scene = variants[v].scene;
       FieldTrials each;
       const FieldTally plain =
-          run_field(scene.gate, scene.field, s.start.body(), 7, {0, 10}, &each, &space);
+          run_field(scene.gate, scene.field, s.start, 7, {0, 10}, &each, &space);
       EXPECT_EQ(s.runs[v].final_gates, each.final_gates);
       EXPECT_EQ(s.runs[v].change.has_value(), v > 0);
       EXPECT_GT(s.runs[v].seconds_per_trial, 0.0);

@@ -207,9 +207,11 @@ TEST(ChainStart, SaysWhenItWasClamped) {
 }
 
 TEST(ChainStart, InsideTheGateIsRefused) {
+  Scene scene;
   for (const double y : {1e-9, 5.0, -1.0}) {
+    scene.start.y = y;
     try {
-      (void)PaperStart{.d = 0, .vx = 0, .vy = 15, .y = y}.entry();
+      (void)own_start(scene);
       ADD_FAILURE() << y;
     } catch (const std::invalid_argument& e) {
       EXPECT_NE(std::string(e.what()).find("start.y_m"), std::string::npos);

@@ -320,7 +320,7 @@ TEST(Memory, SameBitsForAnyThreadsAndRefusals) {
 
 // ---- Of a field ----
 
-const PaperStart kStart{0.0, 0.0, 15.0};
+const dynamics::BodyState kStart{0.0, 0.0, 0.0, 15.0};
 
 TEST(Memory, OriginsAreWhereBodiesComeFrom) {
   EXPECT_EQ(origins_of(dynamics::disc_section()),
@@ -333,8 +333,7 @@ TEST(Memory, WalksAreTheTrialsInStates) {
   const auto space = dynamics::table3_space(scene.gate);
   FieldTrials each;
   each.keep_passages = true;
-  const FieldTally tally =
-      run_field(scene.gate, scene.field, kStart.body(), 1, {0, 50}, &each, &space);
+  const FieldTally tally = run_field(scene.gate, scene.field, kStart, 1, {0, 50}, &each, &space);
   const int first = space.index_of({dynamics::Boundary::enter, {0.0, 0.0, 15.0}}).state;
   StateWalks w = no_walks(space);
   add_walks(w, space, first, each);
@@ -367,8 +366,7 @@ TEST(Memory, OfTheForceIsWhatItsHoldDoes) {
     const auto space = dynamics::table3_space(scene.gate);
     const auto trials = [&](Memory held) {
       RunTrials t{FieldTally(scene.field), {}};
-      t.tally =
-          run_field(scene.gate, scene.field, kStart.body(), 1, {0, 300}, &t.each, &space, held);
+      t.tally = run_field(scene.gate, scene.field, kStart, 1, {0, 300}, &t.each, &space, held);
       return t;
     };
     return force_memory(trials(Memory::kept), trials(Memory::dropped), 1);

@@ -355,5 +355,17 @@ TEST(Splitting, IntervalsOfLargeChancesHold) {
   EXPECT_GE(holds, 34);
 }
 
+TEST(DirectRows, AreThoseThatTrialsEnter) {
+  const Problem problem = problem_of(up_to_row(mixed_scene(), 4));
+  const DirectRows direct = direct_rows(problem, 500, 77);
+  const FieldTally tally = field_trials(problem, {0, 500}, 77);
+  ASSERT_EQ(direct.entered.size(), 4U);
+  for (int row = 1; row < 4; ++row)
+    EXPECT_EQ(direct.entered[static_cast<std::size_t>(row) - 1],
+              tally.final_cells.bottomRows(4 - row).sum());
+  EXPECT_EQ(direct.entered[3], tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)]);
+  EXPECT_GT(direct.entered[0], direct.entered[1]);
+}
+
 }  // namespace
 }  // namespace gatewalk::lattice

@@ -478,7 +478,8 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   put_matrices(file, scene, chain.transitions);
   write_matrix(path, file);
 
-  const SceneMatrix m = read_scene_matrix(path, nullptr, {});
+  const SourceFile source(path);
+  const SceneMatrix m = scene_matrix(source.matrix(), source.own_scene(), path, nullptr, {});
   EXPECT_EQ(m.file->types.size(), 2U);
   const auto matrices = matrices_of(*m.file, m.scene);
   for (std::size_t type = 0; type < 3; ++type)
@@ -514,7 +515,7 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   const TomlFile other(to_toml(scene), "terrain.toml");
   const auto message = [&](const std::string& override) {
     try {
-      (void)read_scene_matrix(path, &other, {override});
+      (void)Source::open(source, {.overrides = {override}, .scene = &other});
     } catch (const std::invalid_argument& e) {
       return std::string(e.what());
     }
@@ -540,14 +541,14 @@ TEST(Terrain, BinsHaveAMatrixForEachType) {
     own.terrain.reset();
     EXPECT_EQ(build_matrices(own, states, {0, 20}, 1).front().rows, matrices[type + 1].rows);
   }
-  const PaperStart start{kStart.x, kStart.vx, kStart.vy, {}, {}};
-  const Validation v = validate_chain(problem_of(scene), matrices, {start.entry()},
+  const Validation v = validate_chain(problem_of(scene), matrices, {dynamics::entry_of(kStart)},
                                       {.trials = 200, .walks = {}, .null_draws = 19});
   EXPECT_EQ(v.starts[0].dynamics.trials, 200);
   EXPECT_TRUE(v.memory.ahead.steps.empty());
   EXPECT_GT(v.memory.runs, 200);
-  EXPECT_THROW((void)validate_chain(problem_of(scene), {matrices[0]}, {start.entry()}, {}),
-               std::invalid_argument);
+  EXPECT_THROW(
+      (void)validate_chain(problem_of(scene), {matrices[0]}, {dynamics::entry_of(kStart)}, {}),
+      std::invalid_argument);
 }
 
 // ---- What a body may do: table [actions]

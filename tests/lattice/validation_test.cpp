@@ -60,11 +60,11 @@ dynamics::Transitions all_trapped(const Scene& scene, std::int64_t runs) {
   return t;
 }
 
-const PaperStart kStart{0.0, 0.0, 15.0};
+const dynamics::Entry kStart{0, {0.0, 0.0, 15.0}};
 
 TEST(ValidateChain, ARightChainIsWithinChance) {
   const Scene scene = straight_up();
-  const Validation v = validate_chain(problem_of(scene), {all_up(scene, 1000)}, {kStart.entry()},
+  const Validation v = validate_chain(problem_of(scene), {all_up(scene, 1000)}, {kStart},
                                       {.trials = 250, .null_draws = 99, .seed = 3});
   ASSERT_EQ(v.starts.size(), 1u);
   const StartValidation& s = v.starts.front();
@@ -85,9 +85,8 @@ TEST(ValidateChain, ARightChainIsWithinChance) {
 
 TEST(ValidateChain, AWrongChainHasAnErrorOfItsOwn) {
   const Scene scene = straight_up();
-  const Validation v =
-      validate_chain(problem_of(scene), {all_trapped(scene, 1000)}, {kStart.entry()},
-                     {.trials = 100, .walks = 40, .null_draws = 99, .seed = 3});
+  const Validation v = validate_chain(problem_of(scene), {all_trapped(scene, 1000)}, {kStart},
+                                      {.trials = 100, .walks = 40, .null_draws = 99, .seed = 3});
   const StartValidation& s = v.starts.front();
   EXPECT_EQ(s.exact_against.total_variation, 1.0);  // start gate against last row
   EXPECT_EQ(s.finding(), Finding::own_error);
@@ -108,7 +107,7 @@ TEST(ValidateChain, CountsTheSamplingOfTheMatrix) {
       row.begin()->second -= runs * 2 / 100;
       row[t.space.trapped()] += runs * 2 / 100;
     }
-    return validate_chain(problem_of(scene), {t}, {kStart.entry()},
+    return validate_chain(problem_of(scene), {t}, {kStart},
                           {.trials = 1000, .null_draws = 199, .seed = 1})
         .starts.front();
   };
@@ -124,10 +123,10 @@ TEST(ValidateChain, IsTheSameForAnyPieces) {
   const dynamics::Transitions matrix = all_up(scene, 10);
   const ValidationOptions options{.trials = 120, .walks = 130, .null_draws = 19, .seed = 5};
   const StartValidation s =
-      validate_chain(problem_of(scene), {matrix}, {kStart.entry()}, options).starts.front();
+      validate_chain(problem_of(scene), {matrix}, {kStart}, options).starts.front();
   FieldTrials each;
   const FieldTally dynamics =
-      run_field(scene.gate, scene.field, kStart.body(), 5, {0, 120}, &each, &matrix.space);
+      run_field(scene.gate, scene.field, body_at(kStart), 5, {0, 120}, &each, &matrix.space);
   EXPECT_TRUE((s.dynamics.final_cells == dynamics.final_cells).all());
   EXPECT_EQ(s.dynamics.endings, dynamics.endings);
   markov::CellCounts first = markov::CellCounts::Zero(3, 3);
@@ -138,7 +137,7 @@ TEST(ValidateChain, IsTheSameForAnyPieces) {
 
 TEST(ValidateChain, RefusesFieldsTooLargeToKeep) {
   const Scene scene = parse_scene("field = { columns = 1001, rows = 100 }", "scene");
-  EXPECT_THROW((void)validate_chain(problem_of(scene), {all_up(scene, 1)}, {kStart.entry()}, {}),
+  EXPECT_THROW((void)validate_chain(problem_of(scene), {all_up(scene, 1)}, {kStart}, {}),
                std::invalid_argument);
 }
 

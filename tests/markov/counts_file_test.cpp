@@ -225,7 +225,6 @@ TEST_F(ChainIo, RoundTrip) {
 TEST_F(ChainIo, NothingIsPrintedInAnyThread) {
   write_counts(path(), example());  // NetCDF begins in this thread
   testing::internal::CaptureStderr();
-  std::thread([&] { EXPECT_EQ(text_of_counts(path(), "seed"), "1"); }).join();
   std::thread([&] { EXPECT_TRUE(same(read_counts(path()), example())); }).join();
   std::thread([&] { write_counts(path(), example()); }).join();
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
@@ -426,15 +425,6 @@ TEST_F(ChainIo, EveryAlteredByteIsRefused) {
     put(at, bytes[at]);
   }
   EXPECT_TRUE(same(read_counts(path()), example()));
-}
-
-TEST_F(ChainIo, NoTextIsTakenFromAnAlteredFile) {
-  write_counts(path(), example());
-  EXPECT_EQ(text_of_counts(path(), "seed"), "1");
-  std::string bytes = bytes_of(path());
-  bytes.back() = static_cast<char>(bytes.back() ^ 1);  // far from the text
-  put_bytes(path(), bytes);
-  EXPECT_EQ(text_of_counts(path(), "seed"), std::nullopt);
 }
 
 TEST_F(ChainIo, RefusesWhatIsNoFileOfOurs) {

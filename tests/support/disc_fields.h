@@ -2,6 +2,8 @@
 #pragma once
 /// Fields of our own gates, for tests of what takes any cells.
 
+#include "lattice/cells/cell_matrix.h"
+#include "lattice/cells/source.h"
 #include "lattice/scene/disc_field.h"
 #include "lattice/scene/matrix.h"
 #include "lattice/scene/row_matrices.h"

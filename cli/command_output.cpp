@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <iostream>
+
+#include "cli/command_state.h"
+#include "cli/kept/ranks.h"
+#include "cli/render/json.h"
+#include "cli/render/numbers.h"
+#include "cli/terminal/gnuplot.h"
+#include "cli/terminal/output.h"
+
+namespace gatewalk::cli {
+
+void Options::warn(const std::string& text) const {
+  if (text.empty()) return;
+  if (state_->warned)
+    state_->warned(text);
+  else
+    std::cerr << "gatewalk: " << text << "\n";
+}
+
+void Options::remark(const std::string& text) const {
+  if (talk() && ::isatty(STDERR_FILENO) == 1) warn(text);
+}
+
+Provenance Options::provenance() const {
+  Provenance p{.command = canonical(),
+               .seed = {},
+               .scene = {},
+               .derived = {},
+               .parts = part_names(state_->words.parts)};
+  if (has("seed")) p.seed = seed();
+  return p;
+}
+
+Provenance Options::provenance(const lattice::Source& source) const {
+  if (source.scene) return provenance(*source.scene);
+  Provenance p = provenance();
+  p.cell = lattice::to_toml(*source.cells);
+  return p;
+}
+
+Provenance Options::provenance(const lattice::Scene& scene) const {
+  Provenance p = provenance();
+  p.scene = lattice::to_toml(scene);
+  p.derived = scene.derived;
+  return p;
+}
+
+void Options::give_out(const Description& describe, const std::string& table, int indent) const {
+  const std::string csv = state_->has_table ? text("csv") : "";
+  if (!state_->given_out && is_first_rank()) {
+    const bool to_stdout = text("json") == "-" || csv == "-";
+    if (!to_stdout && ((text("json").empty() && csv.empty()) || talk()))
+      write_text_atomically("-", table);
+    if (has("json")) write(text("json"), result_json(describe, indent));
+  }
+  if (!csv.empty()) write(csv, table_of_numbers(describe));
+  if (state_->given_out) state_->given_out(with_format_version(describe));
+}
+
+void Options::keep_old(const std::string& path) const {
+  if (path != "-" && !has("force") && is_first_rank()) state_->backups.try_emplace(path, path);
+}
+
+void Options::write(const std::string& path, std::string_view text) const {
+  if (!is_first_rank()) return;
+  keep_old(path);
+  write_text_atomically(path, text);
+}
+
+void Options::draw(const std::function<Figure()>& picture) const {
+  if (!has("figure") || !is_first_rank()) return;
+  try {
+    keep_old(text("figure"));
+    cli::draw(text("figure"), picture(), about());
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(fmt::format("no figure: {}; the numbers are written", e.what()));
+  }
+}
+
+AboutFigure Options::about() const {
+  return {"gatewalk " + state_->synopsis.substr(0, state_->synopsis.find(' ')), canonical()};
+}
+
+ResultFolder::ResultFolder(const Options& options, const std::vector<std::string>& files)
+    : options_(options), folder_(options.text("output")), files_(files) {
+  require_folder(folder_);
+}
+
+void ResultFolder::write(const std::string& csv_file, const std::string& csv,
+                         const std::string& json_file, const Description& describe) const {
+  for (const std::string& file : files_)
+    if (file.ends_with(".svg")) {
+      options_.keep_old(path(file));
+      std::filesystem::remove(path(file));
+    }
+  options_.write(path(csv_file), csv);
+  options_.write(path(json_file), result_json(describe));
+}
+
+void ResultFolder::draw(const std::string& file, const Figure& figure) const {
+  try {
+    options_.keep_old(path(file));
+    cli::draw(path(file), figure, options_.about());
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(
+        fmt::format("no figure: {}; the other files in {} are written", e.what(), folder_));
+  }
+}
+
+std::string ResultFolder::path(const std::string& file) const {
+  return (std::filesystem::path(folder_) / file).string();
+}
+
+int exit_status(const Options& options, bool clean) {
+  if (clean || !options.has("strict")) return kFine;
+  options.warn(
+      "--strict: the result's status is not clean, so the exit status is 1; the result is written");
+  return kFailure;
+}
+
+}  // namespace gatewalk::cli

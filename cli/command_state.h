@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// What an Options object knows, for the files that carry out its functions: command.cpp what is
+/// declared and given, command_files.cpp the files that are named, command_output.cpp what is given
+/// out.
+
+#include <sys/types.h>
+
+#include <algorithm>
+#include <boost/program_options.hpp>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/kept/kept_run.h"
+#include "cli/terminal/backup.h"
+#include "lattice/cells/source.h"
+
+namespace gatewalk::cli {
+
+namespace po = boost::program_options;
+using Strings = std::vector<std::string>;
+
+/// A whole number on the command line, up to kMostCount either way.
+struct Count {
+  std::int64_t value = 0;
+};
+/// A finite number on the command line.
+struct Number {
+  double value = 0.0;
+};
+/// A seed on the command line.
+struct Seed {
+  std::uint64_t value = 1;
+};
+/// An option as users write it.
+[[nodiscard]] inline std::string shown(const std::string& name) {
+  return name == "output" ? "-o" : "--" + name;
+}
+
+[[nodiscard]] inline std::string upper_case(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(), ::toupper);
+  return name;
+}
+
+/// A regular file by what no other one has, whatever its names.
+using FileId = std::pair<dev_t, ino_t>;
+
+/// A file by how the command line names it.
+struct Options::NamedFile {
+  std::string name, path;
+
+  NamedFile(std::string shown_as, std::string file);
+  /// By identity, so that links and other spellings do not hide it; by place where there is none
+  /// yet.
+  [[nodiscard]] bool is_same(const NamedFile& other) const;
+  [[nodiscard]] bool is_regular() const { return id_.has_value(); }
+
+ private:
+  std::optional<FileId> id_;
+  std::filesystem::path place_;
+};
+
+struct Options::State {
+  std::string synopsis, about, example;
+  po::options_description own{"Options"}, shared{"Shared options"}, hidden;
+  po::positional_options_description positions;
+  std::vector<std::pair<std::string, std::string>> positional_help;
+  std::vector<std::string> required;
+  po::variables_map values;
+  std::vector<po::option> given;
+  std::string canonical;
+  std::string no_scene;  // why there is no --set, if there is none
+  std::optional<dynamics::Work> work;
+  std::function<void(const std::string&)> warned;
+  std::function<void(const Description&)> given_out;
+  std::shared_ptr<const dynamics::Cell> cell;
+  std::map<std::string, std::shared_ptr<const lattice::SourceFile>> files;  // open, by path
+
+  std::optional<std::set<std::string>> divided;  // stages; none: nothing is kept
+  CommandWords words;
+  std::unique_ptr<KeptRun> kept;
+  int thrown_before = std::uncaught_exceptions();
+
+  struct Output {
+    std::string name;
+    Content content = Content::text;
+  };
+  std::vector<Output> output_files{{"json", Content::text}};
+  std::vector<std::string> folder_files;  // what is written into the folder of --output
+  std::vector<std::pair<std::string, std::function<std::string(const std::string&)>>> reads;
+  bool has_table = false;                 // --csv is that of all commands
+  std::map<std::string, Backup> backups;  // by the file that is replaced
+  std::string needs_output;               // what to call the value of -o, if it must be given
+
+  template <class T>
+  void add(const std::string& name, po::typed_value<T>* value, const std::string& shown,
+           const std::string& help) {
+    own.add_options()(name.c_str(), value->value_name(shown), help.c_str());
+  }
+};
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include "cli/source_options.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "cli/arguments.h"
+#include "cli/cells/program.h"
+#include "cli/render/choice.h"
+#include "cli/render/matrix.h"
+#include "cli/render/text.h"
+#include "lattice/text/digits.h"
+
+namespace gatewalk::cli {
+namespace {
+
+using lattice::kParameters;  // --set parameters.KEY=VALUE
+using lattice::Source;
+
+/// Those of the program, and those of the cell file.
+std::vector<std::string> overrides_of(const Options& options, bool of_program) {
+  std::vector<std::string> chosen;
+  for (const std::string& text : options.overrides())
+    if (text.starts_with(kParameters) == of_program)
+      chosen.push_back(of_program ? text.substr(kParameters.size()) : text);
+  return chosen;
+}
+
+std::vector<dynamics::Cell::Number> parameters_of(const Options& options) {
+  std::vector<dynamics::Cell::Number> set;
+  for (const std::string& text : overrides_of(options, true)) {
+    const std::size_t equals = text.find('=');
+    std::string_view rest = text;
+    rest = equals == std::string::npos ? "" : rest.substr(equals + 1);
+    const auto value = lattice::take_number(rest);
+    if (!value || !rest.empty() || !std::isfinite(*value))
+      throw UsageError(fmt::format("--set {}{}: must be KEY=NUMBER", kParameters, text));
+    set.push_back({text.substr(0, equals), *value});
+  }
+  return set;
+}
+
+/// The cell that carries bodies through: the one given, or that of --cell-program.
+std::shared_ptr<const dynamics::Cell> cell_of(const Options& options) {
+  const std::vector<dynamics::Cell::Number> set = parameters_of(options);
+  if (!options.cell()) {
+    ProgramOptions how;
+    if (options.has("cell-timeout")) how.timeout_s = options.number("cell-timeout");
+    return std::make_shared<ProgramCell>(options.text("cell-program"), how, set);
+  }
+  if (!set.empty() || options.has("cell-program") || options.has("cell-timeout"))
+    throw UsageError("a cell is given: --set parameters and --cell-program are for programs");
+  return options.cell();
+}
+
+/// Its starts and its accuracy are those asked for; warns of what it cannot tell.
+void take_options(const Options& options, Source& s) {
+  if (s.is_recorded())
+    refuse(
+        options, {"gate-runs"},
+        "for " + s.path +
+            (s.is_imported ? ", a chain that was made elsewhere" : ", whose runs were recorded"));
+  if (s.scene && s.file) warn_of_faults(options, *s.file, s.path);
+  for (const std::string& text : s.doubts) options.warn(text);
+  s.accuracy = accuracy_of(options, s.accuracy);
+  for (const std::string& text : s.start_from(options.texts("start"))) options.warn(text);
+}
+
+/// The scene with --versus on top of --set.
+Source open_other(const Options& options) {
+  std::vector<std::string> overrides = options.overrides();
+  const std::vector<std::string> versus = options.texts("versus");
+  overrides.insert(overrides.end(), versus.begin(), versus.end());
+  try {
+    return Source::open(options.file(options.text("scene")), {.overrides = std::move(overrides)});
+  } catch (const lattice::SceneError& e) {  // it names overrides as --set gives them
+    const std::string what = e.what();
+    for (const std::string& key : versus)
+      if (what.starts_with("--set " + key))
+        throw UsageError("--versus" + what.substr(what.find(' ')));
+    throw;
+  }
+}
+
+void require_same_size(const lattice::FieldParams& now, const lattice::FieldParams& then) {
+  if (then.columns != now.columns || then.rows != now.rows)
+    throw UsageError(
+        "--versus: field.columns and field.rows must stay: final gates of fields of different "
+        "sizes cannot be compared");
+}
+
+/// Recorded runs of another group of bodies.
+Source other_group(const Options& options, const Source& s, const lattice::SourceFile& file) {
+  if (!s.is_recorded() || s.is_imported || has_cell(options) || !file.is_of_cells())
+    throw UsageError(fmt::format(
+        "--versus {}: two matrices are compared where both are of recorded runs", file.path()));
+  Source other = Source::open(file, {.overrides = options.overrides()});
+  take_options(options, other);
+  if (other.is_imported)
+    throw UsageError(fmt::format("--versus {}: is a chain that was made elsewhere", file.path()));
+  require_same_size(s.cells->field, other.cells->field);
+  return other;
+}
+
+}  // namespace
+
+Source open_source(const Options& options, const std::string& name) {
+  const lattice::SourceFile& file = options.file(options.text(name));
+  const std::string second = name == "scene" ? "" : options.text("scene");
+  lattice::SourceOptions how;
+  if (!second.empty()) how.scene = &options.file(second).toml();
+  if (has_cell(options)) {
+    if (file.is_matrix() && !parameters_of(options).empty())
+      throw UsageError(fmt::format(
+          "--set parameters: {} holds runs of the program with its own: make a matrix with these",
+          file.path()));
+    how.overrides = overrides_of(options, false);
+    how.cell = [&] { return cell_of(options); };
+  } else {
+    refuse(options, {"cell-timeout"}, "without --cell-program");
+    how.overrides = options.overrides();
+  }
+  Source s = Source::open(file, how);
+  if (how.cell) options.depends_on(text_of(*s.problem.cells.cells.front()));
+  take_options(options, s);
+  return s;
+}
+
+Source field_to_run(const Options& options, const std::string& made) {
+  Source s = open_source(options, "scene");
+  if (s.file)
+    throw UsageError(s.path + ": is a matrix, and new bodies are to be run: give a scene");
+  if (s.starts.size() > 1) throw UsageError("--start: " + made + " for one start");
+  return s;
+}
+
+std::optional<Source> versus(const Options& options, const Source& s) {
+  if (!options.has("versus")) return {};
+  const std::vector<std::string> given = options.texts("versus");
+  if (given.size() == 1 && options.file(given.front()).is_matrix())
+    return other_group(options, s, options.file(given.front()));
+  for (const std::string& text : given) {
+    if (text.find('=') != text.npos) continue;
+    std::error_code error;
+    throw UsageError(
+        "--versus " + text +
+        (!std::filesystem::exists(text, error)
+             ? ": there is no such file; must be the matrix of another group's recorded runs, or "
+               "KEY=VALUE, for example forces.random_N=20"
+         : options.file(text).is_matrix()
+             ? ": a matrix of another group's recorded runs is given once, and alone"
+             : ": is no matrix; of two scenes give each key in which the other one differs, as "
+               "--versus KEY=VALUE"));
+  }
+  if (!s.scene || s.file)
+    throw UsageError(
+        fmt::format("--versus KEY=VALUE is of a scene, which {} is not; of recorded runs give "
+                    "another group's matrix",
+                    s.path));
+  Source other = open_other(options);
+  require_same_size(s.scene->field, other.scene->field);
+  other.accuracy = s.accuracy;
+  other.starts_given = s.starts_given;
+  return other;
+}
+
+void choose_method(const Options& options, Source& s) {
+  if (!s.scene || s.file) return;
+  warn_of_keys(options, *s.scene, lattice::RunsFrom::everywhere);
+  s.choose_method(options.seed(), options.work());
+  if (s.settled) options.warn(complaint(*s.settled));
+}
+
+lattice::PooledPrediction predict(const Options& options, Source& s) {
+  auto prediction = lattice::predict(s, options.work());
+  warn_of(options, prediction, s.accuracy.accuracy);
+  return prediction;
+}
+
+std::string where(const Source& s, std::size_t start) {
+  return s.starts.size() > 1 ? s.name_of(start) + ": " : "";
+}
+
+std::string text_of(const dynamics::Cell& cell) {
+  const dynamics::Section& section = cell.section();
+  std::string costs;
+  for (const dynamics::CostInfo& cost : section.costs)
+    costs += (costs.empty() ? "" : ", ") + cost.key;
+  std::string text = fmt::format("cell program: {}; {}; {}", names_of(section.faces),
+                                 names_of(section.coordinates), costs);
+  for (const dynamics::Cell::Number& n : cell.numbers())
+    text += fmt::format("; {} = {}", n.key, digits(n.value));
+  return text;
+}
+
+void refuse(const Options& options, std::initializer_list<const char*> names,
+            const std::string& where) {
+  for (const char* name : names)
+    if (options.has(name)) throw UsageError(fmt::format("--{} has no meaning {}", name, where));
+}
+
+bool has_cell(const Options& options) { return options.has("cell-program") || options.cell(); }
+
+void add_cell_program(Options& options) {
+  options.add_text("cell-program", "COMMAND",
+                   "SCENE is a cell file (cell.toml), and this command carries bodies through its "
+                   "cells (cli/cells/PROGRAM.md); --set parameters.KEY=VALUE changes a parameter "
+                   "of it");
+  options.add_number("cell-timeout", "S",
+                     "seconds that the program may be silent while an answer is awaited "
+                     "(default: 60)");
+}
+
+}  // namespace gatewalk::cli

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// The options of a command that say what is asked about, as a lattice::Source.
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+
+#include "cli/command.h"
+#include "lattice/cells/source.h"
+
+namespace gatewalk::cli {
+
+/// Opens what the positional argument of this name says, with --cell-program, --start, --accuracy
+/// and --set, and warns of what its file or its runs cannot tell. Throws UsageError and as what
+/// reads it.
+[[nodiscard]] lattice::Source open_source(const Options& options, const std::string& name);
+
+/// A scene of gates, or cells of a program, with one start: `made` ("a plan is made") is for it.
+/// Throws UsageError.
+[[nodiscard]] lattice::Source field_to_run(const Options& options, const std::string& made);
+
+/// The scene or matrix of power --versus; none without it. Throws UsageError.
+[[nodiscard]] std::optional<lattice::Source> versus(const Options& options,
+                                                    const lattice::Source& s);
+
+/// Chooses the method that a scene leaves to a pilot, and says what the scene leaves out. To be
+/// called when all options have been looked at.
+void choose_method(const Options& options, lattice::Source& s);
+
+/// lattice::predict; warns where the accuracy was not reached.
+[[nodiscard]] lattice::PooledPrediction predict(const Options& options, lattice::Source& s);
+
+/// Of what a warning is, where several starts are given: "start d 0 m: "; else nothing.
+[[nodiscard]] std::string where(const lattice::Source& s, std::size_t start);
+
+/// What a program says of its cell, in one line, by which cells are told apart.
+[[nodiscard]] std::string text_of(const dynamics::Cell& cell);
+
+/// Refuses these options, if they are given: they have no meaning `where` ("for bins: ...").
+void refuse(const Options& options, std::initializer_list<const char*> names,
+            const std::string& where);
+
+/// Whether bodies are carried by cells that are not ours: --cell-program, or a cell given.
+[[nodiscard]] bool has_cell(const Options& options);
+/// Declares --cell-program and --cell-timeout.
+void add_cell_program(Options& options);
+
+}  // namespace gatewalk::cli
