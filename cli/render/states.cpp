@@ -191,8 +191,10 @@ StateRecord record_of(const lattice::TreeChain& c, double accuracy) {
 
 StateRecord state_record(const std::string& attribute, const Section& section) {
   const Json json = parsed_json(attribute);
-  StateRecord s{lattice::states_info(attribute, section), json.at("states"),
-                json.value("outermost_bins", "") == "open", section};
+  StateRecord s{lattice::states_info(attribute, section)};
+  s.states = json.at("states");
+  s.are_open = json.value("outermost_bins", "") == "open";
+  s.section = section;
   if (s.is_imported()) return s;
   for (const Json& start : json.at("starts_of_their_own"))
     s.starts.push_back(start_in(start, section));

@@ -55,7 +55,8 @@ void put_trees(Source& s) {
 }
 
 Source open_scene(const SourceFile& file, const SourceOptions& options) {
-  Source s{.path = file.path(), .scene = read_scene(file.toml(), options.overrides)};
+  Source s{.path = file.path()};
+  s.scene = read_scene(file.toml(), options.overrides);
   s.pool.emplace();
   put_problem(s, options);
   return s;
