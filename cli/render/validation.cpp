@@ -447,7 +447,7 @@ std::string table_of(const ValidateResult& result) {
     return percent(static_cast<double>(n), static_cast<double>(v.entries));
   };
   std::string table = endings_table(v, labels);
-  if (!result.papers.empty()) table += table4_table(result, labels);
+  if (result.shown.mass) table += table4_table(result, labels);  // of discs in gates
   table += final_gates_table(v, labels) + exits_table(v, labels) + seconds_table(v, labels);
   table += fmt::format(
       "\nMatrix: {} gate runs, {}. Crossings between gates in the dynamics: {}, {} outside the "
