@@ -14,8 +14,7 @@
 ///   Chain -> the chance of an ending from everywhere (committor.h), of any cell, state or ending with the mean
 ///              time till then (first_passage.h), of all ends by first draw and by cell
 ///              visited (outcomes.h), times and works of walks (totals.h),
-///              the most frequent paths (paths.h), what survives for ever (quasi_stationary.h),
-///              how walks spread over an endless lattice (diffusion.h)
+///              the most frequent paths (paths.h), what survives for ever (quasi_stationary.h)
 ///   A chain for each action -> which to take in each cell and state, so that walks end best (decide.h)
 ///   A chain for each type of cell -> which cells to change (design.h)
 ///   States taken together (lumping.h)
@@ -28,7 +27,6 @@
 #include "markov/committor.h"
 #include "markov/decide.h"
 #include "markov/design.h"
-#include "markov/diffusion.h"
 #include "markov/ends.h"
 #include "markov/first_passage.h"
 #include "markov/formats/counts.h"

@@ -38,7 +38,7 @@ program "$root/README.md" 1 'std::abs(exact.final_cells.sum() - 1.0) < 1e-9 && e
 program "$root/lattice/README.md" 1 'prediction.reached' >"$work/project/prediction.cpp"
 program "$root/lattice/README.md" 2 'v.starts[0].dynamics.final_gates.sum() == 1000 && v.starts[0].judgement.p > 0.0 && v.starts[0].judgement.p <= 1.0 && (v.starts[0].exact_against.total_variation < 0.2 || wrong)' \
   >"$work/project/study.cpp"
-cp "$root"/tests/library/* "$work/project"
+cp "$root"/tests/library/* "$root"/results/lorentz/diffusion.* "$work/project"
 cat >"$work/project/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.25)
 project(elsewhere LANGUAGES CXX)
@@ -47,6 +47,7 @@ foreach(name example prediction study lorentz)
   add_executable(${name} ${name}.cpp)
   target_link_libraries(${name} PRIVATE gatewalk::lattice)
 endforeach()
+target_sources(lorentz PRIVATE diffusion.cpp)
 END
 cmake -S "$work/project" -B "$work/project/build" -DCMAKE_PREFIX_PATH="$work/prefix" \
   -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release >/dev/null

@@ -109,7 +109,7 @@ GateRun FieldStepper::run_gate(RandomForce& force) {
   return run;
 }
 
-void FieldStepper::go_on(Outcome outcome) {
+void FieldStepper::go_on(dynamics::Outcome outcome) {
   const Face& move = disc_section().faces[crossing_of(p_, outcome, body_).face];
   const std::size_t next = find(column() + move.di_x, row() + move.di_y);
   body_ = shifted_into_next(p_, outcome, body_);

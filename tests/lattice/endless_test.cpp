@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/pool/endless.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
+#include "results/lorentz/diffusion.h"
+
 namespace gatewalk::lattice {
 namespace {
 
 using namespace dynamics;
+using namespace lorentz;
 
 Section square_section() {
   Section section;

@@ -16,7 +16,7 @@
 namespace gatewalk::lattice {
 namespace {
 
-using lorentz::LorentzCell;
+using namespace lorentz;
 
 constexpr double kGap = 0.2;
 constexpr std::int64_t kTrials = 5000;

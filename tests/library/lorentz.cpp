@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "lorentz_cell.h"
-
 #include <cstdio>
+
+#include "diffusion.h"
+#include "lorentz_cell.h"
 
 using namespace gatewalk;
 
@@ -11,8 +12,8 @@ int main(int, char** words) {
   const auto start = [&](dynamics::Random& random) { return cell->anywhere(random); };
   dynamics::Health health;
   lattice::RunPool pool;
-  pool.scattered = lattice::endless_trials(*cell, start, 10'000, 20, 1, health);
+  pool.scattered = lorentz::endless_trials(*cell, start, 10'000, 20, 1, health);
   const auto map = dynamics::CellField::uniform(cell).map;
-  const auto d = lattice::pooled_diffusion(map, pool, cell->lattice).coefficient;
+  const auto d = lorentz::pooled_diffusion(map, pool, cell->lattice).coefficient;
   std::printf("%.4f [%.4f, %.4f]\n", d.mean, d.interval[0], d.interval[1]);
 }

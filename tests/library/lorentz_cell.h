@@ -7,11 +7,12 @@
 /// A class of one's own says what an entry is (section) and carries a body from an entry to the
 /// next (pass). Lengths here are in radii, times in radii by speed.
 
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 
-#include "lattice/pool/endless.h"
+#include "dynamics/cells/cell.h"
 
 namespace lorentz {
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "dynamics/base/random.h"
+#include "results/lorentz/diffusion.h"
 #include "tests/library/lorentz_cell.h"
 
 namespace gatewalk::test {
@@ -135,7 +136,7 @@ inline Estimate direct_diffusion(double gap, std::int64_t trajectories, int step
 
 /// Shares of draws in 4 x 4 boxes of every face, in which an exact chain would make 1/64 of them
 /// each: half the sum of all differences.
-inline double off_invariant(const lattice::TreeDiffusion& chain, double gap) {
+inline double off_invariant(const lorentz::TreeDiffusion& chain, double gap) {
   constexpr int kBoxes = 4;
   std::vector<double> boxes(4 * kBoxes * kBoxes, 0.0);
   for (int state = 0; state < chain.space.size(); ++state) {

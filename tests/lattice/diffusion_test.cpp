@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "markov/diffusion.h"
+#include "results/lorentz/diffusion.h"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +13,7 @@
 namespace gatewalk::markov {
 namespace {
 
+using namespace lorentz;
 using test::matrix;
 
 // Rounding of sums over states, and the solve's 1e-12.

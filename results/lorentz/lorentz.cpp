@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "results/lorentz/diffusion.h"
 #include "tests/support/lorentz.h"
 
 using namespace gatewalk;
@@ -33,7 +34,7 @@ struct Gas {
   [[nodiscard]] lattice::RunPool pool(std::int64_t trials, std::uint64_t seed) const {
     dynamics::Health health;
     lattice::RunPool pool;
-    pool.scattered = lattice::endless_trials(
+    pool.scattered = lorentz::endless_trials(
         *cell, [&](dynamics::Random& random) { return cell->anywhere(random); }, trials, kPassages,
         seed, health);
     if (!health.clean()) throw std::runtime_error("a passage broke");
@@ -43,9 +44,9 @@ struct Gas {
 };
 
 template <class Of>
-test::Estimate of_groups(const lattice::PooledDiffusion& d, Of of) {
+test::Estimate of_groups(const lorentz::PooledDiffusion& d, Of of) {
   std::vector<double> all;
-  for (const lattice::TreeDiffusion& group : d.groups) all.push_back(of(group));
+  for (const lorentz::TreeDiffusion& group : d.groups) all.push_back(of(group));
   return test::estimate(all);
 }
 
@@ -74,7 +75,7 @@ void all_routes(std::ostream& out, std::ostream& seconds) {
     seconds << ',' << lap();
     const lattice::RunPool pool = gas.pool(kTrials, 1);
     seconds << ',' << lap();
-    const auto chain = lattice::pooled_diffusion(gas.map(), pool, gas.cell->lattice);
+    const auto chain = lorentz::pooled_diffusion(gas.map(), pool, gas.cell->lattice);
     seconds << ',' << lap() << std::endl;
     const auto spread = of_groups(chain, [](const auto& g) { return g.walk.coefficient(); });
     const auto stay = of_groups(chain, [](const auto& g) { return g.walk.mean_time; });
@@ -106,7 +107,7 @@ void leaves(std::ostream& out) {
     double half = 0.0;
     int states = 0;
     for (int seed = 0; seed < seeds; ++seed) {
-      const auto chain = lattice::pooled_diffusion(
+      const auto chain = lorentz::pooled_diffusion(
           gas.map(), gas.pool(trials, static_cast<std::uint64_t>(100 + seed)), gas.cell->lattice,
           per_leaf);
       d.push_back(chain.coefficient.mean);
