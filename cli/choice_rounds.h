@@ -2,10 +2,10 @@
 #pragma once
 /// What plan and design have in common: rounds of choosing by a chain, which run the scene in full.
 
-#include <cstdint>
 #include <string>
 
 #include "cli/command.h"
+#include "lattice/study/crossings.h"
 
 namespace gatewalk::cli {
 
@@ -36,9 +36,9 @@ void take_choice_rounds(const Options& options, How& how) {
 }
 
 /// Warns where the rounds of choosing ended before the choice was settled.
-inline void warn_of_choice_rounds(const Options& options, bool settled, std::int64_t gate_runs) {
-  if (!settled)
-    options.warn("choosing was not finished after " + std::to_string(gate_runs) +
+inline void warn_of_choice_rounds(const Options& options, const lattice::ChoiceSummary& search) {
+  if (!search.settled)
+    options.warn("choosing was not finished after " + std::to_string(search.gate_runs) +
                  " gate runs; --gate-runs allows more");
 }
 

@@ -5,8 +5,8 @@
 
 #include "cli/arguments.h"
 #include "cli/choice_rounds.h"
+#include "cli/render/crossings.h"
 #include "cli/render/health.h"
-#include "cli/render/plan.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
 #include "cli/source_options.h"
@@ -82,7 +82,7 @@ int run_design(const Arguments& arguments) {
     options.write(options.text("output"), lattice::scene_file(designed.after));
   const lattice::Crossings &with = designed.design.crossings, &without = designed.design.before;
   options.warn(few_crossings(with.crossed > without.crossed ? with : without));
-  warn_of_choice_rounds(options, designed.design.settled, designed.design.gate_runs);
+  warn_of_choice_rounds(options, designed.design);
   options.warn(too_few_gates(ShownField(s)));
   const int exit = status_of(options, designed.design.health);
   options.draw([&] { return figure_of(designed); });

@@ -13,6 +13,7 @@
 #include "cli/exchange/policy_file.h"
 #include "cli/render/best_start.h"
 #include "cli/render/choice.h"
+#include "cli/render/crossings.h"
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
 #include "cli/render/text.h"
@@ -149,7 +150,7 @@ int plan_start(const Options& options, lattice::Source s) {
                          std::move(found), watch.seconds(), s.settled,  options.provenance(s)};
   options.give_out(shown, table_of(shown) + method_line(s.settled));
   options.warn(few_crossings(shown.found.crossings));
-  warn_of_choice_rounds(options, shown.found.settled, shown.found.gate_runs);
+  warn_of_choice_rounds(options, shown.found);
   options.warn(too_few_gates(ShownField(s)));
   const int exit = status_of(options, shown.found.health);
   options.draw([&] { return figure_of(shown); });
@@ -230,7 +231,7 @@ int run_plan(const Arguments& arguments) {
     options.warn("--least: " + planned.plan.front_refused);
   else if (how.thrift && !planned.plan.front_finished)
     options.warn("--least: the search was not finished; --gate-runs and --points allow more");
-  warn_of_choice_rounds(options, planned.plan.settled, planned.plan.gate_runs);
+  warn_of_choice_rounds(options, planned.plan);
   options.warn(too_few_gates(ShownField(s)));
   const int exit = status_of(options, planned.plan.health);
   options.draw([&] { return figure_of(planned); });

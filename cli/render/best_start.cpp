@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "cli/render/choice.h"
+#include "cli/render/crossings.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/panel.h"
-#include "cli/render/plan.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
 #include "cli/render/text_table.h"
@@ -33,13 +33,7 @@ double best_in(const FoundStart& f, int column) {
 std::string verdict(const FoundStart& f) {
   if (f.found.own)
     return "no start was found that is better than the own one by more than chance\n";
-  const std::string gain = gain_text(f.found.gain);
-  if (f.found.gain.interval_95[0] > 0.0)
-    return fmt::format("it gains {} points over the own start\n", gain);
-  return fmt::format(
-      "it is not shown to gain anything over the own start: {} points; a smaller --accuracy\nshows "
-      "a smaller gain, if there is one\n",
-      gain);
+  return gain_sentence(f.found.gain, "it", "the own start");
 }
 
 void describe_column(Fields& out, const FoundStart& f, int column) {
@@ -148,7 +142,7 @@ std::string table_of(const FoundStart& f) {
       columns.row({column_text(f, column), 100.0 * best_in(f, column)});
     text += columns.text();
   }
-  return text + rounds_text(found.gate_runs, found.rounds) + fixed(f.seconds, 1) + " s\n";
+  return text + rounds_text(found) + fixed(f.seconds, 1) + " s\n";
 }
 
 Figure figure_of(const FoundStart& f) {
@@ -202,13 +196,9 @@ Figure figure_of(const FoundStart& f) {
   panel.draw(best, "", "points", {kSecondColour, 2, 2, 1});
   if (here) panel.draw(own, "", "points", {kSecondColour, 2, 1, 1});
 
-  const std::vector<ShareBar> bars{
-      {"best", found.crossings.share(), found.crossings.interval_95()},
-      {"own", found.crossings_of_own.share(), found.crossings_of_own.interval_95()}};
-  const Box below{130, 330, box.bottom + 90, box.bottom + 90 + height_of_bars(bars.size())};
-  add_share_bars(out, below, "$crossed", bars)
-      .say("crossed, % of trials in full", 8, below.top - 14);
-  return out.figure(static_cast<int>(below.bottom) + 12);
+  const double end = add_crossings(out, box.bottom + 90, "crossed, % of trials in full",
+                                   {{"best", found.crossings}, {"own", found.crossings_of_own}});
+  return out.figure(static_cast<int>(end) + 12);
 }
 
 }  // namespace gatewalk::cli

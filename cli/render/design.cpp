@@ -4,17 +4,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "cli/render/choice.h"
+#include "cli/render/crossings.h"
+#include "cli/render/field_figure.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/plan.h"
+#include "cli/render/shown_field.h"
 #include "cli/render/start.h"
 #include "cli/render/text.h"
+#include "cli/render/type_marks.h"
 
 namespace gatewalk::cli {
 namespace {
 
-constexpr std::size_t kMostListed = 40;  // changes, and rows and columns of a map, in the table
+constexpr std::size_t kMostListed = 40;  // changes in the table
 constexpr std::size_t kMostOptima = 3;   // other maps in the table
 
 const std::string& name_of(const lattice::Scene& scene, int type) {
@@ -118,8 +122,7 @@ void describe(Fields& out, const DesignedScene& d) {
   out.texts({"map", "terrain.map of the changed field, the far row first"},
             lattice::map_rows(*d.after.terrain, d.after.field));
   const std::vector<double> best = best_changes(d);
-  const markov::CellProbabilities best_change = Eigen::Map<const markov::CellProbabilities>(
-      best.data(), d.before.field.rows, d.before.field.columns);
+  const markov::CellProbabilities best_change = by_gate(best.data(), d.before.field);
   out.object(
       {"by_chain", "predictions of the chain that chose the map, which have the chain's own error"},
       [&](Fields& chain) {
@@ -171,11 +174,51 @@ std::string table_of(const DesignedScene& d) {
                          to.empty() ? "the field as it is" : changes_text(d, to));
   }
   const std::vector<std::string> rows = lattice::map_rows(*d.after.terrain, d.after.field);
-  if (rows.size() <= kMostListed && d.after.field.columns <= static_cast<int>(kMostListed))
+  if (d.after.field.rows <= kMostPrinted && d.after.field.columns <= kMostPrinted)
     table += fmt::format("\nthe gates, far row first:\n  {}\n", fmt::join(rows, "\n  "));
   return fmt::format("{}{}{}{} maps solved in all, {} s\n", table, method_line(d.method),
-                     rounds_text(design.gate_runs, design.rounds), chain.solves,
-                     fixed(d.seconds, 1));
+                     rounds_text(design), chain.solves, fixed(d.seconds, 1));
+}
+
+Figure figure_of(const DesignedScene& d) {
+  const std::vector<double> best = best_changes(d);
+  const std::vector<int>&before = d.before.terrain->type_of_cell, &after = d.design.type_of_cell;
+  const auto [map, box] = SmallMap(by_gate(best.data(), d.before.field).abs());
+  const ShownField shown(d.after);
+  const TypeMarks types(shown);
+  const double legend = box.bottom + 52, bars_top = legend + types.legend_height() + 30;
+
+  Panels out;
+  Rows &gains = out.data("$gains"), &changed = out.data("$changed");
+  double range = 1e-6;
+  for (Eigen::Index r = 0; r < map.rows.blocks(); ++r)
+    for (Eigen::Index c = 0; c < map.columns.blocks(); ++c) {
+      double largest = 0.0;  // in a block of several gates it stands for all
+      bool differs = false;
+      for (const std::size_t gate : gates_in(map, r, c, d.before.field)) {
+        if (std::abs(best[gate]) > std::abs(largest)) largest = best[gate];
+        differs = differs || before[gate] != after[gate];
+      }
+      range = std::max(range, 100.0 * std::abs(largest));
+      gains.add(c, r, 100.0 * largest);
+      if (differs) changed.add(c, r, 1);
+    }
+  if (changed.empty()) changed.add(0, 0, "NaN");
+  Panel& panel = add_map(out, map, box);
+  panel.say("what the best change of a gate alone does, about, in % points", 8, 18);
+  panel.colours = {d.options.least ? -range : 0.0, d.options.least ? 0.0 : range, box.beside(),
+                   "autofreq scale 0"};
+  panel.draw_cells(gains);
+  const double cell = std::min(box.width() / static_cast<double>(map.columns.blocks()),
+                               box.height() / static_cast<double>(map.rows.blocks()));
+  panel.draw(changed, "1:($3 > 0 ? $2 : NaN)", "points",
+             {kSecondColour, 2, 4, std::clamp(0.09 * cell, 0.4, 2.4)});
+  types.add_legend(panel, legend, types.draw_on(out, panel, map, "design"));
+
+  const double end =
+      add_crossings(out, bars_top, "crossed, % (framed above: the gates that are changed)",
+                    {{"as it is", d.design.before}, {"changed", d.design.crossings}});
+  return out.figure(static_cast<int>(std::ceil(end + 12)));
 }
 
 }  // namespace gatewalk::cli

@@ -4,19 +4,23 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "cli/render/choice.h"
+#include "cli/render/crossings.h"
+#include "cli/render/field_figure.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/quantity.h"
 #include "cli/render/text.h"
 #include "cli/render/text_table.h"
+#include "cli/render/type_marks.h"
 
 namespace gatewalk::cli {
 namespace {
 
-constexpr int kMostPrinted = 40;  // columns and rows of a map in the table
-constexpr int kFewVisits = 10;    // of all trials: maps leave out what fewer show
+constexpr int kFewVisits = 10;  // of all trials: maps leave out what fewer show
 
 std::size_t cells_in(const PlannedField& p) {
   return static_cast<std::size_t>(p.shown.field.columns) *
@@ -25,8 +29,7 @@ std::size_t cells_in(const PlannedField& p) {
 
 /// How often an action is taken, per trial: (rows x columns).
 markov::CellProbabilities usage_of(const PlannedField& p, std::size_t action) {
-  return Eigen::Map<const markov::CellProbabilities>(p.plan.usage.data() + action * cells_in(p),
-                                                     p.shown.field.rows, p.shown.field.columns);
+  return by_gate(p.plan.usage.data() + action * cells_in(p), p.shown.field);
 }
 
 /// What stands for an action in a map.
@@ -57,22 +60,15 @@ std::string map_text(const PlannedField& p) {
 std::string verdict(const PlannedField& p) {
   const std::size_t best = best_alone(p.plan);
   const lattice::Gain& gain = p.plan.gains[best];
-  const std::string &name = p.actions[best], points = gain_text(gain);
+  const std::string alone = p.actions[best] + " all the time";
   if (const auto& always = p.plan.policy.always)
     return fmt::format("the best that was found is to take {} all the time\n",
                        p.actions[static_cast<std::size_t>(*always)]);
   if (gain.interval_95[1] < 0.0)
     return fmt::format(
-        "the plan is worse than {} all the time, {} points: chosen by chance; a smaller --accuracy "
-        "helps\n",
-        name, points);
-  if (gain.interval_95[0] > 0.0)
-    return fmt::format("choosing by the way in gains {} points over {} all the time\n", points,
-                       name);
-  return fmt::format(
-      "choosing by the way in is not shown to gain anything over {} all the time: {} points; a "
-      "smaller --accuracy\nshows a smaller gain, if there is one\n",
-      name, points);
+        "the plan is worse than {}, {} points: chosen by chance; a smaller --accuracy helps\n",
+        alone, gain_text(gain));
+  return gain_sentence(gain, "choosing by the way in", alone);
 }
 
 std::string worst_text(const lattice::Plan& plan) {
@@ -178,6 +174,64 @@ void describe_front(Fields& out, const PlannedField& p) {
            p.plan.front_finished);
 }
 
+/// Those of kSequential.
+constexpr std::array<const char*, 8> kShades{"#440154", "#46327e", "#365c8d", "#277f8e",
+                                             "#1fa187", "#4ac16d", "#a0da39", "#fde725"};
+
+/// A name as gnuplot's tics show it letter by letter.
+std::string escaped(const std::string& name) {
+  std::string text;
+  for (const char c : name) text += c == '_' ? std::string("\\_") : std::string(1, c);
+  return text;
+}
+
+/// A colour for each action, dark to light, and their names beside them.
+Colours colours_of(const PlannedField& p, const Box& bar) {
+  const auto n = static_cast<int>(p.actions.size());
+  std::vector<std::string> names;
+  std::string steps;
+  for (int a = 0; a < n; ++a) {
+    names.push_back(escaped(p.actions[static_cast<std::size_t>(a)]));
+    const std::string colour = kShades[static_cast<std::size_t>(
+        std::lround(static_cast<double>(a * (kShades.size() - 1)) / std::max(1, n - 1)))];
+    for (const int edge : {a, a + 1})
+      steps += fmt::format("{}{} '{}'", steps.empty() ? "" : ", ", edge, colour);
+  }
+  Colours colours{-0.5, n - 0.5, bar, tics_of(names) + " scale 0"};
+  if (p.actions.size() <= kShades.size())
+    colours.palette = fmt::format("set palette defined ({})\n", steps);
+  return colours;
+}
+
+/// Chance to cross against what a trial takes, of the policies that take less.
+void add_front(Panels& out, const PlannedField& p, const Box& box) {
+  const dynamics::CostInfo& cost = p.shown.map.section.costs[p.thrift->cost];
+  double low = p.plan.front[0].spent.mean, high = low;
+  double lowest = 1.0, highest = 0.0;
+  Rows& rows = out.data("$front");
+  for (const lattice::FrontPoint& point : p.plan.front) {
+    const double mean = point.spent.mean;  // of few trials without an interval
+    const bool few = std::isnan(point.spent.mean_95[0]);
+    const auto [from, to] = few ? std::array<double, 2>{mean, mean} : point.spent.mean_95;
+    const auto [least, most] = point.crossings.interval_95();
+    low = std::min(low, from);
+    high = std::max(high, to);
+    lowest = std::min(lowest, least);
+    highest = std::max(highest, most);
+    rows.add(mean, from, to - from, 100.0 * point.crossings.share(), 100.0 * least,
+             100.0 * (most - least), "");
+  }
+  const double margin = 0.05 * (high - low);
+  Panel& panel = out.add(box);
+  panel.say("policies that take less: " + cost.key, 8, box.top - 18);
+  panel.x = {"mean of a trial, " + cost.unit, low - margin, high + margin,
+             digits(tic_step(high - low, 3))};
+  panel.y = {"% crossed", kFree, kFree, digits(tic_step(100.0 * (highest - lowest), 4))};
+  panel.draw(rows, "2:4:3:(0)", kIntervals, kIntervalPen);
+  panel.draw_again("1:5:(0):6", kIntervals, kIntervalPen);
+  panel.draw_again("1:4", "linespoints", {.colour = "#365c8d", .width = 1, .mark = 7, .size = 0.6});
+}
+
 }  // namespace
 
 std::optional<std::size_t> cheapest(const PlannedField& p) {
@@ -192,57 +246,6 @@ std::optional<std::size_t> cheapest(const PlannedField& p) {
 const lattice::Policy& chosen_policy(const PlannedField& p) {
   const std::optional<std::size_t> best = cheapest(p);
   return best ? p.plan.front[*best].policy : p.plan.policy;
-}
-
-void describe_crossed(Fields& out, std::string_view meaning, const lattice::Crossings& c) {
-  out.estimate({"crossed", "1", meaning}, c.share(), c.interval_95());
-}
-
-void describe_chance(Fields& out, const lattice::Crossings& c, double chain) {
-  describe_crossed(out, "share of new trials that crossed; the search did not use these trials", c);
-  out.count({"trials", "1",
-             "new trials of the result, and of each action or start that it is compared with"},
-            c.trials);
-  out.number({"chain", "1",
-              "chance to cross by the chain of the last search; null: one action all the time, or "
-              "--robust"},
-             chain);
-}
-
-void describe_gain(Fields& out, std::string_view meaning, const lattice::Gain& gain) {
-  out.estimate({"gain", "1", meaning}, gain.difference, gain.interval_95);
-}
-
-std::string chance_text(const lattice::Crossings& c) {
-  return fmt::format("chance to cross: {} %", with_interval(c.share(), c.interval_95()));
-}
-
-std::string trials_text(const lattice::Crossings& c) {
-  return fmt::format(" of {} trials by which nothing was chosen\n", c.trials);
-}
-
-std::string gain_text(const lattice::Gain& gain) {
-  const auto points = [](double x) { return fixed(100.0 * x, 2); };
-  if (std::isnan(gain.interval_95[0])) return points(gain.difference);
-  return fmt::format("{}{} [{}, {}]", gain.difference > 0.0 ? "+" : "", points(gain.difference),
-                     points(gain.interval_95[0]), points(gain.interval_95[1]));
-}
-
-std::string rounds_text(std::int64_t gate_runs, int rounds) {
-  return fmt::format("{} gate runs in {}, ", gate_runs, counted(rounds, "round", "rounds"));
-}
-
-std::string few_crossings(const lattice::Crossings& c) {
-  constexpr std::int64_t kFew = 30;
-  if (c.crossed >= kFew) return "";
-  if (c.crossed == 0)
-    return fmt::format(
-        "none of {} trials crossed: too rare to choose by; a smaller field.rows asks for less, "
-        "gatewalk rare says how rare it is",
-        c.trials);
-  return fmt::format(
-      "only {} of {} trials crossed: few show what helps; a smaller --accuracy runs more",
-      c.crossed, c.trials);
 }
 
 std::vector<MostTaken> most_taken(const PlannedField& p) {
@@ -338,8 +341,45 @@ std::string table_of(const PlannedField& p) {
   return fmt::format(
       "{}{}{}{}\neach action all the time, under the same noise:\n\n{}{}{}{}{}{} s\n",
       chance_text(plan.crossings), trials_text(plan.crossings), worst_text(plan), verdict(p),
-      table.text(), not_searched, front_text(p), map_text(p),
-      rounds_text(plan.gate_runs, plan.rounds), fixed(p.seconds, 1));
+      table.text(), not_searched, front_text(p), map_text(p), rounds_text(plan),
+      fixed(p.seconds, 1));
+}
+
+Figure figure_of(const PlannedField& p) {
+  const std::vector<MostTaken> most = most_taken(p);
+  markov::CellProbabilities visits(p.shown.field.rows, p.shown.field.columns);
+  for (std::size_t i = 0; i < most.size(); ++i) visits.data()[i] = most[i].visits;
+  const auto [map, box] = SmallMap(visits);
+  const TypeMarks types(p.shown);
+  const double legend = box.bottom + 52, bars_top = legend + types.legend_height() + 30;
+
+  Panels out;
+  // In a block of several gates the one that most bodies visit stands for all.
+  Rows& rows = out.data("$actions");
+  for (Eigen::Index r = 0; r < map.rows.blocks(); ++r)
+    for (Eigen::Index c = 0; c < map.columns.blocks(); ++c) {
+      const MostTaken* shown = nullptr;
+      for (const std::size_t gate : gates_in(map, r, c, p.shown.field))
+        if (most[gate].shown && (!shown || most[gate].visits > shown->visits)) shown = &most[gate];
+      if (shown) rows.add(c, r, shown->action, fixed(100.0 * shown->share, 0));
+    }
+  Panel& panel = add_map(out, map, box);
+  panel.say("most frequent action in each gate that enough bodies visit, its %", 8, 18);
+  panel.colours = colours_of(p, box.beside());
+  panel.draw_cells(rows);
+  if (numbers_fit(map, box)) panel.draw_numbers(static_cast<double>(p.actions.size() - 1));
+  types.add_legend(panel, legend, types.draw_on(out, panel, map, "plan"));
+
+  std::vector<std::pair<std::string, lattice::Crossings>> crossings{{"plan", p.plan.crossings}};
+  if (const auto& by_cell = p.plan.by_cell)
+    crossings.emplace_back("gate alone", by_cell->crossings);
+  for (std::size_t a = 0; a < p.actions.size(); ++a)
+    crossings.emplace_back(escaped(p.actions[a]), p.plan.alone[a]);
+  const double end = add_crossings(
+      out, bars_top, "crossed, %, by the plan, by the gate alone and by each action", crossings);
+  if (p.plan.front.size() < 2) return out.figure(static_cast<int>(std::ceil(end + 12)));
+  add_front(out, p, {70, 330, end + 56, end + 196});
+  return out.figure(static_cast<int>(std::ceil(end + 252)));
 }
 
 }  // namespace gatewalk::cli

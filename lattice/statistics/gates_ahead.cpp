@@ -287,10 +287,10 @@ GatesAhead gates_ahead(const StateWalks& walks, int most, std::int64_t null_draw
     distances.push_back(half_sum(shares - powers_say));
     result.steps.push_back(step_of(k, shares, powers_say, null));
   }
-  const MultipleTests looked(distances, result.steps.size());
+  const MultipleTests judged(distances, result.steps.size());
   for (std::size_t i = 0; i < result.steps.size(); ++i)
-    result.steps[i].total_variation = looked.tests[i];
-  result.p = looked.p;
+    result.steps[i].total_variation = judged.tests[i];
+  result.p = judged.p;
   return result;
 }
 

@@ -270,17 +270,17 @@ void name_strongest(Independence& result, const Strata& strata, const Eigen::Vec
 void test_by_dealing(Independence& result, const Strata& strata,
                      const IndependenceOptions& options) {
   const Pooled pooled = pooled_of(strata);
-  const MultipleTests looked(all_statistics(strata, pooled, options), kStatistics);
-  result.pooled = looked.tests[kPooled];
-  result.strongest = looked.tests[kStrongest];
-  result.state_by_state = looked.tests[kStateByState];
-  result.p = looked.p;
+  const MultipleTests judged(all_statistics(strata, pooled, options), kStatistics);
+  result.pooled = judged.tests[kPooled];
+  result.strongest = judged.tests[kStrongest];
+  result.state_by_state = judged.tests[kStateByState];
+  result.p = judged.p;
   result.degrees = pooled.degrees();
   result.p_chi_squared = boost::math::cdf(
       boost::math::complement(boost::math::chi_squared(result.degrees), result.pooled.seen));
   name_strongest(result, strata, differences(strata, strata.outcome).pooled, pooled.deviation,
                  tally(strata.label, 0, strata.label.size(), strata.labels));
-  measure(result, pooled, looked.single_level(options.level));
+  measure(result, pooled, judged.single_level(options.level));
 }
 
 /// Shares of each number in [begin, end).
@@ -324,10 +324,10 @@ void test_by_signs(Independence& result, const Strata& strata, const Independenc
     add(drawn * random_signs(options.clusters, random));
   }
   add(seen);
-  const MultipleTests looked(all, 2);
-  result.pooled = looked.tests[0];
-  result.strongest = looked.tests[1];
-  result.p = looked.p;
+  const MultipleTests judged(all, 2);
+  result.pooled = judged.tests[0];
+  result.strongest = judged.tests[1];
+  result.p = judged.p;
   name_strongest(result, strata, seen, deviation, label_runs);
 }
 

@@ -383,7 +383,7 @@ void add_prediction(Fold& fold, const EndsByBody& ends,
 }
 
 /// `half` as seen against the chain of `chain_half`.
-Fold compare(const Problem& problem, const Half& half, const Half& chain_half,
+Fold fold_of(const Problem& problem, const Half& half, const Half& chain_half,
              const CrossValidationOptions& options, Difference& difference) {
   const Kernel kernel = kernel_of(problem.map(), chain_half.pool, options.per_leaf);
   const markov::FieldChain chain = chain_of(kernel, problem.map(), problem.field, {});
@@ -424,43 +424,37 @@ void add_statistics(std::vector<double>& all, const Eigen::VectorXd& difference)
 /// Endings of which a half has, by what was seen and by the chain, hardly any trial, or all but a
 /// few: bodies that end so are too few to tell what chance makes. Counts of both halves are drawn
 /// instead, as if every trial were independent.
-class RareEndings {
- public:
-  RareEndings(const std::array<Half, 2>& halves, const CrossValidation& v) {
-    constexpr double kFewTrials = 5.0;  // trials of a half
-    for (std::size_t h = 0; h < 2; ++h) trials_[h] = std::ssize(halves[h].trials);
-    const auto n = static_cast<double>(trials_[0] + trials_[1]);
-    for (std::size_t e = 0; e < kEndings; ++e) {
-      double count = 0.0;
-      for (std::size_t h = 0; h < 2; ++h)  // fold f is of half 1 - f as seen
-        count += 0.5 * (v.folds[1 - h].seen.share[e] + v.folds[1 - h].chain.endings[e]) *
-                 static_cast<double>(trials_[h]);
-      if (count > kShareRounding && n - count > kShareRounding &&
-          0.5 * std::min(count, n - count) < kFewTrials)
-        rare_.push_back({static_cast<Eigen::Index>(e), (count + 0.5) / (n + 1.0)});
-    }
-  }
-  /// Puts them into the drawn difference of each fold.
-  void draw(Random& random, std::array<Eigen::VectorXd, 2>& drawn) const {
-    for (const auto& [ending, share] : rare_) {
-      std::array<double, 2> seen{};
-      for (std::size_t h = 0; h < 2; ++h)
-        seen[h] = static_cast<double>(binomial(trials_[h], share, random)) /
-                  static_cast<double>(trials_[h]);
-      for (std::size_t f = 0; f < 2; ++f)
-        drawn[f][drawn[f].size() - static_cast<Eigen::Index>(kEndings) + ending] =
-            seen[1 - f] - seen[f];
-    }
-  }
-
- private:
-  struct Rare {
-    Eigen::Index ending;
-    double share;
-  };
-  std::array<std::int64_t, 2> trials_{};
-  std::vector<Rare> rare_;
+struct RareEnding {
+  Eigen::Index ending;
+  double share;
 };
+
+std::vector<RareEnding> rare_endings(const std::array<Half, 2>& halves, const CrossValidation& v) {
+  constexpr double kFewTrials = 5.0;  // trials of a half
+  const auto n = static_cast<double>(halves[0].trials.size() + halves[1].trials.size());
+  std::vector<RareEnding> rare;
+  for (std::size_t e = 0; e < kEndings; ++e) {
+    double count = 0.0;
+    for (std::size_t h = 0; h < 2; ++h)  // fold f is of half 1 - f as seen
+      count += 0.5 * (v.folds[1 - h].seen.share[e] + v.folds[1 - h].chain.endings[e]) *
+               static_cast<double>(halves[h].trials.size());
+    if (count > kShareRounding && n - count > kShareRounding &&
+        0.5 * std::min(count, n - count) < kFewTrials)
+      rare.push_back({static_cast<Eigen::Index>(e), (count + 0.5) / (n + 1.0)});
+  }
+  return rare;
+}
+
+/// The difference of an ending's shares in fold 0, and less that in fold 1.
+double drawn_difference(const RareEnding& rare, const std::array<Half, 2>& halves, Random& random) {
+  std::array<double, 2> seen{};
+  for (std::size_t h = 0; h < 2; ++h) {
+    const auto trials = std::ssize(halves[h].trials);
+    seen[h] =
+        static_cast<double>(binomial(trials, rare.share, random)) / static_cast<double>(trials);
+  }
+  return seen[1] - seen[0];
+}
 
 /// What chance makes: the statistics of both folds of each draw, and each fold's comparisons.
 struct Chance {
@@ -472,7 +466,7 @@ struct Chance {
 Chance chance_in(const CrossValidation& v, const std::array<Half, 2>& halves,
                  const std::array<Difference, 2>& differences, std::uint64_t seed) {
   Chance chance;
-  const RareEndings rare(halves, v);
+  const std::vector<RareEnding> rare = rare_endings(halves, v);
   for (std::int64_t k = 0; k < v.null_draws; ++k) {
     Random random(Purpose::comparison, {seed, kSigns, static_cast<std::uint64_t>(k)});
     const std::array<Eigen::VectorXd, 2> signs{random_signs(halves[0].parts, random),
@@ -480,7 +474,12 @@ Chance chance_in(const CrossValidation& v, const std::array<Half, 2>& halves,
     std::array<Eigen::VectorXd, 2> drawn;
     for (std::size_t f = 0; f < 2; ++f)
       drawn[f] = differences[f].seen * signs[1 - f] + differences[f].chain * signs[f];
-    rare.draw(random, drawn);
+    for (const RareEnding& r : rare) {
+      const double difference = drawn_difference(r, halves, random);
+      const Eigen::Index at = drawn[0].size() - static_cast<Eigen::Index>(kEndings) + r.ending;
+      drawn[0][at] = difference;
+      drawn[1][at] = -difference;
+    }
     for (std::size_t f = 0; f < 2; ++f) {
       add_statistics(chance.statistics, drawn[f]);
       const CellProbabilities& chain = v.folds[f].chain.final_cells;
@@ -496,8 +495,8 @@ Chance chance_in(const CrossValidation& v, const std::array<Half, 2>& halves,
 
 void judge(CrossValidation& v, const std::array<Difference, 2>& differences, Chance chance) {
   for (const Difference& d : differences) add_statistics(chance.statistics, d.seen_less_chain);
-  const MultipleTests looked(chance.statistics, 2 * kOfOneFold);
-  v.p = looked.p;
+  const MultipleTests judged(chance.statistics, 2 * kOfOneFold);
+  v.p = judged.p;
   for (std::size_t f = 0; f < 2; ++f) {
     Fold& fold = v.folds[f];
     const auto drawn = [&](std::size_t statistic) {
@@ -507,10 +506,10 @@ void judge(CrossValidation& v, const std::array<Difference, 2>& differences, Cha
             chance.statistics[(static_cast<std::size_t>(k) * 2 + f) * kOfOneFold + statistic]);
       return mean_and_95(std::move(values));
     };
-    fold.total_variation = looked.tests[f * kOfOneFold];
+    fold.total_variation = judged.tests[f * kOfOneFold];
     std::tie(fold.chance_total_variation, fold.chance_total_variation_95) = drawn(0);
     for (std::size_t e = 0; e < kEndings; ++e) {
-      fold.endings[e] = looked.tests[f * kOfOneFold + 1 + e];
+      fold.endings[e] = judged.tests[f * kOfOneFold + 1 + e];
       fold.chance_95[e] = drawn(1 + e).second;
     }
     fold.chance_corrcoef =
@@ -531,7 +530,7 @@ CrossValidation cross_validate(const Problem& problem, const RunPool& pool,
   std::array<Difference, 2> differences;
   for (std::size_t f = 0; f < 2; ++f) {
     work.tell("halves", static_cast<std::int64_t>(f), 2);
-    v.folds[f] = compare(problem, halves[1 - f], halves[f], options, differences[f]);
+    v.folds[f] = fold_of(problem, halves[1 - f], halves[f], options, differences[f]);
   }
   const std::int64_t numbers = differences[0].seen.rows(),
                      signs = halves[0].parts + std::int64_t{halves[1].parts};

@@ -29,9 +29,6 @@ struct FreePassages : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What a body that enters there does.
-using ActionChoice = std::function<int(const Place& place, const Entry& entry)>;
-
 bool same_kinds(const CellField& a, const CellField& b) {
   return std::equal(a.cells.begin(), a.cells.end(), b.cells.begin(), b.cells.end(),
                     [](const auto& x, const auto& y) {
@@ -63,8 +60,8 @@ void require_actions(const std::vector<Action>& actions) {
           "more than 256 pairs of an action and a type of cell");
 }
 
-/// Each action's types of cells behind each other, as cells_of says.
-CellChoice types_of(const Problem& first, int actions, const ActionChoice& choice) {
+/// Each action's types of cells behind each other, as cells_of says. `choice`: of an action.
+CellChoice types_of(const Problem& first, int actions, const CellChoice& choice) {
   return [&first, actions, choice](const Place& at, const Entry& entry) {
     return first.map().type_of(at.column, at.row) * actions + choice(at, entry);
   };
@@ -106,12 +103,12 @@ class Planner {
 
   [[nodiscard]] int actions() const { return static_cast<int>(actions_.size()); }
   /// Any action with the same chance.
-  [[nodiscard]] ActionChoice any() const {
+  [[nodiscard]] CellChoice any() const {
     return [this](const Place& at, const Entry&) {
       return static_cast<int>(rounds_.word(at, 0) % static_cast<std::uint64_t>(actions()));
     };
   }
-  [[nodiscard]] static ActionChoice choice_of(const Policy& policy) {
+  [[nodiscard]] static CellChoice choice_of(const Policy& policy) {
     return [&policy](const Place& at, const Entry& entry) { return policy.action(at, entry); };
   }
 
@@ -199,10 +196,10 @@ class Planner {
     return best;
   }
 
-  [[nodiscard]] RangeRuns run(const ActionChoice& choice, std::int64_t count) {
+  [[nodiscard]] RangeRuns run(const CellChoice& choice, std::int64_t count) {
     return rounds_.run({first_.start, types_of(first_, actions(), choice)}, count);
   }
-  [[nodiscard]] RangeRuns run(const ActionChoice& choice) { return run(choice, rounds_.count()); }
+  [[nodiscard]] RangeRuns run(const CellChoice& choice) { return run(choice, rounds_.count()); }
 
   /// To cross gains 1, less what passages take at this price. A state that an action was never
   /// tried in is worth less than any that it was tried in.
@@ -513,7 +510,7 @@ FieldTally policy_trials(const std::vector<Action>& actions, const Policy& polic
   const CellField cells = cells_of(actions);
   const Problem& first = actions.front().problem;
   const auto n = static_cast<int>(actions.size());
-  const ActionChoice choice = [&](const Place& at, const Entry& entry) {
+  const CellChoice choice = [&](const Place& at, const Entry& entry) {
     const int action = policy.action(at, entry);
     if (action < 0 || action >= n) throw std::out_of_range("policy: takes an action of others");
     return action;

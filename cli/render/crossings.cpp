@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "cli/render/crossings.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "cli/render/final_gates.h"
+#include "cli/render/health.h"
+#include "cli/render/text.h"
+
+namespace gatewalk::cli {
+
+void describe_crossed(Fields& out, std::string_view meaning, const lattice::Crossings& c) {
+  out.estimate({"crossed", "1", meaning}, c.share(), c.interval_95());
+}
+
+void describe_chance(Fields& out, const lattice::Crossings& c, double chain) {
+  describe_crossed(out, "share of new trials that crossed; the search did not use these trials", c);
+  out.count({"trials", "1",
+             "new trials of the result, and of each action or start that it is compared with"},
+            c.trials);
+  out.number({"chain", "1",
+              "chance to cross by the chain of the last search; null: one action all the time, or "
+              "--robust"},
+             chain);
+}
+
+void describe_gain(Fields& out, std::string_view meaning, const lattice::Gain& gain) {
+  out.estimate({"gain", "1", meaning}, gain.difference, gain.interval_95);
+}
+
+void describe_search(Fields& out, const lattice::ChoiceSummary& search, double seconds) {
+  out.count({"rounds", "1", "rounds of the search: trials, then a new choice"}, search.rounds);
+  out.flag(
+      {"settled",
+       "whether the last round gained less than half the accuracy, or less than sampling noise"},
+      search.settled);
+  out.count({"gate_runs", "1", "gate runs of all trials"}, search.gate_runs);
+  out.number({"seconds", "s", "wall-clock time of the command's work"}, seconds);
+  describe_status(out, search.health);
+}
+
+std::string chance_text(const lattice::Crossings& c) {
+  return fmt::format("chance to cross: {} %", with_interval(c.share(), c.interval_95()));
+}
+
+std::string trials_text(const lattice::Crossings& c) {
+  return fmt::format(" of {} trials by which nothing was chosen\n", c.trials);
+}
+
+std::string gain_text(const lattice::Gain& gain) {
+  const auto points = [](double x) { return fixed(100.0 * x, 2); };
+  if (std::isnan(gain.interval_95[0])) return points(gain.difference);
+  return fmt::format("{}{} [{}, {}]", gain.difference > 0.0 ? "+" : "", points(gain.difference),
+                     points(gain.interval_95[0]), points(gain.interval_95[1]));
+}
+
+std::string gain_sentence(const lattice::Gain& gain, const std::string& what,
+                          const std::string& other) {
+  if (gain.interval_95[0] > 0.0)
+    return fmt::format("{} gains {} points over {}\n", what, gain_text(gain), other);
+  return fmt::format(
+      "{} is not shown to gain anything over {}: {} points; a smaller --accuracy\nshows a smaller "
+      "gain, if there is one\n",
+      what, other, gain_text(gain));
+}
+
+std::string rounds_text(const lattice::ChoiceSummary& search) {
+  return fmt::format("{} gate runs in {}, ", search.gate_runs,
+                     counted(search.rounds, "round", "rounds"));
+}
+
+std::string few_crossings(const lattice::Crossings& c) {
+  constexpr std::int64_t kFew = 30;
+  if (c.crossed >= kFew) return "";
+  if (c.crossed == 0)
+    return fmt::format(
+        "none of {} trials crossed: too rare to choose by; a smaller field.rows asks for less, "
+        "gatewalk rare says how rare it is",
+        c.trials);
+  return fmt::format(
+      "only {} of {} trials crossed: few show what helps; a smaller --accuracy runs more",
+      c.crossed, c.trials);
+}
+
+markov::CellProbabilities by_gate(const double* numbers, const lattice::FieldParams& field) {
+  return Eigen::Map<const markov::CellProbabilities>(numbers, field.rows, field.columns);
+}
+
+double add_crossings(Panels& out, double top, const Caption& caption,
+                     const std::vector<std::pair<std::string, lattice::Crossings>>& all) {
+  std::vector<ShareBar> bars;
+  for (const auto& [name, crossings] : all)
+    bars.push_back({name, crossings.share(), crossings.interval_95()});
+  const double bottom = top + height_of_bars(bars.size());
+  add_share_bars(out, {130, 330, top, bottom}, "$crossed", bars).say(caption, 8, top - 14);
+  return bottom;
+}
+
+}  // namespace gatewalk::cli

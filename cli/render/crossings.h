@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// What plans, designs of fields and best starts have in common as results: how often bodies cross
+/// the field, what that gains, how the search went, and numbers by gate.
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "cli/render/fields.h"
+#include "cli/render/panel.h"
+#include "lattice/field.h"
+#include "lattice/study/crossings.h"
+
+namespace gatewalk::cli {
+
+/// The keys "crossed" and "crossed_95".
+void describe_crossed(Fields& out, std::string_view meaning, const lattice::Crossings& c);
+/// The keys "crossed" to "chain", with which results of `plan` begin.
+void describe_chance(Fields& out, const lattice::Crossings& c, double chain);
+/// The keys "gain" and "gain_95" (null for what is compared with itself).
+void describe_gain(Fields& out, std::string_view meaning, const lattice::Gain& gain);
+/// The keys "rounds" to "status".
+void describe_search(Fields& out, const lattice::ChoiceSummary& search, double seconds);
+
+/// "chance to cross: 17.61 [16.87, 18.37] %"
+[[nodiscard]] std::string chance_text(const lattice::Crossings& c);
+/// " of 1068 trials by which nothing was chosen"
+[[nodiscard]] std::string trials_text(const lattice::Crossings& c);
+/// "+2.7 [1.4, 3.9]", in percentage points.
+[[nodiscard]] std::string gain_text(const lattice::Gain& gain);
+/// "`what` gains 2.7 points over `other`", or that it is not shown to.
+[[nodiscard]] std::string gain_sentence(const lattice::Gain& gain, const std::string& what,
+                                        const std::string& other);
+/// "200000 gate runs in 2 rounds, "
+[[nodiscard]] std::string rounds_text(const lattice::ChoiceSummary& search);
+
+/// That so few trials crossed that they say little; empty where they are not few.
+[[nodiscard]] std::string few_crossings(const lattice::Crossings& c);
+
+/// A number for each gate, the near row first.
+[[nodiscard]] markov::CellProbabilities by_gate(const double* numbers,
+                                                const lattice::FieldParams& field);
+/// Columns and rows of a map in a table, at most.
+inline constexpr int kMostPrinted = 40;
+
+/// A bar for each of these, below one another from `top` on. Returns where they end.
+double add_crossings(Panels& out, double top, const Caption& caption,
+                     const std::vector<std::pair<std::string, lattice::Crossings>>& all);
+
+}  // namespace gatewalk::cli
