@@ -228,22 +228,24 @@ Options::~Options() {
 
 // ---- What is declared ----
 
-void Options::positional(const std::string& name, const std::string& help, bool required) {
+TextOption Options::positional(const std::string& name, const std::string& help, bool required) {
   state_->hidden.add_options()(name.c_str(), po::value<std::string>());
   state_->positions.add(name.c_str(), 1);
   state_->positional_help.emplace_back(name, help);
   if (required) state_->required.push_back(name);
+  return {*this, name};
 }
 
-void Options::positional_list(const std::string& name, const std::string& help) {
+TextsOption Options::positional_list(const std::string& name, const std::string& help) {
   state_->hidden.add_options()(name.c_str(), po::value<Strings>());
   state_->positions.add(name.c_str(), -1);
   state_->positional_help.emplace_back(name, help);
   state_->required.push_back(name);
+  return {*this, name};
 }
 
-void Options::add_count(const std::string& name, const std::string& shown, const std::string& help,
-                        const std::string& by_default) {
+CountOption Options::add_count(const std::string& name, const std::string& shown,
+                               const std::string& help, const std::string& by_default) {
   auto* value = po::value<Count>();
   if (!by_default.empty()) {
     boost::any parsed;
@@ -251,18 +253,21 @@ void Options::add_count(const std::string& name, const std::string& shown, const
     value->default_value(boost::any_cast<Count>(parsed), by_default);
   }
   state_->add(name, value, shown, help);
+  return {*this, name};
 }
 
-void Options::add_number(const std::string& name, const std::string& shown,
-                         const std::string& help) {
+NumberOption Options::add_number(const std::string& name, const std::string& shown,
+                                 const std::string& help) {
   state_->add(name, po::value<Number>(), shown, help);
+  return {*this, name};
 }
 
-void Options::add_text(const std::string& name, const std::string& shown, const std::string& help,
-                       const std::string& by_default) {
+TextOption Options::add_text(const std::string& name, const std::string& shown,
+                             const std::string& help, const std::string& by_default) {
   auto* value = po::value<std::string>();
   if (!by_default.empty()) value->default_value(by_default);
   state_->add(name, value, shown, help);
+  return {*this, name};
 }
 
 void Options::add_numbers(const std::string& name, const std::string& shown,
@@ -270,13 +275,15 @@ void Options::add_numbers(const std::string& name, const std::string& shown,
   state_->add(name, po::value<std::vector<Number>>()->composing(), shown, help);
 }
 
-void Options::add_texts(const std::string& name, const std::string& shown,
-                        const std::string& help) {
+TextsOption Options::add_texts(const std::string& name, const std::string& shown,
+                               const std::string& help) {
   state_->add(name, po::value<Strings>()->composing(), shown, help);
+  return {*this, name};
 }
 
-void Options::add_flag(const std::string& name, const std::string& help) {
+Option Options::add_flag(const std::string& name, const std::string& help) {
   state_->own.add_options()(name.c_str(), help.c_str());
+  return {*this, name};
 }
 
 void Options::add_seed(const std::string& help) {
@@ -303,9 +310,10 @@ void Options::add_first_trial() {
             "number of the first trial: others than those of another run (default: 0)");
 }
 
-void Options::input_file(const std::string& name, const std::string& help) {
+TextOption Options::input_file(const std::string& name, const std::string& help) {
   add_text(name, "FILE", help);
   reads(name, [](const std::string& value) { return value; });
+  return {*this, name};
 }
 
 void Options::reads(const std::string& name,
@@ -313,15 +321,18 @@ void Options::reads(const std::string& name,
   state_->reads.emplace_back(name, std::move(file_in));
 }
 
-void Options::output_file(const std::string& name, const std::string& shown,
-                          const std::string& help, Content content) {
+TextOption Options::output_file(const std::string& name, const std::string& shown,
+                                const std::string& help, Content content) {
   add_text(name == "output" ? "output,o" : name, shown, help);
   state_->output_files.push_back({name, content});
+  return {*this, name};
 }
 
-void Options::main_output_file(const std::string& shown, const std::string& help, Content content) {
+TextOption Options::main_output_file(const std::string& shown, const std::string& help,
+                                     Content content) {
   output_file("output", shown, help, content);
   state_->needs_output = shown;
+  return {*this, "output"};
 }
 
 void Options::output_folder(const std::string& help, std::vector<std::string> files) {
@@ -330,9 +341,9 @@ void Options::output_folder(const std::string& help, std::vector<std::string> fi
   state_->needs_output = "DIR";
 }
 
-void Options::add_figure(const std::string& shows) {
-  output_file("figure", "FILE.svg|pdf|png", fmt::format("draw {} (needs gnuplot)", shows),
-              Content::binary);
+TextOption Options::add_figure(const std::string& shows) {
+  return output_file("figure", "FILE.svg|pdf|png", fmt::format("draw {} (needs gnuplot)", shows),
+                     Content::binary);
 }
 
 void Options::without_scene(const std::string& reason) { state_->no_scene = reason; }
@@ -477,6 +488,18 @@ bool Options::parse(const Arguments& arguments) {
   }
   return true;
 }
+
+Option::operator bool() const { return options_->has(name_); }
+
+std::int64_t CountOption::value(std::int64_t low, std::int64_t high) const {
+  return options_->count(name_, low, high);
+}
+
+double NumberOption::value() const { return options_->number(name_); }
+
+std::string TextOption::value() const { return options_->text(name_); }
+
+std::vector<std::string> TextsOption::values() const { return options_->texts(name_); }
 
 bool Options::has(const std::string& name) const { return state_->values.count(name) > 0; }
 

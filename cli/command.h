@@ -89,6 +89,43 @@ class UsageError : public std::runtime_error {
 
 inline constexpr std::int64_t kMostCount = 1'000'000'000'000'000;  // doubles are exact up to here
 
+class Options;
+
+/// An option of a command as the variable that declares it, so that a misspelt one does not
+/// compile: what the functions of Options that declare one return.
+class Option {
+ public:
+  Option(const Options& options, std::string name) : options_(&options), name_(std::move(name)) {}
+  /// Whether it has a value: one that was given, or that by default.
+  [[nodiscard]] explicit operator bool() const;
+
+ protected:
+  const Options* options_;
+  std::string name_;
+};
+class CountOption : public Option {
+ public:
+  using Option::Option;
+  /// Throws UsageError unless it lies in [low, high].
+  [[nodiscard]] std::int64_t value(std::int64_t low = 1, std::int64_t high = kMostCount) const;
+};
+class NumberOption : public Option {
+ public:
+  using Option::Option;
+  [[nodiscard]] double value() const;
+};
+class TextOption : public Option {
+ public:
+  using Option::Option;
+  /// Empty where there is none.
+  [[nodiscard]] std::string value() const;
+};
+class TextsOption : public Option {
+ public:
+  using Option::Option;
+  [[nodiscard]] std::vector<std::string> values() const;
+};
+
 /// Options of one command with the shared ones: --threads, --quiet, --json, --force, --help. They
 /// know which files are read, also those that a scene names, and which are written: parse() refuses
 /// an output that is an input or another output, and one that cannot be written, before any work.
@@ -101,26 +138,27 @@ class Options {
   Options& operator=(const Options&) = delete;
 
   /// Declares a positional argument (in order), a file that is read; `required` ones must be given.
-  void positional(const std::string& name, const std::string& help, bool required);
+  TextOption positional(const std::string& name, const std::string& help, bool required);
   /// Declares the last positional argument, files that are read: at least one; its value is that of
   /// texts().
-  void positional_list(const std::string& name, const std::string& help);
+  TextsOption positional_list(const std::string& name, const std::string& help);
   /// Declares the positional argument SCENE, which must be given.
-  void scene() { positional("scene", "scene file (TOML; -: standard input)", true); }
+  TextOption scene() { return positional("scene", "scene file (TOML; -: standard input)", true); }
 
   /// Declare --name, whose value is `shown` on the help page. `by_default` is a value as it would
   /// be given; without one has(name) says whether there is a value. A whole number up to 1e15
   /// either way: 20000 or 2e4.
-  void add_count(const std::string& name, const std::string& shown, const std::string& help,
-                 const std::string& by_default = "");
-  void add_number(const std::string& name, const std::string& shown, const std::string& help);
-  void add_text(const std::string& name, const std::string& shown, const std::string& help,
-                const std::string& by_default = "");
+  CountOption add_count(const std::string& name, const std::string& shown, const std::string& help,
+                        const std::string& by_default = "");
+  NumberOption add_number(const std::string& name, const std::string& shown,
+                          const std::string& help);
+  TextOption add_text(const std::string& name, const std::string& shown, const std::string& help,
+                      const std::string& by_default = "");
   /// May be repeated.
   void add_numbers(const std::string& name, const std::string& shown, const std::string& help);
-  void add_texts(const std::string& name, const std::string& shown, const std::string& help);
+  TextsOption add_texts(const std::string& name, const std::string& shown, const std::string& help);
   /// Has no value.
-  void add_flag(const std::string& name, const std::string& help);
+  Option add_flag(const std::string& name, const std::string& help);
   /// --seed: a whole number from 0 up (-1 is a mistake, not 2^64 - 1).
   void add_seed(
       const std::string& help = "seed of all random numbers; the same seed gives the same result");
@@ -135,20 +173,20 @@ class Options {
   void add_first_trial();
 
   /// Declares --name, a file that is read.
-  void input_file(const std::string& name, const std::string& help);
+  TextOption input_file(const std::string& name, const std::string& help);
   /// A value of the declared option --name makes the command read the file `file_in(value)`.
   void reads(const std::string& name, std::function<std::string(const std::string&)> file_in);
   /// Declares --name, a file that is written; `shown` is FILE or FILE.html, ... Only one output may
   /// go to standard output (-), and none that is binary.
   enum class Content { text, binary };
-  void output_file(const std::string& name, const std::string& shown, const std::string& help,
-                   Content content = Content::text);
+  TextOption output_file(const std::string& name, const std::string& shown, const std::string& help,
+                         Content content = Content::text);
   /// The same for -o, --output, which must be given.
-  void main_output_file(const std::string& shown, const std::string& help, Content content);
+  TextOption main_output_file(const std::string& shown, const std::string& help, Content content);
   /// Declares -o, --output, which must be given: a folder, in which `files` are written.
   void output_folder(const std::string& help, std::vector<std::string> files);
   /// Declares --figure FILE.svg|pdf|png, a picture of the result; `shows` ends the help.
-  void add_figure(const std::string& shows);
+  TextOption add_figure(const std::string& shows);
   /// There is no scene to override keys of: --set is refused with `reason`, and not on the help
   /// page.
   void without_scene(const std::string& reason);

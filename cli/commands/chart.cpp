@@ -50,10 +50,10 @@ std::vector<std::string> split(const std::string& text) {
 }
 
 /// --methods, else all that are charted. Throws UsageError.
-std::vector<std::string> chosen_methods(const Options& options) {
+std::vector<std::string> chosen_methods(const TextOption& given) {
   const auto known = dynamics::chart_methods();
-  if (!options.has("methods")) return {known.begin(), known.end()};
-  std::vector<std::string> methods = split(options.text("methods"));
+  if (!given) return {known.begin(), known.end()};
+  std::vector<std::string> methods = split(given.value());
   const std::string names = fmt::format("{}", fmt::join(known, ", "));
   if (methods.empty()) throw UsageError("--methods needs at least one of " + names);
   for (std::size_t i = 0; i < methods.size(); ++i) {
@@ -76,22 +76,25 @@ int run_chart(const Arguments& arguments) {
       "and chart.json, again after each scene, and chart.svg. With 1e5 trials a scene takes some\n"
       "ten minutes; --trials 2000 --repeats 3 gives a first look in one.",
       "gatewalk chart scenes/field.toml scenes/stiff.toml -o results/chart --trials 1e4");
-  options.positional_list("scene", "scene files (TOML); a scene is called by its file's name");
+  const TextsOption scenes =
+      options.positional_list("scene", "scene files (TOML); a scene is called by its file's name");
   const std::vector<std::string> files{"chart.csv", "chart.json", "chart.svg"};
   options.output_folder("folder to write to", files);
-  options.add_count("trials", "N", "trials per setting", "1e5");
-  options.add_count("repeats", "N", "rounds of timing, after one that warms up", "10");
-  options.add_text("methods", "A,B,...", "methods to chart (default: all)");
+  const CountOption trials = options.add_count("trials", "N", "trials per setting", "1e5");
+  const CountOption repeats =
+      options.add_count("repeats", "N", "rounds of timing, after one that warms up", "10");
+  const TextOption methods =
+      options.add_text("methods", "A,B,...", "methods to chart (default: all)");
   options.add_seed();
   options.add_strict();
   options.add_figure("the figure of the folder");
   if (!options.parse(arguments)) return kFine;
   dynamics::WorkPrecisionOptions how{.label = {},
-                                     .methods = chosen_methods(options),
-                                     .trials = options.count("trials", 1, kMostTrials),
-                                     .rounds = options.count("repeats"),
+                                     .methods = chosen_methods(methods),
+                                     .trials = trials.value(1, kMostTrials),
+                                     .rounds = repeats.value(),
                                      .seed = options.seed()};
-  const std::vector<std::string> paths = options.texts("scene");
+  const std::vector<std::string> paths = scenes.values();
   require_chartable(options, paths);
   const ResultFolder folder(options, files);
 

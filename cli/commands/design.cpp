@@ -46,16 +46,18 @@ int run_design(const Arguments& arguments) {
                   "say how often bodies cross it, and the field as it is.",
                   "gatewalk design scenes/mixed.toml --changes 3 --types s,.");
   options.scene();
-  options.add_count("changes", "N", "change at most so many gates", "1");
-  options.add_text("types", "A,B",
-                   "into these types of [terrain], . the scene's own (default: all)");
-  options.add_flag("least", "bodies shall cross as rarely as they can");
+  const CountOption changes =
+      options.add_count("changes", "N", "change at most so many gates", "1");
+  const TextOption types = options.add_text(
+      "types", "A,B", "into these types of [terrain], . the scene's own (default: all)");
+  const Option least = options.add_flag("least", "bodies shall cross as rarely as they can");
   add_choice_rounds(options);
-  options.output_file("output", "FILE.toml",
-                      "write the scene with the gates changed, and with the start of --start");
+  const TextOption output =
+      options.output_file("output", "FILE.toml",
+                          "write the scene with the gates changed, and with the start of --start");
   options.add_figure("what a change of each gate does, and which are changed");
   if (!options.parse(arguments)) return kFine;
-  lattice::FieldDesignOptions how{.least = options.has("least")};
+  lattice::FieldDesignOptions how{.least = static_cast<bool>(least)};
   take_choice_rounds(options, how);
   lattice::Source s = field_to_run(options, "a field is designed");
   if (!s.scene) throw UsageError(s.path + ": is no scene of gates");
@@ -63,10 +65,10 @@ int run_design(const Arguments& arguments) {
     throw UsageError(s.path +
                      ": has one type of gates: a table [terrain.types.NAME] makes another");
   const std::int64_t gates = std::int64_t{s.scene->field.columns} * s.scene->field.rows;
-  const std::int64_t changes = options.count("changes", 1);
-  if (changes > gates) throw UsageError(fmt::format("--changes: the field has {} gates", gates));
-  how.most_changes = static_cast<int>(changes);
-  if (options.has("types")) how.become = types_named(options.text("types"), *s.scene);
+  const std::int64_t most = changes.value();
+  if (most > gates) throw UsageError(fmt::format("--changes: the field has {} gates", gates));
+  how.most_changes = static_cast<int>(most);
+  if (types) how.become = types_named(types.value(), *s.scene);
   s.settled = settle_method(options, *s.scene, lattice::RunsFrom::all_types);
   lattice::Problem problem = lattice::problem_with_all_types(*s.scene);
   problem.start = *s.starts.front();
@@ -78,8 +80,7 @@ int run_design(const Arguments& arguments) {
       *s.scene,  std::move(changed), problem.map().section, problem.start,        how,
       s.settled, std::move(design),  watch.seconds(),       options.provenance(s)};
   options.give_out(designed, table_of(designed));
-  if (options.has("output"))
-    options.write(options.text("output"), lattice::scene_file(designed.after));
+  if (output) options.write(output.value(), lattice::scene_file(designed.after));
   const lattice::Crossings &with = designed.design.crossings, &without = designed.design.before;
   options.warn(few_crossings(with.crossed > without.crossed ? with : without));
   warn_of_choice_rounds(options, designed.design);

@@ -16,9 +16,9 @@ dynamics::BeamsThatPush beams_of(const std::string& name) {
   return {name != "right", name != "left"};
 }
 
-double spacing_for(const Options& options, const lattice::Scene& scene) {
+double spacing_for(const NumberOption& given, const lattice::Scene& scene) {
   const auto [least, usual, most] = dynamics::spacings_for(scene.gate, scene.start);
-  const double spacing = options.has("spacing") ? options.number("spacing") : usual;
+  const double spacing = given ? given.value() : usual;
   if (!(spacing >= least && spacing <= most))
     throw UsageError("--spacing " + digits(spacing) + ": must lie in [" + digits(least) + ", " +
                      digits(most) + "] m");
@@ -39,24 +39,25 @@ int run_landscape(const Arguments& arguments) {
   options.scene();
   const std::vector<std::string> files{"landscape.csv", "landscape.json", "landscape.svg"};
   options.output_folder("folder to write to", files);
-  options.add_number("spacing", "M",
-                     "of the grid, in m (default: a twentieth of body.radius_m, as in the paper)");
-  options.add_text("beam", "WHICH",
-                   "beams that resist: both, left or right (the other swings free: Fig. 6C)",
-                   "both");
-  options.add_count("trials", "N", "also run the gate N times: who passes, beside who should", "0");
+  const NumberOption spacing = options.add_number(
+      "spacing", "M", "of the grid, in m (default: a twentieth of body.radius_m, as in the paper)");
+  const TextOption beam = options.add_text(
+      "beam", "WHICH", "beams that resist: both, left or right (the other swings free: Fig. 6C)",
+      "both");
+  const CountOption trials_given = options.add_count(
+      "trials", "N", "also run the gate N times: who passes, beside who should", "0");
   options.add_seed();
   options.add_strict();
   options.add_figure("the figure of the folder");
   if (!options.parse(arguments)) return kFine;
-  const auto beams = beams_of(options.text("beam"));
-  const std::int64_t trials = options.count("trials", 0);
+  const auto beams = beams_of(beam.value());
+  const std::int64_t trials = trials_given.value(0);
   lattice::Scene scene = options.read_scene();
-  const double spacing = spacing_for(options, scene);
+  const double distance = spacing_for(spacing, scene);
   const ResultFolder folder(options, files);
   if (trials == 0) options.warn(lattice::terrain_without_effect(scene));
 
-  LandscapeResult result{.passes = dynamics::passes(scene.gate, scene.start, spacing, beams)};
+  LandscapeResult result{.passes = dynamics::passes(scene.gate, scene.start, distance, beams)};
   const std::string line = scene_line(scene);
   if (trials > 0) {
     result.method = settle_method(options, scene, lattice::RunsFrom::start);

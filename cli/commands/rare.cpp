@@ -32,31 +32,34 @@ int run_rare(const Arguments& arguments) {
       "answer.",
       "gatewalk rare scenes/field.toml --row 20 --json rare.json");
   options.scene();
-  options.add_count("row", "N",
-                    "the row to enter, counted from 0 (default: one behind the field's "
-                    "last: the field is crossed); at most the rows of a terrain");
-  options.add_number("accuracy", "R", "relative standard error to reach (default: 0.05)");
-  options.add_count("gate-runs", "N",
-                    "at most so many gate runs, about (default: 2e7, and 100 000 trials as long as "
-                    "nobody gets there)");
-  options.add_count("trials", "N", "also run N trials directly, to compare");
-  options.add_count("split-trials", "N",
-                    "exactly N split trials, whatever the accuracy (parts need it)");
+  const CountOption row =
+      options.add_count("row", "N",
+                        "the row to enter, counted from 0 (default: one behind the field's "
+                        "last: the field is crossed); at most the rows of a terrain");
+  const NumberOption accuracy =
+      options.add_number("accuracy", "R", "relative standard error to reach (default: 0.05)");
+  const CountOption gate_runs = options.add_count(
+      "gate-runs", "N",
+      "at most so many gate runs, about (default: 2e7, and 100 000 trials as long as "
+      "nobody gets there)");
+  const CountOption trials =
+      options.add_count("trials", "N", "also run N trials directly, to compare");
+  const CountOption split_trials = options.add_count(
+      "split-trials", "N", "exactly N split trials, whatever the accuracy (parts need it)");
   options.add_seed();
   options.add_kept({"split trials", "field trials"});
   options.add_strict();
   add_cell_program(options);
   options.add_figure("the chance of every row up to N");
   if (!options.parse(arguments)) return kFine;
-  lattice::SplittingOptions how{
-      .accuracy = options.has("accuracy") ? options.number("accuracy") : 0.05,
-      .seed = options.seed()};
-  if (options.has("trials")) (void)options.trials();  // they are run last
-  if (options.has("split-trials")) how.trials = options.count("split-trials", 2);
+  lattice::SplittingOptions how{.accuracy = accuracy ? accuracy.value() : 0.05,
+                                .seed = options.seed()};
+  if (trials) (void)trials.value();  // they are run last
+  if (split_trials) how.trials = split_trials.value(2);
   if (options.has("shard") && !how.trials)
     throw UsageError("--shard needs --split-trials N: a part must know how many there are in all");
-  if (options.has("gate-runs")) {
-    how.most_runs = options.count("gate-runs", 1000);
+  if (gate_runs) {
+    how.most_runs = gate_runs.value(1000);
     how.most_in_vain = how.most_runs;
   }
   if (!(how.accuracy > 0.0 && how.accuracy < 1.0))
@@ -64,8 +67,7 @@ int run_rare(const Arguments& arguments) {
   lattice::Source source = open_source(options, "scene");
   if (source.file)
     throw UsageError(source.path + ": is a matrix, and new bodies are to be run: give a scene");
-  how.row = options.has("row") ? static_cast<int>(options.count("row", 1, 10001))
-                               : source.problem.field.rows;
+  how.row = row ? static_cast<int>(row.value(1, 10001)) : source.problem.field.rows;
   if (source.scene) (void)lattice::up_to_row(*source.scene, how.row);  // refuses before a pilot
   choose_method(options, source);
   const lattice::Problem deep = up_to_row(source, how.row);
@@ -73,8 +75,8 @@ int run_rare(const Arguments& arguments) {
                     .direct = {},
                     .method = source.settled,
                     .made_by = options.provenance(source)};
-  if (options.has("trials"))
-    result.direct = lattice::direct_rows(deep, options.trials(), options.seed(), options.work());
+  if (trials)
+    result.direct = lattice::direct_rows(deep, trials.value(), options.seed(), options.work());
   options.work().end_part();
 
   options.give_out(result, table_of(result, source.problem.field));

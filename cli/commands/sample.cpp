@@ -44,29 +44,30 @@ int run_sample(const Arguments& arguments) {
       "Writes a ready file to begin with: a scene, tracks of bodies with the cells that cut them,\n"
       "recorded passages, an experiment's counts. Without NAME it says which there are.",
       "gatewalk sample walker -o mine.toml");
-  options.positional("name", "which one", false);
-  options.output_file("output", "FILE", "the file to write (default: standard output)");
+  const TextOption name = options.positional("name", "which one", false);
+  const TextOption output =
+      options.output_file("output", "FILE", "the file to write (default: standard output)");
   options.without_scene("a sample is written as it is");
   if (!options.parse(arguments)) return kFine;
   const std::vector<Sample> all = samples();
-  if (!options.has("name")) {
-    if (options.has("output")) throw UsageError("-o without NAME: which sample?");
+  if (!name) {
+    if (output) throw UsageError("-o without NAME: which sample?");
     options.give_out(SampleResult{all}, table_of(all));
     return kFine;
   }
-  const std::string name = options.text("name");
+  const std::string given = name.value();
   const auto found =
-      std::find_if(all.begin(), all.end(), [&](const Sample& s) { return s.name == name; });
+      std::find_if(all.begin(), all.end(), [&](const Sample& s) { return s.name == given; });
   if (found == all.end()) {
     std::vector<std::string> names;
     for (const Sample& s : all) names.push_back(s.name);
-    const std::string meant = lattice::meant_name(name, names);
-    throw UsageError(fmt::format("there is no sample '{}'{} (gatewalk sample lists all)", name,
+    const std::string meant = lattice::meant_name(given, names);
+    throw UsageError(fmt::format("there is no sample '{}'{} (gatewalk sample lists all)", given,
                                  meant.empty() ? "" : "; did you mean " + meant + "?"));
   }
   const std::string text(carried_file(found->file));
-  if (options.has("output")) options.write(options.text("output"), text);
-  options.give_out(SampleResult{{*found}, text}, options.has("output") ? "" : text);
+  if (output) options.write(output.value(), text);
+  options.give_out(SampleResult{{*found}, text}, output ? "" : text);
   return kFine;
 }
 

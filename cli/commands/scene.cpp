@@ -32,21 +32,22 @@ int run_scene(const Arguments& arguments) {
       "gives.",
       "gatewalk scene --new --set body.mass_kg=0.25 --set body.radius_m=0.08 "
       "--set forces.propulsion_N=0.8 -o mine.toml");
-  options.positional("scene", "scene file (TOML; -: standard input)", false);
-  options.add_flag("new", "write the scene as a commented TOML file, to edit");
-  options.output_file("output", "FILE", "with --new: the file to write (default: standard output)");
+  const TextOption given =
+      options.positional("scene", "scene file (TOML; -: standard input)", false);
+  const Option is_new =
+      options.add_flag("new", "write the scene as a commented TOML file, to edit");
+  const TextOption output = options.output_file(
+      "output", "FILE", "with --new: the file to write (default: standard output)");
   options.add_figure("one gate to scale, each length and force at its place");
   if (!options.parse(arguments)) return kFine;
-  if (options.has("output") && !options.has("new"))
-    throw UsageError("--output has no meaning without --new");
-  const lattice::Scene scene = options.has("scene")
-                                   ? options.read_scene()
-                                   : lattice::parse_scene(as_text(options.overrides()), "--set");
-  if (options.has("new")) {
+  if (output && !is_new) throw UsageError("--output has no meaning without --new");
+  const lattice::Scene scene =
+      given ? options.read_scene() : lattice::parse_scene(as_text(options.overrides()), "--set");
+  if (is_new) {
     for (const char* other : {"json", "figure"})
       if (options.has(other))
         throw UsageError("--" + std::string(other) + " has no meaning beside --new");
-    options.write(options.has("output") ? options.text("output") : "-", commented(scene));
+    options.write(output ? output.value() : "-", commented(scene));
     return kFine;
   }
   const SceneResult result{scene, dynamics::meaning_of(scene.gate, scene.start),

@@ -11,25 +11,27 @@ int run_show(const Arguments& arguments) {
       "Shows what a matrix file holds: size, counts, sparsity, clamped share, where it\n"
       "came from; with --rows every row, with --row I one row with all its outputs.",
       "gatewalk show matrix.nc --rows");
-  options.positional("matrix", "matrix file written by gatewalk build", true);
-  options.add_flag("rows", "a line per input state");
-  options.add_count("row", "I", "all outputs of input state I; states count from 0");
-  options.add_text("type", "NAME", "the matrix of gates of that type of the table [terrain]");
+  const TextOption file_given =
+      options.positional("matrix", "matrix file written by gatewalk build", true);
+  const Option rows = options.add_flag("rows", "a line per input state");
+  const CountOption row =
+      options.add_count("row", "I", "all outputs of input state I; states count from 0");
+  const TextOption type =
+      options.add_text("type", "NAME", "the matrix of gates of that type of the table [terrain]");
   options.add_figure("the matrix, states grouped by boundary");
   options.without_scene("a matrix keeps its scene");
   if (!options.parse(arguments)) return kFine;
-  const std::string path = options.text("matrix");
+  const std::string path = file_given.value();
   ShownMatrix matrix{path, lattice::read_matrix(path)};
   lattice::MatrixFile& file = matrix.file;
-  if (options.has("type")) {
-    const auto type = file.types.find(options.text("type"));
-    if (type == file.types.end())
-      throw UsageError("--type " + options.text("type") + ": " + path + " has no such type");
-    file.transitions = type->second;
+  if (type) {
+    const auto found = file.types.find(type.value());
+    if (found == file.types.end())
+      throw UsageError("--type " + type.value() + ": " + path + " has no such type");
+    file.transitions = found->second;
   }
-  ShownRows shown{.all = options.has("rows"), .one = {}};
-  if (options.has("row"))
-    shown.one = static_cast<int>(options.count("row", 0, file.transitions.space.size() - 1));
+  ShownRows shown{.all = static_cast<bool>(rows), .one = {}};
+  if (row) shown.one = static_cast<int>(row.value(0, file.transitions.space.size() - 1));
 
   options.give_out(matrix, table_of(matrix, shown));
   options.draw([&] { return figure_of(file.transitions); });

@@ -25,7 +25,7 @@ int run_stability(const Arguments& arguments) {
   std::vector<std::string> written{"stability.csv", "stability.json"};
   written.insert(written.end(), figures.begin(), figures.end());
   options.output_folder("folder to write to", written);
-  options.add_flag("quick", "coarser maps");
+  const Option quick = options.add_flag("quick", "coarser maps");
   options.add_seed();
   options.add_figure("all maps in one figure");
   options.without_scene("the maps have scenes of their own");
@@ -33,7 +33,8 @@ int run_stability(const Arguments& arguments) {
   const ResultFolder folder(options, written);
 
   const StabilityResult result{
-      dynamics::run_maps({.quick = options.has("quick"), .seed = options.seed()}, options.work()),
+      dynamics::run_maps({.quick = static_cast<bool>(quick), .seed = options.seed()},
+                         options.work()),
       options.provenance()};
   const auto& maps = result.maps;
   folder.write("stability.csv", csv_of(maps), "stability.json", result);

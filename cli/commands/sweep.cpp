@@ -54,24 +54,26 @@ int run_sweep(const Arguments& arguments) {
       "may bring its own in a table [sweep]; --vary adds to it or replaces its values of a key.",
       "gatewalk sweep scenes/single_gate.toml --vary forces.propulsion_N=4:1:9 "
       "--vary forces.random_N=0,10,20 --trials 1000 --csv sweep.csv");
-  options.scene();
+  const TextOption path = options.scene();
   options.add_trials_and_seed("runs of the gate at each point");
   options.add_first_trial();
   options.add_kept({"gate runs"});
   options.add_strict();
-  options.add_texts("vary", "KEY=VALUES",
-                    "a key and its values, e.g. forces.random_N=0:10:40 or run.method=stable,paper "
-                    "(may be repeated)");
-  options.output_file("csv", "FILE", "write the grid as CSV; - is standard output");
-  options.add_figure("shares over one key, a map over two");
+  const TextsOption vary = options.add_texts(
+      "vary", "KEY=VALUES",
+      "a key and its values, e.g. forces.random_N=0:10:40 or run.method=stable,paper "
+      "(may be repeated)");
+  const TextOption table =
+      options.output_file("csv", "FILE", "write the grid as CSV; - is standard output");
+  const TextOption figure = options.add_figure("shares over one key, a map over two");
   if (!options.parse(arguments)) return kFine;
-  const std::string csv = options.text("csv");
+  const std::string csv = table.value();
   const dynamics::TrialRange trials = options.trial_range();
-  const lattice::TomlFile& file = options.file(options.text("scene")).toml();
+  const lattice::TomlFile& file = options.file(path.value()).toml();
   const lattice::Scene scene = lattice::read_scene(file, options.overrides());
-  const auto axes = lattice::sweep_axes(scene.sweep, options.texts("vary"));
+  const auto axes = lattice::sweep_axes(scene.sweep, vary.values());
   refuse_overridden(axes, options.overrides());
-  if (options.has("figure") && axes.size() > 2)
+  if (figure && axes.size() > 2)
     throw UsageError(fmt::format("--figure: shows one key or two, {} are varied", axes.size()));
   auto points = lattice::sweep_points({file, options.overrides(), axes});
   for (const std::string& remark : remarks_on(points, options.talk())) options.warn(remark);

@@ -19,21 +19,23 @@ int run_walk(const Arguments& arguments) {
       "Walks the field by drawing every gate's outcome from the matrix (the paper's\n"
       "Markov chain Monte Carlo) and counts the final gates.",
       "gatewalk walk matrix.nc scenes/field.toml --walks 1e6 --seed 1 --json walks.json");
-  options.positional("matrix", "matrix file written by gatewalk build", true);
+  const TextOption matrix =
+      options.positional("matrix", "matrix file written by gatewalk build", true);
   options.positional("scene", "scene file (-: standard input); without it the matrix's own scene",
                      false);
-  options.add_count("walks", "N", "number of walks", "100");
+  const CountOption walks_given = options.add_count("walks", "N", "number of walks", "100");
   options.add_seed();
   options.add_strict();
-  options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
+  const TextOption netcdf =
+      options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
   options.add_figure("where walks end, and how");
   if (!options.parse(arguments)) return kFine;
-  const std::string path = options.text("matrix");
+  const std::string path = matrix.value();
   if (!options.file(path).is_matrix())
     (void)options.file(path).matrix();  // says what it is instead
   lattice::Source s = open_source(options, "matrix");
   const StartedChain from = chain_from_start(options, s);
-  const std::int64_t walks = options.count("walks");
+  const std::int64_t walks = walks_given.value();
   const ShownField shown = ShownField(s);
   const dynamics::Stopwatch watch;
   const auto tally =
@@ -49,9 +51,8 @@ int run_walk(const Arguments& arguments) {
                           .made_by = options.provenance(s)};
   const FieldPicture picture(fmt::format("chain, {} walks", walks), ends_of(tally, shown.field), {},
                              s.starts.front());
-  if (options.has("netcdf"))
-    options.write(options.text("netcdf"),
-                  netcdf_of({picture}, s.problem.map().section, result.made_by));
+  if (netcdf)
+    options.write(netcdf.value(), netcdf_of({picture}, s.problem.map().section, result.made_by));
   options.give_out(result, table_of(result));
   options.warn(too_few_gates(shown));
   options.warn(rest_warning(rest_of(tally)));
