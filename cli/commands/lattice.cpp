@@ -40,12 +40,9 @@ FieldRun run_gates(const Options& options) {
 /// A run of no trial yet.
 FieldRun empty_run(const Options& options, const lattice::Source& s) {
   const lattice::FieldParams& field = s.problem.field;
-  return {ShownField(s),
-          s.problem.start,
-          options.provenance(s),
-          lattice::FieldCosts(s.bin_of_durations(options.seed())),
-          std::nullopt,
-          lattice::FieldTally(field)};
+  return {ShownField(s),         s.problem.start,
+          options.provenance(s), lattice::FieldCosts(s.bin_of_durations(options.seed())),
+          std::nullopt,          lattice::FieldTally(field)};
 }
 
 /// Trials through any cells; writes the tables of --passages and --cell-file.

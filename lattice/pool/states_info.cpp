@@ -40,7 +40,7 @@ TreeInfo trees_in(const JsonObject& json, const dynamics::Section& section) {
   const JsonObject own(json.at("own_trials"));
   *trees.hausman_check =
       HausmanCheck{static_cast<std::int64_t>(own.number("trials")), own.number("total_variation"),
-                own.number("chance_total_variation"), own.number("p")};
+                   own.number("chance_total_variation"), own.number("p")};
   return trees;
 }
 

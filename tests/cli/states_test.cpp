@@ -50,9 +50,8 @@ StateRecord read(const std::string& attribute) {
 
 TEST(StateRecord, AttributesAreReadAsTheyWereWritten) {
   for (const std::string& attribute :
-       {kBins, kTrees + R"(,"own_trials":)" + kOwnTrials + "}",
-        kTrees + R"(,"own_trials":null})", kTrees + "}", kAnyStart, kRecorded,
-        std::string(R"({"bins":"imported","states":87})"),
+       {kBins, kTrees + R"(,"own_trials":)" + kOwnTrials + "}", kTrees + R"(,"own_trials":null})",
+        kTrees + "}", kAnyStart, kRecorded, std::string(R"({"bins":"imported","states":87})"),
         std::string(R"({"bins":"imported","states":8,"probabilities":true})")})
     EXPECT_EQ(attribute_of(read(attribute)), attribute);
 }
