@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -372,10 +373,11 @@ struct Walker::Job {
 
 /// What one thread has counted.
 struct Walker::Counters {
-  std::vector<std::int32_t> by_cell;  // (cells x kEndings)
+  static constexpr std::size_t kEach = std::bit_ceil(kEndings);
+  std::vector<std::int32_t> by_cell;  // (cells x kEach) by Ending; 0 behind the last
   std::int64_t still_walking = 0, steps = 0;
 
-  explicit Counters(std::int64_t cells) : by_cell(static_cast<std::size_t>(cells) * kEndings) {}
+  explicit Counters(std::int64_t cells) : by_cell(static_cast<std::size_t>(cells) * kEach) {}
 
   void count(const Job& job, Ending why, std::int64_t column, std::int64_t row,
              std::int64_t number) {
@@ -383,7 +385,7 @@ struct Walker::Counters {
     if (why == Ending::cut_off && !job.limit_ends)
       ++still_walking;
     else
-      ++by_cell[static_cast<std::size_t>(cell) * kEndings + static_cast<std::size_t>(why)];
+      ++by_cell[static_cast<std::size_t>(cell) * kEach + static_cast<std::size_t>(why)];
     if (job.final_cell_of_walk)
       job.final_cell_of_walk[number - job.range.first] = static_cast<std::int32_t>(cell);
   }
@@ -425,10 +427,10 @@ namespace {
 Ending ending_of(const Field& field, Word cell, Word move) {
   // By bits: beyond the last row, before the first, left of the first column; and behind these how
   // those end that have no move.
-  constexpr std::array kEndingsOf{Ending::right_edge, Ending::far_edge,  Ending::near_edge,
-                                  Ending::far_edge,   Ending::left_edge, Ending::far_edge,
-                                  Ending::near_edge,  Ending::far_edge,  Ending::trapped,
-                                  Ending::unsampled,  Ending::cut_off};
+  static constexpr std::array kEndingsOf{Ending::right_edge, Ending::far_edge,  Ending::near_edge,
+                                         Ending::far_edge,   Ending::left_edge, Ending::far_edge,
+                                         Ending::near_edge,  Ending::far_edge,  Ending::trapped,
+                                         Ending::unsampled,  Ending::cut_off};
   const auto half = [](Word word) { return static_cast<std::int64_t>(word & 0xffffffff); };
   const std::int64_t column = half(cell) + half(move & 0x3ff) - kReach,
                      row = half(cell >> 32) + half(move >> 32 & 0x3ff) - kReach;
@@ -533,7 +535,7 @@ WalkTally Walker::run(bool in_lanes, const Job& job) const {
     CellEndings<std::int64_t> cell{at};
     for (const Counters& of_thread : counters)
       for (std::size_t e = 0; e < kEndings; ++e)
-        cell.by_ending[e] += of_thread.by_cell[static_cast<std::size_t>(at) * kEndings + e];
+        cell.by_ending[e] += of_thread.by_cell[static_cast<std::size_t>(at) * Counters::kEach + e];
     std::int64_t& all = tally.final_cells.data()[at];
     for (std::size_t e = 0; e < kEndings; ++e) {
       all += cell.by_ending[e];
