@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -56,6 +55,11 @@ struct WalkRules {
   Word corner;         // the last cell
   Word key[2], input;  // of the stream
 };
+
+/// Numbers that are counted in a cell: by Ending, and 0 behind the last.
+constexpr int kEachBits = 3;
+constexpr Word kEach = Word{1} << kEachBits;
+static_assert(kEndings <= kEach);
 
 constexpr int kMostLanes = 8;
 constexpr int kTogether = 4;  // registers of Philox blocks: a round waits long for its products
@@ -218,6 +222,35 @@ void carry_out_moves(const WalkRules& rules, int next_word, bool last_time, Pool
   pool.first_ended = first_ended;
 }
 
+/// Of those in `ended` the last cell, in order of rows, and the ending: the cell * kEach + Ending,
+/// into the first of the words. A number below 0, and a last column or row less one beyond it, have
+/// their top bit set.
+void find_endings(const WalkRules& rules, Pool& pool) {
+  const D d;
+  const V last_column = low_half(all(rules.corner)), last_row = high_half(all(rules.corner));
+  const V columns = hn::Add(last_column, all(1));
+  const auto of = [](Ending e) HWY_ATTR { return all(static_cast<Word>(e)); };
+  const auto is_negative = [&](V v) HWY_ATTR { return hn::Ne(hn::ShiftRight<63>(v), hn::Zero(d)); };
+  for (int i = pool.first_ended; i < Pool::kRoom; i += lanes()) {
+    const V move = hn::LoadU(d, pool.ended.move + i), cell = hn::LoadU(d, pool.ended.cell + i);
+    const V column = hn::Sub(hn::Add(low_half(cell), hn::And(move, all(0x3ff))), all(kReach));
+    const V row =
+        hn::Sub(hn::Add(high_half(cell), hn::And(high_half(move), all(0x3ff))), all(kReach));
+    V ending = hn::IfThenElse(is_negative(hn::Sub(last_column, column)), of(Ending::right_edge),
+                              of(Ending::left_edge));
+    ending = hn::IfThenElse(is_negative(row), of(Ending::near_edge), ending);
+    ending = hn::IfThenElse(is_negative(hn::Sub(last_row, row)), of(Ending::far_edge), ending);
+    const auto ends_so = [&](Word last_move, Ending e) HWY_ATTR {
+      ending = hn::IfThenElse(hn::Eq(move, all(last_move)), of(e), ending);
+    };
+    ends_so(kEndTrapped, Ending::trapped);
+    ends_so(kEndCutOff, Ending::cut_off);
+    ends_so(kEndUnsampled, Ending::unsampled);
+    const V place = hn::Add(mul_low(high_half(cell), columns), low_half(cell));
+    hn::StoreU(hn::Add(hn::ShiftLeft<kEachBits>(place), ending), d, pool.words[0] + i);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace gatewalk::markov
 HWY_AFTER_NAMESPACE();
@@ -227,6 +260,7 @@ namespace gatewalk::markov {
 HWY_EXPORT(fill_words);
 HWY_EXPORT(draw_moves);
 HWY_EXPORT(carry_out_moves);
+HWY_EXPORT(find_endings);
 
 namespace {
 
@@ -373,21 +407,20 @@ struct Walker::Job {
 
 /// What one thread has counted.
 struct Walker::Counters {
-  static constexpr std::size_t kEach = std::bit_ceil(kEndings);
-  std::vector<std::int32_t> by_cell;  // (cells x kEach) by Ending; 0 behind the last
+  std::vector<std::int32_t> by_cell;  // (cells x kEach)
   std::int64_t still_walking = 0, steps = 0;
 
   explicit Counters(std::int64_t cells) : by_cell(static_cast<std::size_t>(cells) * kEach) {}
 
-  void count(const Job& job, Ending why, std::int64_t column, std::int64_t row,
-             std::int64_t number) {
-    const std::int64_t cell = row * job.field.columns + column;
-    if (why == Ending::cut_off && !job.limit_ends)
+  /// `place`: cell * kEach + Ending.
+  void count(const Job& job, Word place, std::int64_t number) {
+    const bool stopped = !job.limit_ends && place % kEach == static_cast<Word>(Ending::cut_off);
+    if (stopped)
       ++still_walking;
     else
-      ++by_cell[static_cast<std::size_t>(cell) * kEach + static_cast<std::size_t>(why)];
+      ++by_cell[place];
     if (job.final_cell_of_walk)
-      job.final_cell_of_walk[number - job.range.first] = static_cast<std::int32_t>(cell);
+      job.final_cell_of_walk[number - job.range.first] = static_cast<std::int32_t>(place / kEach);
   }
 };
 
@@ -416,30 +449,10 @@ void Walker::walk_plainly(const Job& job, std::int64_t first, std::int64_t last,
       ending = follow(job.field, exit, drawn + 1 == static_cast<Word>(job.limit), column, row);
       input = exit.next_input;
     }
-    counters.count(job, *ending, column, row, number);
+    const std::int64_t cell = row * job.field.columns + column;
+    counters.count(job, static_cast<Word>(cell) * kEach + static_cast<Word>(*ending), number);
   }
 }
-
-namespace {
-
-/// How a walk ended whose last move was `move`, from `cell`: without a jump, since walks end in no
-/// order.
-Ending ending_of(const Field& field, Word cell, Word move) {
-  // By bits: beyond the last row, before the first, left of the first column; and behind these how
-  // those end that have no move.
-  static constexpr std::array kEndingsOf{Ending::right_edge, Ending::far_edge,  Ending::near_edge,
-                                         Ending::far_edge,   Ending::left_edge, Ending::far_edge,
-                                         Ending::near_edge,  Ending::far_edge,  Ending::trapped,
-                                         Ending::unsampled,  Ending::cut_off};
-  const auto half = [](Word word) { return static_cast<std::int64_t>(word & 0xffffffff); };
-  const std::int64_t column = half(cell) + half(move & 0x3ff) - kReach,
-                     row = half(cell >> 32) + half(move >> 32 & 0x3ff) - kReach;
-  const Word over = static_cast<Word>(row >= field.rows) + 2 * static_cast<Word>(row < 0) +
-                    4 * static_cast<Word>(column < 0);
-  return kEndingsOf[over + (move >> 63) * (8 + (move >> 10 & 3))];
-}
-
-}  // namespace
 
 void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last,
                            Counters& counters) const {
@@ -469,13 +482,12 @@ void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last
       HWY_DYNAMIC_DISPATCH(carry_out_moves)(rules, word + 1, drawn + 1 == job.limit, pool);
     }
 
+    HWY_DYNAMIC_DISPATCH(find_endings)(rules, pool);
     for (int i = pool.first_ended; i < Pool::kRoom; ++i) {
-      const Word cell = pool.ended.cell[i];
-      const Ending why = ending_of(job.field, cell, pool.ended.move[i]);
-      counters.steps -= why == Ending::unsampled;  // there is nothing to draw from
-      counters.count(job, why, static_cast<std::int64_t>(cell & 0xffffffff),
-                     static_cast<std::int64_t>(cell >> 32),
-                     static_cast<std::int64_t>(pool.ended.number[i]));
+      const Word place = pool.words[0][i];
+      // There is nothing to draw from.
+      counters.steps -= place % kEach == static_cast<Word>(Ending::unsampled);
+      counters.count(job, place, static_cast<std::int64_t>(pool.ended.number[i]));
     }
   }
 }
@@ -535,7 +547,7 @@ WalkTally Walker::run(bool in_lanes, const Job& job) const {
     CellEndings<std::int64_t> cell{at};
     for (const Counters& of_thread : counters)
       for (std::size_t e = 0; e < kEndings; ++e)
-        cell.by_ending[e] += of_thread.by_cell[static_cast<std::size_t>(at) * Counters::kEach + e];
+        cell.by_ending[e] += of_thread.by_cell[static_cast<std::size_t>(at) * kEach + e];
     std::int64_t& all = tally.final_cells.data()[at];
     for (std::size_t e = 0; e < kEndings; ++e) {
       all += cell.by_ending[e];
