@@ -9,7 +9,7 @@
 ///   Chain  ->  Monte Carlo walks (walk.h): one draw per cell, a walk is named by its number
 ///   Chain, or one per row or cell (FieldChain)  ->  exact distribution (predict.h): Predictor and
 ///              predict() by the solver asked for. Step by step: all planes of the field at a time; by
-///              rows: the visits of a row by elimination or sums, then the next row. A plain
+///              rows: the visits of a row by elimination, sweeps or sums, then the next row. A plain
 ///              reference is one sparse solve (solve_absorption)
 ///   Chain -> the chance of an ending from everywhere (committor.h), of any cell, state or ending with the mean
 ///              time till then (first_passage.h), of all ends by first draw and by cell

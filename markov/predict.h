@@ -27,7 +27,7 @@ struct FinalDistribution : Ends<double> {
   /// probabilities included).
   double rounding = 0.0;
   double mean_steps = 0.0;  // draws per walk, as WalkTally::steps / walks; without the remainder's
-  int steps = 0;            // propagation steps done (0 for a solve)
+  int steps = 0;            // propagation steps or sweeps done (0 for a solve)
   double operations = 0.0;  // products that Solver::direct took; 0 for any other
 };
 
@@ -52,11 +52,13 @@ struct PredictOptions {
   enum class Solver { automatic, steps, rows, direct, klu };
   Solver solver = Solver::automatic;
 
-  /// How `rows` finds the visits of a row: by elimination of its columns, which takes as long
-  /// whatever the number of moves, if the row lets it (cells of one type, no move within the row to
-  /// any but the next column); by `sums` over more and more moves; `cheapest`: what takes fewer
-  /// operations by estimate.
-  enum class RowMethod { cheapest, elimination, sums };
+  /// How `rows` finds the visits of a row. `elimination` of its columns takes as long whatever the
+  /// number of moves; it needs cells of one type, and no move within the row to any but the next
+  /// column. `sweeps` to both sides bring on what each state gives to the next ones; they need
+  /// cells of one type, and walks that soon leave the row. `sums` over more and more moves take any
+  /// row, and stand in where the method asked for does not suit. `cheapest`: what takes least time
+  /// by estimate.
+  enum class RowMethod { cheapest, elimination, sweeps, sums };
   RowMethod row_method = RowMethod::cheapest;
 
   /// Without limit: the share of all walks that may be left walking (`remainder`; elimination may

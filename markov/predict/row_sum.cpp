@@ -110,7 +110,7 @@ void RowSum::tell_neighbours(int first, int last) {
   }
 }
 
-void RowSum::solve(double* values, Of of, double tolerance) {
+int RowSum::solve(double* values, Of of, double tolerance) {
   double* const x = x_.data() + widest_ * stride_;
   const auto sweep = [&](const Terms& terms, int first, int last, bool upwards, const double* b,
                          StripChange& change) {
@@ -123,7 +123,8 @@ void RowSum::solve(double* values, Of of, double tolerance) {
   tell_neighbours(0, right_);
   sweep(first_, right_, last_, true, x, unasked);
   std::copy_n(x, b_.size(), b_.data());
-  for (bool settled = right_ == last_; !settled;) {
+  int sweeps = 0;
+  for (bool settled = right_ == last_; !settled; ++sweeps) {
     StripChange change;
     tell_neighbours(right_, last_);
     sweep(further_, right_, left_, right_first_up_, b_.data(), change);
@@ -135,6 +136,7 @@ void RowSum::solve(double* values, Of of, double tolerance) {
   tell_neighbours(0, last_);
   sweep(further_, last_, inputs_, true, x, unasked);
   each([&](std::ptrdiff_t at, std::ptrdiff_t cell) { values[cell] = x[at]; });
+  return sweeps;
 }
 
 }  // namespace gatewalk::markov

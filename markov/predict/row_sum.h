@@ -35,8 +35,9 @@ class RowSum {
   [[nodiscard]] bool suits() const;
   /// `values` (columns x inputs): b, and then x, to `tolerance` of the largest or of each number,
   /// however small.
+  /// Returns how many sweeps to both sides that took.
   enum class Of { largest, each };
-  void solve(double* values, Of of, double tolerance = 1e-12);
+  int solve(double* values, Of of, double tolerance = 1e-12);
 
  private:
   /// For every number of the row its places in the strips and in the cells.

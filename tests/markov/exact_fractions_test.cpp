@@ -83,6 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
     All, ExactFractions,
     testing::Values(Route{"automatic", Solver::automatic}, Route{"steps", Solver::steps},
                     Route{"rows_by_elimination", Solver::rows, RowMethod::elimination},
+                    Route{"rows_by_sweeps", Solver::rows, RowMethod::sweeps},
                     Route{"rows_by_sums", Solver::rows, RowMethod::sums},
                     Route{"klu", Solver::klu}),
     [](const auto& param) { return std::string(param.param.name); });

@@ -28,7 +28,7 @@ using test::propagate;
 
 using RowMethod = PredictOptions::RowMethod;
 using Solver = PredictOptions::Solver;
-constexpr std::array kMethods = {RowMethod::elimination, RowMethod::sums};
+constexpr std::array kMethods = {RowMethod::elimination, RowMethod::sweeps, RowMethod::sums};
 
 void expect_near(const FinalDistribution& a, const FinalDistribution& b, double bound) {
   EXPECT_LE((a.final_cells - b.final_cells).abs().maxCoeff(), bound);
@@ -326,8 +326,8 @@ TEST(Predictor, FindsAFewThatCircleForLong) {
 }
 
 // Of few runs a state often has none that leaves the row; what counts is how long walks stay there.
-// Sums are then cheaper than dense elimination of so many states. `steps` counts sums alone.
-TEST(Predictor, TakesSumsWhereWalksSoonLeaveTheRow) {
+// Sweeps are then cheaper than dense elimination of so many states.
+TEST(Predictor, TakesSweepsWhereWalksSoonLeaveTheRow) {
   constexpr int n = 400;
   std::vector<Entry> entries;
   std::vector<Exit> exits;
@@ -340,13 +340,17 @@ TEST(Predictor, TakesSumsWhereWalksSoonLeaveTheRow) {
   exits.push_back({});
   const Chain chain = Chain::from_probabilities(matrix(n, n + 1, entries), exits);
   const auto d = Predictor(chain).predict({9, 1}, {4, 0, 0});
-  EXPECT_GT(d.steps, 0);
-  EXPECT_LT(d.steps, 100);
   expect_near(d, solve_absorption(chain, {9, 1}, {4, 0, 0}), 1e-12);
-  const auto eliminated = Predictor(chain).predict(
-      {9, 1}, {4, 0, 0}, {.solver = Solver::rows, .row_method = RowMethod::elimination});
-  EXPECT_EQ(eliminated.steps, 0);
-  expect_near(d, eliminated, 1e-12);
+  const auto by = [&](RowMethod method) {
+    return Predictor(chain).predict({9, 1}, {4, 0, 0},
+                                    {.solver = Solver::rows, .row_method = method});
+  };
+  EXPECT_EQ(d.remainder, by(RowMethod::sweeps).remainder);
+  EXPECT_EQ(d.endings, by(RowMethod::sweeps).endings);
+  for (const RowMethod other : {RowMethod::elimination, RowMethod::sums}) {
+    EXPECT_NE(d.remainder, by(other).remainder);
+    expect_near(d, by(other), 1e-12);
+  }
 }
 
 TEST(Predictor, RefusesMovesBeyondAnyField) {
