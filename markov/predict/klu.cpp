@@ -22,6 +22,11 @@ class Klu {
   explicit Klu(Transient& t) : t_(t), n_(static_cast<SuiteSparse_long>(t.states.size())) {
     klu_l_defaults(&common_);
     symbolic_ = klu_l_analyze(n_, t_.begin.data(), t_.index.data(), &common_);
+    constexpr double kMostNumbers = 2e8;  // some 3 GB
+    if (symbolic_ && symbolic_->lnz + symbolic_->unz > kMostNumbers) {
+      common_.status = KLU_TOO_LARGE;
+      return;
+    }
     if (symbolic_) {
       numeric_ =
           klu_l_factor(t_.begin.data(), t_.index.data(), t_.value.data(), symbolic_, &common_);
