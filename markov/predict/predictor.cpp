@@ -149,22 +149,17 @@ MaybePredicted in_groups(const std::vector<Start>& starts, std::int64_t size, Ru
   return all;
 }
 
-/// Where walks circle too long for sums. Measured: KLU's LU takes a fourth to a sixth of the time
-/// of the elimination without subtraction, and its digits fall with the length of the circles. None
-/// where neither does.
+/// Where walks circle too long for sums: by the elimination without subtraction, which keeps all
+/// digits; of fields too large for it by KLU's LU, where that keeps enough. None where neither
+/// does.
 std::optional<FinalDistribution> solve_circles(const FieldChain& chain, const Field& field,
                                                const Start& start) {
-  constexpr double kSoonEliminated = 2e7;  // products: half a second or so
-  constexpr double kEnoughDigits = 1e-8;
-  if (auto direct = solve_directly(chain, field, start, kSoonEliminated)) return direct;
-  std::optional<FinalDistribution> klu;
+  if (auto direct = solve_directly(chain, field, start)) return direct;
   try {
-    klu = solve_absorption(chain, field, start);
+    return solve_absorption(chain, field, start);
   } catch (const std::runtime_error&) {  // too few digits, or too large
+    return {};
   }
-  if (klu && klu->remainder + klu->rounding <= kEnoughDigits) return klu;
-  auto direct = solve_directly(chain, field, start);
-  return direct ? direct : klu;
 }
 
 }  // namespace
