@@ -321,14 +321,4 @@ int status_of(const Options& options, const dynamics::Health& health, const std:
   return exit_status(options, health.clean());
 }
 
-double number_within(const Options& options, const char* name, double usual, double low,
-                     double high) {
-  if (!options.has(name)) return usual;
-  const double value = options.number(name);
-  if (!(value >= low && value <= high))
-    throw UsageError(fmt::format("--{} {}: must lie in [{}, {}]", name, digits(value), digits(low),
-                                 digits(high)));
-  return value;
-}
-
 }  // namespace gatewalk::cli

@@ -102,8 +102,4 @@ void require_inside_bins(const Options& options, const std::vector<dynamics::Ent
 [[nodiscard]] int status_of(const Options& options, const dynamics::Health& health,
                             const std::string& where = "");
 
-/// Of this option, or the usual one. Throws UsageError for one outside [low, high].
-[[nodiscard]] double number_within(const Options& options, const char* name, double usual,
-                                   double low, double high);
-
 }  // namespace gatewalk::cli

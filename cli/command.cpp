@@ -12,6 +12,7 @@
 #include "cli/command_state.h"
 #include "cli/kept/kept_options.h"
 #include "cli/kept/ranks.h"
+#include "cli/render/text.h"
 #include "cli/render/text_table.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
@@ -270,9 +271,10 @@ TextOption Options::add_text(const std::string& name, const std::string& shown,
   return {*this, name};
 }
 
-void Options::add_numbers(const std::string& name, const std::string& shown,
-                          const std::string& help) {
+NumbersOption Options::add_numbers(const std::string& name, const std::string& shown,
+                                   const std::string& help) {
   state_->add(name, po::value<std::vector<Number>>()->composing(), shown, help);
+  return {*this, name};
 }
 
 TextsOption Options::add_texts(const std::string& name, const std::string& shown,
@@ -496,6 +498,17 @@ std::int64_t CountOption::value(std::int64_t low, std::int64_t high) const {
 }
 
 double NumberOption::value() const { return options_->number(name_); }
+
+double NumberOption::within(double usual, double low, double high) const {
+  if (!*this) return usual;
+  const double given = value();
+  if (!(given >= low && given <= high))
+    throw UsageError(fmt::format("--{} {}: must lie in [{}, {}]", name_, digits(given), digits(low),
+                                 digits(high)));
+  return given;
+}
+
+std::vector<double> NumbersOption::values() const { return options_->numbers(name_); }
 
 std::string TextOption::value() const { return options_->text(name_); }
 

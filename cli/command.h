@@ -113,6 +113,13 @@ class NumberOption : public Option {
  public:
   using Option::Option;
   [[nodiscard]] double value() const;
+  /// Of it, or the usual one. Throws UsageError for one outside [low, high].
+  [[nodiscard]] double within(double usual, double low, double high) const;
+};
+class NumbersOption : public Option {
+ public:
+  using Option::Option;
+  [[nodiscard]] std::vector<double> values() const;
 };
 class TextOption : public Option {
  public:
@@ -155,7 +162,8 @@ class Options {
   TextOption add_text(const std::string& name, const std::string& shown, const std::string& help,
                       const std::string& by_default = "");
   /// May be repeated.
-  void add_numbers(const std::string& name, const std::string& shown, const std::string& help);
+  NumbersOption add_numbers(const std::string& name, const std::string& shown,
+                            const std::string& help);
   TextsOption add_texts(const std::string& name, const std::string& shown, const std::string& help);
   /// Has no value.
   Option add_flag(const std::string& name, const std::string& help);

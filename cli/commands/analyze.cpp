@@ -26,8 +26,7 @@ namespace gatewalk::cli {
 namespace {
 
 /// The ending that --target names, as in JSON. Throws UsageError for a name that none has.
-markov::Ending target_of(const Options& options) {
-  const std::string name = options.text("target");
+markov::Ending target_of(const std::string& name) {
   if (const auto ending = lattice::ending_named(name)) return *ending;
   throw UsageError(fmt::format(
       "--target {}: must be one of {}", name,
@@ -35,11 +34,11 @@ markov::Ending target_of(const Options& options) {
 }
 
 /// --lump: parts of each coordinate; 1 each without it. Throws UsageError.
-lattice::LumpingParts lumping_of(const Options& options, const dynamics::Section& section) {
+lattice::LumpingParts lumping_of(const TextOption& given, const dynamics::Section& section) {
   constexpr int kMost = 1000;
   lattice::LumpingParts parts(section.coordinates.size(), 1);
-  if (!options.has("lump")) return parts;
-  const std::string text = options.text("lump");
+  if (!given) return parts;
+  const std::string text = given.value();
   const char *at = text.data(), *const end = at + text.size();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const auto [next, error] = std::from_chars(at, end, parts[i]);
@@ -177,9 +176,9 @@ std::optional<std::int64_t> cell_named(const lattice::FieldParams& field, const 
 }
 
 /// What --first-passage asks for; none without it. Throws UsageError naming what is allowed.
-std::optional<PassageAsked> first_passage_asked(const Options& options, const lattice::Source& s) {
-  if (!options.has("first-passage")) return {};
-  const std::string text = options.text("first-passage");
+std::optional<PassageAsked> first_passage_asked(const TextOption& given, const lattice::Source& s) {
+  if (!given) return {};
+  const std::string text = given.value();
   const auto state = state_named(s, text);
   const bool capitals =
       std::any_of(text.begin(), text.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
@@ -235,22 +234,22 @@ std::optional<PassageResult> first_passage_of(const Options& options,
 }
 
 /// The scene over the ranges of --over; none without them. Throws UsageError and SceneError.
-std::optional<NumberRanges> over_of(const Options& options, const lattice::Source& s) {
+std::optional<NumberRanges> over_of(const Options& options, const CountOption& trials,
+                                    const lattice::Source& s) {
   auto ranges = ranges_of(options, s, "over", lattice::kMostVaried);
-  if (!options.has("over-trials")) return ranges;
+  if (!trials) return ranges;
   if (!ranges) throw UsageError("--over-trials: is for --over");
-  (void)options.count("over-trials",
-                      lattice::least_trials_of_shares(static_cast<int>(ranges->each.size())));
+  (void)trials.value(lattice::least_trials_of_shares(static_cast<int>(ranges->each.size())));
   return ranges;
 }
 
 /// How much of the variance of the target's chance each number of --over makes; none without it.
-std::optional<RangedShares> shares_of(const Options& options,
+std::optional<RangedShares> shares_of(const Options& options, const CountOption& trials,
                                       const std::optional<NumberRanges>& ranges,
                                       const lattice::Source& s, markov::Ending target) {
   if (!ranges) return {};
   lattice::VarianceSharesOptions how{.seed = options.seed()};
-  if (options.has("over-trials")) how.trials = options.count("over-trials");
+  if (trials) how.trials = trials.value();
   return RangedShares{
       ranges->each, target,
       lattice::variance_shares(static_cast<int>(ranges->each.size()), problem_at(*ranges, s),
@@ -276,35 +275,41 @@ int run_analyze(const Arguments& arguments) {
       "matrix", "a scene (-: standard input), or a matrix file written by gatewalk build", true);
   options.positional("scene", "of a matrix: another scene; without it the matrix's own", false);
   add_accuracy(options, "0.02; that of a matrix");
-  options.add_texts("start", "D,VX,VY", "where a body starts (default: the scene's start)");
-  options.add_text("target", "ENDING",
-                   "what starts, paths and influences are of: crossed, left_side, right_side, "
-                   "trapped or cut_off",
-                   "crossed");
-  options.add_text("first-passage", "TARGET",
-                   "how likely bodies get there and how long that takes, from every state of every "
-                   "gate: an ending, a gate\nIX,IY, of a matrix a state (name or number), or "
-                   "IX,IY,STATE; --json and --csv have all states");
-  options.add_count(
+  const TextsOption starts_given =
+      options.add_texts("start", "D,VX,VY", "where a body starts (default: the scene's start)");
+  const TextOption target =
+      options.add_text("target", "ENDING",
+                       "what starts, paths and influences are of: crossed, left_side, right_side, "
+                       "trapped or cut_off",
+                       "crossed");
+  const TextOption to_reach = options.add_text(
+      "first-passage", "TARGET",
+      "how likely bodies get there and how long that takes, from every state of every "
+      "gate: an ending, a gate\nIX,IY, of a matrix a state (name or number), or "
+      "IX,IY,STATE; --json and --csv have all states");
+  const CountOption runs = options.add_count(
       "runs", "N",
       "gate runs with a little more, and as many with a little less of each number "
       "of the scene,\nand as many again for the intervals, on top of --gate-runs; 0: none",
       "20000");
-  options.add_number("step", "PART", "how much more and less, as a part of it (default: 0.02)");
-  options.add_text(
+  const NumberOption step =
+      options.add_number("step", "PART", "how much more and less, as a part of it (default: 0.02)");
+  const TextOption lump = options.add_text(
       "lump", "D,VX,VY",
       "into how many parts the states of each boundary are cut by d, vx and vy (or what other "
       "cells have), to\nsee what so few states would cost (default: 1 each)");
-  options.add_count("paths", "N", "the most frequent ways through the field", "5");
+  const CountOption paths =
+      options.add_count("paths", "N", "the most frequent ways through the field", "5");
   options.add_texts(
       "over", "KEY=LOW:HIGH",
       fmt::format("a number of the scene, or of the program, and a range: how much of the variance "
                   "of the target's chance each of these\nmakes, all of them anywhere in their "
                   "ranges alike (Sobol's first and total indices; at most {};\nmay be repeated)",
                   lattice::kMostVaried));
-  options.add_count("over-trials", "N",
-                    "full trials for that, at most, all together (default: 200000)");
-  options.add_count("trials", "N", "also run N trials of the full dynamics, to compare");
+  const CountOption over_trials = options.add_count(
+      "over-trials", "N", "full trials for that, at most, all together (default: 200000)");
+  const CountOption trials =
+      options.add_count("trials", "N", "also run N trials of the full dynamics, to compare");
   options.add_seed();
   options.add_kept();
   options.add_strict();
@@ -312,16 +317,15 @@ int run_analyze(const Arguments& arguments) {
   add_page(options);
   options.add_figure("visits and paths, durations, starts and influences");
   if (!options.parse(arguments)) return kFine;
-  if (options.texts("start").size() > 1) throw UsageError("--start: an analysis is of one start");
-  const lattice::ParameterOptions parameters{
-      .runs = options.count("runs", 0, 1'000'000),
-      .relative_step = number_within(options, "step", 0.02, 1e-6, 0.5),
-      .seed = options.seed()};
-  if (options.has("trials")) (void)options.trials();  // they are run last
+  if (starts_given.values().size() > 1) throw UsageError("--start: an analysis is of one start");
+  const lattice::ParameterOptions parameters{.runs = runs.value(0, 1'000'000),
+                                             .relative_step = step.within(0.02, 1e-6, 0.5),
+                                             .seed = options.seed()};
+  if (trials) (void)trials.value();  // they are run last
   if (parameters.runs > 0 && parameters.runs < 100)
     throw UsageError("--runs: must be 0, or 100 or more");
-  lattice::AnalysisOptions how{.target = target_of(options),
-                               .paths = static_cast<std::size_t>(options.count("paths", 0, 1000)),
+  lattice::AnalysisOptions how{.target = target_of(target.value()),
+                               .paths = static_cast<std::size_t>(paths.value(0, 1000)),
                                .seed = options.seed()};
   lattice::Source s = open_source(options, "matrix");
   check_page(options, s);
@@ -330,9 +334,9 @@ int run_analyze(const Arguments& arguments) {
         options, {"trials", "step"},
         "for " + s.path +
             (s.is_imported ? ", a chain that was made elsewhere" : ", whose runs were recorded"));
-  how.lumping = lumping_of(options, s.problem.map().section);
-  const auto ranges = over_of(options, s);
-  const auto passage = first_passage_asked(options, s);
+  how.lumping = lumping_of(lump, s.problem.map().section);
+  const auto ranges = over_of(options, over_trials, s);
+  const auto passage = first_passage_asked(to_reach, s);
   choose_method(options, s);
   const auto of_file = runs_of_file(options, s);
   AnalysedSubject c = s.pool ? chain_of_runs(options, s) : chain_of_bins(options, s);
@@ -346,13 +350,13 @@ int run_analyze(const Arguments& arguments) {
   result.passage = first_passage_of(options, passage, s, c);
   if (s.pool) c.chain.reset();  // that for parameters is larger
   result.parameters = effects_of(parameters, s, c, analysis, work);
-  if (options.has("trials")) {
+  if (trials) {
     lattice::FieldCosts costs(s.bin_of_durations(options.seed()));
-    auto tally = lattice::field_trials(s.problem, {0, options.trials()}, options.seed(), work,
+    auto tally = lattice::field_trials(s.problem, {0, trials.value()}, options.seed(), work,
                                        [&](const lattice::FieldTrials& each) { costs.add(each); });
     result.direct = DirectTrials{std::move(tally), std::move(costs)};
   }
-  result.shares = shares_of(options, ranges, s, how.target);
+  result.shares = shares_of(options, over_trials, ranges, s, how.target);
   bool clean = c.clean;
   const auto look_at = [&](const dynamics::Health& health, const std::string& where) {
     clean = status_of(options, health, where) == kFine && clean;

@@ -14,9 +14,8 @@ constexpr std::int64_t kMostPilotTrials =
     1'000'000;  // per start; what all of them saw is in memory
 
 /// --bins, in ascending order.
-std::vector<double> factors_of(const Options& options, lattice::BinsChoice::Kind kind) {
-  std::vector<double> factors =
-      options.has("bins") ? options.numbers("bins") : lattice::ChainErrorOptions{}.factors;
+std::vector<double> factors_of(const NumbersOption& given, lattice::BinsChoice::Kind kind) {
+  std::vector<double> factors = given ? given.values() : lattice::ChainErrorOptions{}.factors;
   std::sort(factors.begin(), factors.end());
   if (std::adjacent_find(factors.begin(), factors.end()) != factors.end())
     throw UsageError("--bins: the same factor twice");
@@ -43,13 +42,16 @@ int run_chart_chain(const Arguments& arguments) {
   options.scene();
   const std::vector<std::string> files{"chain.csv", "chain.json", "chain.svg"};
   options.output_folder("folder to write to, made if missing", files);
-  options.add_count("truth-trials", "N",
-                    "trials of the full dynamics per start, against which errors are taken", "1e5");
-  options.add_count("runs-limit", "N", "gate runs that one matrix or tree may take", "1e6");
-  options.add_numbers("bins", "FACTOR",
-                      "bins per axis, as a multiple of those that build has without --bins (may be "
-                      "repeated; default: 0.5, 1, 2, 4)");
-  options.add_count(
+  const CountOption truth_trials = options.add_count(
+      "truth-trials", "N", "trials of the full dynamics per start, against which errors are taken",
+      "1e5");
+  const CountOption runs_limit =
+      options.add_count("runs-limit", "N", "gate runs that one matrix or tree may take", "1e6");
+  const NumbersOption factors = options.add_numbers(
+      "bins", "FACTOR",
+      "bins per axis, as a multiple of those that build has without --bins (may be "
+      "repeated; default: 0.5, 1, 2, 4)");
+  const CountOption visited = options.add_count(
       "visited", "N",
       "also chart matrices whose rows start not anywhere in their bins but where N full trials per "
       "start were seen to enter; these trials count as cost. Bins that are made from what is seen "
@@ -67,11 +69,11 @@ int run_chart_chain(const Arguments& arguments) {
     require_inside_bins(options, starts, scene, lattice::fixed_space(scene));
   auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
   lattice::ChainErrorOptions chosen{.starts = starts,
-                                    .truth_trials = options.count("truth-trials", 100),
-                                    .runs_limit = options.count("runs-limit"),
+                                    .truth_trials = truth_trials.value(100),
+                                    .runs_limit = runs_limit.value(),
                                     .seed = options.seed()};
-  if (options.has("visited")) chosen.visited = options.count("visited", 1, kMostPilotTrials);
-  chosen.factors = factors_of(options, bins);
+  if (visited) chosen.visited = visited.value(1, kMostPilotTrials);
+  chosen.factors = factors_of(factors, bins);
   lattice::ChainErrorPlan plan = lattice::plan_chain_error(scene, chosen, options.work());
   if (plan.empty())
     throw UsageError(

@@ -42,34 +42,35 @@ int run_import(const Arguments& arguments) {
       "counts_per_run: 2 where a run is counted with its mirror image, as in counts of trees that\n"
       "export wrote: error bars then count it once).",
       "gatewalk import counts.mtx --states states.csv --start 0 --set field.rows=5 -o chain.nc");
-  options.positional("file", "the matrix or the trajectories", true);
-  options.input_file("states", "the table of states");
-  options.main_output_file("MATRIX.nc", "the matrix file to write", Options::Content::binary);
-  options.add_text("start", "STATE",
-                   "the state in which walks start: its name, or its number from 0");
-  options.add_number("width", "M", "width of a cell, m (default: 1)");
-  options.add_number("length", "M", "its length along the way, m (default: 1)");
+  const TextOption file_given = options.positional("file", "the matrix or the trajectories", true);
+  const TextOption table_of_states = options.input_file("states", "the table of states");
+  const TextOption output_given =
+      options.main_output_file("MATRIX.nc", "the matrix file to write", Options::Content::binary);
+  const TextOption start_given = options.add_text(
+      "start", "STATE", "the state in which walks start: its name, or its number from 0");
+  const NumberOption width = options.add_number("width", "M", "width of a cell, m (default: 1)");
+  const NumberOption length =
+      options.add_number("length", "M", "its length along the way, m (default: 1)");
   if (!options.parse(arguments)) return kFine;
-  if (!options.has("states"))
+  if (!table_of_states)
     throw UsageError("missing --states STATES.csv: which move enters each state");
   std::vector<std::string> understood;
-  auto states = read_file([&] { return read_states(options.text("states"), &understood); });
-  const std::string path = options.text("file");
+  auto states = read_file([&] { return read_states(table_of_states.value(), &understood); });
+  const std::string path = file_given.value();
   const ForeignMatrix matrix = read_file([&] { return read_foreign(path, states); });
   // Of trajectories each run is counted once, and nothing else than a count has runs.
   if (matrix.trajectories || matrix.probabilities)
     for (ForeignState& s : states) s.counts_per_run = 0;
-  lattice::CellFile cells =
-      lattice::parse_cell_file(cell_text(states, number_within(options, "width", 1.0, 1e-9, 1e9),
-                                         number_within(options, "length", 1.0, 1e-9, 1e9)),
-                               options.text("states"), options.overrides());
-  if (options.has("start")) {
-    const std::string start = options.text("start");
+  lattice::CellFile cells = lattice::parse_cell_file(
+      cell_text(states, width.within(1.0, 1e-9, 1e9), length.within(1.0, 1e-9, 1e9)),
+      table_of_states.value(), options.overrides());
+  if (start_given) {
+    const std::string start = start_given.value();
     std::size_t k = 0;
     while (k < states.size() && start != states[k].name && start != std::to_string(k)) ++k;
     if (k == states.size())
       throw UsageError(
-          fmt::format("--start {}: {} has no such state", start, options.text("states")));
+          fmt::format("--start {}: {} has no such state", start, table_of_states.value()));
     cells.start = entry_of(states, k, cells.map.section);
   }
   dynamics::Transitions t = transitions_of(matrix, states, cells);
@@ -88,7 +89,7 @@ int run_import(const Arguments& arguments) {
     file.text["understood"] = lines;
     lines += "\n";
   }
-  const std::string output = options.text("output");
+  const std::string output = output_given.value();
   options.keep_old(output);
   lattice::write_matrix(output, file);
   const std::vector<std::int64_t> per_run = lattice::counts_per_run(file);

@@ -33,28 +33,29 @@ int run_power(const Arguments& arguments) {
       "gatewalk power scenes/robot.toml --trials 60 --versus "
       "beams.stiffness_left_Nm_per_rad=0.3");
   options.scene();
-  options.add_texts("versus", "KEY=VALUE",
-                    "the scene to tell this one from has this key otherwise (may be repeated); or "
-                    "a matrix of another group's recorded runs");
+  const TextsOption other_given = options.add_texts(
+      "versus", "KEY=VALUE",
+      "the scene to tell this one from has this key otherwise (may be repeated); or "
+      "a matrix of another group's recorded runs");
   options.reads("versus", [&options](const std::string& given) {
     return options.file(given).is_matrix() ? given : lattice::TomlFile(given, "").map_file();
   });
-  options.add_count("trials", "N",
-                    "also: what N trials show (with --versus, N of each scene), at most 100000");
-  options.add_number("power", "P", "how often a difference is to be found (default: 0.8)");
-  options.add_number("level", "A",
-                     "how often one may be found where there is none (default: 0.05)");
+  const CountOption trials = options.add_count(
+      "trials", "N", "also: what N trials show (with --versus, N of each scene), at most 100000");
+  const NumberOption power =
+      options.add_number("power", "P", "how often a difference is to be found (default: 0.8)");
+  const NumberOption level = options.add_number(
+      "level", "A", "how often one may be found where there is none (default: 0.05)");
   add_accuracy(options);
   options.add_seed();
   options.add_strict();
   add_cell_program(options);
   if (!options.parse(arguments)) return kFine;
   lattice::ExperimentOptions how{
-      .goal = {.power = number_within(options, "power", 0.8, 0.5, 0.99),
-               .level = number_within(options, "level", 0.05, 0.01, 0.25)},
+      .goal = {.power = power.within(0.8, 0.5, 0.99), .level = level.within(0.05, 0.01, 0.25)},
       .trials = {},
       .seed = options.seed()};
-  if (options.has("trials")) how.trials = options.count("trials", 1, lattice::kMostPlanned);
+  if (trials) how.trials = trials.value(1, lattice::kMostPlanned);
   lattice::Source s = open_source(options, "scene");
   require_error_bars(s);
   auto other = versus(options, s);
@@ -75,7 +76,7 @@ int run_power(const Arguments& arguments) {
                      .made_by = options.provenance(s)};
   if (second) {
     const lattice::StartAnswer& versus = second->starts.front();
-    result.versus = {options.texts("versus"), versus, lattice::tell_apart(answer, versus, how),
+    result.versus = {other_given.values(), versus, lattice::tell_apart(answer, versus, how),
                      other->scene};
     result.health += second->health;
   }
