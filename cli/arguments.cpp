@@ -10,18 +10,18 @@
 #include <memory>
 #include <utility>
 
+#include "cli/fields/text.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/matrix.h"
 #include "cli/render/meaning.h"
 #include "cli/render/start.h"
-#include "cli/render/text.h"
 #include "cli/source_options.h"
 #include "dynamics/base/work.h"
-#include "lattice/cells/start_text.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/pool/states_info.h"
 #include "lattice/scene/units.h"
+#include "lattice/source/start_text.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {

@@ -10,10 +10,10 @@
 #include <typeinfo>
 
 #include "cli/command_state.h"
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/kept/kept_options.h"
 #include "cli/kept/ranks.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
 #include "lattice/text/edit_distance.h"

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/figure.h"
 #include "cli/render/provenance.h"
 #include "dynamics/base/work.h"

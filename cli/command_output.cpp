@@ -6,9 +6,9 @@
 #include <iostream>
 
 #include "cli/command_state.h"
+#include "cli/fields/csv.h"
+#include "cli/fields/json.h"
 #include "cli/kept/ranks.h"
-#include "cli/render/json.h"
-#include "cli/render/numbers.h"
 #include "cli/terminal/gnuplot.h"
 #include "cli/terminal/output.h"
 

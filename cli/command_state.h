@@ -21,7 +21,7 @@
 #include "cli/command.h"
 #include "cli/kept/kept_run.h"
 #include "cli/terminal/backup.h"
-#include "lattice/cells/source.h"
+#include "lattice/source/source.h"
 
 namespace gatewalk::cli {
 

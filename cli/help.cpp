@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/render/schema.h"
+#include "cli/fields/schema.h"
 #include "cli/render/version.h"
 #include "cli/terminal/output.h"
 

@@ -14,10 +14,10 @@
 #include <string_view>
 
 #include "cli/commands.h"
+#include "cli/fields/schema.h"
 #include "cli/help.h"
 #include "cli/kept/kept_run.h"
 #include "cli/kept/ranks.h"
-#include "cli/render/schema.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "cli/terminal/output.h"

@@ -9,14 +9,14 @@
 #include <utility>
 
 #include "cli/arguments.h"
+#include "cli/fields/json.h"
+#include "cli/fields/text.h"
 #include "cli/render/analysis.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/json.h"
-#include "cli/render/text.h"
 #include "cli/render/version.h"
 #include "cli/web/embedded.h"
 #include "cli/web/html.h"
-#include "lattice/cells/start_text.h"
+#include "lattice/source/start_text.h"
 
 namespace gatewalk::cli {
 namespace {

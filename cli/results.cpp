@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <utility>
 
+#include "cli/fields/schema.h"
 #include "cli/film/replay.h"
 #include "cli/paper/report.h"
 #include "cli/render/analysis.h"
@@ -21,7 +22,6 @@
 #include "cli/render/power.h"
 #include "cli/render/prediction.h"
 #include "cli/render/rare.h"
-#include "cli/render/schema.h"
 #include "cli/render/stability.h"
 #include "cli/render/sweep.h"
 #include "cli/render/validation.h"

@@ -12,9 +12,9 @@
 
 #include "cli/arguments.h"
 #include "cli/cells/program.h"
+#include "cli/fields/text.h"
 #include "cli/render/choice.h"
 #include "cli/render/matrix.h"
-#include "cli/render/text.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "cli/command.h"
-#include "lattice/cells/source.h"
+#include "lattice/source/source.h"
 
 namespace gatewalk::cli {
 

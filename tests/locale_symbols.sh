@@ -61,5 +61,5 @@ found=$(found_in "${objects[@]}" | c++filt)
 cd "$root"
 others=$(grep -rnE "std::o?stringstream\b" dynamics markov lattice cli --include="*.h" --include="*.cpp" | grep -v "^lattice/text/text_stream.h:" || true)
 [ -z "$others" ] || { printf 'a stream with the locale of the process:\n%s\n' "$others" >&2; exit 1; }
-others=$(grep -rnE '\b(Json|json)::parse\(' dynamics markov lattice cli --include='*.h' --include='*.cpp' | grep -v '^cli/render/json.cpp:' || true)
+others=$(grep -rnE '\b(Json|json)::parse\(' dynamics markov lattice cli --include='*.h' --include='*.cpp' | grep -v '^cli/fields/json.cpp:' || true)
 [ -z "$others" ] || { printf 'JSON is read by parsed_json:\n%s\n' "$others" >&2; exit 1; }

@@ -39,7 +39,7 @@ KERNELS = {
     "markov/predict/row_elimination.cpp": {"markov": "RowElimination.*:LargeField.*:Predictor.*"},
     "markov/predict/by_rows.cpp": {"markov": "RowSum.*:Exact.*:Predictor.*:LargeField.*:Outcomes.*"},
     "markov/predict/by_steps.cpp": {"markov": "Exact.*:Predictor.*:Adjoint.*:Outcomes.*"},
-    "lattice/rqmc_trials.cpp": {"lattice": "RqmcTrials.*:RunPool.*", "cli": "ProgramCell.*"},
+    "lattice/field/rqmc_trials.cpp": {"lattice": "RqmcTrials.*:RunPool.*", "cli": "ProgramCell.*"},
     "lattice/pool/reactive_visits.cpp": {"lattice": "Analysis.*:Costs.*:Terrain.*"},
     "lattice/pool/pooled_prediction.cpp": {"lattice": TREES},
     "lattice/pool/run_pool.cpp": {"lattice": TREES},

@@ -11,8 +11,8 @@
 #include <string>
 
 #include "cli/cells/process.h"
-#include "cli/render/json.h"
-#include "cli/render/json_value.h"
+#include "cli/fields/json.h"
+#include "cli/fields/json_value.h"
 
 namespace gatewalk::cli {
 namespace {

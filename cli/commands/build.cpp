@@ -5,16 +5,16 @@
 #include <string>
 
 #include "cli/arguments.h"
+#include "cli/fields/text.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/matrix.h"
 #include "cli/render/recorded.h"
 #include "cli/render/states.h"
-#include "cli/render/text.h"
 #include "cli/render/version.h"
 #include "cli/source_options.h"
 #include "dynamics/base/work.h"
-#include "lattice/cells/cell_matrix.h"
+#include "lattice/source/cell_matrix.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -176,7 +176,7 @@ int run_build(const Arguments& arguments) {
   add_bins(options);
   options.input_file("cell",
                      "SCENE is a table of recorded runs (runs.csv) through cells as this file "
-                     "(cell.toml) says: lattice/cells/README.md");
+                     "(cell.toml) says: lattice/recorded/README.md");
   add_cell_program(options);
   add_starts(options,
              "the scene's start; gatewalk validate takes those of Table IV in the paper's field; "

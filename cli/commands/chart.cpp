@@ -10,9 +10,9 @@
 #include "cli/render/work_precision.h"
 #include "cli/terminal/interrupt.h"
 #include "dynamics/base/work.h"
-#include "lattice/cells/source.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/settle.h"
+#include "lattice/source/source.h"
 
 namespace gatewalk::cli {
 namespace {

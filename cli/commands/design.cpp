@@ -5,10 +5,10 @@
 
 #include "cli/arguments.h"
 #include "cli/choice_rounds.h"
+#include "cli/fields/text.h"
 #include "cli/render/crossings.h"
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
-#include "cli/render/text.h"
 #include "cli/source_options.h"
 #include "dynamics/base/work.h"
 #include "lattice/scene/scene_problem.h"

@@ -16,9 +16,9 @@
 #include "cli/render/version.h"
 #include "cli/source_options.h"
 #include "cli/terminal/output.h"
-#include "lattice/cells/cell_matrix.h"
-#include "lattice/cells/start_text.h"
 #include "lattice/pool/tree_chain.h"
+#include "lattice/source/cell_matrix.h"
+#include "lattice/source/start_text.h"
 #include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {

@@ -10,7 +10,7 @@
 #include "cli/number_ranges.h"
 #include "cli/render/observed.h"
 #include "cli/source_options.h"
-#include "lattice/cells/recorded_pool.h"
+#include "lattice/recorded/recorded_pool.h"
 #include "lattice/study/fit_data.h"
 
 namespace gatewalk::cli {

@@ -7,7 +7,7 @@
 #include "cli/exchange/imported.h"
 #include "cli/render/matrix.h"
 #include "cli/render/version.h"
-#include "lattice/cells/cell_matrix.h"
+#include "lattice/source/cell_matrix.h"
 
 namespace gatewalk::cli {
 namespace {

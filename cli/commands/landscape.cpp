@@ -2,9 +2,9 @@
 #include "cli/render/landscape.h"
 
 #include "cli/arguments.h"
+#include "cli/fields/text.h"
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
-#include "cli/render/text.h"
 #include "dynamics/disc/study/accuracy.h"
 
 namespace gatewalk::cli {

@@ -4,14 +4,14 @@
 #include "cli/actions.h"
 #include "cli/arguments.h"
 #include "cli/exchange/policy_file.h"
+#include "cli/fields/text.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/scene.h"
-#include "cli/render/text.h"
 #include "cli/source_options.h"
 #include "dynamics/base/work.h"
-#include "lattice/cells/recorded_pool.h"
+#include "lattice/recorded/recorded_pool.h"
 #include "lattice/scene/scene_trials.h"
 #include "lattice/scene/table4.h"
 #include "lattice/study/plan.h"
@@ -114,7 +114,7 @@ int run_lattice(const Arguments& arguments) {
   add_cell_program(options);
   options.output_file("passages", "FILE.csv",
                       "write every passage through a gate as a table of recorded runs "
-                      "(lattice/cells/README.md)");
+                      "(lattice/recorded/README.md)");
   options.output_file("cell-file", "FILE.toml", "write what such a table's cells are (cell.toml)");
   options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
   options.input_file("policy", "bodies do what this file of gatewalk plan says (FILE.json)");

@@ -5,8 +5,8 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/fields/json_value.h"
 #include "cli/kept/kept_run.h"
-#include "cli/render/json_value.h"
 #include "markov/formats/counts.h"
 
 namespace gatewalk::cli {

@@ -3,8 +3,8 @@
 
 #include "cli/command.h"
 #include "cli/render/cut_tracks.h"
-#include "lattice/cells/cut_tracks.h"
-#include "lattice/cells/source.h"
+#include "lattice/recorded/cut_tracks.h"
+#include "lattice/source/source.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/arguments.h"
+#include "cli/fields/text.h"
 #include "cli/page.h"
 #include "cli/render/field_ends.h"
 #include "cli/render/field_figure.h"
@@ -14,11 +15,10 @@
 #include "cli/render/matrix.h"
 #include "cli/render/prediction.h"
 #include "cli/render/scene.h"
-#include "cli/render/text.h"
 #include "cli/source_options.h"
-#include "lattice/cells/recorded_pool.h"
-#include "lattice/cells/start_text.h"
-#include "lattice/scene/row_matrices.h"
+#include "lattice/recorded/recorded_pool.h"
+#include "lattice/scene/matrix.h"
+#include "lattice/source/start_text.h"
 #include "lattice/study/prediction.h"
 
 namespace gatewalk::cli {

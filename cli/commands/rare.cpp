@@ -4,8 +4,8 @@
 #include <fmt/core.h>
 
 #include "cli/arguments.h"
+#include "cli/fields/text.h"
 #include "cli/render/health.h"
-#include "cli/render/text.h"
 #include "cli/source_options.h"
 #include "lattice/study/trials.h"
 

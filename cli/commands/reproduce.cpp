@@ -4,8 +4,8 @@
 #include <iostream>
 
 #include "cli/command.h"
+#include "cli/fields/text.h"
 #include "cli/paper/reproduction.h"
-#include "cli/render/text.h"
 #include "cli/terminal/interrupt.h"
 #include "cli/web/embedded.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/command.h"
 #include "cli/render/matrix.h"
-#include "lattice/cells/cell_matrix.h"
+#include "lattice/source/cell_matrix.h"
 
 namespace gatewalk::cli {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "cli/command.h"
+#include "cli/fields/text.h"
 #include "cli/render/stability.h"
-#include "cli/render/text.h"
 #include "dynamics/base/work.h"
 #include "dynamics/disc/study/accuracy.h"
 

@@ -11,8 +11,8 @@
 #include "cli/render/sweep.h"
 #include "cli/terminal/output.h"
 #include "dynamics/base/work.h"
-#include "lattice/cells/source.h"
 #include "lattice/scene/units.h"
+#include "lattice/source/source.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -10,11 +10,11 @@
 #include "cli/actions.h"
 #include "cli/arguments.h"
 #include "cli/exchange/policy_file.h"
+#include "cli/fields/text.h"
 #include "cli/film/replay.h"
 #include "cli/film/video.h"
 #include "cli/render/health.h"
 #include "cli/render/recording.h"
-#include "cli/render/text.h"
 #include "cli/web/embedded.h"
 #include "lattice/scene/table4.h"
 

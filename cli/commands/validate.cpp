@@ -13,9 +13,9 @@
 #include "cli/render/validation.h"
 #include "cli/source_options.h"
 #include "dynamics/base/work.h"
-#include "lattice/cells/cell_matrix.h"
-#include "lattice/problem.h"
+#include "lattice/field/problem.h"
 #include "lattice/scene/scene.h"
+#include "lattice/source/cell_matrix.h"
 #include "lattice/study/observed.h"
 
 namespace gatewalk::cli {

@@ -3,12 +3,12 @@
 
 #include "cli/arguments.h"
 #include "cli/chain_from_start.h"
+#include "cli/fields/text.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"
 #include "cli/render/field_runs.h"
 #include "cli/render/matrix.h"
 #include "cli/render/scene.h"
-#include "cli/render/text.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "cli/exchange/archive.h"
-#include "cli/render/csv.h"
+#include "cli/fields/csv.h"
+#include "cli/fields/json.h"
 #include "cli/render/files.h"
-#include "cli/render/json.h"
 #include "cli/render/little_endian.h"
 #include "cli/render/version.h"
 

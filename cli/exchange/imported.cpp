@@ -10,7 +10,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "cli/render/csv.h"
+#include "cli/fields/csv.h"
 #include "lattice/text/csv.h"
 #include "lattice/text/digits.h"
 #include "lattice/text/table.h"

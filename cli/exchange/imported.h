@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cli/exchange/sparse_table.h"
-#include "lattice/cells/cell_file.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
+#include "lattice/scene/cell_file.h"
 
 namespace gatewalk::cli {
 

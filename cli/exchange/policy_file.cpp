@@ -13,8 +13,8 @@
 #include <string_view>
 #include <utility>
 
-#include "cli/render/json.h"
-#include "cli/render/json_value.h"
+#include "cli/fields/json.h"
+#include "cli/fields/json_value.h"
 #include "dynamics/disc/disc_section.h"
 #include "lattice/text/toml_text.h"
 #include "markov/formats/counts.h"

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "dynamics/cells/section.h"
-#include "lattice/cells/cell_file.h"
-#include "lattice/field.h"
+#include "lattice/field/field.h"
+#include "lattice/scene/cell_file.h"
 #include "lattice/scene/scene.h"
 #include "lattice/study/plan.h"
 

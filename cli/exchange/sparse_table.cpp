@@ -13,7 +13,7 @@
 #include <stdexcept>
 
 #include "cli/exchange/npz.h"
-#include "cli/render/csv.h"
+#include "cli/fields/csv.h"
 #include "lattice/text/digits.h"
 #include "lattice/text/lines.h"
 #include "lattice/text/table.h"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "cli/fields/text.h"
 #include "cli/render/quantity.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {

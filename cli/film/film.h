@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lattice/scene/recording.h"
+#include "lattice/scene/study/recording.h"
 
 namespace gatewalk::cli {
 

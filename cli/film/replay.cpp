@@ -3,8 +3,8 @@
 
 #include <fmt/core.h>
 
+#include "cli/fields/json.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
 #include "cli/render/recording.h"
 #include "cli/web/embedded.h"
 #include "cli/web/html.h"

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "cli/fields/fields.h"
 #include "cli/film/film.h"
 #include "cli/render/choice.h"
-#include "cli/render/fields.h"
 #include "cli/render/provenance.h"
 
 namespace gatewalk::cli {

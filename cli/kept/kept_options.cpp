@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
+#include "cli/fields/json.h"
 #include "cli/kept/ranks.h"
-#include "cli/render/json.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
-#include "lattice/cells/source.h"
+#include "lattice/source/source.h"
 
 namespace gatewalk::cli {
 namespace {

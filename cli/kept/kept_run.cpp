@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "cli/command.h"
-#include "cli/render/json_value.h"
+#include "cli/fields/json_value.h"
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "lattice/scene/scene.h"

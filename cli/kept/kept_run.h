@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "cli/fields/json_fwd.h"
 #include "cli/kept/piece_log.h"
-#include "cli/render/json_fwd.h"
 #include "dynamics/base/work.h"
 
 namespace gatewalk::cli {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <stdexcept>
 
+#include "cli/fields/csv.h"
+#include "cli/fields/text.h"
 #include "cli/paper/studies.h"
-#include "cli/render/csv.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/fields/text.h"
 #include "cli/paper/claims.h"
 #include "cli/paper/studies.h"
-#include "cli/render/text.h"
-#include "lattice/reference.h"
-#include "lattice/scene/disc_field.h"
+#include "lattice/field/reference.h"
+#include "lattice/gates/disc_field.h"
 
 namespace gatewalk::cli {
 namespace {

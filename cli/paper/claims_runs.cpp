@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/fields/text.h"
 #include "cli/paper/claims.h"
 #include "cli/paper/studies.h"
-#include "cli/render/text.h"
 #include "dynamics/disc/landscape.h"
 
 namespace gatewalk::cli {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <optional>
 
+#include "cli/fields/text.h"
 #include "cli/paper/claims.h"
 #include "cli/paper/studies.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/fields/text.h"
 #include "cli/paper/figures.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {

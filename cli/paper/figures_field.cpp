@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/fields/csv.h"
+#include "cli/fields/text.h"
 #include "cli/paper/figures.h"
-#include "cli/render/csv.h"
 #include "cli/render/provenance.h"
 #include "cli/render/quantity.h"
-#include "cli/render/text.h"
 #include "dynamics/base/share.h"
 
 namespace gatewalk::cli {

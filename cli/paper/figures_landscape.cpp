@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "cli/fields/csv.h"
+#include "cli/fields/text.h"
 #include "cli/paper/figures.h"
 #include "cli/paper/studies.h"
-#include "cli/render/csv.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/fields/csv.h"
+#include "cli/fields/text.h"
 #include "cli/paper/figures.h"
 #include "cli/paper/studies.h"
-#include "cli/render/csv.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 

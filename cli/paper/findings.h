@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/fields/json_value.h"
 #include "cli/paper/verdicts.h"
-#include "cli/render/json_value.h"
 #include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/landscape.h"
 #include "lattice/study/validation.h"

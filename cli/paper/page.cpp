@@ -13,8 +13,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "cli/render/json_value.h"
-#include "cli/render/text.h"
+#include "cli/fields/json_value.h"
+#include "cli/fields/text.h"
 #include "cli/web/embedded.h"
 #include "cli/web/html.h"
 

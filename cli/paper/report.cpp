@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "cli/fields/json.h"
 #include "cli/film/replay.h"
-#include "cli/render/json.h"
 
 namespace gatewalk::cli {
 namespace {

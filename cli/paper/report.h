@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "cli/fields/fields.h"
+#include "cli/fields/json_value.h"
 #include "cli/paper/claims.h"
-#include "cli/render/fields.h"
-#include "cli/render/json_value.h"
 
 namespace gatewalk::cli {
 

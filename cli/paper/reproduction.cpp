@@ -20,14 +20,14 @@
 #include <optional>
 
 #include "cli/command.h"
+#include "cli/fields/json.h"
+#include "cli/fields/json_value.h"
+#include "cli/fields/text.h"
 #include "cli/paper/figures.h"
 #include "cli/paper/page.h"
 #include "cli/paper/studies.h"
 #include "cli/render/figure.h"
-#include "cli/render/json.h"
-#include "cli/render/json_value.h"
 #include "cli/render/provenance.h"
-#include "cli/render/text.h"
 #include "cli/render/version.h"
 #include "cli/terminal/gnuplot.h"
 #include "cli/terminal/interrupt.h"

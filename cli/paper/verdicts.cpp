@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/render/text.h"
+#include "cli/fields/text.h"
 #include "dynamics/base/share.h"
 
 namespace gatewalk::cli {

@@ -18,13 +18,13 @@
 
 #include "cli/commands.h"
 #include "cli/exchange/sparse_table.h"
+#include "cli/fields/schema.h"
 #include "cli/python/python_cell.h"
 #include "cli/python/python_fields.h"
-#include "cli/render/schema.h"
 #include "cli/render/version.h"
 #include "dynamics/cells/check_cell.h"
-#include "lattice/cells/source.h"
 #include "lattice/scene/scene.h"
+#include "lattice/source/source.h"
 
 namespace gatewalk::python {
 namespace {

@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-#include "cli/render/json_value.h"
+#include "cli/fields/json_value.h"
 
 namespace gatewalk::python {
 namespace {

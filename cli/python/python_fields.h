@@ -4,7 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 
 namespace gatewalk::python {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/fields/fields.h"
 #include "cli/render/costs.h"
-#include "cli/render/fields.h"
 #include "cli/render/figure.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/first_passage.h"
@@ -16,7 +16,7 @@
 #include "cli/render/shown_field.h"
 #include "cli/render/start.h"
 #include "cli/render/variance_shares.h"
-#include "lattice/field_costs.h"
+#include "lattice/field/field_costs.h"
 #include "lattice/scene/settle.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/study/analysis.h"

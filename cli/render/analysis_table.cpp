@@ -4,11 +4,11 @@
 #include <cmath>
 #include <ranges>
 
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/analysis.h"
 #include "cli/render/costs.h"
 #include "cli/render/scene.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -9,10 +9,10 @@
 #include <span>
 #include <stdexcept>
 
+#include "cli/fields/text.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/little_endian.h"
-#include "cli/render/text.h"
-#include "lattice/scene/gates.h"
+#include "lattice/gates/gates.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {

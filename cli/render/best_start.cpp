@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/choice.h"
 #include "cli/render/crossings.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/panel.h"
 #include "cli/render/start.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
-#include "lattice/cells/start_text.h"
+#include "lattice/source/start_text.h"
 
 namespace gatewalk::cli {
 namespace {

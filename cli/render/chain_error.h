@@ -5,11 +5,11 @@
 #include <optional>
 #include <string>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/figure.h"
 #include "cli/render/provenance.h"
-#include "lattice/scene/chain_error.h"
 #include "lattice/scene/settle.h"
+#include "lattice/scene/study/chain_error.h"
 
 namespace gatewalk::cli {
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "cli/render/json.h"
-#include "cli/render/json_value.h"
-#include "cli/render/text.h"
+#include "cli/fields/json.h"
+#include "cli/fields/json_value.h"
+#include "cli/fields/text.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/fields.h"
-#include "cli/render/json_fwd.h"
+#include "cli/fields/fields.h"
+#include "cli/fields/json_fwd.h"
 #include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "cli/fields/text.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -7,11 +7,11 @@
 #include <optional>
 #include <string>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/shown_field.h"
-#include "cli/render/text_table.h"
 #include "dynamics/disc/gate.h"
-#include "lattice/field_costs.h"
+#include "lattice/field/field_costs.h"
 
 namespace gatewalk::cli {
 

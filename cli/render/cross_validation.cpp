@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/field_ends.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/memory.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 #include "cli/render/validation.h"
 
 namespace gatewalk::cli {

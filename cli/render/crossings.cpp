@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "cli/fields/text.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/panel.h"
-#include "lattice/field.h"
+#include "lattice/field/field.h"
 #include "lattice/study/crossings.h"
 
 namespace gatewalk::cli {

@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/figure.h"
 #include "cli/render/provenance.h"
-#include "lattice/cells/cut_tracks.h"
+#include "lattice/recorded/cut_tracks.h"
 
 namespace gatewalk::cli {
 

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/fields/text.h"
 #include "cli/render/choice.h"
 #include "cli/render/crossings.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/shown_field.h"
 #include "cli/render/start.h"
-#include "cli/render/text.h"
 #include "cli/render/type_marks.h"
 
 namespace gatewalk::cli {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/quantity.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 
 namespace gatewalk::cli {
 namespace {

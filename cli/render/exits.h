@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/panel.h"
 #include "cli/render/shown_field.h"
-#include "lattice/exits.h"
+#include "lattice/field/exits.h"
 
 namespace gatewalk::cli {
 

@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <array>
 
-#include "cli/render/csv.h"
+#include "cli/fields/csv.h"
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/field_ends.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/panel.h"
 #include "cli/render/quantity.h"
 #include "cli/render/start.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 
 namespace gatewalk::cli {
 namespace {

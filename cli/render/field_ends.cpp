@@ -6,8 +6,8 @@
 #include <concepts>
 #include <string_view>
 
+#include "cli/fields/text.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/text.h"
 #include "dynamics/base/share.h"
 
 namespace gatewalk::cli {

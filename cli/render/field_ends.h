@@ -8,9 +8,9 @@
 #include <optional>
 #include <string>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/shown_field.h"
-#include "lattice/reference.h"
+#include "lattice/field/reference.h"
 #include "lattice/statistics/ending_shares.h"
 #include "markov/predict.h"
 #include "markov/walk.h"

@@ -8,9 +8,9 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "cli/fields/text.h"
 #include "cli/render/exits.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/text.h"
 #include "cli/render/type_marks.h"
 
 namespace gatewalk::cli {

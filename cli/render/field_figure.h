@@ -13,7 +13,7 @@
 #include "cli/render/panel.h"
 #include "cli/render/shown_field.h"
 #include "cli/render/start.h"
-#include "lattice/exits.h"
+#include "lattice/field/exits.h"
 #include "lattice/statistics/ending_shares.h"
 #include "markov/predict.h"
 

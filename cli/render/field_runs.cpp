@@ -3,14 +3,14 @@
 
 #include <fmt/core.h>
 
+#include "cli/fields/text.h"
 #include "cli/render/costs.h"
 #include "cli/render/exits.h"
 #include "cli/render/field_ends.h"
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
-#include "cli/render/text.h"
 #include "dynamics/base/share.h"
-#include "lattice/cells/start_text.h"
+#include "lattice/source/start_text.h"
 
 namespace gatewalk::cli {
 namespace {

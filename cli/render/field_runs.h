@@ -5,15 +5,15 @@
 #include <optional>
 #include <string>
 
+#include "cli/fields/fields.h"
 #include "cli/render/choice.h"
-#include "cli/render/fields.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/provenance.h"
 #include "cli/render/shown_field.h"
 #include "cli/render/start.h"
-#include "lattice/field_costs.h"
-#include "lattice/gate_chain.h"
-#include "lattice/reference.h"
+#include "lattice/field/field_costs.h"
+#include "lattice/field/gate_chain.h"
+#include "lattice/field/reference.h"
 #include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {

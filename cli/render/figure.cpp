@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "cli/render/text.h"
+#include "cli/fields/text.h"
 
 namespace gatewalk::cli {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/files.h"
 
-#include "cli/render/text_table.h"
+#include "cli/fields/text_table.h"
 
 namespace gatewalk::cli {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/provenance.h"
 
 namespace gatewalk::cli {

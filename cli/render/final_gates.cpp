@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "lattice/statistics/compare.h"
 #include "lattice/statistics/paired_change.h"
 

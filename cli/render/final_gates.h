@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "lattice/statistics/ending_shares.h"
 #include "markov/predict.h"
 #include "markov/walk.h"

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "cli/fields/text.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {

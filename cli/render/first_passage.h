@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "lattice/study/first_passage.h"
 
 namespace gatewalk::cli {

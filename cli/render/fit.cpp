@@ -8,14 +8,14 @@
 #include <cmath>
 #include <vector>
 
+#include "cli/fields/csv.h"
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/choice.h"
-#include "cli/render/csv.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/panel.h"
 #include "cli/render/quantity.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 #include "lattice/text/digits.h"
 #include "markov/formats/netcdf.h"
 

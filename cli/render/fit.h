@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/figure.h"
 #include "cli/render/provenance.h"
-#include "lattice/field.h"
+#include "lattice/field/field.h"
 #include "lattice/scene/ranges.h"
 #include "lattice/scene/settle.h"
 #include "lattice/study/fit.h"

@@ -3,11 +3,11 @@
 
 #include <fmt/core.h>
 
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/panel.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 #include "dynamics/base/share.h"
 
 namespace gatewalk::cli {

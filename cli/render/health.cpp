@@ -3,10 +3,10 @@
 
 #include <fmt/core.h>
 
-#include "cli/render/json.h"
-#include "cli/render/json_value.h"
+#include "cli/fields/json.h"
+#include "cli/fields/json_value.h"
+#include "cli/fields/text.h"
 #include "cli/render/quantity.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "cli/render/fields.h"
-#include "cli/render/json_fwd.h"
+#include "cli/fields/fields.h"
+#include "cli/fields/json_fwd.h"
 #include "dynamics/cells/health.h"
 
 namespace gatewalk::cli {

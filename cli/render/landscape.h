@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/panel.h"
 #include "cli/render/provenance.h"
 #include "cli/render/quantity.h"

@@ -9,15 +9,15 @@
 #include <stdexcept>
 #include <vector>
 
+#include "cli/fields/json_value.h"
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
-#include "cli/render/json_value.h"
 #include "cli/render/panel.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 #include "cli/render/version.h"
-#include "lattice/cells/cell_matrix.h"
 #include "lattice/pool/tree_chain.h"
+#include "lattice/source/cell_matrix.h"
 #include "lattice/text/digits.h"
 #include "markov/formats/counts.h"
 

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <sstream>
 
+#include "cli/fields/text.h"
 #include "cli/render/quantity.h"
 #include "cli/render/scene.h"
-#include "cli/render/text.h"
 #include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/fields.h"
-#include "dynamics/disc/study/deciding.h"
+#include "cli/fields/fields.h"
 #include "dynamics/disc/study/meaning.h"
 #include "lattice/scene/scene.h"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/panel.h"
 #include "lattice/study/memory.h"
 

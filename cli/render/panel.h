@@ -23,8 +23,8 @@
 #include <utility>
 #include <vector>
 
+#include "cli/fields/text.h"
 #include "cli/render/figure.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <utility>
 
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/choice.h"
 #include "cli/render/crossings.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/quantity.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 #include "cli/render/type_marks.h"
 
 namespace gatewalk::cli {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/figure.h"
 #include "cli/render/provenance.h"
 #include "cli/render/shown_field.h"

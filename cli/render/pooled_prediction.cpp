@@ -5,13 +5,13 @@
 
 #include <cmath>
 
+#include "cli/fields/text.h"
 #include "cli/render/choice.h"
 #include "cli/render/exits.h"
 #include "cli/render/field_ends.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
-#include "cli/render/text.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -5,11 +5,11 @@
 #include <optional>
 #include <string>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/recorded.h"
 #include "cli/render/shown_field.h"
-#include "lattice/cells/recorded_pool.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/recorded/recorded_pool.h"
 #include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {

@@ -7,12 +7,12 @@
 #include <array>
 #include <cmath>
 
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/choice.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/pooled_prediction.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <thread>
 
-#include "cli/render/json_value.h"
+#include "cli/fields/json_value.h"
 #include "cli/render/version.h"
 
 namespace gatewalk::cli {

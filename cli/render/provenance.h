@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 
 namespace gatewalk::cli {
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "cli/render/text.h"
+#include "cli/fields/text.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {

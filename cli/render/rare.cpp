@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/panel.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 #include "lattice/pool/pooled_prediction.h"
 
 namespace gatewalk::cli {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/fields.h"
-#include "lattice/cells/cell_matrix.h"
+#include "cli/fields/fields.h"
+#include "lattice/source/cell_matrix.h"
 
 namespace gatewalk::cli {
 

@@ -7,13 +7,13 @@
 #include <array>
 #include <cmath>
 
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/health.h"
 #include "cli/render/landscape.h"
 #include "cli/render/panel.h"
 #include "cli/render/quantity.h"
 #include "cli/render/scene.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 #include "dynamics/disc/landscape.h"
 #include "markov/formats/netcdf.h"
 

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/quantity.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 #include "lattice/scene/scene_bins.h"
 #include "lattice/text/digits.h"
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "dynamics/cells/cell_map.h"
-#include "lattice/cells/source.h"
-#include "lattice/field.h"
+#include "lattice/field/field.h"
 #include "lattice/scene/scene.h"
+#include "lattice/source/source.h"
 
 namespace gatewalk::cli {
 

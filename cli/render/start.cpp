@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "cli/render/text.h"
+#include "cli/fields/text.h"
 #include "dynamics/disc/disc_section.h"
 
 namespace gatewalk::cli {

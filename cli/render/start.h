@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/fields.h"
-#include "lattice/gate_chain.h"
+#include "cli/fields/fields.h"
+#include "lattice/field/gate_chain.h"
 
 namespace gatewalk::cli {
 

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "cli/fields/json.h"
+#include "cli/fields/json_value.h"
+#include "cli/fields/text.h"
 #include "cli/render/health.h"
-#include "cli/render/json.h"
-#include "cli/render/json_value.h"
 #include "cli/render/pooled_prediction.h"
 #include "cli/render/start.h"
-#include "cli/render/text.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {

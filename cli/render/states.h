@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "dynamics/disc/disc_section.h"
 #include "lattice/pool/states_info.h"
 #include "lattice/scene/bins.h"

@@ -9,14 +9,14 @@
 #include <optional>
 #include <stdexcept>
 
+#include "cli/fields/csv.h"
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/choice.h"
-#include "cli/render/csv.h"
 #include "cli/render/gate_runs.h"
 #include "cli/render/health.h"
 #include "cli/render/panel.h"
 #include "cli/render/scene.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 #include "dynamics/base/share.h"
 #include "lattice/text/text_stream.h"
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/figure.h"
 #include "cli/render/provenance.h"
-#include "lattice/scene/sweep.h"
+#include "lattice/scene/study/sweep.h"
 
 namespace gatewalk::cli {
 

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "lattice/scene/ranges.h"
 #include "lattice/study/variance_shares.h"
 

@@ -9,12 +9,12 @@
 #include <functional>
 #include <limits>
 
-#include "cli/render/csv.h"
+#include "cli/fields/csv.h"
+#include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/render/health.h"
 #include "cli/render/panel.h"
 #include "cli/render/quantity.h"
-#include "cli/render/text.h"
-#include "cli/render/text_table.h"
 #include "lattice/text/text_stream.h"
 
 namespace gatewalk::cli {

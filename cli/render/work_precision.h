@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 #include "cli/render/figure.h"
 #include "cli/render/provenance.h"
 #include "dynamics/disc/study/work_precision.h"

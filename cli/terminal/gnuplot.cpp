@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "cli/render/text.h"
+#include "cli/fields/text.h"
 #include "cli/terminal/child.h"
 #include "cli/terminal/output.h"
 

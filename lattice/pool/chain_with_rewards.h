@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "dynamics/base/random.h"
+#include "lattice/field/problem.h"
 #include "lattice/pool/run_pool.h"
-#include "lattice/problem.h"
 #include "markov/totals.h"
 
 namespace gatewalk::lattice {

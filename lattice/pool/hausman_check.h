@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "lattice/reference.h"
+#include "lattice/field/reference.h"
 #include "markov/predict.h"
 
 namespace gatewalk::lattice {

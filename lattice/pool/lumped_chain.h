@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "lattice/field.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/field.h"
+#include "lattice/field/gate_chain.h"
 #include "lattice/pool/chain_with_rewards.h"
 #include "lattice/pool/reactive_visits.h"
 

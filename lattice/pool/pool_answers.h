@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "lattice/field.h"
+#include "lattice/field/field.h"
 #include "lattice/pool/run_pool.h"
 #include "lattice/statistics/group_spread.h"
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
+#include "lattice/field/problem.h"
+#include "lattice/field/rqmc_trials.h"
 #include "lattice/pool/run_pool.h"
-#include "lattice/problem.h"
-#include "lattice/rqmc_trials.h"
 #include "lattice/statistics/group_spread.h"
 
 namespace gatewalk::lattice {

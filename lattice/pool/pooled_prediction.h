@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "lattice/exits.h"
+#include "lattice/field/exits.h"
 #include "lattice/pool/hausman_check.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/statistics/group_spread.h"

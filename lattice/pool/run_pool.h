@@ -16,8 +16,8 @@
 #include "dynamics/cells/entry_table.h"
 #include "dynamics/cells/state_space.h"
 #include "dynamics/cells/tree_space.h"
-#include "lattice/gate_chain.h"
-#include "lattice/reference.h"
+#include "lattice/field/gate_chain.h"
+#include "lattice/field/reference.h"
 
 namespace gatewalk::lattice {
 

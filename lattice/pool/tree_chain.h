@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 #include "lattice/pool/pooled_prediction.h"
 
 namespace gatewalk::lattice {

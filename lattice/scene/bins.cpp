@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lattice/scene/disc_field.h"
+#include "lattice/gates/disc_field.h"
 
 namespace gatewalk::lattice {
 namespace {

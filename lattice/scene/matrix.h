@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 #include "lattice/pool/pooled_prediction.h"
 #include "lattice/scene/bins.h"
+#include "lattice/statistics/matrix_noise.h"
 
 namespace gatewalk::lattice {
 
@@ -64,5 +65,20 @@ struct SceneMatrix {
                                        const dynamics::Entry& entry, const std::string& name);
 /// The bins of entries by a face: "EN d [-5, 5] m, vx [-5, 5] m/s, vy [10, 20] m/s".
 [[nodiscard]] std::string entry_bins(const dynamics::StateSpace& space, int face);
+
+/// Rows i_y = first to last whose gates are those of another matrix.
+struct RowMatrix {
+  int first = 0, last = 0;
+  std::string path;
+  SceneMatrix matrix;
+};
+
+/// What the cells of base's field draw from: the matrices of its types of gates, or of these rows'
+/// own. Throws std::invalid_argument, whose message begins
+/// "--row FIRST-LAST=PATH", when rows lie outside the field or are given twice, or when a matrix
+/// has another body, gates of another size or other states than `base`, which is called
+/// `base_path`; and when there are rows and the base has a terrain.
+[[nodiscard]] CountedField field_of(const SceneMatrix& base, const std::string& base_path,
+                                    const std::vector<RowMatrix>& others);
 
 }  // namespace gatewalk::lattice

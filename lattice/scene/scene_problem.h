@@ -2,7 +2,7 @@
 #pragma once
 /// A scene as a problem: its gates as cells, its start as an entry.
 
-#include "lattice/problem.h"
+#include "lattice/field/problem.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/settle.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/scene/scene_trials.h"
 
+#include "lattice/gates/disc_field.h"
 #include "lattice/scene/bins.h"
-#include "lattice/scene/disc_field.h"
 #include "lattice/scene/settle.h"
 
 namespace gatewalk::lattice {

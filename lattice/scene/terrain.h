@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lattice/scene/gates.h"
+#include "lattice/gates/gates.h"
 
 namespace gatewalk::lattice {
 

@@ -2,9 +2,10 @@
 #include "lattice/scene/toml_settings.h"
 
 #include <algorithm>
+#include <cctype>
+#include <optional>
 
 #include "lattice/scene/scene.h"
-#include "lattice/scene/toml_mistake.h"
 #include "lattice/scene/units.h"
 #include "lattice/text/toml_text.h"
 
@@ -103,6 +104,128 @@ int whole_number_of(const Setting& setting, const Interval& permitted, std::stri
   if (!permitted.permits(static_cast<double>(whole->get())))
     throw SceneError(refusal_of(setting, shown, "lie in " + permitted.text()));
   return static_cast<int>(whole->get());
+}
+
+namespace {
+
+constexpr const char* kLine = "must be KEY = VALUE, as in body.mass_kg = 0.25";
+
+/// Everything before row `line`, and the row.
+struct Split {
+  std::string_view before, row;
+};
+Split split_at(std::string_view text, std::size_t line) {
+  std::size_t begin = 0;
+  for (std::size_t next = 0; line > 1 && (next = text.find('\n', begin)) != text.npos; --line)
+    begin = next + 1;
+  return {text.substr(0, begin), text.substr(begin, text.find('\n', begin) - begin)};
+}
+
+std::optional<toml::table> parsed(std::string_view text) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error&) {
+    return {};
+  }
+}
+
+/// The line in which `before` gives what `again` gives; 0: none.
+std::size_t first_given(const toml::table& before, const toml::table& again) {
+  for (const auto& [key, node] : again) {
+    const toml::node* const there = before.get(key.str());
+    if (!there) continue;
+    if (node.is_table() && there->is_table())
+      if (const std::size_t line = first_given(*there->as_table(), *node.as_table())) return line;
+    return there->source().begin.line;
+  }
+  return 0;
+}
+
+/// Of a row that is TOML by itself.
+std::string given_twice(const Split& split) {
+  const std::size_t header = split.before.rfind("\n[");
+  std::string_view table = split.before.starts_with('[') ? split.before : std::string_view();
+  if (header != split.before.npos) table = split.before.substr(header + 1);
+  const auto before = parsed(split.before),
+             again = parsed(split.row.starts_with('[')
+                                ? std::string(split.row)
+                                : std::string(table.substr(0, table.find('\n'))) + "\n" +
+                                      std::string(split.row));
+  const std::size_t line = before && again ? first_given(*before, *again) : 0;
+  return line > 0 ? "is given in line " + std::to_string(line) + " already"
+                  : "does not fit what the lines before it give";
+}
+
+/// Whether `text` ends inside an inline table { }: not in an array within one, where lines may
+/// break. Strings and comments may have any brackets.
+bool ends_in_inline_table(std::string_view text) {
+  std::string open;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '#') {
+      at = std::min(text.find('\n', at), text.size());
+    } else if (c == '"' || c == '\'') {
+      const std::string quotes(text.substr(at, 3) == std::string(3, c) ? 3 : 1, c);
+      for (at += quotes.size(); at < text.size() && !text.substr(at).starts_with(quotes); ++at)
+        if (c == '"' && text[at] == '\\') ++at;
+      at += quotes.size() - 1;
+    } else if (c == '{' || c == '[') {
+      open += c;
+    } else if ((c == '}' || c == ']') && !open.empty()) {
+      open.pop_back();
+    }
+  }
+  return open.ends_with('{');
+}
+
+std::string mistake_in_value(std::string_view value) {
+  if (value.empty() || value[0] == '#') return "has no value";
+  if (value[0] == '"' || value[0] == '\'')
+    return "text must stand between two quotation marks, as in \"auto\"";
+  constexpr std::ptrdiff_t kDeep = 256;  // as deep as the parser goes
+  if (std::count(value.begin(), value.end(), value[0]) >= kDeep) return "is nested too deeply";
+  if (value[0] == '{') return "a table must be [NAME] on a line of its own, its keys below it";
+  if (value[0] == '[') return "an array must stand in brackets, with commas between, as in [1, 2]";
+  const std::size_t end = value.find_first_not_of("0123456789+-.eE_");
+  const std::string_view number = value.substr(0, end),
+                         rest = trimmed(value.substr(std::min(end, value.size())));
+  if (number.find_first_of("0123456789") == number.npos)
+    return "text must stand between quotation marks, as in \"auto\"";
+  if (rest.starts_with(',')) return "a number has a decimal point, as in 0.25";
+  if (!rest.empty() && rest[0] != '#')
+    return "a number must stand alone: its unit is in the key's name";
+  if (number.ends_with('.')) return "a number must have a digit behind its point, as in 1.0";
+  if (number.size() > 1 && number[0] == '0' && number[1] != '.')
+    return "a number must not begin with a 0 that it does not need, as in 40";
+  return "is no number, or too large for one: must be as in 0.25 or 2.5e-1";
+}
+
+}  // namespace
+
+std::string text_row(std::string_view text, std::size_t line) {
+  return printable(trimmed(split_at(text, line).row));
+}
+
+std::string toml_mistake(std::string_view text, std::size_t line) {
+  const Split split = split_at(text, line);
+  const std::string_view row = trimmed(split.row);
+  // A comment may have any text but such.
+  if (!parsed("# " + std::string(row)))
+    return "has letters that are not UTF-8, or control characters";
+  if (ends_in_inline_table(text.substr(0, split.before.size() + split.row.size())))
+    return "an inline table { } must stand on one line: close it here, or write it as a table "
+           "[NAME] with a line for each key";
+  if (parsed(row)) return given_twice(split);
+  if (row.starts_with('[')) return "a table must be its name in brackets, as in [body]";
+  const std::size_t equals = row.find('=');
+  if (equals == row.npos) return kLine;
+  const std::string_view key = trimmed(row.substr(0, equals));
+  const auto of_key = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("_-.\"'").find(c) != std::string_view::npos;
+  };
+  if (key.empty() || !std::all_of(key.begin(), key.end(), of_key)) return kLine;
+  return mistake_in_value(trimmed(row.substr(equals + 1)));
 }
 
 }  // namespace gatewalk::lattice

@@ -4,6 +4,7 @@
 
 #include <toml++/toml.h>
 
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <string>
@@ -67,5 +68,12 @@ using Settings = std::map<std::string, Setting, std::less<>>;
                                const Interval& permitted, std::string_view shown);
 [[nodiscard]] int whole_number_of(const Setting& setting, const Interval& permitted,
                                   std::string_view shown);
+
+/// Row `line` (from 1) of `text`, for a message.
+[[nodiscard]] std::string text_row(std::string_view text, std::size_t line);
+
+/// Why `text` cannot be read, if the parser stopped in `line`, and what is allowed there: "a number
+/// has a decimal point, as in 0.25".
+[[nodiscard]] std::string toml_mistake(std::string_view text, std::size_t line);
 
 }  // namespace gatewalk::lattice

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
+#include "lattice/field/problem.h"
 #include "lattice/pool/chain_with_rewards.h"
 #include "lattice/pool/lumped_chain.h"
-#include "lattice/problem.h"
 #include "lattice/statistics/group_spread.h"
 #include "markov/paths.h"
 #include "markov/quasi_stationary.h"

@@ -9,7 +9,7 @@
 
 #include "dynamics/base/random.h"
 #include "dynamics/base/share.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 #include "lattice/pool/run_pool.h"
 #include "lattice/study/choice_rounds.h"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
+#include "lattice/field/problem.h"
 #include "lattice/pool/chain_with_rewards.h"
-#include "lattice/problem.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/statistics/group_spread.h"
 #include "markov/outcomes.h"

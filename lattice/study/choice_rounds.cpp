@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "dynamics/base/share.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 
 namespace gatewalk::lattice {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "dynamics/base/share.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 #include "lattice/pool/pooled_prediction.h"
 #include "lattice/statistics/draws.h"
 #include "lattice/study/field_walk.h"

@@ -9,8 +9,8 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/cells/tree_space.h"
+#include "lattice/field/problem.h"
 #include "lattice/pool/run_pool.h"
-#include "lattice/problem.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/statistics/group_spread.h"
 #include "lattice/statistics/multiple_tests.h"

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lattice/reference.h"
+#include "lattice/field/reference.h"
 
 namespace gatewalk::lattice {
 

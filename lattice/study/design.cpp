@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "dynamics/base/share.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 #include "lattice/study/choice_rounds.h"
 #include "markov/predict.h"
 

@@ -9,7 +9,7 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/cells/tree_space.h"
-#include "lattice/problem.h"
+#include "lattice/field/problem.h"
 #include "lattice/study/crossings.h"
 #include "markov/design.h"
 

@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "lattice/field/problem.h"
 #include "lattice/pool/chain_with_rewards.h"
-#include "lattice/problem.h"
 #include "lattice/statistics/group_spread.h"
 #include "markov/first_passage.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "dynamics/cells/tree_space.h"
-#include "lattice/reference.h"
+#include "lattice/field/reference.h"
 #include "lattice/statistics/outcome_model.h"
 
 namespace gatewalk::lattice {

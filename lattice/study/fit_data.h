@@ -12,8 +12,8 @@
 
 #include "dynamics/base/trial_set.h"
 #include "dynamics/cells/health.h"
-#include "lattice/passage_table.h"
-#include "lattice/problem.h"
+#include "lattice/field/passage_table.h"
+#include "lattice/field/problem.h"
 #include "lattice/study/observed.h"
 #include "lattice/study/variance_shares.h"
 

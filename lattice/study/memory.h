@@ -13,9 +13,9 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/cells/state_space.h"
+#include "lattice/field/problem.h"
+#include "lattice/field/reference.h"
 #include "lattice/pool/run_pool.h"
-#include "lattice/problem.h"
-#include "lattice/reference.h"
 #include "lattice/statistics/gates_ahead.h"
 #include "lattice/statistics/independence.h"
 #include "lattice/statistics/paired_change.h"

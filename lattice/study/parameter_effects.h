@@ -8,9 +8,9 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/cells/health.h"
+#include "lattice/field/problem.h"
 #include "lattice/pool/chain_with_rewards.h"
 #include "lattice/pool/reactive_visits.h"
-#include "lattice/problem.h"
 #include "lattice/statistics/group_spread.h"
 
 namespace gatewalk::lattice {

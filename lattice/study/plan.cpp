@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "dynamics/base/share.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 #include "lattice/pool/run_pool.h"
 #include "lattice/study/choice_rounds.h"
 #include "markov/design.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "lattice/exits.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/exits.h"
+#include "lattice/field/gate_chain.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/statistics/matrix_noise.h"
 

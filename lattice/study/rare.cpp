@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "dynamics/base/share.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/study/trials.h"
 #include "markov/committor.h"

@@ -12,8 +12,8 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/cells/health.h"
+#include "lattice/field/problem.h"
 #include "lattice/pool/run_pool.h"
-#include "lattice/problem.h"
 
 namespace gatewalk::lattice {
 

@@ -6,10 +6,10 @@
 #include <functional>
 
 #include "dynamics/base/work.h"
-#include "lattice/field_costs.h"
-#include "lattice/gate_chain.h"
-#include "lattice/problem.h"
-#include "lattice/reference.h"
+#include "lattice/field/field_costs.h"
+#include "lattice/field/gate_chain.h"
+#include "lattice/field/problem.h"
+#include "lattice/field/reference.h"
 
 namespace gatewalk::lattice {
 

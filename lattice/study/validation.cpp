@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "dynamics/cells/transitions.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 #include "lattice/statistics/matrix_noise.h"
 
 namespace gatewalk::lattice {

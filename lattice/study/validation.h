@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "lattice/exits.h"
-#include "lattice/gate_chain.h"
-#include "lattice/problem.h"
-#include "lattice/reference.h"
+#include "lattice/field/exits.h"
+#include "lattice/field/gate_chain.h"
+#include "lattice/field/problem.h"
+#include "lattice/field/reference.h"
 #include "lattice/statistics/compare.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/study/memory.h"

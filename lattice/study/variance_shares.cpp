@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "lattice/reference.h"
+#include "lattice/field/reference.h"
 
 namespace gatewalk::lattice {
 namespace {

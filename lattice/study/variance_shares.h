@@ -8,7 +8,7 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/cells/health.h"
-#include "lattice/problem.h"
+#include "lattice/field/problem.h"
 #include "lattice/statistics/sobol.h"
 #include "markov/totals.h"
 

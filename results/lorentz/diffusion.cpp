@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 
 namespace lorentz {
 

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "lattice/cells/cell_matrix.h"
+#include "lattice/source/cell_matrix.h"
 #include "markov/markov.h"
 #include "scenes.h"
 #include "tests/support/propagation.h"

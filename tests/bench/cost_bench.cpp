@@ -23,9 +23,9 @@
 #include <vector>
 
 #include "dynamics/disc/row_trials.h"
-#include "lattice/cells/cell_matrix.h"
-#include "lattice/scene/disc_field.h"
+#include "lattice/gates/disc_field.h"
 #include "lattice/scene/scene.h"
+#include "lattice/source/cell_matrix.h"
 #include "markov/markov.h"
 #include "scenes.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How much chance is left where noise is laid by points (lattice/rqmc_trials.h), and what that
-/// costs:
+/// How much chance is left where noise is laid by points (lattice/field/rqmc_trials.h), and what
+/// that costs:
 ///   points_bench SCENE [KEY=VALUE ...]
 /// prints lines "what,trials,replicates,plain,points": variances over replicates, plain and with
 /// points, each as the square of the sum of standard deviations (total variation squared, but for a
@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
+#include "lattice/field/rqmc_trials.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/pool/pooled_prediction.h"
-#include "lattice/rqmc_trials.h"
 #include "lattice/scene/scene_problem.h"
 
 namespace {

@@ -17,14 +17,14 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/render/json_value.h"
+#include "cli/fields/json_value.h"
 #include "dynamics/cells/cell.h"
-#include "lattice/cells/cell_file.h"
-#include "lattice/cells/recorded_pool.h"
-#include "lattice/cells/source.h"
+#include "lattice/field/reference.h"
 #include "lattice/pool/tree_chain.h"
-#include "lattice/reference.h"
+#include "lattice/recorded/recorded_pool.h"
+#include "lattice/scene/cell_file.h"
 #include "lattice/scene/scene_problem.h"
+#include "lattice/source/source.h"
 
 namespace {
 

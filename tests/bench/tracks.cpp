@@ -19,10 +19,10 @@
 #include <vector>
 
 #include "dynamics/base/random.h"
-#include "lattice/cells/cell_file.h"
-#include "lattice/cells/cut_tracks.h"
-#include "lattice/cells/recorded_pool.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/recorded/cut_tracks.h"
+#include "lattice/recorded/recorded_pool.h"
+#include "lattice/scene/cell_file.h"
 #include "lattice/study/cross_validation.h"
 #include "lattice/study/memory.h"
 

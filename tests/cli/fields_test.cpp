@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/render/fields.h"
+#include "cli/fields/fields.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "cli/render/json_value.h"
-#include "cli/render/numbers.h"
-#include "cli/render/schema.h"
+#include "cli/fields/csv.h"
+#include "cli/fields/json_value.h"
+#include "cli/fields/schema.h"
 
 namespace gatewalk::cli {
 namespace {

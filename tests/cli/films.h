@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/fields/json_value.h"
 #include "cli/film/replay.h"
-#include "cli/render/json_value.h"
 #include "tests/support/twins.h"
 
 namespace gatewalk::cli {

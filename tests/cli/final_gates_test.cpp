@@ -6,10 +6,10 @@
 #include <sstream>
 
 #include "cli/arguments.h"
+#include "cli/fields/json_value.h"
+#include "cli/fields/text.h"
 #include "cli/render/health.h"
-#include "cli/render/json_value.h"
 #include "cli/render/start.h"
-#include "cli/render/text.h"
 #include "dynamics/base/share.h"
 #include "dynamics/disc/disc_section.h"
 

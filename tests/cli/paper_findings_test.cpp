@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "cli/fields/json_value.h"
 #include "cli/paper/findings.h"
-#include "cli/render/json_value.h"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 #include <map>
 #include <sstream>
 
+#include "cli/fields/json_value.h"
 #include "cli/film/replay.h"
-#include "cli/render/json_value.h"
 #include "dynamics/disc/landscape.h"
 #include "lattice/scene/terrain.h"
 #include "tests/cli/films.h"

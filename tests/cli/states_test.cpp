@@ -5,8 +5,8 @@
 
 #include <string>
 
+#include "cli/fields/json_value.h"
 #include "cli/render/choice.h"
-#include "cli/render/json_value.h"
 #include "cli/render/matrix.h"
 #include "dynamics/disc/disc_section.h"
 #include "markov/formats/counts.h"

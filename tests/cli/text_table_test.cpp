@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/render/text_table.h"
+#include "cli/fields/text_table.h"
 
 #include <gtest/gtest.h>
 

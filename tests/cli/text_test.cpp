@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/render/text.h"
+#include "cli/fields/text.h"
 
 #include <gtest/gtest.h>
 

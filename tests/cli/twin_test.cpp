@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "cli/commands.h"
-#include "cli/render/json_value.h"
+#include "cli/fields/json_value.h"
 #include "lattice/scene/scene.h"
 
 namespace gatewalk::cli {

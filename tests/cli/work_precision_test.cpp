@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "cli/render/json_value.h"
+#include "cli/fields/json_value.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "dynamics/disc/study/deciding.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A cell file, and behind a line "---" overrides, a line each.
-#include "lattice/cells/cell_file.h"
+#include "lattice/scene/cell_file.h"
 
 #include <vector>
 

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "cli/kept/piece_log.h"
-#include "lattice/cells/cell_matrix.h"
 #include "lattice/scene/grey_picture.h"
+#include "lattice/source/cell_matrix.h"
 #include "markov/formats/counts.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -5,9 +5,9 @@
 
 #include <memory>
 
-#include "lattice/cells/cell_matrix.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/scene/scene_problem.h"
+#include "lattice/source/cell_matrix.h"
 #include "markov/formats/counts.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/use_matrix.h"

@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <cstring>
 
+#include "cli/fields/json_value.h"
 #include "cli/kept/kept_run.h"
 #include "cli/kept/piece_log.h"
-#include "cli/render/json_value.h"
 #include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/row_trials.h"
-#include "lattice/reference.h"
+#include "lattice/field/reference.h"
 #include "lattice/text/toml_text.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Recorded runs: a cell file, a line "---", the table.
-#include "lattice/cells/recorded.h"
+#include "lattice/recorded/recorded.h"
 
 #include <cmath>
 
-#include "lattice/cells/recorded_pool.h"
+#include "lattice/recorded/recorded_pool.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/large_field.h"
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "lattice/scene/sweep.h"
+#include "lattice/scene/study/sweep.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/large_field.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Tracks: a line of columns (empty for a table of DeepLabCut), then the table. What was read is cut
 // into passages.
-#include "lattice/cells/tracks.h"
+#include "lattice/recorded/tracks.h"
 
 #include <cmath>
 
-#include "lattice/cells/cut_tracks.h"
+#include "lattice/recorded/cut_tracks.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace gatewalk::fuzz {

@@ -12,7 +12,7 @@
 #include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/row_trials.h"
 #include "dynamics/disc/runs.h"
-#include "lattice/field_costs.h"
+#include "lattice/field/field_costs.h"
 #include "lattice/pool/lumped_chain.h"
 #include "lattice/pool/pooled_prediction.h"
 #include "lattice/pool/reactive_visits.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Files of cells: read, refused by line and key, and written so that they read back the same.
-#include "lattice/cells/cell_file.h"
+#include "lattice/scene/cell_file.h"
 
 #include <gtest/gtest.h>
 

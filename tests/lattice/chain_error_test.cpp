@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The chain's error against its cost: truths, answers and summaries by hand, and what is charted.
-#include "lattice/scene/chain_error.h"
+#include "lattice/scene/study/chain_error.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "dynamics/disc/row_trials.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 #include "tests/support/disc_fields.h"
 
 namespace gatewalk::lattice {

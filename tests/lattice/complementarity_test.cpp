@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/scene/complementarity.h"
+#include "lattice/gates/complementarity.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "dynamics/base/random.h"
-#include "lattice/cells/recorded_pool.h"
+#include "lattice/recorded/recorded_pool.h"
 #include "lattice/study/memory.h"
 
 namespace gatewalk::lattice {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tracks of known ways, cut at the borders of cells.
-#include "lattice/cells/cut_tracks.h"
+#include "lattice/recorded/cut_tracks.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "dynamics/base/random.h"
-#include "lattice/cells/local_fit.h"
+#include "lattice/recorded/local_fit.h"
 
 namespace gatewalk::lattice {
 namespace {

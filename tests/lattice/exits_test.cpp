@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/exits.h"
+#include "lattice/field/exits.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What memory and neighbours change: counts and verdicts by hand, and the trials that are compared.
-#include "lattice/scene/fidelity.h"
+#include "lattice/scene/study/fidelity.h"
 #include "tests/support/disc_fields.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/scene/field_stepper.h"
+#include "lattice/gates/field_stepper.h"
 
 #include <gtest/gtest.h>
 

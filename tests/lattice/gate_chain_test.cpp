@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

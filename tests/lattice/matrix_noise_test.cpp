@@ -13,7 +13,7 @@
 
 #include "dynamics/base/share.h"
 #include "dynamics/disc/disc_section.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 #include "lattice/statistics/compare.h"
 #include "lattice/statistics/draws.h"
 #include "lattice/statistics/ending_shares.h"

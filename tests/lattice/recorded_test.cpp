@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tables of recorded runs: read, refused by line and column, written so that they read back the
 // same, and fast.
-#include "lattice/cells/recorded.h"
+#include "lattice/recorded/recorded.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/scene/recording.h"
+#include "lattice/scene/study/recording.h"
 
 #include <gtest/gtest.h>
 

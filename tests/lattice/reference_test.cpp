@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/reference.h"
+#include "lattice/field/reference.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "dynamics/disc/disc_cell.h"
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 #include "markov/predict.h"
 #include "tests/support/disc_fields.h"
 #include "tests/support/numbers.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/rqmc_trials.h"
+#include "lattice/field/rqmc_trials.h"
 
 #include <gtest/gtest.h>
 

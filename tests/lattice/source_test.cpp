@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/cells/source.h"
+#include "lattice/source/source.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "lattice/cells/start_text.h"
 #include "lattice/pool/states_info.h"
+#include "lattice/source/start_text.h"
 #include "lattice/text/json_text.h"
 #include "tests/support/disc_fields.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/scene/sweep.h"
+#include "lattice/scene/study/sweep.h"
 
 #include <gtest/gtest.h>
 

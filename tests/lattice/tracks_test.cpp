@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Files of tracks: read for what they say, refused for what they do not.
-#include "lattice/cells/tracks.h"
+#include "lattice/recorded/tracks.h"
 
 #include <gtest/gtest.h>
 #include <netcdf.h>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lattice/scene/scene.h"
-#include "lattice/scene/sweep.h"
+#include "lattice/scene/study/sweep.h"
 #include "lattice/scene/terrain.h"
 #include "lattice/text/digits.h"
 

@@ -6,7 +6,7 @@
 
 #include <stdexcept>
 
-#include "lattice/gate_chain.h"
+#include "lattice/field/gate_chain.h"
 #include "tests/support/disc_fields.h"
 
 namespace gatewalk::lattice {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dynamics/cells/cell.h"
-#include "lattice/problem.h"
+#include "lattice/field/problem.h"
 
 namespace gatewalk::test {
 

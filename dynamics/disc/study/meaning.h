@@ -2,9 +2,12 @@
 #pragma once
 /// What the numbers of a scene amount to: how fast its body is, how far noise shakes it sideways,
 /// what holds it, how long it may take. All of it follows from the scene in closed form, but for
-/// two roots; nothing is simulated.
+/// two roots; only deciding_numbers() runs the gate.
 
 #include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
 
 #include "dynamics/disc/params.h"
 
@@ -52,5 +55,19 @@ struct Meaning {
 };
 /// Throws InvalidParameter as validate().
 [[nodiscard]] Meaning meaning_of(const GateParams& p, const BodyState& start);
+
+/// What becomes of a body, whichever side it takes.
+enum class GateFate : std::uint8_t { crosses, leaves, trapped };
+
+/// A number that sits on a step: 1 % more or less of it turns a gate that bodies cross into one
+/// that keeps them. Little noise makes such steps; a measured number is seldom known to 1 %.
+struct Deciding {
+  std::string_view words;  // "the stiffness", of both beams
+  GateFate less, more;     // of every run with 1 % less, 1 % more of it
+};
+/// Runs the gate from `start` with 1 % less and 1 % more of each number by itself: once without a
+/// random force, else up to 20 times. Numbers with which runs end differently among themselves
+/// decide nothing.
+[[nodiscard]] std::vector<Deciding> deciding_numbers(const GateParams& p, const BodyState& start);
 
 }  // namespace gatewalk::dynamics

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "cli/fields/text.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+namespace gatewalk::cli {
+
+std::string fixed(double x, int digits) {
+  if (!std::isfinite(x)) return "-";
+  std::string text = fmt::format("{:.{}f}", x, digits);
+  const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
+  return is_zero && text.front() == '-' ? text.substr(1) : text;
+}
+
+std::string percent(double part, double whole, int digits) {
+  return fixed(whole > 0.0 ? 100.0 * part / whole : std::nan(""), digits) + " %";
+}
+
+std::string with_limits(double x, const std::array<double, 2>& limits, int decimals,
+                        std::string_view unit) {
+  const auto& [low, high] = limits;
+  return fmt::format(
+      "{}{}{}", fixed(x, decimals), unit,
+      std::isnan(low) ? "" : fmt::format(" [{}, {}]", fixed(low, decimals), fixed(high, decimals)));
+}
+
+std::string p_text(double p) { return p < 0.001 ? "<0.001" : fixed(p, 3); }
+
+std::string p_words(double p) {
+  return p < 0.001 ? "p < 0.001" : "p = " + fixed(p, p < 0.1 ? 3 : 2);
+}
+
+std::string digits(double x, int significant) { return fmt::format("{:.{}g}", x, significant); }
+
+std::string scientific(double x, int decimals) { return fmt::format("{:.{}e}", x, decimals); }
+
+std::string counted(std::int64_t n, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+}  // namespace gatewalk::cli

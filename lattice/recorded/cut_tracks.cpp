@@ -1,0 +1,583 @@
+// SPDX-License-Identifier: MIT
+#include "lattice/recorded/cut_tracks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "lattice/text/digits.h"
+#include "lattice/text/toml_text.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using dynamics::Entry;
+
+/// What is measured where a border is crossed, and what it is then.
+struct Measured {
+  std::string_view name;
+  std::array<std::string_view, 3> units;
+  bool is_odd_upwards, is_odd_sideways;  // changes its sign in the mirror, by moves up or sideways
+};
+constexpr std::array<Measured, 5> kMeasured{{
+    {"s", {"m"}, true, false},
+    {"vx", {"m/s", "m s-1", "m s^-1"}, true, true},
+    {"vy", {"m/s", "m s-1", "m s^-1"}, false, false},
+    {"speed", {"m/s", "m s-1", "m s^-1"}, false, false},
+    {"heading", {"rad"}, true, true},
+}};
+
+const Measured& measured(const dynamics::Coordinate& coordinate) {
+  for (const Measured& m : kMeasured)
+    if (m.name == coordinate.name) return m;
+  throw std::invalid_argument("coordinate " + printable(coordinate.name) +
+                              " cannot be measured of tracks: these can, s (m, along the face from "
+                              "its middle), vx, vy, speed (m/s), heading (rad)");
+}
+
+/// A border crossed at a time, on the smooth path.
+struct Crossing {
+  double time, x, y, vx, vy, velocity_gain;
+  int di_x, di_y;
+};
+
+/// The way between frames i - 1 and i: places by the cubic that has the places and velocities of
+/// both, velocities straight from one to the other.
+class Between {
+ public:
+  Between(const SmoothPath& path, std::size_t i)
+      : path_(path), i_(i), step_(path.time[i] - path.time[i - 1]) {}
+
+  [[nodiscard]] double place(const std::vector<double>& x, const std::vector<double>& v,
+                             double u) const {
+    const double a = x[i_ - 1], b = x[i_], at_a = step_ * v[i_ - 1], at_b = step_ * v[i_];
+    return a +
+           u * (at_a + u * (3.0 * (b - a) - 2.0 * at_a - at_b + u * (2.0 * (a - b) + at_a + at_b)));
+  }
+  /// Where the border is crossed, in [0, 1]; the frames are on both sides of it, or on it.
+  [[nodiscard]] double reaches(const std::vector<double>& x, const std::vector<double>& v,
+                               double border) const {
+    double low = 0.0, high = 1.0;
+    const bool is_below = x[i_ - 1] < border;
+    for (int halved = 0; halved < 52; ++halved) {
+      const double u = 0.5 * (low + high);
+      ((place(x, v, u) < border) == is_below ? low : high) = u;
+    }
+    return high;
+  }
+  [[nodiscard]] Crossing at(double u, int di_x, int di_y) const {
+    const auto mixed = [&](const std::vector<double>& v) {
+      return (1.0 - u) * v[i_ - 1] + u * v[i_];
+    };
+    return {path_.time[i_ - 1] + u * step_,
+            place(path_.x, path_.vx, u),
+            place(path_.y, path_.vy, u),
+            mixed(path_.vx),
+            mixed(path_.vy),
+            mixed(path_.velocity_gain),
+            di_x,
+            di_y};
+  }
+
+ private:
+  const SmoothPath& path_;
+  std::size_t i_;
+  double step_;
+};
+
+int cell_at(double place, double size) { return static_cast<int>(std::floor(place / size)); }
+
+/// As far from the origin as that, and no further from frame to frame, in cells.
+constexpr double kMostCells = 1e9, kMostCellsAtOnce = 1000.0;
+
+/// Adds the crossings of the borders k size of one axis: whoever is further than `margin` over a
+/// border has crossed it, where it last did so. Returns how often borders were crossed in all.
+std::int64_t add_crossings(const SmoothPath& path, bool is_x, double size, double margin,
+                           std::vector<Crossing>& crossings) {
+  const std::vector<double>&place = is_x ? path.x : path.y, &speed = is_x ? path.vx : path.vy;
+  std::int64_t all = 0;
+  int cell = cell_at(place[0], size);
+  for (std::size_t i = 1; i < place.size(); ++i) {
+    all += std::abs(cell_at(place[i], size) - cell_at(place[i - 1], size));
+    const auto step = [&](int way) {
+      const double border = size * (way > 0 ? cell + 1 : cell);
+      std::size_t j = i;
+      while (j > 1 && (place[j - 1] < border) == (way < 0)) --j;
+      const Between between(path, j);
+      crossings.push_back(
+          between.at(between.reaches(place, speed, border), is_x ? way : 0, is_x ? 0 : way));
+      cell += way;
+    };
+    while (place[i] > size * (cell + 1) + margin) step(+1);
+    while (place[i] < size * cell - margin) step(-1);
+  }
+  return all;
+}
+
+class Cutter {
+ public:
+  Cutter(const TrackFile& file, const CellFile& cell, const CutOptions& options)
+      : file_(file), cell_(cell), options_(options) {
+    require_measurable(cell);
+    for (const auto& coordinate : cell.map.section.coordinates)
+      measured_.push_back(&measured(coordinate) - kMeasured.data());
+    set_lattice();
+  }
+
+  CutTracks cut() {
+    if (!(std::isfinite(options_.fastest) && options_.fastest > 0.0))
+      throw std::invalid_argument("--fastest " + rounded(options_.fastest) +
+                                  ": must be above 0 m/s");
+    if (options_.bridge < 0) throw std::invalid_argument("--bridge: must be 0 or more frames");
+    cut_at_gaps_and_jumps();
+    try {
+      cut_.noise = noise_of(cut_.pieces, file_.interval, window());
+    } catch (const std::invalid_argument& e) {
+      const std::string words = words_of_steps();
+      throw std::invalid_argument(file_.source + ": " + e.what() +
+                                  (words.empty() ? "" : ": " + words));
+    }
+    for (const TrackPiece& piece : cut_.pieces) require_near(piece);
+    // Five standard deviations of a place of the path: seldom passed by noise alone.
+    cut_.hysteresis = 5.0 * cut_.noise.place * std::sqrt(place_gain(cut_.noise.window));
+    if (cut_.hysteresis > 0.25 * std::min(cell_.width, cell_.length))
+      throw std::invalid_argument(
+          file_.source + ": cells of " + rounded(cell_.width) + " m x " + rounded(cell_.length) +
+          " m are too small for tracks with a noise of " + rounded(cut_.noise.place) +
+          " m: a body that noise alone does not carry over a border has to be " +
+          rounded(cut_.hysteresis) + " m over it (is --metres-per-unit right?)");
+    trials_.assign(file_.tracks.size(), 0);
+    for (std::size_t i = 0; i < cut_.pieces.size(); ++i) cut_piece(cut_.pieces[i], ends_[i]);
+    count_outside();
+    if (cut_.crossings == 0) refuse_nothing();
+    cut_.crossing_velocity_noise =
+        cut_.noise.place * std::sqrt(gains_ / static_cast<double>(cut_.crossings));
+    add_doubts();
+    return std::move(cut_);
+  }
+
+ private:
+  /// Why pieces are short, in words: most steps between places of a body are longer than a frame,
+  /// or some are, or too fast. Empty: none of it.
+  [[nodiscard]] std::string words_of_steps() const {
+    std::vector<double> frames, speeds;
+    for (const Track& t : file_.tracks)
+      for (std::size_t i = 1; i < t.time.size(); ++i) {
+        const double step = t.time[i] - t.time[i - 1];
+        frames.push_back(std::round(step / file_.interval));
+        speeds.push_back(std::hypot(t.x[i] - t.x[i - 1], t.y[i] - t.y[i - 1]) / step);
+      }
+    if (frames.empty()) return "no body was seen twice";
+    std::sort(frames.begin(), frames.end());
+    std::sort(speeds.begin(), speeds.end());
+    const double usual = frames[frames.size() / 2];
+    const auto gaps = std::upper_bound(frames.begin(), frames.end(), options_.bridge + 1.0);
+    std::string words;
+    const auto add = [&](const std::string& text) { words += (words.empty() ? "" : "; ") + text; };
+    const auto bridge = [](double n) { return "--bridge " + rounded(n - 1.0); };
+    if (usual >= 2.0 && usual > options_.bridge + 1.0) {
+      add("frames go up by " + rounded(usual) +
+          " from one place of a body to its next (a frame is " + rounded(file_.interval) +
+          " s): " + bridge(usual) + " bridges them, unless --fps is wrong");
+    } else if (gaps != frames.end()) {
+      double missing = 0.0, all = 0.0;
+      for (const double n : frames) {
+        all += n;
+        missing += n - 1.0;
+      }
+      const auto most = gaps + (frames.end() - gaps) * 9 / 10;  // of ten gaps nine are no longer
+      add(rounded(std::round(1000.0 * missing / all) / 10.0) + " % of the frames are missing, " +
+          (*gaps == *most ? rounded(*most - 1.0)
+                          : rounded(*gaps - 1.0) + " to " + rounded(*most - 1.0)) +
+          " at a time: " +
+          (*most > kMostWindow
+               ? "too long to be bridged"
+               : bridge(*most) + " bridges " + (*most == frames.back() ? "them" : "most of them")));
+    }
+    if (const double middle = speeds[speeds.size() / 2]; middle > options_.fastest)
+      add("most steps are faster than --fastest " + rounded(options_.fastest) + " m/s (median " +
+          rounded(middle) + " m/s): are --fps and --metres-per-unit right?");
+    return words;
+  }
+
+  [[nodiscard]] std::string and_words_of_steps() const {
+    const std::string words = words_of_steps();
+    return words.empty() ? words : "; " + words;
+  }
+
+  void add_doubts() {
+    const auto all = std::ssize(cut_.passages);
+    if (const auto lost = cut_.lost(LostBy::gap) + cut_.lost(LostBy::jump); 2 * lost > all)
+      if (const std::string words = words_of_steps(); !words.empty())
+        cut_.doubts.push_back(std::to_string(lost) + " of " + std::to_string(all) +
+                              " passages are lost in gaps and jumps: " + words);
+    std::int64_t places = 0;
+    for (const TrackPiece& p : cut_.pieces) places += static_cast<std::int64_t>(p.size());
+    if (10 * cut_.places_outside > 9 * places)
+      cut_.doubts.push_back(std::to_string(cut_.places_outside) + " of " + std::to_string(places) +
+                            " places lie outside the cells: are --origin (the lower left corner of "
+                            "the first row), --y-down and --metres-per-unit right?");
+    std::int64_t ahead = 0, back = 0;
+    for (const CutPassage& p : cut_.passages) {
+      const int way = cell_.map.section.faces[static_cast<std::size_t>(p.in.face)].di_y;
+      ahead += way > 0;
+      back += way < 0;
+    }
+    if (back > 9 * ahead)
+      cut_.doubts.push_back(
+          (ahead == 0 ? "all" : "nearly all") +
+          std::string(" passages go backwards, down the rows: ") +
+          std::string(file_.y_down ? "leave --y-down out if y grows upwards in the file"
+                                   : "give --y-down if y grows downwards in the file, as in "
+                                     "pictures"));
+  }
+
+  void set_lattice() {
+    const auto& map = cell_.map;
+    const bool is_given = options_.columns > 0 || options_.endless;
+    if (!map.type_of_cell.empty()) {
+      cut_.columns = map.columns;
+      cut_.rows = static_cast<int>(map.type_of_cell.size()) / map.columns;
+      if (is_given && (options_.columns != cut_.columns || options_.rows != cut_.rows))
+        throw std::invalid_argument("--lattice: the map of " + cell_.source + " has " +
+                                    std::to_string(cut_.columns) + " columns and " +
+                                    std::to_string(cut_.rows) + " rows");
+    } else if (is_given) {
+      cut_.columns = options_.columns;
+      cut_.rows = options_.rows;
+    } else if (cell_.has_field) {
+      cut_.columns = cell_.field.columns;
+      cut_.rows = cell_.field.rows;
+    } else {
+      throw std::invalid_argument(
+          cell_.source +
+          " does not say how many cells there are: give columns and rows of [field], or --lattice "
+          "COLUMNS,ROWS (all: without end, to all sides of the origin)");
+    }
+  }
+
+  void cut_at_gaps_and_jumps() {
+    for (const Track& track : file_.tracks) {
+      std::size_t begin = 0;
+      for (std::size_t i = 1; i <= track.time.size(); ++i) {
+        std::optional<LostBy> ends;
+        if (i == track.time.size()) {
+          ends = LostBy::end;
+        } else {
+          const double step = track.time[i] - track.time[i - 1];
+          const double speed =
+              std::hypot(track.x[i] - track.x[i - 1], track.y[i] - track.y[i - 1]) / step;
+          if (step > (options_.bridge + 1.5) * file_.interval) {
+            ends = LostBy::gap;
+            ++cut_.gaps;
+          } else if (speed > options_.fastest) {
+            ends = LostBy::jump;
+            ++cut_.jumps;
+          } else {
+            cut_.fastest_step = std::max(cut_.fastest_step, speed);
+          }
+        }
+        if (!ends) continue;
+        if (i - begin >= kLeastWindow) {
+          cut_.pieces.push_back({&track, begin, i});
+          ends_.push_back(*ends);
+        } else {
+          ++cut_.short_pieces;
+          cut_.short_frames += static_cast<std::int64_t>(i - begin);
+        }
+        begin = i;
+      }
+    }
+  }
+
+  /// Throws std::invalid_argument for a body that is, or goes at once, too far to be among cells.
+  void require_near(const TrackPiece& piece) const {
+    const Track& track = *piece.track;
+    const auto cells = [&](std::size_t i) {
+      return std::array{track.x[i] / cell_.width, track.y[i] / cell_.length};
+    };
+    for (std::size_t i = piece.begin; i < piece.end; ++i)
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        const double at = cells(i)[axis], before = cells(std::max(i, piece.begin + 1) - 1)[axis];
+        if (std::abs(at) <= kMostCells && std::abs(at - before) <= kMostCellsAtOnce) continue;
+        throw std::invalid_argument(
+            file_.source + ": body " + printable(track.body) + " is at (" + rounded(track.x[i]) +
+            ", " + rounded(track.y[i]) + ") m at " + rounded(track.time[i]) + " s, over " +
+            (std::abs(at) <= kMostCells
+                 ? rounded(kMostCellsAtOnce) + " cells from where it was a frame before"
+                 : rounded(kMostCells) + " cells from the origin") +
+            " (are --metres-per-unit, --origin, --fps and --fastest right?)");
+      }
+  }
+
+  /// What --window asks for, in frames.
+  std::optional<int> window() const {
+    std::string text = options_.window;
+    if (text.empty()) return {};
+    const auto refuse = [&](const std::string& what) {
+      throw std::invalid_argument("--window " + printable(options_.window) + ": " + what);
+    };
+    const bool in_seconds = text.ends_with('s');
+    if (in_seconds) text.pop_back();
+    double value = 0.0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value))
+      refuse("must be a number of frames (15) or a time (0.125s)");
+    if (in_seconds) value = 2.0 * std::round(0.5 * (value / file_.interval - 1.0)) + 1.0;
+    if (value != std::floor(value) || std::fmod(value, 2.0) != 1.0 || value < kLeastWindow ||
+        value > 100'001.0)
+      refuse((in_seconds ? "is " + rounded(value) + " frames: " : std::string()) +
+             "must be an odd number of frames from " + std::to_string(kLeastWindow) + " on");
+    return static_cast<int>(value);
+  }
+
+  [[nodiscard]] bool is_inside(int column, int row) const {
+    return cut_.columns == 0 ||
+           (column >= 0 && column < cut_.columns && row >= 0 && row < cut_.rows);
+  }
+
+  void count_outside() {
+    std::vector<bool> has_pieces(file_.tracks.size(), false), is_in(file_.tracks.size(), false);
+    for (const TrackPiece& p : cut_.pieces) {
+      const std::size_t track = static_cast<std::size_t>(p.track - file_.tracks.data());
+      has_pieces[track] = true;
+      for (std::size_t i = p.begin; i < p.end; ++i)
+        if (is_inside(cell_at(p.track->x[i], cell_.width), cell_at(p.track->y[i], cell_.length)))
+          is_in[track] = true;
+        else
+          ++cut_.places_outside;
+    }
+    for (std::size_t i = 0; i < is_in.size(); ++i)
+      cut_.bodies_outside += has_pieces[i] && !is_in[i];
+  }
+
+  void cut_piece(const TrackPiece& piece, LostBy ends) {
+    const std::size_t track = static_cast<std::size_t>(piece.track - file_.tracks.data());
+    const SmoothPath path = smoothed(piece, cut_.noise.window);
+    std::vector<Crossing> crossings;
+    const std::int64_t all = add_crossings(path, true, cell_.width, cut_.hysteresis, crossings) +
+                             add_crossings(path, false, cell_.length, cut_.hysteresis, crossings);
+    std::stable_sort(crossings.begin(), crossings.end(),
+                     [](const Crossing& a, const Crossing& b) { return a.time < b.time; });
+    cut_.uncounted += std::max<std::int64_t>(0, all - std::ssize(crossings));
+    int column = cell_at(path.x[0], cell_.width), row = cell_at(path.y[0], cell_.length);
+    cut_.first_stays += is_inside(column, row) ? 1 : 0;
+    std::optional<CutPassage> now;  // under way
+    double since = 0.0;
+    bool was_inside = false;
+    for (const Crossing& c : crossings) {
+      const bool is_in = is_inside(column, row);
+      column += c.di_x;
+      row += c.di_y;
+      const bool goes_on = is_inside(column, row);
+      cut_.came_back += !is_in && goes_on && (was_inside || trials_[track] > 0) ? 1 : 0;
+      was_inside = was_inside || is_in;
+      if (!now && !goes_on) continue;
+      const Entry entry = entry_of(c, column, row, *piece.track);
+      bool is_new = !now;
+      if (now) {
+        is_new = finish(*now, c.time - since, CutEnd::left, {c.x, c.y}, entry);
+        if (!goes_on) now.reset();
+      }
+      if (!goes_on) continue;
+      if (is_new) {
+        ++trials_[track];
+        ++cut_.trials;
+      }
+      now = CutPassage{.track = track, .trial = trials_[track], .in = entry, .from = {c.x, c.y}};
+      if (!cell_.map.type_of_cell.empty()) now->type = cell_.map.type_of(column, row);
+      since = c.time;
+    }
+    if (!now) return;
+    now->lost_by = ends;
+    (void)finish(*now, path.time.back() - since, CutEnd::lost, {path.x.back(), path.y.back()}, {});
+  }
+
+  /// Trapped, if it took as long as that; true: then the trial is at its end.
+  bool finish(CutPassage& passage, double time, CutEnd end, std::array<double, 2> to, Entry out) {
+    const bool trapped = cell_.trapped_after && time >= *cell_.trapped_after;
+    passage.end = trapped ? CutEnd::trapped : end;
+    // Straight through a corner takes no time, and the format has no passage without any.
+    const double some =
+        1e-6 * std::min(file_.interval, cell_.trapped_after.value_or(file_.interval));
+    passage.time = trapped ? *cell_.trapped_after : std::max(time, some);
+    passage.to = to;
+    if (passage.end == CutEnd::left) passage.out = out;
+    cut_.passages.push_back(passage);
+    return trapped;
+  }
+
+  /// The entry into a cell.
+  Entry entry_of(const Crossing& c, int column, int row, const Track& track) {
+    ++cut_.crossings;
+    gains_ += c.velocity_gain;
+    const auto& faces = cell_.map.section.faces;
+    const auto face = std::find_if(faces.begin(), faces.end(), [&](const dynamics::Face& f) {
+      return f.di_x == c.di_x && f.di_y == c.di_y;
+    });
+    if (face == faces.end())
+      throw std::invalid_argument(file_.source + ": body " + printable(track.body) +
+                                  " crosses a border at " + rounded(c.time) + " s by a move of (" +
+                                  std::to_string(c.di_x) + ", " + std::to_string(c.di_y) +
+                                  "), at (" + rounded(c.x) + ", " + rounded(c.y) +
+                                  ") m: no face of " + cell_.source + " has that move");
+    const double half = 0.5 * (c.di_y != 0 ? cell_.width : cell_.length);
+    const double along =
+        c.di_y != 0 ? c.x - (column + 0.5) * cell_.width : c.y - (row + 0.5) * cell_.length;
+    cut_.moved_ends += std::abs(along) > half ? 1 : 0;
+    const std::array<double, kMeasured.size()> values{
+        std::clamp(along, -half, half), c.vx, c.vy, std::hypot(c.vx, c.vy), std::atan2(c.vx, c.vy)};
+    Entry entry{.face = static_cast<int>(face - faces.begin())};
+    for (std::size_t k = 0; k < measured_.size(); ++k)
+      entry.at[k] = values[static_cast<std::size_t>(measured_[k])];
+    return entry;
+  }
+
+  /// Which way is up, where that may be wrong; `highest`: of all places.
+  [[nodiscard]] std::string words_of_ways(double highest) const {
+    double up = 0.0;  // of all bodies
+    for (const Track& t : file_.tracks)
+      if (!t.y.empty()) up += t.y.back() - t.y.front();
+    const bool is_below = highest < 0.0;
+    const std::string below = is_below ? ": all lie below the first row" : "";
+    if (is_below && file_.y_down) return below + ": is --origin the lower left corner?";
+    if (!file_.y_down && (is_below || up < 0.0))
+      return below + ": is y measured downwards (--y-down)?";
+    return below;
+  }
+
+  [[noreturn]] void refuse_nothing() const {
+    std::array<double, 4> ends{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
+    for (const TrackPiece& p : cut_.pieces)
+      for (std::size_t i = p.begin; i < p.end; ++i) {
+        ends[0] = std::min(ends[0], p.track->x[i]);
+        ends[1] = std::max(ends[1], p.track->x[i]);
+        ends[2] = std::min(ends[2], p.track->y[i]);
+        ends[3] = std::max(ends[3], p.track->y[i]);
+      }
+    throw std::invalid_argument(
+        file_.source + ": no body is seen to enter a cell: places are x = " + rounded(ends[0]) +
+        " to " + rounded(ends[1]) + " m, y = " + rounded(ends[2]) + " to " + rounded(ends[3]) +
+        " m, cells " + rounded(cell_.width) + " m x " + rounded(cell_.length) + " m" +
+        (cut_.columns > 0 ? ", " + std::to_string(cut_.columns) + " x " +
+                                std::to_string(cut_.rows) + " of them from (0, 0) on"
+                          : "") +
+        words_of_ways(ends[3]) + " (are --metres-per-unit, --origin, --fps and --fastest right? " +
+        std::to_string(cut_.jumps) + " steps were faster than --fastest, " +
+        std::to_string(cut_.gaps) + " went over a gap)" +
+        (2 * (cut_.jumps + cut_.gaps) > std::ssize(cut_.pieces) ? and_words_of_steps()
+                                                                : std::string()));
+  }
+
+  const TrackFile& file_;
+  const CellFile& cell_;
+  const CutOptions& options_;
+  std::vector<std::ptrdiff_t> measured_;  // by coordinate, of kMeasured
+  std::vector<LostBy> ends_;              // by piece
+  std::vector<int> trials_;               // by track
+  double gains_ = 0.0;                    // of all crossings
+  CutTracks cut_;
+};
+
+std::string face_move(const dynamics::Face& face) {
+  return "face " + printable(face.name) + " with the move (" + std::to_string(face.di_x) + ", " +
+         std::to_string(face.di_y) + ")";
+}
+
+/// What changes its sign in the mirror (x to -x) is known of tracks: a symmetric cell must say so.
+void require_odd(const CellFile& cell) {
+  const auto& section = cell.map.section;
+  for (const dynamics::Face& face : section.faces) {
+    for (std::size_t k = 0; k < section.coordinates.size(); ++k) {
+      const Measured& m = measured(section.coordinates[k]);
+      const bool is_odd = face.di_y != 0 ? m.is_odd_upwards : m.is_odd_sideways;
+      if (face.is_odd(k) != is_odd)
+        throw std::invalid_argument(cell.source + ": " + std::string(m.name) + " of face " +
+                                    printable(face.name) +
+                                    (is_odd ? " changes its sign in the mirror (x to -x): it must "
+                                              "be among the face's odd"
+                                            : " keeps its sign in the mirror (x to -x): it must "
+                                              "not be among the face's odd"));
+    }
+  }
+}
+
+}  // namespace
+
+std::int64_t CutTracks::count(CutEnd end) const {
+  return std::count_if(passages.begin(), passages.end(),
+                       [&](const CutPassage& p) { return p.end == end; });
+}
+
+std::int64_t CutTracks::lost(LostBy by) const {
+  return std::count_if(passages.begin(), passages.end(), [&](const CutPassage& p) {
+    return p.end == CutEnd::lost && p.lost_by == by;
+  });
+}
+
+void require_measurable(const CellFile& cell) {
+  const auto& section = cell.map.section;
+  for (std::size_t i = 0; i < section.faces.size(); ++i) {
+    const dynamics::Face& face = section.faces[i];
+    if (std::abs(face.di_x) + std::abs(face.di_y) != 1)
+      throw std::invalid_argument(cell.source + ": " + face_move(face) +
+                                  ": tracks are cut into rectangles, whose moves are (0, 1), "
+                                  "(0, -1), (1, 0) and (-1, 0)");
+    for (std::size_t other = 0; other < i; ++other)
+      if (section.faces[other].di_x == face.di_x && section.faces[other].di_y == face.di_y)
+        throw std::invalid_argument(cell.source + ": " + face_move(face) + ": face " +
+                                    printable(section.faces[other].name) +
+                                    " has the same, so tracks do not tell which of them it is");
+  }
+  for (const dynamics::Coordinate& coordinate : section.coordinates) {
+    const auto& units = measured(coordinate).units;
+    if (std::find(units.begin(), units.end(), coordinate.unit) == units.end() ||
+        coordinate.unit.empty())
+      throw std::invalid_argument(cell.source + ": coordinate " + printable(coordinate.name) +
+                                  " is in \"" + printable(coordinate.unit) +
+                                  "\": of tracks it is measured in " + std::string(units[0]));
+  }
+  if (std::any_of(cell.map.types.begin(), cell.map.types.end(),
+                  [](const auto& type) { return type.symmetric; }))
+    require_odd(cell);
+}
+
+CutTracks cut_tracks(const TrackFile& file, const CellFile& cell, const CutOptions& options) {
+  return Cutter(file, cell, options).cut();
+}
+
+RecordedRuns recorded_runs(const CutTracks& cut, const TrackFile& file, const CellFile& cell) {
+  const auto& costs = cell.map.section.costs;
+  RecordedRuns runs;
+  runs.passages.begin(cell.map.section);
+  std::vector<std::int32_t> numbers(file.tracks.size(), -1);  // of bodies, by track
+  const CutPassage* last = nullptr;
+  for (const CutPassage& p : cut.passages) {
+    std::int32_t& body = numbers[p.track];
+    if (body < 0) {
+      body = static_cast<std::int32_t>(runs.bodies.size());
+      runs.bodies.push_back(file.tracks[p.track].body);
+    }
+    if (!last || last->track != p.track || last->trial != p.trial)
+      runs.trials.push_back({p.in, body, static_cast<std::int64_t>(runs.passages.size()), 0});
+    last = &p;
+    ++runs.trials.back().count;
+    CellPassage row{.fate = p.end == CutEnd::left      ? dynamics::Fate::left
+                            : p.end == CutEnd::trapped ? dynamics::Fate::trapped
+                                                       : dynamics::Fate::broken,
+                    .type = static_cast<std::uint8_t>(p.type),
+                    .entry = p.out};
+    for (std::size_t c = 0; c < costs.size(); ++c)
+      row.costs[c] = costs[c].key == "time_s" ? p.time : std::numeric_limits<double>::quiet_NaN();
+    runs.passages.push_back(row);
+    runs.trapped += p.end == CutEnd::trapped ? 1 : 0;
+    runs.lost += p.end == CutEnd::lost ? 1 : 0;
+    for (std::size_t c = 0; c < costs.size(); ++c)
+      runs.unknown[c] += p.end != CutEnd::lost && std::isnan(row.costs[c]) ? 1 : 0;
+  }
+  return runs;
+}
+
+}  // namespace gatewalk::lattice
