@@ -19,9 +19,9 @@
 /// one, chains of trees, their predictions and error bars), study/ (what commands compute).
 // clang-format on
 
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/field/gate_chain.h"
-#include "lattice/field/reference.h"
 #include "lattice/statistics/compare.h"
 #include "lattice/statistics/draws.h"
 #include "lattice/statistics/ending_shares.h"

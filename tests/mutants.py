@@ -37,7 +37,7 @@ KERNELS = {
     "dynamics/base/work.cpp": {"dynamics": "KeptPieces.*:Pieces.*:PieceSize.*:Work.*:Ranks.*"},
     "dynamics/cells/tree_space.cpp": {"dynamics": "TreeSpace.*", "lattice": TREES},
     "markov/predict/row_elimination.cpp": {"markov": "RowElimination.*:LargeField.*:Predictor.*"},
-    "markov/predict/by_rows.cpp": {"markov": "RowSum.*:Exact.*:Predictor.*:LargeField.*:Outcomes.*"},
+    "markov/predict/by_rows.cpp": {"markov": "RowSweeps.*:Exact.*:Predictor.*:LargeField.*:Outcomes.*"},
     "markov/predict/by_steps.cpp": {"markov": "Exact.*:Predictor.*:Adjoint.*:Outcomes.*"},
     "lattice/field/rqmc_trials.cpp": {"lattice": "RqmcTrials.*:RunPool.*", "cli": "ProgramCell.*"},
     "lattice/pool/reactive_visits.cpp": {"lattice": "Analysis.*:Costs.*:Terrain.*"},

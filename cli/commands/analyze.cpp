@@ -14,7 +14,7 @@
 #include "cli/render/analysis.h"
 #include "cli/render/matrix.h"
 #include "cli/source_options.h"
-#include "lattice/field/gate_chain.h"
+#include "lattice/field/matrix_file.h"
 #include "lattice/pool/chain_with_rewards.h"
 #include "lattice/pool/lumped_chain.h"
 #include "lattice/scene/scene_problem.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cli/exchange/sparse_table.h"
-#include "lattice/field/gate_chain.h"
+#include "lattice/field/matrix_file.h"
 #include "lattice/scene/cell_file.h"
 
 namespace gatewalk::cli {

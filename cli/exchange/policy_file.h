@@ -7,7 +7,7 @@
 #include <string>
 
 #include "dynamics/cells/section.h"
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
 #include "lattice/scene/cell_file.h"
 #include "lattice/scene/scene.h"
 #include "lattice/study/plan.h"

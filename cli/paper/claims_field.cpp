@@ -7,7 +7,7 @@
 #include "cli/fields/text.h"
 #include "cli/paper/claims.h"
 #include "cli/paper/studies.h"
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/gates/disc_field.h"
 
 namespace gatewalk::cli {

@@ -10,7 +10,7 @@
 
 #include "cli/fields/fields.h"
 #include "cli/render/panel.h"
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
 #include "lattice/study/crossings.h"
 
 namespace gatewalk::cli {

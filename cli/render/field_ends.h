@@ -10,7 +10,7 @@
 
 #include "cli/fields/fields.h"
 #include "cli/render/shown_field.h"
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/statistics/ending_shares.h"
 #include "markov/predict.h"
 #include "markov/walk.h"

@@ -12,8 +12,8 @@
 #include "cli/render/shown_field.h"
 #include "cli/render/start.h"
 #include "lattice/field/field_costs.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/field/gate_chain.h"
-#include "lattice/field/reference.h"
 #include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {

@@ -9,7 +9,7 @@
 #include "cli/fields/fields.h"
 #include "cli/render/figure.h"
 #include "cli/render/provenance.h"
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
 #include "lattice/scene/ranges.h"
 #include "lattice/scene/settle.h"
 #include "lattice/study/fit.h"

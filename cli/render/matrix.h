@@ -13,7 +13,7 @@
 #include "cli/render/provenance.h"
 #include "cli/render/recorded.h"
 #include "cli/render/states.h"
-#include "lattice/field/gate_chain.h"
+#include "lattice/field/matrix_file.h"
 #include "lattice/scene/settle.h"
 
 namespace gatewalk::cli {

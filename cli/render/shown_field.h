@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dynamics/cells/cell_map.h"
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
 #include "lattice/scene/scene.h"
 #include "lattice/source/source.h"
 

@@ -8,6 +8,7 @@
 
 #include "cli/fields/text.h"
 #include "dynamics/disc/disc_section.h"
+#include "lattice/field/matrix_file.h"
 
 namespace gatewalk::cli {
 

@@ -36,8 +36,9 @@ struct Passage {
   Costs costs{};  // by Section::costs
 };
 
-/// Memory that a body carries from cell to cell and that no entry shows, such as the force in
-/// force: one object of the cell's own, copied as bytes. The chain forgets it.
+/// Memory that a body carries from cell to cell and that no entry shows, such as the random force
+/// that is acting just now: one object of a type that the cell chooses, copied as bytes. The chain
+/// forgets it.
 class Carried {
  public:
   static constexpr std::size_t kMostBytes = 768;

@@ -17,7 +17,7 @@ constexpr double kHuge = 1e100;
 constexpr double kHugeUnit = 1e60;
 constexpr double kFar = 1e18;
 
-// key, place, lowest, highest, lowest itself not permitted, meaning
+// key, place, lowest, highest, whether the lowest itself is refused, meaning
 constexpr ParamInfo kTable[] = {
     {"body.mass_kg", [](P& p) -> double& { return p.body.mass; }, 0.0, kHuge, true,
      "mass M of the disc"},

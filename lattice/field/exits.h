@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/statistics/share_95.h"
 #include "markov/predict.h"

@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 
 namespace gatewalk::lattice {
 

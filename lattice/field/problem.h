@@ -10,7 +10,7 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/cells/cell.h"
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
 
 namespace gatewalk::lattice {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dynamics/base/points.h"
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 
 namespace gatewalk::lattice {
 

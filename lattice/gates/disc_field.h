@@ -10,7 +10,7 @@
 
 #include "dynamics/disc/disc_section.h"
 #include "dynamics/disc/trace.h"
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/gates/gates.h"
 
 namespace gatewalk::lattice {

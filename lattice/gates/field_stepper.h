@@ -20,7 +20,7 @@
 #include "dynamics/disc/flow.h"
 #include "dynamics/disc/gate.h"
 #include "dynamics/disc/methods/moreau.h"
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
 
 namespace gatewalk::lattice {
 

@@ -6,7 +6,7 @@
 
 #include "dynamics/cells/cell.h"
 #include "dynamics/disc/params.h"
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
 
 namespace gatewalk::lattice {
 

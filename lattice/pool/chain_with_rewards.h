@@ -9,7 +9,7 @@
 
 #include "dynamics/base/random.h"
 #include "lattice/field/problem.h"
-#include "lattice/pool/run_pool.h"
+#include "lattice/pool/kernel.h"
 #include "markov/totals.h"
 
 namespace gatewalk::lattice {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 #include "markov/predict.h"
 
 namespace gatewalk::lattice {

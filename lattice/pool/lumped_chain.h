@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
 #include "lattice/field/gate_chain.h"
 #include "lattice/pool/chain_with_rewards.h"
 #include "lattice/pool/reactive_visits.h"

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "lattice/field/field.h"
-#include "lattice/pool/run_pool.h"
+#include "lattice/field/field_params.h"
+#include "lattice/pool/kernel.h"
 #include "lattice/statistics/group_spread.h"
 
 namespace gatewalk::lattice {

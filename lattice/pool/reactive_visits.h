@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
 #include "lattice/pool/chain_with_rewards.h"
 #include "markov/committor.h"
 #include "markov/totals.h"

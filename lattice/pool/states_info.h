@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lattice/field/gate_chain.h"
+#include "lattice/field/matrix_file.h"
 #include "lattice/pool/tree_chain.h"
 
 namespace gatewalk::lattice {

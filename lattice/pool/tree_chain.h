@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "lattice/field/gate_chain.h"
+#include "lattice/field/matrix_file.h"
+#include "lattice/pool/kernel.h"
 #include "lattice/pool/pooled_prediction.h"
 
 namespace gatewalk::lattice {

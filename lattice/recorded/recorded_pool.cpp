@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "lattice/pool/kernel.h"
+
 namespace gatewalk::lattice {
 
 using namespace dynamics;

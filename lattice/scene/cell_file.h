@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "dynamics/cells/cell_map.h"
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
 #include "lattice/scene/terrain.h"
 #include "lattice/scene/toml_file.h"
 

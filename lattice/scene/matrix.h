@@ -9,6 +9,7 @@
 
 #include "dynamics/base/work.h"
 #include "lattice/field/gate_chain.h"
+#include "lattice/field/matrix_file.h"
 #include "lattice/pool/pooled_prediction.h"
 #include "lattice/scene/bins.h"
 #include "lattice/statistics/matrix_noise.h"

@@ -13,7 +13,7 @@
 
 #include "dynamics/disc/disc_section.h"
 #include "dynamics/disc/params.h"
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
 #include "lattice/scene/terrain.h"
 #include "lattice/scene/toml_file.h"
 

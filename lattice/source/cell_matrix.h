@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lattice/field/gate_chain.h"
+#include "lattice/field/matrix_file.h"
 #include "lattice/recorded/recorded_pool.h"
 
 namespace gatewalk::lattice {

@@ -407,11 +407,11 @@ JointTest joint_test(const SeenEndings& seen, const markov::FinalDistribution& p
   if (seen.has_gates())
     require_same_shape(seen.final_gates.rows(), seen.final_gates.cols(), base.rows(), base.cols());
   if (null_draws < 1 || replicates.empty())
-    throw std::invalid_argument("judge: needs draws and a resampled matrix at least");
+    throw std::invalid_argument("joint_test: needs draws and a resampled matrix at least");
   for (const auto& r : replicates)
     require_same_shape(r.final_cells.rows(), r.final_cells.cols(), base.rows(), base.cols());
   const std::int64_t n = seen.trials();
-  if (n < 1) throw std::invalid_argument("judge: a sample without trials");
+  if (n < 1) throw std::invalid_argument("joint_test: a sample without trials");
   const CellProbabilities sample =
       seen.has_gates() ? shares(seen.final_gates)
                        : CellProbabilities(CellProbabilities::Zero(base.rows(), base.cols()));
@@ -466,9 +466,9 @@ JointTest joint_test(const SeenEndings& seen, const SeenEndings& other, std::int
   const bool gates = seen.has_gates() && other.has_gates(),
              endings = seen.has_endings() && other.has_endings();
   const std::int64_t n = seen.trials(), m = other.trials();
-  if (null_draws < 1) throw std::invalid_argument("judge: needs draws at least");
+  if (null_draws < 1) throw std::invalid_argument("joint_test: needs draws at least");
   if (n < 1 || m < 1 || !(gates || endings))
-    throw std::invalid_argument("judge: a sample without trials, or nothing in common");
+    throw std::invalid_argument("joint_test: a sample without trials, or nothing in common");
   if (gates)
     require_same_shape(seen.final_gates.rows(), seen.final_gates.cols(), other.final_gates.rows(),
                        other.final_gates.cols());

@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "lattice/field/matrix_file.h"
 #include "lattice/pool/reactive_visits.h"
 #include "lattice/statistics/group_spread.h"
 #include "lattice/statistics/share_95.h"

@@ -8,8 +8,8 @@
 #include "dynamics/base/work.h"
 #include "dynamics/cells/state_space.h"
 #include "dynamics/cells/tree_space.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/field/problem.h"
-#include "lattice/field/reference.h"
 #include "lattice/study/crossings.h"
 #include "markov/decide.h"
 

@@ -17,9 +17,9 @@
 
 #include "dynamics/base/random.h"
 #include "dynamics/base/work.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/field/problem.h"
-#include "lattice/field/reference.h"
-#include "lattice/pool/run_pool.h"
+#include "lattice/pool/kernel.h"
 #include "lattice/study/crossings.h"
 #include "markov/decide.h"
 

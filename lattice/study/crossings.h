@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 
 namespace gatewalk::lattice {
 

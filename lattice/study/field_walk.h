@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dynamics/cells/state_space.h"
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
 #include "markov/predict.h"
 
 namespace gatewalk::lattice {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "dynamics/cells/tree_space.h"
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/statistics/outcome_model.h"
 
 namespace gatewalk::lattice {

@@ -13,8 +13,8 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/cells/state_space.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/field/problem.h"
-#include "lattice/field/reference.h"
 #include "lattice/pool/run_pool.h"
 #include "lattice/statistics/gates_ahead.h"
 #include "lattice/statistics/independence.h"

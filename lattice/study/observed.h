@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "lattice/field/field.h"
-#include "lattice/field/reference.h"
+#include "lattice/field/field_params.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/statistics/compare.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/statistics/power.h"

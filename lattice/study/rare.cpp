@@ -12,6 +12,7 @@
 
 #include "dynamics/base/share.h"
 #include "lattice/field/gate_chain.h"
+#include "lattice/pool/kernel.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/study/trials.h"
 #include "markov/committor.h"
@@ -100,7 +101,6 @@ class SplitTrial {
   std::vector<double> entered_;
 };
 
-/// Sums over trials, in their order.
 /// What becomes of some trials, one behind the other.
 struct SplitPiece {
   std::vector<double> entered{};  // (trials x rows) weight that entered rows 1, 2, ...
@@ -111,6 +111,7 @@ void each_part(Archive& archive, SplitPiece& piece) {
   archive(piece.entered, piece.health);
 }
 
+/// Sums over trials, in their order.
 struct Sums {
   std::vector<double> sum, squares;
   std::int64_t trials = 0;

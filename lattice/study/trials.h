@@ -7,9 +7,9 @@
 
 #include "dynamics/base/work.h"
 #include "lattice/field/field_costs.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/field/gate_chain.h"
 #include "lattice/field/problem.h"
-#include "lattice/field/reference.h"
 
 namespace gatewalk::lattice {
 

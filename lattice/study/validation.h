@@ -10,9 +10,9 @@
 
 #include "dynamics/base/work.h"
 #include "lattice/field/exits.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/field/gate_chain.h"
 #include "lattice/field/problem.h"
-#include "lattice/field/reference.h"
 #include "lattice/statistics/compare.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/study/memory.h"

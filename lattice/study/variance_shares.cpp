@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 
 namespace gatewalk::lattice {
 namespace {

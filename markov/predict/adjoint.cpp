@@ -4,7 +4,7 @@
 #include <string>
 
 #include "markov/predict/backward.h"
-#include "markov/predict/ends.h"
+#include "markov/predict/end_sums.h"
 
 namespace gatewalk::markov {
 

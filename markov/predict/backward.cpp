@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "markov/predict/ends.h"
+#include "markov/predict/end_sums.h"
 
 namespace gatewalk::markov {
 namespace {

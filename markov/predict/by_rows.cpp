@@ -9,7 +9,7 @@
 #include <string>
 
 #include "markov/predict/plan.h"
-#include "markov/predict/row_sum.h"
+#include "markov/predict/row_sweeps.h"
 #include "markov/staying.h"
 
 namespace gatewalk::markov {
@@ -260,7 +260,7 @@ class PredictionRows {
   /// neither) by sums.
   struct RowWay {
     std::vector<const RowElimination::Column*> columns{};
-    std::optional<RowSum> sweeps{};
+    std::optional<RowSweeps> sweeps{};
   };
 
   /// The same by elimination or sweeps: visits = (I - Q)^-1 within. The residual within + Q visits
@@ -327,7 +327,7 @@ class PredictionRows {
           use(plane + static_cast<std::ptrdiff_t>(c), c * inputs + input);
     };
     each([&](std::ptrdiff_t plane, std::size_t at) { workspace_[at] = from[plane]; });
-    starts_[j].steps += way.sweeps->solve(workspace_.data(), RowSum::Of::largest, accuracy);
+    starts_[j].steps += way.sweeps->solve(workspace_.data(), RowSweeps::Of::largest, accuracy);
     each([&](std::ptrdiff_t plane, std::size_t at) { visits_.data()[plane] += workspace_[at]; });
   }
   /// Nothing more is found out from this start.
@@ -371,7 +371,7 @@ class PredictionRows {
       if (!ways_[k].columns.empty() || method == RowMethod::elimination) continue;
       if (ways_[k]
               .sweeps
-              .emplace(moves_within(chain), RowSum::Sums::brought, field_.columns, plan_.inputs)
+              .emplace(moves_within(chain), RowSweeps::Sums::brought, field_.columns, plan_.inputs)
               .suits())
         continue;
       ways_[k].sweeps.reset();
@@ -379,8 +379,8 @@ class PredictionRows {
         ways_[k].columns = chain.elimination->get().columns(field_.columns);
     }
   }
-  [[nodiscard]] std::vector<RowSum::Move> moves_within(const PreparedChain& chain) const {
-    std::vector<RowSum::Move> moves;
+  [[nodiscard]] std::vector<RowSweeps::Move> moves_within(const PreparedChain& chain) const {
+    std::vector<RowSweeps::Move> moves;
     for (const auto& groups : chain.sideways.passes)
       for (const Group& g : groups)
         for (int i = g.begin; i < g.end; ++i) {
@@ -394,8 +394,8 @@ class PredictionRows {
   const PredictionPlan& plan_;
   Field field_;
   bool may_stop_;
-  double tolerance_;  // left walking at most: in a row, of what entered it; of all walks, in all
-                      // rows not yet entered
+  double tolerance_;  // share that may be left walking: in a row, of the walks that entered it;
+                      // in the rows not yet entered together, of all walks
   int most_sums_;
   Layout layout_;                            // of one row
   std::ptrdiff_t stride_, tallies_, masks_;  // masks: of types, none where rows are uniform

@@ -15,7 +15,7 @@
 
 #include "markov/first_passage.h"
 #include "markov/predict/moves.h"
-#include "markov/predict/row_sum.h"
+#include "markov/predict/row_sweeps.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -70,7 +70,7 @@ class CommittorRows {
     all_.values.resize(from_above_.size() * static_cast<std::size_t>(field.rows));
     if (chain.has_uniform_rows())
       for (const Moves& m : moves_)
-        sums_.emplace_back(m.within_row(), RowSum::Sums::led_to, field.columns, chain.inputs());
+        sums_.emplace_back(m.within_row(), RowSweeps::Sums::led_to, field.columns, chain.inputs());
   }
 
   /// None where walks circle in a row.
@@ -151,7 +151,7 @@ class CommittorRows {
         for (std::size_t i = m.side[input]; i < m.up[input + 1]; ++i)
           if (const auto& [p, di_x, di_y, next] = m.entries[i]; !within(column + di_x))
             cell(column, row)[input] += p * ends_beyond(column + di_x, row);
-    sums_[type_of(0, row)].solve(cell(0, row), RowSum::Of::each, tolerance_);
+    sums_[type_of(0, row)].solve(cell(0, row), RowSweeps::Of::each, tolerance_);
   }
   [[nodiscard]] bool ends_at_a_side(const Moves& m, int column) const {
     return !within(column - m.widest) || !within(column + m.widest);
@@ -172,8 +172,8 @@ class CommittorRows {
   const Field field_;
   const Ending ending_;
   const double tolerance_;
-  std::vector<Moves> moves_;  // by type
-  std::vector<RowSum> sums_;  // by type; none where rows are of several
+  std::vector<Moves> moves_;     // by type
+  std::vector<RowSweeps> sums_;  // by type; none where rows are of several
   Committor all_;
   std::vector<double> from_above_;  // (columns x inputs)
 };

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "markov/predict/ends.h"
+#include "markov/predict/end_sums.h"
 #include "markov/predict/transient.h"
 
 namespace gatewalk::markov {

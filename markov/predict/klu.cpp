@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "markov/predict/ends.h"
+#include "markov/predict/end_sums.h"
 #include "markov/predict/transient.h"
 
 namespace gatewalk::markov {

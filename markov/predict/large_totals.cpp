@@ -13,7 +13,7 @@
 
 #include "markov/committor.h"
 #include "markov/predict/moves.h"
-#include "markov/predict/row_sum.h"
+#include "markov/predict/row_sweeps.h"
 
 namespace gatewalk::markov {
 
@@ -40,13 +40,13 @@ class VisitsByRows {
     for (const Chain& c : chain.chains()) {
       const Moves& m = moves_.emplace_back(c, Ending::trapped);
       for (const Moves::Entry& e : m.entries) highest_ = std::max(highest_, e.di_y);
-      sums_.emplace_back(m.within_row(), RowSum::Sums::brought, field.columns, c.inputs());
+      sums_.emplace_back(m.within_row(), RowSweeps::Sums::brought, field.columns, c.inputs());
     }
   }
 
   [[nodiscard]] bool suits() const {
     return chain_.has_uniform_rows() &&
-           std::all_of(sums_.begin(), sums_.end(), [](const RowSum& s) { return s.suits(); });
+           std::all_of(sums_.begin(), sums_.end(), [](const RowSweeps& s) { return s.suits(); });
   }
 
   /// `out`: visits and endings are added. `each` is told of states that are passed by more than
@@ -65,7 +65,7 @@ class VisitsByRows {
       const auto type = static_cast<std::size_t>(chain_.type_of(0, row));
       const Moves& moves = moves_[type];
       std::vector<double>& visits = entering.front();
-      sums_[type].solve(visits.data(), RowSum::Of::largest, tolerance);
+      sums_[type].solve(visits.data(), RowSweeps::Of::largest, tolerance);
       for (int column = 0; column < field_.columns; ++column) {
         const bool at_a_side = column < moves.widest || column + moves.widest >= field_.columns;
         const std::int64_t cell = std::int64_t{row} * field_.columns + column;
@@ -124,7 +124,7 @@ class VisitsByRows {
   const Field field_;
   int highest_ = 0;           // di_y
   std::vector<Moves> moves_;  // by type
-  std::vector<RowSum> sums_;
+  std::vector<RowSweeps> sums_;
 };
 
 /// "mom", version 1: the second key word of these walks' streams.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "markov/chain.h"
-#include "markov/predict/row_sum.h"
+#include "markov/predict/row_sweeps.h"
 
 namespace gatewalk::markov {
 
@@ -44,8 +44,8 @@ struct Moves {
     up.push_back(entries.size());
   }
 
-  [[nodiscard]] std::vector<RowSum::Move> within_row() const {
-    std::vector<RowSum::Move> within;
+  [[nodiscard]] std::vector<RowSweeps::Move> within_row() const {
+    std::vector<RowSweeps::Move> within;
     for (int input = 0; input + 1 < std::ssize(up); ++input)
       for (std::size_t i = side[static_cast<std::size_t>(input)];
            i < up[static_cast<std::size_t>(input) + 1]; ++i)

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "markov/predict.h"
-#include "markov/predict/ends.h"
+#include "markov/predict/end_sums.h"
 #include "markov/predict/layout.h"
 #include "markov/predict/row_elimination.h"
 
@@ -163,7 +163,7 @@ struct StartTally {
   }
 };
 
-/// Of a sum: no more than a direct solve may take the place of.
+/// After so many sums a direct solve takes over, where it may.
 inline constexpr int kMostSums = 10'000;
 
 /// Predictor::predict_all by Solver::steps and Solver::rows, arguments checked. With `may_stop`,

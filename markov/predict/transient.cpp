@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "markov/predict/transient.h"
 
-#include "markov/predict/ends.h"
+#include "markov/predict/end_sums.h"
 
 namespace gatewalk::markov {
 namespace {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "lattice/field/gate_chain.h"
+#include "lattice/pool/kernel.h"
 
 namespace lorentz {
 

@@ -19,7 +19,7 @@
 #include "cli/commands.h"
 #include "cli/fields/json_value.h"
 #include "dynamics/cells/cell.h"
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/recorded/recorded_pool.h"
 #include "lattice/scene/cell_file.h"

@@ -11,7 +11,7 @@
 #include "cli/kept/piece_log.h"
 #include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/row_trials.h"
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/text/toml_text.h"
 #include "tests/fuzz/fuzz.h"
 

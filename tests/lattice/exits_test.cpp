@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "dynamics/base/share.h"
+#include "lattice/pool/kernel.h"
 #include "lattice/pool/pool_answers.h"
-#include "lattice/pool/run_pool.h"
 #include "lattice/study/prediction.h"
 #include "tests/support/disc_fields.h"
 

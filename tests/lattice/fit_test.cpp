@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/scene/ranges.h"
 #include "lattice/scene/scene_problem.h"
 #include "tests/support/lane.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/field/gate_chain.h"
+#include "lattice/field/matrix_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

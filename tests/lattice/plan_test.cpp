@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/scene_problem.h"
 #include "tests/support/threads.h"

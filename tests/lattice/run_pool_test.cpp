@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/pool/run_pool.h"
+#include "lattice/pool/kernel.h"
 
 #include <gtest/gtest.h>
 

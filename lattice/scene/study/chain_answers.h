@@ -12,7 +12,7 @@
 
 #include "dynamics/base/work.h"
 #include "dynamics/cells/transitions.h"
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/scene/table4.h"
 #include "lattice/statistics/compare.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/scene/scene.h"
 #include "lattice/statistics/paired_change.h"
 

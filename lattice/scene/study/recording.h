@@ -14,7 +14,7 @@
 #include "dynamics/base/work.h"
 #include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/trace.h"
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 #include "lattice/gates/gates.h"
 #include "lattice/scene/scene.h"
 

@@ -12,7 +12,7 @@
 #include "dynamics/base/trial_set.h"
 #include "dynamics/cells/cell.h"
 #include "dynamics/cells/state_space.h"
-#include "lattice/field/field.h"
+#include "lattice/field/field_params.h"
 #include "lattice/field/passage_table.h"
 #include "markov/walk.h"
 
@@ -21,7 +21,8 @@ namespace gatewalk::lattice {
 /// Moves from cell to cell, by the face that is entered.
 using FaceCounts = std::array<std::int64_t, dynamics::kMostFaces>;
 
-/// Counts of trials through the field, of which none ends `unsampled`. Tallies add in any order.
+/// Counts of trials through the field. None ends `unsampled`: only walks of a chain do. Tallies add
+/// in any order.
 struct FieldTally : markov::Ends<std::int64_t> {
   std::int64_t trials = 0;
   dynamics::TrialSet held;  // which

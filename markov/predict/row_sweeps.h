@@ -19,7 +19,7 @@ namespace gatewalk::markov {
 /// The row is cut into strips of equal length, one for each number in a register: a sweep takes the
 /// first columns of all strips together, then the second ones, ... and a strip hears of its
 /// neighbours once a sweep.
-class RowSum {
+class RowSweeps {
  public:
   /// With chance p from a state to another, `di_x` columns on.
   struct Move {
@@ -29,7 +29,7 @@ class RowSum {
   /// Sums of what moves bring (visits), or of what they lead to (chances: Q x of a state is the sum
   /// of p times the number of the state that the move leads to).
   enum class Sums { brought, led_to };
-  RowSum(const std::vector<Move>& moves, Sums sums, int columns, int inputs);
+  RowSweeps(const std::vector<Move>& moves, Sums sums, int columns, int inputs);
 
   /// Whether it is worth while: walks leave the row soon enough.
   [[nodiscard]] bool suits() const;

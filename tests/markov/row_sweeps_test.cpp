@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "markov/predict/row_sum.h"
+#include "markov/predict/row_sweeps.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace gatewalk::markov {
 namespace {
 
-using Moves = std::vector<RowSum::Move>;
+using Moves = std::vector<RowSweeps::Move>;
 
 constexpr int kInputs = 23;
 
@@ -33,7 +33,7 @@ Moves some_moves(int widest, double stays, std::uint64_t seed) {
 }
 
 /// b + Q b + Q Q b + ..., number by number.
-std::vector<double> plain_sum(const Moves& moves, RowSum::Sums sums, int columns,
+std::vector<double> plain_sum(const Moves& moves, RowSweeps::Sums sums, int columns,
                               std::vector<double> term) {
   std::vector<double> all = term;
   for (bool grows = true; grows;) {
@@ -43,7 +43,7 @@ std::vector<double> plain_sum(const Moves& moves, RowSum::Sums sums, int columns
         if (column + di_x < 0 || column + di_x >= columns) continue;
         const auto here = static_cast<std::size_t>(column * kInputs + from),
                    there = static_cast<std::size_t>((column + di_x) * kInputs + to);
-        if (sums == RowSum::Sums::brought)
+        if (sums == RowSweeps::Sums::brought)
           next[there] += p * term[here];
         else
           next[here] += p * term[there];
@@ -58,9 +58,9 @@ std::vector<double> plain_sum(const Moves& moves, RowSum::Sums sums, int columns
   return all;
 }
 
-std::vector<double> summed(const Moves& moves, RowSum::Sums sums, int columns,
-                           std::vector<double> values, RowSum::Of of, double tolerance) {
-  RowSum row(moves, sums, columns, kInputs);
+std::vector<double> summed(const Moves& moves, RowSweeps::Sums sums, int columns,
+                           std::vector<double> values, RowSweeps::Of of, double tolerance) {
+  RowSweeps row(moves, sums, columns, kInputs);
   EXPECT_TRUE(row.suits());
   row.solve(values.data(), of, tolerance);
   return values;
@@ -76,30 +76,30 @@ std::vector<double> some_numbers(int columns, int only) {
   return b;
 }
 
-TEST(RowSum, IsThatOfMoreAndMoreMoves) {
-  for (const auto sums : {RowSum::Sums::brought, RowSum::Sums::led_to})
+TEST(RowSweeps, IsThatOfMoreAndMoreMoves) {
+  for (const auto sums : {RowSweeps::Sums::brought, RowSweeps::Sums::led_to})
     for (const int widest : {1, 2})
       for (const int columns : {3, 8, 9, 16, 31, 101})
         for (const int only : {-1, 1}) {
           const Moves moves = some_moves(widest, 0.8, 5);
           const auto b = some_numbers(columns, only), exact = plain_sum(moves, sums, columns, b);
-          const auto x = summed(moves, sums, columns, b, RowSum::Of::each, 1e-12);
+          const auto x = summed(moves, sums, columns, b, RowSweeps::Of::each, 1e-12);
           for (std::size_t i = 0; i < x.size(); ++i)
             ASSERT_NEAR(x[i], exact[i], 1e-12 * exact[i]) << i << " of " << columns;
         }
 }
 
-TEST(RowSum, IsAsExactAsAskedFor) {
+TEST(RowSweeps, IsAsExactAsAskedFor) {
   const Moves moves = some_moves(1, 0.9, 7);
   const int columns = 101;
   const auto b = some_numbers(columns, 50),
-             exact = plain_sum(moves, RowSum::Sums::brought, columns, b);
+             exact = plain_sum(moves, RowSweeps::Sums::brought, columns, b);
   const double largest = *std::max_element(exact.begin(), exact.end());
   for (const double tolerance : {1e-3, 1e-6, 1e-12}) {
-    const auto of_each =
-                   summed(moves, RowSum::Sums::brought, columns, b, RowSum::Of::each, tolerance),
-               of_largest =
-                   summed(moves, RowSum::Sums::brought, columns, b, RowSum::Of::largest, tolerance);
+    const auto of_each = summed(moves, RowSweeps::Sums::brought, columns, b, RowSweeps::Of::each,
+                                tolerance),
+               of_largest = summed(moves, RowSweeps::Sums::brought, columns, b,
+                                   RowSweeps::Of::largest, tolerance);
     double off_largest = 0.0;
     for (std::size_t i = 0; i < exact.size(); ++i) {
       ASSERT_NEAR(of_each[i], exact[i], tolerance * exact[i]);
@@ -111,9 +111,9 @@ TEST(RowSum, IsAsExactAsAskedFor) {
   }
 }
 
-TEST(RowSum, SuitsWalksThatLeaveSoon) {
-  EXPECT_FALSE(RowSum(some_moves(1, 0.99, 5), RowSum::Sums::brought, 9, kInputs).suits());
-  EXPECT_FALSE(RowSum(some_moves(2, 0.5, 5), RowSum::Sums::brought, 2, kInputs).suits());
+TEST(RowSweeps, SuitsWalksThatLeaveSoon) {
+  EXPECT_FALSE(RowSweeps(some_moves(1, 0.99, 5), RowSweeps::Sums::brought, 9, kInputs).suits());
+  EXPECT_FALSE(RowSweeps(some_moves(2, 0.5, 5), RowSweeps::Sums::brought, 2, kInputs).suits());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "markov/predict/row_sum.h"
+#include "markov/predict/row_sweeps.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -11,7 +11,7 @@
 
 namespace gatewalk::markov {
 
-RowSum::RowSum(const std::vector<Move>& moves, Sums sums, int columns, int inputs)
+RowSweeps::RowSweeps(const std::vector<Move>& moves, Sums sums, int columns, int inputs)
     : columns_(columns), inputs_(inputs) {
   const auto target = [&](const Move& m) {
     return static_cast<std::size_t>(sums == Sums::brought ? m.to : m.from);
@@ -85,7 +85,7 @@ RowSum::RowSum(const std::vector<Move>& moves, Sums sums, int columns, int input
     mask_.data()[column % length_ * kLanes + column / length_] = 1.0;
 }
 
-bool RowSum::suits() const {
+bool RowSweeps::suits() const {
   constexpr double kStayLong = 0.95;
   const double farthest = static_cast<double>(widest_ + 1) * inputs_ * static_cast<double>(kLanes);
   return stays_ <= kStayLong && widest_ < columns_ &&
@@ -93,7 +93,7 @@ bool RowSum::suits() const {
 }
 
 template <class Use>
-void RowSum::each(Use use) const {
+void RowSweeps::each(Use use) const {
   for (std::ptrdiff_t k = 0; k < length_; ++k)
     for (std::ptrdiff_t place = 0; place < inputs_; ++place)
       for (std::ptrdiff_t column = k, at = k * stride_ + place * kLanes; column < columns_;
@@ -101,7 +101,7 @@ void RowSum::each(Use use) const {
         use(at, column * inputs_ + states_[static_cast<std::size_t>(place)]);
 }
 
-void RowSum::tell_neighbours(int first, int last) {
+void RowSweeps::tell_neighbours(int first, int last) {
   double* const x = x_.data() + widest_ * stride_;
   const std::ptrdiff_t behind = length_ * stride_, count = std::ptrdiff_t{last - first} * kLanes;
   for (std::ptrdiff_t at = first * kLanes; at < widest_ * stride_; at += stride_) {
@@ -110,7 +110,7 @@ void RowSum::tell_neighbours(int first, int last) {
   }
 }
 
-int RowSum::solve(double* values, Of of, double tolerance) {
+int RowSweeps::solve(double* values, Of of, double tolerance) {
   double* const x = x_.data() + widest_ * stride_;
   const auto sweep = [&](const Terms& terms, int first, int last, bool upwards, const double* b,
                          StripChange& change) {

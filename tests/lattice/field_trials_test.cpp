@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice/field/reference.h"
+#include "lattice/field/field_trials.h"
 
 #include <gtest/gtest.h>
 
