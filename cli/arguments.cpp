@@ -25,31 +25,31 @@
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
-void add_starts(Options& options, const std::string& by_default) {
+TextsOption add_starts(Options& options, const std::string& by_default) {
   const std::string help = fmt::format(
       "start at x = D m, y = 0 with this velocity in m/s (may be repeated; default: {})",
       by_default);
-  options.add_texts("start", "D,VX,VY", help);
+  return options.add_texts("start", "D,VX,VY", help);
 }
 
-std::vector<dynamics::Entry> given_starts(const Options& options) {
+std::vector<dynamics::Entry> given_starts(const TextsOption& given) {
   std::vector<dynamics::Entry> starts;
-  for (const std::string& text : options.texts("start"))
+  for (const std::string& text : given.values())
     starts.push_back(
         *lattice::start_in(text, lattice::scene_section(), lattice::StartsBy::first_face));
   return starts;
 }
 
-std::vector<dynamics::Entry> starts_of(const Options& options, const lattice::Scene& scene) {
-  if (options.has("start")) return given_starts(options);
+std::vector<dynamics::Entry> starts_of(const TextsOption& given, const lattice::Scene& scene) {
+  if (given) return given_starts(given);
   std::vector<dynamics::Entry> starts;
   for (const lattice::PaperStart& s : lattice::table_iv_starts(scene)) starts.push_back(s.start);
   if (starts.empty()) starts.push_back(lattice::own_start(scene));
   return starts;
 }
 
-void add_bins(Options& options) {
-  options.add_text(
+TextOption add_bins(Options& options) {
+  return options.add_text(
       "bins", "paper|FACTOR|auto|tree",
       "the chain's states: tree: grown over the entries that full trials make, until --accuracy is "
       "reached; paper: Table III's, in the scene's own units; FACTOR: these with so many times the "
@@ -59,13 +59,13 @@ void add_bins(Options& options) {
       "bodies do, else auto");
 }
 
-lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& scene,
-                                bool runs_per_state) {
+lattice::BinsChoice bins_choice(const TextOption& bins, const lattice::Scene& scene,
+                                const Option& runs_per_state) {
   using Kind = lattice::BinsChoice::Kind;
-  if (!options.has("bins"))
+  if (!bins)
     return scene.bins || runs_per_state ? lattice::usual_bins(scene)
                                         : lattice::BinsChoice{Kind::tree};
-  const std::string text = options.text("bins");
+  const std::string text = bins.value();
   if (scene.bins)
     throw UsageError(
         fmt::format("--bins {}: the scene has a table [bins], which says what the bins are; leave "
@@ -85,36 +85,39 @@ lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& sc
   return choice;
 }
 
-void add_accuracy(Options& options, const std::string& by_default) {
-  options.add_number(
+AskedAccuracy add_accuracy(Options& options, const std::string& by_default) {
+  const NumberOption accuracy = options.add_number(
       "accuracy", "A",
       fmt::format(
           "trials are added until the final gates are right within a total variation of A, 95 "
           "times in 100 (0.02: of 100 bodies 2 end in another gate than said; default: {})",
           by_default));
-  options.add_count("gate-runs", "N", "but not many more gate runs than N, whatever the accuracy");
+  return {accuracy, options.add_count("gate-runs", "N",
+                                      "but not many more gate runs than N, whatever the accuracy")};
 }
 
-lattice::AccuracyOptions accuracy_of(const Options& options, lattice::AccuracyOptions how) {
-  if (options.has("accuracy")) {
-    how.accuracy = options.number("accuracy");
+lattice::AccuracyOptions accuracy_of(const Options& options, const AskedAccuracy& asked,
+                                     lattice::AccuracyOptions how) {
+  if (asked.accuracy) {
+    how.accuracy = asked.accuracy.value();
     if (!(how.accuracy > 0.0 && how.accuracy < 1.0))
       throw UsageError(fmt::format("--accuracy {}: must lie between 0 and 1, such as 0.01",
                                    digits(how.accuracy)));
   }
-  if (options.has("gate-runs")) how.most_runs = options.count("gate-runs");
+  if (asked.gate_runs) how.most_runs = asked.gate_runs.value();
   how.seed = options.seed();
   return how;
 }
 
-void fix_trials(const Options& options, lattice::AccuracyOptions& how, std::int64_t starts) {
-  if (options.has("trials")) {
-    refuse(options, {"gate-runs", "accuracy"}, "beside --trials");
-    how.trials = options.count("trials", lattice::PoolRunner::kLeastTrials * starts);
+void fix_trials(const Options& options, const AskedAccuracy& asked, lattice::AccuracyOptions& how,
+                std::int64_t starts) {
+  if (options.trials) {
+    refuse({asked.gate_runs, asked.accuracy}, "beside --trials");
+    how.trials = options.trials.value(lattice::PoolRunner::kLeastTrials * starts);
     if (*how.trials % starts != 0)
       throw UsageError(fmt::format("--trials {}: must be so many for each of {} starts alike",
                                    *how.trials, starts));
-  } else if (options.has("shard")) {
+  } else if (options.shard) {
     throw UsageError(
         "--shard of trees needs --trials N: a part must know how many there are in all");
   }
@@ -137,49 +140,6 @@ void warn_of(const Options& options, const lattice::PooledPrediction& prediction
     worst = std::max(worst, a.error.total_variation);
   options.warn(fmt::format("the accuracy asked for, {}, was not reached: the error bar is {}",
                            digits(accuracy), fixed(worst, 4)));
-}
-
-std::optional<lattice::StartRange> range_of(const Options& options, const lattice::Scene& scene) {
-  if (!options.has("starts")) return std::nullopt;
-  const std::string text = options.text("starts");
-  if (text == "all") return lattice::usual_range(lattice::problem_of(scene));
-  lattice::StartRange range;
-  std::string_view rest = text;
-  for (std::size_t axis = 0; axis < dynamics::disc_section().coordinates.size(); ++axis) {
-    const bool follows = axis == 0 || lattice::take_mark(rest, ',');
-    const auto low = lattice::take_number(rest);
-    const bool has_colon = lattice::take_mark(rest, ':');
-    const auto high = lattice::take_number(rest);
-    if (!follows || !low || !has_colon || !high || !(*low <= *high) || !std::isfinite(*high - *low))
-      throw UsageError(
-          fmt::format("--starts {}: must be all, or three ranges of d, vx, vy in m and m/s, e.g. "
-                      "-5:5,-10:10,10:20",
-                      text));
-    range.at[axis] = {*low, *high};
-  }
-  if (!lattice::behind_blanks(rest).empty())
-    throw UsageError(fmt::format("--starts {}: has more than three ranges", text));
-  const double side = scene.gate.beams.joint_x;
-  const auto& d = range.at[dynamics::kEntryD];
-  if (!(d[0] >= -side && d[1] <= side))
-    throw UsageError(fmt::format("--starts {}: d must lie inside the gate, [{}, {}]", text,
-                                 digits(-side), digits(side)));
-  return range;
-}
-
-lattice::TreeOptions tree_options(const Options& options, const lattice::Scene& scene) {
-  lattice::TreeOptions how{.accuracy = accuracy_of(options)};
-  how.range = range_of(options, scene);
-  if (options.has("states"))
-    how.most_states = static_cast<int>(options.count("states", 1, dynamics::kMostStates));
-  how.starts = given_starts(options);
-  lattice::require_inside(how.starts, scene);
-  if (how.starts.empty() && !how.range) how.starts = {lattice::own_start(scene)};
-  if (scene.field.fidelity != lattice::Fidelity::active)
-    options.warn(fmt::format(
-        "field.fidelity = \"{}\" is of the full dynamics: a chain always has \"active\"",
-        lattice::name_of(scene.field.fidelity)));
-  return how;
 }
 
 void warn_of_range(const Options& options, const lattice::MatrixFile& file, const std::string& path,
@@ -212,11 +172,10 @@ namespace {
 bool is_about_push(const Options& options, const lattice::Scene& scene) {
   const std::string push = "forces.propulsion_N";
   if (scene.named.contains(push)) return true;
-  for (const char* option : {"free", "over", "versus"})
-    if (options.has(option))
-      for (const std::string& text : options.texts(option))
-        if (lattice::known_key(text.substr(0, text.find('=')), "--" + std::string(option)) == push)
-          return true;
+  for (const TextsOption& option : options.varied())
+    for (const std::string& text : option.values())
+      if (lattice::known_key(text.substr(0, text.find('=')), "--" + option.name()) == push)
+        return true;
   return false;
 }
 

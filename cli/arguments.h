@@ -17,46 +17,44 @@
 namespace gatewalk::cli {
 
 /// Declares --start; `by_default` says where to start without it.
-void add_starts(Options& options,
-                const std::string& by_default =
-                    "the scene's start; in the paper's field, in whatever units, with "
-                    "the paper's start, the four of Table IV");
-/// Those given of a scene's; none without --start. Throws std::invalid_argument for a malformed
+TextsOption add_starts(Options& options,
+                       const std::string& by_default =
+                           "the scene's start; in the paper's field, in whatever units, with "
+                           "the paper's start, the four of Table IV");
+/// Those given of a scene's; none without any. Throws std::invalid_argument for a malformed
 /// one.
-[[nodiscard]] std::vector<dynamics::Entry> given_starts(const Options& options);
+[[nodiscard]] std::vector<dynamics::Entry> given_starts(const TextsOption& given);
 /// The starts given, else in the paper's field with the paper's start those of Table IV, else the
 /// scene's own. Throws std::invalid_argument for a malformed one.
-[[nodiscard]] std::vector<dynamics::Entry> starts_of(const Options& options,
+[[nodiscard]] std::vector<dynamics::Entry> starts_of(const TextsOption& given,
                                                      const lattice::Scene& scene);
 
 /// Declares --bins.
-void add_bins(Options& options);
+TextOption add_bins(Options& options);
 /// --bins if given; else the scene's table [bins]; else a tree, or lattice::usual_bins where
 /// `runs_per_state` of them are asked for. Throws UsageError for anything else, and for --bins
 /// beside a table [bins].
-[[nodiscard]] lattice::BinsChoice bins_choice(const Options& options, const lattice::Scene& scene,
-                                              bool runs_per_state);
+[[nodiscard]] lattice::BinsChoice bins_choice(const TextOption& bins, const lattice::Scene& scene,
+                                              const Option& runs_per_state);
 
-/// Declares --accuracy and --gate-runs.
-void add_accuracy(Options& options, const std::string& by_default = "0.02");
+/// --accuracy and --gate-runs.
+struct AskedAccuracy {
+  NumberOption accuracy;
+  CountOption gate_runs;
+};
+/// Declares them.
+AskedAccuracy add_accuracy(Options& options, const std::string& by_default = "0.02");
 /// Of these and --seed, else as in `how`. Throws UsageError for an accuracy outside (0, 1).
 [[nodiscard]] lattice::AccuracyOptions accuracy_of(const Options& options,
+                                                   const AskedAccuracy& asked,
                                                    lattice::AccuracyOptions how = {});
 /// Of trees: --trials, if it is given, instead of an accuracy; parts need it.
-void fix_trials(const Options& options, lattice::AccuracyOptions& how, std::int64_t starts);
+void fix_trials(const Options& options, const AskedAccuracy& asked, lattice::AccuracyOptions& how,
+                std::int64_t starts);
 /// Warns where a chain errs by its own full trials.
 void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>& own);
 /// The same, and where the accuracy was not reached.
 void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy);
-
-/// --starts: a range of starts; none without it. Throws UsageError for a malformed one.
-[[nodiscard]] std::optional<lattice::StartRange> range_of(const Options& options,
-                                                          const lattice::Scene& scene);
-
-/// The chain of trees that is to be built: --accuracy, --start, --starts, --states. Throws
-/// UsageError.
-[[nodiscard]] lattice::TreeOptions tree_options(const Options& options,
-                                                const lattice::Scene& scene);
 
 /// Says so where starts that a matrix does not know lie outside the range that it was built for.
 void warn_of_range(const Options& options, const lattice::MatrixFile& file, const std::string& path,

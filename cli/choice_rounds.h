@@ -4,35 +4,42 @@
 
 #include <string>
 
-#include "cli/command.h"
+#include "cli/arguments.h"
 #include "lattice/study/crossings.h"
 
 namespace gatewalk::cli {
 
+/// What is asked of them.
+struct ChoiceRounds {
+  TextsOption starts;
+  AskedAccuracy accuracy;
+};
+
 /// Declares --start, --accuracy, --gate-runs and others; `also` ends the help of --start.
-inline void add_choice_rounds(Options& options, const std::string& also = "") {
-  options.add_texts(
+inline ChoiceRounds add_choice_rounds(Options& options, const std::string& also = "") {
+  const TextsOption starts = options.add_texts(
       "start", "D,VX,VY",
       "start at x = D m, y = 0 with this velocity in m/s (default: the scene's start)" + also);
-  options.add_number("accuracy", "A",
-                     "half of the interval that a chance to cross may have (default: 0.02)");
-  options.add_count(
+  const NumberOption accuracy = options.add_number(
+      "accuracy", "A", "half of the interval that a chance to cross may have (default: 0.02)");
+  const CountOption gate_runs = options.add_count(
       "gate-runs", "N",
       "no new round of choosing after so many gate runs (default: 2e7); one there always is");
   options.add_seed();
   options.add_kept();
   options.add_strict();
+  return {starts, {accuracy, gate_runs}};
 }
 
 /// Puts these options into a lattice::PlanOptions, or a struct with the same members. Throws
 /// UsageError.
 template <class How>
-void take_choice_rounds(const Options& options, How& how) {
+void take_choice_rounds(const Options& options, const ChoiceRounds& asked, How& how) {
   how.seed = options.seed();
-  if (options.has("accuracy")) how.accuracy = options.number("accuracy");
+  if (asked.accuracy.accuracy) how.accuracy = asked.accuracy.accuracy.value();
   if (!(how.accuracy >= 0.001 && how.accuracy < 0.5))
     throw UsageError("--accuracy: must lie in [0.001, 0.5)");
-  if (options.has("gate-runs")) how.most_runs = options.count("gate-runs", 1000);
+  if (asked.accuracy.gate_runs) how.most_runs = asked.accuracy.gate_runs.value(1000);
 }
 
 /// Warns where the rounds of choosing ended before the choice was settled.

@@ -283,33 +283,41 @@ TextsOption Options::add_texts(const std::string& name, const std::string& shown
   return {*this, name};
 }
 
+TextsOption Options::add_varied(const std::string& name, const std::string& shown,
+                                const std::string& help) {
+  return state_->varied.emplace_back(add_texts(name, shown, help));
+}
+
 Option Options::add_flag(const std::string& name, const std::string& help) {
   state_->own.add_options()(name.c_str(), help.c_str());
   return {*this, name};
 }
 
-void Options::add_seed(const std::string& help) {
+Option Options::add_seed(const std::string& help) {
   state_->add("seed", po::value<Seed>()->default_value(Seed{1}, "1"), "S", help);
+  return {*this, "seed"};
 }
 
-void Options::add_trials_and_seed(const std::string& trials_help) {
+CountOption Options::add_trials_and_seed(const std::string& trials_help) {
   add_count("trials", "N", trials_help, "100");
   add_seed();
+  return trials;
 }
 
-void Options::add_strict() {
-  add_flag("strict",
-           "exit status 1 when the result's status is not clean; it is written all the same");
+Option Options::add_strict() {
+  return add_flag(
+      "strict", "exit status 1 when the result's status is not clean; it is written all the same");
 }
 
-void Options::add_kept(std::set<std::string> divided) {
+TextOption Options::add_kept(std::set<std::string> divided) {
   declare_kept(*this, !divided.empty());
   state_->divided = std::move(divided);
+  return checkpoint;
 }
 
-void Options::add_first_trial() {
-  add_count("first-trial", "I",
-            "number of the first trial: others than those of another run (default: 0)");
+CountOption Options::add_first_trial() {
+  return add_count("first-trial", "I",
+                   "number of the first trial: others than those of another run (default: 0)");
 }
 
 TextOption Options::input_file(const std::string& name, const std::string& help) {
@@ -423,14 +431,14 @@ bool Options::parse(const Arguments& arguments) {
     po::store(parsed, state_->values);
     po::notify(state_->values);
     for (const char* option : {"set", "versus"})
-      for (std::string& remark : repeated_keys(option, texts(option)))
+      for (std::string& remark : repeated_keys(option, TextsOption(*this, option).values()))
         remarks.push_back(std::move(remark));
   } catch (const po::error& e) {
     throw UsageError(fmt::format("{}; see gatewalk {} --help",
                                  mistake_in(e, offered, arguments.words),
                                  state_->synopsis.substr(0, state_->synopsis.find(' '))));
   }
-  if (has("help")) {
+  if (Option(*this, "help")) {
     lattice::TextStream page;
     page << "gatewalk " << state_->synopsis << "\n\n" << state_->about << "\n\n";
     TextTable positionals({{"", -22, 0, "", "  "}, {"", 0, 0, "", "  "}});
@@ -442,7 +450,7 @@ bool Options::parse(const Arguments& arguments) {
     write_text_atomically("-", page.str());
     return false;
   }
-  if (!state_->no_scene.empty() && has("set"))
+  if (!state_->no_scene.empty() && set)
     throw UsageError("--set has no meaning here: " + state_->no_scene);
   for (const auto& name : state_->required) {
     if (!has(name))
@@ -453,10 +461,10 @@ bool Options::parse(const Arguments& arguments) {
   state_->given = parsed.options;
   check_values_given();
   check_files();
-  if (const std::int64_t threads = count("threads", 0, 1024); threads > 0) {
+  if (const std::int64_t n = threads.value(0, 1024); n > 0) {
     // Lives until the program ends.
     static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                           static_cast<std::size_t>(threads));
+                                           static_cast<std::size_t>(n));
   }
 
   memory_advice = advice(offered);
@@ -491,58 +499,54 @@ bool Options::parse(const Arguments& arguments) {
   return true;
 }
 
-Option::operator bool() const { return options_->has(name_); }
-
-std::int64_t CountOption::value(std::int64_t low, std::int64_t high) const {
-  return options_->count(name_, low, high);
+const boost::any* Option::given() const {
+  return options_ && options_->has(name_) ? &options_->state_->values[name_].value() : nullptr;
 }
 
-double NumberOption::value() const { return options_->number(name_); }
+Option::operator bool() const { return given() != nullptr; }
+
+std::int64_t CountOption::value(std::int64_t low, std::int64_t high) const {
+  const std::int64_t value = boost::any_cast<Count>(*given()).value;
+  if (value < low || value > high)
+    throw UsageError(
+        fmt::format("--{} {}: must be at least {} and at most {}", name(), value, low, high));
+  return value;
+}
+
+double NumberOption::value() const { return boost::any_cast<Number>(*given()).value; }
 
 double NumberOption::within(double usual, double low, double high) const {
   if (!*this) return usual;
   const double given = value();
   if (!(given >= low && given <= high))
-    throw UsageError(fmt::format("--{} {}: must lie in [{}, {}]", name_, digits(given), digits(low),
-                                 digits(high)));
+    throw UsageError(fmt::format("--{} {}: must lie in [{}, {}]", name(), digits(given),
+                                 digits(low), digits(high)));
   return given;
 }
 
-std::vector<double> NumbersOption::values() const { return options_->numbers(name_); }
-
-std::string TextOption::value() const { return options_->text(name_); }
-
-std::vector<std::string> TextsOption::values() const { return options_->texts(name_); }
-
-bool Options::has(const std::string& name) const { return state_->values.count(name) > 0; }
-
-std::int64_t Options::count(const std::string& name, std::int64_t low, std::int64_t high) const {
-  const std::int64_t value = state_->values[name].as<Count>().value;
-  if (value < low || value > high)
-    throw UsageError(
-        fmt::format("--{} {}: must be at least {} and at most {}", name, value, low, high));
-  return value;
-}
-
-double Options::number(const std::string& name) const {
-  return state_->values[name].as<Number>().value;
-}
-
-std::string Options::text(const std::string& name) const {
-  return has(name) ? state_->values[name].as<std::string>() : std::string();
-}
-
-std::vector<double> Options::numbers(const std::string& name) const {
+std::vector<double> NumbersOption::values() const {
   std::vector<double> values;
-  if (has(name))
-    for (const Number& n : state_->values[name].as<std::vector<Number>>())
+  if (*this)
+    for (const Number& n : boost::any_cast<const std::vector<Number>&>(*given()))
       values.push_back(n.value);
   return values;
 }
 
-std::vector<std::string> Options::texts(const std::string& name) const {
-  return has(name) ? state_->values[name].as<Strings>() : Strings();
+std::string TextOption::value() const {
+  return *this ? boost::any_cast<std::string>(*given()) : std::string();
 }
+
+std::vector<std::string> TextsOption::values() const {
+  return *this ? boost::any_cast<Strings>(*given()) : Strings();
+}
+
+bool Options::has(const std::string& name) const { return state_->values.count(name) > 0; }
+
+std::string Options::text(const std::string& name) const { return TextOption(*this, name).value(); }
+
+std::vector<std::string> Options::overrides() const { return TextsOption(*this, "set").values(); }
+
+const std::vector<TextsOption>& Options::varied() const { return state_->varied; }
 
 std::uint64_t Options::seed() const { return state_->values["seed"].as<Seed>().value; }
 
@@ -550,12 +554,12 @@ const std::shared_ptr<const dynamics::Cell>& Options::cell() const { return stat
 
 std::string Options::canonical() const { return state_->canonical; }
 
-bool Options::talk() const { return !has("quiet") && is_first_rank(); }
+bool Options::talk() const { return !quiet && is_first_rank(); }
 
 dynamics::TrialRange Options::trial_range() const {
-  const std::int64_t first = has("first-trial") ? count("first-trial", 0) : 0;
+  const std::int64_t first = first_trial ? first_trial.value(0) : 0;
   constexpr std::int64_t kPapers = 100;
-  return {first, has("trials") ? count("trials", 1, kMostCount - first) : kPapers};
+  return {first, trials ? trials.value(1, kMostCount - first) : kPapers};
 }
 
 dynamics::Work Options::work() const {
@@ -567,9 +571,9 @@ dynamics::Work Options::work() const {
       state_->work = kept_work(*this, *state_->work, state_->kept.get());
     }
     // One of all processes writes.
-    for (const char* name : {"output", "passages"})
-      if (!is_first_rank() && has(name))
-        state_->values.find(name)->second.value() = std::string("/dev/null");
+    for (const TextOption& file : {output, passages})
+      if (!is_first_rank() && file)
+        state_->values.find(file.name())->second.value() = std::string("/dev/null");
   }
   return *state_->work;
 }

@@ -19,6 +19,9 @@
 #include "cli/render/provenance.h"
 #include "dynamics/base/work.h"
 
+namespace boost {
+class any;
+}
 namespace gatewalk::dynamics {
 class Cell;
 }
@@ -95,12 +98,18 @@ class Options;
 /// compile: what the functions of Options that declare one return.
 class Option {
  public:
+  Option() = default;  // one that a command does not have
   Option(const Options& options, std::string name) : options_(&options), name_(std::move(name)) {}
   /// Whether it has a value: one that was given, or that by default.
   [[nodiscard]] explicit operator bool() const;
+  [[nodiscard]] const std::string& name() const { return name_; }
 
  protected:
-  const Options* options_;
+  /// Null where it has no value.
+  [[nodiscard]] const boost::any* given() const;
+
+ private:
+  const Options* options_ = nullptr;
   std::string name_;
 };
 class CountOption : public Option {
@@ -146,15 +155,17 @@ class Options {
 
   /// Declares a positional argument (in order), a file that is read; `required` ones must be given.
   TextOption positional(const std::string& name, const std::string& help, bool required);
-  /// Declares the last positional argument, files that are read: at least one; its value is that of
-  /// texts().
+  /// Declares the last positional argument, files that are read: at least one.
   TextsOption positional_list(const std::string& name, const std::string& help);
   /// Declares the positional argument SCENE, which must be given.
   TextOption scene() { return positional("scene", "scene file (TOML; -: standard input)", true); }
+  /// Declares the positional argument SCENE behind a matrix.
+  TextOption second_scene() {
+    return positional("scene", "of a matrix: another scene; without it the matrix's own", false);
+  }
 
   /// Declare --name, whose value is `shown` on the help page. `by_default` is a value as it would
-  /// be given; without one has(name) says whether there is a value. A whole number up to 1e15
-  /// either way: 20000 or 2e4.
+  /// be given. A whole number up to 1e15 either way: 20000 or 2e4.
   CountOption add_count(const std::string& name, const std::string& shown, const std::string& help,
                         const std::string& by_default = "");
   NumberOption add_number(const std::string& name, const std::string& shown,
@@ -165,20 +176,23 @@ class Options {
   NumbersOption add_numbers(const std::string& name, const std::string& shown,
                             const std::string& help);
   TextsOption add_texts(const std::string& name, const std::string& shown, const std::string& help);
+  /// The same; each value begins with a key of the scene, KEY=..., which varies.
+  TextsOption add_varied(const std::string& name, const std::string& shown,
+                         const std::string& help);
   /// Has no value.
   Option add_flag(const std::string& name, const std::string& help);
   /// --seed: a whole number from 0 up (-1 is a mistake, not 2^64 - 1).
-  void add_seed(
+  Option add_seed(
       const std::string& help = "seed of all random numbers; the same seed gives the same result");
   /// --trials, by default the paper's 100, and --seed.
-  void add_trials_and_seed(const std::string& trials_help);
-  void add_strict();
+  CountOption add_trials_and_seed(const std::string& trials_help);
+  Option add_strict();
 
-  /// Declare that the command's pieces are kept (kept/kept_run.h): --checkpoint, --resume,
-  /// --max-time; and, with the names of stages that may be divided, --shard and --part.
-  void add_kept(std::set<std::string> divided = {});
+  /// Declare that the command's pieces are kept (kept/kept_run.h): --checkpoint, which it returns,
+  /// --resume, --max-time; and, with the names of stages that may be divided, --shard and --part.
+  TextOption add_kept(std::set<std::string> divided = {});
   /// --first-trial, beside --trials.
-  void add_first_trial();
+  CountOption add_first_trial();
 
   /// Declares --name, a file that is read.
   TextOption input_file(const std::string& name, const std::string& help);
@@ -203,21 +217,23 @@ class Options {
   /// printed. Throws UsageError.
   [[nodiscard]] bool parse(const Arguments& arguments);
 
-  [[nodiscard]] bool has(const std::string& name) const;
-  /// Value of a count; throws UsageError unless it lies in [low, high].
-  [[nodiscard]] std::int64_t count(const std::string& name, std::int64_t low = 1,
-                                   std::int64_t high = kMostCount) const;
-  [[nodiscard]] double number(const std::string& name) const;
-  /// Empty where there is none.
-  [[nodiscard]] std::string text(const std::string& name) const;
-  [[nodiscard]] std::vector<double> numbers(const std::string& name) const;
-  [[nodiscard]] std::vector<std::string> texts(const std::string& name) const;
-  [[nodiscard]] std::int64_t trials() const { return count("trials"); }
+  /// Options that have the same name in all commands, for what is not told who declares them.
+  const TextOption scene_file{*this, "scene"}, json{*this, "json"}, csv{*this, "csv"},
+      output{*this, "output"}, figure{*this, "figure"}, passages{*this, "passages"},
+      checkpoint{*this, "checkpoint"}, max_time{*this, "max-time"}, shard{*this, "shard"},
+      part{*this, "part"};
+  const Option force{*this, "force"}, quiet{*this, "quiet"}, resume{*this, "resume"},
+      strict{*this, "strict"}, set{*this, "set"};
+  const CountOption trials{*this, "trials"}, first_trial{*this, "first-trial"},
+      threads{*this, "threads"};
+
   /// Those of --first-trial and --trials; the paper's 100 without them.
   [[nodiscard]] dynamics::TrialRange trial_range() const;
   [[nodiscard]] std::uint64_t seed() const;
   /// Those of --set.
-  [[nodiscard]] std::vector<std::string> overrides() const { return texts("set"); }
+  [[nodiscard]] std::vector<std::string> overrides() const;
+  /// What add_varied has declared.
+  [[nodiscard]] const std::vector<TextsOption>& varied() const;
   /// A file by its path: opened once, whoever asks for it.
   [[nodiscard]] const lattice::SourceFile& file(const std::string& path) const;
   /// The scene of SCENE and --set. Throws lattice::SceneError.
@@ -272,10 +288,13 @@ class Options {
   [[nodiscard]] AboutFigure about() const;
 
  private:
+  friend class Option;
   struct NamedFile;
   struct State;
   std::unique_ptr<State> state_;
 
+  [[nodiscard]] bool has(const std::string& name) const;
+  [[nodiscard]] std::string text(const std::string& name) const;
   [[nodiscard]] std::vector<NamedFile> inputs() const;
   [[nodiscard]] CommandHelp help() const;
   void check_values_given() const;

@@ -79,7 +79,7 @@ void Options::check_values_given() const {
 }
 
 void Options::check_files() {
-  if (!state_->needs_output.empty() && !has("output"))
+  if (!state_->needs_output.empty() && !output)
     throw UsageError(
         fmt::format("missing -o {}: gatewalk {}", state_->needs_output, state_->synopsis));
   for (const auto& [name, file_in] : state_->reads)
@@ -89,11 +89,11 @@ void Options::check_files() {
 
   std::vector<NamedFile> outputs;
   std::string takes_stdout;
-  for (const State::Output& output : state_->output_files) {
-    if (!has(output.name)) continue;
-    if (text(output.name) == "/dev/stdout")
-      state_->values.find(output.name)->second.value() = std::string("-");
-    const std::string path = text(output.name), option = shown(output.name);
+  for (const State::Output& file : state_->output_files) {
+    if (!has(file.name)) continue;
+    if (text(file.name) == "/dev/stdout")
+      state_->values.find(file.name)->second.value() = std::string("-");
+    const std::string path = text(file.name), option = shown(file.name);
     if (path.empty()) throw UsageError(option + " needs a file name");
     for (const char* ending : {".xlsx", ".xls", ".ods", ".parquet"})
       if (lattice::has_ending(path, ending))
@@ -104,7 +104,7 @@ void Options::check_files() {
       outputs.emplace_back(option + " " + path, path);
       continue;
     }
-    if (output.content == Content::binary)
+    if (file.content == Content::binary)
       throw UsageError(option + " cannot go to standard output: it needs a file of its own");
     if (!takes_stdout.empty())
       throw UsageError(fmt::format("{} - and {} -: only one thing can go to standard output",
@@ -112,7 +112,7 @@ void Options::check_files() {
     takes_stdout = option;
   }
   const bool has_folder = !state_->needs_output.empty() && state_->needs_output == "DIR";
-  const std::string folder = has_folder ? text("output") : "";
+  const std::string folder = has_folder ? output.value() : "";
   if (has_folder && (folder.empty() || folder == "-"))
     throw UsageError("-o needs the name of a folder");
   for (const std::string& file : state_->folder_files) {
@@ -136,14 +136,14 @@ void Options::check_files() {
   others.emplace_back("standard output", "-");
   for (const NamedFile& input : others)
     if (input.path != "-") refuse_same(input, others.back());
-  for (const NamedFile& output : outputs) {
-    for (const NamedFile& other : others) refuse_same(other, output);
-    others.push_back(output);
+  for (const NamedFile& written : outputs) {
+    for (const NamedFile& other : others) refuse_same(other, written);
+    others.push_back(written);
   }
 
   const auto require_replaceable = [&](const std::string& path) {
     require_writable(path);
-    if (path != "-" && !has("force")) (void)Backup(path);
+    if (path != "-" && !force) (void)Backup(path);
   };
   const auto check = [](const std::string& option, const auto& act) {
     try {
@@ -152,12 +152,11 @@ void Options::check_files() {
       throw UsageError(option + ": " + e.what());
     }
   };
-  for (const State::Output& output : state_->output_files)
-    if (has(output.name))
-      check(shown(output.name), [&] { require_replaceable(text(output.name)); });
-  if (has("figure")) {
-    if (!can_be_drawn(text("figure")))
-      throw UsageError(fmt::format("--figure {}: must end in .svg, .pdf or .png", text("figure")));
+  for (const State::Output& file : state_->output_files)
+    if (has(file.name)) check(shown(file.name), [&] { require_replaceable(text(file.name)); });
+  if (figure) {
+    if (!can_be_drawn(figure.value()))
+      throw UsageError(fmt::format("--figure {}: must end in .svg, .pdf or .png", figure.value()));
     check("--figure", require_gnuplot);
   }
   if (!has_folder) return;
@@ -176,7 +175,7 @@ const lattice::SourceFile& Options::file(const std::string& path) const {
 }
 
 lattice::Scene Options::read_scene() const {
-  return lattice::read_scene(file(text("scene")).toml(), overrides());
+  return lattice::read_scene(file(scene_file.value()).toml(), overrides());
 }
 
 std::vector<std::string> Options::files_read() const {

@@ -51,19 +51,19 @@ Provenance Options::provenance(const lattice::Scene& scene) const {
 }
 
 void Options::give_out(const Description& describe, const std::string& table, int indent) const {
-  const std::string csv = state_->has_table ? text("csv") : "";
+  const std::string table_file = state_->has_table ? csv.value() : "", json_file = json.value();
   if (!state_->given_out && is_first_rank()) {
-    const bool to_stdout = text("json") == "-" || csv == "-";
-    if (!to_stdout && ((text("json").empty() && csv.empty()) || talk()))
+    const bool to_stdout = json_file == "-" || table_file == "-";
+    if (!to_stdout && ((json_file.empty() && table_file.empty()) || talk()))
       write_text_atomically("-", table);
-    if (has("json")) write(text("json"), result_json(describe, indent));
+    if (json) write(json_file, result_json(describe, indent));
   }
-  if (!csv.empty()) write(csv, table_of_numbers(describe));
+  if (!table_file.empty()) write(table_file, table_of_numbers(describe));
   if (state_->given_out) state_->given_out(with_format_version(describe));
 }
 
 void Options::keep_old(const std::string& path) const {
-  if (path != "-" && !has("force") && is_first_rank()) state_->backups.try_emplace(path, path);
+  if (path != "-" && !force && is_first_rank()) state_->backups.try_emplace(path, path);
 }
 
 void Options::write(const std::string& path, std::string_view text) const {
@@ -73,10 +73,10 @@ void Options::write(const std::string& path, std::string_view text) const {
 }
 
 void Options::draw(const std::function<Figure()>& picture) const {
-  if (!has("figure") || !is_first_rank()) return;
+  if (!figure || !is_first_rank()) return;
   try {
-    keep_old(text("figure"));
-    cli::draw(text("figure"), picture(), about());
+    keep_old(figure.value());
+    cli::draw(figure.value(), picture(), about());
   } catch (const std::runtime_error& e) {
     throw std::runtime_error(fmt::format("no figure: {}; the numbers are written", e.what()));
   }
@@ -87,7 +87,7 @@ AboutFigure Options::about() const {
 }
 
 ResultFolder::ResultFolder(const Options& options, const std::vector<std::string>& files)
-    : options_(options), folder_(options.text("output")), files_(files) {
+    : options_(options), folder_(options.output.value()), files_(files) {
   require_folder(folder_);
 }
 
@@ -117,7 +117,7 @@ std::string ResultFolder::path(const std::string& file) const {
 }
 
 int exit_status(const Options& options, bool clean) {
-  if (clean || !options.has("strict")) return kFine;
+  if (clean || !options.strict) return kFine;
   options.warn(
       "--strict: the result's status is not clean, so the exit status is 1; the result is written");
   return kFailure;

@@ -74,6 +74,7 @@ struct Options::State {
   po::positional_options_description positions;
   std::vector<std::pair<std::string, std::string>> positional_help;
   std::vector<std::string> required;
+  std::vector<TextsOption> varied;
   po::variables_map values;
   std::vector<po::option> given;
   std::string canonical;

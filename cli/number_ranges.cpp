@@ -67,9 +67,9 @@ lattice::Problem program_at(const NumberRanges& ranges, const lattice::Source& s
 }  // namespace
 
 std::optional<NumberRanges> ranges_of(const Options& options, const lattice::Source& s,
-                                      const std::string& option, int most) {
-  const auto given = options.texts(option);
-  const std::string shown = "--" + option;
+                                      const TextsOption& option, int most) {
+  const auto given = option.values();
+  const std::string shown = "--" + option.name();
   if (given.empty()) return {};
   if (s.file || s.is_recorded())
     throw UsageError(

@@ -22,7 +22,7 @@ struct NumberRanges {
 /// and SceneError.
 [[nodiscard]] std::optional<NumberRanges> ranges_of(const Options& options,
                                                     const lattice::Source& s,
-                                                    const std::string& option, int most);
+                                                    const TextsOption& option, int most);
 
 /// The scene of gates at a point of the ranges, started where the source is and by the method that
 /// was chosen for it.

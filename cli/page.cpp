@@ -118,16 +118,16 @@ std::string name_of_field(const lattice::Source& s) {
 
 }  // namespace
 
-void add_page(Options& options) {
-  options.output_file("page", "FILE.html",
-                      "write a page to play with, for any browser: endings and final gates of any "
-                      "start, what becomes of bodies from each gate, times and work",
-                      Options::Content::binary);
+TextOption add_page(Options& options) {
+  return options.output_file(
+      "page", "FILE.html",
+      "write a page to play with, for any browser: endings and final gates of any "
+      "start, what becomes of bodies from each gate, times and work",
+      Options::Content::binary);
 }
 
-void check_page(const Options& options, const lattice::Source& s) {
-  if (!options.has("page")) return;
-  refuse(options, {"row"}, "beside --page");
+void check_page(const TextOption& page, const lattice::Source& s) {
+  if (!page) return;
   if (!has_pages())
     throw UsageError("--page: needs pages: this gatewalk was built without (GATEWALK_PAGES=OFF)");
   if (s.is_imported)
@@ -142,8 +142,8 @@ void check_page(const Options& options, const lattice::Source& s) {
                     kMostGates, field.columns, field.rows));
 }
 
-std::optional<lattice::RunPool> runs_of_file(const Options& options, const lattice::Source& s) {
-  if (!options.has("page") || !s.file) return {};
+std::optional<lattice::RunPool> runs_of_file(const TextOption& page, const lattice::Source& s) {
+  if (!page || !s.file) return {};
   return s.pool;
 }
 
@@ -177,10 +177,10 @@ std::vector<PageAnswer> page_answers(const lattice::Prediction& prediction,
   return starts;
 }
 
-void write_page(const Options& options, const lattice::Source& s,
+void write_page(const Options& options, const TextOption& file, const lattice::Source& s,
                 const std::optional<lattice::RunPool>& of_file,
                 const std::vector<PageAnswer>& starts, const AnalysedField* analysis) {
-  if (!options.has("page")) return;
+  if (!file) return;
   const lattice::AnalysedChain chain = chain_from(s);
   const lattice::ChainOutcomes outcomes =
       lattice::chain_outcomes(chain, s.problem.field, options.work());
@@ -232,7 +232,7 @@ void write_page(const Options& options, const lattice::Source& s,
     throw std::runtime_error(fmt::format(
         "no page: it would have {} MB, at most 2 MB are written; the numbers are written",
         fixed(1e-6 * static_cast<double>(text.size()), 1)));
-  options.write(options.text("page"), text);
+  options.write(file.value(), text);
 }
 
 }  // namespace gatewalk::cli

@@ -12,13 +12,13 @@
 namespace gatewalk::cli {
 
 /// Declares --page.
-void add_page(Options& options);
+TextOption add_page(Options& options);
 /// Throws UsageError, before any work, for what cannot have a page.
-void check_page(const Options& options, const lattice::Source& s);
+void check_page(const TextOption& page, const lattice::Source& s);
 
 /// The runs of a matrix of trees as its file has them, for write_page: to be called before others
 /// are added to the pool. None of others, and without --page.
-[[nodiscard]] std::optional<lattice::RunPool> runs_of_file(const Options& options,
+[[nodiscard]] std::optional<lattice::RunPool> runs_of_file(const TextOption& page,
                                                            const lattice::Source& s);
 
 /// Every start that was predicted, with its answer, for write_page.
@@ -29,7 +29,7 @@ void check_page(const Options& options, const lattice::Source& s);
 /// Writes the page, if it is asked for. Starts' states are those of the file, if there is one, else
 /// of the chain that the answer comes from. `analysis`: gatewalk analyze's, made here if it is
 /// null. Throws std::runtime_error for what is larger than 2 MB even without what can be left out.
-void write_page(const Options& options, const lattice::Source& s,
+void write_page(const Options& options, const TextOption& file, const lattice::Source& s,
                 const std::optional<lattice::RunPool>& of_file,
                 const std::vector<PageAnswer>& starts, const AnalysedField* analysis = nullptr);
 

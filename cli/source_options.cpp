@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "cli/arguments.h"
 #include "cli/cells/program.h"
 #include "cli/fields/text.h"
 #include "cli/render/choice.h"
@@ -47,38 +46,36 @@ std::vector<dynamics::Cell::Number> parameters_of(const Options& options) {
 }
 
 /// The cell that carries bodies through: the one given, or that of --cell-program.
-std::shared_ptr<const dynamics::Cell> cell_of(const Options& options) {
+std::shared_ptr<const dynamics::Cell> cell_of(const Options& options, const AskedProgram& program) {
   const std::vector<dynamics::Cell::Number> set = parameters_of(options);
   if (!options.cell()) {
     ProgramOptions how;
-    if (options.has("cell-timeout")) how.timeout_s = options.number("cell-timeout");
-    return std::make_shared<ProgramCell>(options.text("cell-program"), how, set);
+    if (program.timeout) how.timeout_s = program.timeout.value();
+    return std::make_shared<ProgramCell>(program.command.value(), how, set);
   }
-  if (!set.empty() || options.has("cell-program") || options.has("cell-timeout"))
+  if (!set.empty() || program.command || program.timeout)
     throw UsageError("a cell is given: --set parameters and --cell-program are for programs");
   return options.cell();
 }
 
 /// Its starts and its accuracy are those asked for; warns of what it cannot tell.
-void take_options(const Options& options, Source& s) {
+void take_options(const Options& options, const Asked& asked, Source& s) {
   if (s.is_recorded())
-    refuse(
-        options, {"gate-runs"},
-        "for " + s.path +
-            (s.is_imported ? ", a chain that was made elsewhere" : ", whose runs were recorded"));
+    refuse({asked.accuracy.gate_runs}, "for " + s.path +
+                                           (s.is_imported ? ", a chain that was made elsewhere"
+                                                          : ", whose runs were recorded"));
   if (s.scene && s.file) warn_of_faults(options, *s.file, s.path);
   for (const std::string& text : s.doubts) options.warn(text);
-  s.accuracy = accuracy_of(options, s.accuracy);
-  for (const std::string& text : s.start_from(options.texts("start"))) options.warn(text);
+  s.accuracy = accuracy_of(options, asked.accuracy, s.accuracy);
+  for (const std::string& text : s.start_from(asked.starts.values())) options.warn(text);
 }
 
 /// The scene with --versus on top of --set.
-Source open_other(const Options& options) {
+Source open_other(const Options& options, const Source& s, const std::vector<std::string>& versus) {
   std::vector<std::string> overrides = options.overrides();
-  const std::vector<std::string> versus = options.texts("versus");
   overrides.insert(overrides.end(), versus.begin(), versus.end());
   try {
-    return Source::open(options.file(options.text("scene")), {.overrides = std::move(overrides)});
+    return Source::open(options.file(s.path), {.overrides = std::move(overrides)});
   } catch (const lattice::SceneError& e) {  // it names overrides as --set gives them
     const std::string what = e.what();
     for (const std::string& key : versus)
@@ -96,12 +93,13 @@ void require_same_size(const lattice::FieldParams& now, const lattice::FieldPara
 }
 
 /// Recorded runs of another group of bodies.
-Source other_group(const Options& options, const Source& s, const lattice::SourceFile& file) {
-  if (!s.is_recorded() || s.is_imported || has_cell(options) || !file.is_of_cells())
+Source other_group(const Options& options, const Asked& asked, const Source& s,
+                   const lattice::SourceFile& file) {
+  if (!s.is_recorded() || s.is_imported || has_cell(options, asked.program) || !file.is_of_cells())
     throw UsageError(fmt::format(
         "--versus {}: two matrices are compared where both are of recorded runs", file.path()));
   Source other = Source::open(file, {.overrides = options.overrides()});
-  take_options(options, other);
+  take_options(options, asked, other);
   if (other.is_imported)
     throw UsageError(fmt::format("--versus {}: is a chain that was made elsewhere", file.path()));
   require_same_size(s.cells->field, other.cells->field);
@@ -110,41 +108,42 @@ Source other_group(const Options& options, const Source& s, const lattice::Sourc
 
 }  // namespace
 
-Source open_source(const Options& options, const std::string& name) {
-  const lattice::SourceFile& file = options.file(options.text(name));
-  const std::string second = name == "scene" ? "" : options.text("scene");
+Source open_source(const Options& options, const Asked& asked) {
+  const lattice::SourceFile& file = options.file(asked.path.value());
   lattice::SourceOptions how;
-  if (!second.empty()) how.scene = &options.file(second).toml();
-  if (has_cell(options)) {
+  if (const std::string scene = asked.scene.value(); !scene.empty())
+    how.scene = &options.file(scene).toml();
+  if (has_cell(options, asked.program)) {
     if (file.is_matrix() && !parameters_of(options).empty())
       throw UsageError(fmt::format(
           "--set parameters: {} holds runs of the program with its own: make a matrix with these",
           file.path()));
     how.overrides = overrides_of(options, false);
-    how.cell = [&] { return cell_of(options); };
+    how.cell = [&] { return cell_of(options, asked.program); };
   } else {
-    refuse(options, {"cell-timeout"}, "without --cell-program");
+    refuse({asked.program.timeout}, "without --cell-program");
     how.overrides = options.overrides();
   }
   Source s = Source::open(file, how);
   if (how.cell) options.depends_on(text_of(*s.problem.cells.cells.front()));
-  take_options(options, s);
+  take_options(options, asked, s);
   return s;
 }
 
-Source field_to_run(const Options& options, const std::string& made) {
-  Source s = open_source(options, "scene");
+Source field_to_run(const Options& options, const Asked& asked, const std::string& made) {
+  Source s = open_source(options, asked);
   if (s.file)
     throw UsageError(s.path + ": is a matrix, and new bodies are to be run: give a scene");
   if (s.starts.size() > 1) throw UsageError("--start: " + made + " for one start");
   return s;
 }
 
-std::optional<Source> versus(const Options& options, const Source& s) {
-  if (!options.has("versus")) return {};
-  const std::vector<std::string> given = options.texts("versus");
+std::optional<Source> versus(const Options& options, const Asked& asked, const TextsOption& versus,
+                             const Source& s) {
+  if (!versus) return {};
+  const std::vector<std::string> given = versus.values();
   if (given.size() == 1 && options.file(given.front()).is_matrix())
-    return other_group(options, s, options.file(given.front()));
+    return other_group(options, asked, s, options.file(given.front()));
   for (const std::string& text : given) {
     if (text.find('=') != text.npos) continue;
     std::error_code error;
@@ -163,7 +162,7 @@ std::optional<Source> versus(const Options& options, const Source& s) {
         fmt::format("--versus KEY=VALUE is of a scene, which {} is not; of recorded runs give "
                     "another group's matrix",
                     s.path));
-  Source other = open_other(options);
+  Source other = open_other(options, s, given);
   require_same_size(s.scene->field, other.scene->field);
   other.accuracy = s.accuracy;
   other.starts_given = s.starts_given;
@@ -199,22 +198,25 @@ std::string text_of(const dynamics::Cell& cell) {
   return text;
 }
 
-void refuse(const Options& options, std::initializer_list<const char*> names,
-            const std::string& where) {
-  for (const char* name : names)
-    if (options.has(name)) throw UsageError(fmt::format("--{} has no meaning {}", name, where));
+void refuse(std::initializer_list<Option> options, const std::string& where) {
+  for (const Option& option : options)
+    if (option) throw UsageError(fmt::format("--{} has no meaning {}", option.name(), where));
 }
 
-bool has_cell(const Options& options) { return options.has("cell-program") || options.cell(); }
+bool has_cell(const Options& options, const AskedProgram& program) {
+  return program.command || options.cell();
+}
 
-void add_cell_program(Options& options) {
-  options.add_text("cell-program", "COMMAND",
-                   "SCENE is a cell file (cell.toml), and this command carries bodies through its "
-                   "cells (cli/cells/PROGRAM.md); --set parameters.KEY=VALUE changes a parameter "
-                   "of it");
-  options.add_number("cell-timeout", "S",
-                     "seconds that the program may be silent while an answer is awaited "
-                     "(default: 60)");
+AskedProgram add_cell_program(Options& options) {
+  const TextOption command = options.add_text(
+      "cell-program", "COMMAND",
+      "SCENE is a cell file (cell.toml), and this command carries bodies through its "
+      "cells (cli/cells/PROGRAM.md); --set parameters.KEY=VALUE changes a parameter "
+      "of it");
+  return {command,
+          options.add_number("cell-timeout", "S",
+                             "seconds that the program may be silent while an answer is awaited "
+                             "(default: 60)")};
 }
 
 }  // namespace gatewalk::cli

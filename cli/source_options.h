@@ -6,22 +6,42 @@
 #include <optional>
 #include <string>
 
-#include "cli/command.h"
+#include "cli/arguments.h"
 #include "lattice/source/source.h"
 
 namespace gatewalk::cli {
 
-/// Opens what the positional argument of this name says, with --cell-program, --start, --accuracy
-/// and --set, and warns of what its file or its runs cannot tell. Throws UsageError and as what
-/// reads it.
-[[nodiscard]] lattice::Source open_source(const Options& options, const std::string& name);
+/// --cell-program and --cell-timeout.
+struct AskedProgram {
+  TextOption command;
+  NumberOption timeout;
+};
+/// Declares them.
+AskedProgram add_cell_program(Options& options);
+/// Whether bodies are carried by cells that are not ours: --cell-program, or a cell given.
+[[nodiscard]] bool has_cell(const Options& options, const AskedProgram& program);
+
+/// What a command asks about, by those options that it has.
+struct Asked {
+  TextOption path;     // a scene, a matrix, ...
+  TextOption scene{};  // of a matrix: another one
+  AskedProgram program{};
+  TextsOption starts{};
+  AskedAccuracy accuracy{};
+};
+
+/// Opens it, with --set, and warns of what its file or its runs cannot tell. Throws UsageError and
+/// as what reads it.
+[[nodiscard]] lattice::Source open_source(const Options& options, const Asked& asked);
 
 /// A scene of gates, or cells of a program, with one start: `made` ("a plan is made") is for it.
 /// Throws UsageError.
-[[nodiscard]] lattice::Source field_to_run(const Options& options, const std::string& made);
+[[nodiscard]] lattice::Source field_to_run(const Options& options, const Asked& asked,
+                                           const std::string& made);
 
 /// The scene or matrix of power --versus; none without it. Throws UsageError.
-[[nodiscard]] std::optional<lattice::Source> versus(const Options& options,
+[[nodiscard]] std::optional<lattice::Source> versus(const Options& options, const Asked& asked,
+                                                    const TextsOption& versus,
                                                     const lattice::Source& s);
 
 /// Chooses the method that a scene leaves to a pilot, and says what the scene leaves out. To be
@@ -38,12 +58,6 @@ void choose_method(const Options& options, lattice::Source& s);
 [[nodiscard]] std::string text_of(const dynamics::Cell& cell);
 
 /// Refuses these options, if they are given: they have no meaning `where` ("for bins: ...").
-void refuse(const Options& options, std::initializer_list<const char*> names,
-            const std::string& where);
-
-/// Whether bodies are carried by cells that are not ours: --cell-program, or a cell given.
-[[nodiscard]] bool has_cell(const Options& options);
-/// Declares --cell-program and --cell-timeout.
-void add_cell_program(Options& options);
+void refuse(std::initializer_list<Option> options, const std::string& where);
 
 }  // namespace gatewalk::cli

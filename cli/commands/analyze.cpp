@@ -100,8 +100,9 @@ AnalysedSubject chain_of_runs(const Options& options, lattice::Source& s) {
 }
 
 /// From a matrix of bins.
-AnalysedSubject chain_of_bins(const Options& options, const lattice::Source& s) {
-  refuse(options, {"accuracy", "gate-runs"},
+AnalysedSubject chain_of_bins(const Options& options, const AskedAccuracy& asked,
+                              const lattice::Source& s) {
+  refuse({asked.accuracy, asked.gate_runs},
          fmt::format("for {}: it has bins, and keeps no gate runs that could be added to", s.path));
   require_room(s, s.file->transitions.space.size());
   const std::vector<dynamics::Transitions> matrices = s.matrices();
@@ -234,9 +235,9 @@ std::optional<PassageResult> first_passage_of(const Options& options,
 }
 
 /// The scene over the ranges of --over; none without them. Throws UsageError and SceneError.
-std::optional<NumberRanges> over_of(const Options& options, const CountOption& trials,
-                                    const lattice::Source& s) {
-  auto ranges = ranges_of(options, s, "over", lattice::kMostVaried);
+std::optional<NumberRanges> over_of(const Options& options, const TextsOption& over,
+                                    const CountOption& trials, const lattice::Source& s) {
+  auto ranges = ranges_of(options, s, over, lattice::kMostVaried);
   if (!trials) return ranges;
   if (!ranges) throw UsageError("--over-trials: is for --over");
   (void)trials.value(lattice::least_trials_of_shares(static_cast<int>(ranges->each.size())));
@@ -271,10 +272,10 @@ int run_analyze(const Arguments& arguments) {
       "--accuracy. From a matrix\n"
       "of bins as it is, without error bars on times and works.",
       "gatewalk analyze scenes/field.toml --target left_side --json analysis.json");
-  options.positional(
+  const TextOption path = options.positional(
       "matrix", "a scene (-: standard input), or a matrix file written by gatewalk build", true);
-  options.positional("scene", "of a matrix: another scene; without it the matrix's own", false);
-  add_accuracy(options, "0.02; that of a matrix");
+  const TextOption scene = options.second_scene();
+  const AskedAccuracy accuracy = add_accuracy(options, "0.02; that of a matrix");
   const TextsOption starts_given =
       options.add_texts("start", "D,VX,VY", "where a body starts (default: the scene's start)");
   const TextOption target =
@@ -300,7 +301,7 @@ int run_analyze(const Arguments& arguments) {
       "cells have), to\nsee what so few states would cost (default: 1 each)");
   const CountOption paths =
       options.add_count("paths", "N", "the most frequent ways through the field", "5");
-  options.add_texts(
+  const TextsOption over = options.add_varied(
       "over", "KEY=LOW:HIGH",
       fmt::format("a number of the scene, or of the program, and a range: how much of the variance "
                   "of the target's chance each of these\nmakes, all of them anywhere in their "
@@ -313,8 +314,8 @@ int run_analyze(const Arguments& arguments) {
   options.add_seed();
   options.add_kept();
   options.add_strict();
-  add_cell_program(options);
-  add_page(options);
+  const AskedProgram program = add_cell_program(options);
+  const TextOption page = add_page(options);
   options.add_figure("visits and paths, durations, starts and influences");
   if (!options.parse(arguments)) return kFine;
   if (starts_given.values().size() > 1) throw UsageError("--start: an analysis is of one start");
@@ -327,19 +328,18 @@ int run_analyze(const Arguments& arguments) {
   lattice::AnalysisOptions how{.target = target_of(target.value()),
                                .paths = static_cast<std::size_t>(paths.value(0, 1000)),
                                .seed = options.seed()};
-  lattice::Source s = open_source(options, "matrix");
-  check_page(options, s);
+  lattice::Source s = open_source(options, {path, scene, program, starts_given, accuracy});
+  check_page(page, s);
   if (s.is_recorded())
-    refuse(
-        options, {"trials", "step"},
-        "for " + s.path +
-            (s.is_imported ? ", a chain that was made elsewhere" : ", whose runs were recorded"));
+    refuse({trials, step}, "for " + s.path +
+                               (s.is_imported ? ", a chain that was made elsewhere"
+                                              : ", whose runs were recorded"));
   how.lumping = lumping_of(lump, s.problem.map().section);
-  const auto ranges = over_of(options, over_trials, s);
+  const auto ranges = over_of(options, over, over_trials, s);
   const auto passage = first_passage_asked(to_reach, s);
   choose_method(options, s);
-  const auto of_file = runs_of_file(options, s);
-  AnalysedSubject c = s.pool ? chain_of_runs(options, s) : chain_of_bins(options, s);
+  const auto of_file = runs_of_file(page, s);
+  AnalysedSubject c = s.pool ? chain_of_runs(options, s) : chain_of_bins(options, accuracy, s);
   const dynamics::Work work = options.work();
   AnalysedField result{.shown = ShownField(s),
                        .start = s.starts.front(),
@@ -371,7 +371,7 @@ int run_analyze(const Arguments& arguments) {
   if (result.direct) look_at(result.direct->tally.health, "");
   const std::vector<PageAnswer> starts =
       c.of_runs ? page_answers(*c.of_runs) : page_answers(*c.of_bins, s);
-  write_page(options, s, of_file, starts, &result);
+  write_page(options, page, s, of_file, starts, &result);
   options.draw([&] { return figure_of(result); });
   return exit_status(options, clean);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/core.h>
 
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -15,16 +16,46 @@
 #include "cli/source_options.h"
 #include "dynamics/base/work.h"
 #include "lattice/source/cell_matrix.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
 namespace {
 
+struct BuildCommand : Options {
+  using Options::Options;
+  TextOption path = scene();
+  AskedAccuracy accuracy = add_accuracy(*this);
+  CountOption trials =
+      add_count("trials", "N",
+                "bins: runs per input state (default: 100); tree: exactly so many full trials");
+  CountOption first_trial = add_first_trial();
+  Option seed_given = add_seed();
+  TextOption checkpoint = add_kept({"building matrix", "full trials", "scattered trials"});
+  Option strict = add_strict();
+  TextOption output =
+      main_output_file("MATRIX.nc", "matrix file (NetCDF-4)", Options::Content::binary);
+  TextOption bins = add_bins(*this);
+  TextOption cell_file =
+      input_file("cell",
+                 "SCENE is a table of recorded runs (runs.csv) through cells as this file "
+                 "(cell.toml) says: lattice/recorded/README.md");
+  AskedProgram program = add_cell_program(*this);
+  TextsOption start = add_starts(
+      *this,
+      "the scene's start; gatewalk validate takes those of Table IV in the paper's field; "
+      "tree only: each is a state of its own");
+  TextOption starts =
+      add_text("starts", "all|D,VX,VY",
+               "tree: good for any start of a range, LOW:HIGH each; all: Table III's from below");
+  CountOption states = add_count("states", "S", "tree: at most S states beside the starts");
+};
+
 using Settled = std::optional<lattice::Settled>;
 
 /// Writes the file of matrices, one for each type of gate, and says what was made.
-int give_out(const Options& options, const lattice::Scene& scene, MadeMatrix made,
+int give_out(const BuildCommand& options, const lattice::Scene& scene, MadeMatrix made,
              const std::vector<dynamics::Transitions>& matrices) {
-  made.path = options.text("output");
+  made.path = options.output.value();
   made.made_by = options.provenance(scene);
   made.file.text = texts_of(made, scene, matrices.front().health);
   lattice::put_matrices(made.file, scene, matrices);
@@ -35,9 +66,10 @@ int give_out(const Options& options, const lattice::Scene& scene, MadeMatrix mad
   return status_of(options, matrices.front().health);
 }
 
-int build_bins(const Options& options, const lattice::Scene& scene,
+int build_bins(const BuildCommand& options, const lattice::Scene& scene,
                const lattice::BinsChoice& choice, const Settled& settled) {
-  refuse(options, {"accuracy", "gate-runs", "starts", "start", "states"},
+  refuse({options.accuracy.accuracy, options.accuracy.gate_runs, options.starts, options.start,
+          options.states},
          "for bins: it is for --bins tree");
   const dynamics::TrialRange trials = options.trial_range();
   const dynamics::Stopwatch watch;
@@ -56,10 +88,56 @@ int build_bins(const Options& options, const lattice::Scene& scene,
   return status;
 }
 
-int build_tree(const Options& options, const lattice::Scene& scene, const Settled& settled) {
-  refuse(options, {"first-trial"}, "for trees: --shard divides their trials");
+/// --starts: a range of starts; none without it. Throws UsageError for a malformed one.
+std::optional<lattice::StartRange> range_of(const TextOption& starts, const lattice::Scene& scene) {
+  if (!starts) return std::nullopt;
+  const std::string text = starts.value();
+  if (text == "all") return lattice::usual_range(lattice::problem_of(scene));
+  lattice::StartRange range;
+  std::string_view rest = text;
+  for (std::size_t axis = 0; axis < dynamics::disc_section().coordinates.size(); ++axis) {
+    const bool follows = axis == 0 || lattice::take_mark(rest, ',');
+    const auto low = lattice::take_number(rest);
+    const bool has_colon = lattice::take_mark(rest, ':');
+    const auto high = lattice::take_number(rest);
+    if (!follows || !low || !has_colon || !high || !(*low <= *high) || !std::isfinite(*high - *low))
+      throw UsageError(
+          fmt::format("--starts {}: must be all, or three ranges of d, vx, vy in m and m/s, e.g. "
+                      "-5:5,-10:10,10:20",
+                      text));
+    range.at[axis] = {*low, *high};
+  }
+  if (!lattice::behind_blanks(rest).empty())
+    throw UsageError(fmt::format("--starts {}: has more than three ranges", text));
+  const double side = scene.gate.beams.joint_x;
+  const auto& d = range.at[dynamics::kEntryD];
+  if (!(d[0] >= -side && d[1] <= side))
+    throw UsageError(fmt::format("--starts {}: d must lie inside the gate, [{}, {}]", text,
+                                 digits(-side), digits(side)));
+  return range;
+}
+
+/// The chain of trees that is to be built. Throws UsageError.
+lattice::TreeOptions tree_options(const BuildCommand& options, const lattice::Scene& scene) {
+  lattice::TreeOptions how{.accuracy = accuracy_of(options, options.accuracy)};
+  how.range = range_of(options.starts, scene);
+  if (options.states)
+    how.most_states = static_cast<int>(options.states.value(1, dynamics::kMostStates));
+  how.starts = given_starts(options.start);
+  lattice::require_inside(how.starts, scene);
+  if (how.starts.empty() && !how.range) how.starts = {lattice::own_start(scene)};
+  if (scene.field.fidelity != lattice::Fidelity::active)
+    options.warn(fmt::format(
+        "field.fidelity = \"{}\" is of the full dynamics: a chain always has \"active\"",
+        lattice::name_of(scene.field.fidelity)));
+  return how;
+}
+
+int build_tree(const BuildCommand& options, const lattice::Scene& scene, const Settled& settled) {
+  refuse({options.first_trial}, "for trees: --shard divides their trials");
   lattice::TreeOptions how = tree_options(options, scene);
-  fix_trials(options, how.accuracy, std::max<std::int64_t>(1, std::ssize(how.starts)));
+  fix_trials(options, options.accuracy, how.accuracy,
+             std::max<std::int64_t>(1, std::ssize(how.starts)));
   const dynamics::Stopwatch watch;
   const lattice::TreeChain chain =
       lattice::make_tree_chain(lattice::problem_of(scene), how, options.work());
@@ -82,7 +160,7 @@ int build_tree(const Options& options, const lattice::Scene& scene, const Settle
 }
 
 /// Writes the matrices of cells, with the runs behind them, to --output, and gives the result.
-void give_out_cells(const Options& options, std::vector<dynamics::Transitions> matrices,
+void give_out_cells(const BuildCommand& options, std::vector<dynamics::Transitions> matrices,
                     const lattice::CellFile& cells, const lattice::RunPool& pool,
                     const StateRecord& states, const std::optional<dynamics::Health>& health,
                     const char* title) {
@@ -92,7 +170,7 @@ void give_out_cells(const Options& options, std::vector<dynamics::Transitions> m
                                           {"commit", kCommit},
                                           {"command", options.canonical()}};
   if (health) text["status"] = attribute_of(*health);
-  const std::string path = options.text("output");
+  const std::string path = options.output.value();
   CellMatrixResult built{
       {path, lattice::cell_matrix_file(std::move(matrices), cells, pool, std::move(text))},
       counts_of(pool),
@@ -105,15 +183,15 @@ void give_out_cells(const Options& options, std::vector<dynamics::Transitions> m
 }
 
 /// gatewalk build RUNS.csv --cell CELL.toml: from recorded runs.
-int build_recorded(const Options& options) {
-  refuse(options,
-         {"accuracy", "gate-runs", "starts", "start", "states", "trials", "first-trial", "bins",
-          "strict", "shard", "part", "checkpoint", "resume", "max-time"},
+int build_recorded(const BuildCommand& options) {
+  refuse({options.accuracy.accuracy, options.accuracy.gate_runs, options.starts, options.start,
+          options.states, options.trials, options.first_trial, options.bins, options.strict,
+          options.shard, options.part, options.checkpoint, options.resume, options.max_time},
          "for recorded runs");
   lattice::CellFile cells =
-      lattice::read_cell_file(options.file(options.text("cell")).toml(), options.overrides());
-  lattice::RecordedRuns runs = lattice::read_runs(options.text("scene"), cells);
-  for (const std::string& text : runs.remarks) options.warn(options.text("scene") + ": " + text);
+      lattice::read_cell_file(options.file(options.cell_file.value()).toml(), options.overrides());
+  lattice::RecordedRuns runs = lattice::read_runs(options.path.value(), cells);
+  for (const std::string& text : runs.remarks) options.warn(options.path.value() + ": " + text);
   const auto unknown = runs.unknown;
   const lattice::RunPool pool = lattice::pool_of(std::move(runs));
   const lattice::Problem problem = lattice::problem_of(cells, pool);
@@ -135,15 +213,18 @@ int build_recorded(const Options& options) {
 }
 
 /// gatewalk build CELL.toml --cell-program COMMAND: from runs of that program.
-int build_program(const Options& options) {
-  refuse(options, {"cell", "first-trial", "bins", "starts"},
+int build_program(const BuildCommand& options) {
+  refuse({options.cell_file, options.first_trial, options.bins, options.starts},
          "for cells that another program carries out");
-  const lattice::Source s = open_source(options, "scene");
+  const lattice::Source s = open_source(options, {.path = options.path,
+                                                  .program = options.program,
+                                                  .starts = options.start,
+                                                  .accuracy = options.accuracy});
   if (s.file) throw UsageError(s.path + ": is a matrix already");
   lattice::TreeOptions how{.accuracy = s.accuracy, .starts = s.entries()};
-  if (options.has("states"))
-    how.most_states = static_cast<int>(options.count("states", 1, dynamics::kMostStates));
-  fix_trials(options, how.accuracy, std::ssize(how.starts));
+  if (options.states)
+    how.most_states = static_cast<int>(options.states.value(1, dynamics::kMostStates));
+  fix_trials(options, options.accuracy, how.accuracy, std::ssize(how.starts));
   lattice::TreeChain chain = lattice::make_tree_chain(s.problem, how, options.work());
   const dynamics::Health health = chain.transitions.front().health;
   const StateRecord states = record_of(chain, s.accuracy.accuracy);
@@ -157,40 +238,19 @@ int build_program(const Options& options) {
 }  // namespace
 
 int run_build(const Arguments& arguments) {
-  Options options(
+  BuildCommand options(
       "build SCENE|RUNS.csv -o MATRIX.nc [options]",
       "Makes the transition matrix of one gate. By default its states are the leaves of trees,\n"
       "grown over the gate runs of full trials from the scene's start (or --start, --starts)\n"
       "until predictions are as accurate as --accuracy says. With --bins paper it is the\n"
       "paper's: N short runs from each of Table III's 87 bins, counted by where they come out.",
       "gatewalk build scenes/field.toml --accuracy 0.02 --starts all -o chain.nc");
-  options.scene();
-  add_accuracy(options);
-  options.add_count("trials", "N",
-                    "bins: runs per input state (default: 100); tree: exactly so many full trials");
-  options.add_first_trial();
-  options.add_seed();
-  options.add_kept({"building matrix", "full trials", "scattered trials"});
-  options.add_strict();
-  options.main_output_file("MATRIX.nc", "matrix file (NetCDF-4)", Options::Content::binary);
-  add_bins(options);
-  options.input_file("cell",
-                     "SCENE is a table of recorded runs (runs.csv) through cells as this file "
-                     "(cell.toml) says: lattice/recorded/README.md");
-  add_cell_program(options);
-  add_starts(options,
-             "the scene's start; gatewalk validate takes those of Table IV in the paper's field; "
-             "tree only: each is a state of its own");
-  options.add_text(
-      "starts", "all|D,VX,VY",
-      "tree: good for any start of a range, LOW:HIGH each; all: Table III's from below");
-  options.add_count("states", "S", "tree: at most S states beside the starts");
   if (!options.parse(arguments)) return kFine;
-  if (has_cell(options)) return build_program(options);
-  if (options.has("cell")) return build_recorded(options);
+  if (has_cell(options, options.program)) return build_program(options);
+  if (options.cell_file) return build_recorded(options);
   lattice::Scene scene = options.read_scene();
   require_keepable(scene);
-  const lattice::BinsChoice choice = bins_choice(options, scene, options.has("trials"));
+  const lattice::BinsChoice choice = bins_choice(options.bins, scene, options.trials);
   const bool tree = choice.kind == lattice::BinsChoice::Kind::tree;
   const auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
   return tree ? build_tree(options, scene, settled) : build_bins(options, scene, choice, settled);

@@ -56,13 +56,13 @@ int run_chart_chain(const Arguments& arguments) {
       "also chart matrices whose rows start not anywhere in their bins but where N full trials per "
       "start were seen to enter; these trials count as cost. Bins that are made from what is seen "
       "always start so, by default from 2000 trials per start");
-  add_starts(options);
+  const TextsOption given = add_starts(options);
   options.add_seed();
   options.add_strict();
   options.add_figure("the figure of the folder");
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = options.read_scene();
-  const std::vector<dynamics::Entry> starts = starts_of(options, scene);
+  const std::vector<dynamics::Entry> starts = starts_of(given, scene);
   lattice::require_inside(starts, scene);
   const auto bins = lattice::usual_bins(scene).kind;
   if (bins != lattice::BinsChoice::Kind::automatic)

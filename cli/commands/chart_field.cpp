@@ -21,7 +21,7 @@ int run_chart_field(const Arguments& arguments) {
   options.add_trials_and_seed("trials per start and fidelity");
   const std::vector<std::string> files{"fidelity.csv", "fidelity.json", "fidelity.svg"};
   options.output_folder("folder to write to; made if missing", files);
-  add_starts(options);
+  const TextsOption given = add_starts(options);
   options.add_strict();
   options.add_figure("the figure of the folder");
   if (!options.parse(arguments)) return kFine;
@@ -32,13 +32,13 @@ int run_chart_field(const Arguments& arguments) {
         "name a method, and give moreau's step as run.step_s");
   // The scene's own start may lie inside the gate.
   std::vector<dynamics::BodyState> starts{scene.start};
-  if (scene.start.y == 0.0 || options.has("start")) {
-    const std::vector<dynamics::Entry> entries = starts_of(options, scene);
+  if (scene.start.y == 0.0 || given) {
+    const std::vector<dynamics::Entry> entries = starts_of(given, scene);
     lattice::require_inside(entries, scene);
     starts = lattice::bodies_at(entries);
   }
   const auto variants = lattice::fidelity_variants(scene);
-  const lattice::FidelityOptions how{starts, options.trials(), options.seed()};
+  const lattice::FidelityOptions how{starts, options.trials.value(), options.seed()};
   const ResultFolder folder(options, files);
 
   const FidelityResult result{lattice::compare_fidelities(variants, how, options.work()),

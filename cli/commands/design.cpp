@@ -45,21 +45,23 @@ int run_design(const Arguments& arguments) {
                   "added, and so on; new trials\n"
                   "say how often bodies cross it, and the field as it is.",
                   "gatewalk design scenes/mixed.toml --changes 3 --types s,.");
-  options.scene();
+  const TextOption path = options.scene();
   const CountOption changes =
       options.add_count("changes", "N", "change at most so many gates", "1");
   const TextOption types = options.add_text(
       "types", "A,B", "into these types of [terrain], . the scene's own (default: all)");
   const Option least = options.add_flag("least", "bodies shall cross as rarely as they can");
-  add_choice_rounds(options);
+  const ChoiceRounds rounds = add_choice_rounds(options);
   const TextOption output =
       options.output_file("output", "FILE.toml",
                           "write the scene with the gates changed, and with the start of --start");
   options.add_figure("what a change of each gate does, and which are changed");
   if (!options.parse(arguments)) return kFine;
   lattice::FieldDesignOptions how{.least = static_cast<bool>(least)};
-  take_choice_rounds(options, how);
-  lattice::Source s = field_to_run(options, "a field is designed");
+  take_choice_rounds(options, rounds, how);
+  lattice::Source s =
+      field_to_run(options, {.path = path, .starts = rounds.starts, .accuracy = rounds.accuracy},
+                   "a field is designed");
   if (!s.scene) throw UsageError(s.path + ": is no scene of gates");
   if (!s.scene->terrain || s.scene->terrain->types.empty())
     throw UsageError(s.path +

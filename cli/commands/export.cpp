@@ -24,6 +24,21 @@
 namespace gatewalk::cli {
 namespace {
 
+struct ExportCommand : Options {
+  using Options::Options;
+  TextOption matrix = positional("matrix", "matrix file written by gatewalk build", true);
+  TextOption second = second_scene();
+  TextOption output = main_output_file("FILE", "what to write", Options::Content::binary);
+  Option gate =
+      add_flag("gate", ".mtx, .csv, .npz: the matrix of one gate; its last column is trapped");
+  Option counts = add_flag("counts", "with --gate: numbers of runs, not probabilities");
+  TextOption type =
+      add_text("type", "NAME", "with --gate: of gates of that type of the table [terrain]");
+  TextsOption start = add_starts(*this, "the scene's start");
+  Option seed_given = add_seed("seed of trials of a start that a matrix of trees does not know");
+  Asked asked{.path = matrix, .scene = second, .starts = start};
+};
+
 enum class ExportForm { umb, drn, prism, matrix_market, csv, npz, trajectories };
 
 /// The form that the ending of a file's name asks for. Throws UsageError naming all endings.
@@ -48,8 +63,8 @@ std::string stem_of(const std::string& output) {
 
 /// Throws UsageError where a file that is written beside that of -o is an input or another output,
 /// or cannot be written.
-void check_files_beside(const Options& options, ExportForm form) {
-  const std::string output = options.text("output"), stem = stem_of(output);
+void check_files_beside(const ExportCommand& options, ExportForm form) {
+  const std::string output = options.output.value(), stem = stem_of(output);
   std::vector<std::string> files;
   if (form == ExportForm::prism) files = {stem + ".sta", stem + ".lab"};
   if (form == ExportForm::matrix_market || form == ExportForm::csv || form == ExportForm::npz ||
@@ -62,11 +77,11 @@ void check_files_beside(const Options& options, ExportForm form) {
         throw UsageError(fmt::format(
             "{}, which is written beside -o {}, is an input: give -o another name", file, output));
     }
-    for (const char* other : {"json", "csv"})
-      if (options.has(other) && std::filesystem::weakly_canonical(options.text(other)) ==
-                                    std::filesystem::weakly_canonical(file))
+    for (const TextOption& other : {options.json, options.csv})
+      if (other && std::filesystem::weakly_canonical(other.value()) ==
+                       std::filesystem::weakly_canonical(file))
         throw UsageError(fmt::format("--{} {}: is written beside -o {}: give it another name",
-                                     other, options.text(other), output));
+                                     other.name(), other.value(), output));
     try {
       require_writable(file);
     } catch (const std::runtime_error& e) {
@@ -76,10 +91,10 @@ void check_files_beside(const Options& options, ExportForm form) {
 }
 
 /// Writes a sparse matrix, and its states beside it.
-void write_table(const Options& options, ExportForm form, const SparseTable& table,
+void write_table(const ExportCommand& options, ExportForm form, const SparseTable& table,
                  const std::vector<std::string>& rows, const std::vector<std::string>& columns,
                  const std::string& states) {
-  const std::string output = options.text("output");
+  const std::string output = options.output.value();
   options.write(stem_of(output) + ".states.csv", states);
   if (form == ExportForm::matrix_market)
     options.write(output, matrix_market_of(table, fmt::format("gatewalk {}: {}", kVersion,
@@ -96,14 +111,14 @@ struct Exported {
   std::string text;
 };
 
-Exported export_field(const Options& options, ExportForm form) {
-  lattice::Source s = open_source(options, "matrix");
+Exported export_field(const ExportCommand& options, ExportForm form) {
+  lattice::Source s = open_source(options, options.asked);
   if (s.starts.size() > 1) throw UsageError("--start: a chain has one");
   const StartedChain from = chain_from_start(options, s);
   const lattice::FieldParams& field = s.problem.field;
   const auto chain =
       markov::explicit_chain(from.chain, {field.columns, field.rows}, from.start, field.max_gates);
-  const std::string output = options.text("output");
+  const std::string output = options.output.value();
   if (form == ExportForm::umb) {
     options.write(output, umb_of(chain, options.canonical()));
   } else if (form == ExportForm::drn) {
@@ -135,10 +150,11 @@ Exported export_field(const Options& options, ExportForm form) {
 }
 
 /// Counts per run of each row; `rows` may be those of one type of gate. Empty: a run is one count.
-std::vector<std::int64_t> counts_per_run_of(const Options& options, const lattice::MatrixFile& file,
+std::vector<std::int64_t> counts_per_run_of(const ExportCommand& options,
+                                            const lattice::MatrixFile& file,
                                             const dynamics::Transitions& rows) {
   if (!rows.space.has_trees()) return lattice::counts_per_run(file);
-  const lattice::Source s = open_source(options, "matrix");
+  const lattice::Source s = open_source(options, options.asked);
   const std::vector<dynamics::Transitions> matrices = s.matrices();
   const auto at = std::find_if(matrices.begin(), matrices.end(),
                                [&](const auto& m) { return m.rows == rows.rows; });
@@ -146,19 +162,19 @@ std::vector<std::int64_t> counts_per_run_of(const Options& options, const lattic
   return counted.images.at(static_cast<std::size_t>(at - matrices.begin()));
 }
 
-Exported export_gate(const Options& options, ExportForm form) {
-  const std::string path = options.text("matrix");
+Exported export_gate(const ExportCommand& options, ExportForm form) {
+  const std::string path = options.matrix.value();
   const lattice::MatrixFile& file = *options.file(path).matrix();
-  const auto type = file.types.find(options.text("type"));
-  if (options.has("type") && type == file.types.end())
-    throw UsageError(fmt::format("--type {}: {} has no such type", options.text("type"), path));
-  const dynamics::Transitions& t = options.has("type") ? type->second : file.transitions;
+  const auto type = file.types.find(options.type.value());
+  if (options.type && type == file.types.end())
+    throw UsageError(fmt::format("--type {}: {} has no such type", options.type.value(), path));
+  const dynamics::Transitions& t = options.type ? type->second : file.transitions;
   if (const auto states = recorded_states(file, path);
-      options.has("counts") && states && states->are_probabilities)
+      options.counts && states && states->are_probabilities)
     throw UsageError(
         fmt::format("--counts: {} was made of probabilities, and has no counts", path));
   const std::vector<int> order = lattice::shown_order(t.space);
-  const SparseTable table = options.has("counts")
+  const SparseTable table = options.counts
                                 ? table_of(in_order(t.counts(), order))
                                 : table_of(in_order(lattice::make_chain(t).matrix(), order));
   const std::vector<std::string> all = lattice::state_names(file);
@@ -166,7 +182,7 @@ Exported export_gate(const Options& options, ExportForm form) {
   for (const int s : order) names.push_back(all[static_cast<std::size_t>(s)]);
   names.push_back(all.back());
   const std::vector<std::int64_t> per_run =
-      options.has("counts") ? counts_per_run_of(options, file, t) : std::vector<std::int64_t>();
+      options.counts ? counts_per_run_of(options, file, t) : std::vector<std::int64_t>();
   write_table(options, form, table, names, names, states_csv(file, per_run));
   std::string text = fmt::format("{} states of one gate, {} entries; the last column is trapped\n",
                                  t.space.size(), table.entries.size());
@@ -174,15 +190,15 @@ Exported export_gate(const Options& options, ExportForm form) {
     text += fmt::format(
         "runs are counted twice, as they were and as their mirror images: counts_per_run in "
         "{}.states.csv says in which rows\n",
-        stem_of(options.text("output")));
+        stem_of(options.output.value()));
   return {{.states = t.space.size(),
            .transitions = std::ssize(table.entries),
            .made_by = options.provenance()},
           text};
 }
 
-Exported export_trials(const Options& options) {
-  const lattice::Source s = open_source(options, "matrix");
+Exported export_trials(const ExportCommand& options) {
+  const lattice::Source s = open_source(options, options.asked);
   if (!s.pool)
     throw UsageError(fmt::format(
         "{}: keeps no trials: it was not made of trees or recorded runs{}", s.path,
@@ -192,7 +208,7 @@ Exported export_trials(const Options& options) {
             : ""));
   const dynamics::StateSpace& space = s.file->transitions.space;
   const Trajectories all = trajectories_of(*s.pool, space);
-  const std::string output = options.text("output");
+  const std::string output = options.output.value();
   options.write(stem_of(output) + ".states.csv", states_csv(*s.file, {}));
   options.write(output, lattice::has_ending(output, ".npz") ? npz_of(all) : text_of(all));
   return {
@@ -204,7 +220,7 @@ Exported export_trials(const Options& options) {
 }  // namespace
 
 int run_export(const Arguments& arguments) {
-  Options options(
+  ExportCommand options(
       "export MATRIX.nc [SCENE] -o FILE [options]",
       "Writes a chain for other programs, by the ending of FILE:\n"
       "  .umb              PRISM (from 4.10), Storm (from 1.12)\n"
@@ -221,36 +237,28 @@ int run_export(const Arguments& arguments) {
       "states that are never left: trapped, crossed, left_side, right_side, went_back, cut_off,\n"
       "never_sampled. With --gate the matrix of one gate is written. All count from 0 (.mtx: 1).",
       "gatewalk export matrix.nc --set field.max_gates=0 -o field.umb");
-  options.positional("matrix", "matrix file written by gatewalk build", true);
-  options.positional("scene", "of a matrix: another scene; without it the matrix's own", false);
-  options.main_output_file("FILE", "what to write", Options::Content::binary);
-  options.add_flag("gate", ".mtx, .csv, .npz: the matrix of one gate; its last column is trapped");
-  options.add_flag("counts", "with --gate: numbers of runs, not probabilities");
-  options.add_text("type", "NAME", "with --gate: of gates of that type of the table [terrain]");
-  add_starts(options, "the scene's start");
-  options.add_seed("seed of trials of a start that a matrix of trees does not know");
   if (!options.parse(arguments)) return kFine;
-  const ExportForm form = export_form(options.text("output"));
+  const ExportForm form = export_form(options.output.value());
   check_files_beside(options, form);
   const bool sparse =
       form == ExportForm::matrix_market || form == ExportForm::csv || form == ExportForm::npz;
   if (form == ExportForm::trajectories) {
-    refuse(options, {"start", "set"}, "for trajectories, which are the trials as they were run");
-    if (!options.text("scene").empty())
+    refuse({options.start, options.set}, "for trajectories, which are the trials as they were run");
+    if (!options.second.value().empty())
       throw UsageError(
           "SCENE has no meaning for trajectories, which are the trials as they were run");
   }
-  if (!options.has("gate")) {
-    refuse(options, {"counts", "type"}, "without --gate");
+  if (!options.gate) {
+    refuse({options.counts, options.type}, "without --gate");
   } else {
     if (!sparse) throw UsageError("--gate: is for .mtx, .csv and .npz");
-    refuse(options, {"start", "set"}, "beside --gate: a gate's matrix knows no field");
-    if (!options.text("scene").empty())
+    refuse({options.start, options.set}, "beside --gate: a gate's matrix knows no field");
+    if (!options.second.value().empty())
       throw UsageError("SCENE has no meaning beside --gate: a gate's matrix knows no field");
   }
-  if (const lattice::SourceFile& file = options.file(options.text("matrix")); !file.is_matrix())
+  if (const lattice::SourceFile& file = options.file(options.matrix.value()); !file.is_matrix())
     (void)file.matrix();  // says what it is instead
-  const Exported exported = options.has("gate")                ? export_gate(options, form)
+  const Exported exported = options.gate                       ? export_gate(options, form)
                             : form == ExportForm::trajectories ? export_trials(options)
                                                                : export_field(options, form);
   options.give_out(exported.result, exported.text);

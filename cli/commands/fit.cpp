@@ -16,6 +16,43 @@
 namespace gatewalk::cli {
 namespace {
 
+struct FitCommand : Options {
+  using Options::Options;
+  TextOption path = scene();
+  TextsOption counts = positional_list(
+      "counts",
+      "what the experiment saw (CSV: gate_x,gate_y,count; ending,count; or, for both, "
+      "trial,ending,gate_x,gate_y; also with time_s; files with the same columns are added up; or "
+      "passages: runs.csv)");
+  TextsOption free = add_varied(
+      "free", "KEY=LOW:HIGH",
+      fmt::format(
+          "a number of the scene, or of the program, and its range (at most {}; may be repeated)",
+          lattice::kMostFitted));
+  CountOption trials = add_count(
+      "trials", "N",
+      fmt::format("full trials, or passages, all points together; {} or more for each number",
+                  lattice::least_trials_of_fit(1)),
+      "400000");
+  TextsOption start =
+      add_texts("start", "D,VX,VY", "where bodies started (default: the scene's start)");
+  Option seed_given = add_seed();
+  AskedProgram program = add_cell_program(*this);
+  TextOption output =
+      output_file("output", "FILE.toml",
+                  "write the scene in which the counts are likeliest, with --scenes others too");
+  CountOption scenes =
+      add_count("scenes", "N",
+                "with -o FILE.toml, write N scenes drawn from the posterior as FILE-1.toml, ...");
+  TextOption draws = output_file("draws", "FILE.csv", "write the posterior, a line for each draw");
+  TextOption inference_data =
+      output_file("inference-data", "FILE.nc", "write it as ArviZ reads it (InferenceData)",
+                  Options::Content::binary);
+  TextOption checkpoint = add_kept();
+  Option strict = add_strict();
+  TextOption figure = add_figure("the posterior of each number and of each pair");
+};
+
 constexpr int kMostScenes = 1000;
 
 /// The file of a draw beside that of -o: of draw 3 beside "best.toml" it is "best-3.toml".
@@ -28,13 +65,14 @@ std::string file_of_draw(const std::string& path, std::int64_t draw) {
 
 /// Files of so many scenes beside that of -o: "best-1.toml", ... Throws UsageError where one is
 /// read by the command, or another output of it.
-std::vector<std::string> files_of_draws(const Options& options, std::int64_t count) {
+std::vector<std::string> files_of_draws(const FitCommand& options, std::int64_t count) {
   std::vector<std::string> files, taken = options.files_read();
-  const std::string path = options.text("output");
+  const std::string path = options.output.value();
   if (path == "-" || std::filesystem::is_other(path))
     throw UsageError("--scenes: needs -o FILE.toml, beside which they are written");
-  for (const char* output : {"json", "csv", "draws", "inference-data", "figure", "checkpoint"})
-    if (options.has(output)) taken.push_back(options.text(output));
+  for (const TextOption& output : {options.json, options.csv, options.draws, options.inference_data,
+                                   options.figure, options.checkpoint})
+    if (output) taken.push_back(output.value());
   for (std::int64_t draw = 1; draw <= count; ++draw) {
     files.push_back(file_of_draw(path, draw));
     for (const std::string& other : taken)
@@ -64,7 +102,7 @@ void require_effect(const NumberRanges& ranges, lattice::RunsFrom from) {
       if (text.starts_with(r.key + " ")) throw UsageError("--free " + text);
 }
 
-lattice::FitData of_passages(const Options& options, const lattice::Source& s,
+lattice::FitData of_passages(const FitCommand& options, const lattice::Source& s,
                              const NumberRanges& ranges, const lattice::ProblemAt& at,
                              const std::string& path, std::int64_t trials) {
   for (const lattice::NumberRange& r : ranges.each)
@@ -74,7 +112,7 @@ lattice::FitData of_passages(const Options& options, const lattice::Source& s,
                       "through one cell",
                       r.key));
   if (!s.cells || s.cells->start)
-    refuse(options, {"start"}, "for passages, which begin as they were seen to");
+    refuse({options.start}, "for passages, which begin as they were seen to");
   const auto numbers = static_cast<int>(ranges.each.size());
   lattice::CellFile cells =
       s.cells ? *s.cells : lattice::cells_of(at(std::vector<double>(ranges.each.size(), 0.5)));
@@ -109,7 +147,7 @@ std::string not_listed(const lattice::Observed& observed, const lattice::FieldPa
   return names.empty() ? names : fmt::format("the counts do not list {}: taken as 0", names);
 }
 
-lattice::FitData of_trials(const Options& options, const lattice::Problem& problem,
+lattice::FitData of_trials(const FitCommand& options, const lattice::Problem& problem,
                            const std::vector<std::string>& paths) {
   lattice::Observed observed = lattice::read_observed(paths, problem.field);
   for (const std::string& text : observed.remarks) options.warn(text);
@@ -131,7 +169,7 @@ lattice::FitData of_trials(const Options& options, const lattice::Problem& probl
 /// What an experiment saw, from tables of counts or of trials, as lattice::read_observed, or one of
 /// passages; and warns of what it leaves out. `at`: with types_in(paths). Throws UsageError, and
 /// std::invalid_argument.
-lattice::FitData data_to_fit(const Options& options, const lattice::Source& s,
+lattice::FitData data_to_fit(const FitCommand& options, const lattice::Source& s,
                              const NumberRanges& ranges, const lattice::ProblemAt& at,
                              const std::vector<std::string>& paths, std::int64_t trials) {
   const auto found = std::find_if(paths.begin(), paths.end(), is_of_passages);
@@ -152,7 +190,7 @@ std::vector<double> point_of(const Eigen::MatrixXd& draws, Eigen::Index draw) {
 }  // namespace
 
 int run_fit(const Arguments& arguments) {
-  Options options(
+  FitCommand options(
       "fit SCENE SEEN.csv [MORE.csv ...] --free KEY=LOW:HIGH [options]",
       "Which numbers of the scene an experiment speaks for: their posterior, all of them anywhere "
       "in their\n"
@@ -165,53 +203,23 @@ int run_fit(const Arguments& arguments) {
       "carried out from where it began. Cells of a program: its numbers, parameters.KEY.",
       "gatewalk fit scenes/field.toml counts.csv --free forces.propulsion_N=5:9 --free "
       "forces.random_N=10:40");
-  options.scene();
-  options.positional_list(
-      "counts",
-      "what the experiment saw (CSV: gate_x,gate_y,count; ending,count; or, for both, "
-      "trial,ending,gate_x,gate_y; also with time_s; files with the same columns are added up; or "
-      "passages: runs.csv)");
-  options.add_texts(
-      "free", "KEY=LOW:HIGH",
-      fmt::format(
-          "a number of the scene, or of the program, and its range (at most {}; may be repeated)",
-          lattice::kMostFitted));
-  options.add_count(
-      "trials", "N",
-      fmt::format("full trials, or passages, all points together; {} or more for each number",
-                  lattice::least_trials_of_fit(1)),
-      "400000");
-  options.add_texts("start", "D,VX,VY", "where bodies started (default: the scene's start)");
-  options.add_seed();
-  add_cell_program(options);
-  options.output_file(
-      "output", "FILE.toml",
-      "write the scene in which the counts are likeliest, with --scenes others too");
-  options.add_count(
-      "scenes", "N",
-      "with -o FILE.toml, write N scenes drawn from the posterior as FILE-1.toml, ...");
-  options.output_file("draws", "FILE.csv", "write the posterior, a line for each draw");
-  options.output_file("inference-data", "FILE.nc", "write it as ArviZ reads it (InferenceData)",
-                      Options::Content::binary);
-  options.add_kept();
-  options.add_strict();
-  options.add_figure("the posterior of each number and of each pair");
   if (!options.parse(arguments)) return kFine;
-  lattice::Source s = field_to_run(options, "what was seen is");
-  const auto ranges = ranges_of(options, s, "free", lattice::kMostFitted);
+  lattice::Source s = field_to_run(
+      options, {.path = options.path, .program = options.program, .starts = options.start},
+      "what was seen is");
+  const auto ranges = ranges_of(options, s, options.free, lattice::kMostFitted);
   if (!ranges) throw UsageError("--free KEY=LOW:HIGH says which numbers are to be found: give one");
   const auto numbers = static_cast<int>(ranges->each.size());
-  const std::vector<std::string> seen = options.texts("counts");
-  if (!ranges->scene && options.has("output"))
+  const std::vector<std::string> seen = options.counts.values();
+  if (!ranges->scene && options.output)
     throw UsageError("-o: writes scenes of gates; a program's numbers are given by --set");
   const lattice::FitOptions how{
-      .trials = options.count("trials", lattice::least_trials_of_fit(numbers)),
+      .trials = options.trials.value(lattice::least_trials_of_fit(numbers)),
       .seed = options.seed()};
-  if (options.has("scenes") && !options.has("output"))
+  if (options.scenes && !options.output)
     throw UsageError("--scenes: needs -o FILE.toml, beside which they are written");
   std::vector<std::string> scenes;
-  if (options.has("scenes"))
-    scenes = files_of_draws(options, options.count("scenes", 1, kMostScenes));
+  if (options.scenes) scenes = files_of_draws(options, options.scenes.value(1, kMostScenes));
   const lattice::ProblemAt at = problem_at(*ranges, s, types_in(seen));
   const lattice::FitData data = data_to_fit(options, s, *ranges, at, seen, how.trials);
   choose_method(options, s);
@@ -220,10 +228,9 @@ int run_fit(const Arguments& arguments) {
                            options.provenance(s)};
   const lattice::Fit& fit = fitted.fit;
   options.give_out(fitted, table_of(fitted));
-  if (options.has("draws")) options.write(options.text("draws"), draws_csv(fitted));
-  if (options.has("inference-data"))
-    options.write(options.text("inference-data"), inference_data(fitted));
-  if (const std::string path = options.text("output"); !path.empty()) {
+  if (options.draws) options.write(options.draws.value(), draws_csv(fitted));
+  if (options.inference_data) options.write(options.inference_data.value(), inference_data(fitted));
+  if (const std::string path = options.output.value(); !path.empty()) {
     options.write(path, lattice::scene_file(scene_at(*ranges, s, point_of(fit.draws, fit.best))));
     for (std::size_t i = 0; i < scenes.size(); ++i) {
       const auto draw =

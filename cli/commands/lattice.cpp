@@ -20,8 +20,29 @@
 namespace gatewalk::cli {
 namespace {
 
+struct LatticeCommand : Options {
+  using Options::Options;
+  TextOption path = scene();
+  CountOption trials = add_trials_and_seed("trials through the field");
+  CountOption first_trial = add_first_trial();
+  TextOption checkpoint = add_kept({"field trials"});
+  Option strict = add_strict();
+  AskedProgram program = add_cell_program(*this);
+  TextOption passages =
+      output_file("passages", "FILE.csv",
+                  "write every passage through a gate as a table of recorded runs "
+                  "(lattice/recorded/README.md)");
+  TextOption cell_file =
+      output_file("cell-file", "FILE.toml", "write what such a table's cells are (cell.toml)");
+  TextOption netcdf = output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
+  TextOption policy =
+      input_file("policy", "bodies do what this file of gatewalk plan says (FILE.json)");
+  TextOption figure = add_figure("where bodies end, and how");
+  Asked asked{.path = path, .program = program};
+};
+
 /// Trials through a scene of gates.
-FieldRun run_gates(const Options& options) {
+FieldRun run_gates(const LatticeCommand& options) {
   RunScene scene{options.read_scene()};
   scene.settled = settle_method(options, scene.scene, lattice::RunsFrom::everywhere);
   const lattice::FieldParams& field = scene.scene.field;
@@ -38,7 +59,7 @@ FieldRun run_gates(const Options& options) {
 }
 
 /// A run of no trial yet.
-FieldRun empty_run(const Options& options, const lattice::Source& s) {
+FieldRun empty_run(const LatticeCommand& options, const lattice::Source& s) {
   const lattice::FieldParams& field = s.problem.field;
   return {ShownField(s),         s.problem.start,
           options.provenance(s), lattice::FieldCosts(s.bin_of_durations(options.seed())),
@@ -46,15 +67,15 @@ FieldRun empty_run(const Options& options, const lattice::Source& s) {
 }
 
 /// Trials through any cells; writes the tables of --passages and --cell-file.
-FieldRun run_cells(const Options& options) {
-  lattice::Source s = open_source(options, "scene");
+FieldRun run_cells(const LatticeCommand& options) {
+  lattice::Source s = open_source(options, options.asked);
   if (s.file) throw UsageError(s.path + ": is a matrix, and bodies are to be run: give a scene");
   choose_method(options, s);
   FieldRun run = empty_run(options, s);
   if (s.scene) run.scene = RunScene{*s.scene, s.settled};
   lattice::RecordedRuns runs;
   runs.passages.begin(s.problem.map().section);
-  const bool keep = options.has("passages");
+  const bool keep = static_cast<bool>(options.passages);
   const lattice::TakeTrials add = lattice::added_to(run.costs);
   run.tally = lattice::field_trials(
       s.problem, options.trial_range(), options.seed(), options.work(),
@@ -66,23 +87,23 @@ FieldRun run_cells(const Options& options) {
   options.work().end_part();
   const lattice::CellFile cells = lattice::cells_of(s.problem);
   if (keep) {
-    options.keep_old(options.text("passages"));
-    lattice::write_runs(options.text("passages"), cells, runs);
+    options.keep_old(options.passages.value());
+    lattice::write_runs(options.passages.value(), cells, runs);
   }
-  if (options.has("cell-file")) options.write(options.text("cell-file"), lattice::to_toml(cells));
+  if (options.cell_file) options.write(options.cell_file.value(), lattice::to_toml(cells));
   return run;
 }
 
 /// Trials of bodies that do what a policy says.
-FieldRun run_policy(const Options& options) {
-  refuse(options, {"passages", "cell-file"}, "with --policy");
-  lattice::Source s = open_source(options, "scene");
+FieldRun run_policy(const LatticeCommand& options) {
+  refuse({options.passages, options.cell_file}, "with --policy");
+  lattice::Source s = open_source(options, options.asked);
   if (s.file)
     throw UsageError(s.path +
                      ": is a matrix, and bodies that do what a policy says are to be run: "
                      "give what it was made for");
   Actions all = actions_of(options, s);
-  const lattice::Policy policy = read_policy(options.text("policy"), all.made_for);
+  const lattice::Policy policy = read_policy(options.policy.value(), all.made_for);
   FieldRun run = empty_run(options, s);
   run.may_do = {all.names(), std::move(all.methods)};
   run.tally = lattice::policy_trials(all.actions, policy, options.trial_range(), options.seed(),
@@ -92,33 +113,21 @@ FieldRun run_policy(const Options& options) {
 }
 
 /// The trials that --trials asks for; writes the tables of --passages and --cell-file.
-FieldRun field_run(const Options& options) {
-  if (options.has("policy")) return run_policy(options);
-  const bool any_cells = has_cell(options) || options.has("passages") || options.has("cell-file");
+FieldRun field_run(const LatticeCommand& options) {
+  if (options.policy) return run_policy(options);
+  const bool any_cells =
+      has_cell(options, options.program) || options.passages || options.cell_file;
   return any_cells ? run_cells(options) : run_gates(options);
 }
 
 }  // namespace
 
 int run_lattice(const Arguments& arguments) {
-  Options options(
+  LatticeCommand options(
       "lattice SCENE [options]",
       "Simulates the field: the full dynamics, gate by gate. Counts the final gates. `gatewalk\n"
       "simulate` is another name of this command.",
       "gatewalk lattice scenes/field.toml --trials 10000 --seed 1 --json lattice.json");
-  options.scene();
-  options.add_trials_and_seed("trials through the field");
-  options.add_first_trial();
-  options.add_kept({"field trials"});
-  options.add_strict();
-  add_cell_program(options);
-  options.output_file("passages", "FILE.csv",
-                      "write every passage through a gate as a table of recorded runs "
-                      "(lattice/recorded/README.md)");
-  options.output_file("cell-file", "FILE.toml", "write what such a table's cells are (cell.toml)");
-  options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
-  options.input_file("policy", "bodies do what this file of gatewalk plan says (FILE.json)");
-  options.add_figure("where bodies end, and how");
   if (!options.parse(arguments)) return kFine;
   const dynamics::Stopwatch watch;
   const FieldRun run = field_run(options);
@@ -126,8 +135,8 @@ int run_lattice(const Arguments& arguments) {
   const FieldPicture picture(fmt::format("full dynamics, {} trials", run.tally.trials),
                              ends_of(run.tally, run.shown.field), lattice::exits_of(run.tally),
                              run.start);
-  if (options.has("netcdf"))
-    options.write(options.text("netcdf"), netcdf_of({picture}, run.shown.map.section, run.made_by));
+  if (options.netcdf)
+    options.write(options.netcdf.value(), netcdf_of({picture}, run.shown.map.section, run.made_by));
   options.give_out(run, table_of(run));
   options.remark(fixed(seconds, 2) + " s");
   options.warn(too_few_gates(run.shown));

@@ -76,7 +76,7 @@ int run_merge(const Arguments& arguments) {
       "anew: the matrix of build, the CSV of sweep, the JSON of others. Parts that overlap or are\n"
       "missing are named.",
       "gatewalk merge part1 part2 part3 -o all.json");
-  options.positional_list("part", "files that --part wrote");
+  const TextsOption part_files = options.positional_list("part", "files that --part wrote");
   options.output_file("output", "FILE", "the main output", Options::Content::binary);
   options.without_scene("the parts have their scene");
   const auto own_end = std::find(arguments.words.begin(), arguments.words.end(), "--");
@@ -84,20 +84,20 @@ int run_merge(const Arguments& arguments) {
   own.words.assign(arguments.words.begin(), own_end);
   if (!options.parse(own)) return kFine;
 
-  const std::vector<std::string> parts = options.texts("part");
+  const std::vector<std::string> parts = part_files.values();
   std::vector<Json> heads;
   for (const std::string& part : parts) heads.push_back(head_in(part));
   const std::string name = heads.front().at("command");
   const Command* const command = command_named(name);
   if (!command)
     throw markov::BadFile(fmt::format("{}: is of a command {}, unknown here", parts.front(), name));
-  if (options.has("output") && options.has("json") && heads.front().at("main_output") == "json")
+  if (options.output && options.json && heads.front().at("main_output") == "json")
     throw UsageError(
         fmt::format("-o and --json name the same output of gatewalk {}: give one", name));
-  Arguments all(words_of(heads, options.text("output")));
-  for (const char* flag : {"quiet", "force"})
-    if (options.has(flag)) all.words.push_back("--" + std::string(flag));
-  if (options.has("json")) all.words.push_back("--json=" + options.text("json"));
+  Arguments all(words_of(heads, options.output.value()));
+  for (const Option& flag : {options.quiet, options.force})
+    if (flag) all.words.push_back("--" + flag.name());
+  if (options.json) all.words.push_back("--json=" + options.json.value());
   for (auto word = own_end; word != arguments.words.end(); ++word) {
     for (const char* option : {"shard", "part", "checkpoint", "resume", "max-time", "first-trial"})
       if (word->starts_with("--" + std::string(option)))

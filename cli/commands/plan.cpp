@@ -30,21 +30,49 @@
 namespace gatewalk::cli {
 namespace {
 
+struct PlanCommand : Options {
+  using Options::Options;
+  TextOption path = scene();
+  ChoiceRounds rounds = add_choice_rounds(*this, "; of a cell program FACE:c1,c2,...");
+  AskedProgram program = add_cell_program(*this);
+  TextsOption over =
+      add_varied("over", "KEY=LOW:HIGH",
+                 "without actions: where bodies may start (start.x_m, start.vx_m_per_s, "
+                 "start.vy_m_per_s;\ndefault: a radius from the joints, up to the speed of an open "
+                 "gate; may be repeated)");
+  TextOption policy =
+      output_file("policy", "FILE.json",
+                  "write what to do in each gate, for --policy of gatewalk lattice and trace");
+  TextOption gate_policy = output_file(
+      "gate-policy", "FILE.json", "the same of the best that knows the gate alone, not the way in");
+  TextOption least =
+      add_text("least", "COST",
+               "also policies that cross less often and take less of this (time_s, work_J, "
+               "...), to that which takes least for each crossing");
+  CountOption points = add_count("points", "N", "such policies, at most (default: 5)");
+  NumberOption chance = add_number(
+      "chance", "P", "--policy writes the one that takes least of those that cross so often");
+  Option robust = add_flag(
+      "robust", "policies that are best where the chain is as bad as its runs leave possible");
+  TextOption figure = add_figure("the actions by gate, and how often bodies cross");
+};
+
 /// What --least, --points and --chance ask for; none without --least. Throws UsageError.
-std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const ShownField& shown) {
-  if (!options.has("least")) {
-    for (const char* other : {"points", "chance"})
-      if (options.has(other)) throw UsageError(fmt::format("--{}: only with --least", other));
+std::optional<lattice::ThriftOptions> thrift_of(const PlanCommand& options,
+                                                const ShownField& shown) {
+  if (!options.least) {
+    for (const Option& other : std::initializer_list<Option>{options.points, options.chance})
+      if (other) throw UsageError(fmt::format("--{}: only with --least", other.name()));
     return {};
   }
   lattice::ThriftOptions thrift;
   const std::vector<dynamics::CostInfo>& costs = shown.map.section.costs;
   std::string known;
-  while (thrift.cost < costs.size() && costs[thrift.cost].key != options.text("least"))
+  while (thrift.cost < costs.size() && costs[thrift.cost].key != options.least.value())
     known += (known.empty() ? "" : ", ") + costs[thrift.cost++].key;
   if (thrift.cost == costs.size())
     throw UsageError(fmt::format("--least: '{}' is none of {}",
-                                 lattice::printable(options.text("least")), known));
+                                 lattice::printable(options.least.value()), known));
   // Passages through gates may take 0 or less of anything but time and losses.
   const std::string& key = costs[thrift.cost].key;
   if (shown.mass && shown.field.max_gates == 0 && key != "time_s" && key != "lost_J")
@@ -52,9 +80,9 @@ std::optional<lattice::ThriftOptions> thrift_of(const Options& options, const Sh
         "--least {}: a passage may take 0 or less of it, and without a limit of gates a body would "
         "go on for ever: give --set field.max_gates=N, or --least time_s or lost_J",
         key));
-  if (options.has("points")) thrift.points = static_cast<int>(options.count("points", 2, 100));
-  if (options.has("chance")) thrift.chance = options.number("chance");
-  if (options.has("chance") && !(thrift.chance > 0.0 && thrift.chance < 1.0))
+  if (options.points) thrift.points = static_cast<int>(options.points.value(2, 100));
+  if (options.chance) thrift.chance = options.chance.value();
+  if (options.chance && !(thrift.chance > 0.0 && thrift.chance < 1.0))
     throw UsageError("--chance: must lie between 0 and 1");
   return thrift;
 }
@@ -94,7 +122,8 @@ std::vector<lattice::CoordinateRange> ranges_in(const lattice::RangedScene& rang
 
 /// The ranges of --over in a start of a cell file. Throws UsageError and as what reads the file.
 std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& given,
-                                                const Options& options, const lattice::Source& s) {
+                                                const PlanCommand& options,
+                                                const lattice::Source& s) {
   std::vector<lattice::CoordinateRange> ranges;
   const std::vector<dynamics::Coordinate>& coordinates = s.problem.map().section.coordinates;
   for (const std::string& text : given) {
@@ -123,14 +152,17 @@ std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& 
 
 /// Of a scene without actions: the start from which bodies cross most often. `s`: as field_to_run
 /// gives it. Returns the exit status. Throws UsageError.
-int plan_start(const Options& options, lattice::Source s) {
-  for (const char* other : {"policy", "gate-policy", "least", "points", "chance", "robust"})
-    if (options.has(other))
-      throw UsageError(fmt::format(
-          "--{}: is for a scene with actions; {} has no tables [actions.NAME]", other, s.path));
+int plan_start(const PlanCommand& options, lattice::Source s) {
+  for (const Option& other :
+       std::initializer_list<Option>{options.policy, options.gate_policy, options.least,
+                                     options.points, options.chance, options.robust})
+    if (other)
+      throw UsageError(
+          fmt::format("--{}: is for a scene with actions; {} has no tables [actions.NAME]",
+                      other.name(), s.path));
   lattice::BestStartOptions how;
-  take_choice_rounds(options, how);
-  const auto given = options.texts("over");
+  take_choice_rounds(options, options.rounds, how);
+  const auto given = options.over.values();
   if (s.scene)
     how.ranges = ranges_in({options.file(s.path).toml(), options.overrides(),
                             given.empty() ? usual_ranges(*s.scene) : given, "--over"});
@@ -160,7 +192,7 @@ int plan_start(const Options& options, lattice::Source s) {
 }  // namespace
 
 int run_plan(const Arguments& arguments) {
-  Options options(
+  PlanCommand options(
       "plan SCENE [options]",
       "What a body should do in each gate, by how it enters, to cross as often as it can.\n"
       "Its actions are tables of the scene, such as\n"
@@ -173,58 +205,42 @@ int run_plan(const Arguments& arguments) {
       "Without actions: the start from which bodies cross most often, in a terrain in any column.",
       "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 --set "
       "actions.fast.forces.propulsion_N=9");
-  options.scene();
-  add_choice_rounds(options, "; of a cell program FACE:c1,c2,...");
-  add_cell_program(options);
-  options.add_texts(
-      "over", "KEY=LOW:HIGH",
-      "without actions: where bodies may start (start.x_m, start.vx_m_per_s, "
-      "start.vy_m_per_s;\ndefault: a radius from the joints, up to the speed of an open "
-      "gate; may be repeated)");
-  options.output_file("policy", "FILE.json",
-                      "write what to do in each gate, for --policy of gatewalk lattice and trace");
-  options.output_file("gate-policy", "FILE.json",
-                      "the same of the best that knows the gate alone, not the way in");
-  options.add_text("least", "COST",
-                   "also policies that cross less often and take less of this (time_s, work_J, "
-                   "...), to that which takes least for each crossing");
-  options.add_count("points", "N", "such policies, at most (default: 5)");
-  options.add_number("chance", "P",
-                     "--policy writes the one that takes least of those that cross so often");
-  options.add_flag("robust",
-                   "policies that are best where the chain is as bad as its runs leave possible");
-  options.add_figure("the actions by gate, and how often bodies cross");
   if (!options.parse(arguments)) return kFine;
   lattice::PlanOptions how;
-  take_choice_rounds(options, how);
-  lattice::Source s = field_to_run(options, "a plan is made");
+  take_choice_rounds(options, options.rounds, how);
+  lattice::Source s = field_to_run(options,
+                                   {.path = options.path,
+                                    .program = options.program,
+                                    .starts = options.rounds.starts,
+                                    .accuracy = options.rounds.accuracy},
+                                   "a plan is made");
   if ((s.scene ? s.scene->actions : s.cells->actions).empty())
     return plan_start(options, std::move(s));
-  if (options.has("over"))
+  if (options.over)
     throw UsageError(fmt::format("--over: is for a scene without actions; {} has some", s.path));
   how.thrift = thrift_of(options, ShownField(s));
-  how.robust = options.has("robust");
+  how.robust = static_cast<bool>(options.robust);
   if (how.robust && how.thrift) throw UsageError("--robust: not with --least");
-  if (options.has("policy") || options.has("gate-policy")) require_file_for(s);
+  if (options.policy || options.gate_policy) require_file_for(s);
   Actions all = actions_of(options, s);
   const dynamics::Stopwatch watch;
   lattice::Plan plan = lattice::make_plan(all.actions, how, options.work());
   const PlannedField planned{ShownField(s),   all.names(), std::move(all.methods), std::move(plan),
                              watch.seconds(), how.thrift,  options.provenance(s)};
   options.give_out(planned, table_of(planned));
-  if (options.has("policy"))
-    options.write(options.text("policy"), policy_text(chosen_policy(planned), all.made_for));
-  if (options.has("gate-policy")) {
+  if (options.policy)
+    options.write(options.policy.value(), policy_text(chosen_policy(planned), all.made_for));
+  if (options.gate_policy) {
     if (!planned.plan.by_cell)
       throw std::runtime_error("--gate-policy: there is none: no body crossed");
-    options.write(options.text("gate-policy"),
+    options.write(options.gate_policy.value(),
                   policy_text(planned.plan.by_cell->policy, all.made_for));
   }
   options.warn(few_crossings(planned.plan.crossings));
-  if (options.has("policy") && !cheapest(planned) && !gains(planned))
+  if (options.policy && !cheapest(planned) && !gains(planned))
     options.warn(fmt::format(
         "--policy: {} is not shown to gain anything over {} all the time, which is simpler",
-        options.text("policy"), planned.actions[best_alone(planned.plan)]));
+        options.policy.value(), planned.actions[best_alone(planned.plan)]));
   if (how.thrift && how.thrift->chance > 0.0 && !cheapest(planned))
     options.warn("--chance: none of these policies crosses so often; --policy is the plan's own");
   if (!planned.plan.front_refused.empty())

@@ -32,8 +32,8 @@ int run_power(const Arguments& arguments) {
       "what so many show.",
       "gatewalk power scenes/robot.toml --trials 60 --versus "
       "beams.stiffness_left_Nm_per_rad=0.3");
-  options.scene();
-  const TextsOption other_given = options.add_texts(
+  const TextOption path = options.scene();
+  const TextsOption other_given = options.add_varied(
       "versus", "KEY=VALUE",
       "the scene to tell this one from has this key otherwise (may be repeated); or "
       "a matrix of another group's recorded runs");
@@ -46,19 +46,20 @@ int run_power(const Arguments& arguments) {
       options.add_number("power", "P", "how often a difference is to be found (default: 0.8)");
   const NumberOption level = options.add_number(
       "level", "A", "how often one may be found where there is none (default: 0.05)");
-  add_accuracy(options);
+  const AskedAccuracy accuracy = add_accuracy(options);
   options.add_seed();
   options.add_strict();
-  add_cell_program(options);
+  const AskedProgram program = add_cell_program(options);
   if (!options.parse(arguments)) return kFine;
   lattice::ExperimentOptions how{
       .goal = {.power = power.within(0.8, 0.5, 0.99), .level = level.within(0.05, 0.01, 0.25)},
       .trials = {},
       .seed = options.seed()};
   if (trials) how.trials = trials.value(1, lattice::kMostPlanned);
-  lattice::Source s = open_source(options, "scene");
+  const Asked asked{.path = path, .program = program, .accuracy = accuracy};
+  lattice::Source s = open_source(options, asked);
   require_error_bars(s);
-  auto other = versus(options, s);
+  auto other = versus(options, asked, other_given, s);
   if (other) require_error_bars(*other);
   choose_method(options, s);
   // What is to be said of a scene's keys has been said.

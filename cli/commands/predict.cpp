@@ -24,8 +24,42 @@
 namespace gatewalk::cli {
 namespace {
 
+struct PredictCommand : Options {
+  using Options::Options;
+  TextOption matrix = positional(
+      "matrix", "a scene (-: standard input), or a matrix file written by gatewalk build", true);
+  TextOption second = second_scene();
+  AskedAccuracy accuracy =
+      add_accuracy(*this, "0.02; that of a matrix, or half of it if it is for any start");
+  CountOption first_runs =
+      add_count("first-runs", "N",
+                "matrix of trees: N first runs (16 or more) of a start that it does not know, and "
+                "no other trials; 0: none, it is taken for any other of its leaf, which says "
+                "little");
+  TextsOption start = add_starts(*this, "the scene's start");
+  TextsOption row =
+      add_texts("row", "A-B=FILE",
+                "gates of rows i_y = A to B as in another matrix of the same bins (may be "
+                "repeated)");
+  TextOption solver =
+      add_text("solver", "NAME",
+               "propagate: step by step; for field.max_gates = 0 also march: row by row, and "
+               "klu: one sparse solve; auto: march without limit, else propagate",
+               "auto");
+  TextOption checkpoint = add_kept();
+  Option strict = add_strict();
+  AskedProgram program = add_cell_program(*this);
+  TextOption netcdf = output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
+  TextOption figure =
+      add_figure(fmt::format("where bodies end, and how; of up to {} starts", kMostPictures));
+  TextOption page = add_page(*this);
+  Option seed_given = add_seed(
+      "seed of all trials; of a matrix of bins: of the resampled matrices behind the "
+      "intervals");
+};
+
 /// "4-6=other.nc": rows whose gates are those of another matrix.
-lattice::RowMatrix parse_rows(const Options& options, const std::string& text) {
+lattice::RowMatrix parse_rows(const PredictCommand& options, const std::string& text) {
   const auto wrong = [&] {
     return UsageError(fmt::format(
         "--row {}: must be rows i_y and a matrix, e.g. 4-6=other.nc or 4=other.nc", text));
@@ -51,16 +85,16 @@ lattice::RowMatrix parse_rows(const Options& options, const std::string& text) {
 }
 
 /// The rows whose gates are those of other matrices, as --row says. Throws UsageError.
-std::vector<lattice::RowMatrix> other_rows(const Options& options) {
+std::vector<lattice::RowMatrix> other_rows(const PredictCommand& options) {
   std::vector<lattice::RowMatrix> rows;
-  for (const std::string& text : options.texts("row")) rows.push_back(parse_rows(options, text));
+  for (const std::string& text : options.row.values()) rows.push_back(parse_rows(options, text));
   return rows;
 }
 
 /// The solver that --solver names. Throws UsageError for a name that none has.
-markov::PredictOptions::Solver solver_of(const Options& options) {
+markov::PredictOptions::Solver solver_of(const PredictCommand& options) {
   using Solver = markov::PredictOptions::Solver;
-  const std::string name = options.text("solver");
+  const std::string name = options.solver.value();
   if (name == "auto") return Solver::automatic;
   if (name == "propagate") return Solver::steps;
   if (name == "march") return Solver::rows;
@@ -70,7 +104,7 @@ markov::PredictOptions::Solver solver_of(const Options& options) {
 
 /// Gives out the result, and warns of what its endings leave out.
 template <class Answer>
-void tell(const Options& options, const lattice::Source& s, const PredictResult& result,
+void tell(const PredictCommand& options, const lattice::Source& s, const PredictResult& result,
           const std::vector<Answer>& answers) {
   options.give_out(result, table_of(result));
   options.warn(too_few_gates(result.shown));
@@ -80,7 +114,7 @@ void tell(const Options& options, const lattice::Source& s, const PredictResult&
 
 /// The file of --netcdf and the figure, if they are asked for: a map for each start.
 template <class Answer>
-void show(const Options& options, const lattice::Source& s, const PredictResult& result,
+void show(const PredictCommand& options, const lattice::Source& s, const PredictResult& result,
           const std::vector<Answer>& answers, lattice::EndingShares Answer::*shares,
           std::array<markov::CellProbabilities, 2> Answer::*gates_95 = nullptr) {
   const auto& [columns, rows, max_gates, fidelity] = result.shown.field;
@@ -93,13 +127,13 @@ void show(const Options& options, const lattice::Source& s, const PredictResult&
         ends_of(answers[i].final, answers[i].*shares), answers[i].exits, s.starts[i]);
     if (gates_95 != nullptr) pictures.back().gates_95 = answers[i].*gates_95;
   }
-  if (options.has("netcdf"))
-    options.write(options.text("netcdf"),
+  if (options.netcdf)
+    options.write(options.netcdf.value(),
                   netcdf_of(pictures, s.problem.map().section, result.made_by));
   options.draw([&] { return figure_of(pictures, result.shown); });
 }
 
-PredictResult empty_result(const Options& options, const lattice::Source& s) {
+PredictResult empty_result(const PredictCommand& options, const lattice::Source& s) {
   return {.shown = ShownField(s),
           .given = s.starts_given ? s.starts : std::vector<std::optional<dynamics::Entry>>(),
           .made_by = options.provenance(s)};
@@ -107,8 +141,8 @@ PredictResult empty_result(const Options& options, const lattice::Source& s) {
 
 /// Predicts with the runs that there are and, unless they were recorded, with more of them until
 /// the error bar keeps the accuracy. Returns the exit status.
-int predict_from_runs(const Options& options, lattice::Source& s) {
-  const auto of_file = runs_of_file(options, s);
+int predict_from_runs(const PredictCommand& options, lattice::Source& s) {
+  const auto of_file = runs_of_file(options.page, s);
   lattice::PooledPrediction made = predict(options, s);
   PredictResult result = empty_result(options, s);
   result.of_runs = {
@@ -120,7 +154,7 @@ int predict_from_runs(const Options& options, lattice::Source& s) {
                                                      s.accuracy.per_leaf, options.seed())};
   tell(options, s, result, prediction.starts);
   const int exit = status_of(options, prediction.health);
-  write_page(options, s, of_file, page_answers(prediction));
+  write_page(options, options.page, s, of_file, page_answers(prediction));
   show(options, s, result, prediction.starts, &lattice::StartAnswer::endings,
        &lattice::StartAnswer::gates_95);
   return exit;
@@ -128,9 +162,9 @@ int predict_from_runs(const Options& options, lattice::Source& s) {
 
 /// Predicts what infinitely many walks with a matrix as it is would give, in the rows of `others`
 /// with these. Returns the exit status.
-int predict_from_matrix(const Options& options, const lattice::Source& s,
+int predict_from_matrix(const PredictCommand& options, const lattice::Source& s,
                         const std::vector<lattice::RowMatrix>& others) {
-  const std::string solver = options.text("solver");
+  const std::string solver = options.solver.value();
   const lattice::CountedField gates =
       others.empty() ? s.counted() : lattice::field_of(s.matrix(), s.path, others);
   const lattice::FieldParams& field = s.problem.field;
@@ -160,7 +194,7 @@ int predict_from_matrix(const Options& options, const lattice::Source& s,
   tell(options, s, result, prediction.starts);
   options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
   const int exit = exit_status(options, faults_recorded(of.status).empty());
-  write_page(options, s, s.pool, page_answers(prediction, s));
+  write_page(options, options.page, s, s.pool, page_answers(prediction, s));
   show(options, s, result, prediction.starts, &lattice::StartPrediction::shares);
   return exit;
 }
@@ -168,7 +202,7 @@ int predict_from_matrix(const Options& options, const lattice::Source& s,
 }  // namespace
 
 int run_predict(const Arguments& arguments) {
-  Options options(
+  PredictCommand options(
       "predict SCENE|MATRIX.nc [SCENE] [options]",
       "The distribution of endings and final gate. From a scene: full trials are run, and their\n"
       "gate runs pooled into a chain, until the error bar keeps --accuracy (the trials' own "
@@ -178,69 +212,44 @@ int run_predict(const Arguments& arguments) {
       "bins: what infinitely many walks with it would give; its intervals count that the\n"
       "matrix is a sample of gate runs, the chain's own error gatewalk validate measures.",
       "gatewalk predict scenes/field.toml --accuracy 0.01 --json prediction.json");
-  options.positional(
-      "matrix", "a scene (-: standard input), or a matrix file written by gatewalk build", true);
-  options.positional("scene", "of a matrix: another scene; without it the matrix's own", false);
-  add_accuracy(options, "0.02; that of a matrix, or half of it if it is for any start");
-  options.add_count(
-      "first-runs", "N",
-      "matrix of trees: N first runs (16 or more) of a start that it does not know, and "
-      "no other trials; 0: none, it is taken for any other of its leaf, which says "
-      "little");
-  add_starts(options, "the scene's start");
-  options.add_texts("row", "A-B=FILE",
-                    "gates of rows i_y = A to B as in another matrix of the same bins (may be "
-                    "repeated)");
-  options.add_text("solver", "NAME",
-                   "propagate: step by step; for field.max_gates = 0 also march: row by row, and "
-                   "klu: one sparse solve; auto: march without limit, else propagate",
-                   "auto");
-  options.add_kept();
-  options.add_strict();
-  add_cell_program(options);
-  options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
-  options.add_figure(fmt::format("where bodies end, and how; of up to {} starts", kMostPictures));
-  add_page(options);
   options.reads("row", [](const std::string& rows) { return rows.substr(rows.find('=') + 1); });
-  options.add_seed(
-      "seed of all trials; of a matrix of bins: of the resampled matrices behind the "
-      "intervals");
   if (!options.parse(arguments)) return kFine;
-  if (const auto starts = options.texts("start");
-      options.has("figure") && starts.size() > kMostPictures)
+  if (const auto starts = options.start.values(); options.figure && starts.size() > kMostPictures)
     throw UsageError(fmt::format("--figure: shows at most {} starts, these are {}", kMostPictures,
                                  starts.size()));
   (void)solver_of(options);
-  lattice::Source s = open_source(options, "matrix");
-  check_page(options, s);
-  const bool no_runs = options.has("first-runs") && options.count("first-runs", 0) == 0,
-             by_solver = options.text("solver") != "auto",
-             as_it_is = !s.pool || by_solver || no_runs || options.has("row");
+  lattice::Source s = open_source(
+      options, {options.matrix, options.second, options.program, options.start, options.accuracy});
+  if (options.page) refuse({options.row}, "beside --page");
+  check_page(options.page, s);
+  const bool no_runs = options.first_runs && options.first_runs.value(0) == 0,
+             by_solver = options.solver.value() != "auto",
+             as_it_is = !s.pool || by_solver || no_runs || options.row;
   // First runs are added to those of a file, by the scene's dynamics or by a program.
   if (!s.file || s.is_recorded() || (s.cells && no_runs))
-    refuse(options, {"first-runs"},
+    refuse({options.first_runs},
            fmt::format("for {}: it is for a matrix of a scene, or (above 0) of a cell program",
                        s.path));
   if (!s.file || (!s.scene && !s.is_imported)) {
-    refuse(options, {"row"}, fmt::format("for {}: it is for a matrix of a scene", s.path));
+    refuse({options.row}, fmt::format("for {}: it is for a matrix of a scene", s.path));
     if (by_solver)
       throw UsageError(
           fmt::format("--solver has no meaning for {}: it is for a matrix of a scene", s.path));
   }
   if (s.is_imported)
-    refuse(options, {"row"}, fmt::format("for {}: it is for a matrix of a scene", s.path));
+    refuse({options.row}, fmt::format("for {}: it is for a matrix of a scene", s.path));
   if (s.file && s.scene) warn_of_range(options, *s.file, s.path, s.entries());
   if (s.file && (s.is_imported || (s.scene && as_it_is))) {
     const std::string why = fmt::format(
         "for {}, which keeps no gate runs that could be added to (or --row, --solver, --first-runs "
         "0 asks for the matrix as it is)",
         s.path);
-    refuse(options, {"accuracy", "gate-runs"}, why);
-    if (!no_runs) refuse(options, {"first-runs"}, why);
+    refuse({options.accuracy.accuracy, options.accuracy.gate_runs}, why);
+    if (!no_runs) refuse({options.first_runs}, why);
     return predict_from_matrix(options, s, other_rows(options));
   }
-  if (options.has("first-runs"))
-    s.accuracy.first_runs = options.count("first-runs", lattice::PoolRunner::kLeastTrials);
+  if (options.first_runs)
+    s.accuracy.first_runs = options.first_runs.value(lattice::PoolRunner::kLeastTrials);
   choose_method(options, s);
   return predict_from_runs(options, s);
 }

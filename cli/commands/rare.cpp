@@ -31,7 +31,7 @@ int run_rare(const Arguments& arguments) {
       "the chain's own\n"
       "answer.",
       "gatewalk rare scenes/field.toml --row 20 --json rare.json");
-  options.scene();
+  const TextOption path = options.scene();
   const CountOption row =
       options.add_count("row", "N",
                         "the row to enter, counted from 0 (default: one behind the field's "
@@ -49,14 +49,14 @@ int run_rare(const Arguments& arguments) {
   options.add_seed();
   options.add_kept({"split trials", "field trials"});
   options.add_strict();
-  add_cell_program(options);
+  const AskedProgram program = add_cell_program(options);
   options.add_figure("the chance of every row up to N");
   if (!options.parse(arguments)) return kFine;
   lattice::SplittingOptions how{.accuracy = accuracy ? accuracy.value() : 0.05,
                                 .seed = options.seed()};
   if (trials) (void)trials.value();  // they are run last
   if (split_trials) how.trials = split_trials.value(2);
-  if (options.has("shard") && !how.trials)
+  if (options.shard && !how.trials)
     throw UsageError("--shard needs --split-trials N: a part must know how many there are in all");
   if (gate_runs) {
     how.most_runs = gate_runs.value(1000);
@@ -64,7 +64,8 @@ int run_rare(const Arguments& arguments) {
   }
   if (!(how.accuracy > 0.0 && how.accuracy < 1.0))
     throw UsageError("--accuracy: must lie between 0 and 1");
-  lattice::Source source = open_source(options, "scene");
+  lattice::Source source =
+      open_source(options, {.path = path, .program = program, .accuracy = {accuracy, gate_runs}});
   if (source.file)
     throw UsageError(source.path + ": is a matrix, and new bodies are to be run: give a scene");
   how.row = row ? static_cast<int>(row.value(1, 10001)) : source.problem.field.rows;

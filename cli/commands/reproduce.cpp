@@ -22,16 +22,17 @@ int run_reproduce(const Arguments& arguments) {
                   "gatewalk reproduce -o paper --quick");
   options.without_scene("the studies have scenes of their own, written to DIR/scenes");
   options.output_folder("folder to write to", {"report.html", "report.json", "claims.csv"});
-  options.add_flag("quick", "fewer trials: half a minute on two cores instead of four");
+  const Option quick =
+      options.add_flag("quick", "fewer trials: half a minute on two cores instead of four");
   if (!options.parse(arguments)) return kFine;
-  const std::string folder = options.text("output");
-  if (options.has("json") && options.text("json") != "-")
+  const std::string folder = options.output.value();
+  if (options.json && options.json.value() != "-")
     throw UsageError("--json takes only - here: DIR/report.json is written anyway");
   try {
     const Report r = reproduce({.folder = folder,
-                                .quick = options.has("quick"),
+                                .quick = static_cast<bool>(quick),
                                 .talk = options.talk(),
-                                .force = options.has("force")});
+                                .force = static_cast<bool>(options.force)});
     options.give_out(r,
                      options.talk()
                          ? fmt::format("\n{}\n{}. Studies {} s. Open {}/report.{}\n",

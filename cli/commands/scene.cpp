@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/scene.h"
-#include "cli/command.h"
 #include "cli/render/meaning.h"
+#include "cli/source_options.h"
 #include "cli/terminal/output.h"
 
 namespace gatewalk::cli {
@@ -40,13 +40,11 @@ int run_scene(const Arguments& arguments) {
       "output", "FILE", "with --new: the file to write (default: standard output)");
   options.add_figure("one gate to scale, each length and force at its place");
   if (!options.parse(arguments)) return kFine;
-  if (output && !is_new) throw UsageError("--output has no meaning without --new");
+  if (!is_new) refuse({output}, "without --new");
   const lattice::Scene scene =
       given ? options.read_scene() : lattice::parse_scene(as_text(options.overrides()), "--set");
   if (is_new) {
-    for (const char* other : {"json", "figure"})
-      if (options.has(other))
-        throw UsageError("--" + std::string(other) + " has no meaning beside --new");
+    refuse({options.json, options.figure}, "beside --new");
     options.write(output ? output.value() : "-", commented(scene));
     return kFine;
   }

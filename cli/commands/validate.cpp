@@ -21,6 +21,45 @@
 namespace gatewalk::cli {
 namespace {
 
+struct ValidateCommand : Options {
+  using Options::Options;
+  TextOption path = scene();
+  CountOption trials =
+      add_count("trials", "N",
+                "trials of the full dynamics per start (default: 100; with --observed 10000, "
+                "or 20 times as many as were observed)");
+  Option seed_given = add_seed();
+  TextOption checkpoint = add_kept({"full dynamics", "force drawn anew"});
+  Option strict = add_strict();
+  TextsOption observed =
+      add_texts("observed", "FILE.csv",
+                "an experiment from this start, to hold against both: a line per trial, "
+                "trial,ending (crossed, left side, right side, trapped, cut off, or went back, "
+                "which the model does not have: left out) with or without gate_x,gate_y (the "
+                "final gate's i_x and i_y); or counts, gate_x,gate_y,count or ending,count, or "
+                "both; files with the same columns are added up");
+  TextOption matrix =
+      input_file("matrix", "matrix to validate; without it one is built from the scene");
+  CountOption matrix_trials =
+      add_count("matrix-trials", "N",
+                "bins: runs per input state of the matrix that is built (default: 100)");
+  AskedAccuracy accuracy = add_accuracy(*this);
+  CountOption walks = add_count("walks", "N", "walks per start (default: as many as trials)");
+  CountOption null_draws =
+      add_count("null-draws", "N",
+                "draws behind each p-value (default: 999 to 9999, by the size of the work)");
+  Option memory =
+      add_flag("memory", "also run the trials with the random force drawn anew at every crossing");
+  TextsOption start = add_starts(*this);
+  TextOption bins = add_bins(*this);
+  AskedProgram program = add_cell_program(*this);
+  TextOption figure = add_figure(
+      "final gates of dynamics and chain, and their difference; below them where bodies are 2 to 8 "
+      "gates later (Chapman-Kolmogorov), and implied time scales; with --observed instead what was "
+      "counted, with intervals, beside both");
+  Asked asked{.path = path, .program = program, .starts = start, .accuracy = accuracy};
+};
+
 /// Of an experiment's trials: so many of the dynamics, and the chance in these is small beside its
 /// own. And at least so many.
 constexpr std::int64_t kTrialsPerObserved = 20, kLeastBesideObserved = 10'000;
@@ -36,24 +75,24 @@ struct ChainUnderTest {
   ValidateResult result;
 };
 
-ChainUnderTest of_scene(const Options& options, lattice::Scene scene,
+ChainUnderTest of_scene(const ValidateCommand& options, lattice::Scene scene,
                         std::vector<dynamics::Entry> starts) {
   ChainUnderTest tested{.problem = lattice::problem_of(scene),
                         .starts = std::move(starts),
                         .result = {.shown = scene,
                                    .like_table4 = lattice::like_table4(scene),
                                    .made_by = options.provenance(scene)}};
-  if (!options.has("observed") && !options.has("start"))
-    tested.result.papers = lattice::table_iv_starts(scene);
+  if (!options.observed && !options.start) tested.result.papers = lattice::table_iv_starts(scene);
   tested.scene = std::move(scene);
   return tested;
 }
 
 /// An experiment is of the scene's start, or of the one that is given.
-std::vector<dynamics::Entry> starts_for(const Options& options, const lattice::Scene& scene) {
-  if (!options.has("observed")) return starts_of(options, scene);
-  auto starts = options.has("start") ? given_starts(options)
-                                     : std::vector<dynamics::Entry>{lattice::own_start(scene)};
+std::vector<dynamics::Entry> starts_for(const ValidateCommand& options,
+                                        const lattice::Scene& scene) {
+  if (!options.observed) return starts_of(options.start, scene);
+  auto starts = options.start ? given_starts(options.start)
+                              : std::vector<dynamics::Entry>{lattice::own_start(scene)};
   if (starts.size() > 1)
     throw UsageError(
         fmt::format("--observed: the counts belong to one start, --start gives {}", starts.size()));
@@ -61,39 +100,39 @@ std::vector<dynamics::Entry> starts_for(const Options& options, const lattice::S
 }
 
 /// Before any run: what so many trials cannot show, and who is left out.
-void warn_of_trials(const Options& options, const lattice::Observed& observed) {
+void warn_of_trials(const ValidateCommand& options, const lattice::Observed& observed) {
   const std::int64_t n = observed.seen.trials();
   for (const std::string& text : observed.remarks) options.warn(text);
   options.warn(who_went_back(observed));
   options.warn(too_few_observed(observed));
   if (!observed.timed.empty())
     options.warn("--observed: times are not looked at here; gatewalk fit does");
-  if (options.has("trials") && options.trials() < kTrialsPerObserved * n)
+  if (options.trials && options.trials.value() < kTrialsPerObserved * n)
     options.warn(
         fmt::format("--trials {} for {} observed: chance in the dynamics' own trials hides "
                     "differences too; take {} or more",
-                    options.trials(), n, kTrialsPerObserved * n));
+                    options.trials.value(), n, kTrialsPerObserved * n));
 }
 
-std::optional<lattice::Observed> experiment_of(const Options& options,
+std::optional<lattice::Observed> experiment_of(const ValidateCommand& options,
                                                const lattice::FieldParams& field) {
-  if (!options.has("observed")) return {};
-  auto observed = lattice::read_observed(options.texts("observed"), field);
+  if (!options.observed) return {};
+  auto observed = lattice::read_observed(options.observed.values(), field);
   warn_of_trials(options, observed);
   return observed;
 }
 
-void put_observed(ChainUnderTest& tested, const Options& options,
+void put_observed(ChainUnderTest& tested, const ValidateCommand& options,
                   std::optional<lattice::Observed> observed) {
-  if (observed) tested.result.observed = {options.texts("observed"), observed->went_back};
+  if (observed) tested.result.observed = {options.observed.values(), observed->went_back};
   tested.observed = std::move(observed);
 }
 
 /// The chain of the file of --matrix.
-ChainUnderTest read_chain(const Options& options) {
-  const std::string path = options.text("matrix");
+ChainUnderTest read_chain(const ValidateCommand& options) {
+  const std::string path = options.matrix.value();
   lattice::SceneMatrix m =
-      read_matrix(options, path, &options.file(options.text("scene")).toml(), options.overrides());
+      read_matrix(options, path, &options.file(options.path.value()).toml(), options.overrides());
   auto starts = starts_for(options, m.scene);
   lattice::require_inside(starts, m.scene);
   auto observed = experiment_of(options, m.scene.field);
@@ -110,8 +149,9 @@ ChainUnderTest read_chain(const Options& options) {
 }
 
 /// A chain of trees, grown for this.
-void put_tree(ChainUnderTest& tested, const Options& options) {
-  const lattice::TreeOptions how{.accuracy = accuracy_of(options), .starts = tested.starts};
+void put_tree(ChainUnderTest& tested, const ValidateCommand& options) {
+  const lattice::TreeOptions how{.accuracy = accuracy_of(options, options.accuracy),
+                                 .starts = tested.starts};
   lattice::TreeChain chain = lattice::make_tree_chain(tested.problem, how, options.work());
   warn_of(options, *chain.prediction, how.accuracy.accuracy);
   ValidatedMatrix& matrix = tested.result.matrix;
@@ -121,17 +161,19 @@ void put_tree(ChainUnderTest& tested, const Options& options) {
 }
 
 /// A chain that is built from the scene, of bins or of trees.
-ChainUnderTest build_chain(const Options& options) {
-  const std::int64_t trials = options.has("matrix-trials") ? options.count("matrix-trials") : 100;
+ChainUnderTest build_chain(const ValidateCommand& options) {
+  const std::int64_t trials = options.matrix_trials ? options.matrix_trials.value() : 100;
   lattice::Scene scene = options.read_scene();
-  const lattice::BinsChoice choice = bins_choice(options, scene, options.has("matrix-trials"));
+  const lattice::BinsChoice choice = bins_choice(options.bins, scene, options.matrix_trials);
   auto starts = starts_for(options, scene);
   lattice::require_inside(starts, scene);
   auto observed = experiment_of(options, scene.field);
   const bool tree = choice.kind == lattice::BinsChoice::Kind::tree;
-  if (tree && options.has("matrix-trials"))
+  if (tree && options.matrix_trials)
     throw UsageError("--matrix-trials is of runs per state of bins: --bins tree takes --accuracy");
-  if (!tree) refuse(options, {"accuracy", "gate-runs"}, "for bins: it is for --bins tree");
+  if (!tree)
+    refuse({options.accuracy.accuracy, options.accuracy.gate_runs},
+           "for bins: it is for --bins tree");
   if (!tree && choice.kind != lattice::BinsChoice::Kind::automatic)
     require_inside_bins(options, starts, scene, lattice::fixed_space(scene));
   auto settled = settle_method(options, scene, lattice::RunsFrom::everywhere);
@@ -154,14 +196,14 @@ ChainUnderTest build_chain(const Options& options) {
 }
 
 /// A chain of trees of cells that another program carries out.
-ChainUnderTest program_chain(const Options& options) {
-  refuse(options, {"bins", "matrix", "matrix-trials"},
+ChainUnderTest program_chain(const ValidateCommand& options) {
+  refuse({options.bins, options.matrix, options.matrix_trials},
          "for cells that another program carries out");
-  lattice::Source s = open_source(options, "scene");
+  lattice::Source s = open_source(options, options.asked);
   ChainUnderTest tested{.problem = s.problem,
                         .starts = s.entries(),
                         .result = {.shown = ShownField(s), .made_by = options.provenance(s)}};
-  if (options.has("observed") && tested.starts.size() > 1)
+  if (options.observed && tested.starts.size() > 1)
     throw UsageError("--observed: the counts belong to one start");
   put_observed(tested, options, experiment_of(options, tested.problem.field));
   put_tree(tested, options);
@@ -170,19 +212,20 @@ ChainUnderTest program_chain(const Options& options) {
 
 /// Of --matrix, of the cells of --cell-program, or built from the scene. Throws UsageError and as
 /// what reads or builds it.
-ChainUnderTest chain_under_test(const Options& options) {
-  if (has_cell(options)) return program_chain(options);
-  return options.has("matrix") ? read_chain(options) : build_chain(options);
+ChainUnderTest chain_under_test(const ValidateCommand& options) {
+  if (has_cell(options, options.program)) return program_chain(options);
+  return options.matrix ? read_chain(options) : build_chain(options);
 }
 
 /// Of a matrix of recorded runs: does one half of the bodies predict the other?
-int validate_recorded(const Options& options) {
-  const std::string path = options.text("scene");
-  refuse(options,
-         {"matrix", "matrix-trials", "observed", "trials", "walks", "accuracy", "gate-runs",
-          "start", "bins", "memory", "strict", "shard", "part", "checkpoint", "resume", "max-time"},
+int validate_recorded(const ValidateCommand& options) {
+  const std::string path = options.path.value();
+  refuse({options.matrix, options.matrix_trials, options.observed, options.trials, options.walks,
+          options.accuracy.accuracy, options.accuracy.gate_runs, options.start, options.bins,
+          options.memory, options.strict, options.shard, options.part, options.checkpoint,
+          options.resume, options.max_time},
          fmt::format("for {}, of whose bodies one half is held against the other", path));
-  const lattice::Source s = open_source(options, "scene");
+  const lattice::Source s = open_source(options, options.asked);
   if (s.is_imported)
     throw UsageError(path +
                      ": is a chain that was made elsewhere: there are no trials to hold it "
@@ -191,7 +234,7 @@ int validate_recorded(const Options& options) {
     throw UsageError(path + ": its runs were not recorded: --cell-program says who makes more");
   lattice::CrossValidationOptions how{
       .null_draws = {}, .seed = options.seed(), .per_leaf = s.accuracy.per_leaf};
-  if (options.has("null-draws")) how.null_draws = options.count("null-draws", 1, kMostNullDraws);
+  if (options.null_draws) how.null_draws = options.null_draws.value(1, kMostNullDraws);
   const CrossValidationResult result{
       .validation = lattice::cross_validate(s.problem, *s.pool, how, options.work()),
       .memory = lattice::body_memory(s.problem, *s.pool, how.per_leaf, how.null_draws.value_or(999),
@@ -212,7 +255,7 @@ int validate_recorded(const Options& options) {
 }  // namespace
 
 int run_validate(const Arguments& arguments) {
-  Options options(
+  ValidateCommand options(
       "validate SCENE [options]",
       "Compares the chain with the full dynamics: for the scene's start (in the paper's field the\n"
       "four of Table IV), or those given, the endings with 95 % intervals and one verdict on "
@@ -226,55 +269,25 @@ int run_validate(const Arguments& arguments) {
       "smallest differences are said that so many trials could have shown. Of a matrix of\n"
       "recorded runs (in SCENE's place): does one half of the bodies predict the other?",
       "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
-  options.scene();
-  options.add_count("trials", "N",
-                    "trials of the full dynamics per start (default: 100; with --observed 10000, "
-                    "or 20 times as many as were observed)");
-  options.add_seed();
-  options.add_kept({"full dynamics", "force drawn anew"});
-  options.add_strict();
-  options.add_texts("observed", "FILE.csv",
-                    "an experiment from this start, to hold against both: a line per trial, "
-                    "trial,ending (crossed, left side, right side, trapped, cut off, or went back, "
-                    "which the model does not have: left out) with or without gate_x,gate_y (the "
-                    "final gate's i_x and i_y); or counts, gate_x,gate_y,count or ending,count, or "
-                    "both; files with the same columns are added up");
   options.reads("observed", [](const std::string& file) { return file; });
-  options.input_file("matrix", "matrix to validate; without it one is built from the scene");
-  options.add_count("matrix-trials", "N",
-                    "bins: runs per input state of the matrix that is built (default: 100)");
-  add_accuracy(options);
-  options.add_count("walks", "N", "walks per start (default: as many as trials)");
-  options.add_count("null-draws", "N",
-                    "draws behind each p-value (default: 999 to 9999, by the size of the work)");
-  options.add_flag("memory",
-                   "also run the trials with the random force drawn anew at every crossing");
-  add_starts(options);
-  add_bins(options);
-  add_cell_program(options);
-  options.add_figure(
-      "final gates of dynamics and chain, and their difference; below them where bodies are 2 to 8 "
-      "gates later (Chapman-Kolmogorov), and implied time scales; with --observed instead what was "
-      "counted, with intervals, beside both");
   if (!options.parse(arguments)) return kFine;
-  if (const lattice::SourceFile& file = options.file(options.text("scene"));
-      !has_cell(options) && file.is_matrix() && file.is_of_cells())
+  if (const lattice::SourceFile& file = options.file(options.path.value());
+      !has_cell(options, options.program) && file.is_matrix() && file.is_of_cells())
     return validate_recorded(options);
-  lattice::ValidationOptions how{.trials = options.has("trials") ? options.trials() : 100,
+  lattice::ValidationOptions how{.trials = options.trials ? options.trials.value() : 100,
                                  .walks = {},
                                  .null_draws = {},
                                  .seed = options.seed(),
-                                 .force_memory = options.has("memory"),
+                                 .force_memory = static_cast<bool>(options.memory),
                                  .observed = {}};
-  if (options.has("walks")) how.walks = options.count("walks");
-  if (options.has("null-draws")) how.null_draws = options.count("null-draws", 1, kMostNullDraws);
-  if (const auto starts = options.texts("start").size();
-      options.has("figure") && starts > kMostValidated)
+  if (options.walks) how.walks = options.walks.value();
+  if (options.null_draws) how.null_draws = options.null_draws.value(1, kMostNullDraws);
+  if (const auto starts = options.start.values().size(); options.figure && starts > kMostValidated)
     throw UsageError(
         fmt::format("--figure: shows at most {} starts, these are {}", kMostValidated, starts));
-  if (options.has("matrix")) {
-    refuse(options, {"bins"}, "beside --matrix: that one has its states already");
-    refuse(options, {"matrix-trials", "accuracy", "gate-runs"},
+  if (options.matrix) {
+    refuse({options.bins}, "beside --matrix: that one has its states already");
+    refuse({options.matrix_trials, options.accuracy.accuracy, options.accuracy.gate_runs},
            "beside --matrix: that one is built already");
   }
   const dynamics::Stopwatch watch;
@@ -283,7 +296,7 @@ int run_validate(const Arguments& arguments) {
   result.matrix.seconds = watch.seconds();
   if (const auto& observed = tested.observed) {
     how.observed = observed->seen;
-    if (!options.has("trials"))
+    if (!options.trials)
       how.trials = std::max(kLeastBesideObserved, kTrialsPerObserved * observed->seen.trials());
   }
   result.validation = lattice::validate_chain(tested.problem, result.matrix.matrices, tested.starts,

@@ -21,8 +21,8 @@ int run_walk(const Arguments& arguments) {
       "gatewalk walk matrix.nc scenes/field.toml --walks 1e6 --seed 1 --json walks.json");
   const TextOption matrix =
       options.positional("matrix", "matrix file written by gatewalk build", true);
-  options.positional("scene", "scene file (-: standard input); without it the matrix's own scene",
-                     false);
+  const TextOption scene = options.positional(
+      "scene", "scene file (-: standard input); without it the matrix's own scene", false);
   const CountOption walks_given = options.add_count("walks", "N", "number of walks", "100");
   options.add_seed();
   options.add_strict();
@@ -33,7 +33,7 @@ int run_walk(const Arguments& arguments) {
   const std::string path = matrix.value();
   if (!options.file(path).is_matrix())
     (void)options.file(path).matrix();  // says what it is instead
-  lattice::Source s = open_source(options, "matrix");
+  lattice::Source s = open_source(options, {.path = matrix, .scene = scene});
   const StartedChain from = chain_from_start(options, s);
   const std::int64_t walks = walks_given.value();
   const ShownField shown = ShownField(s);

@@ -59,11 +59,11 @@ void describe_input(Fields& out, const std::string& path, const lattice::TomlFil
   out.count({"crc32", "1", "checksum of the file's bytes"}, check);
 }
 
-bool is_by_trials(const Options& options) { return options.has("part") && !options.has("shard"); }
+bool is_by_trials(const Options& options) { return options.part && !options.shard; }
 
 /// The scene as TOML; none where the command reads a matrix or recorded runs in its place.
 std::optional<std::string> scene_of(const Options& options) {
-  if (!options.has("scene")) return {};
+  if (!options.scene_file) return {};
   try {
     return lattice::to_toml(options.read_scene());
   } catch (const lattice::SceneError&) {
@@ -75,7 +75,7 @@ std::optional<std::string> scene_of(const Options& options) {
 void describe_head(Fields& out, const Options& options) {
   const CommandWords& words = options.words();
   std::vector<std::string> shaping = words.shaping;
-  if (options.has("passages")) shaping.emplace_back("--passages");  // what is kept has them
+  if (options.passages) shaping.emplace_back("--passages");  // what is kept has them
   out.text({"version", "version of the program"}, kVersion);
   out.text({"commit", "commit of its sources"}, kCommit);
   out.text({"command", "name of the command"}, words.command);
@@ -88,8 +88,8 @@ void describe_head(Fields& out, const Options& options) {
              describe_input(f, path, options.file(path).toml());
            });
   out.texts({"others", "what else shapes the result, and is no word"}, words.others);
-  out.optional(options.has("shard"), [&](Fields& part) {
-    const Shard shard = shard_of(options.text("shard"));
+  out.optional(static_cast<bool>(options.shard), [&](Fields& part) {
+    const Shard shard = shard_of(options.shard.value());
     part.counts({"shard", "1", "number of the part, from 1, and number of parts"},
                 {shard.number, shard.of});
   });
@@ -104,9 +104,9 @@ void describe_head(Fields& out, const Options& options) {
 std::string file_beside_result(const Options& options) {
   const CommandWords& words = options.words();
   if (words.output_is_folder) return "";  // whose studies are not kept
-  for (const char* name : {"output", "csv", "json"})
-    if (options.has(name) && options.text(name) != "-") {
-      const std::string path = options.text(name);
+  for (const TextOption& output : {options.output, options.csv, options.json})
+    if (output && output.value() != "-") {
+      const std::string path = output.value();
       std::error_code error;
       const auto kind = std::filesystem::status(path, error).type();
       const bool is_file = kind == std::filesystem::file_type::regular ||
@@ -135,58 +135,60 @@ void declare_kept(Options& options, bool can_be_divided) {
 }
 
 void check_kept(const Options& options) {
-  if (options.has("max-time")) (void)seconds_of(options.text("max-time"));
-  if (options.has("shard")) {
-    (void)shard_of(options.text("shard"));
-    if (!options.has("part")) throw UsageError("--shard needs --part FILE, where the part goes");
-    if (options.has("first-trial"))
+  if (options.max_time) (void)seconds_of(options.max_time.value());
+  if (options.shard) {
+    (void)shard_of(options.shard.value());
+    if (!options.part) throw UsageError("--shard needs --part FILE, where the part goes");
+    if (options.first_trial)
       throw UsageError("--shard and --first-trial both say which part: give one");
   }
-  if (is_by_trials(options) && !options.has("first-trial"))
+  if (is_by_trials(options) && !options.first_trial)
     throw UsageError("--part needs --shard I/N: which part");
-  if (options.has("part") && options.has("checkpoint"))
+  if (options.part && options.checkpoint)
     throw UsageError("--checkpoint has no meaning beside --part, which keeps what is done");
 }
 
 std::unique_ptr<KeptRun> kept_run(const Options& options, const std::set<std::string>& divided) {
   std::vector<std::string> inputs = options.files_read();
-  if (options.text("scene") == "-") inputs.emplace_back("-");
+  if (options.scene_file.value() == "-") inputs.emplace_back("-");
   for (const std::string& path : inputs) {
     std::error_code error;
     if (std::filesystem::is_regular_file(path, error)) continue;
-    for (const char* name : {"checkpoint", "resume", "max-time", "part"})
-      if (options.has(name))
-        throw UsageError(fmt::format(
-            "--{}: {} is no file, and what was read from it cannot be read again", name, path));
+    for (const Option& option : std::initializer_list<Option>{options.checkpoint, options.resume,
+                                                              options.max_time, options.part})
+      if (option)
+        throw UsageError(
+            fmt::format("--{}: {} is no file, and what was read from it cannot be read again",
+                        option.name(), path));
     return nullptr;
   }
   KeptPlan plan{.head = {},
-                .file = options.text(options.has("part") ? "part" : "checkpoint"),
-                .goes_on = options.has("resume"),
-                .is_part = options.has("part"),
+                .file = (options.part ? options.part : options.checkpoint).value(),
+                .goes_on = static_cast<bool>(options.resume),
+                .is_part = static_cast<bool>(options.part),
                 .divided = divided,
                 .parts = options.words().parts,
                 .writes = is_first_rank(),
                 .warn = [&options](const std::string& text) { options.warn(text); }};
-  if (options.has("shard")) plan.shard = shard_of(options.text("shard"));
+  if (options.shard) plan.shard = shard_of(options.shard.value());
   if (plan.file.empty() && plan.parts.empty()) {
     plan.file = file_beside_result(options);
-    plan.at_once = options.has("max-time");
-    if (plan.file.empty() && (options.has("max-time") || plan.goes_on))
+    plan.at_once = static_cast<bool>(options.max_time);
+    if (plan.file.empty() && (options.max_time || plan.goes_on))
       throw UsageError(fmt::format("--{} needs an output file, or --checkpoint FILE",
                                    plan.goes_on ? "resume" : "max-time"));
     if (plan.file.empty()) return nullptr;
   }
   const bool is_there = std::filesystem::exists(plan.file), is_kept = PieceFile::is_one(plan.file);
-  if (is_kept && !plan.goes_on && !options.has("force"))
+  if (is_kept && !plan.goes_on && !options.force)
     throw UsageError(plan.file +
                      ": holds what an earlier run has done: --resume goes on with it, --force "
                      "begins anew");
-  if (is_there && !is_kept && !(options.has("force") && !plan.goes_on))
+  if (is_there && !is_kept && !(options.force && !plan.goes_on))
     throw UsageError(plan.file +
                      ": is there and holds no pieces of a run: name another file, or --force");
-  if (options.has("max-time") && !ranks())  // which stop together
-    plan.most_seconds = seconds_of(options.text("max-time"));
+  if (options.max_time && !ranks())  // which stop together
+    plan.most_seconds = seconds_of(options.max_time.value());
   plan.head = json_text([&](Fields& out) { describe_head(out, options); }, -1);
   return std::make_unique<KeptRun>(std::move(plan));
 }
@@ -195,8 +197,8 @@ dynamics::Work kept_work(const Options& options, dynamics::Work work, KeptRun* k
   work.kept = kept;
   work.ranks = ranks();
   if (!work.ranks) return work;
-  const double most = options.has("max-time") ? seconds_of(options.text("max-time"))
-                                              : std::numeric_limits<double>::infinity();
+  const double most = options.max_time ? seconds_of(options.max_time.value())
+                                       : std::numeric_limits<double>::infinity();
   set_ranks_stop([most, since = dynamics::Stopwatch()] {  // all of them together
     return since.seconds() >= most || interrupted();
   });
