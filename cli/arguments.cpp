@@ -6,9 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
-#include <memory>
-#include <utility>
 
 #include "cli/fields/text.h"
 #include "cli/render/choice.h"

@@ -321,14 +321,13 @@ CountOption Options::add_first_trial() {
 }
 
 TextOption Options::input_file(const std::string& name, const std::string& help) {
-  add_text(name, "FILE", help);
-  reads(name, [](const std::string& value) { return value; });
-  return {*this, name};
+  const TextOption file = add_text(name, "FILE", help);
+  reads(file, [](const std::string& value) { return value; });
+  return file;
 }
 
-void Options::reads(const std::string& name,
-                    std::function<std::string(const std::string&)> file_in) {
-  state_->reads.emplace_back(name, std::move(file_in));
+void Options::reads(const Option& option, std::function<std::string(const std::string&)> file_in) {
+  state_->reads.emplace_back(option.name(), std::move(file_in));
 }
 
 TextOption Options::output_file(const std::string& name, const std::string& shown,
@@ -404,7 +403,7 @@ bool Options::parse(const Arguments& arguments) {
     state_->output_files.push_back({"csv", Content::text});
     state_->has_table = true;
   }
-  reads("set", [](const std::string& given) { return lattice::TomlFile(given, "").map_file(); });
+  reads(set, [](const std::string& given) { return lattice::TomlFile(given, "").map_file(); });
   if (arguments.helped) {
     arguments.helped(help());
     return false;

@@ -196,8 +196,8 @@ class Options {
 
   /// Declares --name, a file that is read.
   TextOption input_file(const std::string& name, const std::string& help);
-  /// A value of the declared option --name makes the command read the file `file_in(value)`.
-  void reads(const std::string& name, std::function<std::string(const std::string&)> file_in);
+  /// A value of this option makes the command read the file `file_in(value)`.
+  void reads(const Option& option, std::function<std::string(const std::string&)> file_in);
   /// Declares --name, a file that is written; `shown` is FILE or FILE.html, ... Only one output may
   /// go to standard output (-), and none that is binary.
   enum class Content { text, binary };

@@ -37,7 +37,7 @@ int run_power(const Arguments& arguments) {
       "versus", "KEY=VALUE",
       "the scene to tell this one from has this key otherwise (may be repeated); or "
       "a matrix of another group's recorded runs");
-  options.reads("versus", [&options](const std::string& given) {
+  options.reads(other_given, [&options](const std::string& given) {
     return options.file(given).is_matrix() ? given : lattice::TomlFile(given, "").map_file();
   });
   const CountOption trials = options.add_count(

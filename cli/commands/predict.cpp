@@ -212,7 +212,8 @@ int run_predict(const Arguments& arguments) {
       "bins: what infinitely many walks with it would give; its intervals count that the\n"
       "matrix is a sample of gate runs, the chain's own error gatewalk validate measures.",
       "gatewalk predict scenes/field.toml --accuracy 0.01 --json prediction.json");
-  options.reads("row", [](const std::string& rows) { return rows.substr(rows.find('=') + 1); });
+  options.reads(options.row,
+                [](const std::string& rows) { return rows.substr(rows.find('=') + 1); });
   if (!options.parse(arguments)) return kFine;
   if (const auto starts = options.start.values(); options.figure && starts.size() > kMostPictures)
     throw UsageError(fmt::format("--figure: shows at most {} starts, these are {}", kMostPictures,

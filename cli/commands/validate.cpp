@@ -269,7 +269,7 @@ int run_validate(const Arguments& arguments) {
       "smallest differences are said that so many trials could have shown. Of a matrix of\n"
       "recorded runs (in SCENE's place): does one half of the bodies predict the other?",
       "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
-  options.reads("observed", [](const std::string& file) { return file; });
+  options.reads(options.observed, [](const std::string& file) { return file; });
   if (!options.parse(arguments)) return kFine;
   if (const lattice::SourceFile& file = options.file(options.path.value());
       !has_cell(options, options.program) && file.is_matrix() && file.is_of_cells())
