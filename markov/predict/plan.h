@@ -177,4 +177,11 @@ using MaybePredicted = std::vector<std::optional<FinalDistribution>>;
                                              const std::vector<Start>& starts,
                                              const PredictOptions& options, bool may_stop);
 
+/// Where walks circle too long for sums, and there is no limit of cells: by the elimination without
+/// subtraction, which keeps all digits, in at most so many products; of fields too large for it by
+/// KLU's LU, where that keeps 6 digits. None where neither does.
+[[nodiscard]] std::optional<FinalDistribution> solve_circles(const FieldChain& chain,
+                                                             const Field& field, const Start& start,
+                                                             double most_operations = 2e9);
+
 }  // namespace gatewalk::markov

@@ -149,20 +149,17 @@ MaybePredicted in_groups(const std::vector<Start>& starts, std::int64_t size, Ru
   return all;
 }
 
-/// Where walks circle too long for sums: by the elimination without subtraction, which keeps all
-/// digits; of fields too large for it by KLU's LU, where that keeps enough. None where neither
-/// does.
+}  // namespace
+
 std::optional<FinalDistribution> solve_circles(const FieldChain& chain, const Field& field,
-                                               const Start& start) {
-  if (auto direct = solve_directly(chain, field, start)) return direct;
+                                               const Start& start, double most_operations) {
+  if (auto direct = solve_directly(chain, field, start, most_operations)) return direct;
   try {
     return solve_absorption(chain, field, start);
   } catch (const std::runtime_error&) {  // too few digits, or too large
     return {};
   }
 }
-
-}  // namespace
 
 Predictor::Predictor(FieldChain chain) : plan_(plan_of(std::move(chain))) {}
 

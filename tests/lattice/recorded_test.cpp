@@ -429,7 +429,7 @@ TEST_F(Recorded, WhatCouldNotBeReadIsNotWritten) {
 
 /// The text between two lines of three backticks, the first of which goes on with `kind`.
 std::string example_of(const std::string& kind) {
-  std::ifstream file(kRoot / "lattice" / "cells" / "README.md");
+  std::ifstream file(kRoot / "lattice" / "recorded" / "README.md");
   std::string text, line;
   while (std::getline(file, line) && line != "```" + kind) continue;
   while (std::getline(file, line) && line != "```") text += line + "\n";

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "markov/predict/plan.h"
 #include "tests/markov/chains.h"
 #include "tests/support/field_states.h"
 
@@ -135,30 +136,34 @@ TEST(Circling, AgreesWithSumsInALargerField) {
       std::invalid_argument);
 }
 
-// Of so many states elimination without subtraction would be too large: KLU's LU is taken, whose
-// digits the answer tells.
-TEST(Circling, OfManyStatesByKlu) {
-  const auto circling = [](int states, double trapped) {
+// Where elimination without subtraction would be too large KLU's LU is taken, whose digits the
+// answer tells; where it keeps too few, none.
+TEST(Circling, TooLargeForEliminationByKlu) {
+  const int kStates = 60;
+  const auto circling = [kStates](double trapped, double most_operations) {
     test::Words words(3);
     std::vector<Eigen::Triplet<double>> entries;
     std::vector<Exit> exits;
-    for (int i = 0; i < states; ++i) {
+    for (int i = 0; i < kStates; ++i) {
       for (int k = 0; k < 8; ++k)
-        entries.emplace_back(i, words.below(states), (1.0 - trapped) / 8.0);
-      entries.emplace_back(i, states, trapped);
+        entries.emplace_back(i, words.below(kStates), (1.0 - trapped) / 8.0);
+      entries.emplace_back(i, kStates, trapped);
       exits.push_back({i, 0, 0});
     }
     exits.push_back({});
-    Probabilities p(states, states + 1);
+    Probabilities p(kStates, kStates + 1);
     p.setFromTriplets(entries.begin(), entries.end());
-    return predict(FieldChain(Chain::from_probabilities(p, exits)), {1, 1}, {{0, 0, 0}}).front();
+    return solve_circles(FieldChain(Chain::from_probabilities(p, exits)), {1, 1}, {0, 0, 0},
+                         most_operations);
   };
-  const FinalDistribution many = circling(2000, 1e-4), few = circling(300, 1e-9);
-  EXPECT_EQ(many.operations, 0.0);
-  EXPECT_NEAR(many.trapped(), 1.0, many.remainder + many.rounding);
-  EXPECT_LE(many.remainder + many.rounding, 1e-7);
-  EXPECT_GT(few.operations, 0.0);
-  EXPECT_NEAR(few.trapped(), 1.0, 1e-11);
+  const auto eliminated = circling(1e-4, 2e9), by_klu = circling(1e-4, 1e3);
+  ASSERT_TRUE(eliminated && by_klu);
+  EXPECT_GT(eliminated->operations, 1e3);
+  EXPECT_NEAR(eliminated->trapped(), 1.0, 1e-12);
+  EXPECT_EQ(by_klu->operations, 0.0);
+  EXPECT_GT(by_klu->rounding, eliminated->rounding);
+  EXPECT_NEAR(by_klu->trapped(), 1.0, by_klu->remainder + by_klu->rounding);
+  EXPECT_FALSE(circling(1e-12, 1e3));
 }
 
 // What sums settle in time is left to them: the same bits as they give.
