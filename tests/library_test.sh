@@ -19,7 +19,7 @@ cd - >/dev/null
 if command -v pkg-config >/dev/null; then
   pc=$(find "$work/prefix" -name gatewalk.pc)
   export PKG_CONFIG_PATH=${pc%/*}
-  [ -f "$(pkg-config --variable=includedir gatewalk)/lattice/problem.h" ] || { cat "$pc"; exit 1; }
+  [ -f "$(pkg-config --variable=includedir gatewalk)/lattice/field/problem.h" ] || { cat "$pc"; exit 1; }
   [ -f "$(pkg-config --variable=libdir gatewalk)/libgatewalk_lattice.a" ] || { cat "$pc"; exit 1; }
 fi
 
