@@ -208,7 +208,7 @@ TEST(FirstPassage, OfMovesBackIsTheGamblersRuin) {
 TEST(FirstPassage, KeepsItsDigitsWhereWalksHardlyEnd) {
   for (const double escape : {1e-6, 1e-14, 1e-200}) {
     const FirstPassages f =
-        first_passages(nearly_closed(escape), {2, 1}, {.ending = Ending::trapped}, 0);
+        first_passages(test::nearly_closed(escape), {2, 1}, {.ending = Ending::trapped}, 0);
     EXPECT_NEAR(f.chance[0], 1.0, 1e-14);
     EXPECT_NEAR(f.draws[0] * escape, 1.0, 1e-13);
   }
