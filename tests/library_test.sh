@@ -36,7 +36,7 @@ program() {  # README NUMBER CHECK
 program "$root/README.md" 1 'std::abs(exact.final_cells.sum() - 1.0) < 1e-9 && exact.final_cells.rows() == 9' \
   >"$work/project/example.cpp"
 program "$root/lattice/README.md" 1 'prediction.reached' >"$work/project/prediction.cpp"
-program "$root/lattice/README.md" 2 'v.starts[0].dynamics.final_gates.sum() == 1000 && v.starts[0].judgement.p > 0.0 && v.starts[0].judgement.p <= 1.0 && (v.starts[0].exact_against.total_variation < 0.2 || wrong)' \
+program "$root/lattice/README.md" 2 'v.starts[0].dynamics.final_cells.sum() == 1000 && v.starts[0].joint_test.p > 0.0 && v.starts[0].joint_test.p <= 1.0 && (v.starts[0].exact_against.total_variation < 0.2 || wrong)' \
   >"$work/project/study.cpp"
 cp "$root"/tests/library/* "$root"/results/lorentz/diffusion.* "$work/project"
 cat >"$work/project/CMakeLists.txt" <<'END'
