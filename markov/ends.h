@@ -59,7 +59,36 @@ struct Ends {
   [[nodiscard]] Number unsampled() const { return (*this)[Ending::unsampled]; }
 
   /// Throws std::invalid_argument if both have cells, of different fields.
-  Ends& operator+=(const Ends& other);
+  Ends& operator+=(const Ends& other) {
+    if (other.final_cells.size() == 0) return *this;
+    if (final_cells.size() == 0) return *this = other;
+    if (final_cells.rows() != other.final_cells.rows() ||
+        final_cells.cols() != other.final_cells.cols())
+      throw std::invalid_argument("tallies of different fields cannot be added");
+    const auto trapped_in = [](const Ends& ends, std::int64_t cell) {
+      CellEndings<Number> all{cell};
+      all[Ending::trapped] = ends.final_cells.data()[cell];
+      return all;
+    };
+    std::vector<CellEndings<Number>> both;
+    auto here = mixed_cells.begin();
+    auto there = other.mixed_cells.begin();
+    while (here != mixed_cells.end() || there != other.mixed_cells.end()) {
+      const bool is_here = here != mixed_cells.end() &&
+                           (there == other.mixed_cells.end() || here->cell <= there->cell),
+                 is_there = there != other.mixed_cells.end() &&
+                            (here == mixed_cells.end() || there->cell <= here->cell);
+      auto& sum = both.emplace_back(is_here ? *here : trapped_in(*this, there->cell));
+      const auto more = is_there ? *there : trapped_in(other, here->cell);
+      for (std::size_t e = 0; e < kEndings; ++e) sum.by_ending[e] += more.by_ending[e];
+      here += is_here;
+      there += is_there;
+    }
+    mixed_cells = std::move(both);
+    final_cells += other.final_cells;
+    for (std::size_t e = 0; e < kEndings; ++e) endings[e] += other.endings[e];
+    return *this;
+  }
 };
 
 /// Those that were trapped in each cell; that left the field from it (rows x columns).
@@ -90,38 +119,6 @@ template <class Number, class ShareOf>
     std::transform(from.by_ending.begin(), from.by_ending.end(), cell.by_ending.begin(), share_of);
   }
   return shares;
-}
-
-template <class Number>
-Ends<Number>& Ends<Number>::operator+=(const Ends& other) {
-  if (other.final_cells.size() == 0) return *this;
-  if (final_cells.size() == 0) return *this = other;
-  if (final_cells.rows() != other.final_cells.rows() ||
-      final_cells.cols() != other.final_cells.cols())
-    throw std::invalid_argument("tallies of different fields cannot be added");
-  const auto trapped_in = [](const Ends& ends, std::int64_t cell) {
-    CellEndings<Number> all{cell};
-    all[Ending::trapped] = ends.final_cells.data()[cell];
-    return all;
-  };
-  std::vector<CellEndings<Number>> both;
-  auto here = mixed_cells.begin();
-  auto there = other.mixed_cells.begin();
-  while (here != mixed_cells.end() || there != other.mixed_cells.end()) {
-    const bool is_here = here != mixed_cells.end() &&
-                         (there == other.mixed_cells.end() || here->cell <= there->cell),
-               is_there = there != other.mixed_cells.end() &&
-                          (here == mixed_cells.end() || there->cell <= here->cell);
-    auto& sum = both.emplace_back(is_here ? *here : trapped_in(*this, there->cell));
-    const auto more = is_there ? *there : trapped_in(other, here->cell);
-    for (std::size_t e = 0; e < kEndings; ++e) sum.by_ending[e] += more.by_ending[e];
-    here += is_here;
-    there += is_there;
-  }
-  mixed_cells = std::move(both);
-  final_cells += other.final_cells;
-  for (std::size_t e = 0; e < kEndings; ++e) endings[e] += other.endings[e];
-  return *this;
 }
 
 }  // namespace gatewalk::markov
