@@ -64,10 +64,10 @@ void take_options(const Options& options, const Asked& asked, Source& s) {
     refuse({asked.accuracy.gate_runs}, "for " + s.path +
                                            (s.is_imported ? ", a chain that was made elsewhere"
                                                           : ", whose runs were recorded"));
-  if (s.scene && s.file) warn_of_faults(options, *s.file, s.path);
+  if (s.pool) s.accuracy = accuracy_of(options, asked.accuracy, s.accuracy);
+  const std::vector<std::string> of_starts = s.start_from(asked.starts.values());
   for (const std::string& text : s.doubts) options.warn(text);
-  s.accuracy = accuracy_of(options, asked.accuracy, s.accuracy);
-  for (const std::string& text : s.start_from(asked.starts.values())) options.warn(text);
+  for (const std::string& text : of_starts) options.warn(text);
 }
 
 /// The scene with --versus on top of --set.
@@ -112,7 +112,7 @@ Source open_source(const Options& options, const Asked& asked) {
   const lattice::SourceFile& file = options.file(asked.path.value());
   lattice::SourceOptions how;
   if (const std::string scene = asked.scene.value(); !scene.empty())
-    how.scene = &options.file(scene).toml();
+    how.scene = &options.file(scene);
   if (has_cell(options, asked.program)) {
     if (file.is_matrix() && !parameters_of(options).empty())
       throw UsageError(fmt::format(
@@ -124,6 +124,10 @@ Source open_source(const Options& options, const Asked& asked) {
     refuse({asked.program.timeout}, "without --cell-program");
     how.overrides = options.overrides();
   }
+  if (!file.is_matrix())
+    (void)accuracy_of(options, asked.accuracy, {});  // refused before a cell program is started
+  else if (!how.cell && !file.is_of_cells())
+    warn_of_faults(options, *file.matrix(), file.path());
   Source s = Source::open(file, how);
   if (how.cell) options.depends_on(text_of(*s.problem.cells.cells.front()));
   take_options(options, asked, s);

@@ -60,11 +60,18 @@ struct Ends {
 
   /// Throws std::invalid_argument if both have cells, of different fields.
   Ends& operator+=(const Ends& other) {
-    if (other.final_cells.size() == 0) return *this;
-    if (final_cells.size() == 0) return *this = other;
-    if (final_cells.rows() != other.final_cells.rows() ||
-        final_cells.cols() != other.final_cells.cols())
+    const bool has_cells = final_cells.size() > 0, adds_cells = other.final_cells.size() > 0;
+    if (has_cells && adds_cells &&
+        (final_cells.rows() != other.final_cells.rows() ||
+         final_cells.cols() != other.final_cells.cols()))
       throw std::invalid_argument("tallies of different fields cannot be added");
+    for (std::size_t e = 0; e < kEndings; ++e) endings[e] += other.endings[e];
+    if (!adds_cells) return *this;
+    if (!has_cells) {
+      final_cells = other.final_cells;
+      mixed_cells = other.mixed_cells;
+      return *this;
+    }
     const auto trapped_in = [](const Ends& ends, std::int64_t cell) {
       CellEndings<Number> all{cell};
       all[Ending::trapped] = ends.final_cells.data()[cell];
@@ -86,7 +93,6 @@ struct Ends {
     }
     mixed_cells = std::move(both);
     final_cells += other.final_cells;
-    for (std::size_t e = 0; e < kEndings; ++e) endings[e] += other.endings[e];
     return *this;
   }
 };

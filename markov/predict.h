@@ -27,7 +27,7 @@ struct FinalDistribution : Ends<double> {
   /// probabilities included).
   double rounding = 0.0;
   double mean_steps = 0.0;  // draws per walk, as WalkTally::steps / walks; without the remainder's
-  int steps = 0;            // propagation steps or sweeps done (0 for a solve)
+  int steps = 0;            // propagation steps done (0 for a solve)
   double operations = 0.0;  // products that Solver::direct took; 0 for any other
 };
 

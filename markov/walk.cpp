@@ -11,7 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
 

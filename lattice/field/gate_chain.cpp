@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/field/gate_chain.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <iterator>
-#include <set>
-#include <stdexcept>
-#include <vector>
-
 namespace gatewalk::lattice {
 
 using namespace dynamics;

@@ -2,10 +2,6 @@
 #pragma once
 /// Counts + state space -> chain.
 
-#include <functional>
-#include <map>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "dynamics/cells/cell_map.h"

@@ -427,8 +427,9 @@ std::vector<CostSums> first_cost_sums(const Kernel& kernel,
       [&](int leaf) {
         const markov::Counts& counts = kernel.counts[static_cast<std::size_t>(type)];
         for (auto k = counts.outerIndexPtr()[leaf]; k < counts.outerIndexPtr()[leaf + 1]; ++k)
-          row[counts.innerIndexPtr()[k]] +=
-              sums[static_cast<std::size_t>(type)][static_cast<std::size_t>(k)];
+          if (counts.valuePtr()[k] > 0)
+            row[counts.innerIndexPtr()[k]] +=
+                sums[static_cast<std::size_t>(type)][static_cast<std::size_t>(k)];
       });
   std::vector<CostSums> in_order;
   for (const auto& [output, sum] : row) in_order.push_back(sum);

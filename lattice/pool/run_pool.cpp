@@ -2,8 +2,6 @@
 #include "lattice/pool/run_pool.h"
 
 #include <algorithm>
-#include <cmath>
-#include <set>
 
 namespace gatewalk::lattice {
 

@@ -17,17 +17,21 @@ PooledRange range_in(std::string_view text, const dynamics::Section& section) {
     if (ends.size() != 2) throw std::invalid_argument("a range has two ends");
     range.range.at[axis] = {json_number(ends[0]), json_number(ends[1])};
   }
-  range.tried_on = static_cast<int>(json.number("tried_on_starts"));
+  range.tried_on = json.count<int>("tried_on_starts");
   range.kernel_error_95 = json.number("kernel_error_95");
   range.worst_kernel_error_95 = json.number("worst_kernel_error_95");
   return range;
 }
 
 TreeInfo trees_in(const JsonObject& json, const dynamics::Section& section) {
-  TreeInfo trees{.entries_per_leaf = static_cast<int>(json.number("entries_per_leaf")),
-                 .gate_runs = static_cast<std::int64_t>(json.number("gate_runs")),
+  TreeInfo trees{.entries_per_leaf = json.count<int>("entries_per_leaf"),
+                 .gate_runs = json.count<std::int64_t>("gate_runs"),
                  .states_bias = json.number("states_bias")};
-  if (json.has("accuracy")) trees.accuracy = json.number("accuracy");
+  if (json.has("accuracy")) {
+    trees.accuracy = json.number("accuracy");
+    if (!(*trees.accuracy > 0.0 && *trees.accuracy < 1.0))
+      throw std::invalid_argument("accuracy is not between 0 and 1");
+  }
   if (json.has("error_95")) {
     trees.error_95.emplace();
     for (const std::string_view error : json_elements(json.at("error_95")))
@@ -39,7 +43,7 @@ TreeInfo trees_in(const JsonObject& json, const dynamics::Section& section) {
   if (json.at("own_trials") == "null") return trees;
   const JsonObject own(json.at("own_trials"));
   *trees.hausman_check =
-      HausmanCheck{static_cast<std::int64_t>(own.number("trials")), own.number("total_variation"),
+      HausmanCheck{own.count<std::int64_t>("trials"), own.number("total_variation"),
                    own.number("chance_total_variation"), own.number("p")};
   return trees;
 }

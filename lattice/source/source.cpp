@@ -63,8 +63,8 @@ Source open_scene(const SourceFile& file, const SourceOptions& options) {
 }
 
 Source open_matrix(const SourceFile& file, const SourceOptions& options) {
-  SceneMatrix m =
-      scene_matrix(file.matrix(), file.own_scene(), file.path(), options.scene, options.overrides);
+  SceneMatrix m = scene_matrix(file.matrix(), file.own_scene(), file.path(),
+                               options.scene ? &options.scene->toml() : nullptr, options.overrides);
   Source s{.path = file.path(), .scene = std::move(m.scene), .file = std::move(m.file)};
   if (options.scene)  // a matrix's own scene names every key
     s.doubts = keys_without_effect(*s.scene, RunsFrom::everywhere);
@@ -206,6 +206,11 @@ std::vector<std::string> doubts_of_starts(const Source& s) {
 
 }  // namespace
 
+const TomlFile& SourceFile::toml() const {
+  if (!toml_) toml_ = TomlFile::read(path_);
+  return *toml_;
+}
+
 const std::shared_ptr<const MatrixFile>& SourceFile::matrix() const {
   if (!matrix_) matrix_ = std::make_shared<const MatrixFile>(read_matrix(path_));
   return matrix_;
@@ -232,7 +237,7 @@ Source Source::open(const SourceFile& file, const SourceOptions& options) {
   if (options.scene && (options.cell || !file.is_matrix() || file.is_of_cells()))
     throw std::invalid_argument(
         fmt::format("{}: is no matrix of a scene; a second one, \"{}\", has no meaning beside it",
-                    file.path(), options.scene->name()));
+                    file.path(), options.scene->path()));
   return options.cell         ? open_cells(file, options)
          : !file.is_matrix()  ? open_scene(file, options)
          : file.is_of_cells() ? open_recorded(file, options)

@@ -24,11 +24,15 @@ namespace gatewalk::lattice {
 class SourceFile {
  public:
   /// "-": standard input. What cannot be read is refused by whoever asks for what it holds.
-  explicit SourceFile(std::string path) : path_(std::move(path)), toml_(TomlFile::read(path_)) {}
+  /// It is read when it is asked for first.
+  explicit SourceFile(std::string path) : path_(std::move(path)) {}
+  /// A scene or cell file in memory.
+  explicit SourceFile(TomlFile text) : path_(text.name()), toml_(std::move(text)) {}
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  [[nodiscard]] const TomlFile& toml() const { return toml_; }
-  [[nodiscard]] bool is_matrix() const { return toml_.is_matrix(); }
+  [[nodiscard]] const TomlFile& toml() const;
+  /// Standard input is none, and is not read to say so.
+  [[nodiscard]] bool is_matrix() const { return path_ != "-" && toml().is_matrix(); }
   /// The matrix, read when it is asked for first. Throws markov::BadFile.
   [[nodiscard]] const std::shared_ptr<const MatrixFile>& matrix() const;
   /// Whether it is a matrix of cells that are not ours. Throws as matrix().
@@ -43,7 +47,7 @@ class SourceFile {
 
  private:
   std::string path_;
-  TomlFile toml_;
+  mutable std::optional<TomlFile> toml_;
   mutable std::shared_ptr<const MatrixFile> matrix_;
   mutable std::optional<Scene> own_scene_;
   std::optional<RunPool> runs_;
@@ -51,7 +55,7 @@ class SourceFile {
 
 struct SourceOptions {
   std::vector<std::string> overrides{};  // "forces.random_N=20", of the scene or the cell file
-  const TomlFile* scene = nullptr;       // of a matrix: another scene than its own
+  const SourceFile* scene = nullptr;     // of a matrix: another scene than its own
   /// The file is a cell file, or a matrix of such cells, and bodies are carried through them by the
   /// cell that this makes; called when the file has been read.
   std::function<std::shared_ptr<const dynamics::Cell>()> cell = nullptr;

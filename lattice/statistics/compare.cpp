@@ -372,7 +372,7 @@ Endings shares_of(const SeenEndings& seen) {
 }
 
 /// The verdict on the last row, which was seen; the rows before it are the null's.
-JointTest judgement_of(const std::vector<Tests>& all) {
+JointTest joint_test_of(const std::vector<Tests>& all) {
   std::vector<double> tv, rows;
   for (std::size_t k = 0; k + 1 < all.size(); ++k) tv.push_back(all[k][0]);
   for (const Tests& t : all) rows.insert(rows.end(), t.begin(), t.end());
@@ -435,7 +435,7 @@ JointTest joint_test(const SeenEndings& seen, const markov::FinalDistribution& p
                          1);  // the null's, then what was seen
   all.back() = tests(on_support(sample, support), shares_of(seen));
   tbb::parallel_for(std::int64_t{0}, null_draws, [&](std::int64_t k) {
-    Random random(Purpose::comparison, {seed, kJudgements, static_cast<std::uint64_t>(k)});
+    Random random(Purpose::comparison, {seed, kJointTests, static_cast<std::uint64_t>(k)});
     std::vector<GateEnding> drawn =
         outcomes_of(replicates[static_cast<std::size_t>(k) % replicates.size()], support);
     for (std::size_t e = 0; e < markov::kEndings; ++e) {
@@ -458,7 +458,7 @@ JointTest joint_test(const SeenEndings& seen, const markov::FinalDistribution& p
     all[static_cast<std::size_t>(k)] = tests(gates, endings);
   });
 
-  return judgement_of(all);
+  return joint_test_of(all);
 }
 
 JointTest joint_test(const SeenEndings& seen, const SeenEndings& other, std::int64_t null_draws,
@@ -512,7 +512,7 @@ JointTest joint_test(const SeenEndings& seen, const SeenEndings& other, std::int
     const Pair of_endings = endings ? both_endings.anew(random) : Pair{};
     all[static_cast<std::size_t>(k)] = tests(of_gates, of_endings.first, of_endings.second);
   });
-  return judgement_of(all);
+  return joint_test_of(all);
 }
 
 }  // namespace gatewalk::lattice

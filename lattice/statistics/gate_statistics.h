@@ -18,7 +18,7 @@ enum Use : std::uint64_t {
   kSamples = 2,
   kSwaps = 3,
   kPooledDraws = 4,
-  kJudgements = 5,
+  kJointTests = 5,
   kDealtJudgements = 6,
   kPowerNull = 7,
   kExperiments = 8

@@ -2,11 +2,13 @@
 #pragma once
 /// Reads JSON that the program wrote itself, as far as the library needs it.
 
+#include <charconv>
 #include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "lattice/text/digits.h"
@@ -95,7 +97,18 @@ class JsonObject {
     if (found == values_.end()) throw std::invalid_argument("has no " + std::string(key));
     return found->second;
   }
+  /// NaN for null.
   [[nodiscard]] double number(std::string_view key) const { return json_number(at(key)); }
+  /// Throws std::invalid_argument for all but whole numbers from 0 on.
+  template <class Integer>
+  [[nodiscard]] Integer count(std::string_view key) const {
+    const std::string_view text = at(key);
+    Integer count{};
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), count);
+    if (read.ec != std::errc() || read.ptr != text.data() + text.size() || count < 0)
+      throw std::invalid_argument(std::string(key) + " is no count");
+    return count;
+  }
 
  private:
   std::map<std::string, std::string_view, std::less<>> values_;

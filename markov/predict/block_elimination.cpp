@@ -4,6 +4,7 @@
 #include <klu.h>
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 namespace gatewalk::markov {
@@ -15,7 +16,7 @@ Blocks blocks_of(PassedOn& t) {
   klu_l_defaults(&common);
   const auto n = static_cast<SuiteSparse_long>(t.states());
   klu_l_symbolic* symbolic = klu_l_analyze(n, t.begin.data(), t.index.data(), &common);
-  if (symbolic == nullptr) return {};
+  if (symbolic == nullptr) throw std::bad_alloc();
   Blocks blocks{{symbolic->Q, symbolic->Q + n}, {symbolic->R, symbolic->R + symbolic->nblocks + 1}};
   klu_l_free_symbolic(&symbolic, &common);
   return blocks;

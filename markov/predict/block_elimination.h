@@ -30,7 +30,7 @@ struct Blocks {
 
 /// By KLU's analysis: block triangular form, and within a block minimum degree (AMD). Every column
 /// begins with its diagonal entry, which KLU then takes for the pivot, as nothing stands against
-/// it. Without blocks where there is no memory for it.
+/// it. Throws std::bad_alloc.
 [[nodiscard]] Blocks blocks_of(PassedOn& t);
 
 /// Whether walks end sooner or later, by state.

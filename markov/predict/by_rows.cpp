@@ -327,7 +327,7 @@ class PredictionRows {
           use(plane + static_cast<std::ptrdiff_t>(c), c * inputs + input);
     };
     each([&](std::ptrdiff_t plane, std::size_t at) { workspace_[at] = from[plane]; });
-    starts_[j].steps += way.sweeps->solve(workspace_.data(), RowSweeps::Of::largest, accuracy);
+    way.sweeps->solve(workspace_.data(), RowSweeps::Of::largest, accuracy);
     each([&](std::ptrdiff_t plane, std::size_t at) { visits_.data()[plane] += workspace_[at]; });
   }
   /// Nothing more is found out from this start.

@@ -10,7 +10,6 @@ namespace gatewalk::markov {
 std::optional<ExpectedDraws> expected_draws(Transient& t, double most_operations) {
   const std::vector<char> ends = can_end(t);
   const Blocks blocks = blocks_of(t);
-  if (blocks.begin.empty()) return {};  // no memory
   std::vector<std::size_t> block_of(t.states.size());
   for (std::size_t b = 0; b + 1 < blocks.begin.size(); ++b)
     for (std::int64_t i = blocks.begin[b]; i < blocks.begin[b + 1]; ++i)
@@ -50,9 +49,7 @@ std::optional<ExpectedDraws> expected_draws(Transient& t, double most_operations
 std::optional<FinalDistribution> solve_directly(const FieldChain& chain, const Field& field,
                                                 const Start& start, double most_operations) {
   validate(chain, field, start, 0);
-  constexpr std::int64_t kMostPairs = 20'000'000;
-  const std::int64_t cells = std::int64_t{field.columns} * field.rows;
-  if (cells > kMostPairs / std::max(1, chain.inputs())) return {};
+  if (!fits_pair_by_pair(chain, field)) return {};
   if (!chain.at(start.column, start.row).is_sampled(start.input)) {
     EndSums ends(field);
     ends.add(Ending::unsampled, std::int64_t{start.row} * field.columns + start.column, 1.0);

@@ -208,7 +208,6 @@ class Passing {
   /// False where it takes more.
   bool by_elimination(double most_operations) {
     const Blocks blocks = blocks_of(passed_);
-    if (blocks.begin.empty()) return false;  // no memory
     std::vector<std::size_t> block_of(pair_of_.size());
     for (std::size_t b = 0; b + 1 < blocks.begin.size(); ++b)
       for (std::int64_t i = blocks.begin[b]; i < blocks.begin[b + 1]; ++i)

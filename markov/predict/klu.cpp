@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <string>
 
 #include "markov/predict/end_sums.h"
+#include "markov/predict/plan.h"
 #include "markov/predict/transient.h"
 
 namespace gatewalk::markov {
@@ -19,11 +21,11 @@ static_assert(sizeof(SuiteSparse_long) == sizeof(std::int64_t));
 // One factorisation by KLU, freed with the object.
 class Klu {
  public:
-  explicit Klu(Transient& t) : t_(t), n_(static_cast<SuiteSparse_long>(t.states.size())) {
+  Klu(Transient& t, double most_numbers)
+      : t_(t), n_(static_cast<SuiteSparse_long>(t.states.size())) {
     klu_l_defaults(&common_);
     symbolic_ = klu_l_analyze(n_, t_.begin.data(), t_.index.data(), &common_);
-    constexpr double kMostNumbers = 2e8;  // some 3 GB
-    if (symbolic_ && symbolic_->lnz + symbolic_->unz > kMostNumbers) {
+    if (symbolic_ && symbolic_->lnz + symbolic_->unz > most_numbers) {
       common_.status = KLU_TOO_LARGE;
       return;
     }
@@ -59,13 +61,14 @@ class Klu {
 };
 
 // Mean number of draws made in each transient state.
-std::vector<double> visits(Transient& t) {
+std::vector<double> visits(Transient& t, double most_numbers) {
   constexpr double kWorstCondition = 1e-6 / std::numeric_limits<double>::epsilon();
-  Klu klu(t);
-  if (klu.status() == KLU_OUT_OF_MEMORY || klu.status() == KLU_TOO_LARGE) {
-    throw std::runtime_error("absorption: no memory to factor I - Q of " +
-                             std::to_string(t.states.size()) + " states; propagate instead");
-  }
+  Klu klu(t, most_numbers);
+  if (klu.status() == KLU_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (klu.status() == KLU_TOO_LARGE)
+    throw std::runtime_error("absorption: the factors of I - Q of " +
+                             std::to_string(t.states.size()) +
+                             " states have too many numbers; propagate instead");
   if (klu.status() == KLU_SINGULAR) {
     throw std::runtime_error(
         "absorption: I - Q is singular: from the start a walk can get into a "
@@ -101,8 +104,13 @@ double missing(const Transient& t, const std::vector<double>& draws) {
 
 }  // namespace
 
-FinalDistribution solve_absorption(const FieldChain& field_chain, const Field& field,
+FinalDistribution solve_absorption(const FieldChain& chain, const Field& field,
                                    const Start& start) {
+  return solve_by_klu(chain, field, start, std::numeric_limits<double>::infinity());
+}
+
+FinalDistribution solve_by_klu(const FieldChain& field_chain, const Field& field,
+                               const Start& start, double most_numbers) {
   validate(field_chain, field, start, 0);
   if (!field_chain.at(start.column, start.row).is_sampled(start.input)) {
     EndSums ends(field);
@@ -110,7 +118,7 @@ FinalDistribution solve_absorption(const FieldChain& field_chain, const Field& f
     return ends.result();
   }
   Transient t(field_chain, field, start);
-  const std::vector<double> draws = visits(t);
+  const std::vector<double> draws = visits(t, most_numbers);
 
   FinalDistribution result = t.ended(draws, field_chain, field);
   result.remainder = missing(t, draws);

@@ -177,9 +177,16 @@ using MaybePredicted = std::vector<std::optional<FinalDistribution>>;
                                              const std::vector<Start>& starts,
                                              const PredictOptions& options, bool may_stop);
 
+/// solve_absorption() whose factors have at most `most_numbers` numbers; throws std::runtime_error
+/// for more.
+[[nodiscard]] FinalDistribution solve_by_klu(const FieldChain& chain, const Field& field,
+                                             const Start& start, double most_numbers);
+
 /// Where walks circle too long for sums, and there is no limit of cells: by the elimination without
-/// subtraction, which keeps all digits, in at most so many products; of fields too large for it by
-/// KLU's LU, where that keeps 6 digits. None where neither does.
+/// subtraction, which keeps all digits, in at most so many products; where it would take more, by
+/// KLU's LU, if that has at most 2e8 numbers and keeps 6 digits. None where neither does, and for
+/// fields of too many pairs of a cell and an input: the choice depends on the chain and the field
+/// alone. Throws std::bad_alloc.
 [[nodiscard]] std::optional<FinalDistribution> solve_circles(const FieldChain& chain,
                                                              const Field& field, const Start& start,
                                                              double most_operations = 2e9);

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 
 #include "markov/predict/plan.h"
+#include "markov/predict/transient.h"
 
 namespace gatewalk::markov {
 namespace {
@@ -98,7 +100,8 @@ std::unique_ptr<const PredictionPlan> plan_of(FieldChain field_chain) {
       if (std::max(exit.di_x, exit.di_y) > kFarthest || std::min(exit.di_x, exit.di_y) < -kFarthest)
         throw std::invalid_argument("predict: a move of (" + std::to_string(exit.di_x) + ", " +
                                     std::to_string(exit.di_y) + ") cells is more than " +
-                                    std::to_string(kFarthest) + "; solver klu takes it");
+                                    std::to_string(kFarthest) +
+                                    "; without a limit of cells solver klu takes it");
       const auto next = static_cast<std::size_t>(exit.next_input);
       is_entered[next] = 1;
       if (exit.di_y > 0) from_below[next] = 1;
@@ -153,9 +156,13 @@ MaybePredicted in_groups(const std::vector<Start>& starts, std::int64_t size, Ru
 
 std::optional<FinalDistribution> solve_circles(const FieldChain& chain, const Field& field,
                                                const Start& start, double most_operations) {
+  if (!fits_pair_by_pair(chain, field)) return {};
   if (auto direct = solve_directly(chain, field, start, most_operations)) return direct;
+  constexpr double kMostNumbers = 2e8;  // some 3 GB, which several starts must not take at once
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
   try {
-    return solve_absorption(chain, field, start);
+    return solve_by_klu(chain, field, start, kMostNumbers);
   } catch (const std::runtime_error&) {  // too few digits, or too large
     return {};
   }

@@ -130,8 +130,9 @@ int RowSweeps::solve(double* values, Of of, double tolerance) {
     sweep(further_, right_, left_, right_first_up_, b_.data(), change);
     tell_neighbours(right_, last_);
     sweep(further_, left_, last_, !right_first_up_, b_.data(), change);
-    settled = of == Of::each ? change.excess <= 0.0
-                             : change.largest <= tolerance * (1.0 - stays_) * change.largest_number;
+    settled = of == Of::each
+                  ? !(change.excess > 0.0)
+                  : !(change.largest > tolerance * (1.0 - stays_) * change.largest_number);
   }
   tell_neighbours(0, last_);
   sweep(further_, last_, inputs_, true, x, unasked);

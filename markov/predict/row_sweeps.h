@@ -33,8 +33,8 @@ class RowSweeps {
 
   /// Whether it is worth while: walks leave the row soon enough.
   [[nodiscard]] bool suits() const;
-  /// `values` (columns x inputs): b, and then x, to `tolerance` of the largest or of each number,
-  /// however small.
+  /// `values` (columns x inputs): b, of either sign, and then x, to `tolerance` of the largest
+  /// magnitude, or (b not negative) of each number, however small.
   /// Returns how many sweeps to both sides that took.
   enum class Of { largest, each };
   int solve(double* values, Of of, double tolerance = 1e-12);

@@ -181,9 +181,10 @@ void sweep_in_registers(const StripPass& pass, int first, int last, bool upwards
       for (int i = 0; i < kRegisters; ++i) {
         s[i] = hn::Mul(s[i], mask[i]);
         const auto by = hn::Sub(s[i], hn::LoadU(d, out + i * n));
-        largest = hn::Max(largest, by);
-        number = hn::Max(number, s[i]);
-        excess = hn::Max(excess, hn::Sub(by, hn::Mul(tolerance, s[i])));
+        const auto change_of = hn::Abs(by), size = hn::Abs(s[i]);
+        largest = hn::Max(largest, change_of);
+        number = hn::Max(number, size);
+        excess = hn::Max(excess, hn::Sub(change_of, hn::Mul(tolerance, size)));
         hn::StoreU(s[i], d, out + i * n);
       }
     }

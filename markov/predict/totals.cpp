@@ -327,7 +327,8 @@ bool is_large(const FieldChain& chain, const Field& field, double large) {
   return static_cast<double>(field.columns) * field.rows * nonzeros > large;
 }
 
-/// Without limit, of few states, exactly, however long walks circle. None where some never end.
+/// Without limit, of few states, exactly, however long walks circle. None where some never end, or
+/// it takes too long.
 std::optional<WalkTotals> totals_by_elimination(const FieldChain& chain, const Field& field,
                                                 const Start& start, const Rewards& rewards,
                                                 const EachState& each) {
@@ -341,7 +342,6 @@ std::optional<WalkTotals> totals_by_elimination(const FieldChain& chain, const F
   for (std::size_t s = 0; s < t.states.size(); ++s) {
     const std::int64_t cell = t.states[s] / inputs;
     out.visits.data()[cell] += draws->by_state[s];
-    if (each) each(1, cell, static_cast<int>(t.states[s] % inputs), draws->by_state[s]);
   }
   out.totals.resize(quantities_of(chain, rewards));
   for (std::size_t e = 0; e < kEndings; ++e) {
@@ -382,6 +382,8 @@ std::optional<WalkTotals> totals_by_elimination(const FieldChain& chain, const F
     out.draws[e] = moments({});
     for (std::size_t q = 0; q < out.totals.size(); ++q) out.totals[q][e] = moments(q);
   }
+  for (std::size_t s = 0; each && s < t.states.size(); ++s)
+    each(1, t.states[s] / inputs, static_cast<int>(t.states[s] % inputs), draws->by_state[s]);
   return out;
 }
 
@@ -430,9 +432,13 @@ WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start&
   WalkTotals out = summed([&](int, std::int64_t cell, int input, double share) {
     passed[static_cast<std::size_t>(cell * inputs + input)] += share;
   });
-  if (out.remainder > tolerance.all)
-    if (auto exact = totals_by_elimination(chain, field, start, rewards, each))
-      return *std::move(exact);
+  if (out.remainder > tolerance.all) {
+    try {
+      if (auto exact = totals_by_elimination(chain, field, start, rewards, each))
+        return *std::move(exact);
+    } catch (const std::runtime_error&) {  // they circle too long: what was summed stands
+    }
+  }
   for (std::int64_t state = 0; each && state < states; ++state)
     if (const double share = passed[static_cast<std::size_t>(state)]; share > 0.0)
       each(1, state / inputs, static_cast<int>(state % inputs), share);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "markov/predict/transient.h"
 
+#include <algorithm>
+
 #include "markov/predict/end_sums.h"
 
 namespace gatewalk::markov {
@@ -19,6 +21,11 @@ std::int64_t next_state(const FieldChain& field_chain, const Field& field, std::
 }
 
 }  // namespace
+
+bool fits_pair_by_pair(const FieldChain& chain, const Field& field) {
+  constexpr std::int64_t kMostPairs = 20'000'000;
+  return std::int64_t{field.columns} * field.rows <= kMostPairs / std::max(1, chain.inputs());
+}
 
 Transient::Transient(const FieldChain& field_chain, const Field& field, const Start& start) {
   const std::int64_t n_in = field_chain.inputs();

@@ -23,6 +23,9 @@ struct Transient : PassedOn {
                                         const Field& field) const;
 };
 
+/// Whether a field has few enough pairs of a cell and an input to be solved pair by pair.
+[[nodiscard]] bool fits_pair_by_pair(const FieldChain& chain, const Field& field);
+
 struct ExpectedDraws {
   std::vector<double> by_state;
   double endless = 0.0;     // share of the walks that can never end; their draws are not counted

@@ -71,7 +71,7 @@ TEST(Source, RefusalsNameFileLineAndKey) {
             path + ":2: forces.random_N = -3 is not permitted: must lie in [0, 1e+100] N");
   EXPECT_EQ(refusal([] { (void)Source::open("none.toml"); }),
             "none.toml: cannot be read: No such file or directory");
-  const TomlFile other(kField, "other.toml");
+  const SourceFile other(TomlFile(kField, "other.toml"));
   EXPECT_EQ(
       refusal([&] { (void)Source::open(opened(kField), {.scene = &other}); }),
       path + ": is no matrix of a scene; a second one, \"other.toml\", has no meaning beside it");

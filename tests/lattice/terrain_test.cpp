@@ -512,7 +512,7 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   EXPECT_EQ(others.gate_runs(), chain.pool.gate_runs());
 
   // Another scene's types are refused by name.
-  const TomlFile other(to_toml(scene), "terrain.toml");
+  const SourceFile other(TomlFile(to_toml(scene), "terrain.toml"));
   const auto message = [&](const std::string& override) {
     try {
       (void)Source::open(source, {.overrides = {override}, .scene = &other});

@@ -45,6 +45,22 @@ TEST(Ends, AddCellByCellAndByEnding) {
   EXPECT_EQ(departed_cells(sum).sum(), sum.left_field());
 }
 
+// Of a field, or of walks whose cells nobody asked for.
+TEST(Ends, AddEndingsWithoutCells) {
+  const Counted some = ends({5, 3, 0, 7}, {cell(1, 1, 2, 0)});
+  Counted without;
+  without.endings[static_cast<std::size_t>(Ending::trapped)] = 4;
+  Counted before = without, behind = some;
+  before += some;
+  behind += without;
+  for (const Counted& sum : {before, behind}) {
+    EXPECT_EQ(sum.trapped(), some.trapped() + 4);
+    EXPECT_EQ(sum.left_field(), 2);
+    EXPECT_EQ(sum.final_cells.sum(), 15);
+    EXPECT_EQ(sum.mixed_cells, some.mixed_cells);
+  }
+}
+
 TEST(Ends, AreSharesOfAll) {
   const Counted counts = ends({5, 3, 0, 2}, {cell(1, 1, 2, 0)});
   const Ends<double> shares =

@@ -111,6 +111,20 @@ TEST(RowSweeps, IsAsExactAsAskedFor) {
   }
 }
 
+// Residuals have both signs.
+TEST(RowSweeps, TakeNumbersOfEitherSign) {
+  const Moves moves = some_moves(1, 0.8, 5);
+  const int columns = 31;
+  const auto b = some_numbers(columns, -1),
+             exact = plain_sum(moves, RowSweeps::Sums::brought, columns, b);
+  const double largest = *std::max_element(exact.begin(), exact.end());
+  std::vector<double> negative = b;
+  for (double& number : negative) number = -number;
+  const auto x =
+      summed(moves, RowSweeps::Sums::brought, columns, negative, RowSweeps::Of::largest, 1e-12);
+  for (std::size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(x[i], -exact[i], 1e-12 * largest);
+}
+
 TEST(RowSweeps, SuitsWalksThatLeaveSoon) {
   EXPECT_FALSE(RowSweeps(some_moves(1, 0.99, 5), RowSweeps::Sums::brought, 9, kInputs).suits());
   EXPECT_FALSE(RowSweeps(some_moves(2, 0.5, 5), RowSweeps::Sums::brought, 2, kInputs).suits());

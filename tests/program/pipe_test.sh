@@ -54,6 +54,16 @@ head -c 1 named >/dev/null &
 timeout 20 "$gatewalk" trace "$scenes/field.toml" --field --trials 20 --csv named --quiet 2>err.txt
 [ $? = 141 ] || fail "a named pipe without a reader"
 [ -s err.txt ] && fail "a named pipe: $(cat err.txt)"
+# Standard input that nobody ends is not read for a name that cannot stand for it.
+mkfifo open
+sleep 60 >open &
+waiting() { expect "$@" <open; }
+waiting 2 '' timeout 20 "$gatewalk" predict "$scenes/field.toml" -
+waiting 2 '' timeout 20 "$gatewalk" walk -
+waiting 2 '' timeout 20 "$gatewalk" export - -o z.csv
+waiting 2 '' timeout 20 "$gatewalk" power "$scenes/field.toml" --versus -
+waiting 2 '' timeout 20 "$gatewalk" predict m.nc --row 0=-
+kill %%
 # A failure keeps its status.
 (exec "$gatewalk" gate none.toml 2>/dev/null) | true
 [ "${PIPESTATUS[0]}" = 2 ] || fail "a failure beside a reader that went away"
