@@ -24,8 +24,10 @@ namespace gatewalk::lattice {
 class SourceFile {
  public:
   /// "-": standard input. What cannot be read is refused by whoever asks for what it holds.
-  /// It is read when it is asked for first.
-  explicit SourceFile(std::string path) : path_(std::move(path)) {}
+  /// Standard input is read when it is asked for first, a file now.
+  explicit SourceFile(std::string path) : path_(std::move(path)) {
+    if (path_ != "-") toml_ = TomlFile::read(path_);
+  }
   /// A scene or cell file in memory.
   explicit SourceFile(TomlFile text) : path_(text.name()), toml_(std::move(text)) {}
 
