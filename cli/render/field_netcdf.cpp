@@ -49,6 +49,8 @@ std::string netcdf_of(const std::vector<FieldPicture>& fields, const dynamics::S
   Image nc;
   nc.create();
   put_text(nc, NC_GLOBAL, "format", "gatewalk final gates");
+  put_conventions(nc);
+  put_text(nc, NC_GLOBAL, "title", "Where bodies end in a field of gates, by start");
   for (const auto& [key, text] : attributes_of(made_by)) put_text(nc, NC_GLOBAL, key, text);
   const int start = define_dimension(nc, "start", fields.size()),
             i_y = define_dimension(nc, "i_y", static_cast<std::size_t>(rows)),

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "cli/fields/text.h"
 #include "cli/fields/text_table.h"
@@ -79,12 +80,17 @@ void put_runs(int nc, const Recordings& recordings) {
         static_cast<std::int8_t>(std::find(known.begin(), known.end(), r.ending) - known.begin()));
   }
   const int run = define_dimension(nc, "run", recordings.runs.size());
-  put_variable(nc, "run_trial", run, trial, "1", "number of the trial");
+  put_text(nc, put_variable(nc, "run_trial", run, trial, "1", "number of the trial"), "cf_role",
+           "trajectory_id");
   const int sizes =
       put_variable(nc, "row_size", run, row_size, "1", "samples of a run, which follow each other");
   put_text(nc, sizes, "sample_dimension", "sample");
   put_words(nc, put_variable(nc, "ending", run, ending, "1", "how a run ended"), known);
 }
+
+/// Coordinates of trajectories in the sense of CF, with their axes.
+const std::map<std::string_view, const char*> kAxes{
+    {"time_s", "T"}, {"field_x_m", "X"}, {"field_y_m", "Y"}};
 
 /// A column of all runs: codes as bytes, what is counted as whole numbers.
 void put_column(int nc, int sample, const Column& c, const Recordings& recordings) {
@@ -94,8 +100,13 @@ void put_column(int nc, int sample, const Column& c, const Recordings& recording
     for (const Recording& r : recordings.runs)
       for (const Moment& m : r.moments)
         values.push_back(static_cast<decltype(zero)>(c.value({recordings.of(m), r.trial, m})));
-    return put_variable(nc, std::string(c.name), sample, values, std::string(c.unit),
-                        std::string(c.meaning));
+    const int variable = put_variable(nc, std::string(c.name), sample, values, std::string(c.unit),
+                                      std::string(c.meaning));
+    if (const auto axis = kAxes.find(c.name); axis != kAxes.end())
+      put_text(nc, variable, "axis", axis->second);
+    else
+      put_text(nc, variable, "coordinates", "time_s field_x_m field_y_m");
+    return variable;
   };
   if (!c.words.empty())
     put_words(nc, put(std::int8_t{}), {c.words.begin(), c.words.end()});
@@ -167,6 +178,9 @@ std::string netcdf_of(const Recordings& recordings, const Provenance& made_by) {
   Image nc;
   nc.create();
   put_text(nc, NC_GLOBAL, "format", "gatewalk traces");
+  put_conventions(nc);
+  put_text(nc, NC_GLOBAL, "title", "Bodies in a field of gates, step by step");
+  put_text(nc, NC_GLOBAL, "featureType", "trajectory");
   for (const auto& [key, text] : attributes_of(made_by)) put_text(nc, NC_GLOBAL, key, text);
   std::size_t samples = 0;
   for (const Recording& r : recordings.runs) samples += r.moments.size();

@@ -42,7 +42,8 @@ const std::set<std::string> kOwnDimensions = {"input_state", "output_state", "no
 constexpr std::size_t kMostFileBytes = std::size_t{1} << 30;
 const std::string kTypeGroup = "type_";
 constexpr const char *kCodeValues = "flag_values", *kCodeWords = "flag_meanings";
-const std::set<std::string> kOwnAttributes = {"format", "format_version", "checksum"};
+const std::set<std::string> kOwnAttributes = {"format", "format_version", "checksum",
+                                              "Conventions"};
 
 [[noreturn]] void refuse_counts(const std::string& what) { throw std::invalid_argument(what); }
 
@@ -270,6 +271,7 @@ std::vector<char> encode(const CountsFile& file) {
   Image nc;
   nc.create();
   put_text(nc, NC_GLOBAL, "format", kFormat);
+  put_conventions(nc);
   check(nc_put_att_int(nc, NC_GLOBAL, "format_version", NC_INT, 1, &kFormatVersion),
         "format_version");
   put_text(nc, NC_GLOBAL, "checksum", std::string(kChecksumMark) + std::string(kNoChecksum));

@@ -80,6 +80,9 @@ inline void put_text(int nc, int variable, const std::string& name, const std::s
   check(nc_put_att_text(nc, variable, name.c_str(), text.size(), text.data()), "attribute " + name);
 }
 
+/// That a file keeps the Climate and Forecast conventions (CF).
+inline void put_conventions(int nc) { put_text(nc, NC_GLOBAL, "Conventions", "CF-1.10"); }
+
 inline int define_dimension(int nc, const std::string& name, std::size_t length) {
   int dimension = -1;
   // A length of 0 is NC_UNLIMITED, which is how NetCDF holds an empty list.

@@ -34,6 +34,7 @@ jq -r '.starts[].final_gates[][]' two.json >json.txt
 "$gatewalk" lattice "$field" --trials 5 --netcdf lattice.nc --quiet >/dev/null
 "$gatewalk" walk m.nc --walks 100 --netcdf walk.nc --quiet >/dev/null
 "$gatewalk" predict "$field" --accuracy 0.3 --netcdf tree.nc --quiet >/dev/null
+for of in lattice walk tree; do ncdump -h $of.nc | grep -q ':Conventions = "CF-1.10"' || fail "$of: netcdf without conventions"; done
 for of in lattice walk tree; do ncdump -h $of.nc | grep -q ':command = "gatewalk ' || fail "$of: netcdf does not say what made it"; done
 ncdump -h tree.nc | grep -q 'double final_gates_low(start, i_y, i_x)' || fail "predict: netcdf without intervals"
 "$gatewalk" walk m.nc --walks 100 --set field.columns=501 --set field.rows=501 --json large.json --netcdf large.nc --quiet
