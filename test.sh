@@ -22,7 +22,7 @@ if [ "${1-}" = elsewhere ]; then
   packages+=(python3-sphinx furo python3-myst-parser python3-breathe python3-yaml doxygen)
   packages+=(jupyter-nbconvert python3-ipykernel python3-nbformat)
   packages+=(python3-netcdf4 python3-h5py r-base-core r-cran-ncdf4 r-cran-markovchain octave octave-netcdf)
-  packages+=(mmdebstrap dpkg-dev lintian man-db zsh fish pkg-config)
+  packages+=(mmdebstrap dpkg-dev lintian man-db zsh fish pkg-config reuse)
 fi
 # Some machines bring an npm of their own, which Debian's package would conflict with.
 command -v npm >/dev/null || packages+=(npm)
