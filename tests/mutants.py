@@ -28,9 +28,9 @@ OUT = ROOT / "results/reliability"
 # included name those that are compiled.
 TREES = "TreeChain.*:PooledPrediction.*:RunPool.*:PoolChains.*:Prediction.*"
 KERNELS = {
-    "dynamics/disc/contact.cpp": {"dynamics": "Nearest.*:Impulses.*:ContactForces.*:GapRate.*:Impact.*:NearSingular.*"},
+    "dynamics/disc/contact.cpp": {"dynamics": "Nearest.*:Impulses.*:ContactForces.*:GapRate.*:Impact.*:*/ExactHits.*"},
     "dynamics/disc/contact-inl.h": {"dynamics": "StableLanes.*:Lanes.*:PushO*:OutOfReach.*:Nearest.*"},
-    "dynamics/disc/methods/stable.cpp": {"dynamics": "Stable.*:StableLanes.*:Limits.*"},
+    "dynamics/disc/methods/stable.cpp": {"dynamics": "*/ExactHits.*:Stable.*:StableLanes.*:*/HeldContacts.*"},
     "dynamics/disc/stable-inl.h": {"dynamics": "StableLanes.*:Stable.*"},
     "dynamics/disc/stable_lanes.cpp": {"dynamics": "StableLanes.*:Stable.*"},
     "dynamics/base/points.cpp": {"dynamics": "Points.*", "lattice": "RqmcTrials.*"},

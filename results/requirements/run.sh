@@ -15,8 +15,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 tests=$(dirname "$gatewalk")/tests/dynamics_tests
-suites='Impact.*:Event.*:Stable.*:Paper.*:Moreau.*:Penalty*:Zeno.*:EnergyLedger.*:Mirror.*'
-suites+=':Limits.*:Reversal.*:NearSingular.*:*/Requirement.*:*/FixedStep.Mirror*:*/Gate.LateralSpeedHas*'
+suites='Impact.*:Paper.*:Penalty*:Zeno.*:EnergyLedger.*:*/AnyMethod.*:*/ExactHits.*:*/BothAlike.*:*/EnergyInSteps.*'
+suites+=':*/HeldContacts.*:*/Requirement.*:*/Gate.LateralSpeedHas*'
 export GATEWALK_LONG=${GATEWALK_LONG:-1}
 # A test that fails is a line of the table too.
 status=0

@@ -11,23 +11,17 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/gate.h"
-#include "tests/support/long.h"
-#include "tests/support/measured.h"
-#include "tests/support/mirror.h"
+#include "dynamics/disc/methods/penalty.h"
 #include "tests/support/numbers.h"
 #include "tests/support/ride.h"
 #include "tests/support/scenes.h"
-#include "tests/support/threads.h"
 
 namespace gatewalk::dynamics {
 namespace {
 
-using test::Draw;
 using test::kEps;
 using test::Ride;
-using test::same_bits;
 
 class FixedStep : public testing::TestWithParam<const char*> {
  protected:
@@ -42,17 +36,6 @@ INSTANTIATE_TEST_SUITE_P(Methods, FixedStep, testing::Values("moreau", "penalty"
                          [](const auto& i) { return std::string(i.param); });
 
 // ---- Steps and spells ----
-
-// 5 m at 10 m/s: straight motion is interpolated without error; 126 steps round x by eps 25 m / 2.
-TEST_P(FixedStep, StopsAtTheMomentOfLeaving) {
-  GateState s;
-  s.body = {19.99, 0.0, 10.0, 0.0};
-  Ride ride(by(test::free_rods()), s);
-  EXPECT_NEAR(ride.go(1.0), 0.501, 126 * 12.5 * kEps / 10.0);
-  EXPECT_TRUE(outside(ride.p, ride.s.body));
-  EXPECT_NEAR(ride.s.body.x, 25.0, 50 * kEps);
-  EXPECT_EQ(ride.watch.steps, 126);
-}
 
 TEST_P(FixedStep, CutsWhatIsNoWholeNumberOfStepsIntoEqualOnes) {
   GateParams p = test::free_rods();
@@ -91,102 +74,47 @@ TEST_P(FixedStep, CountsTheWorkItDoes) {
   EXPECT_EQ(near.watch.evaluations, near.p.run.method == "penalty" ? 300 : 200);
 }
 
-// ---- S8, S9, S15 ----
+// ---- S6: Zeno ----
 
-// Equal and unequal beams, weak and strong noise, from the middle and from anywhere.
-TEST_P(FixedStep, MirrorImagesHaveTheSameBits) {
-  const int kTrials = test::usual_or_full(2000, 100'000);
-  std::vector<GateRun> seen(kTrials), mirror(kTrials);
-  tbb::parallel_for(0, kTrials, [&](int trial) {
-    GateParams p = by(test::study(trial % 4 < 2 ? 10.0 : 50.0));
-    p.forces.random = trial % 4 < 2 ? 10.0 : 40.0;
-    if (trial % 8 < 4) p.beams.stiffness_right = 300.0;
-    const GateParams m = test::mirrored(p);
-    Draw draw(static_cast<std::uint64_t>(trial));
-    BodyState start;
-    if (trial % 2) start = {draw.uniform(-15, 15), 0.0, draw.uniform(-10, 10), draw.uniform(0, 20)};
-    const Random random(Purpose::gate, {3, 0, static_cast<std::uint64_t>(trial)});
-    RandomForce force(p.forces, random, 1.0), flipped(p.forces, random, -1.0);
-    seen[trial] = run_gate(p, *make_method(p), start, force);
-    mirror[trial] = run_gate(m, *make_method(m), test::mirrored(start), flipped);
-  });
-  for (int trial = 0; trial < kTrials && !HasFatalFailure(); ++trial) {
-    SCOPED_TRACE(trial);
-    test::expect_mirror_images(mirror[trial], seen[trial]);
-  }
-  test::measured_mirror(GetParam(), kTrials, 100'000);
-}
-
-TEST_P(FixedStep, NothingMovesWithoutForces) {
-  GateParams p = by({});
-  p.forces.propulsion = p.forces.random = 0.0;
-  const auto method = make_method(p);
-  // Apart, touching a beam, touching both tips, touching a joint.
-  for (const BodyState& start :
-       {BodyState{3, 5}, BodyState{-10, 20}, BodyState{0, 20}, BodyState{-25, 20}}) {
-    RandomForce force(p.forces, Random(Purpose::gate, {}));
-    const GateRun run = run_gate(p, *method, start, force);
-    EXPECT_EQ(run.outcome, Outcome::trapped);
-    EXPECT_EQ(run.exit.x, start.x);
-    EXPECT_EQ(run.exit.y, start.y);
-    EXPECT_EQ(run.exit.vx, 0.0);
-    EXPECT_EQ(run.exit.vy, 0.0);
-    EXPECT_EQ(run.watch.max_theta[kLeft], 0.0);
-    EXPECT_EQ(run.watch.max_theta[kRight], 0.0);
-    EXPECT_EQ(run.watch.impacts, 0);
-  }
-}
-
-// A free body's speed after 2 s is the sum of its 100 held draws times 0.02 s, whatever the step;
-// over 4000 trials sd = 4 m/s, known to 1 / sqrt(2 * 4000) = 1.1 %: four of these.
-TEST_P(FixedStep, RandomForceSpreadsAFreeBodyAlikeAtAnyStep) {
-  for (const double step : {0.02, 0.004}) {
-    constexpr int kTrials = 4000;
-    GateParams p = by(test::free_rods(), step);
-    p.forces.random = 20.0;
-    p.beams.joint_x = 1e4;
-    p.run.time_limit = 2.0;
-    const auto method = make_method(p);
-    std::vector<double> vx(kTrials), drawn(kTrials);
-    tbb::parallel_for(0, kTrials, [&](int trial) {
-      const Random random(Purpose::gate, {1, 0, static_cast<std::uint64_t>(trial)});
-      RandomForce force(p.forces, random), again(p.forces, random);
-      vx[trial] = run_gate(p, *method, {}, force).exit.vx;
-      for (int i = 0; i < 100; ++i) {
-        drawn[trial] += 0.02 * again.value();
-        again.pass(again.left());
+// Drawn upwards by 6 N onto the left joint, first hit at 2 m/s: it comes to rest after hit n where
+// 2 e^n < h F / M, and sustained contact is no new hit. `moreau` rests in overlap by what it moves
+// in one step at most; `penalty` where the spring carries 6 N, (kContactSteps h / (2 pi))^2 6 m/s^2
+// deep but for the change that damping makes, and takes flights shorter than a step for none.
+TEST_P(FixedStep, BouncingEndsAtRest) {
+  const bool springs = std::string(GetParam()) == "penalty";
+  for (const double e : {0.0, 0.1, 0.5, 0.8, 0.95}) {
+    SCOPED_TRACE(e);
+    GateParams p = test::free_rods();
+    p.forces.propulsion = 6.0;
+    p.contact.restitution = e;
+    double last = 0.0;
+    for (const double step : {0.004, 0.002, 0.001}) {
+      SCOPED_TRACE(step);
+      Ride ride(by(p, step), test::at_rest(-25.0, 20.0 - 1.0 / 3));
+      // Each hit may come a step late, and the flight is then longer by as much.
+      ride.go(1.5 / 3 * (1 + e) / (1 - e) + 0.5);
+      const auto hits = ride.watch.impacts;
+      ride.go(2.0);
+      EXPECT_EQ(ride.watch.impacts, hits);
+      const double foreseen = 1 + (e > 0.0 ? std::log(step * 6.0 / 2.0) / std::log(e) : 0.0);
+      EXPECT_GE(static_cast<double>(hits), springs ? 1.0 : foreseen - 4.0);
+      EXPECT_LE(static_cast<double>(hits), foreseen + (springs ? 0.0 : 4.0));
+      EXPECT_EQ(ride.s.body.x, -25.0);
+      EXPECT_NEAR(ride.s.body.vy, 0.0, springs ? 1e-5 : 1e-9);  // 0.95 damps by 0.98 a step
+      const double depth = ride.s.body.y - 20.0;
+      const double spring =
+          6.0 * std::pow(PenaltyMethod::kContactSteps * step / (2 * test::kPi), 2);
+      EXPECT_GE(depth, springs ? spring : 0.0);
+      EXPECT_LE(depth, springs ? spring * (e < 0.5 ? 2.8 : 1.1) : step * 2.0);
+      if (springs && last > 0.0) {
+        EXPECT_NEAR(last / depth, 4.0, 0.01);
       }
-    });
-    double squares = 0.0;
-    for (int trial = 0; trial < kTrials; ++trial) {
-      // 500 additions to numbers up to 16.
-      ASSERT_NEAR(vx[trial], drawn[trial], 500 * 8 * kEps) << trial;
-      squares += vx[trial] * vx[trial];
+      last = depth;
     }
-    EXPECT_NEAR(std::sqrt(squares / kTrials), 4.0, 4.0 * 4 * 0.011) << step;
   }
 }
 
 // ---- Many trials ----
-
-TEST_P(FixedStep, AnyNumberOfThreadsGivesTheSameBits) {
-  const GateParams p = by(test::study(10.0));
-  const auto tally = [&](int threads) {
-    return test::on_threads(threads, [&] { return run_gate_trials(p, {}, 7, {0, 400}); });
-  };
-  const GateTally one = tally(1);
-  EXPECT_GT(one.traversed(), 0);
-  for (const int threads : {2, 8}) {
-    const GateTally t = tally(threads);
-    EXPECT_EQ(t.counts, one.counts);
-    EXPECT_EQ(t.health.steps, one.health.steps);
-    EXPECT_EQ(t.health.impacts, one.health.impacts);
-    EXPECT_EQ(t.health.evaluations, one.health.evaluations);
-    EXPECT_TRUE(same_bits(t.health.worst_penetration, one.health.worst_penetration));
-    EXPECT_TRUE(same_bits(t.health.worst_energy_created, one.health.worst_energy_created));
-    EXPECT_TRUE(same_bits(t.health.worst_speed, one.health.worst_speed));
-  }
-}
 
 /// How runs end, whichever beam they pass.
 std::vector<Outcome> endings(const GateParams& p, int trials) {

@@ -11,7 +11,7 @@
 #include "dynamics/disc/landscape.h"
 #include "dynamics/disc/methods/method.h"
 #include "dynamics/disc/random_force.h"
-#include "tests/support/free_beam.h"
+#include "tests/support/ride.h"
 
 namespace gatewalk::dynamics {
 namespace {

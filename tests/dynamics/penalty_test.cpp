@@ -8,9 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/gate.h"
-#include "tests/support/free_beam.h"
 #include "tests/support/measured.h"
 #include "tests/support/numbers.h"
 #include "tests/support/ride.h"
@@ -19,8 +17,8 @@
 namespace gatewalk::dynamics {
 namespace {
 
+using test::at_rest;
 using test::Draw;
-using test::energy_created;
 using test::kEps;
 using test::kPi;
 using test::let_go;
@@ -35,18 +33,7 @@ GateParams penalty(GateParams p, double step = 0.004) {
   return p;
 }
 
-GateState at_rest(double x, double y, double vx = 0.0, double vy = 0.0) {
-  GateState s;
-  s.body = {x, y, vx, vy};
-  return s;
-}
-
 // ---- Free motion ----
-
-// S1: 1.3e-3 at 0.004 s after 2 s, as hypot(theta, omega / w0); first order over five halvings.
-TEST(Penalty, FreeBeamIsFirstOrder) {
-  test::expect_free_beam_order("penalty", 1.0, 1.3e-3, 5e-5);  // the printed digits
-}
 
 // S2: without damping a step keeps I omega^2 + k theta (theta - h omega); the energy swings about
 // it by w0 h / 2, 1.009-fold, and does not grow.
@@ -71,24 +58,6 @@ TEST(Penalty, FreeBeamKeepsItsInvariantWithoutDamping) {
             .what = "energy of an undamped beam after 12 s",
             .figure = most - 1.0,
             .limit = 1e-6});
-}
-
-// Drag: v after n steps is (1 - g)^n of the start's, less what the forces add.
-TEST(Penalty, FreeBodyFollowsSemiImplicitEuler) {
-  GateParams p = test::free_rods();
-  p.forces.propulsion = 2.0;
-  p.forces.drag = 0.5;
-  p.body.mass = 2.0;
-  p.beams.joint_x = p.beams.joint_y = 1e4;
-  p.run.traverse_y = 2e4;
-  Ride ride(penalty(p), at_rest(1.0, -2.0, 3.0, 4.0));
-  ride.go(2.0, -6.0);
-  const double g = 0.25 * 0.004, q = std::pow(1 - g, 500);
-  const double tolerance = 500 * 32 * kEps;                  // 500 steps, numbers up to 24
-  EXPECT_NEAR(ride.s.body.vx, -12.0 + 15.0 * q, tolerance);  // towards F / D = -12
-  EXPECT_NEAR(ride.s.body.vy, 4.0, tolerance);               // F / D = 4 from the start
-  EXPECT_NEAR(ride.s.body.x, 1.0 - 24.0 + 15.0 * (1 - g) * (1 - q) / 0.25, tolerance);
-  EXPECT_NEAR(ride.s.body.y, 6.0, tolerance);
 }
 
 // ---- Hits ----
@@ -206,75 +175,6 @@ TEST(Penalty, SymmetricDoubleHitIsSymmetricAndNearlyTheLaws) {
                   0.4);
     }
   }
-}
-
-// ---- S6: Zeno ----
-
-// Drawn upwards by 6 N onto the left joint, first hit at 2 m/s: it comes to rest where the spring
-// carries 6 N, (kContactSteps h / (2 pi))^2 6 m/s^2 deep but for the change that damping makes.
-TEST(Penalty, BouncingEndsAtRest) {
-  for (const double e : {0.0, 0.5, 0.8, 0.95}) {
-    SCOPED_TRACE(e);
-    GateParams p = test::free_rods();
-    p.forces.propulsion = 6.0;
-    p.contact.restitution = e;
-    double last = 0.0;
-    for (const double step : {0.004, 0.002, 0.001}) {
-      SCOPED_TRACE(step);
-      Ride ride(penalty(p, step), at_rest(-25.0, 20.0 - 1.0 / 3));
-      ride.go(1.5 / 3 * (1 + e) / (1 - e) + 0.5);
-      const auto hits = ride.watch.impacts;
-      ride.go(2.0);
-      EXPECT_EQ(ride.watch.impacts, hits);
-      EXPECT_GE(hits, 1);
-      // Flights shorter than a step, after 2 e^n < h F / M, are none.
-      EXPECT_LE(hits, 1 + (e > 0.0 ? std::log(step * 6.0 / 2.0) / std::log(e) : 0.0));
-      EXPECT_EQ(ride.s.body.x, -25.0);
-      EXPECT_NEAR(ride.s.body.vy, 0.0, 1e-5);  // 0.95 damps by 0.98 a step
-      const double depth = ride.s.body.y - 20.0;
-      const double spring = 6.0 * std::pow(PenaltyMethod::kContactSteps * step / (2 * kPi), 2);
-      EXPECT_GE(depth, spring);
-      EXPECT_LE(depth, spring * (e == 0.0 ? 2.8 : 1.1));
-      if (last > 0.0) {
-        EXPECT_NEAR(last / depth, 4.0, 0.01);
-      }
-      last = depth;
-    }
-  }
-}
-
-// ---- S7: energy ----
-
-// With the contacts' springs counted, what appears falls with the step at first order. Measured
-// means 0.364, 0.163 and 0.079 J, worst 1.8, 1.4 and 0.5 J of a disc that has up to 430 J.
-TEST(Penalty, EnergyCreatedFallsWithTheStep) {
-  double last = 0.0, order = 10.0;
-  for (const double step : {0.004, 0.002, 0.001}) {
-    GateParams p = penalty(test::study(10.0), step);
-    p.contact.tip_restitution = p.contact.restitution;
-    const auto [mean, worst] = energy_created(p);
-    EXPECT_LE(worst, 3.0);
-    if (last > 0.0) {
-      EXPECT_NEAR(std::log2(last / mean), 1.0, 0.25) << step;
-      order = std::min(order, std::log2(last / mean));
-    }
-    last = mean;
-  }
-  measured({.requirement = 5,
-            .method = "penalty",
-            .what = "order of the energy's error in the step",
-            .figure = order,
-            .limit = 0.9,
-            .at_least = true,
-            .cases = 300});
-}
-
-// Elastic tips create more, and that falls slower. Measured worst 20 J at Rm = 40.
-TEST(Penalty, EnergyCreatedInTrialsIsBoundedAndReported) {
-  GateParams p = penalty(test::study(10.0));
-  p.forces.random = 40.0;
-  EXPECT_LE(energy_created(p)[1], 30.0);
-  EXPECT_GT(run_gate_trials(p, {}, 1, {0, 100}).health.creating_energy, 0);
 }
 
 // ---- S9, S17: limits ----

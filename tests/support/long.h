@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 /// The full counts of the requirements take minutes. GATEWALK_LONG=1 asks for them:
-///     GATEWALK_LONG=1 build/tests/dynamics_tests --gtest_filter='*Event*:*NearSingular*'
+///     GATEWALK_LONG=1 build/tests/dynamics_tests --gtest_filter='*HeldContacts*'
 
 #include <cstdlib>
 #include <string_view>

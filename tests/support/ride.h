@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "dynamics/disc/gate.h"
@@ -13,11 +14,26 @@
 
 namespace gatewalk::test {
 
+constexpr double kHold = 0.02;  // s, how long the random force is held
+
 /// A body among two beams at rest.
 inline dynamics::GateState at_rest(double x, double y, double vx = 0.0, double vy = 0.0) {
   dynamics::GateState s;
   s.body = {x, y, vx, vy};
   return s;
+}
+
+/// The disc far away at rest, the left beam let go.
+inline dynamics::GateState let_go(double theta = 0.5) {
+  dynamics::GateState s;
+  s.beams[dynamics::kLeft].theta = theta;
+  return s;
+}
+
+inline dynamics::GateParams quiet_gate() {
+  dynamics::GateParams p;
+  p.forces.propulsion = 0.0;
+  return p;
 }
 
 struct Ride {
@@ -41,12 +57,25 @@ struct Ride {
   }
 };
 
-/// Energy created (J) in 300 noisy runs from the default start: their mean, and the worst.
-inline std::array<double, 2> energy_created(const dynamics::GateParams& p) {
-  constexpr int kTrials = 300;
+inline void go_in_holds(Ride& ride, double seconds, double force_x = 0.0) {
+  for (int i = 0; i < std::lround(seconds / kHold); ++i) ride.go(kHold, force_x);
+}
+
+/// In any of body and beams: m, m/s, rad, rad/s.
+inline double largest_difference(const dynamics::GateState& a, const dynamics::GateState& b) {
+  double d = std::max({std::abs(a.body.x - b.body.x), std::abs(a.body.y - b.body.y),
+                       std::abs(a.body.vx - b.body.vx), std::abs(a.body.vy - b.body.vy)});
+  for (const dynamics::Side side : {dynamics::kLeft, dynamics::kRight})
+    d = std::max({d, std::abs(a.beams[side].theta - b.beams[side].theta),
+                  std::abs(a.beams[side].omega - b.beams[side].omega)});
+  return d;
+}
+
+/// Energy created (J) in noisy runs from the default start: their mean, and the worst.
+inline std::array<double, 2> energy_created(const dynamics::GateParams& p, int trials) {
   const auto method = dynamics::make_method(p);
-  std::vector<double> created(kTrials);
-  tbb::parallel_for(0, kTrials, [&](int trial) {
+  std::vector<double> created(trials);
+  tbb::parallel_for(0, trials, [&](int trial) {
     dynamics::RandomForce force(
         p.forces,
         dynamics::Random(dynamics::Purpose::gate, {1, 0, static_cast<std::uint64_t>(trial)}));
@@ -54,7 +83,7 @@ inline std::array<double, 2> energy_created(const dynamics::GateParams& p) {
   });
   std::array<double, 2> result{};
   for (const double c : created) {
-    result[0] += c / kTrials;
+    result[0] += c / trials;
     result[1] = std::max(result[1], c);
   }
   return result;

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// What every method owes, and how exactly: one row a method, each number with its reason. The laws
+/// themselves are tests/dynamics/laws_test.cpp and limits_test.cpp; what only one method has is in
+/// the tests of that method.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dynamics/disc/gate.h"
+#include "tests/support/numbers.h"
+
+namespace gatewalk::test {
+
+/// Energy that `trials` noisy trials may create, J, in a study with this step and force (N).
+struct CreatedEnergy {
+  double step, random, most;
+  int trials;
+  double event_tolerance = 1e-2;  // m
+};
+
+/// How the energy that noisy trials create falls with the step.
+struct EnergyOrder {
+  double least = 0.0, most = 0.0, random = 10.0;
+  int trials = 300;
+  bool one_restitution = true;  // tips have that of the sides
+  double worst = 0.0;           // J at a step of 0.004 s, in proportion at others
+};
+
+struct Wall {
+  double stiffness, beam_mass;
+};
+
+struct Trials {
+  int usual, full;
+};
+
+struct MethodLaws {
+  std::string_view name;
+  double step = 0.004;  // s
+
+  // ---- Free motion ----
+  /// Error of the free beam after 2 s, as hypot(theta, omega / w0), and how well that is known; the
+  /// order in which it falls, 0 where it is rounding.
+  double beam_error = 0.0, beam_digits = 0.0;
+  int beam_order = 0;
+  /// What a free body keeps of its speed in a step in which drag takes g of it, and of the way that
+  /// it would go at the speed it had before.
+  double (*kept)(double g) = [](double g) { return std::exp(-g); };
+  double (*way)(double g) = [](double) { return 1.0; };
+  double flight = 500 * 32 * kEps;       // m, m/s; 500 steps, numbers up to 24
+  double exit_time = 126 * 12.5 * kEps;  // s; 126 steps round x by eps 25 m / 2 at 10 m/s
+
+  // ---- Single hits ----
+  bool at_mid_step = false;  // the impulse acts there, in overlap, not where the gap is zero
+  double place = 0.0;        // m, how exactly the hit's place is known
+
+  // ---- Many hits ----
+  double reversed = 0.0;  // m, m/s, rad; distance from the start on return
+  int reversed_rides = 0;
+  std::vector<CreatedEnergy> created{};
+  double overlap_m = 0.0;  // in these trials
+  bool clean = true;       // and Health has nothing to say of them
+  EnergyOrder order{};
+  Trials mirrored{};
+  bool same_work = true;  // gaps are evaluated in an order that a mirror image does not change
+
+  // ---- Held contacts ----
+  bool holds = false;   // contacts become constraints
+  double pull_N = 0.0;  // of a held contact
+
+  // ---- Limits ----
+  std::vector<Wall> walls{};
+  double wall_overlap = 0.0;  // m
+  double fastest = 0.0;       // rad/s or e-folds a second of a beam, beyond which it is refused
+  std::string_view fastest_key{};
+  double near_overlap = std::numeric_limits<double>::infinity();  // m, from near-singular starts
+  Trials near_starts{};
+  double graze = 0.0;        // least distance from R, in R, that grazing discs are tried at
+  double graze_slack = 0.0;  // m, gaps that are contact
+  Trials scenes{};
+};
+
+/// The name makes the test's, `Methods/AnyMethod.Law/event`.
+inline void PrintTo(const MethodLaws& m, std::ostream* out) { *out << m.name; }
+
+inline std::vector<MethodLaws> all_methods() {
+  return {
+      // Free motion is exact, 100 or 600 steps of 0.02 s round so often; hits are found where the
+      // gap is 1e-10 R or less, mostly 1e-12 R, and each stretches the errors before it.
+      {.name = "stable",
+       .step = 0.02,
+       .beam_digits = 100 * kEps,
+       .flight = 100 * 16 * kEps,
+       .place = 1e-9,
+       .reversed = 1e-10,  // measured 2.4e-12
+       .reversed_rides = 20,
+       // The midpoint rule's error in constrained motion. It grows with the speed at which the disc
+       // slides along the beams, and so with Rm. Of a disc that has up to 430, 920 and 1370 J,
+       // limits about four times what was measured:
+       //     0.004 s: 9e-6, 3e-5, 6e-5 J    0.02 s: 1.3e-3, 4.7e-3, 8e-3 J
+       .created = {{0.004, 10.0, 4e-5, 10'000},
+                   {0.004, 40.0, 1.2e-4, 10'000},
+                   {0.004, 60.0, 2.5e-4, 10'000},
+                   {0.02, 10.0, 5e-3, 10'000},
+                   {0.02, 40.0, 2e-2, 10'000},
+                   {0.02, 60.0, 3e-2, 10'000}},
+       .overlap_m = 1e-8,
+       // Measured 3.4 and 3.0; the midpoint rule's second order is the least.
+       .order = {2.0, 5.0, 40.0, 2000, false, 1.2e-4},
+       .mirrored = {10'000, 100'000},
+       .holds = true,
+       // Forces only push, but whether there is one is asked at mid-step: at the end a contact may
+       // be held half a step too long, by what its force falls in that time. Measured 24 N.
+       .pull_N = 40.0,
+       .walls = {{1e9, 0.1}, {1e12, 1e4}},
+       .wall_overlap = 1e-8,
+       // 1024 pieces of a step of 0.02 s may turn a beam's phase by 0.5 each.
+       .fastest = 1024 * 0.5 / 0.02,
+       .fastest_key = "run.step_s",
+       .near_overlap = 1e-8,  // up to 1e-10 R the method calls contact
+       .near_starts = {25'000, 200'000},
+       .graze = 1e-6,  // a chord that is shorter than a step is not seen
+       .graze_slack = 1e-9,
+       .scenes = {6000, 100'000}},
+      // As stable without steps: 100 holds round; a hit is where the gap is 1e-13 m or less.
+      {.name = "event",
+       .step = 0.02,
+       .beam_digits = 100 * 4 * kEps,
+       .flight = 100 * 16 * kEps,
+       .place = 2e-13,
+       .reversed = 1e-10,  // measured 2e-12
+       .reversed_rides = 20,
+       // Measured over 10^4 trials of a disc that has up to 430 and 1370 J: 3e-6 and 5.6e-3 J by
+       // default, 1e-11 J at a tolerance of 1e-6 m. The overlap, up to 1e-7 m, is where the body
+       // leaves: that state is interpolated.
+       .created = {{0.02, 10.0, 2e-2, 1000},
+                   {0.02, 60.0, 2e-2, 1000},
+                   {0.02, 10.0, 1e-9, 200, 1e-6},
+                   {0.02, 60.0, 1e-9, 200, 1e-6}},
+       .overlap_m = 1e-5,
+       .mirrored = {3000, 50'000},
+       .same_work = false,
+       .holds = true,
+       .pull_N = 1e-12,
+       .walls = {{1e9, 0.1}, {5e10, 0.1}, {1e12, 1e4}},
+       .wall_overlap = 1e-8,
+       .fastest = 1000 * 50.0,  // 1000 rad or e-folds in a hold of 0.02 s
+       .fastest_key = "run.method",
+       .near_overlap = 1e-5,  // measured over 10^5: 4e-12 m
+       .near_starts = {20'000, 200'000},
+       .graze = 1e-15,
+       .graze_slack = 1e-13 + 2e-14,  // gaps up to 1e-14 R are contact; round-off of 10 m
+       .scenes = {2000, 100'000}},
+      // The midpoint rule: its phase lags by (w0 h)^2 / 12 of w0 t. Its impulse acts in mid-step to
+      // round-off, its elastic steps are their own inverse, its overlap is what moves in a step.
+      {.name = "moreau",
+       .beam_error = 1.14e-5,
+       .beam_digits = 1e-7,
+       .beam_order = 2,
+       .kept = [](double g) { return (1 - g / 2) / (1 + g / 2); },
+       .at_mid_step = true,
+       .place = 4 * kEps * 15,
+       .reversed = 1e-11,  // measured 5.4e-13
+       .reversed_rides = 6,
+       // Restitutions of 0.8 on sides and 1 on tips: measured 7.6e-4 and 2.2e-3 J.
+       .created = {{0.004, 10.0, 0.01, 300}, {0.004, 40.0, 0.01, 300}},
+       .overlap_m = 1.0,
+       .clean = false,
+       // A closing force on an opening contact gains (h F)^2 in steps that are rare in proportion
+       // to h. Measured means 8.2e-6, 1.2e-6, 1.1e-7 J, worst 7.9e-4 J.
+       .order = {1.0, 5.0, 10.0, 300, true, 1.6e-3},
+       .mirrored = {2000, 100'000},
+       .walls = {{1e12, 0.1}},                              // far beyond what a step resolves
+       .wall_overlap = 0.004 * std::sqrt(2 * 7.0 * 10.1)},  // what the disc moves in a step
+      // Semi-implicit Euler against springs: of first order in all. It rounds no worse.
+      {.name = "penalty",
+       .beam_error = 1.3e-3,  // the printed digits
+       .beam_digits = 5e-5,
+       .beam_order = 1,
+       .kept = [](double g) { return 1 - g; },
+       .way = [](double g) { return 1 - g; },  // at the new speed
+       // Elastic tips create more than the springs of one restitution. Measured worst 20 J.
+       .created = {{0.004, 40.0, 30.0, 300}},
+       .overlap_m = 10.0,
+       .clean = false,
+       // With the contacts' springs counted: means 0.364, 0.163 and 0.079 J, worst 1.8 J.
+       .order = {0.75, 1.25, 10.0, 300, true, 3.0},
+       .mirrored = {2000, 100'000}},
+      // Explicit Euler, that moves by the old speed and leaves at the end of a step.
+      {.name = "paper",
+       .beam_error = 3.3e-3,  // the printed digits
+       .beam_digits = 5e-5,
+       .beam_order = 1,
+       .kept = [](double g) { return 1 - g; },
+       .exit_time = 0.004},
+  };
+}
+
+/// A law that all methods keep; others are kept by some, which derive from it.
+class AnyMethod : public testing::TestWithParam<MethodLaws> {
+ protected:
+  /// `p` by this method, at the step of its row or another.
+  [[nodiscard]] static dynamics::GateParams by(dynamics::GateParams p, double step = 0.0) {
+    p.run.method = GetParam().name;
+    p.run.step = step > 0.0 ? step : GetParam().step;
+    return p;
+  }
+  [[nodiscard]] static dynamics::RandomForce force_of(const dynamics::GateParams& p, int trial,
+                                                      double sign = 1.0) {
+    return {p.forces,
+            dynamics::Random(dynamics::Purpose::gate, {3, 0, static_cast<std::uint64_t>(trial)}),
+            sign};
+  }
+};
+
+/// Those whose rows say so.
+inline auto methods_that(bool (*fits)(const MethodLaws&)) {
+  std::vector<MethodLaws> fitting;
+  for (const MethodLaws& m : all_methods())
+    if (fits(m)) fitting.push_back(m);
+  return testing::ValuesIn(fitting);
+}
+
+/// `exact`: of hits; `held`: contacts become constraints; `alike`: both beams are treated at once.
+inline bool exact(const MethodLaws& m) { return m.place > 0.0; }
+inline bool held(const MethodLaws& m) { return m.holds; }
+inline bool alike(const MethodLaws& m) { return m.mirrored.usual > 0; }
+inline bool stepping(const MethodLaws& m) { return m.order.least > 0.0; }
+
+inline std::string method_name(const testing::TestParamInfo<MethodLaws>& m) {
+  return std::string(m.param.name);
+}
+
+}  // namespace gatewalk::test
