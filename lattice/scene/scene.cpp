@@ -145,6 +145,10 @@ std::string_view closest_table(std::string_view name) {
 /// The key nearest to `name`, by its whole length or by the part behind the table's name.
 std::string_view closest_key(std::string_view name) {
   name = name.substr(0, kLongestCompared);
+  // Capitals are not small letters.
+  const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  for (const SceneKey& k : scene_keys())
+    if (std::ranges::equal(name, k.key, {}, small, small)) return k.key;
   // The unit is easily forgotten.
   for (const SceneKey& k : scene_keys())
     if (!leaf_of(name).empty() && table_of(k.key) == table_of(name) &&

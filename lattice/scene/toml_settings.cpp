@@ -134,6 +134,11 @@ std::size_t first_given(const toml::table& before, const toml::table& again) {
   for (const auto& [key, node] : again) {
     const toml::node* const there = before.get(key.str());
     if (!there) continue;
+    if (node.is_array_of_tables() && there->is_array_of_tables()) {  // the last [[NAME]] of each
+      const toml::node &last = there->as_array()->back(), &own = node.as_array()->back();
+      if (const std::size_t line = first_given(*last.as_table(), *own.as_table())) return line;
+      continue;
+    }
     if (node.is_table() && there->is_table())
       if (const std::size_t line = first_given(*there->as_table(), *node.as_table())) return line;
     return there->source().begin.line;
