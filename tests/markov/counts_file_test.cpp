@@ -230,55 +230,74 @@ TEST_F(ChainIo, NothingIsPrintedInAnyThread) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST_F(ChainIo, RoundTripOfSeveralTypesOfCells) {
-  CountsFile file = example();
-  for (const std::string name : {"s", "stiff_2"}) {
-    file.types[name] = static_cast<const RowCounts&>(file);
-    file.types[name].clamped[3] += static_cast<std::int64_t>(name.size());
-  }
-  write_counts(path(), file);
-  EXPECT_TRUE(same(read_counts(path()), file));
-  CountsFile other = file;
-  other.types["s"].clamped[3] += 1;
-  EXPECT_FALSE(same(other, file));
-  other.types.erase("s");
-  EXPECT_FALSE(same(other, file));
-}
-
-TEST_F(ChainIo, RoundTripOfTheSmallestAndTheLargest) {
+/// Any file that may be written: 1 to 9 rows, some of them empty, now and then the largest numbers.
+CountsFile any_file(test::Words& words) {
+  const auto any = [&](std::initializer_list<double> numbers) {
+    return numbers.begin()[words.below(static_cast<int>(numbers.size()))];
+  };
+  const int rows = 1 + words.below(9), columns = rows + words.below(3);
   CountsFile file;
-  file.counts.resize(1, 1);
-  file.trials = {0};
-  file.clamped = {0};
-  file.exits = {{}};
-  write_counts(path(), file);
-  EXPECT_TRUE(same(read_counts(path()), file));
-
-  const std::int64_t most = std::numeric_limits<std::int64_t>::max();
-  file.counts.coeffRef(0, 0) = most;
-  file.trials = {most};
-  file.clamped = {most};
-  file.exits = {{0, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()}};
-  file.arrays = {{"big", "m", "", std::vector<double>(300'000, 0.25)}};
-  file.text = {{"long_text", std::string(60'000, 'x')}};
-  write_counts(path(), file);
-  EXPECT_TRUE(same(read_counts(path()), file));
+  const auto fill = [&](RowCounts& some) {
+    some.counts.resize(rows, columns);
+    for (int row = 0; row < rows; ++row) {
+      std::int64_t sum = 0;
+      for (int n = words.below(4); n > 0; --n) {
+        const std::int64_t most = std::numeric_limits<std::int64_t>::max() - sum;
+        const std::int64_t count =
+            words.below(20) == 0 ? most : std::min<std::int64_t>(most, words.below(100));
+        some.counts.coeffRef(row, words.below(columns)) += count;  // or a stored zero, no content
+        sum += count;
+      }
+      some.trials.push_back(sum);
+      some.clamped.push_back(words.below(2) ? sum : sum / 2);
+    }
+  };
+  fill(file);
+  for (int t = words.below(3); t > 0; --t) fill(file.types["type" + std::to_string(t)]);
+  constexpr int kMost = std::numeric_limits<int>::max(), kLeast = std::numeric_limits<int>::min();
+  for (int j = 0; j < columns; ++j)
+    file.exits.push_back(
+        words.below(4) ? Exit{words.below(rows), words.below(3) - 1, words.below(9) ? 1 : kMost}
+                       : Exit{});
+  if (words.below(9) == 0) file.exits[0] = {0, kLeast, kMost};
+  for (int n = words.below(5); n > 0; --n) {
+    NamedArray array{"of_" + std::to_string(n), words.below(2) ? "m s-1" : "", "\xc3\xbc, \"", {}};
+    const bool of_rows = words.below(3) == 0, is_code = !of_rows && words.below(3) == 0;
+    if (of_rows) array.dimension = "input_state";
+    if (is_code) {
+      array.whole = true;
+      array.codes = {"left", "right"};
+    }
+    for (int k = of_rows ? rows : words.below(2000); k > 0; --k)
+      array.values.push_back(is_code ? words.below(2) : any({-0.0, 0.1, 5e-324, 1e300, -1.5}));
+    file.arrays.push_back(array);
+  }
+  if (words.below(2))
+    for (int j = 0; j < columns; ++j) file.state_names.push_back("EN_" + std::to_string(j));
+  for (int n = words.below(4); n > 0; --n)
+    file.text["text" + std::to_string(n)] =
+        std::string(words.below(9) ? words.below(9) : 59'000, 'x') + "# \n\xc3\x84\t\"";
+  return file;
 }
 
-TEST_F(ChainIo, ArraysComeBackByName) {
-  CountsFile file = example();
-  std::swap(file.arrays[0], file.arrays[2]);
-  write_counts(path(), file);
-  EXPECT_TRUE(same(read_counts(path()), example()));
-}
-
-TEST_F(ChainIo, SameContentSameBytes) {
-  CountsFile file = example();
-  write_counts(path("a"), file);
-  file.counts.coeffRef(41, 3) = 0;  // a stored zero is no content
-  file.counts.uncompress();
-  write_counts(path("b"), file);
-  EXPECT_EQ(bytes_of(path("a")), bytes_of(path("b")));
+// Numbers to the bit; arrays come back by name. The same content is the same bytes.
+TEST_F(ChainIo, AnyFileReadsBackTheSame) {
+  test::Words words(3);
+  for (int k = 0; k < 100; ++k) {
+    SCOPED_TRACE(k);
+    CountsFile file = any_file(words);
+    write_counts(path(), file);
+    CountsFile back = read_counts(path());
+    std::sort(file.arrays.begin(), file.arrays.end(),
+              [](const NamedArray& a, const NamedArray& b) { return a.name < b.name; });
+    EXPECT_TRUE(same(back, file));
+    write_counts(path(), file);
+    write_counts(path("again"), back);
+    EXPECT_TRUE(bytes_of(path()) == bytes_of(path("again")));
+    EXPECT_EQ(files(), 2);
+    back.clamped[0] ^= 1;
+    EXPECT_FALSE(same(back, file));
+  }
 }
 
 // Room for more between the rows holds no counts.
