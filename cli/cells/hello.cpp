@@ -19,7 +19,7 @@ namespace {
 
 using Keys = std::initializer_list<std::string_view>;
 
-[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
+[[noreturn]] void refuse_hello(const std::string& what) { throw std::invalid_argument(what); }
 
 /// Not empty, without blanks, so that it can stand in a line.
 bool is_word(std::string_view text) {
@@ -32,11 +32,11 @@ class HelloTable {
  public:
   HelloTable(const Json& json, std::string where, Keys keys)
       : json_(json), where_(std::move(where)) {
-    if (!json.is_object()) refuse(where_ + " must be an object { }");
+    if (!json.is_object()) refuse_hello(where_ + " must be an object { }");
     for (const auto& [key, value] : json.items()) {
       if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-      refuse(fmt::format("{} has no key '{}'; it has {}", where_, excerpt(key, 60),
-                         fmt::join(keys, ", ")));
+      refuse_hello(fmt::format("{} has no key '{}'; it has {}", where_, excerpt(key, 60),
+                               fmt::join(keys, ", ")));
     }
   }
   [[nodiscard]] const Json* find(std::string_view key) const {
@@ -45,11 +45,11 @@ class HelloTable {
   }
   [[nodiscard]] const Json& at(std::string_view key) const {
     const Json* const value = find(key);
-    if (value == nullptr) refuse(fmt::format("{}: '{}' is missing", where_, key));
+    if (value == nullptr) refuse_hello(fmt::format("{}: '{}' is missing", where_, key));
     return *value;
   }
   [[noreturn]] void refuse_value(std::string_view key, const std::string& must_be) const {
-    refuse(fmt::format("{}: '{}' must be {}", where_, key, must_be));
+    refuse_hello(fmt::format("{}: '{}' must be {}", where_, key, must_be));
   }
 
   [[nodiscard]] std::string word(std::string_view key) const {
@@ -84,7 +84,7 @@ class HelloTable {
 
 double number_of(const Json& value, const std::string& where) {
   if (!value.is_number() || !std::isfinite(value.get<double>()))
-    refuse(where + " must be a finite number");
+    refuse_hello(where + " must be a finite number");
   return value.get<double>();
 }
 
@@ -114,7 +114,7 @@ std::size_t coordinate_of(const dynamics::Section& section, const Json& name,
                           const std::string& where) {
   for (std::size_t k = 0; k < section.coordinates.size(); ++k)
     if (name == section.coordinates[k].name) return k;
-  refuse(where + ": 'odd' must name coordinates: " + dynamics::names_of(section.coordinates));
+  refuse_hello(where + ": 'odd' must name coordinates: " + dynamics::names_of(section.coordinates));
 }
 
 void read_coordinates(const Json& list, dynamics::Section& section) {
@@ -160,13 +160,14 @@ void read_faces(const Json& list, dynamics::Section& section, bool symmetric) {
     if (mirrors[f].empty()) continue;
     const auto image = std::find_if(section.faces.begin(), section.faces.end(),
                                     [&](const dynamics::Face& o) { return o.name == mirrors[f]; });
-    if (image == section.faces.end()) refuse(fmt::format("face {}: {}", f + 1, allowed));
+    if (image == section.faces.end()) refuse_hello(fmt::format("face {}: {}", f + 1, allowed));
     images[f] = static_cast<int>(image - section.faces.begin());
   }
   dynamics::set_mirrors(section.faces, images, symmetric);
   for (const dynamics::Face& face : section.faces)
     if (symmetric && face.mirror == dynamics::kNoMirror)
-      refuse(fmt::format("face {} of symmetric cells needs 'mirror': {}", face.name, allowed));
+      refuse_hello(
+          fmt::format("face {} of symmetric cells needs 'mirror': {}", face.name, allowed));
 }
 
 void read_costs(const Json& list, dynamics::Section& section) {
@@ -177,19 +178,20 @@ void read_costs(const Json& list, dynamics::Section& section) {
     cost.words = table.text("words", cost.key);
     section.costs.push_back(std::move(cost));
   }
-  if (section.costs.empty()) refuse("'costs' must name at least one; the first one is a time");
+  if (section.costs.empty())
+    refuse_hello("'costs' must name at least one; the first one is a time");
 }
 
 Hello::Parameter read_parameter(const std::string& key, const Json& value) {
   const std::string where = fmt::format("parameter '{}'", excerpt(key, 60));
   if (!is_word(key) || key.find('=') != key.npos)
-    refuse(where + " must be a word without blanks and '='");
+    refuse_hello(where + " must be a word without blanks and '='");
   constexpr double kAny = std::numeric_limits<double>::max();
   if (!value.is_array()) return {{key, number_of(value, where)}, -kAny, kAny};
-  if (value.size() != 3) refuse(where + " must be a number or [number, least, most]");
+  if (value.size() != 3) refuse_hello(where + " must be a number or [number, least, most]");
   const Hello::Parameter p{
       {key, number_of(value[0], where)}, number_of(value[1], where), number_of(value[2], where)};
-  if (!p.permits(p.number.value)) refuse(where + " must be " + p.range());
+  if (!p.permits(p.number.value)) refuse_hello(where + " must be " + p.range());
   return p;
 }
 
@@ -201,16 +203,16 @@ std::string Hello::Parameter::range() const {
 
 Hello read_hello(std::string_view line) {
   const Json json = parsed_json(line);
-  if (json.is_discarded()) refuse("it is not JSON");
+  if (json.is_discarded()) refuse_hello("it is not JSON");
   const HelloTable table(json, "it",
                          {"gatewalk", "faces", "coordinates", "costs", "symmetric", "normals",
                           "uniforms", "parameters"});
   if (const Json& version = table.at("gatewalk"); version != kProgramProtocol)
-    refuse(fmt::format("'gatewalk' is the protocol, which must be {}", kProgramProtocol));
+    refuse_hello(fmt::format("'gatewalk' is the protocol, which must be {}", kProgramProtocol));
   Hello hello;
   read_coordinates(table.list("coordinates"), hello.section);
   if (hello.section.coordinates.size() > dynamics::kMostCoordinates)
-    refuse(fmt::format("'coordinates' must be at most {}", dynamics::kMostCoordinates));
+    refuse_hello(fmt::format("'coordinates' must be at most {}", dynamics::kMostCoordinates));
   if (const Json* const symmetric = table.find("symmetric")) {
     if (!symmetric->is_boolean()) table.refuse_value("symmetric", "true or false");
     hello.symmetric = symmetric->get<bool>();
@@ -220,7 +222,8 @@ Hello read_hello(std::string_view line) {
   hello.section.validate();
   hello.normals = table.whole("normals", 0, kMostNoise, 0);
   hello.uniforms = table.whole("uniforms", 0, kMostNoise, 0);
-  if (hello.normals > 0 && hello.uniforms > 0) refuse("it has 'normals' and 'uniforms'; use one");
+  if (hello.normals > 0 && hello.uniforms > 0)
+    refuse_hello("it has 'normals' and 'uniforms'; use one");
   if (const Json* const parameters = table.find("parameters")) {
     if (!parameters->is_object()) table.refuse_value("parameters", "an object { }");
     for (const auto& [key, value] : parameters->items())

@@ -13,6 +13,7 @@
 
 #include "dynamics/base/random.h"
 #include "lattice/statistics/draws.h"
+#include "lattice/statistics/quantiles.h"
 #include "markov/dense.h"
 
 namespace gatewalk::lattice {
@@ -250,8 +251,7 @@ void measure(Independence& result, const Pooled& pooled, double single_level) {
   result.memory_high = memory(noncentrality_at(degrees, q, 0.025));
   result.seen_at_90 = std::numeric_limits<double>::infinity();
   if (single_level <= 0.0) return;
-  const double bar = boost::math::quantile(
-      boost::math::complement(boost::math::chi_squared(degrees), single_level));
+  const double bar = chi_squared_exceeded(degrees, single_level);
   const double least = memory(noncentrality_at(degrees, bar, 0.1));
   if (least <= 1.0) result.seen_at_90 = least;  // no total variation is more
 }

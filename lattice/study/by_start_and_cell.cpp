@@ -4,11 +4,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 
 #include "dynamics/base/share.h"
+#include "lattice/statistics/quantiles.h"
 #include "lattice/statistics/share_95.h"
 
 namespace gatewalk::lattice {
@@ -33,9 +33,7 @@ EndTable means_of(const markov::Counts& counts, const std::vector<std::int64_t>&
 class MeanOfRuns {
  public:
   explicit MeanOfRuns(double runs)
-      : runs_(runs),
-        quantile_(runs < 2.0 ? 0.0
-                             : boost::math::quantile(boost::math::students_t(runs - 1.0), 0.975)) {}
+      : runs_(runs), quantile_(runs < 2.0 ? 0.0 : student_t_975(runs - 1.0)) {}
   [[nodiscard]] double half_width(double mean, double mean_square) const {
     if (runs_ < 2.0) return 1.0;
     return quantile_ * std::sqrt(std::max(0.0, mean_square - mean * mean) / (runs_ - 1.0));

@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -20,6 +19,7 @@
 #include "lattice/statistics/draws.h"
 #include "lattice/statistics/ensemble.h"
 #include "lattice/statistics/outcome_tree.h"
+#include "lattice/statistics/quantiles.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -396,9 +396,8 @@ class Fitter {
         top = std::max(top, log);
         if (&top == &bound.greatest.front().second) falls.push_back(-log);
       }
-    const boost::math::chi_squared squares(numbers_);
     double below =
-        2.0 * fit_.misfit + 0.5 * boost::math::quantile(boost::math::complement(squares, kOutside));
+        2.0 * fit_.misfit + 0.5 * chi_squared_exceeded(static_cast<double>(numbers_), kOutside);
     // But no fewer points than these are kept: what is wrong far from the best is seen later.
     std::sort(falls.begin(), falls.end());
     below = std::max(below, bound.greatest.front().second +
