@@ -58,7 +58,7 @@ run design "${mixed[@]}" --set field.rows=3 --changes 2 --types s,. --accuracy 0
 printf 'ending,count\ncrossed,9\nleft side,3\nright side,2\ntrapped,40\ncut off,0\n' >counts.csv
 free=(--free forces.propulsion_N=5:9)
 for more in forces.random_N=20:60 beams.stiffness_left_Nm_per_rad=300:500 beams.stiffness_right_Nm_per_rad=300:500; do
-  run fit "$field" counts.csv --set run.method=moreau --set field.rows=3 "${free[@]}" --trials 50000 --figure ../fit_${#free[@]}.svg
+  run fit "$field" counts.csv --set run.method=moreau --set field.rows=3 "${free[@]}" --trials $((6144 * ${#free[@]})) --figure ../fit_${#free[@]}.svg
   free+=(--free $more)
 done
 run fit "$field" counts.csv --set run.method=moreau --set field.rows=3 "${free[@]}" --trials 50000 --figure ../fit_${#free[@]}.svg

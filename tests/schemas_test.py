@@ -37,7 +37,7 @@ scene walker.toml
 scene mixed.toml
 scene field.toml --set actions.a.forces.propulsion_N=6 --set actions.b={}
 gate field.toml --trials 100
-gate walker.toml --set run.method=auto --trials 50
+gate field.toml --set run.method=auto --trials 50
 sweep field.toml --vary forces.propulsion_N=6,8 --trials 20
 trace field.toml --trials 2
 trace mixed.toml --field --trials 1
@@ -69,7 +69,7 @@ predict bins.nc --start 4,5,10 --set field.max_gates=0
 predict mixed.toml --accuracy 0.2
 predict passages.nc
 predict runs.nc
-predict tree.nc --set field.columns=401 --set field.rows=401
+predict tree.nc --set field.columns=317 --set field.rows=317
 analyze field.toml --accuracy 0.2 --runs 200
 analyze mixed.toml --accuracy 0.2 --runs 0 --trials 50 --target trapped
 analyze bins.nc --runs 0 --first-passage 0,1
@@ -81,20 +81,17 @@ rare field.toml --row 4 --accuracy 0.5
 plan field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2 --policy policy.json --gate-policy gates.json
 lattice field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --policy policy.json --trials 20
 trace field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --policy policy.json --trials 2
-plan field.toml --set field.rows=2 --set run.method=auto --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2
 plan field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2 --least work_J
 plan mixed.toml --set field.rows=2 --set run.method=auto --accuracy 0.2
 plan field.toml --set field.rows=2 --over start.x_m=-5:5 --accuracy 0.2
 plan field.toml --set field.rows=2 --set actions.a.forces.propulsion_N=6 --set actions.b.forces.propulsion_N=9 --accuracy 0.2 --robust
 design mixed.toml --set field.rows=2 --changes 2 --accuracy 0.2
 design mixed.toml --set field.rows=2 --set run.method=auto --types s --least --accuracy 0.2
-fit field.toml observed.csv --set field.rows=4 --free forces.propulsion_N=5:9 --trials 12288
 fit field.toml observed.csv --set field.rows=4 --set run.method=auto --free forces.propulsion_N=5:9 --free forces.random_N=5:20 --trials 24576
 validate field.toml --trials 50 --accuracy 0.2
 validate field.toml --trials 50 --bins paper
 validate field.toml --trials 50 --accuracy 0.2 --observed observed.csv
 validate passages.nc
-power field.toml --trials 20 --accuracy 0.2
 power field.toml --trials 20 --accuracy 0.2 --versus forces.propulsion_N=8
 power passages.nc --trials 20
 """

@@ -6,8 +6,12 @@ string(REGEX MATCHALL "\n[A-Za-z][A-Za-z0-9_/]*\\.[ \n]" suites "${list}")
 set(tests "")
 foreach(suite ${suites})
   string(REGEX REPLACE "[\n .]" "" suite "${suite}")
+  set(cost 0)
+  if("${MODULE}.${suite}" MATCHES "^(lattice.Fit|lattice.Splitting|dynamics.RandomScenes)$")
+    set(cost 300)  # long ones first
+  endif()
   string(APPEND tests "add_test([=[${MODULE}.${suite}]=] [=[${RUNNER}]=] [=[${PROGRAM}]=] [=[${suite}]=])\n"
-    "set_tests_properties([=[${MODULE}.${suite}]=] PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 3600)\n")
+    "set_tests_properties([=[${MODULE}.${suite}]=] PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 3600 COST ${cost})\n")
 endforeach()
 if(tests STREQUAL "")
   message(FATAL_ERROR "${PROGRAM} lists no suites")

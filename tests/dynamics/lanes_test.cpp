@@ -9,15 +9,12 @@
 #include "dynamics/disc/ensemble.h"
 #include "tests/support/gate_runs.h"
 #include "tests/support/instruction_sets.h"
-#include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
-#include "tests/support/threads.h"
 
 namespace gatewalk::dynamics {
 namespace {
 
 using test::expect_same_bits;
-using test::same_bits;
 
 GateParams marched(GateParams p, double step = 0.004) {
   p.run.method = "moreau";
@@ -138,18 +135,6 @@ TEST(Lanes, HaveTheSameBitsWithAnyInstructionSet) {
       for (std::size_t i = 0; i < runs.size(); ++i) expect_same_bits(best[i], runs[i]);
     });
   }
-}
-
-TEST(Lanes, TallyIsTheSameOnAnyNumberOfThreads) {
-  const GateParams p = marched({});
-  const auto tally = [&](int threads) {
-    return test::on_threads(threads, [&] { return run_gate_trials(p, {.vy = 15.0}, 1, {0, 300}); });
-  };
-  const GateTally one = tally(1), four = tally(4);
-  EXPECT_EQ(one.trials, 300);
-  EXPECT_EQ(one.counts, four.counts);
-  EXPECT_EQ(one.health.evaluations, four.health.evaluations);
-  EXPECT_TRUE(same_bits(one.health.worst_energy_created, four.health.worst_energy_created));
 }
 
 // A body that starts outside has ended before the first step; one that is no number is broken; one

@@ -12,15 +12,12 @@
 #include "tests/support/gate_runs.h"
 #include "tests/support/instruction_sets.h"
 #include "tests/support/long.h"
-#include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
-#include "tests/support/threads.h"
 
 namespace gatewalk::dynamics {
 namespace {
 
 using test::expect_same_bits;
-using test::same_bits;
 using test::usual_or_full;
 
 std::vector<GateRun> by_lanes(const GateParams& p, const BodyState& start, int n,
@@ -201,20 +198,6 @@ TEST(StableLanes, HaveTheSameBitsWithAnyInstructionSet) {
     const auto best = by_lanes(scene.p, scene.start, 60);
     test::on_every_instruction_set([&] { expect_same(by_lanes(scene.p, scene.start, 60), best); });
   }
-}
-
-TEST(StableLanes, TallyIsTheSameOnAnyNumberOfThreads) {
-  const GateParams p;
-  const auto tally = [&](int threads) {
-    return test::on_threads(threads, [&] {
-      return run_gate_trials(p, {.vy = 15.0}, 1, {0, 1500});
-    });
-  };
-  const GateTally one = tally(1), four = tally(4);
-  EXPECT_EQ(one.trials, 1500);
-  EXPECT_EQ(one.counts, four.counts);
-  EXPECT_EQ(one.health.evaluations, four.health.evaluations);
-  EXPECT_TRUE(same_bits(one.health.worst_energy_created, four.health.worst_energy_created));
 }
 
 // A trial that goes on in its slot keeps its force, in the middle of a hold.

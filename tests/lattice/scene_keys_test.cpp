@@ -13,12 +13,15 @@
 #include "lattice/scene/scene.h"
 #include "lattice/scene/units.h"
 #include "lattice/text/digits.h"
+#include "tests/support/refusal.h"
 
 namespace gatewalk::lattice {
 
 static void PrintTo(const KeyInfo& key, std::ostream* out) { *out << key.key; }
 
 namespace {
+
+using test::scene_refusal;
 
 class SceneKeys : public testing::TestWithParam<KeyInfo> {
  protected:
@@ -45,15 +48,6 @@ class SceneKeys : public testing::TestWithParam<KeyInfo> {
   }
 };
 
-std::string refused_text(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    (void)parse_scene(text, "bad.toml", overrides);
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "(accepted)";
-}
-
 std::string test_name_of(const testing::TestParamInfo<KeyInfo>& k) {
   std::string name = k.param.key;
   for (char& c : name)
@@ -73,10 +67,10 @@ void expect_refused_value(const std::string& table, const std::string& leaf,
                           const GivenValue& value, const std::string& reason) {
   const std::string key = table + "." + leaf;
   const std::string message = ": " + key + value.shown + " is not permitted: must " + reason;
-  EXPECT_EQ(refused_text("# a scene\n[" + table + "]\n\n" + leaf + " = " + value.toml + "\n"),
+  EXPECT_EQ(scene_refusal("# a scene\n[" + table + "]\n\n" + leaf + " = " + value.toml + "\n"),
             "bad.toml:4" + message);
-  EXPECT_EQ(refused_text(key + " = " + value.toml), "bad.toml:1" + message);
-  EXPECT_EQ(refused_text("", {key + "=" + value.toml}),
+  EXPECT_EQ(scene_refusal(key + " = " + value.toml), "bad.toml:1" + message);
+  EXPECT_EQ(scene_refusal("", {key + "=" + value.toml}),
             "--set " + key + "=" + value.toml + message);
 }
 
@@ -128,7 +122,7 @@ TEST_P(SceneKeys, RefusesOtherTypes) {
   for (const GivenValue& value : other) {
     // On the command line text stands without quotes.
     if (is_text() && value.toml.find('"') == std::string::npos) {
-      EXPECT_EQ(refused_text("[" + table() + "]\n" + leaf() + " = " + value.toml),
+      EXPECT_EQ(scene_refusal("[" + table() + "]\n" + leaf() + " = " + value.toml),
                 "bad.toml:2: " + key() + value.shown + " is not permitted: must " + reason);
       continue;
     }
@@ -140,9 +134,9 @@ TEST_P(SceneKeys, RefusesTextThatItDoesNotKnow) {
   if (!is_text()) return;
   for (const std::string name : {"nosuch", "", "Stable"}) {
     const std::string begin = key() + " = \"" + name + "\" is not permitted: must be one of \"";
-    EXPECT_TRUE(refused_text(key() + " = '" + name + "'").starts_with("bad.toml:1: " + begin))
+    EXPECT_TRUE(scene_refusal(key() + " = '" + name + "'").starts_with("bad.toml:1: " + begin))
         << name;
-    EXPECT_TRUE(refused_text("", {key() + "=" + name})
+    EXPECT_TRUE(scene_refusal("", {key() + "=" + name})
                     .starts_with("--set " + key() + "=" + name + ": " + begin))
         << name;
   }
@@ -150,15 +144,15 @@ TEST_P(SceneKeys, RefusesTextThatItDoesNotKnow) {
 
 TEST_P(SceneKeys, RefusesToBeGivenTwice) {
   const std::string line = leaf() + " = " + GetParam().value;
-  EXPECT_EQ(refused_text("[" + table() + "]\n" + line + "\n" + line + "\n"),
+  EXPECT_EQ(scene_refusal("[" + table() + "]\n" + line + "\n" + line + "\n"),
             "bad.toml:3: " + line + ": is given in line 2 already");
-  EXPECT_EQ(refused_text("", {key() + "=" + GetParam().value, key() + "=" + GetParam().value}),
+  EXPECT_EQ(scene_refusal("", {key() + "=" + GetParam().value, key() + "=" + GetParam().value}),
             "(accepted)");
 }
 
 TEST_P(SceneKeys, IsNamedWhereItIsMisspelled) {
   const auto expect_named = [](const std::string& wrong) {
-    const std::string what = refused_text("\n" + wrong + " = 1\n");
+    const std::string what = scene_refusal("\n" + wrong + " = 1\n");
     EXPECT_TRUE(what.starts_with("bad.toml:2: unknown key " + wrong + "; the closest known key"))
         << what;
     EXPECT_NE(what.find(key()), what.npos) << what;
@@ -173,7 +167,7 @@ TEST_P(SceneKeys, IsNamedWhereItIsMisspelled) {
 // Types of gates, and actions, have some of these keys too.
 TEST_P(SceneKeys, MayBelongToATypeOfGateOrAnAction) {
   const auto expect = [](const std::string& of, const std::string& begin, bool has) {
-    const std::string what = refused_text(begin + "\n[" + of + "]\n" + key() + " = nan\n");
+    const std::string what = scene_refusal(begin + "\n[" + of + "]\n" + key() + " = nan\n");
     const std::string named = "bad.toml:3: " + of + "." + key();
     if (has)
       EXPECT_EQ(what, named + " = nan is not permitted: must lie in " + allowed());
@@ -201,13 +195,13 @@ TEST_P(SceneKeys, TakesUnitsWithAPrefixAndNoOthers) {
       if (!unit || other == leaf()) continue;
       const double own = in_own_unit(3.0, *unit);
       EXPECT_NEAR(own, 3.0 * std::pow(10.0, unit->power), 1e-12 * own);
-      const std::string what = refused_text("[" + table() + "]\n" + other + " = nan\n");
+      const std::string what = scene_refusal("[" + table() + "]\n" + other + " = nan\n");
       EXPECT_TRUE(what.starts_with("bad.toml:2: " + table() + "." + other +
                                    " = nan is not permitted: must lie in "))
           << what;
       EXPECT_TRUE(what.ends_with(" " + unit->shown)) << what;
       const std::string twice =
-          refused_text("[" + table() + "]\n" + leaf() + " = 1\n" + other + " = 1\n");
+          scene_refusal("[" + table() + "]\n" + leaf() + " = 1\n" + other + " = 1\n");
       EXPECT_EQ(twice, "bad.toml:3: " + table() + "." + other + " = 1 is the same quantity as " +
                            key() + " = 1 (bad.toml:2): give one of them");
     }

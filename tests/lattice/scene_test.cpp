@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/scene/scene.h"
+#include "tests/support/refusal.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -14,18 +15,11 @@
 namespace gatewalk::lattice {
 namespace {
 
+using test::scene_refusal;
+
 namespace fs = std::filesystem;
 
 const fs::path kScenes = fs::path(__FILE__).parent_path() / ".." / ".." / "scenes";
-
-std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    (void)parse_scene(text, "bad.toml", overrides);
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "(accepted)";
-}
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -236,7 +230,7 @@ TEST(Scene, OtherSpellingsOfTheSameFile) {
 }
 
 TEST(Scene, CommentsMayHaveAsManyDotsAsTheyLike) {
-  EXPECT_EQ(refusal("# " + std::string(5000, '.') + "\n"), "(accepted)");
+  EXPECT_EQ(scene_refusal("# " + std::string(5000, '.') + "\n"), "(accepted)");
 }
 
 // ---- What is refused
@@ -253,7 +247,7 @@ class MalformedScene : public testing::TestWithParam<Malformed> {};
 
 TEST_P(MalformedScene, IsRefusedByFileLineKeyAndReason) {
   const Malformed& bad = GetParam();
-  const std::string what = refusal(bad.text);
+  const std::string what = scene_refusal(bad.text);
   EXPECT_EQ(what.find("bad.toml:" + std::to_string(bad.line) + ": "), 0u) << what;
   EXPECT_TRUE(contains(what, bad.key)) << what;
   EXPECT_TRUE(contains(what, bad.reason)) << what;
@@ -352,16 +346,17 @@ INSTANTIATE_TEST_SUITE_P(Scene, MalformedScene, testing::ValuesIn(kMalformed),
                          [](const auto& bad) { return std::string(bad.param.name); });
 
 TEST(Scene, StartMayTouchButNotOverlap) {
-  EXPECT_EQ(refusal("[start]\ny_m = 20\n"), "(accepted)");
-  EXPECT_EQ(refusal("[start]\ny_m = 40\n"), "(accepted)");
-  EXPECT_EQ(refusal("[beams]\nlength_m = 10\n[start]\nx_m = 5\ny_m = 30\n"), "(accepted)");
-  EXPECT_TRUE(contains(refusal("[start]\ny_m = 20.000001\n"), "start.y_m"));
+  EXPECT_EQ(scene_refusal("[start]\ny_m = 20\n"), "(accepted)");
+  EXPECT_EQ(scene_refusal("[start]\ny_m = 40\n"), "(accepted)");
+  EXPECT_EQ(scene_refusal("[beams]\nlength_m = 10\n[start]\nx_m = 5\ny_m = 30\n"), "(accepted)");
+  EXPECT_TRUE(contains(scene_refusal("[start]\ny_m = 20.000001\n"), "start.y_m"));
 }
 
 TEST(Scene, TooLargeTextIsRefusedUnread) {
   const std::string million(1 << 20, '\n');
-  EXPECT_EQ(refusal(million), "(accepted)");
-  EXPECT_EQ(refusal(million + "\n"), "bad.toml: is too large for a scene: more than 1048576 bytes");
+  EXPECT_EQ(scene_refusal(million), "(accepted)");
+  EXPECT_EQ(scene_refusal(million + "\n"),
+            "bad.toml: is too large for a scene: more than 1048576 bytes");
 }
 
 TEST(ReadScene, NamesFilesItCannotRead) {
@@ -403,9 +398,10 @@ TEST(Overrides, ReplaceWhatTheFileSays) {
 }
 
 TEST(Overrides, MayMendAFile) {
-  EXPECT_EQ(refusal("[forces]\nrandom_N = -3\n", {"forces.random_N=3"}), "(accepted)");
-  EXPECT_EQ(refusal("[run]\nstep_s = 0.003\n", {"forces.random_rate_Hz=100", "run.step_s=0.005"}),
-            "(accepted)");
+  EXPECT_EQ(scene_refusal("[forces]\nrandom_N = -3\n", {"forces.random_N=3"}), "(accepted)");
+  EXPECT_EQ(
+      scene_refusal("[run]\nstep_s = 0.003\n", {"forces.random_rate_Hz=100", "run.step_s=0.005"}),
+      "(accepted)");
 }
 
 TEST(Overrides, AreRefusedByName) {
@@ -435,14 +431,15 @@ TEST(Overrides, AreRefusedByName) {
         Bad{"forcs.random_N=20", "unknown table forcs; the closest known table is forces"},
         Bad{"run.step_s=0.003", "run.step_s = 0.003 is not permitted: must fit"},
         Bad{"start.y_m=25", "would overlap a beam at rest"}}) {
-    const std::string what = refusal("", {bad.given});
+    const std::string what = scene_refusal("", {bad.given});
     EXPECT_EQ(what.find("--set " + std::string(bad.given) + ": "), 0u) << what;
     EXPECT_TRUE(contains(what, bad.reason)) << what;
   }
 }
 
 TEST(Overrides, CannotSmuggleASecondLine) {
-  EXPECT_TRUE(contains(refusal("", {"forces.random_N=2\nrun.step_s=0.02"}), "must be KEY=VALUE"));
+  EXPECT_TRUE(
+      contains(scene_refusal("", {"forces.random_N=2\nrun.step_s=0.02"}), "must be KEY=VALUE"));
 }
 
 // ---- Out and in again
@@ -517,7 +514,7 @@ TEST(SceneBins, AreEdgesOfOnesOwn) {
 TEST(SceneBins, AreRefusedByFileAndLine) {
   const auto expect = [](const std::string& text, const std::string& part,
                          const std::vector<std::string>& set = {}) {
-    const std::string said = refusal(text, set);
+    const std::string said = scene_refusal(text, set);
     EXPECT_TRUE(contains(said, part)) << said;
   };
   const std::string begin = "[bins]\nEN_vx_m_per_s = [-1, 1]\n",
@@ -664,8 +661,8 @@ TEST(Scene, TextThatIsNoToml) {
             "1: body.mass_kg = 1e999: is no number, or too large for one: must "
             "be as in 0.25 or 2.5e-1"},
        })
-    EXPECT_EQ(refusal(text), std::string("bad.toml:") + said);
-  EXPECT_TRUE(refusal("body.mass_kg = 1.0\nx = \xff")
+    EXPECT_EQ(scene_refusal(text), std::string("bad.toml:") + said);
+  EXPECT_TRUE(scene_refusal("body.mass_kg = 1.0\nx = \xff")
                   .ends_with("has letters that are not UTF-8, or control characters"));
 }
 

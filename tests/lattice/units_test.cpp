@@ -12,18 +12,12 @@
 #include "lattice/scene/study/sweep.h"
 #include "lattice/scene/terrain.h"
 #include "lattice/text/digits.h"
+#include "tests/support/refusal.h"
 
 namespace gatewalk::lattice {
 namespace {
 
-std::string refused(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    (void)parse_scene(text, "bad.toml", overrides);
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "(accepted)";
-}
+using test::scene_refusal;
 
 KeyInfo key_of_scene(const Scene& scene, const std::string& key) {
   for (const KeyInfo& k : describe(scene))
@@ -108,35 +102,36 @@ TEST(Units, AnOverrideReplacesTheQuantity) {
 }
 
 TEST(Units, TwoOfOneQuantityAreRefused) {
-  EXPECT_EQ(refused("[body]\nradius_m = 0.08\nmass_kg = 1\nradius_cm = 8\n"),
+  EXPECT_EQ(scene_refusal("[body]\nradius_m = 0.08\nmass_kg = 1\nradius_cm = 8\n"),
             "bad.toml:4: body.radius_cm = 8 is the same quantity as body.radius_m = 0.08 "
             "(bad.toml:2): give one of them");
-  EXPECT_EQ(refused("[bins]\nEN_d_m = [0, 1]\nEN_d_cm = [0, 1]\n"),
+  EXPECT_EQ(scene_refusal("[bins]\nEN_d_m = [0, 1]\nEN_d_cm = [0, 1]\n"),
             "bad.toml:3: bins.EN_d_cm (an array) is the same quantity as bins.EN_d_m (an array) "
             "(bad.toml:2): give one of them");
-  EXPECT_EQ(refused("[terrain]\nrandom = { s = 0.5 }\n[terrain.types.s.forces]\npropulsion_mN = 1\n"
+  EXPECT_EQ(
+      scene_refusal("[terrain]\nrandom = { s = 0.5 }\n[terrain.types.s.forces]\npropulsion_mN = 1\n"
                     "propulsion_N = 1\n"),
-            "bad.toml:5: terrain.types.s.forces.propulsion_N = 1 is the same quantity as "
-            "terrain.types.s.forces.propulsion_mN = 1 (bad.toml:4): give one of them");
-  EXPECT_EQ(refused("[sweep]\nforces.random_N = 1\nforces.random_mN = [2, 3]\n"),
+      "bad.toml:5: terrain.types.s.forces.propulsion_N = 1 is the same quantity as "
+      "terrain.types.s.forces.propulsion_mN = 1 (bad.toml:4): give one of them");
+  EXPECT_EQ(scene_refusal("[sweep]\nforces.random_N = 1\nforces.random_mN = [2, 3]\n"),
             "bad.toml:3: sweep.forces.random_mN is there twice, as forces.random_N before");
 }
 
 TEST(Units, ErrorsSpeakTheUserSpelling) {
-  EXPECT_EQ(refused("[body]\nradius_inch = 3\n"),
+  EXPECT_EQ(scene_refusal("[body]\nradius_inch = 3\n"),
             "bad.toml:2: unknown key body.radius_inch: body.radius_m may end in _km, _m, _cm, _mm, "
             "_um or _nm instead");
-  EXPECT_EQ(refused("", {"forces.propulsion_lbf=3"}),
+  EXPECT_EQ(scene_refusal("", {"forces.propulsion_lbf=3"}),
             "--set forces.propulsion_lbf=3: unknown key forces.propulsion_lbf: forces.propulsion_N "
             "may end in _kN, _N, _mN, _uN or _nN instead");
-  EXPECT_EQ(refused("[forces]\nrandom_mN = -3\n"),
+  EXPECT_EQ(scene_refusal("[forces]\nrandom_mN = -3\n"),
             "bad.toml:2: forces.random_mN = -3 is not permitted: must lie in [0, 1e+103] mN");
-  EXPECT_EQ(refused("[start]\nx_cm = 2500\n"),
+  EXPECT_EQ(scene_refusal("[start]\nx_cm = 2500\n"),
             "bad.toml:2: start.x_cm = 2500 is not permitted: must lie in (-2500, 2500) cm");
-  EXPECT_EQ(refused("[body]\nradius_cm = 4000\n[beams]\njoint_y_m = 30\n"),
+  EXPECT_EQ(scene_refusal("[body]\nradius_cm = 4000\n[beams]\njoint_y_m = 30\n"),
             "bad.toml:2 (radius_cm = 4000): body.radius_m = 40 is not permitted: must be less than "
             "beams.joint_y_m = 30, or a body that enters at y = 0 is already in the beams");
-  EXPECT_EQ(refused("[forces]\nrandom_rate = 3\n"),
+  EXPECT_EQ(scene_refusal("[forces]\nrandom_rate = 3\n"),
             "bad.toml:2: unknown key forces.random_rate; the closest known key is "
             "forces.random_rate_Hz");
 }

@@ -10,7 +10,7 @@ paper_matrix m.nc
 "$gatewalk" lattice "$scenes/field.toml" --trials 150 --json ends-lattice.json --quiet
 holds '(.endings | keys_unsorted) == ["crossed", "left_side", "right_side", "trapped", "cut_off"] and (.endings | add) + .never_sampled == 3000 and .endings.trapped == .trapped and .endings.cut_off == .cut_off and .endings.crossed + .endings.left_side + .endings.right_side == .departed' ends-walk.json
 holds '(.endings | add) + .not_finite == 150 and .endings.crossed + .endings.left_side + .endings.right_side == .departed' ends-lattice.json
-holds '((.endings | add) + .never_sampled - 1 | fabs) < 1e-12 and .endings.trapped == .trapped' ends-predict.json
+holds '((.endings | add) + .never_sampled - 1 | fabs) < 1e-12 and .endings.trapped == .trapped and ((.endings | .crossed + .left_side + .right_side) - .departed | fabs) < 1e-12' ends-predict.json
 for file in walk predict lattice; do
   holds '(.walks // .trials // 1) as $all | .endings as $e | .endings_95 | to_entries | all(.value[0] <= $e[.key] and $e[.key] <= .value[1] and .value[0] >= 0 and .value[1] <= $all)' ends-$file.json
   holds '((.trapped_gates | flatten | add) - .trapped | fabs) < 1e-12 and ((.departed_gates | flatten | add) - .departed | fabs) < 1e-12' ends-$file.json
@@ -36,6 +36,8 @@ for args in "walk m.nc" "predict m.nc" "lattice $scenes/field.toml"; do
   "$gatewalk" $args --quiet >first.txt 2>/dev/null
   [ "$(head -5 first.txt | cut -c1-11 | tr -d ' ' | tr '\n' ,)" = "crossed,leftside,rightside,trapped,cutoff," ] || fail "$args: the endings do not come first"
   head -5 first.txt | grep -vq '%  \[' && fail "$args: an ending without interval"
+  grep -q '^departed [0-9.]* %$' first.txt || fail "$args: does not say what departed"
+  grep -i 'left the field' first.txt && fail "$args: a second word for departed"
 done
 "$gatewalk" predict m.nc --quiet | tail -1 | grep -q '^Rounding and walks not finished' || fail "predict: the numerical bound is not last"
 # More runs a row, narrower intervals; also a matrix of 10^6 runs a row is resampled at once.

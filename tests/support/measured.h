@@ -102,7 +102,7 @@ inline void measured_mirror(std::string_view method, std::int64_t trials, std::i
             .asked = asked});
 }
 
-/// Requirement 11; five tests look at 200 000 starts each.
+/// Requirement 11, for each of five kinds of starts.
 inline void measured_trouble(std::string_view method, const dynamics::GateParams& p,
                              const std::vector<Trouble>& seen) {
   int not_finite = 0;
