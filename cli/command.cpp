@@ -33,16 +33,6 @@ bool shapes_nothing(const std::string& name) {
          name == "max-time" || name == "shard" || name == "part";
 }
 
-std::string shell_quoted(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_not_of(
-                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                          "0123456789_-+=./,:@%") == std::string::npos;
-  if (plain) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 /// Of an option that is meant to be given once, the last one counts; says so.
 Strings keep_last(std::vector<po::option>& given, const po::options_description& all) {
   Strings remarks;
@@ -141,6 +131,16 @@ std::string mistake_in(const po::error& error, const po::options_description& of
 }
 
 }  // namespace
+
+std::string shell_quoted(const std::string& word) {
+  const bool plain = !word.empty() && word.find_first_not_of(
+                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                          "0123456789_-+=./,:@%") == std::string::npos;
+  if (plain) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
 
 void validate(boost::any& v, const std::vector<std::string>& values, Count*, int) {
   po::validators::check_first_occurrence(v);
@@ -434,8 +434,7 @@ bool Options::parse(const Arguments& arguments) {
         remarks.push_back(std::move(remark));
   } catch (const po::error& e) {
     throw UsageError(fmt::format("{}; see gatewalk {} --help",
-                                 mistake_in(e, offered, arguments.words),
-                                 state_->synopsis.substr(0, state_->synopsis.find(' '))));
+                                 mistake_in(e, offered, arguments.words), state_->name()));
   }
   if (Option(*this, "help")) {
     lattice::TextStream page;
@@ -469,10 +468,10 @@ bool Options::parse(const Arguments& arguments) {
   memory_advice = advice(offered);
   if (state_->divided) check_kept(*this);
 
-  state_->words.command = state_->synopsis.substr(0, state_->synopsis.find(' '));
+  state_->words.command = state_->name();
   state_->words.main_output = state_->needs_output.empty() ? "json" : "output";
   state_->words.output_is_folder = state_->needs_output == "DIR";
-  state_->canonical = "gatewalk " + state_->synopsis.substr(0, state_->synopsis.find(' '));
+  state_->canonical = "gatewalk " + state_->name();
   for (const auto& option : parsed.options) {
     const bool is_output =
         std::any_of(state_->output_files.begin(), state_->output_files.end(),

@@ -301,6 +301,9 @@ class Options {
   void check_files();
 };
 
+/// The word as a shell reads it.
+[[nodiscard]] std::string shell_quoted(const std::string& word);
+
 /// What to say of std::bad_alloc: which options of the command that runs would help.
 [[nodiscard]] std::string out_of_memory();
 

@@ -83,7 +83,7 @@ void Options::draw(const std::function<Figure()>& picture) const {
 }
 
 AboutFigure Options::about() const {
-  return {"gatewalk " + state_->synopsis.substr(0, state_->synopsis.find(' ')), canonical()};
+  return {"gatewalk " + state_->name(), canonical()};
 }
 
 ResultFolder::ResultFolder(const Options& options, const std::vector<std::string>& files)

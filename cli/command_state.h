@@ -70,6 +70,10 @@ struct Options::NamedFile {
 
 struct Options::State {
   std::string synopsis, about, example;
+  /// The command's name, one word or two: what the synopsis begins with, "chart field SCENE ...".
+  [[nodiscard]] std::string name() const {
+    return synopsis.substr(0, synopsis.find_first_not_of("abcdefghijklmnopqrstuvwxyz ") - 1);
+  }
   po::options_description own{"Options"}, shared{"Shared options"}, hidden;
   po::positional_options_description positions;
   std::vector<std::pair<std::string, std::string>> positional_help;

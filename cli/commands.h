@@ -17,7 +17,8 @@ namespace gatewalk::cli {
 #undef COMMAND
 #undef GROUP
 
-/// A command; or, without a function, the name of the group that begins.
+/// A command, whose name has one word or two (chart field); or, without a function, the name of the
+/// group that begins.
 struct Command {
   const char *name, *summary;
   int (*run)(const Arguments& arguments);

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <map>
 #include <vector>
 
 #include "cli/commands.h"
@@ -21,6 +22,12 @@ namespace {
 struct Page {
   std::string name, summary;
   CommandHelp help;
+
+  /// Both words of the name; none behind a name of one word.
+  [[nodiscard]] std::string first() const { return name.substr(0, name.find(' ')); }
+  [[nodiscard]] std::string second() const {
+    return name.size() > first().size() ? name.substr(first().size() + 1) : "";
+  }
 };
 
 std::vector<Page> pages() {
@@ -80,7 +87,7 @@ std::string exit_status() {
 }
 
 std::string manual_of(const Page& page) {
-  std::string text = header("gatewalk-" + page.name, page.summary);
+  std::string text = header("gatewalk-" + file_name_of(page.name), page.summary);
   text += fmt::format(".SH SYNOPSIS\n.B gatewalk {}\n.SH DESCRIPTION\n{}\n",
                       roff(page.help.synopsis), roff(page.help.about));
   for (const auto& [name, what] : page.help.arguments)
@@ -107,12 +114,12 @@ std::string manual(const std::vector<Page>& all) {
       "it, and its "
       "final gates are compared with the full dynamics.\n.SH COMMANDS\n";
   for (const Command& c : kCommandsAndGroups)
-    text += c.run ? fmt::format(".TP\n.BR {} (1)\n{}\n", roff("gatewalk-" + std::string(c.name)),
+    text += c.run ? fmt::format(".TP\n.BR {} (1)\n{}\n", roff("gatewalk-" + file_name_of(c.name)),
                                 roff(c.summary))
                   : fmt::format(".SS {}\n", roff(c.name));
   text += exit_status() + ".SH SEE ALSO\n";
   for (std::size_t k = 0; k < all.size(); ++k)
-    text += fmt::format(".BR {} (1){}\n", roff("gatewalk-" + all[k].name),
+    text += fmt::format(".BR {} (1){}\n", roff("gatewalk-" + file_name_of(all[k].name)),
                         k + 1 < all.size() ? "," : "");
   return text;
 }
@@ -131,23 +138,53 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// A name as a pattern of `case`.
+std::string pattern(const std::string& name) {
+  const std::size_t blank = name.find(' ');
+  return blank == name.npos ? name : name.substr(0, blank) + "\\" + name.substr(blank);
+}
+
+/// The pages whose names have two words, by the first of them: chart.
+std::map<std::string, std::vector<const Page*>> families(const std::vector<Page>& all) {
+  std::map<std::string, std::vector<const Page*>> found;
+  for (const Page& page : all)
+    if (!page.second().empty()) found[page.first()].push_back(&page);
+  return found;
+}
+
 std::string for_bash(const std::vector<Page>& all) {
-  std::string commands, cases;
+  std::string commands, cases, seconds;
+  for (const auto& [first, pages] : families(all)) {
+    std::string names;
+    for (const Page* page : pages) names += page->second() + " ";
+    commands += first + " ";
+    seconds += fmt::format(R"(    {0})
+      if [ "$COMP_CWORD" = 2 ]; then
+        mapfile -t COMPREPLY < <(compgen -W {1} -- "$current")
+        return
+      fi
+      command="{0} ${{COMP_WORDS[2]}}"
+      ;;
+)",
+                           first, in_quotes(names));
+  }
   for (const Page& page : all) {
-    commands += page.name + " ";
+    if (page.second().empty()) commands += page.name + " ";
     std::string options;
     for (const CommandHelp::Option& o : page.help.options) options += fmt::format("--{} ", o.name);
-    cases += fmt::format("    {}) options={} ;;\n", page.name, in_quotes(options));
+    cases += fmt::format("    {}) options={} ;;\n", pattern(page.name), in_quotes(options));
   }
   return fmt::format(R"(# Completion of gatewalk for bash.
 _gatewalk() {{
-  local current=${{COMP_WORDS[COMP_CWORD]}} options=
+  local current=${{COMP_WORDS[COMP_CWORD]}} command=${{COMP_WORDS[1]}} options=
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W {} -- "$current")
     return
   fi
-  case ${{COMP_WORDS[1]}} in
+  case $command in
+{}  esac
+  case $command in
 {}    help) options={} ;;
   esac
   case $current in
@@ -160,7 +197,8 @@ _gatewalk() {{
 }}
 complete -o filenames -F _gatewalk gatewalk
 )",
-                     in_quotes(commands + "help --help --version"), cases, in_quotes(commands));
+                     in_quotes(commands + "help --help --version"), seconds, cases,
+                     in_quotes(commands));
 }
 
 std::string for_zsh(const std::vector<Page>& all) {
@@ -175,13 +213,31 @@ std::string for_zsh(const std::vector<Page>& all) {
     }
     return out;
   };
+  const auto described = [&](const std::string& name, const std::string& summary) {
+    return fmt::format("    {}\n", in_quotes(name + ":" + plain(summary)));
+  };
+  std::string seconds;
+  for (const auto& [first, pages] : families(all)) {
+    std::string names;
+    seconds += fmt::format("    {})\n      local -a seconds=(\n", first);
+    for (const Page* page : pages) {
+      seconds += "    " + described(page->second(), page->summary);
+      names += (names.empty() ? "" : ", ") + page->second();
+    }
+    seconds += fmt::format(
+        "      )\n      if (( CURRENT == 3 )); then\n        _describe {0} seconds\n        "
+        "return\n      fi\n      command=\"{0} $words[3]\"\n      ;;\n",
+        first);
+    text += described(first, names);
+  }
   for (const Page& page : all)
-    text += fmt::format("    {}\n", in_quotes(page.name + ":" + plain(page.summary)));
+    if (page.second().empty()) text += described(page.name, page.summary);
   text +=
       "  )\n  if (( CURRENT == 2 )); then\n    _describe command commands\n    return\n  fi\n"
-      "  case $words[2] in\n";
+      "  local command=$words[2]\n  case $command in\n" +
+      seconds + "  esac\n  case $command in\n";
   for (const Page& page : all) {
-    text += fmt::format("    {})\n      _arguments", page.name);
+    text += fmt::format("    {})\n      _arguments", pattern(page.name));
     for (const CommandHelp::Option& o : page.help.options)
       text += " \\\n        " +
               in_quotes(fmt::format(
@@ -202,18 +258,30 @@ std::string for_fish(const std::vector<Page>& all) {
     }
     return out + "'";
   };
+  const auto offer = [&](const std::string& when, const std::string& word,
+                         const std::string& summary) {
+    text +=
+        fmt::format("complete -c gatewalk -n {} -f -a {} -d {}\n", when, word, escaped(summary));
+  };
+  const std::string seen = "__fish_seen_subcommand_from ";
+  for (const auto& [first, pages] : families(all)) {
+    std::string names;
+    for (const Page* page : pages) names += " " + page->second();
+    offer("__fish_use_subcommand", first, one_line(names.substr(1)));
+    for (const Page* page : pages)
+      offer(fmt::format("'{0}{1}; and not {0}{2}'", seen, first, names.substr(1)), page->second(),
+            page->summary);
+  }
   for (const Page& page : all)
-    text += fmt::format("complete -c gatewalk -n __fish_use_subcommand -f -a {} -d {}\n", page.name,
-                        escaped(page.summary));
+    if (page.second().empty()) offer("__fish_use_subcommand", page.name, page.summary);
   for (const Page& page : all)
     for (const CommandHelp::Option& o : page.help.options)
-      text +=
-          fmt::format("complete -c gatewalk -n '__fish_seen_subcommand_from {}' -l {}{} -d {}\n",
-                      page.name, o.name,
-                      o.value.empty() ? ""
-                      : o.is_file     ? " -r"
-                                      : " -x",
-                      escaped(o.text));
+      text += fmt::format("complete -c gatewalk -n '{}{}{}' -l {}{} -d {}\n", seen, page.first(),
+                          page.second().empty() ? "" : "; and " + seen + page.second(), o.name,
+                          o.value.empty() ? ""
+                          : o.is_file     ? " -r"
+                                          : " -x",
+                          escaped(o.text));
   return text;
 }
 
@@ -227,11 +295,11 @@ void write_help(const std::string& share) {
   };
   const std::vector<Page> all = pages();
   for (const ResultOf& of : results())
-    write(fmt::format("gatewalk/schemas/{}.schema.json", of.command), schema_of(of));
+    write(fmt::format("gatewalk/schemas/{}.schema.json", file_name_of(of.command)), schema_of(of));
   write("doc/gatewalk/results.md", results_in_markdown());
   write("man/man1/gatewalk.1", manual(all));
   for (const Page& page : all)
-    write(fmt::format("man/man1/gatewalk-{}.1", page.name), manual_of(page));
+    write(fmt::format("man/man1/gatewalk-{}.1", file_name_of(page.name)), manual_of(page));
   write("bash-completion/completions/gatewalk", for_bash(all));
   write("zsh/vendor-completions/_gatewalk", for_zsh(all));
   write("fish/vendor_completions.d/gatewalk.fish", for_fish(all));

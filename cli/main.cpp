@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -12,6 +14,7 @@
 #include <new>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/fields/schema.h"
@@ -39,7 +42,7 @@ void print_help(std::ostream& out) {
     if (!c.run)
       out << (is_first ? "" : "\n") << c.name << "\n";
     else
-      out << "  " << std::left << std::setw(13) << c.name << c.summary << "\n";
+      out << "  " << std::left << std::setw(15) << c.name << c.summary << "\n";
     is_first = false;
   }
   out << "\ngatewalk COMMAND --help, or gatewalk help COMMAND, explains a command and gives an "
@@ -69,6 +72,58 @@ const Command* find_command(const std::string& name) {
   return nullptr;
 }
 
+/// How many of the words are the name of a command, which has one or two (chart field).
+std::size_t words_of_name(const std::vector<std::string>& words) {
+  return words.size() > 1 && command_named(words[0] + " " + words[1]) ? 2 : 1;
+}
+
+/// The commands whose name begins with `chart`, a line each.
+std::string charts() {
+  std::string lines;
+  for (const Command& c : commands())
+    if (std::string_view(c.name).starts_with("chart "))
+      lines += fmt::format("  gatewalk {:<15}{}\n", c.name, c.summary);
+  return lines;
+}
+
+/// What has another name since version 2.0.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kRenamed{
+    {{"chart-chain", "chart chain"},
+     {"chart-field", "chart field"},
+     {"chart", "chart methods"}}};  // which is said of what names no chart
+
+/// Refuses a command by its old name, with the words that it has now.
+void refuse_old_name(const std::vector<std::string>& words) {
+  const auto* const old = std::find_if(kRenamed.begin(), kRenamed.end(),
+                                       [&](const auto& r) { return r.first == words[0]; });
+  if (old == kRenamed.end() || words_of_name(words) == 2) return;
+  if (words == std::vector<std::string>{"chart"})
+    throw UsageError("chart needs to know what:\n" + charts());
+  if (words[0] == "chart")
+    if (const std::string meant =
+            lattice::meant_name(words[1], {"methods", "field", "chain"});
+        !meant.empty())
+      throw UsageError(fmt::format("no chart '{}'; did you mean chart {}?", words[1], meant));
+  std::string line = fmt::format("{} is now: gatewalk {}", old->first, old->second);
+  for (std::size_t i = 1; i < words.size(); ++i) line += " " + shell_quoted(words[i]);
+  throw UsageError(line);
+}
+
+/// The page of a command, or of its result; `words`: its name, and --result.
+int run_help(const std::vector<std::string>& words) {
+  const std::size_t n = words_of_name(words);
+  const std::string name = words[0] + (n == 2 ? " " + words[1] : "");
+  const Command* const command = find_command(name);
+  if (!command) return kWrongUse;
+  if (words.size() != n + 1 || words[n] != "--result") return command->run({"--help"});
+  for (const ResultOf& of : results())
+    if (of.command == std::string_view(command->name)) {
+      write_text_atomically("-", result_page(of));
+      return kFine;
+    }
+  throw UsageError(name + " has no result of its own: it gives those of other commands, or files");
+}
+
 int run(const std::vector<std::string>& words) {
   if (words.empty()) {
     print_help(std::cerr);
@@ -78,21 +133,16 @@ int run(const std::vector<std::string>& words) {
     write_help(words[2]);
     return kFine;
   }
-  if (words[0] == "help" && words.size() == 3 && words[2] == "--result") {
-    const Command* const command = find_command(words[1]);
-    if (!command) return kWrongUse;
-    for (const ResultOf& of : results())
-      if (of.command == std::string_view(command->name)) {
-        write_text_atomically("-", result_page(of));
-        return kFine;
-      }
-    throw UsageError(words[1] +
-                     " has no result of its own: it gives those of other commands, or files");
+  const std::vector<std::string> behind(words.begin() + 1, words.end());
+  const bool of_charts = words[0] == "help" ? behind == std::vector<std::string>{"chart"}
+                                            : words[0] == "chart" && words.size() == 2 &&
+                                                  (words[1] == "--help" || words[1] == "-h");
+  if (of_charts) {
+    write_text_atomically("-", charts());
+    return kFine;
   }
-  if (words[0] == "help" && words.size() == 2 && words[1] != "help" && words[1] != "--help") {
-    const Command* const command = find_command(words[1]);
-    return command ? command->run({"--help"}) : kWrongUse;
-  }
+  if (words[0] == "help" && words.size() > 1 && words[1] != "help" && words[1] != "--help")
+    return run_help(behind);
   if (words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
     lattice::TextStream text;
     print_help(text);
@@ -106,8 +156,11 @@ int run(const std::vector<std::string>& words) {
                                    (verbose ? kBuiltWith : ""));
     return kFine;
   }
-  const Command* const command = find_command(words[0]);
-  return command ? command->run(std::vector(words.begin() + 1, words.end())) : kWrongUse;
+  refuse_old_name(words);
+  const std::size_t n = words_of_name(words);
+  const Command* const command = find_command(n == 2 ? words[0] + " " + words[1] : words[0]);
+  const auto first = words.begin() + static_cast<std::ptrdiff_t>(n);
+  return command ? command->run(std::vector(first, words.end())) : kWrongUse;
 }
 
 std::terminate_handler usual_end = nullptr;

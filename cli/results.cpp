@@ -235,9 +235,9 @@ const std::vector<ResultOf>& results() {
       // One in each line.
       of("analyze", analyze()),
       {"build", describe_build},
-      of("chart", ChartResult{{{}}, {{}}}),
-      of("chart-chain", chain_error()),
-      of("chart-field", fidelity()),
+      of("chart chain", chain_error()),
+      of("chart field", fidelity()),
+      of("chart methods", ChartResult{{{}}, {{}}}),
       of("design", design()),
       of<ExportResult>("export"),
       of("fit", fit()),

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # What becomes of results when the system fails: call number k of read, write, fsync, fdatasync, rename, ftruncate, link, close,
 # opening and creating a file, starting a process or a thread fails, once and from then on, for the first MOST calls; so
-# does getting memory; of every command but stability, chart-chain and reproduce, which take minutes and write as chart does.
+# does getting memory; of every command but stability, chart chain and reproduce, which take minutes and write as chart methods does.
 # /dev/full, a full disk, a quota, a folder that cannot be written, little memory, few files, no locale, no HOME, closed
 # outputs. Never a silent success, never a damaged file.
 #   [CALLS=...] [COMMANDS='show|walk'] faults.sh GATEWALK ROOT [MOST]    of these alone; MOST: 12
@@ -174,8 +174,8 @@ survives 'runs.csv runs.json' passages tracks.csv --cell cell.toml --fps 10 --me
   --lattice 9,9 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y -o runs.csv --json runs.json
 "$gatewalk" sample runs -o recorded.csv || fail "no recorded runs"
 survives recorded.nc build recorded.csv --cell cell.toml -o recorded.nc
-survives 'out/fidelity.csv out/fidelity.json' chart-field "${field[@]}" --trials 5 -o out
-survives 'out/chart.csv out/chart.json' chart "$scenes/soft_left.toml" --trials 20 --repeats 1 --methods stable,moreau -o out
+survives 'out/fidelity.csv out/fidelity.json' chart field "${field[@]}" --trials 5 -o out
+survives 'out/chart.csv out/chart.json' chart methods "$scenes/soft_left.toml" --trials 20 --repeats 1 --methods stable,moreau -o out
 # Runs that go on from what an earlier one kept.
 # halfway COMMAND...: keeps its first piece of work in `begun`.
 halfway() {

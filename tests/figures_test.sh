@@ -73,9 +73,9 @@ for radius in 0.08 0.05; do
   printf 'body.radius_m = %s\nbody.mass_kg = 0.25\nforces.propulsion_N = 0.8\n' $radius >three_keys.toml
   run landscape three_keys.toml -o landscape --figure ../landscape_radius_$radius.svg
 done
-run chart-field "$field" --trials 20 -o fidelity --figure ../chart_field.svg
+run chart field "$field" --trials 20 -o fidelity --figure ../chart_field.svg
 cp "$kept/passages/tracks.svg" ../passages.svg
-for study in chart chart_chain stability; do
+for study in chart_methods chart_chain stability; do
   for figure in "$kept/$study"/*.svg; do cp "$figure" "../${study}_$(basename "$figure")"; done
 done
 # The other formats, with what they say of themselves.

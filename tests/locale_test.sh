@@ -16,7 +16,7 @@ export LOCPATH=$work/locales LOCALE=de_DE.UTF-8
 # The golden lines of results/reliability/bits.sh, and what writes or draws by other means.
 eval "$(grep -E "^some\+?='" "$root/results/reliability/bits.sh")"
 others='(0 (sweep (single|soft)|landscape own|trace (soft_left.toml --trials 4|map)|scene|export|show (tree|own)|predict tree'
-others+='|chart soft)|1 gate|2 [^g]|2 gate [^n])'
+others+='|chart methods soft)|1 gate|2 [^g]|2 gate [^n])'
 "$root/tests/same_results.sh" --lines "^(0 ($some)|$others)" "$gatewalk" "$elsewhere" >said.txt 2>&1 || fail "in de_DE: $(cat said.txt)"
 # Read from JSON: policies, records of matrices, numbers of a sweep.
 LOCALE=ps_AF.UTF-8 "$root/tests/same_results.sh" --lines '^0 (show matrix|sweep own|scene own|plan)' "$gatewalk" "$elsewhere" \

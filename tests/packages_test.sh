@@ -28,11 +28,16 @@ for page in $share/man/man1/*.1.gz; do
 done
 [ "$(find $share/man -name '*.gz' | wc -l)" -gt 20 ] || fail "pages are missing"
 bash -c '. '$share'/bash-completion/completions/gatewalk; COMP_WORDS=(gatewalk pre) COMP_CWORD=1; _gatewalk; echo "${COMPREPLY[@]}"
-  COMP_WORDS=(gatewalk predict --accu) COMP_CWORD=2; _gatewalk; echo "${COMPREPLY[@]}"' >bash.txt
+  COMP_WORDS=(gatewalk predict --accu) COMP_CWORD=2; _gatewalk; echo "${COMPREPLY[@]}"
+  COMP_WORDS=(gatewalk chart f) COMP_CWORD=2; _gatewalk; echo "${COMPREPLY[@]}"
+  COMP_WORDS=(gatewalk chart field --tr) COMP_CWORD=3; _gatewalk; echo "${COMPREPLY[@]}"' >bash.txt
 [ "$(cat bash.txt)" = "predict
---accuracy" ] || fail "bash completes: $(cat bash.txt)"
+--accuracy
+field
+--trials" ] || fail "bash completes: $(cat bash.txt)"
 zsh -n $share/zsh/vendor-completions/_gatewalk || fail "zsh"
-fish -c "source $share/fish/vendor_completions.d/gatewalk.fish; complete -C 'gatewalk predict --accu'" | grep -q -e '^--accuracy' || fail "fish"
+fish -c "source $share/fish/vendor_completions.d/gatewalk.fish; complete -C 'gatewalk predict --accu'; complete -C 'gatewalk chart field --tr'" >fish.txt
+[ "$(grep -c -e '^--accuracy' -e '^--trials' fish.txt)" = 2 ] || fail "fish completes: $(cat fish.txt)"
 installed/usr/bin/gatewalk --version | grep -q gatewalk || fail "the program"
 [ -s $share/gatewalk/scenes/robot.toml ] || fail "no scenes"
 PYTHONPATH=installed/usr/lib/python3/dist-packages /usr/bin/python3 -c 'import gatewalk; print(gatewalk.__version__)' || fail "python"

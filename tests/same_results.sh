@@ -169,9 +169,9 @@ lines() {
 0 validate field.toml --matrix matrix.nc --observed gates.csv --observed ends.csv --trials 200 --null-draws 99 --json out.json
 0 power field.toml --accuracy 0.1 --trials 60 --json out.json
 0 power field.toml --accuracy 0.1 --versus beams.stiffness_left_Nm_per_rad=200 --json out.json
-0 chart soft_left.toml --trials 40 --repeats 1 --methods stable,moreau -o out
-0 chart-field field.toml --trials 20 -o out
-0 chart-chain field.toml --start 0,0,15 --truth-trials 400 --runs-limit 20000 --bins 0.5 -o out
+0 chart methods soft_left.toml --trials 40 --repeats 1 --methods stable,moreau -o out
+0 chart field field.toml --trials 20 -o out
+0 chart chain field.toml --start 0,0,15 --truth-trials 400 --runs-limit 20000 --bins 0.5 -o out
 0 stability -o out --quick
 0 sample
 0 sample walker -o out.toml --json out.json
@@ -202,7 +202,7 @@ END
 }
 
 # The commands of both programs.
-commands() { for side in old new; do "${!side}" help 2>/dev/null | sed -n 's/^  \([a-z][a-z-]*\)  .*/\1/p'; done | sort -u; }
+commands() { for side in old new; do "${!side}" help 2>/dev/null | sed -n 's/^  \([a-z-]*\( [a-z][a-z]*\)\{0,1\}\)  .*/\1/p'; done | sort -u; }
 
 # The folder of a program's schemas; nothing where there is none.
 schemas_of() {  # PROGRAM
@@ -253,7 +253,8 @@ cp "$scenes"/tracks/{tracks.csv,runs.csv,cell.toml} .
 old_schemas=$(schemas_of "$old") new_schemas=$(schemas_of "$new")
 {
   lines
-  for command in '' $(commands); do echo "0 help $command"; done
+  echo '0 help '
+  commands | sed 's/^/0 help /'
   if [ -n "$old_schemas" ] && [ -n "$new_schemas" ]; then
     (cd "$old_schemas" && ls; cd "$new_schemas" && ls) | sort -u | sed 's/^/0 schema /'
   else
@@ -286,14 +287,14 @@ if grep -q '^0 merge' "$work/lines"; then
     done
   done
 fi
-for command in $(sed -E 's/^[0-9]+ //; s/ .*//' "$work/lines" | sort -u); do
+for command in $(sed -E 's/^[0-9]+ //; s/^chart /chart-/; s/ .*//' "$work/lines" | sort -u); do
   # Both have it: a page of help tells where only one has.
-  for side in old new; do "${!side}" help "$command" 2>/dev/null | grep -q -e ' --csv FILE' || continue 2; done
+  for side in old new; do "${!side}" help ${command/-/ } 2>/dev/null | grep -q -e ' --csv FILE' || continue 2; done
   echo "$command"
 done >"$work/with_csv"
 
 # What a file says but for what may differ: who made it, on how many threads, and what was timed. Where a table consists
-# of times, its words stay; its other numbers are in the CSV beside it. What chart-chain says of direct simulation depends
+# of times, its words stay; its other numbers are in the CSV beside it. What chart chain says of direct simulation depends
 # on the times, and so do the claims of reproduce about speed, its page and its words.
 plain() {  # COMMAND FILE
   case $1:$2 in
@@ -307,7 +308,7 @@ plain() {  # COMMAND FILE
     *.nc) content "$2" ;;
     *numbers.csv) timed=$timed awk -F, '{ for (i = split($1, key, "."); i > 0; --i)
       if (key[i] ~ ENVIRON["timed"] || key[i] ~ /^(version|commit|program|machine)$/) next; print }' "$2" ;;
-    chart:*.data) sed 's/^[-+.0-9e]* //' "$2" ;;  # the time comes first
+    chart-methods:*.data) sed 's/^[-+.0-9e]* //' "$2" ;;  # the time comes first
     chart-chain:*.data) sed '/^\$direct/,/^EOD/d; s/^[-+.0-9e]* //' "$2" ;;
     chart-field:*.data) sed 's/ [-+.0-9e]*$//' "$2" ;;  # it comes last
     reproduce:*.data) sed '/^\$times/,/^EOD/d' "$2" ;;
@@ -341,7 +342,7 @@ content() {  # MATRIX, but for who made it
 compare() {  # NUMBER of the line
   local wanted line command side file differ=() here=$work/$1
   read -r wanted line < <(sed -n "$1p" "$work/lines")
-  command=${line%% *}
+  command=${line/#chart /chart-} command=${command%% *}
   local words=($line)
   if [ "$wanted" != 2 ] && grep -q -x -e "$command" "$work/with_csv"; then
     case " $line " in *' --csv '*) ;; *' --json '* | *' -o out '* | *' -o out.json '*) words+=(--csv numbers.csv) ;; esac

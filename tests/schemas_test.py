@@ -97,8 +97,8 @@ power passages.nc --trials 20
 """
 # Those with a folder of results, in which their JSON stands.
 FOLDERS = {"landscape field.toml": "landscape.json", "landscape field.toml --trials 20": "landscape.json",
-           "stability --quick": "stability.json", "chart-field field.toml --trials 50": "fidelity.json",
-           "chart field.toml --trials 20": "chart.json"}
+           "stability --quick": "stability.json", "chart field field.toml --trials 50": "fidelity.json",
+           "chart methods field.toml --trials 20": "chart.json"}
 
 
 def run(words, want=(0,)):

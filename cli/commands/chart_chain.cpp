@@ -33,12 +33,12 @@ std::vector<double> factors_of(const NumbersOption& given, lattice::BinsChoice::
 
 int run_chart_chain(const Arguments& arguments) {
   Options options(
-      "chart-chain SCENE -o DIR [options]",
+      "chart chain SCENE -o DIR [options]",
       "Charts the chain's error against its cost: matrices of coarser and finer bins and of\n"
       "10 to 10000 trials a row, and trees (predict --accuracy), against the full dynamics,\n"
       "beside direct simulation at the same cost. Writes chain.csv, chain.json and chain.svg into "
       "DIR.",
-      "gatewalk chart-chain scenes/field.toml -o results/chain --truth-trials 1e5");
+      "gatewalk chart chain scenes/field.toml -o results/chain --truth-trials 1e5");
   options.scene();
   const std::vector<std::string> files{"chain.csv", "chain.json", "chain.svg"};
   options.output_folder("folder to write to, made if missing", files);

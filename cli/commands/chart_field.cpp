@@ -6,7 +6,7 @@ namespace gatewalk::cli {
 
 int run_chart_field(const Arguments& arguments) {
   Options options(
-      "chart-field SCENE -o DIR [options]",
+      "chart field SCENE -o DIR [options]",
       "Runs the full dynamics at every field.fidelity, with the same noise: what do beams that\n"
       "remember, and beams of neighbouring gates, change in the final gates, and what do they\n"
       "cost? Method moreau at the scene's run.step_s, which the text names; run.method and\n"
@@ -15,7 +15,7 @@ int run_chart_field(const Arguments& arguments) {
       "smaller\n"
       "run.step_s helps. Writes fidelity.csv, fidelity.json and, with gnuplot, fidelity.svg into "
       "DIR.",
-      "gatewalk chart-field scenes/field.toml --trials 2000 --set run.step_s=0.001 -o "
+      "gatewalk chart field scenes/field.toml --trials 2000 --set run.step_s=0.001 -o "
       "results/fidelity");
   options.scene();
   options.add_trials_and_seed("trials per start and fidelity");
@@ -28,7 +28,7 @@ int run_chart_field(const Arguments& arguments) {
   const lattice::Scene scene = options.read_scene();
   if (scene.gate.run.method == "auto")
     throw UsageError(
-        "run.method = \"auto\" is not permitted for chart-field, which runs method moreau: "
+        "run.method = \"auto\" is not permitted for chart field, which runs method moreau: "
         "name a method, and give moreau's step as run.step_s");
   // The scene's own start may lie inside the gate.
   std::vector<dynamics::BodyState> starts{scene.start};

@@ -334,15 +334,20 @@ std::string in_lines(const std::string& text, std::size_t width, const std::stri
 
 }  // namespace
 
+std::string file_name_of(std::string_view command) {
+  std::string name(command);
+  std::replace(name.begin(), name.end(), ' ', '-');
+  return name;
+}
+
 std::string schema_of(const ResultOf& of) {
   SchemaFields fields;
   describe_version(fields);
   of.result(fields);
-  const std::string name = of.command;
   std::string text =
-      "{\n \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n \"$id\": \"" + name +
-      ".schema.json\",\n \"title\": \"gatewalk " + name + " --json\",\n \"type\": \"object\",\n" +
-      keys_text(fields.root(), "");
+      "{\n \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n \"$id\": \"" +
+      file_name_of(of.command) + ".schema.json\",\n \"title\": \"gatewalk " + of.command +
+      " --json\",\n \"type\": \"object\",\n" + keys_text(fields.root(), "");
   text.pop_back();
   text += ",\n \"$defs\": {\n";
   for (const auto& [key, node] : fields.shared())

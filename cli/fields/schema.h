@@ -3,6 +3,7 @@
 /// What the results of commands may hold, as JSON Schema (draft 2020-12) and as pages of help.
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/fields/fields.h"
@@ -16,6 +17,8 @@ struct ResultOf {
 };
 /// By name.
 [[nodiscard]] const std::vector<ResultOf>& results();
+/// The command's name in names of files: "chart-field".
+[[nodiscard]] std::string file_name_of(std::string_view command);
 
 /// The schema of the command's results as the text of a file: the type of each key, whether it is
 /// always there, its unit ("unit") and its meaning ("description").

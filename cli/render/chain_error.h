@@ -13,7 +13,7 @@
 
 namespace gatewalk::cli {
 
-/// The result of `chart-chain`.
+/// The result of `chart chain`.
 struct ChainErrorResult {
   lattice::ChainErrorChart chart;
   std::optional<lattice::Settled> method;

@@ -12,7 +12,7 @@
 
 namespace gatewalk::cli {
 
-/// The result of `chart-field`.
+/// The result of `chart field`.
 struct FidelityResult {
   lattice::FidelityStudy study;
   Provenance made_by;

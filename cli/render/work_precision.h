@@ -12,7 +12,7 @@
 
 namespace gatewalk::cli {
 
-/// The result of `chart`: a chart of each scene, and what made it.
+/// The result of `chart methods`: a chart of each scene, and what made it.
 struct ChartResult {
   std::vector<dynamics::WorkPrecision> charts;
   std::vector<Provenance> made_by;

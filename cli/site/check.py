@@ -99,14 +99,15 @@ def missing(site: pathlib.Path, pages: dict[pathlib.Path, Page], root: pathlib.P
         if f"gatewalk.{name}" not in ids.get("python.html", ()):
             wrong.append(f"python.html: gatewalk.{name} is not documented")
     overview = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
-    commands = re.findall(r"^  ([\w-]+)  +\w", overview, re.M)
+    commands = re.findall(r"^  ([\w-]+(?: \w+)?)  +\w", overview, re.M)
     if not commands:
         wrong.append("gatewalk --help names no commands")
     for command in commands:
-        own = subprocess.run([program, "help", command], capture_output=True, text=True, check=True).stdout
-        page = f"commands/{command}.html"
+        own = subprocess.run([program, "help", *command.split()], capture_output=True, text=True, check=True).stdout
+        name = command.replace(" ", "-")
+        page = f"commands/{name}.html"
         for option in re.findall(r"^  (?:-\w \[ )?(--[\w-]+)", own, re.M):
-            if f"cmdoption-gatewalk-{command}-{option.removeprefix('--')}" not in ids.get(page, ()):
+            if f"cmdoption-gatewalk-{name}-{option.removeprefix('--')}" not in ids.get(page, ()):
                 wrong.append(f"{page}: {option} is not documented")
     declared = " ".join(" ".join(found) for page, found in ids.items() if page.startswith("cpp/"))
     for name in CPP:

@@ -62,13 +62,13 @@ def commands_page(overview: str) -> str:
            "[by what you want](index.md#i-want-); [options and exit status](cli/index.md#options-and-exit-status) are",
            "those of all commands.", ""]
     names = []
-    for title, lines in re.findall(r"^(\w.*)\n((?:  [\w-]+  +.*\n)+)", overview, re.M):
+    for title, lines in re.findall(r"^(\w.*)\n((?:  [\w-]+(?: \w+)?  +.*\n)+)", overview, re.M):
         out += [f"## {title}", ""]
-        for name, what in re.findall(r"^  ([\w-]+)  +(.*)$", lines, re.M):
+        for name, what in re.findall(r"^  ([\w-]+(?: \w+)?)  +(.*)$", lines, re.M):
             names.append(name)
-            out.append(f"- [{name}](commands/{name}.md): {what}")
+            out.append(f"- [{name}](commands/{name.replace(' ', '-')}.md): {what}")
         out.append("")
-    out += ["```{toctree}", ":hidden:", "", *(f"{name} <commands/{name}>" for name in names), "```", ""]
+    out += ["```{toctree}", ":hidden:", "", *(f"{name} <commands/{name.replace(' ', '-')}>" for name in names), "```", ""]
     return "\n".join(out)
 
 

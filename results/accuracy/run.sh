@@ -14,6 +14,6 @@ mkdir -p "$here/overdamped"
 
 scenes=()
 for scene in single_gate field soft_left wading undamped stiff; do scenes+=("scenes/$scene.toml"); done
-"$gatewalk" chart "${scenes[@]}" --trials 1e5 --seed 1 -o "$here" --force >"$here/chart.txt"
-"$gatewalk" chart "scenes/overdamped.toml" --trials 1000 --seed 1 -o "$here/overdamped" --force >"$here/overdamped/chart.txt"
+"$gatewalk" chart methods "${scenes[@]}" --trials 1e5 --seed 1 -o "$here" --force >"$here/chart.txt"
+"$gatewalk" chart methods "scenes/overdamped.toml" --trials 1000 --seed 1 -o "$here/overdamped" --force >"$here/overdamped/chart.txt"
 manifest "results/accuracy/run.sh" >"$here/manifest.txt"

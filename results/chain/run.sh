@@ -10,6 +10,6 @@ gatewalk=$(realpath "${1:-$root/build/gatewalk}")  # scenes are named from the r
 . "$root/results/manifest.sh"
 cd "$root"
 
-"$gatewalk" chart-chain "scenes/field.toml" --truth-trials 1e5 --visited 1000 --seed 1 \
+"$gatewalk" chart chain "scenes/field.toml" --truth-trials 1e5 --visited 1000 --seed 1 \
   -o "$here" --force >"$here/chain.txt"
 manifest "results/chain/run.sh" >"$here/manifest.txt"

@@ -10,6 +10,6 @@ gatewalk=$(realpath "${1:-$root/build/gatewalk}")  # scenes are named from the r
 . "$root/results/manifest.sh"
 cd "$root"
 
-"$gatewalk" chart-field "scenes/field.toml" --trials 10000 --seed 1 --set run.step_s=0.001 \
+"$gatewalk" chart field "scenes/field.toml" --trials 10000 --seed 1 --set run.step_s=0.001 \
   -o "$here" --force >"$here/fidelity.txt"
 manifest "results/fidelity/run.sh" >"$here/manifest.txt"

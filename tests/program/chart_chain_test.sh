@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# chart-chain: errors of a chain against its cost.   chart_chain_test.sh GATEWALK ROOT
+# chart chain: errors of a chain against its cost.   chart_chain_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 echo text >m.nc  # a file where a folder was asked for
-expect 2 'bins 100.0: makes fewer than 1' "$gatewalk" chart-chain "$scenes/field.toml" --set beams.length_m=20 -o refused --bins 100 --truth-trials 100
-# chart-chain: three files in a folder that it makes; errors and their parts are distributions'.
-chart() { "$gatewalk" chart-chain "$scenes/field.toml" --truth-trials 150 --runs-limit 1e3 --bins 0.5 --bins 1 \
+expect 2 'bins 100.0: makes fewer than 1' "$gatewalk" chart chain "$scenes/field.toml" --set beams.length_m=20 -o refused --bins 100 --truth-trials 100
+# chart chain: three files in a folder that it makes; errors and their parts are distributions'.
+chart() { "$gatewalk" chart chain "$scenes/field.toml" --truth-trials 150 --runs-limit 1e3 --bins 0.5 --bins 1 \
             --start 0,0,15 --start 4,5,10 --seed 2 --visited 50 "$@"; }
 expect 0 'direct simulation' chart -o charts/a --json charts.json --threads 2
-cmp -s charts.json charts/a/chain.json || fail "chart-chain: --json and chain.json differ"
-grep -q '</svg>' charts/a/chain.svg || fail "chart-chain: no figure"
+cmp -s charts.json charts/a/chain.json || fail "chart chain: --json and chain.json differ"
+grep -q '</svg>' charts/a/chain.svg || fail "chart chain: no figure"
 holds '[.points[] | [.bins, .trials_per_row]] == [[0.5, 10], [0.5, 20], [1, 10], [0.5, 10], [0.5, 20], [1, 10]]' charts/a/chain.json
 holds '[.points[].states] == [23, 23, 87, 23, 23, 87] and [.points[0:3][].gate_runs] == [230, 460, 870]' charts/a/chain.json
 holds '[.points[].matrices] == [2, 1, 1, 2, 1, 1]' charts/a/chain.json
@@ -26,27 +26,27 @@ holds '[.points[].row_starts] == ["uniform", "uniform", "uniform", "visited", "v
 holds '.points[0].build_s < .points[3].build_s' charts/a/chain.json  # the trials that saw the entries cost
 holds '.points[0].starts[0].exact != .points[3].starts[0].exact' charts/a/chain.json
 holds '.starts[0].summary | .cheapest_near_best.seconds <= .best.seconds' charts/a/chain.json
-[ "$(awk -F, '{ print NF }' charts/a/chain.csv | sort -u)" = 25 ] || fail "chart-chain: uneven lines in chain.csv"
-[ "$(grep -c ',exact,' charts/a/chain.csv)" = 12 ] || fail "chart-chain: not one line per matrix and start in chain.csv"
+[ "$(awk -F, '{ print NF }' charts/a/chain.csv | sort -u)" = 25 ] || fail "chart chain: uneven lines in chain.csv"
+[ "$(grep -c ',exact,' charts/a/chain.csv)" = 12 ] || fail "chart chain: not one line per matrix and start in chain.csv"
 # Trees as far as 20000 runs go; they keep what they say but for the truth's noise.
-"$gatewalk" chart-chain "$scenes/field.toml" --truth-trials 2000 --runs-limit 2e4 --bins 0.5 --start 0,0,15 \
+"$gatewalk" chart chain "$scenes/field.toml" --truth-trials 2000 --runs-limit 2e4 --bins 0.5 --start 0,0,15 \
   --set run.method=moreau --set run.step_s=0.02 -o charts/t --quiet >charts/t.txt 2>/dev/null
 holds '.starts[0] | .truth.floor.total_variation as $noise | .trees | length >= 2 and (map(.total_variation < .error_95 + 2 * $noise and .gate_runs > 0 and .seconds > 0) | all)' charts/t/chain.json
-[ "$(grep -c ',tree,' charts/t/chain.csv)" = "$(jq '.starts[0].trees | length' charts/t/chain.json)" ] || fail "chart-chain: not one line per tree in chain.csv"
-grep -q 'Trees (predict --accuracy): TV ' charts/t.txt || fail "chart-chain: no word on trees"
+[ "$(grep -c ',tree,' charts/t/chain.csv)" = "$(jq '.starts[0].trees | length' charts/t/chain.json)" ] || fail "chart chain: not one line per tree in chain.csv"
+grep -q 'Trees (predict --accuracy): TV ' charts/t.txt || fail "chart chain: no word on trees"
 # Times aside, the same on one thread.
 chart -o charts/b --threads 1 --quiet >/dev/null 2>&1
 timeless='.starts[0].truth.final_gates, (.points[] | del(.build_s) | .starts[] |= del(.exact_s, .walks_10000_s, .walks_1000000_s))'
 [ "$(jq -c "$timeless" charts/a/chain.json)" = "$(jq -c "$timeless" charts/b/chain.json)" ] ||
-  fail "chart-chain: another number of threads gave other errors"
-expect 2 'missing -o' "$gatewalk" chart-chain "$scenes/field.toml"
-expect 2 'missing SCENE' "$gatewalk" chart-chain -o charts/x
-expect 2 "runs-limit" "$gatewalk" chart-chain "$scenes/field.toml" -o charts/x --runs-limit 40
-expect 2 'must be at least 100' "$gatewalk" chart-chain "$scenes/field.toml" -o charts/x --truth-trials 99
+  fail "chart chain: another number of threads gave other errors"
+expect 2 'missing -o' "$gatewalk" chart chain "$scenes/field.toml"
+expect 2 'missing SCENE' "$gatewalk" chart chain -o charts/x
+expect 2 "runs-limit" "$gatewalk" chart chain "$scenes/field.toml" -o charts/x --runs-limit 40
+expect 2 'must be at least 100' "$gatewalk" chart chain "$scenes/field.toml" -o charts/x --truth-trials 99
 expect 2 'the same factor twice' chart -o charts/x --bins 1
 expect 2 'inside the gate' chart -o charts/x --start 25,0,15
 expect 2 'are the same file' chart -o charts/a --json charts/../charts/a/chain.csv
-[ -e charts/x ] && fail "chart-chain: wrong use made a folder"
+[ -e charts/x ] && fail "chart chain: wrong use made a folder"
 expect 2 'm.nc' chart -o m.nc
 
 cp charts/a/chain.svg two_starts.svg

@@ -51,10 +51,10 @@ destroys "$gatewalk" validate own.toml --json own.toml
 destroys "$gatewalk" validate own.toml --matrix m.nc --json m.nc
 destroys "$gatewalk" landscape landscape.csv -o .
 destroys "$gatewalk" landscape own.toml -o folder --json own.toml
-destroys "$gatewalk" chart own.toml chart.json -o .
-destroys "$gatewalk" chart own.toml m.nc -o folder --json own.toml
-destroys "$gatewalk" chart-field fidelity.svg -o .
-destroys "$gatewalk" chart-chain chain.csv -o "$PWD"
+destroys "$gatewalk" chart methods own.toml chart.json -o .
+destroys "$gatewalk" chart methods own.toml m.nc -o folder --json own.toml
+destroys "$gatewalk" chart field fidelity.svg -o .
+destroys "$gatewalk" chart chain chain.csv -o "$PWD"
 # Nor may two outputs be one, nor standard output another file of the command.
 destroys "$gatewalk" trace own.toml --csv folder/new --json link/folder/new
 destroys "$gatewalk" landscape own.toml -o folder --json folder/landscape.json
@@ -90,7 +90,7 @@ destroys "$gatewalk" predict m.nc maps/map.toml --json maps/map.csv
 destroys "$gatewalk" predict maps/map.toml --figure plot.svg --json maps/map.csv
 destroys "$gatewalk" scene maps/map.toml --new -o maps/map.csv
 destroys "$gatewalk" power maps/map.toml --versus "$other" --json maps/other.csv
-destroys "$gatewalk" chart own.toml maps/map.toml -o folder --json maps/map.csv
+destroys "$gatewalk" chart methods own.toml maps/map.toml -o folder --json maps/map.csv
 cd maps && destroys "$gatewalk" trace map.toml --csv map.csv; cd ..
 destroys "$gatewalk" validate maps/map.toml --matrix m.nc --json maps/map.csv
 cd ..

@@ -6,14 +6,14 @@
 paper_matrix m.nc
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 20 --json gate.json --quiet
 "$gatewalk" lattice "$scenes/field.toml" --trials 20 --json lattice.json --quiet
-"$gatewalk" chart "$scenes/stiff.toml" -o charts --trials 20 --repeats 1 --methods stable --quiet >/dev/null
+"$gatewalk" chart methods "$scenes/stiff.toml" -o charts --trials 20 --repeats 1 --methods stable --quiet >/dev/null
 # Ctrl-C: within 2 s, status 130, a clear word, the old file unchanged.
 for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
                "build $scenes/field.toml --trials 1e7 -o m.nc" \
                "lattice $scenes/field.toml --trials 1e9 --json lattice.json" \
-               "chart-field $scenes/field.toml --trials 1e9 -o new/chart" \
-               "chart-chain $scenes/field.toml -o charts/x --truth-trials 1e9" \
-               "chart $scenes/field.toml --trials 1e7 -o charts"; do
+               "chart field $scenes/field.toml --trials 1e9 -o new/chart" \
+               "chart chain $scenes/field.toml -o charts/x --truth-trials 1e9" \
+               "chart methods $scenes/field.toml --trials 1e7 -o charts"; do
   before=$(cat gate.json m.nc lattice.json $(find charts -type f | sort) | cksum)
   # shellcheck disable=SC2086
   "$gatewalk" $command >out.txt 2>&1 &

@@ -11,7 +11,7 @@ quick() { expect 2 "$1" timeout 20 "$gatewalk" "${@:2}"; }
 quick 'json: .*File name too long' gate "$scenes/field.toml" --trials 1e9 --json "$long"
 quick 'csv: .*No such file or directory' trace "$scenes/field.toml" --field --trials 1000 --csv none/x.csv
 quick 'o: .*cannot be made' landscape "$scenes/field.toml" --trials 1e9 -o "new/$long"
-quick 'o: .*is no folder' chart "$scenes/field.toml" -o m.nc/charts
+quick 'o: .*is no folder' chart methods "$scenes/field.toml" -o m.nc/charts
 quick 'csv needs a file name' sweep "$scenes/fig8.toml" --trials 1e9 --csv ''
 quick 'matrix needs a file name' validate "$scenes/field.toml" --trials 1e9 --matrix ''
 quick 'o needs a file name' build "$scenes/field.toml" --trials 1e9 -o ''
@@ -24,8 +24,8 @@ quick "trials: '1000000000000000001' is out of range: at most 1e15" gate "$scene
 quick "walks: '1e999' is out of range" walk m.nc --walks 1e999
 quick "trials: 'nan' is not a whole number" gate "$scenes/field.toml" --trials nan
 quick "seed: '1e3' is not a seed" gate "$scenes/field.toml" --seed 1e3
-quick 'at most 10000000' chart "$scenes/field.toml" -o charts --trials 1e9
-quick 'visited 1000000000: .* at most 1000000' chart-chain "$scenes/field.toml" -o charts --visited 1e9
+quick 'at most 10000000' chart methods "$scenes/field.toml" -o charts --trials 1e9
+quick 'visited 1000000000: .* at most 1000000' chart chain "$scenes/field.toml" -o charts --visited 1e9
 quick 'trial 0 alone has more than .* a longer run.step_s or a shorter run.time_limit_s' trace "$scenes/field.toml" --set run.step_s=1e-7 --csv x.csv
 quick 'more than 100000 values' sweep "$scenes/field.toml" --vary forces.random_N=0:1e-6:10
 quick 'must lie in' landscape "$scenes/field.toml" -o land --set beams.joint_x_m=900 --spacing 0.1
@@ -81,7 +81,7 @@ expect 0 '' "$gatewalk" landscape "$odd.toml" -o "$odd" --trials 5
 expect 0 '' "$gatewalk" build "$odd.toml" --trials 1 -o "$odd.nc" --json odd.json
 expect 0 '' "$gatewalk" show "$odd.nc" --json odd.json
 expect 0 '' "$gatewalk" predict "$odd.nc" --row "0=$odd.nc" --json odd.json
-expect 0 '' "$gatewalk" chart "$odd.toml" -o odd-chart --trials 5 --repeats 1 --methods stable --quiet
+expect 0 '' "$gatewalk" chart methods "$odd.toml" -o odd-chart --trials 5 --repeats 1 --methods stable --quiet
 jq -e . odd.json odd-chart/chart.json "$odd/landscape.json" >/dev/null || fail "a name that is no UTF-8 breaks the JSON"
 
 finish

@@ -62,9 +62,9 @@ before power "$field" --accuracy 0.0005 -- "${outputs[@]}" "${keys[@]}" '--versu
   '--trials 0' '--power 2' '--level 0' '--accuracy 0'
 before fit "$field" seen.csv --free forces.random_N=20:80 --trials 1e8 -- "${figures[@]}" "${keys[@]}" '--free nosuch=1:2' \
   '--free forces.propulsion_N=2:1' '--free forces.propulsion_N=x' '--free forces.random_N=1:2' '--trials 0'
-before chart "$field" -o charts --trials 1e7 -- "${figures[@]}" "${keys[@]}" '--methods nosuch' '--repeats 0'
-before chart-field "$field" -o charts --trials 1e7 -- "${figures[@]}" "${keys[@]}" '--trials 0'
-before chart-chain "$field" -o charts -- "${figures[@]}" "${keys[@]}"
+before chart methods "$field" -o charts --trials 1e7 -- "${figures[@]}" "${keys[@]}" '--methods nosuch' '--repeats 0'
+before chart field "$field" -o charts --trials 1e7 -- "${figures[@]}" "${keys[@]}" '--trials 0'
+before chart chain "$field" -o charts -- "${figures[@]}" "${keys[@]}"
 before stability -o charts -- "${figures[@]}" '--methods nosuch'
 before reproduce -o report -- "${outputs[@]}"
 ls | grep -qx -e land -e charts -e report && fail "a refused command made its folder: $(ls)"

@@ -23,7 +23,7 @@ expect 0 'not asked of a field with several types' "$gatewalk" validate $mixed -
 expect 2 'terrain.types.u.forces.propulsion_N: 9 here, 8 there' "$gatewalk" predict mixed.nc $mixed --set terrain.types.u.forces.propulsion_N=9
 expect 2 'none here' "$gatewalk" walk mixed.nc "$scenes/field.toml" --set run.method=moreau
 expect 2 'which says what stands where' "$gatewalk" predict mixed.nc --row 2=mixed.nc
-expect 2 'not permitted for a comparison of fidelities' "$gatewalk" chart-field $mixed --trials 2 -o x
+expect 2 'not permitted for a comparison of fidelities' "$gatewalk" chart field $mixed --trials 2 -o x
 expect 0 'has no effect here: one gate is run' "$gatewalk" gate $mixed --trials 20 --quiet
 "$gatewalk" trace $mixed --field --trial 3 --json trace.json --replay trace.html --quiet
 holds '(.types | length) == 3 and (.type_of_gate | length) == 81 and .types[2].propulsion_N == 8' trace.json

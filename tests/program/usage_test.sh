@@ -10,10 +10,14 @@ expect 0 '^gatewalk [0-9]' "$gatewalk" -V
 expect 2 'usage: gatewalk' "$gatewalk"
 expect 2 "no command 'fly'" "$gatewalk" fly
 expect 2 "^gatewalk: no command '$scenes/field.toml', but a file: the command comes first, gatewalk COMMAND $scenes/field.toml\$" "$gatewalk" "$scenes/field.toml" predict
-for command in $("$gatewalk" --help | awk '/^usage/ { list = 1; next } list && /^  [a-z]/ { print $1 }'); do
+"$gatewalk" --help | sed -n '/^usage/,$ s/^  \([a-z]*\( [a-z][a-z]*\)\{0,1\}\)  .*/\1/p' >commands.txt
+[ "$(grep -c -x -e 'chart [a-z]*' -e gate -e merge commands.txt)" -ge 5 ] || fail "commands: $(cat commands.txt)"
+while read -r command; do
+  # shellcheck disable=SC2086
   expect 0 'Example:' "$gatewalk" $command --help
+  # shellcheck disable=SC2086
   expect 2 'there is no option' "$gatewalk" $command --no-such-option
-done
+done <commands.txt
 expect 2 'missing SCENE' "$gatewalk" gate
 expect 2 'missing -o' "$gatewalk" build "$scenes/field.toml"
 expect 2 'there is no option' "$gatewalk" gate "$scenes/field.toml" --tri 5       # nothing is guessed
@@ -46,7 +50,20 @@ expect 0 'usage: gatewalk' "$gatewalk" help
 expect 0 'exit status: 0 fine, 1 failure (with --strict' "$gatewalk" --help
 expect 2 'did you mean build?' "$gatewalk" biuld
 expect 2 'did you mean predict?' "$gatewalk" help predictt
-expect 2 'did you mean chart-field?' "$gatewalk" chart_field
+expect 2 'did you mean chart field?' "$gatewalk" chart_field
+# Names of before 2.0 are answered with the new line.
+for old in 'chart-chain=chart chain' 'chart-field=chart field' 'chart=chart methods'; do
+  expect 2 "^gatewalk: ${old%=*} is now: gatewalk ${old#*=} a.toml 'b c.toml' -o DIR --seed=2\$" "$gatewalk" ${old%=*} a.toml 'b c.toml' -o DIR --seed=2
+  [ "$(wc -l <out.txt)" = 1 ] || fail "${old%=*}: $(cat out.txt)"
+done
+expect 2 '^gatewalk: chart needs to know what:$' "$gatewalk" chart
+expect 2 "^gatewalk: no chart 'feild'; did you mean chart field?\$" "$gatewalk" chart feild a.toml
+for words in 'chart --help' 'help chart' 'chart -h'; do
+  # shellcheck disable=SC2086
+  expect 0 '^  gatewalk chart field ' "$gatewalk" $words
+done
+"$gatewalk" help chart field | cmp -s - <("$gatewalk" chart field --help) || fail "help chart field is not chart field --help"
+expect 0 '^The result of gatewalk chart field, as --json writes it' "$gatewalk" help chart field --result
 "$gatewalk" fly 2>&1 | grep -q 'did you mean' && fail "fly is no misspelled command"
 
 # simulate is lattice under another name; what the result keeps of it is one name.
@@ -85,9 +102,9 @@ expect 2 'unknown key beams.stiffness_mNm_per_rad; the closest known keys are be
 "$gatewalk" gate - --trials 20 --seed 4 --json dash.json --quiet <"$scenes/field.toml"
 "$gatewalk" gate "$scenes/field.toml" --trials 20 --seed 4 --json file.json --quiet
 jq -s '(.[0] | del(.made_by)) == (.[1] | del(.made_by)) and .[0].made_by.scene == .[1].made_by.scene' dash.json file.json | grep -q true || fail "a scene from standard input is another one"
-for command in scene sweep landscape trace build predict analyze lattice rare plan design fit validate power chart chart-field chart-chain; do
+for command in scene sweep landscape trace build predict analyze lattice rare plan design fit validate power 'chart methods' 'chart field' 'chart chain'; do
   more=
-  case $command in landscape | chart | chart-field | chart-chain) more='-o folder' ;; build) more='-o m.nc' ;; fit) more='/dev/null --free forces.random_N=1:2' ;; sweep) more='--vary forces.random_N=1,2' ;; esac
+  case $command in landscape | chart*) more='-o folder' ;; build) more='-o m.nc' ;; fit) more='/dev/null --free forces.random_N=1:2' ;; sweep) more='--vary forces.random_N=1,2' ;; esac
   # shellcheck disable=SC2086
   expect 2 '^gatewalk: .*standard input:2: body.mass_kg = -1.* is not permitted' "$gatewalk" $command - $more < <(printf '\nbody.mass_kg = -1\n')
 done

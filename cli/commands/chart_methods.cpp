@@ -68,14 +68,14 @@ std::vector<std::string> chosen_methods(const TextOption& given) {
 
 }  // namespace
 
-int run_chart(const Arguments& arguments) {
+int run_chart_methods(const Arguments& arguments) {
   Options options(
-      "chart SCENE... -o DIR [options]",
+      "chart methods SCENE... -o DIR [options]",
       "Charts the methods' speed against their accuracy, each over its own settings: time per\n"
       "trial on one thread, and error against a reference under the same noise. Writes chart.csv\n"
       "and chart.json, again after each scene, and chart.svg. With 1e5 trials a scene takes some\n"
       "ten minutes; --trials 2000 --repeats 3 gives a first look in one.",
-      "gatewalk chart scenes/field.toml scenes/stiff.toml -o results/chart --trials 1e4");
+      "gatewalk chart methods scenes/field.toml scenes/stiff.toml -o results/chart --trials 1e4");
   const TextsOption scenes =
       options.positional_list("scene", "scene files (TOML); a scene is called by its file's name");
   const std::vector<std::string> files{"chart.csv", "chart.json", "chart.svg"};
