@@ -82,9 +82,7 @@ void Options::draw(const std::function<Figure()>& picture) const {
   }
 }
 
-AboutFigure Options::about() const {
-  return {"gatewalk " + state_->name(), canonical()};
-}
+AboutFigure Options::about() const { return {"gatewalk " + state_->name(), canonical()}; }
 
 ResultFolder::ResultFolder(const Options& options, const std::vector<std::string>& files)
     : options_(options), folder_(options.output.value()), files_(files) {

@@ -87,9 +87,10 @@ std::string charts() {
 }
 
 /// What has another name since version 2.0.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kRenamed{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kRenamed{
     {{"chart-chain", "chart chain"},
      {"chart-field", "chart field"},
+     {"stability", "chart limits SCENE"},
      {"chart", "chart methods"}}};  // which is said of what names no chart
 
 /// Refuses a command by its old name, with the words that it has now.
@@ -101,7 +102,7 @@ void refuse_old_name(const std::vector<std::string>& words) {
     throw UsageError("chart needs to know what:\n" + charts());
   if (words[0] == "chart")
     if (const std::string meant =
-            lattice::meant_name(words[1], {"methods", "field", "chain"});
+            lattice::meant_name(words[1], {"methods", "limits", "field", "chain"});
         !meant.empty())
       throw UsageError(fmt::format("no chart '{}'; did you mean chart {}?", words[1], meant));
   std::string line = fmt::format("{} is now: gatewalk {}", old->first, old->second);

@@ -16,13 +16,13 @@
 #include "cli/render/fit.h"
 #include "cli/render/gate_runs.h"
 #include "cli/render/landscape.h"
+#include "cli/render/limits.h"
 #include "cli/render/matrix.h"
 #include "cli/render/meaning.h"
 #include "cli/render/plan.h"
 #include "cli/render/power.h"
 #include "cli/render/prediction.h"
 #include "cli/render/rare.h"
-#include "cli/render/stability.h"
 #include "cli/render/sweep.h"
 #include "cli/render/validation.h"
 #include "cli/render/work_precision.h"
@@ -237,6 +237,7 @@ const std::vector<ResultOf>& results() {
       {"build", describe_build},
       of("chart chain", chain_error()),
       of("chart field", fidelity()),
+      of<LimitsResult>("chart limits"),
       of("chart methods", ChartResult{{{}}, {{}}}),
       of("design", design()),
       of<ExportResult>("export"),
@@ -254,7 +255,6 @@ const std::vector<ResultOf>& results() {
       of("sample", SampleResult{}),
       of("scene", SceneResult{mixed(), {}, {}}),
       of("show", shown_matrix()),
-      of<StabilityResult>("stability"),
       of("sweep", sweep()),
       of("trace", trace()),
       {"validate", describe_validate},

@@ -31,7 +31,7 @@
 ///     row_trials.h   runs -> counts, the matrix of Eq. (16)
 ///     study/verdict.h      one word for how far a method can be trusted
 ///     study/accuracy.h     a method's errors against a reference under the same noise
-///     study/stability.h    maps of where each method breaks
+///     study/limits.h       where each method breaks near a scene
 ///     study/work_precision.h  every method's time against its error
 ///     study/choice.h       the cheapest method and setting that a scene can do with
 // clang-format on
@@ -51,7 +51,7 @@
 #include "dynamics/disc/row_trials.h"
 #include "dynamics/disc/study/accuracy.h"
 #include "dynamics/disc/study/choice.h"
-#include "dynamics/disc/study/stability.h"
+#include "dynamics/disc/study/limits.h"
 #include "dynamics/disc/study/verdict.h"
 #include "dynamics/disc/study/work_precision.h"
 #include "dynamics/disc/trace.h"

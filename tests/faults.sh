@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # What becomes of results when the system fails: call number k of read, write, fsync, fdatasync, rename, ftruncate, link, close,
 # opening and creating a file, starting a process or a thread fails, once and from then on, for the first MOST calls; so
-# does getting memory; of every command but stability, chart chain and reproduce, which take minutes and write as chart methods does.
+# does getting memory; of every command but chart limits, chart chain and reproduce, which take minutes and write as chart methods does.
 # /dev/full, a full disk, a quota, a folder that cannot be written, little memory, few files, no locale, no HOME, closed
 # outputs. Never a silent success, never a damaged file.
 #   [CALLS=...] [COMMANDS='show|walk'] faults.sh GATEWALK ROOT [MOST]    of these alone; MOST: 12

@@ -75,7 +75,7 @@ for radius in 0.08 0.05; do
 done
 run chart field "$field" --trials 20 -o fidelity --figure ../chart_field.svg
 cp "$kept/passages/tracks.svg" ../passages.svg
-for study in chart_methods chart_chain stability; do
+for study in chart_methods chart_chain chart_limits; do
   for figure in "$kept/$study"/*.svg; do cp "$figure" "../${study}_$(basename "$figure")"; done
 done
 # The other formats, with what they say of themselves.

@@ -172,7 +172,7 @@ lines() {
 0 chart methods soft_left.toml --trials 40 --repeats 1 --methods stable,moreau -o out
 0 chart field field.toml --trials 20 -o out
 0 chart chain field.toml --start 0,0,15 --truth-trials 400 --runs-limit 20000 --bins 0.5 -o out
-0 stability -o out --quick
+0 chart limits soft_left.toml -o out --quick --trials 8
 0 sample
 0 sample walker -o out.toml --json out.json
 0 passages tracks.csv --cell cell.toml -o out.csv --fps 10 --metres-per-unit 0.001 --fastest 0.4 --lattice 9,9 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y --json out.json --figure out.svg

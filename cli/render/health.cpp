@@ -7,6 +7,7 @@
 #include "cli/fields/json_value.h"
 #include "cli/fields/text.h"
 #include "cli/render/quantity.h"
+#include "dynamics/disc/study/verdict.h"
 
 namespace gatewalk::cli {
 
@@ -30,6 +31,11 @@ void describe_status(Fields& out, const std::optional<dynamics::Health>& health)
             "numerical faults of the runs from which the result is made; null: none are on record")
           .shared(),
       health, [](Fields& status, const dynamics::Health& h) { describe(status, h); });
+}
+
+Label status_label(std::string_view meaning) {
+  return Label("status", meaning)
+      .one_of({dynamics::kVerdictNames.begin(), dynamics::kVerdictNames.end()});
 }
 
 std::string attribute_of(const dynamics::Health& health) {

@@ -150,11 +150,6 @@ void describe(Fields& out, const Errors& e, const WorkPrecision& chart, bool of_
       });
 }
 
-Label status_label(std::string_view meaning) {
-  return Label("status", meaning)
-      .one_of({dynamics::kVerdictNames.begin(), dynamics::kVerdictNames.end()});
-}
-
 void describe_reference(Fields& out, const WorkPrecision& chart) {
   const dynamics::Reference& r = chart.reference;
   out.text({"setting", "method and accuracy of the reference"}, r.setting.name());

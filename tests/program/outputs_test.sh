@@ -15,7 +15,7 @@ quick 'o: .*is no folder' chart methods "$scenes/field.toml" -o m.nc/charts
 quick 'csv needs a file name' sweep "$scenes/fig8.toml" --trials 1e9 --csv ''
 quick 'matrix needs a file name' validate "$scenes/field.toml" --trials 1e9 --matrix ''
 quick 'o needs a file name' build "$scenes/field.toml" --trials 1e9 -o ''
-quick 'o needs the name of a folder' stability -o ''
+quick 'o needs the name of a folder' chart limits "$scenes/field.toml" -o ''
 quick 'o --: looks like an option, so the value of -o is missing' build "$scenes/field.toml" --trials 1e9 -o --
 quick 'json --output: looks like an option' gate "$scenes/field.toml" --trials 1e9 --json --output
 quick 'json -x: looks like an option' gate "$scenes/field.toml" --trials 1e9 --json -x

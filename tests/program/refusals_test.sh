@@ -65,7 +65,7 @@ before fit "$field" seen.csv --free forces.random_N=20:80 --trials 1e8 -- "${fig
 before chart methods "$field" -o charts --trials 1e7 -- "${figures[@]}" "${keys[@]}" '--methods nosuch' '--repeats 0'
 before chart field "$field" -o charts --trials 1e7 -- "${figures[@]}" "${keys[@]}" '--trials 0'
 before chart chain "$field" -o charts -- "${figures[@]}" "${keys[@]}"
-before stability -o charts -- "${figures[@]}" '--methods nosuch'
+before chart limits "$field" -o charts --trials 1e5 -- "${figures[@]}" "${keys[@]}" '--methods nosuch' '--trials 0'
 before reproduce -o report -- "${outputs[@]}"
 ls | grep -qx -e land -e charts -e report && fail "a refused command made its folder: $(ls)"
 

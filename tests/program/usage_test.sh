@@ -52,7 +52,7 @@ expect 2 'did you mean build?' "$gatewalk" biuld
 expect 2 'did you mean predict?' "$gatewalk" help predictt
 expect 2 'did you mean chart field?' "$gatewalk" chart_field
 # Names of before 2.0 are answered with the new line.
-for old in 'chart-chain=chart chain' 'chart-field=chart field' 'chart=chart methods'; do
+for old in 'chart-chain=chart chain' 'chart-field=chart field' 'stability=chart limits SCENE' 'chart=chart methods'; do
   expect 2 "^gatewalk: ${old%=*} is now: gatewalk ${old#*=} a.toml 'b c.toml' -o DIR --seed=2\$" "$gatewalk" ${old%=*} a.toml 'b c.toml' -o DIR --seed=2
   [ "$(wc -l <out.txt)" = 1 ] || fail "${old%=*}: $(cat out.txt)"
 done
@@ -102,7 +102,7 @@ expect 2 'unknown key beams.stiffness_mNm_per_rad; the closest known keys are be
 "$gatewalk" gate - --trials 20 --seed 4 --json dash.json --quiet <"$scenes/field.toml"
 "$gatewalk" gate "$scenes/field.toml" --trials 20 --seed 4 --json file.json --quiet
 jq -s '(.[0] | del(.made_by)) == (.[1] | del(.made_by)) and .[0].made_by.scene == .[1].made_by.scene' dash.json file.json | grep -q true || fail "a scene from standard input is another one"
-for command in scene sweep landscape trace build predict analyze lattice rare plan design fit validate power 'chart methods' 'chart field' 'chart chain'; do
+for command in scene sweep landscape trace build predict analyze lattice rare plan design fit validate power 'chart methods' 'chart limits' 'chart field' 'chart chain'; do
   more=
   case $command in landscape | chart*) more='-o folder' ;; build) more='-o m.nc' ;; fit) more='/dev/null --free forces.random_N=1:2' ;; sweep) more='--vary forces.random_N=1,2' ;; esac
   # shellcheck disable=SC2086

@@ -152,7 +152,7 @@ TrialEnd end_of(const GateParams& p, const StateSpace& space, const GateRun& run
 Verdict TrialEnds::verdict() const { return judge(health, out_of_work, kPermittedFaults); }
 
 void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start,
-                    std::uint64_t seed, TrialRange range) {
+                    std::uint64_t seed, TrialRange range, std::int64_t most_work) {
   const auto method = make_method(p);
   // Without room ahead of the beams there is no next gate, and no column.
   std::optional<StateSpace> space;
@@ -178,7 +178,7 @@ void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start
             space ? end_of(p, *space, run) : end_without_column(run);
         return false;
       },
-      kMostWork);
+      most_work);
   for (const Faults& f : faults) {
     ends.health += f.health;
     ends.out_of_work += f.out_of_work;

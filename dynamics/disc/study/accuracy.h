@@ -67,7 +67,7 @@ struct TrialEnd {
 struct TrialEnds {
   std::vector<TrialEnd> trials;
   Health health;
-  std::int64_t out_of_work = 0;  // runs that took more than kMostWork
+  std::int64_t out_of_work = 0;  // runs that took more than was granted
 
   [[nodiscard]] Verdict verdict() const;
 };
@@ -80,9 +80,9 @@ inline constexpr std::int64_t kMostWork = 50'000'000;
 inline constexpr double kPermittedFaults = 0.01;
 
 /// Appends trials `range`, on all threads of the current TBB arena; the same for any number of
-/// them.
+/// them. Throws InvalidParameter for a scene that cannot be run.
 void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start,
-                    std::uint64_t seed, TrialRange range);
+                    std::uint64_t seed, TrialRange range, std::int64_t most_work = kMostWork);
 
 // ---- Errors ----
 

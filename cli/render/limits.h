@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// Where methods break near the numbers of a scene, as a result, CSV, a table and figures.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/fields/fields.h"
+#include "cli/render/figure.h"
+#include "cli/render/provenance.h"
+#include "dynamics/disc/study/limits.h"
+
+namespace gatewalk::cli {
+
+/// The result of `chart limits`.
+struct LimitsResult {
+  std::string label;                     // what the scene is called
+  std::vector<std::string> other_types;  // of gates, which are not charted
+  dynamics::LimitScene scene;
+  std::vector<dynamics::FinishedMap> maps;
+  std::vector<dynamics::MethodLimits> limits;
+  Provenance made_by;
+};
+void describe(Fields& out, const LimitsResult& result);
+/// A line for each point.
+[[nodiscard]] std::string csv_of(const std::vector<dynamics::FinishedMap>& maps);
+/// How far each method is from its nearest faults, by what they are recognised, and what to do.
+[[nodiscard]] std::string table_of(const LimitsResult& result);
+
+/// "stiffness.svg"
+[[nodiscard]] std::string figure_name(dynamics::LimitNumber number);
+/// The maps of each number side by side, at most five, one number below the other.
+[[nodiscard]] Figure figure_of(const dynamics::LimitScene& scene,
+                               std::span<const dynamics::FinishedMap> maps);
+
+}  // namespace gatewalk::cli
