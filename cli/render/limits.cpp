@@ -67,14 +67,10 @@ void describe(Fields& out, const Limit& limit) {
   out.maybe({"remedy", "what helps at fault_at; null: nothing that was tried, or no fault"},
             limit.remedy, [](Fields& f, const dynamics::Remedy& r) {
               f.text({"key", "key of the scene to change"}, r.key);
-              f.either(
-                  r.method.empty(),
-                  [&](Fields& own) {
-                    own.number({"value", "s or m", "value to give it"}, r.value);
-                  },
-                  [&](Fields& own) {
-                    own.text({"method", "value to give it"}, r.method);
-                  });
+              f.if_any({"value", "s or m", "value to give it, where that is a number"},
+                       r.method.empty() ? std::optional(r.value) : std::nullopt);
+              f.if_any({"method", "value to give it, where the key is run.method"},
+                       r.method.empty() ? std::nullopt : std::optional(r.method));
             });
 }
 
