@@ -14,6 +14,10 @@
 #include "lattice/scene/settle.h"
 #include "lattice/scene/table4.h"
 
+namespace gatewalk::lattice {
+class TomlFile;
+}
+
 namespace gatewalk::cli {
 
 /// Declares --start; `by_default` says where to start without it.

@@ -21,7 +21,7 @@ StartedChain chain_from_start(const Options& options, lattice::Source& s) {
             std::move(kernel.space)};
   }
   if (s.scene) {
-    lattice::SceneMatrix m = s.matrix();
+    lattice::SceneMatrix m = lattice::scene_matrix_of(s);
     add_starts(options, m, s.path, s.entries());
     s.file = std::move(m.file);
   }

@@ -16,6 +16,7 @@
 #include "cli/kept/ranks.h"
 #include "cli/terminal/output.h"
 #include "cli/terminal/progress.h"
+#include "lattice/scene/scene_keys.h"
 #include "lattice/text/edit_distance.h"
 #include "lattice/text/text_stream.h"
 #include "lattice/text/toml_text.h"

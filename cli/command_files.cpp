@@ -9,6 +9,7 @@
 #include "cli/kept/piece_log.h"
 #include "cli/terminal/gnuplot.h"
 #include "cli/terminal/output.h"
+#include "lattice/scene/scene_keys.h"
 #include "lattice/text/toml_text.h"
 
 namespace gatewalk::cli {

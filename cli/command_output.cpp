@@ -11,6 +11,8 @@
 #include "cli/kept/ranks.h"
 #include "cli/terminal/gnuplot.h"
 #include "cli/terminal/output.h"
+#include "lattice/scene/cell_file.h"
+#include "lattice/source/source.h"
 
 namespace gatewalk::cli {
 

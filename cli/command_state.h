@@ -21,7 +21,7 @@
 #include "cli/command.h"
 #include "cli/kept/kept_run.h"
 #include "cli/terminal/backup.h"
-#include "lattice/source/source.h"
+#include "lattice/source/source_file.h"
 
 namespace gatewalk::cli {
 

@@ -11,6 +11,7 @@
 #include "lattice/scene/scene_problem.h"
 #include "lattice/scene/table4.h"
 #include "lattice/scene/terrain.h"
+#include "lattice/source/source_file.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -93,7 +94,7 @@ std::optional<NumberRanges> ranges_of(const Options& options, const lattice::Sou
 lattice::Scene scene_at(const NumberRanges& ranges, const lattice::Source& s,
                         const std::vector<double>& point) {
   lattice::Scene scene = ranges.scene->at(point);
-  if (s.settled) {
+  if (s.pilot) {
     const dynamics::RunParams& chosen = s.scene->gate.run;
     scene.gate.run.method = chosen.method;
     scene.gate.run.step = chosen.step;

@@ -57,7 +57,7 @@ PageStates states_of_bins(const Options& options, const lattice::Source& s) {
       out.states.states.push_back({.first_leaf = state, .runs = runs, .gates = {}, .gates_95 = {}});
     }
   auto prediction =
-      lattice::predict(s.counted(), field, starts, {}, options.seed(), options.work());
+      lattice::predict(lattice::counted_of(s), field, starts, {}, options.seed(), options.work());
   for (std::size_t i = 0; i < starts.size(); ++i) {
     out.states.states[i].endings =
         shown_endings(prediction.starts[i].shares, prediction.starts[i].final);
@@ -143,8 +143,8 @@ void check_page(const TextOption& page, const lattice::Source& s) {
 }
 
 std::optional<lattice::RunPool> runs_of_file(const TextOption& page, const lattice::Source& s) {
-  if (!page || !s.file) return {};
-  return s.pool;
+  if (!page || !s.file || !s.pool) return {};
+  return *s.pool;
 }
 
 std::vector<PageAnswer> page_answers(const lattice::PooledPrediction& prediction) {
@@ -199,12 +199,12 @@ void write_page(const Options& options, const TextOption& file, const lattice::S
                         .states = states.states,
                         .cells = lattice::cells_ahead(outcomes, s.problem.field, bodies, gate_runs),
                         .moves = outcomes.whole.moves,
-                        .chain = {.has_trees = s.pool.has_value(),
+                        .chain = {.has_trees = s.pool != nullptr,
                                   .states = chain.space.size(),
                                   .gate_runs = states.gate_runs,
                                   .asked = s.path,
                                   .is_matrix = s.file != nullptr,
-                                  .can_run = !s.is_recorded() && s.pool.has_value()},
+                                  .can_run = !s.is_recorded() && s.pool != nullptr},
                         .analysis = *analysis};
   const Provenance made_by = options.provenance(s);
   const std::string words =

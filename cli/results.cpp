@@ -217,11 +217,12 @@ void describe_validate(Fields& out) {
                                         .dynamics_endings = none,
                                         .walks_endings = none,
                                         .exact_endings = none});
-  lattice::MemoryStudy& memory = of_scene.validation.memory;
+  lattice::MemoryStudy memory;
   memory.outcomes = {"way", "trapped"};
   lattice::GatesAhead::Step& step = memory.ahead.steps.emplace_back();
   step.seen = step.predicted = {0.0, 0.0};
   step.excess_95.resize(2);
+  of_scene.validation.memory = std::make_shared<const lattice::MemoryStudy>(std::move(memory));
   CrossValidationResult of_runs;
   of_runs.section = dynamics::disc_section();
   out.either(

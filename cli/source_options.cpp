@@ -14,6 +14,7 @@
 #include "cli/fields/text.h"
 #include "cli/render/choice.h"
 #include "cli/render/matrix.h"
+#include "lattice/scene/terrain.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
@@ -177,7 +178,7 @@ void choose_method(const Options& options, Source& s) {
   if (!s.scene || s.file) return;
   warn_of_keys(options, *s.scene, lattice::RunsFrom::everywhere);
   s.choose_method(options.seed(), options.work());
-  if (s.settled) options.warn(complaint(*s.settled));
+  if (s.pilot) options.warn(complaint(*s.pilot));
 }
 
 lattice::PooledPrediction predict(const Options& options, Source& s) {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "cli/arguments.h"
-#include "lattice/source/source.h"
+#include "lattice/source/source_file.h"
 
 namespace gatewalk::cli {
 

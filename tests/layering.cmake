@@ -3,10 +3,9 @@ cmake_minimum_required(VERSION 3.25)
 
 # Who may include whom, folder by folder: a folder's own files, and those of the folders named. Fails naming
 # the file and the line.
-set(libraries dynamics dynamics/base dynamics/cells dynamics/disc dynamics/disc/methods dynamics/disc/study markov markov/predict markov/formats lattice lattice/text lattice/statistics lattice/field lattice/pool lattice/study lattice/gates lattice/scene lattice/scene/study lattice/recorded lattice/source)
+set(libraries dynamics/base dynamics/cells dynamics/disc dynamics/disc/methods dynamics/disc/study markov markov/predict markov/formats lattice lattice/text lattice/statistics lattice/field lattice/pool lattice/study lattice/gates lattice/scene lattice/scene/study lattice/recorded lattice/source)
 set(folders ${libraries} cli/cells cli/terminal cli/web cli/fields cli/render cli/exchange cli/film cli/paper cli/kept cli/commands cli/python cli)
 
-set(allowed_dynamics)
 set(allowed_dynamics/base)
 set(allowed_dynamics/cells dynamics/base)
 set(allowed_dynamics/disc dynamics/base dynamics/cells dynamics/disc/methods)
@@ -44,7 +43,7 @@ set(allowed_cli/commands ${folders})
 set(allowed_cli/python ${folders})
 set(allowed_cli ${folders})
 # Umbrella headers name all of their module.
-set(umbrellas dynamics/dynamics.h markov/markov.h lattice/lattice.h)
+set(umbrellas markov/markov.h lattice/lattice.h)
 
 set(broken "")
 foreach(folder ${folders})

@@ -88,7 +88,7 @@ AnalysedSubject chain_of_runs(const Options& options, lattice::Source& s) {
                                .states = prediction.states,
                                .seconds = prediction.seconds,
                                .health = prediction.health,
-                               .method = s.settled},
+                               .method = lattice::settled_of(s)},
                     .clean = status_of(options, prediction.health) == kFine};
   if (per_leaf != s.accuracy.per_leaf)
     options.warn(
@@ -107,8 +107,8 @@ AnalysedSubject chain_of_bins(const Options& options, const AskedAccuracy& asked
   require_room(s, s.file->transitions.space.size());
   const std::vector<dynamics::Transitions> matrices = s.matrices();
   const auto start = ready_start(options, matrices, s.problem, *s.starts.front(), s.name_of(0));
-  auto prediction =
-      lattice::predict(s.counted(), s.problem.field, {start}, {}, options.seed(), options.work());
+  auto prediction = lattice::predict(lattice::counted_of(s), s.problem.field, {start}, {},
+                                     options.seed(), options.work());
   const auto health = recorded_health(*s.file);
   AnalysedSubject c{.chain = lattice::analysed_chain(s.problem, matrices, start.start),
                     .answer = {.endings = prediction.starts.front().shares,
@@ -351,7 +351,7 @@ int run_analyze(const Arguments& arguments) {
   if (s.pool) c.chain.reset();  // that for parameters is larger
   result.parameters = effects_of(parameters, s, c, analysis, work);
   if (trials) {
-    lattice::FieldCosts costs(s.bin_of_durations(options.seed()));
+    lattice::FieldCosts costs(lattice::bin_of_durations(s, options.seed()));
     auto tally = lattice::field_trials(s.problem, {0, trials.value()}, options.seed(), work,
                                        [&](const lattice::FieldTrials& each) { costs.add(each); });
     result.direct = DirectTrials{std::move(tally), std::move(costs)};

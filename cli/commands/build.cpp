@@ -15,6 +15,7 @@
 #include "cli/render/version.h"
 #include "cli/source_options.h"
 #include "dynamics/base/work.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/source/cell_matrix.h"
 #include "lattice/text/digits.h"
 

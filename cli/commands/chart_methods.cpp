@@ -11,8 +11,10 @@
 #include "cli/terminal/interrupt.h"
 #include "dynamics/base/work.h"
 #include "lattice/scene/scene.h"
+#include "lattice/scene/scene_keys.h"
 #include "lattice/scene/settle.h"
 #include "lattice/source/source.h"
+#include "lattice/source/source_file.h"
 
 namespace gatewalk::cli {
 namespace {

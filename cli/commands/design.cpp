@@ -11,6 +11,7 @@
 #include "cli/render/scene.h"
 #include "cli/source_options.h"
 #include "dynamics/base/work.h"
+#include "lattice/scene/scene_keys.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/text/toml_text.h"
 
@@ -71,7 +72,7 @@ int run_design(const Arguments& arguments) {
   if (most > gates) throw UsageError(fmt::format("--changes: the field has {} gates", gates));
   how.most_changes = static_cast<int>(most);
   if (types) how.become = types_named(types.value(), *s.scene);
-  s.settled = settle_method(options, *s.scene, lattice::RunsFrom::all_types);
+  const auto settled = settle_method(options, *s.scene, lattice::RunsFrom::all_types);
   lattice::Problem problem = lattice::problem_with_all_types(*s.scene);
   problem.start = *s.starts.front();
   const dynamics::Stopwatch watch;
@@ -79,8 +80,8 @@ int run_design(const Arguments& arguments) {
   lattice::Scene changed = with_gates(*s.scene, design.type_of_cell);
   if (s.starts_given) changed.start = lattice::body_at(problem.start);
   const DesignedScene designed{
-      *s.scene,  std::move(changed), problem.map().section, problem.start,        how,
-      s.settled, std::move(design),  watch.seconds(),       options.provenance(s)};
+      *s.scene, std::move(changed), problem.map().section, problem.start,        how,
+      settled,  std::move(design),  watch.seconds(),       options.provenance(s)};
   options.give_out(designed, table_of(designed));
   if (output) options.write(output.value(), lattice::scene_file(designed.after));
   const lattice::Crossings &with = designed.design.crossings, &without = designed.design.before;

@@ -158,7 +158,7 @@ std::vector<std::int64_t> counts_per_run_of(const ExportCommand& options,
   const std::vector<dynamics::Transitions> matrices = s.matrices();
   const auto at = std::find_if(matrices.begin(), matrices.end(),
                                [&](const auto& m) { return m.rows == rows.rows; });
-  const lattice::CountedField counted = s.counted();
+  const lattice::CountedField counted = lattice::counted_of(s);
   return counted.images.at(static_cast<std::size_t>(at - matrices.begin()));
 }
 

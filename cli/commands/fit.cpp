@@ -11,6 +11,7 @@
 #include "cli/render/observed.h"
 #include "cli/source_options.h"
 #include "lattice/recorded/recorded_pool.h"
+#include "lattice/scene/scene_keys.h"
 #include "lattice/study/fit_data.h"
 
 namespace gatewalk::cli {
@@ -223,7 +224,7 @@ int run_fit(const Arguments& arguments) {
   const lattice::ProblemAt at = problem_at(*ranges, s, types_in(seen));
   const lattice::FitData data = data_to_fit(options, s, *ranges, at, seen, how.trials);
   choose_method(options, s);
-  const FittedScene fitted{ranges->each, s.problem.field, s.settled,
+  const FittedScene fitted{ranges->each, s.problem.field, lattice::settled_of(s),
                            lattice::fit(numbers, at, data, how, options.work()),
                            options.provenance(s)};
   const lattice::Fit& fit = fitted.fit;

@@ -4,6 +4,7 @@
 #include "cli/render/gate_runs.h"
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
+#include "dynamics/base/kept_pieces.h"
 #include "dynamics/disc/study/accuracy.h"
 
 namespace gatewalk::cli {

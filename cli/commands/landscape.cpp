@@ -5,6 +5,7 @@
 #include "cli/fields/text.h"
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
+#include "dynamics/base/kept_pieces.h"
 #include "dynamics/disc/study/accuracy.h"
 
 namespace gatewalk::cli {

@@ -62,7 +62,7 @@ FieldRun run_gates(const LatticeCommand& options) {
 FieldRun empty_run(const LatticeCommand& options, const lattice::Source& s) {
   const lattice::FieldParams& field = s.problem.field;
   return {ShownField(s),         s.problem.start,
-          options.provenance(s), lattice::FieldCosts(s.bin_of_durations(options.seed())),
+          options.provenance(s), lattice::FieldCosts(lattice::bin_of_durations(s, options.seed())),
           std::nullopt,          lattice::FieldTally(field)};
 }
 
@@ -72,7 +72,7 @@ FieldRun run_cells(const LatticeCommand& options) {
   if (s.file) throw UsageError(s.path + ": is a matrix, and bodies are to be run: give a scene");
   choose_method(options, s);
   FieldRun run = empty_run(options, s);
-  if (s.scene) run.scene = RunScene{*s.scene, s.settled};
+  if (s.scene) run.scene = RunScene{*s.scene, lattice::settled_of(s)};
   lattice::RecordedRuns runs;
   runs.passages.begin(s.problem.map().section);
   const bool keep = static_cast<bool>(options.passages);

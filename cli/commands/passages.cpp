@@ -5,6 +5,7 @@
 #include "cli/render/cut_tracks.h"
 #include "lattice/recorded/cut_tracks.h"
 #include "lattice/source/source.h"
+#include "lattice/source/source_file.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {

@@ -23,6 +23,7 @@
 #include "dynamics/disc/study/meaning.h"
 #include "lattice/scene/cell_file.h"
 #include "lattice/scene/ranges.h"
+#include "lattice/scene/terrain.h"
 #include "lattice/study/plan.h"
 #include "lattice/text/digits.h"
 #include "lattice/text/toml_text.h"
@@ -178,9 +179,10 @@ int plan_start(const PlanCommand& options, lattice::Source s) {
   choose_method(options, s);
   const dynamics::Stopwatch watch;
   lattice::BestStart found = lattice::best_start(s.problem, how, options.work());
-  const FoundStart shown{ShownField(s),    s.problem.start, how.ranges, how.columns,
-                         std::move(found), watch.seconds(), s.settled,  options.provenance(s)};
-  options.give_out(shown, table_of(shown) + method_line(s.settled));
+  const FoundStart shown{
+      ShownField(s),   s.problem.start,        how.ranges,           how.columns, std::move(found),
+      watch.seconds(), lattice::settled_of(s), options.provenance(s)};
+  options.give_out(shown, table_of(shown) + method_line(lattice::settled_of(s)));
   options.warn(few_crossings(shown.found.crossings));
   warn_of_choice_rounds(options, shown.found);
   options.warn(too_few_gates(ShownField(s)));

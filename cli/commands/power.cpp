@@ -73,7 +73,7 @@ int run_power(const Arguments& arguments) {
                      .prediction = answer,
                      .plan = lattice::plan_experiment(answer, how),
                      .health = first.health,
-                     .method = s.settled,
+                     .method = lattice::settled_of(s),
                      .made_by = options.provenance(s)};
   if (second) {
     const lattice::StartAnswer& versus = second->starts.front();

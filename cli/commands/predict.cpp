@@ -145,8 +145,9 @@ int predict_from_runs(const PredictCommand& options, lattice::Source& s) {
   const auto of_file = runs_of_file(options.page, s);
   lattice::PooledPrediction made = predict(options, s);
   PredictResult result = empty_result(options, s);
-  result.of_runs = {
-      .prediction = std::move(made), .accuracy = s.accuracy.accuracy, .method = s.settled};
+  result.of_runs = {.prediction = std::move(made),
+                    .accuracy = s.accuracy.accuracy,
+                    .method = lattice::settled_of(s)};
   const lattice::PooledPrediction& prediction = result.of_runs->prediction;
   if (s.is_recorded())
     result.of_runs->recorded = {counts_of(*s.pool),
@@ -166,7 +167,8 @@ int predict_from_matrix(const PredictCommand& options, const lattice::Source& s,
                         const std::vector<lattice::RowMatrix>& others) {
   const std::string solver = options.solver.value();
   const lattice::CountedField gates =
-      others.empty() ? s.counted() : lattice::field_of(s.matrix(), s.path, others);
+      others.empty() ? lattice::counted_of(s)
+                     : lattice::field_of(lattice::scene_matrix_of(s), s.path, others);
   const lattice::FieldParams& field = s.problem.field;
   std::vector<lattice::ChainStart> starts;
   const std::vector<dynamics::Transitions> matrices = s.matrices();
@@ -194,7 +196,7 @@ int predict_from_matrix(const PredictCommand& options, const lattice::Source& s,
   tell(options, s, result, prediction.starts);
   options.remark(fixed(1e3 * prediction.seconds, 3) + " ms");
   const int exit = exit_status(options, faults_recorded(of.status).empty());
-  write_page(options, options.page, s, s.pool, page_answers(prediction, s));
+  write_page(options, options.page, s, runs_of_file(options.page, s), page_answers(prediction, s));
   show(options, s, result, prediction.starts, &lattice::StartPrediction::shares);
   return exit;
 }

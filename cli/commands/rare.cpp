@@ -74,7 +74,7 @@ int run_rare(const Arguments& arguments) {
   const lattice::Problem deep = up_to_row(source, how.row);
   RareResult result{.event = lattice::rare_event(deep, how, options.work()),
                     .direct = {},
-                    .method = source.settled,
+                    .method = lattice::settled_of(source),
                     .made_by = options.provenance(source)};
   if (trials)
     result.direct = lattice::direct_rows(deep, trials.value(), options.seed(), options.work());

@@ -11,8 +11,10 @@
 #include "cli/render/sweep.h"
 #include "cli/terminal/output.h"
 #include "dynamics/base/work.h"
+#include "lattice/scene/scene_keys.h"
 #include "lattice/scene/units.h"
 #include "lattice/source/source.h"
+#include "lattice/source/source_file.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -9,6 +9,7 @@
 #include "cli/render/field_runs.h"
 #include "cli/render/matrix.h"
 #include "cli/render/scene.h"
+#include "lattice/source/source_file.h"
 #include "lattice/study/trials.h"
 
 namespace gatewalk::cli {

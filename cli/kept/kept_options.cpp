@@ -19,6 +19,7 @@
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "lattice/source/source.h"
+#include "lattice/source/source_file.h"
 
 namespace gatewalk::cli {
 namespace {

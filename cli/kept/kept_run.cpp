@@ -15,6 +15,7 @@
 #include "cli/render/version.h"
 #include "cli/terminal/interrupt.h"
 #include "lattice/scene/scene.h"
+#include "lattice/scene/scene_keys.h"
 #include "lattice/text/toml_text.h"
 #include "markov/formats/counts.h"
 

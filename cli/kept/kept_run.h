@@ -16,7 +16,7 @@
 
 #include "cli/fields/json_fwd.h"
 #include "cli/kept/piece_log.h"
-#include "dynamics/base/work.h"
+#include "dynamics/base/kept_pieces.h"
 
 namespace gatewalk::cli {
 

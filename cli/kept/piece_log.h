@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "dynamics/base/trial_set.h"
 #include "dynamics/base/work.h"
 
 namespace gatewalk::cli {

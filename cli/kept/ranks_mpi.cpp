@@ -12,6 +12,7 @@
 
 #include "cli/kept/ranks.h"
 #include "cli/terminal/interrupt.h"
+#include "dynamics/base/kept_pieces.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -25,6 +25,7 @@
 #include "dynamics/cells/check_cell.h"
 #include "lattice/scene/scene.h"
 #include "lattice/source/source.h"
+#include "lattice/source/source_file.h"
 
 namespace gatewalk::python {
 namespace {

@@ -11,6 +11,7 @@
 #include "cli/render/costs.h"
 #include "cli/render/health.h"
 #include "dynamics/disc/gate.h"
+#include "lattice/field/matrix_file.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -13,6 +13,7 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/little_endian.h"
 #include "lattice/gates/gates.h"
+#include "lattice/scene/terrain.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {

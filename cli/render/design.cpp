@@ -14,6 +14,7 @@
 #include "cli/render/shown_field.h"
 #include "cli/render/start.h"
 #include "cli/render/type_marks.h"
+#include "lattice/scene/terrain.h"
 
 namespace gatewalk::cli {
 namespace {

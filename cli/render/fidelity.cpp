@@ -15,6 +15,7 @@
 #include "cli/render/panel.h"
 #include "cli/render/quantity.h"
 #include "cli/render/start.h"
+#include "dynamics/disc/disc_section.h"
 
 namespace gatewalk::cli {
 namespace {

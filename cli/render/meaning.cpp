@@ -12,6 +12,7 @@
 #include "cli/render/quantity.h"
 #include "cli/render/scene.h"
 #include "lattice/scene/settle.h"
+#include "lattice/scene/terrain.h"
 
 namespace gatewalk::cli {
 namespace {

@@ -13,6 +13,7 @@
 #include "cli/fields/text_table.h"
 #include "cli/render/quantity.h"
 #include "lattice/scene/scene_bins.h"
+#include "lattice/scene/terrain.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {

@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "cli/render/type_marks.h"
+#include "lattice/gates/gates.h"
+#include "lattice/scene/cell_file.h"
+#include "lattice/scene/terrain.h"
 
 namespace gatewalk::cli {
 

@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/cells/cell_map.h"
+#include "dynamics/cells/section.h"
 #include "lattice/field/field_params.h"
+#include "lattice/scene/cell_file.h"
 #include "lattice/scene/scene.h"
 #include "lattice/source/source.h"
 

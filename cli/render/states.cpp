@@ -13,6 +13,7 @@
 #include "cli/render/health.h"
 #include "cli/render/pooled_prediction.h"
 #include "cli/render/start.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {

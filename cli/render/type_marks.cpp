@@ -7,6 +7,9 @@
 #include <array>
 #include <utility>
 
+#include "lattice/gates/gates.h"
+#include "lattice/scene/terrain.h"
+
 namespace gatewalk::cli {
 namespace {
 

@@ -223,7 +223,8 @@ void describe(Fields& out, const lattice::StartValidation& r,
   out.if_any(
       {"force_memory",
        "test: the same trials with the random force drawn anew at each crossing between gates"},
-      r.force, [&](Fields& force, const auto& value) { describe(force, value); });
+      r.force ? std::optional(*r.force) : std::nullopt,
+      [&](Fields& force, const auto& value) { describe(force, value); });
 }
 
 // ---- Tables ----
@@ -430,13 +431,13 @@ void describe(Fields& out, const ValidateResult& result) {
                [&](Fields& f) { describe_state_space(f, matrix.states.value_or(StateRecord())); });
   out.object(
       {"markov", "tests of the Markov property: what trials remember beyond the chain's states"},
-      [&](Fields& f) { describe(f, v.memory); });
+      [&](Fields& f) { describe(f, *v.memory); });
   out.count({"threads", "1", "threads of the timed trials and walks"}, v.threads);
   describe_status(out, v.health);
   describe_method(out, matrix.method);
-  out.optional(!v.starts.empty() && v.starts.front().observed.has_value(), [&](Fields& f) {
+  out.optional(!v.starts.empty() && v.starts.front().observed, [&](Fields& f) {
     const lattice::StartValidation& first = v.starts.front();
-    describe_observed(f, first.observed.value_or(lattice::ObservedComparison()), first,
+    describe_observed(f, first.observed ? *first.observed : lattice::ObservedComparison(), first,
                       result.observed);
   });
   describe_made_by(out, result.made_by);
@@ -466,7 +467,7 @@ std::string table_of(const ValidateResult& result) {
                         : by_face(v, result.shown.map.section),
       of_crossings(v.clamped));
   if (matrix.states) table += states_line(*matrix.states);
-  table += text_of(v.memory);
+  table += text_of(*v.memory);
   for (std::size_t k = 0; k < v.starts.size(); ++k)
     if (v.starts[k].force)
       table += fmt::format("{}  | {}\n", labels.texts[k], text_of(*v.starts[k].force));
@@ -498,7 +499,7 @@ Figure figure_of(const lattice::Validation& v, const ShownField& shown) {
     compared.push_back(
         {summary(s, shown), lattice::shares(s.dynamics.final_cells), s.exact.final_cells});
   return figure_of(compared, fmt::format("final gates, {} trials", v.trials), "dynamics, %", shown,
-                   panels_of(v.memory));
+                   panels_of(*v.memory));
 }
 
 Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& title,

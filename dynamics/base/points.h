@@ -12,10 +12,6 @@
 
 namespace gatewalk::dynamics {
 
-inline constexpr std::size_t kPointDimensions = 8;
-/// Numbers in (0, 1).
-using Point = std::array<double, kPointDimensions>;
-
 /// Sobol's sequence (direction numbers of Joe and Kuo 2008), scrambled by
 /// a random lower triangular matrix over its bits and a digital shift (Matoušek 1998), which has
 /// the variance of Owen's nested scrambling. Points of one scramble depend on each other, those of

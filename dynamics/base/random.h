@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 
@@ -16,6 +17,10 @@ struct Stream {
   std::uint64_t row = 0;    // what is run: a row of the matrix, or a start
   std::uint64_t trial = 0;  // which repeat
 };
+
+inline constexpr std::size_t kPointDimensions = 8;
+/// Numbers in (0, 1) that lay the noise of a passage (Cell::lay_noise).
+using Point = std::array<double, kPointDimensions>;
 
 /// Which experiment a stream belongs to, so that no two experiments share their randomness.
 enum class Purpose : std::uint64_t {

@@ -16,10 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "dynamics/base/points.h"
 #include "dynamics/base/random.h"
-#include "dynamics/cells/cell_map.h"
-#include "dynamics/cells/costs.h"
 #include "dynamics/cells/health.h"
 #include "dynamics/cells/section.h"
 

@@ -15,7 +15,7 @@ namespace gatewalk::dynamics {
 /// - unstable: steps longer than the method's stability bound for free beams were taken;
 /// - broken: the state stopped being finite.
 /// What no single run can show, that the method itself shapes the outcomes, a sample shows that is
-/// run again by a better method (check_outcomes in accuracy.h): outcome_error, if somebody looked.
+/// run again by a better method (Problem::check): outcome_error, if somebody looked.
 struct Health {
   /// Share of the steps in which hits may pile up until they are forced to end; `stable` needs it
   /// about once in a million steps where it is sound.

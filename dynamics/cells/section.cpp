@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace gatewalk::dynamics {
@@ -18,6 +20,20 @@ bool are_images(const std::vector<Face>& faces, std::size_t f) {
 }
 
 }  // namespace
+
+void CostSums::add(const Costs& costs) {
+  for (std::size_t c = 0; c < kMostCosts; ++c) {
+    sum[c] += costs[c];
+    squares[c] += costs[c] * costs[c];
+  }
+}
+CostSums& CostSums::operator+=(const CostSums& other) {
+  for (std::size_t c = 0; c < kMostCosts; ++c) {
+    sum[c] += other.sum[c];
+    squares[c] += other.squares[c];
+  }
+  return *this;
+}
 
 void Section::validate() const {
   const auto refuse = [](const std::string& what) {
@@ -101,6 +117,15 @@ Entry mirrored(const Section& section, const Entry& entry) {
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
     if (face.is_odd(axis)) image.at[axis] = -entry.at[axis];
   return image;
+}
+
+void CellMap::require_fits(int field_columns, int field_rows) const {
+  if (type_of_cell.empty()) return;
+  if (columns != field_columns || std::ssize(type_of_cell) != std::int64_t{columns} * field_rows)
+    throw std::invalid_argument("field: types for " + std::to_string(columns) + " columns and " +
+                                std::to_string(std::ssize(type_of_cell) / columns) +
+                                " rows, the field has " + std::to_string(field_columns) + " and " +
+                                std::to_string(field_rows));
 }
 
 }  // namespace gatewalk::dynamics

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 /// What a chain knows of a kind of cell, as data: the faces of its border through which bodies
-/// enter, the coordinates of an entry, and what a passage takes. No force, no beam.
+/// enter, the coordinates of an entry, and what a passage takes; and which cells stand where. No
+/// force, no beam.
 
 #include <array>
 #include <cstddef>
@@ -9,9 +10,27 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/cells/costs.h"
-
 namespace gatewalk::dynamics {
+
+/// No more than are needed: a chain keeps two sums of each for every count (CostSums).
+inline constexpr std::size_t kMostCosts = 5;
+
+/// What a passage takes: its name in files, with the unit, and in words.
+struct CostInfo {
+  std::string key, unit, words;  // "time_s", "s", "duration"
+  friend bool operator==(const CostInfo&, const CostInfo&) = default;
+};
+
+/// Of a passage, by Section::costs; 0 behind the last, NaN where nothing is known.
+using Costs = std::array<double, kMostCosts>;
+
+/// What passages took together, and the sum of the squares.
+struct CostSums {
+  Costs sum{}, squares{};
+  void add(const Costs& costs);
+  CostSums& operator+=(const CostSums& other);
+  friend bool operator==(const CostSums&, const CostSums&) = default;
+};
 
 inline constexpr std::size_t kMostFaces = 64, kMostCoordinates = 8;
 
@@ -116,5 +135,23 @@ void set_mirrors(std::vector<Face>& faces, const std::vector<int>& named, bool s
 
 /// The mirror image, left for right; of face kNoMirror where there is none.
 [[nodiscard]] Entry mirrored(const Section& section, const Entry& entry);
+
+/// What stands where in a field: enough for pools, chains and predictions.
+struct CellMap {
+  struct Type {
+    bool symmetric = false;  // mirror images of its passages are passages through it
+  };
+  Section section;
+  std::vector<Type> types;
+  int columns = 0;                // 0: the first type everywhere
+  std::vector<int> type_of_cell;  // (rows x columns) of types
+
+  [[nodiscard]] int type_of(int column, int row) const {
+    return type_of_cell.empty() ? 0
+                                : type_of_cell[static_cast<std::size_t>(row * columns + column)];
+  }
+  /// Throws std::invalid_argument unless types are given for a field of this size, or one for all.
+  void require_fits(int field_columns, int field_rows) const;
+};
 
 }  // namespace gatewalk::dynamics

@@ -44,6 +44,9 @@ struct Tree {
 };
 
 inline constexpr int kMostStates = 1'000'000;
+/// Entries in a leaf, at least, unless somebody says otherwise. A leaf's row is noisy, but
+/// predictions average over all leaves: from 5 to 20 all are as good (markov/README.md).
+inline constexpr int kEntriesPerLeaf = 7;
 
 class StateSpace {
  public:

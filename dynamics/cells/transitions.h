@@ -7,8 +7,8 @@
 #include <map>
 #include <vector>
 
-#include "dynamics/cells/costs.h"
 #include "dynamics/cells/health.h"
+#include "dynamics/cells/section.h"
 #include "dynamics/cells/state_space.h"
 
 namespace gatewalk::dynamics {

@@ -13,10 +13,6 @@
 
 namespace gatewalk::dynamics {
 
-/// Entries in a leaf, at least, unless somebody says otherwise. A leaf's row is noisy, but
-/// predictions average over all leaves: from 5 to 20 all are as good (markov/README.md).
-inline constexpr int kEntriesPerLeaf = 7;
-
 /// Open; and `points`. Per face the entries are halved at the median of the coordinate along which
 /// they spread most (largest standard deviation, in Coordinate::scale) until a half would have
 /// fewer than `per_leaf`; equal values stay together. A face where nothing was seen is one state,

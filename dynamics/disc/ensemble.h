@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "dynamics/base/trial_set.h"
+#include "dynamics/base/work.h"
 #include "dynamics/cells/health.h"
 #include "dynamics/disc/gate.h"
 

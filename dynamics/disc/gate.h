@@ -7,8 +7,8 @@
 #include <limits>
 #include <string_view>
 
-#include "dynamics/cells/costs.h"
 #include "dynamics/cells/health.h"
+#include "dynamics/cells/section.h"
 #include "dynamics/disc/contact.h"
 #include "dynamics/disc/methods/method.h"
 #include "dynamics/disc/random_force.h"

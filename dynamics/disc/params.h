@@ -117,7 +117,7 @@ struct ParamInfo {
 /// provenance of a matrix and the comparison of two scenes all use.
 [[nodiscard]] std::span<const ParamInfo> gate_param_table();
 
-/// What `run.method` may be (see methods/method.h).
+/// What `run.method` may be, beside "auto".
 [[nodiscard]] std::span<const std::string_view> method_names();
 
 /// A value that no scene may have. `key()` names it as the scene file does.

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dynamics/base/trial_set.h"
+#include "dynamics/base/work.h"
 #include "dynamics/cells/transitions.h"
 #include "dynamics/disc/params.h"
 

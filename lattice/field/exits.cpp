@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dynamics/base/share.h"
+#include "lattice/field/field_trials.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -6,31 +6,20 @@
 #include <cstdint>
 #include <vector>
 
-#include "lattice/field/field_trials.h"
+#include "lattice/field/field_params.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/statistics/share_95.h"
 #include "markov/predict.h"
 
 namespace gatewalk::lattice {
 
-/// The sides that bodies leave over. A place along the far one is a column of gates, along the
-/// others a row.
-inline constexpr std::array<markov::Ending, 3> kSides{
-    markov::Ending::far_edge, markov::Ending::left_edge, markov::Ending::right_edge};
-inline constexpr std::size_t kFarSide = 0;
+struct FieldTally;
 
 /// Bounds of the places along side number `side` of kSides, m (places + 1): along the far one from
 /// the middle of the start's column, along the others from the near end of the field. Of cells of
 /// this width and length (m).
 [[nodiscard]] std::vector<double> exit_bounds(double width, double length, const FieldParams& field,
                                               std::size_t side);
-
-/// Shares of all bodies that leave at each place of a side, with 95 % intervals (NaN: none).
-struct SideExits {
-  std::vector<double> share;
-  std::vector<std::array<double, 2>> interval;
-};
-using FieldExits = std::array<SideExits, kSides.size()>;  // by kSides
 
 /// With Jeffreys' intervals.
 [[nodiscard]] FieldExits exits_of(const FieldTally& trials);

@@ -9,6 +9,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dynamics/cells/state_space.h"
+#include "lattice/field/running_trial.h"
+
 namespace gatewalk::lattice {
 
 using namespace dynamics;

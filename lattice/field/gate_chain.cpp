@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/field/gate_chain.h"
 
+#include "lattice/statistics/matrix_noise.h"
+
 namespace gatewalk::lattice {
 
 using namespace dynamics;

@@ -4,13 +4,14 @@
 
 #include <vector>
 
-#include "dynamics/cells/cell_map.h"
+#include "dynamics/cells/section.h"
 #include "dynamics/cells/transitions.h"
 #include "lattice/field/field_params.h"
-#include "lattice/statistics/matrix_noise.h"
-#include "markov/formats/counts.h"
+#include "markov/chain.h"
 
 namespace gatewalk::lattice {
+
+struct CountedField;
 
 /// Exits of a state space: output j enters the next gate in state j; the last one is "trapped".
 [[nodiscard]] std::vector<markov::Exit> exits_of(const dynamics::StateSpace& space);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/cells/cell_map.h"
+#include "dynamics/cells/section.h"
 #include "dynamics/cells/transitions.h"
 #include "markov/formats/counts.h"
 

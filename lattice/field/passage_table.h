@@ -105,7 +105,7 @@ class PassageTable {
     const PassageTable* table_;
     std::size_t begin_, end_;
   };
-  /// As a piece is kept (dynamics/base/bytes.h).
+  /// As a piece of long work is kept.
   template <class Archive>
   friend void each_part(Archive& archive, PassageTable& table) {
     archive(table.coordinates_, table.costs_, table.kinds_, table.numbers_);

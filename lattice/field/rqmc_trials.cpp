@@ -8,7 +8,9 @@
 #include <span>
 #include <utility>
 
+#include "dynamics/base/kept_pieces.h"
 #include "dynamics/base/work.h"
+#include "lattice/field/running_trial.h"
 
 namespace gatewalk::lattice {
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dynamics/disc/disc_cell.h"
+#include "lattice/field/running_trial.h"
 #include "lattice/gates/field_stepper.h"
 
 namespace gatewalk::lattice {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "markov/walk.h"
+
 namespace gatewalk::lattice {
 namespace {
 

@@ -11,6 +11,7 @@
 #include "lattice/field/field_params.h"
 #include "lattice/pool/kernel.h"
 #include "lattice/statistics/group_spread.h"
+#include "markov/solvers.h"
 
 namespace gatewalk::lattice {
 

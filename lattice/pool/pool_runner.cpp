@@ -4,6 +4,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "dynamics/base/kept_pieces.h"
+#include "lattice/field/running_trial.h"
+
 namespace gatewalk::lattice {
 namespace {
 
@@ -89,8 +92,8 @@ void PoolRunner::run_plain(const Begun& begun, std::int64_t count, FieldTrials& 
   const auto points = points_of(begun);
   const Cell& cell = problem_.cells.at(field.start_column(), 0);
   const std::int64_t done = std::ssize(all.passed);
-  work_.in_kept_pieces(
-      {begun.what, {0, count}},
+  in_kept_pieces(
+      work_, {begun.what, {0, count}},
       RunTrials{FieldTally(problem_.field), {.final_gates = {}, .keep_passages = true}},
       [&](TrialRange range) {
         FieldTrials each{.final_gates = {}, .keep_passages = true};
@@ -117,8 +120,8 @@ void PoolRunner::run_even(const Begun& begun, std::int64_t count, FieldTrials& a
   const auto points = points_of(begun);
   FieldTrials got{.final_gates = {}, .keep_passages = true};  // array by array
   std::size_t ordered = 0;                                    // of them, in `all` already
-  work_.in_kept_pieces(
-      {begun.what, {0, kArrays * batches}, 0, kArrays * batches, kArrays},
+  in_kept_pieces(
+      work_, {begun.what, {0, kArrays * batches}, 0, kArrays * batches, kArrays},
       RunTrials{FieldTally(problem_.field), {.final_gates = {}, .keep_passages = true}},
       [&](TrialRange items) {
         RunTrials piece{FieldTally(problem_.field), {.final_gates = {}, .keep_passages = true}};

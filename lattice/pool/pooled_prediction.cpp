@@ -13,7 +13,10 @@
 #include <utility>
 
 #include "dynamics/base/share.h"
+#include "lattice/field/exits.h"
+#include "lattice/pool/hausman_check.h"
 #include "lattice/pool/pool_answers.h"
+#include "lattice/pool/predict_pooled.h"
 
 namespace gatewalk::lattice {
 namespace {

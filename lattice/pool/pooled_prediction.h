@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Predictions from the gate runs of full trials, as accurate as is asked for: trials are added
-/// until the error bar says so. A start's answer is the chain's, or its trials' own shares where
-/// these are the more certain.
+/// What a prediction from the gate runs of full trials says of each start, with its error bars: the
+/// chain's answer, or the trials' own shares where these are the more certain.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
 
-#include "dynamics/base/work.h"
-#include "lattice/field/exits.h"
-#include "lattice/pool/hausman_check.h"
-#include "lattice/pool/pool_runner.h"
-#include "lattice/statistics/group_spread.h"
+#include "dynamics/cells/health.h"
+#include "dynamics/cells/section.h"
+#include "dynamics/cells/state_space.h"
+#include "lattice/statistics/compare.h"
+#include "lattice/statistics/ending_shares.h"
+#include "markov/predict.h"
 
 namespace gatewalk::lattice {
 
@@ -56,6 +57,21 @@ struct StartAnswer {
                                 // was run that would tell
 };
 
+/// In the manner of Hausman's test (1978): where the chain is right it is the better estimate of
+/// the same shares from the same runs, so that the difference varies less than the trials' own
+/// shares would. The p-value is that of as many draws from the chain's answer (JointTest: final
+/// gates and endings): rather too large than too small.
+struct HausmanCheck {
+  static constexpr double kLevel = 0.01;
+
+  std::int64_t trials = 0;
+  double total_variation = 0.0;         // of the final gates
+  double chance_total_variation = 0.0;  // mean over the draws
+  double p = 1.0;
+
+  [[nodiscard]] bool differs() const { return p <= kLevel; }
+};
+
 struct PooledPrediction {
   std::vector<StartAnswer> starts;
   bool reached = true;  // all answers are as accurate as was asked for
@@ -68,55 +84,5 @@ struct PooledPrediction {
   double run_seconds = 0.0;  // of the runs
   dynamics::Health health;
 };
-
-/// Answers for `starts` (different): exact for the chain, or from 4 million walks where that
-/// would take long (large fields, very many runs), whose chance is in the error bar. The pool keeps
-/// all runs; what it holds already is used. Trials are those of the seed that no other command
-/// runs. The same but for the seconds on any number of threads. Throws std::invalid_argument for an
-/// accuracy outside (0, 1), as run_field, and std::runtime_error when a run broke.
-[[nodiscard]] PooledPrediction predict_pooled(const Problem& problem, RunPool& pool,
-                                              const std::vector<dynamics::Entry>& starts,
-                                              const AccuracyOptions& options,
-                                              const dynamics::Work& work = {});
-
-/// From the runs that a pool has, to which none can be added: for each start, or (none) for all
-/// first entries of its scattered trials. A start of no runs of its own has those of its leaf. With
-/// fewer than kLeastBodies bodies there are no intervals (NaN), and any accuracy counts as reached.
-[[nodiscard]] PooledPrediction predict_recorded(
-    const Problem& problem, const RunPool& pool,
-    const std::vector<std::optional<dynamics::Entry>>& starts, const AccuracyOptions& options);
-
-/// The same answers without error bars.
-[[nodiscard]] std::vector<markov::FinalDistribution> predict_whole(
-    const Problem& problem, const RunPool& pool,
-    const std::vector<std::optional<dynamics::Entry>>& starts, int per_leaf, std::uint64_t seed);
-
-/// The shares of trials themselves.
-[[nodiscard]] markov::FinalDistribution shares_of(const FieldTrials& trials,
-                                                  const FieldParams& field);
-
-/// The usual entries by the start's face, and the start.
-[[nodiscard]] StartRange usual_range(const Problem& problem);
-
-/// What trials from all over a range of starts make of a pool.
-struct PooledRange {
-  StartRange range;
-  int tried_on = 0;  // starts
-  /// Total variation, with endlessly many first runs, at the last size tried, by 1 / sqrt(runs) to
-  /// the size made: of the start in the middle, and of the
-  /// worst. Bodies from some starts all enter the second gate in the same way: these need trials of
-  /// their own, and get them when they are predicted.
-  double kernel_error_95 = 0.0, worst_kernel_error_95 = 0.0;
-  bool reached = true;
-  std::int64_t gate_runs = 0;  // made now
-  double seconds = 0.0;
-  dynamics::Health health;
-};
-/// Adds trials that start uniformly in the range until the chain's own part of the error bar, with
-/// endlessly many first runs, is below options.accuracy at half of the starts that it is tried on.
-/// Throws as predict_pooled, and std::invalid_argument for an empty range.
-[[nodiscard]] PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& range,
-                                     const AccuracyOptions& options,
-                                     const dynamics::Work& work = {});
 
 }  // namespace gatewalk::lattice

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lattice/field/matrix_file.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/pool/tree_chain.h"
 
 namespace gatewalk::lattice {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "lattice/field/running_trial.h"
+#include "lattice/pool/hausman_check.h"
 #include "lattice/pool/pool_answers.h"
 #include "lattice/statistics/compare.h"
 

@@ -11,6 +11,7 @@
 #include "lattice/field/matrix_file.h"
 #include "lattice/pool/kernel.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/pool/predict_pooled.h"
 
 namespace gatewalk::lattice {
 

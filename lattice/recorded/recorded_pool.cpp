@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lattice/pool/kernel.h"
+#include "lattice/pool/predict_pooled.h"
 
 namespace gatewalk::lattice {
 

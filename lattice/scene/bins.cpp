@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lattice/gates/disc_field.h"
+#include "lattice/scene/terrain.h"
 
 namespace gatewalk::lattice {
 namespace {

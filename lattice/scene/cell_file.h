@@ -8,12 +8,13 @@
 #include <string_view>
 #include <vector>
 
-#include "dynamics/cells/cell_map.h"
+#include "dynamics/cells/section.h"
 #include "lattice/field/field_params.h"
-#include "lattice/scene/terrain.h"
-#include "lattice/scene/toml_file.h"
+#include "lattice/scene/scene.h"
 
 namespace gatewalk::lattice {
+
+class TomlFile;
 
 struct CellFile {
   std::string source;              // the file it came from

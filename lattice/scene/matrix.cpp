@@ -8,10 +8,16 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dynamics/base/kept_pieces.h"
 #include "dynamics/disc/row_trials.h"
+#include "lattice/gates/gates.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/pool/states_info.h"
+#include "lattice/scene/scene_keys.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/scene/settle.h"
+#include "lattice/scene/terrain.h"
+#include "lattice/scene/toml_file.h"
 #include "markov/formats/counts.h"
 
 namespace gatewalk::lattice {
@@ -35,8 +41,8 @@ std::vector<dynamics::Transitions> build_matrices(const Scene& scene, const Stat
     const dynamics::Stage stage{"building matrix", trials,
                                 std::ssize(matrices) * trials.count - trials.count,
                                 std::ssize(gates.types()) * trials.count};
-    work.in_kept_pieces(
-        stage, dynamics::RowTrials{},
+    in_kept_pieces(
+        work, stage, dynamics::RowTrials{},
         [&](dynamics::TrialRange range) {
           return dynamics::row_trials(t.space, gate, seed, range, states.entries);
         },

@@ -16,6 +16,8 @@
 
 namespace gatewalk::lattice {
 
+class TomlFile;
+
 /// The section of matrices of scenes: a disc in its gate.
 [[nodiscard]] const dynamics::Section& scene_section();
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "lattice/scene/scene_keys.h"
 #include "lattice/scene/units.h"
 #include "lattice/text/digits.h"
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lattice/scene/scene.h"
+#include "lattice/scene/toml_file.h"
 
 namespace gatewalk::lattice {
 

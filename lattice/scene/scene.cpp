@@ -16,7 +16,9 @@
 #include <variant>
 
 #include "dynamics/disc/methods/method.h"
+#include "lattice/gates/gates.h"
 #include "lattice/scene/scene_bins.h"
+#include "lattice/scene/scene_keys.h"
 #include "lattice/scene/scene_terrain.h"
 #include "lattice/scene/toml_settings.h"
 #include "lattice/scene/units.h"

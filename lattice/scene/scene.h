@@ -2,7 +2,8 @@
 #pragma once
 /// The scene file: everything a run depends on, in TOML, every key optional.
 
-#include <array>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -11,13 +12,32 @@
 #include <string_view>
 #include <vector>
 
-#include "dynamics/disc/disc_section.h"
+#include "dynamics/cells/state_space.h"
 #include "dynamics/disc/params.h"
 #include "lattice/field/field_params.h"
-#include "lattice/scene/terrain.h"
-#include "lattice/scene/toml_file.h"
 
 namespace gatewalk::lattice {
+
+inline constexpr std::string_view kOwnGate = ".";
+/// Gates of several types in one field: table [terrain].
+struct Terrain {
+  /// A key that a type has otherwise than the scene.
+  struct Key {
+    std::string name;  // "forces.propulsion_N"
+    double value = 0.0;
+    std::string origin;  // where it was given
+  };
+  struct Type {
+    std::string name;  // letters, digits and _, a letter first
+    std::vector<Key> keys;
+  };
+  std::string own{kOwnGate};  // name of the scene's own gate
+  std::vector<Type> types;    // by name
+  /// (rows x columns), the near row first. 0: the scene's own gate, i: types[i - 1].
+  std::vector<int> type_of_cell;
+  std::map<std::string, double> shares{};  // of a map that is drawn; empty for one that is given
+  std::uint64_t seed = 1;                  // of that map
+};
 
 /// A key and the values that a sweep gives it: "4:1:9" (from:step:to) or "300,400,500".
 struct Variation {
@@ -39,7 +59,7 @@ struct Scene {
   std::vector<Variation> sweep;    // table [sweep], in the order of the file
   std::optional<SceneBins> bins;   // table [bins], the chain's states
   std::optional<Terrain> terrain;  // table [terrain], gates of other types
-  /// Table [actions]: what a body may do, the gates as they are then (study/plan.h).
+  /// Table [actions]: what a body may do, the gates as they are then.
   std::vector<Terrain::Type> actions;
 };
 
@@ -55,9 +75,6 @@ class SceneError : public std::runtime_error {
 /// value behind the first '=' (text may stand without quotes); the last one of a key wins. Throws
 /// SceneError.
 [[nodiscard]] Scene read_scene(const std::string& path, const std::vector<std::string>& overrides);
-/// The same of a file that is open already.
-[[nodiscard]] Scene read_scene(const TomlFile& file, const std::vector<std::string>& overrides);
-
 /// The same of text already in memory; `name` stands for the file in messages.
 [[nodiscard]] Scene parse_scene(std::string_view text, std::string name,
                                 const std::vector<std::string>& overrides = {});
@@ -72,24 +89,7 @@ struct KeyInfo {
 /// Every key of the scene, in the order of to_toml; then those of [terrain], but no map, and of
 /// [actions].
 [[nodiscard]] std::vector<KeyInfo> describe(const Scene& scene);
-/// The keys that the override `given` sets, however it is spelled. Throws SceneError.
-[[nodiscard]] std::vector<std::string> keys_set_by(const std::string& given);
-
-/// Throws SceneError unless `key` is one of a scene; `origin` begins the message.
-void require_key(const std::string& key, const std::string& origin);
-
 /// The complete scene, every key in a fixed order, but no sweep; numbers with the digits that read
 /// back the same.
 [[nodiscard]] std::string to_toml(const Scene& scene);
-/// Whether the scene's method looks at the key: "auto" chooses a step, "event" has none.
-[[nodiscard]] bool has_effect(const Scene& scene, std::string_view key);
-/// to_toml without keys that have no effect and that nobody gave: a file to go on with, whose
-/// reader need not warn of what no user wrote.
-[[nodiscard]] std::string scene_file(const Scene& scene);
-
-/// What differs between two scenes among the keys that shape a transition matrix (all of
-/// GateParams, [bins] and the types of [terrain]; neither field nor map nor start):
-/// "forces.random_N: 40 here, 20 there", empty if nothing.
-[[nodiscard]] std::vector<std::string> physics_differences(const Scene& here, const Scene& there);
-
 }  // namespace gatewalk::lattice

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "dynamics/disc/disc_section.h"
 #include "lattice/scene/units.h"
 #include "lattice/text/digits.h"
 #include "lattice/text/toml_text.h"

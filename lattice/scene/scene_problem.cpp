@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "lattice/gates/gates.h"
 #include "lattice/scene/table4.h"
+#include "lattice/scene/terrain.h"
 
 namespace gatewalk::lattice {
 

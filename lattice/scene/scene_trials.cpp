@@ -4,6 +4,7 @@
 #include "lattice/gates/disc_field.h"
 #include "lattice/scene/bins.h"
 #include "lattice/scene/settle.h"
+#include "lattice/scene/terrain.h"
 
 namespace gatewalk::lattice {
 

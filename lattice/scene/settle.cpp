@@ -7,7 +7,10 @@
 #include <limits>
 #include <utility>
 
+#include "lattice/gates/gates.h"
 #include "lattice/scene/bins.h"
+#include "lattice/scene/scene_keys.h"
+#include "lattice/scene/terrain.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::lattice {

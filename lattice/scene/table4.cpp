@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "dynamics/disc/disc_section.h"
 #include "lattice/scene/bins.h"
 #include "lattice/text/digits.h"
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dynamics/base/random.h"
+#include "lattice/gates/gates.h"
 #include "lattice/scene/scene.h"
 #include "lattice/text/digits.h"
 

@@ -2,41 +2,18 @@
 #pragma once
 /// Gates of several types in one field: table [terrain] of a scene.
 
-#include <cstdint>
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "lattice/gates/gates.h"
+#include "lattice/scene/scene.h"
 
 namespace gatewalk::lattice {
 
-struct Scene;
+class FieldGates;
 
-inline constexpr std::string_view kOwnGate = ".";
 /// How keys of a cell program's own numbers begin, in actions and in --set.
 inline constexpr std::string_view kParameters = "parameters.";
-
-/// What stands where.
-struct Terrain {
-  /// A key that a type has otherwise than the scene.
-  struct Key {
-    std::string name;  // "forces.propulsion_N"
-    double value = 0.0;
-    std::string origin;  // where it was given
-  };
-  struct Type {
-    std::string name;  // letters, digits and _, a letter first
-    std::vector<Key> keys;
-  };
-  std::string own{kOwnGate};  // name of the scene's own gate
-  std::vector<Type> types;    // by name
-  /// (rows x columns), the near row first. 0: the scene's own gate, i: types[i - 1].
-  std::vector<int> type_of_cell;
-  std::map<std::string, double> shares{};  // of a map that is drawn; empty for one that is given
-  std::uint64_t seed = 1;                  // of that map
-};
 
 /// Beams, forces and contacts, but not the joints: all gates of a field have body, size, method and
 /// time limit in common.

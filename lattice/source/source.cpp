@@ -7,12 +7,22 @@
 #include <stdexcept>
 #include <utility>
 
+#include "lattice/field/gate_chain.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/pool/states_info.h"
+#include "lattice/pool/tree_chain.h"
+#include "lattice/scene/cell_file.h"
+#include "lattice/scene/matrix.h"
+#include "lattice/scene/scene_keys.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/scene/scene_trials.h"
+#include "lattice/scene/settle.h"
 #include "lattice/scene/table4.h"
+#include "lattice/scene/toml_file.h"
 #include "lattice/source/cell_matrix.h"
+#include "lattice/source/source_file.h"
 #include "lattice/source/start_text.h"
+#include "lattice/statistics/matrix_noise.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -57,7 +67,7 @@ void put_trees(Source& s) {
 Source open_scene(const SourceFile& file, const SourceOptions& options) {
   Source s{.path = file.path()};
   s.scene = read_scene(file.toml(), options.overrides);
-  s.pool.emplace();
+  s.pool = std::make_shared<RunPool>();
   put_problem(s, options);
   return s;
 }
@@ -72,7 +82,8 @@ Source open_matrix(const SourceFile& file, const SourceOptions& options) {
   if (!has_runs(*s.file)) return s;
   put_trees(s);
   const bool in_memory = file.runs() && !options.scene && options.overrides.empty();
-  s.pool = in_memory ? file.runs() : pool_of(*s.file, s.problem, s.path);
+  s.pool =
+      std::make_shared<RunPool>(in_memory ? *file.runs() : pool_of(*s.file, s.problem, s.path));
   return s;
 }
 
@@ -128,47 +139,47 @@ std::string keys_of(const std::vector<dynamics::CostInfo>& costs) {
 /// A cell file, or a matrix of such cells, with the cell that carries bodies through.
 Source open_cells(const SourceFile& file, const SourceOptions& options) {
   Source s{.path = file.path()};
+  CellFile cells;
   if (file.is_matrix()) {
     if (!file.is_of_cells()) throw markov::BadFile(s.path + ": holds no cells");
     CellMatrix m = cell_matrix(file.matrix(), s.path, options.overrides);
     if (!m.pool)
       throw std::invalid_argument(s.path + ": is a chain that was made elsewhere, without runs");
-    s.cells = std::move(m.cells);
+    cells = std::move(m.cells);
     s.file = std::move(m.file);
-    s.pool = std::move(m.pool);
+    s.pool = std::make_shared<RunPool>(*std::move(m.pool));
     put_trees(s);
   } else {
-    s.cells = read_cell_file(file.toml(), options.overrides);
-    s.pool.emplace();
+    cells = read_cell_file(file.toml(), options.overrides);
+    s.pool = std::make_shared<RunPool>();
   }
   const std::shared_ptr<const dynamics::Cell> cell = options.cell();
-  require_same(*cell, *s.cells, s.path);
+  require_same(*cell, cells, s.path);
   if (const std::string costs = keys_of(cell->section().costs),
-      seen = keys_of(s.cells->map.section.costs);
+      seen = keys_of(cells.map.section.costs);
       s.file && costs != seen)
     throw std::invalid_argument(fmt::format(
         "--cell-program: costs {} of its cell, {} of the runs in {}", costs, seen, s.path));
-  s.problem = problem_of(*s.cells, *s.pool);
+  s.problem = problem_of(cells, *s.pool);
   dynamics::CellMap& map = s.problem.cells.map;
   const std::vector<dynamics::Face> faces = std::exchange(map.section, cell->section()).faces;
   for (std::size_t f = 0; f < faces.size(); ++f) map.section.faces[f].usual = faces[f].usual;
   map.types.front().symmetric = cell->is_symmetric();
-  s.cells->map = map;
+  cells.map = map;
   s.problem.cells.cells = {cell};
-  s.starts = {s.cells->start};
+  s.starts = {cells.start};
+  s.cells = std::make_shared<const CellFile>(std::move(cells));
   return s;
 }
 
 /// Recorded runs, or a chain that was made elsewhere.
 Source open_recorded(const SourceFile& file, const SourceOptions& options) {
   CellMatrix m = cell_matrix(file.matrix(), file.path(), options.overrides);
-  Source s{.path = file.path(),
-           .cells = std::move(m.cells),
-           .file = std::move(m.file),
-           .pool = std::move(m.pool),
-           .problem = std::move(m.problem)};
-  s.starts = {s.cells->start};
-  if (s.pool) {
+  Source s{.path = file.path(), .file = std::move(m.file), .problem = std::move(m.problem)};
+  s.starts = {m.cells.start};
+  if (m.pool) {
+    s.cells = std::make_shared<const CellFile>(std::move(m.cells));
+    s.pool = std::make_shared<RunPool>(*std::move(m.pool));
     s.accuracy.accuracy = 1.0;  // whatever its runs give
     s.accuracy.per_leaf = tree_info(*s.file, s.path).entries_per_leaf;
     s.doubts = doubts_of(*s.pool, s.problem);
@@ -177,8 +188,9 @@ Source open_recorded(const SourceFile& file, const SourceOptions& options) {
   if (const auto states = states_info(*s.file, s.path); !states || !states->is_imported())
     throw markov::BadFile(s.path + ": its runs are missing");
   s.is_imported = true;
-  s.cells->map.section.named = s.problem.cells.map.section.named =
+  m.cells.map.section.named = s.problem.cells.map.section.named =
       s.file->transitions.space.section().named;
+  s.cells = std::make_shared<const CellFile>(std::move(m.cells));
   return s;
 }
 
@@ -233,6 +245,17 @@ void SourceFile::keep_in_memory() {
     (void)own_scene();
 }
 
+Source Source::open(const std::string& path, const SourceOptions& options) {
+  return open(SourceFile(path), options);
+}
+
+Source Source::of(Problem problem) {
+  Source s{.path = problem.source, .pool = std::make_shared<RunPool>()};
+  s.starts = {problem.start};
+  s.problem = std::move(problem);
+  return s;
+}
+
 Source Source::open(const SourceFile& file, const SourceOptions& options) {
   if (options.scene && (options.cell || !file.is_matrix() || file.is_of_cells()))
     throw std::invalid_argument(
@@ -270,7 +293,8 @@ std::vector<std::string> Source::start_from(const std::vector<std::string>& text
 
 void Source::choose_method(std::uint64_t seed, const dynamics::Work& work) {
   if (!scene || file) return;
-  settled = settle_method(*scene, RunsFrom::everywhere, seed, work);
+  if (auto chosen = settle_method(*scene, RunsFrom::everywhere, seed, work))
+    pilot = std::make_shared<const Settled>(*std::move(chosen));
   put_cells(problem, *scene);
 }
 
@@ -290,14 +314,25 @@ std::string Source::name_of(std::size_t start) const {
 }
 
 std::vector<dynamics::Transitions> Source::matrices() const {
+  if (!file) {
+    if (pool->starts.empty())
+      throw std::invalid_argument(path + ": has no gate runs: predict() makes them");
+    return matrices_of(problem, *pool, entries(), accuracy.per_leaf);
+  }
   return scene ? matrices_of(*file, *scene) : matrices_of(*file, *cells);
 }
 
-CountedField Source::counted() const {
-  CountedField field = counted_field(problem.map(), matrices());
-  const auto states = states_info(*file, path);
+std::optional<Settled> settled_of(const Source& s) {
+  return s.pilot ? std::optional(*s.pilot) : std::nullopt;
+}
+
+SceneMatrix scene_matrix_of(const Source& s) { return {s.file, *s.scene}; }
+
+CountedField counted_of(const Source& s) {
+  CountedField field = counted_field(s.problem.map(), s.matrices());
+  const auto states = states_info(*s.file, s.path);
   field.exact = states && states->are_probabilities;
-  if (auto per_run = is_imported ? counts_per_run(*file) : std::vector<std::int64_t>();
+  if (auto per_run = s.is_imported ? counts_per_run(*s.file) : std::vector<std::int64_t>();
       !per_run.empty()) {
     field.small_rows = true;
     field.images = {std::move(per_run)};
@@ -305,12 +340,12 @@ CountedField Source::counted() const {
   return field;
 }
 
-double Source::bin_of_durations(std::uint64_t seed) const {
-  if (scene) return lattice::bin_of_durations(scene->gate);
-  if (cells->trapped_after) return *cells->trapped_after / 1000.0;
+double bin_of_durations(const Source& s, std::uint64_t seed) {
+  if (s.scene) return bin_of_durations(s.scene->gate);
+  if (s.cells->trapped_after) return *s.cells->trapped_after / 1000.0;
   constexpr std::int64_t kSome = 100;
   FieldCosts some(1.0);
-  (void)field_trials(problem, {0, kSome}, seed, {},
+  (void)field_trials(s.problem, {0, kSome}, seed, {},
                      [&](const FieldTrials& each) { some.add(each); });
   const double mean = some.all().mean(0);
   return mean > 0.0 ? mean / 1000.0 : 1.0;

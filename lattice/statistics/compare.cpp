@@ -16,6 +16,8 @@
 #include "lattice/statistics/draws.h"
 #include "lattice/statistics/gate_statistics.h"
 #include "lattice/statistics/log_gamma.h"
+#include "lattice/statistics/multiple_tests.h"
+#include "markov/predict.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -5,11 +5,14 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
-#include "lattice/statistics/multiple_tests.h"
-#include "markov/predict.h"
-#include "markov/walk.h"
+#include "markov/ends.h"
+
+namespace gatewalk::markov {
+struct FinalDistribution;
+}
 
 namespace gatewalk::lattice {
 
@@ -47,6 +50,13 @@ struct NoiseFloor {
 /// The least number of trials whose expected_total_variation is at most `total_variation` (> 0),
 /// or 2^40 if that is fewer.
 [[nodiscard]] std::int64_t trials_for(const CellProbabilities& p, double total_variation);
+
+/// 95 % of predictions like this one are no further from the truth.
+struct Error95 {
+  double total_variation = 0.0;  // of the final gates, at most
+  double corrcoef = 1.0;         // with the true shares, at least; NaN where there is none
+  double rmse_per_100 = 0.0;     // at most
+};
 
 /// `trials` draws from `p` as counts; a replicate is named by its number.
 [[nodiscard]] CellCounts sampled(const CellProbabilities& p, std::int64_t trials,
@@ -101,7 +111,13 @@ struct SeenEndings {
 /// by more than chance in the trials and in the matrix together makes? Draw k of the null takes as
 /// many trials from what a resampled matrix predicts, and sets them against the prediction.
 struct JointTest {
-  using Test = MultipleTests::Test;
+  /// Of one statistic: what was seen, how often the null reaches it, and that p-value adjusted for
+  /// looking at all of them (single-step minP of Westfall and Young, from the same draws): how
+  /// often the null makes any of the p-values as small. At least 1 / (draws + 1); NaN where it is
+  /// no number.
+  struct Test {
+    double seen = 0.0, p = 1.0, p_adjusted = 1.0;
+  };
   static constexpr double kLevel = 0.05;
 
   /// Of the final gates; energy NaN above kMostEnergyGates. NaN here and below: not counted.
@@ -120,7 +136,18 @@ struct JointTest {
   }
 };
 
-/// `replicates`: predictions from resampled matrices (matrix_noise.h), used in turn; at least one.
+/// Resampled matrices that cannot be predicted from: bodies circle (almost) for ever in more states
+/// than can be solved.
+struct LeftOut {
+  std::int64_t matrices = 0, of = 0;
+  std::string why{};  // of the last one
+
+  LeftOut& operator+=(const LeftOut& other);
+  /// The others would say too little of what all do.
+  [[nodiscard]] bool too_many() const { return 2 * matrices > of; }
+};
+
+/// `replicates`: predictions from resampled matrices, used in turn; at least one.
 /// `runs`: from the start, behind the matrix; 0: the replicates count all, or there are endlessly
 /// many. What none of them showed may yet happen: each ending has, in gates where they would show
 /// less than one, a share that they leave open, drawn from Beta(1, runs) for each draw of the null.

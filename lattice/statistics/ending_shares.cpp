@@ -5,6 +5,7 @@
 #include <string>
 
 #include "dynamics/base/share.h"
+#include "lattice/statistics/matrix_noise.h"
 #include "lattice/statistics/share_95.h"
 
 namespace gatewalk::lattice {

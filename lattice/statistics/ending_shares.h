@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How trials through the field ended, as shares with intervals.
+/// How trials through the field ended, and where they left it, as shares with intervals.
 
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
-#include "lattice/statistics/matrix_noise.h"
-#include "markov/predict.h"
+#include "markov/ends.h"
+
+namespace gatewalk::markov {
+struct FinalDistribution;
+}
 
 namespace gatewalk::lattice {
+
+class MatrixNoise;
 
 /// The five that a gate chain has, with their names in files and in tables. (States never sampled
 /// are told apart.)
@@ -53,5 +59,18 @@ struct EndingShares {
   /// Whether nobody can end so, as its interval says; of those who went back, whether none did.
   [[nodiscard]] bool rules_out(markov::Ending ending) const;
 };
+
+/// The sides that bodies leave over. A place along the far one is a column of gates, along the
+/// others a row.
+inline constexpr std::array<markov::Ending, 3> kSides{
+    markov::Ending::far_edge, markov::Ending::left_edge, markov::Ending::right_edge};
+inline constexpr std::size_t kFarSide = 0;
+
+/// Shares of all bodies that leave at each place of a side, with 95 % intervals (NaN: none).
+struct SideExits {
+  std::vector<double> share;
+  std::vector<std::array<double, 2>> interval;
+};
+using FieldExits = std::array<SideExits, kSides.size()>;  // by kSides
 
 }  // namespace gatewalk::lattice

@@ -22,13 +22,6 @@ inline constexpr int kTrialGroups = 8;
 /// Fewer bodies than this make no intervals: groups of one would stand for all.
 inline constexpr std::int64_t kLeastBodies = 2 * kTrialGroups;
 
-/// 95 % of predictions like this one are no further from the truth.
-struct Error95 {
-  double total_variation = 0.0;  // of the final gates, at most
-  double corrcoef = 1.0;         // with the true shares, at least; NaN where there is none
-  double rmse_per_100 = 0.0;     // at most
-};
-
 /// Any number of all trials with its 95 % interval by kTrialGroups groups of them: their spread is
 /// sampling; their mean less the whole's, what larger states would change. NaN: not known, as
 /// without groups, or where all of them are alike, which no number of trials makes certain.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lattice/statistics/compare.h"
 #include "lattice/statistics/share_95.h"
 #include "markov/predict.h"
 
@@ -42,17 +43,6 @@ struct CountedField {
 [[nodiscard]] markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed,
                                        std::uint64_t replicate, bool small_rows = false,
                                        const std::vector<std::int64_t>& images = {});
-
-/// Resampled matrices that cannot be predicted from: bodies circle (almost) for ever in more states
-/// than can be solved.
-struct LeftOut {
-  std::int64_t matrices = 0, of = 0;
-  std::string why{};  // of the last one
-
-  LeftOut& operator+=(const LeftOut& other);
-  /// The others would say too little of what all do.
-  [[nodiscard]] bool too_many() const { return 2 * matrices > of; }
-};
 
 struct Replicates {
   std::vector<std::vector<markov::FinalDistribution>> predictions;  // (starts x matrices)

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "lattice/statistics/compare.h"
+
 namespace gatewalk::lattice {
 
 /// Mean, and what 95 % of the values do not exceed.
@@ -13,13 +15,7 @@ namespace gatewalk::lattice {
 
 /// What looking at several statistics finds.
 struct MultipleTests {
-  /// Of one statistic: what was seen, how often the null reaches it, and that p-value adjusted for
-  /// looking at all of them (single-step minP of Westfall and Young, from the same draws): how
-  /// often the null makes any of the p-values as small. At least 1 / (draws + 1); NaN where it is
-  /// no number.
-  struct Test {
-    double seen = 0.0, p = 1.0, p_adjusted = 1.0;
-  };
+  using Test = JointTest::Test;
   std::vector<Test> tests;
   double p = 1.0;  // of all together: the smallest adjusted one
 

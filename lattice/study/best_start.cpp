@@ -10,6 +10,7 @@
 #include "dynamics/base/random.h"
 #include "dynamics/base/share.h"
 #include "lattice/field/gate_chain.h"
+#include "lattice/field/running_trial.h"
 #include "lattice/pool/kernel.h"
 #include "lattice/study/choice_rounds.h"
 

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "dynamics/base/kept_pieces.h"
 #include "dynamics/base/share.h"
 #include "lattice/field/gate_chain.h"
+#include "lattice/field/running_trial.h"
 
 namespace gatewalk::lattice {
 
@@ -66,8 +68,8 @@ RangeRuns ChoiceRounds::run(const TypeChoice& choice, std::int64_t count) {
   for (std::int64_t i = 0; i < count; ++i)
     trials.starts.push_back(choice.from ? choice.from(next_ + i).entry : choice.start);
   const RunTrials none{FieldTally(first_.field), {.final_gates = {}, .keep_passages = true}};
-  work_.in_kept_pieces(
-      {"trials of a " + study_, {next_, count}}, none,
+  in_kept_pieces(
+      work_, {"trials of a " + study_, {next_, count}}, none,
       [&](TrialRange range) {
         RunTrials piece = none;
         piece.tally = chosen_trials(cells_, first_, choice, seed_, range, piece.each);

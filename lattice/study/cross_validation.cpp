@@ -13,6 +13,7 @@
 
 #include "dynamics/base/share.h"
 #include "lattice/field/gate_chain.h"
+#include "lattice/field/running_trial.h"
 #include "lattice/pool/kernel.h"
 #include "lattice/pool/pooled_prediction.h"
 #include "lattice/statistics/draws.h"

@@ -15,6 +15,7 @@
 #include <string>
 #include <utility>
 
+#include "dynamics/base/kept_pieces.h"
 #include "dynamics/base/points.h"
 #include "lattice/statistics/draws.h"
 #include "lattice/statistics/ensemble.h"
@@ -202,8 +203,8 @@ class Fitter {
     const Index before = points_.rows();
     points_.conservativeResize(before + points.rows(), numbers_);
     points_.bottomRows(points.rows()) = points;
-    work_.in_kept_pieces(
-        {name, {0, points.rows()}}, PointOutcomes{},
+    in_kept_pieces(
+        work_, {name, {0, points.rows()}}, PointOutcomes{},
         [&](TrialRange range) { return outcomes_at(points, range, each); },
         [&](const PointOutcomes& done) { take(done, each); });
     fit_.trials += each * points.rows();

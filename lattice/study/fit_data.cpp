@@ -11,6 +11,7 @@
 
 #include "dynamics/cells/tree_space.h"
 #include "lattice/field/field_trials.h"
+#include "lattice/field/running_trial.h"
 #include "lattice/statistics/outcome_model.h"
 
 namespace gatewalk::lattice {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/base/trial_set.h"
+#include "dynamics/base/work.h"
 #include "dynamics/cells/health.h"
 #include "lattice/field/passage_table.h"
 #include "lattice/field/problem.h"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dynamics/base/share.h"
+#include "lattice/field/running_trial.h"
 #include "lattice/pool/kernel.h"
 
 namespace gatewalk::lattice {

@@ -22,6 +22,8 @@
 
 namespace gatewalk::lattice {
 
+struct RunTrials;
+
 // ---- The states' memory ----
 
 /// No walks yet. States are entered by a boundary each; those of several types of gates are

@@ -11,6 +11,7 @@
 #include "lattice/text/csv.h"
 #include "lattice/text/table.h"
 #include "lattice/text/toml_text.h"
+#include "markov/predict.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "dynamics/base/kept_pieces.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/statistics/group_spread.h"
 
@@ -301,8 +302,8 @@ ParameterEffects parameter_effects(const Problem& problem, const AnalysedChain& 
   if (passages.at_start() > 0.0) {
     Parameters parameters(problem, chain, passages, groups, options);
     std::int64_t taken = 0;
-    work.in_kept_pieces(
-        {kRuns, {0, static_cast<std::int64_t>(numbers) + 1}}, std::vector<ChangedRuns>(),
+    in_kept_pieces(
+        work, {kRuns, {0, static_cast<std::int64_t>(numbers) + 1}}, std::vector<ChangedRuns>(),
         [&](TrialRange items) {
           std::vector<ChangedRuns> runs;
           for (std::int64_t k = 0; k < items.count; ++k)

@@ -15,6 +15,7 @@
 
 #include "dynamics/base/share.h"
 #include "lattice/field/gate_chain.h"
+#include "lattice/field/running_trial.h"
 #include "lattice/pool/kernel.h"
 #include "lattice/study/choice_rounds.h"
 #include "markov/design.h"

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "dynamics/base/kept_pieces.h"
 #include "dynamics/base/share.h"
 #include "lattice/field/gate_chain.h"
 #include "lattice/pool/kernel.h"
@@ -270,7 +271,7 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
   constexpr std::int64_t kFirst = 1000;
   for (std::int64_t more = options.trials.value_or(kFirst); more > 0;) {
     stage = {"split trials", {sums.trials, more}, 0, more};
-    work.in_kept_pieces(stage, SplitPiece{}, run_block, take);
+    in_kept_pieces(work, stage, SplitPiece{}, run_block, take);
     if (options.trials) break;
     const double error = sums.chance(rows - 1).relative_standard_error;
     if (error <= options.accuracy) break;

@@ -3,14 +3,18 @@
 
 #include <utility>
 
+#include "dynamics/base/kept_pieces.h"
+#include "lattice/field/running_trial.h"
+#include "markov/walk.h"
+
 namespace gatewalk::lattice {
 
 FieldTally field_trials(const FieldParams& field, dynamics::TrialRange trials,
                         const RunTrialRange& run, const dynamics::Work& work,
                         const TakeTrials& take) {
   FieldTally tally(field);
-  work.in_kept_pieces(
-      {"field trials", trials}, RunTrials{FieldTally(field), {}},
+  in_kept_pieces(
+      work, {"field trials", trials}, RunTrials{FieldTally(field), {}},
       [&](dynamics::TrialRange range) {
         FieldTrials each;
         FieldTally part = run(range, each);

@@ -10,6 +10,7 @@
 #include "lattice/field/field_trials.h"
 #include "lattice/field/gate_chain.h"
 #include "lattice/field/problem.h"
+#include "markov/walk.h"
 
 namespace gatewalk::lattice {
 

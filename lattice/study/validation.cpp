@@ -8,9 +8,14 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "dynamics/base/kept_pieces.h"
 #include "dynamics/cells/transitions.h"
+#include "lattice/field/exits.h"
 #include "lattice/field/gate_chain.h"
+#include "lattice/field/running_trial.h"
 #include "lattice/statistics/matrix_noise.h"
+#include "lattice/study/memory.h"
+#include "lattice/study/observed.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -142,8 +147,9 @@ TimedTrials run_trials(const Setup& setup, const dynamics::Entry& start, const m
     return cells;
   });
   std::int64_t taken = 0;
-  setup.work.in_kept_pieces(
-      {"full dynamics", {0, setup.options.trials}}, RunTrials{FieldTally(setup.problem.field), {}},
+  in_kept_pieces(
+      setup.work, {"full dynamics", {0, setup.options.trials}},
+      RunTrials{FieldTally(setup.problem.field), {}},
       [&](TrialRange range) {
         const Stopwatch watch;
         FieldTrials each;
@@ -170,8 +176,8 @@ TimedTrials run_trials(const Setup& setup, const dynamics::Entry& start, const m
 /// The same trials with the force drawn anew at crossings, against these.
 ForceMemory run_anew(const Setup& setup, const dynamics::Entry& start, const RunTrials& held) {
   RunTrials anew{FieldTally(setup.problem.field), {}};
-  setup.work.in_kept_pieces(
-      {"force drawn anew", {0, setup.options.trials}},
+  in_kept_pieces(
+      setup.work, {"force drawn anew", {0, setup.options.trials}},
       RunTrials{FieldTally(setup.problem.field), {}},
       [&](TrialRange range) {
         FieldTrials each;
@@ -260,12 +266,14 @@ StartValidation validate_start(const Setup& setup, const dynamics::Entry& start,
       .dynamics_seconds = seen.seconds,
       .walks_seconds = walked.seconds,
       .exact_seconds = exact_seconds,
-      .force = setup.options.force_memory ? std::optional(run_anew(setup, start, seen.trials))
-                                          : std::nullopt,
+      .force = setup.options.force_memory
+                   ? std::make_shared<const ForceMemory>(run_anew(setup, start, seen.trials))
+                   : nullptr,
       .observed = setup.options.observed
-                      ? std::optional(compare_observed(*setup.options.observed, max_gates, tally,
-                                                       exact, resampled, may_miss, draws, seed))
-                      : std::nullopt};
+                      ? std::make_shared<const ObservedComparison>(
+                            compare_observed(*setup.options.observed, max_gates, tally, exact,
+                                             resampled, may_miss, draws, seed))
+                      : nullptr};
 }
 
 /// By state, those of all types one behind the other: the first of those with the same runs.
@@ -285,6 +293,8 @@ Finding finding_of(bool differs, double total_variation, double floor_95) {
   if (differs) return Finding::own_error;
   return total_variation <= floor_95 ? Finding::within_trials : Finding::within_trials_and_matrix;
 }
+
+bool Validation::remembers() const { return memory && memory->remembers(); }
 
 Validation validate_chain(const Problem& problem,
                           const std::vector<dynamics::Transitions>& matrices,
@@ -332,8 +342,8 @@ Validation validate_chain(const Problem& problem,
       v.entries_by[f] += d.entries[f];
     }
   }
-  v.memory = study_memory(remembered, space,
-                          {.null_draws = options.null_draws, .seed = options.seed}, work);
+  v.memory = std::make_shared<const MemoryStudy>(study_memory(
+      remembered, space, {.null_draws = options.null_draws, .seed = options.seed}, work));
   v.threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   return v;
 }

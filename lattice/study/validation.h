@@ -5,22 +5,25 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "dynamics/base/work.h"
-#include "lattice/field/exits.h"
 #include "lattice/field/field_trials.h"
 #include "lattice/field/gate_chain.h"
 #include "lattice/field/problem.h"
 #include "lattice/statistics/compare.h"
 #include "lattice/statistics/ending_shares.h"
-#include "lattice/study/memory.h"
-#include "lattice/study/observed.h"
 #include "markov/predict.h"
 #include "markov/walk.h"
 
 namespace gatewalk::lattice {
+
+// What the commands of this program show besides.
+struct ForceMemory;
+struct MemoryStudy;
+struct ObservedComparison;
 
 struct MeanAndSd {
   double sum = 0.0, squares = 0.0;
@@ -91,8 +94,8 @@ struct StartValidation {
   EndingShares dynamics_endings, walks_endings, exact_endings;
   FieldExits dynamics_exits{}, exact_exits{};
   double dynamics_seconds = 0.0, walks_seconds = 0.0, exact_seconds = 0.0;
-  std::optional<ForceMemory> force{};            // if asked for
-  std::optional<ObservedComparison> observed{};  // if there is an experiment
+  std::shared_ptr<const ForceMemory> force{};            // if asked for
+  std::shared_ptr<const ObservedComparison> observed{};  // if there is an experiment
 
   [[nodiscard]] Finding finding() const {
     return finding_of(joint_test.differs(), exact_against.total_variation,
@@ -108,7 +111,10 @@ struct Validation {
   FaceCounts entries_by{};                // of these, by face
   std::size_t threads = 0;
   LeftOut left_out{};
-  MemoryStudy memory{};  // of the first kMostRemembered trials of each start
+  std::shared_ptr<const MemoryStudy> memory{};  // of the first kMostRemembered trials of each start
+  /// Whether the chain forgets what matters: where a body was before, which cell of its walk or
+  /// which row it is in tells of what comes next, at a level of 5 % for all questions together.
+  [[nodiscard]] bool remembers() const;
 };
 
 inline constexpr std::int64_t kMostRemembered = 100'000;

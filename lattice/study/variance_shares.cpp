@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "dynamics/base/kept_pieces.h"
 #include "lattice/field/field_trials.h"
 
 namespace gatewalk::lattice {
@@ -68,14 +69,16 @@ VarianceShares variance_shares(int numbers, const ProblemAt& problem_at, markov:
     return a;
   };
   std::vector<double> one, other;
-  work.in_kept_pieces(
-      {"points of the ranges", {0, out.points}}, Answers{}, run, [&](const Answers& a) {
-        for (const auto& answers : {a.one, a.other})
-          out.ended += std::accumulate(answers.begin(), answers.end(), std::int64_t{0});
-        for (const std::int64_t n : a.one) one.push_back(static_cast<double>(n) / kTrials);
-        for (const std::int64_t n : a.other) other.push_back(static_cast<double>(n) / kTrials);
-        out.health += a.health;
-      });
+  in_kept_pieces(work, {"points of the ranges", {0, out.points}}, Answers{}, run,
+                 [&](const Answers& a) {
+                   for (const auto& answers : {a.one, a.other})
+                     out.ended += std::accumulate(answers.begin(), answers.end(), std::int64_t{0});
+                   for (const std::int64_t n : a.one)
+                     one.push_back(static_cast<double>(n) / kTrials);
+                   for (const std::int64_t n : a.other)
+                     other.push_back(static_cast<double>(n) / kTrials);
+                   out.health += a.health;
+                 });
   out.indices = sobol_indices(design, one, other);
   out.seconds = watch.seconds();
   return out;

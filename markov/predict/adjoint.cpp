@@ -5,6 +5,7 @@
 
 #include "markov/predict/backward.h"
 #include "markov/predict/end_sums.h"
+#include "markov/solvers.h"
 
 namespace gatewalk::markov {
 

@@ -12,6 +12,7 @@
 #include "markov/predict/end_sums.h"
 #include "markov/predict/plan.h"
 #include "markov/predict/transient.h"
+#include "markov/solvers.h"
 
 namespace gatewalk::markov {
 namespace {

@@ -11,6 +11,7 @@
 
 #include "markov/predict/plan.h"
 #include "markov/predict/transient.h"
+#include "markov/solvers.h"
 
 namespace gatewalk::markov {
 namespace {

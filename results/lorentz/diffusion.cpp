@@ -14,6 +14,7 @@
 
 #include "lattice/field/gate_chain.h"
 #include "lattice/pool/kernel.h"
+#include "lattice/statistics/group_spread.h"
 
 namespace lorentz {
 

@@ -16,8 +16,10 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/disc/disc_section.h"
 #include "lattice/source/cell_matrix.h"
 #include "markov/markov.h"
+#include "markov/solvers.h"
 #include "scenes.h"
 #include "tests/support/propagation.h"
 

@@ -17,6 +17,7 @@
 
 #include "markov/committor.h"
 #include "markov/first_passage.h"
+#include "markov/solvers.h"
 #include "tests/markov/chains.h"
 
 namespace {

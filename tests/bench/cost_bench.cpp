@@ -22,10 +22,14 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/disc/disc_section.h"
+#include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/row_trials.h"
+#include "lattice/field/gate_chain.h"
 #include "lattice/gates/disc_field.h"
 #include "lattice/scene/scene.h"
 #include "lattice/source/cell_matrix.h"
+#include "lattice/statistics/compare.h"
 #include "markov/markov.h"
 #include "scenes.h"
 

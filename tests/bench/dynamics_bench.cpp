@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 
+#include "dynamics/disc/ensemble.h"
 #include "peers.h"
 #include "scenes.h"
 

@@ -19,8 +19,10 @@
 
 #include "dynamics/base/random.h"
 #include "dynamics/cells/cell.h"
+#include "lattice/pool/hausman_check.h"
 #include "lattice/pool/pool_answers.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/scene/scene_problem.h"
 
 namespace {

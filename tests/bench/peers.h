@@ -7,7 +7,7 @@
 
 #include <memory>
 
-#include "dynamics/dynamics.h"
+#include "dynamics/disc/params.h"
 
 namespace gatewalk::bench {
 

@@ -18,6 +18,7 @@
 #include "lattice/field/rqmc_trials.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/scene/scene_problem.h"
 
 namespace {

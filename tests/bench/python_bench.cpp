@@ -20,11 +20,13 @@
 #include "cli/fields/json_value.h"
 #include "dynamics/cells/cell.h"
 #include "lattice/field/field_trials.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/recorded/recorded_pool.h"
 #include "lattice/scene/cell_file.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/source/source.h"
+#include "lattice/source/source_file.h"
 
 namespace {
 

@@ -2,10 +2,11 @@
 #pragma once
 /// What is measured: the paper's single gate in two conditions, and its field.
 
+#include <cstdint>
 #include <string_view>
 
-#include "dynamics/dynamics.h"
-#include "lattice/lattice.h"
+#include "dynamics/disc/params.h"
+#include "lattice/field/field_params.h"
 
 namespace gatewalk::bench {
 

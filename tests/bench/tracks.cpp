@@ -20,6 +20,7 @@
 
 #include "dynamics/base/random.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/recorded/cut_tracks.h"
 #include "lattice/recorded/recorded_pool.h"
 #include "lattice/scene/cell_file.h"

@@ -8,6 +8,7 @@
 
 #include "cli/render/final_gates.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/pool/tree_chain.h"
 #include "tests/support/disc_fields.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "dynamics/disc/study/accuracy.h"
+#include "dynamics/base/kept_pieces.h"
 
 #include <gtest/gtest.h>
 

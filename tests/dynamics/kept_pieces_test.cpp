@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dynamics/base/bytes.h"
+#include "dynamics/base/kept_pieces.h"
 #include "dynamics/base/work.h"
 #include "dynamics/disc/ensemble.h"
 
@@ -81,8 +82,8 @@ TEST(KeptPieces, OnlyWhatIsMissingIsRun) {
   using Numbers = std::vector<std::int64_t>;
   Numbers run, taken;
   const auto carry_out = [&] {
-    work.in_kept_pieces(
-        {"numbers", {3, 12}}, Numbers{},
+    in_kept_pieces(
+        work, {"numbers", {3, 12}}, Numbers{},
         [&](TrialRange range) {
           Numbers piece;
           for (std::int64_t i = 0; i < range.count; ++i) {
@@ -150,8 +151,8 @@ TEST(Ranks, EachTakesAllItemsAndRunsItsOwn) {
         Work work;
         work.ranks = &ranks;
         const auto at = static_cast<std::size_t>(rank);
-        work.in_kept_pieces(
-            {"numbers", {7, 1000}}, Numbers{},
+        in_kept_pieces(
+            work, {"numbers", {7, 1000}}, Numbers{},
             [&](TrialRange range) {
               Numbers piece;
               for (std::int64_t i = 0; i < range.count; ++i) piece.push_back(range.first + i);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dynamics/base/trial_set.h"
+#include "dynamics/base/work.h"
 
 #include <gtest/gtest.h>
 

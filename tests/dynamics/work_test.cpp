@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "dynamics/base/work.h"
+#include "dynamics/base/kept_pieces.h"
 
 #include <gtest/gtest.h>
 

@@ -9,9 +9,11 @@
 #include "cli/fields/json_value.h"
 #include "cli/kept/kept_run.h"
 #include "cli/kept/piece_log.h"
+#include "dynamics/base/kept_pieces.h"
 #include "dynamics/disc/ensemble.h"
 #include "dynamics/disc/row_trials.h"
 #include "lattice/field/field_trials.h"
+#include "lattice/field/running_trial.h"
 #include "lattice/text/toml_text.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "lattice/scene/scene_keys.h"
 #include "lattice/scene/study/sweep.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/large_field.h"

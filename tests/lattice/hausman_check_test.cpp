@@ -5,6 +5,7 @@
 
 #include "lattice/pool/pool_answers.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/pool/tree_chain.h"
 #include "tests/support/disc_fields.h"
 

@@ -2,6 +2,7 @@
 // Is it Markov? Tests of independence and of gates ahead on synthetic chains: by hand, how often
 // they raise a false alarm, and how small a memory they find.
 #include "lattice/study/memory.h"
+#include "lattice/field/running_trial.h"
 
 #include <gtest/gtest.h>
 

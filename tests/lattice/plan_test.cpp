@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/study/plan.h"
+#include "lattice/field/running_trial.h"
 
 #include <gtest/gtest.h>
 

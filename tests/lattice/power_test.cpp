@@ -13,6 +13,7 @@
 
 #include "dynamics/base/random.h"
 #include "lattice/statistics/draws.h"
+#include "markov/predict.h"
 #include "tests/support/threads.h"
 
 namespace gatewalk::lattice {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/study/rare.h"
+#include "lattice/scene/terrain.h"
 
 #include <gtest/gtest.h>
 

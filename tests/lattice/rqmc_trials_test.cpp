@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/field/rqmc_trials.h"
+#include "dynamics/base/kept_pieces.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +12,7 @@
 
 #include "lattice/pool/pool_runner.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/statistics/compare.h"
 #include "tests/support/threads.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "lattice/field/running_trial.h"
 #include "lattice/pool/kernel.h"
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include "dynamics/disc/disc_section.h"
 #include "lattice/pool/pool_answers.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/statistics/draws.h"
 #include "lattice/statistics/group_spread.h"

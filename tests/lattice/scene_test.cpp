@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/scene/scene.h"
+#include "dynamics/disc/disc_section.h"
+#include "lattice/scene/scene_keys.h"
 #include "tests/support/refusal.h"
 
 #include <gtest/gtest.h>

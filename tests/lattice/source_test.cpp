@@ -10,6 +10,7 @@
 #include <string>
 
 #include "lattice/pool/states_info.h"
+#include "lattice/source/source_file.h"
 #include "lattice/source/start_text.h"
 #include "lattice/text/json_text.h"
 #include "tests/support/disc_fields.h"
@@ -90,7 +91,7 @@ TEST(Source, APredictionChoosesTheMethodThatTheSceneLeavesOpen) {
   EXPECT_FALSE(s.is_recorded());
   s.accuracy.accuracy = 0.3;
   const PooledPrediction prediction = predict(s);
-  ASSERT_TRUE(s.settled);
+  ASSERT_TRUE(s.pilot);
   EXPECT_NE(s.scene->gate.run.method, "auto");
   EXPECT_NEAR(prediction.starts[0].final.final_cells.sum(), 1.0, 1e-9);
 }

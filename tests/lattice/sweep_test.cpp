@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/scene/study/sweep.h"
+#include "lattice/scene/toml_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Gates of several types in one field: table [terrain], and what runs and chains make of it.
 #include "lattice/scene/terrain.h"
+#include "lattice/pool/predict_pooled.h"
+#include "lattice/scene/scene_keys.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -15,7 +17,9 @@
 #include "lattice/pool/tree_chain.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/scene_problem.h"
+#include "lattice/source/source_file.h"
 #include "lattice/statistics/compare.h"
+#include "lattice/study/memory.h"
 #include "lattice/study/plan.h"
 #include "lattice/study/prediction.h"
 #include "lattice/study/trials.h"
@@ -537,8 +541,8 @@ TEST(Terrain, BinsHaveAMatrixForEachType) {
   const Validation v = validate_chain(problem_of(scene), matrices, {dynamics::entry_of(kStart)},
                                       {.trials = 200, .walks = {}, .null_draws = 19});
   EXPECT_EQ(v.starts[0].dynamics.trials, 200);
-  EXPECT_TRUE(v.memory.ahead.steps.empty());
-  EXPECT_GT(v.memory.runs, 200);
+  EXPECT_TRUE(v.memory->ahead.steps.empty());
+  EXPECT_GT(v.memory->runs, 200);
   EXPECT_THROW(
       (void)validate_chain(problem_of(scene), {matrices[0]}, {dynamics::entry_of(kStart)}, {}),
       std::invalid_argument);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "lattice/scene/bins.h"
+#include "markov/walk.h"
 #include "tests/support/disc_fields.h"
 
 namespace gatewalk::lattice {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/scene/units.h"
+#include "lattice/scene/scene_keys.h"
+#include "lattice/scene/toml_file.h"
 
 #include <gtest/gtest.h>
 

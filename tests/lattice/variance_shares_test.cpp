@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/study/variance_shares.h"
+#include "lattice/scene/toml_file.h"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "chains.h"
+#include "markov/solvers.h"
 #include "tests/support/instruction_sets.h"
 #include "tests/support/propagation.h"
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "markov/predict.h"
+#include "markov/solvers.h"
 #include "tests/markov/chains.h"
 
 namespace gatewalk::markov {

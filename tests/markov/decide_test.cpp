@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "markov/predict.h"
+#include "markov/solvers.h"
 #include "tests/markov/chains.h"
 #include "tests/support/propagation.h"
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "markov/predict/plan.h"
+#include "markov/solvers.h"
 #include "tests/markov/chains.h"
 #include "tests/support/field_states.h"
 

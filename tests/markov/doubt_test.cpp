@@ -9,6 +9,7 @@
 
 #include "markov/decide.h"
 #include "markov/predict.h"
+#include "markov/solvers.h"
 #include "tests/markov/chains.h"
 
 namespace gatewalk::markov {

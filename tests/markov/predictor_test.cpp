@@ -10,6 +10,7 @@
 #include <string>
 
 #include "chains.h"
+#include "markov/solvers.h"
 #include "tests/support/instruction_sets.h"
 #include "tests/support/propagation.h"
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "chains.h"
+#include "markov/solvers.h"
 #include "markov/walk.h"
 #include "tests/support/propagation.h"
 

@@ -12,6 +12,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "dynamics/base/kept_pieces.h"
 #include "dynamics/disc/runs.h"
 
 namespace gatewalk::dynamics {
@@ -239,8 +240,9 @@ void check_outcomes(Health& health, const GateParams& p, std::span<const BodySta
 GateTally run_checked_trials(const GateParams& p, const BodyState& start, std::uint64_t seed,
                              const Stage& stage, const Work& work) {
   GateTally tally;
-  work.in_kept_pieces(
-      stage, GateTally{}, [&](TrialRange range) { return run_gate_trials(p, start, seed, range); },
+  in_kept_pieces(
+      work, stage, GateTally{},
+      [&](TrialRange range) { return run_gate_trials(p, start, seed, range); },
       [&](const GateTally& piece) { tally += piece; });
   check_outcomes(tally.health, p, {&start, 1}, seed, check_sample(stage.items.count), work);
   return tally;

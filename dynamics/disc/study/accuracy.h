@@ -23,6 +23,8 @@
 
 namespace gatewalk::dynamics {
 
+struct Stage;  // base/kept_pieces.h
+
 // ---- Settings ----
 
 /// One method with the one number that trades its speed for its accuracy.

@@ -14,9 +14,11 @@
 #include "dynamics/disc/row_trials.h"
 #include "lattice/gates/disc_field.h"
 #include "lattice/pool/pooled_prediction.h"
+#include "lattice/pool/predict_pooled.h"
 #include "lattice/scene/matrix.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/scene/study/chain_answers.h"
+#include "lattice/scene/terrain.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "dynamics/disc/methods/method.h"
 #include "lattice/gates/disc_field.h"
+#include "lattice/scene/terrain.h"
 
 namespace gatewalk::lattice {
 namespace {

@@ -9,7 +9,9 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "dynamics/base/kept_pieces.h"
 #include "dynamics/disc/study/accuracy.h"
+#include "lattice/scene/scene_keys.h"
 #include "lattice/scene/units.h"
 
 namespace gatewalk::lattice {
@@ -140,7 +142,7 @@ void run_sweep(std::vector<SweepPoint>& points, dynamics::TrialRange trials, std
     const dynamics::Work part = work.part("sweep", i, points.size());
     const auto before = static_cast<std::int64_t>(i) * trials.count;
     const dynamics::Stage stage{"gate runs", trials, before, std::ssize(points) * trials.count};
-    if (!part.has_share(stage)) continue;
+    if (!has_share(part, stage)) continue;
     points[i].settled = settle_method(points[i].scene, RunsFrom::start, seed, part);
     if (points[i].settled && settled) settled(points[i]);
     const Scene& scene = points[i].scene;

@@ -11,6 +11,7 @@
 #include "dynamics/base/work.h"
 #include "dynamics/disc/ensemble.h"
 #include "lattice/scene/settle.h"
+#include "lattice/scene/toml_file.h"
 
 namespace gatewalk::lattice {
 
