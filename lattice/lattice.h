@@ -1,32 +1,23 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // clang-format off
-/// gatewalk::lattice: a field of gates, walked both ways and compared.
+/// gatewalk::lattice: a field of cells, walked both ways and compared. This header is all that most
+/// programs include:
 ///
-///   field.h       the field's size and gates, where a trial starts, which beams act (fidelity)
-///   reference.h   the full dynamics through the field, gate by gate
-///   gate_chain.h  counts + state space -> markov::Chain, and the matrix file
-///   statistics/   of shares, trials and chains, whatever the cells are:
-///     compare.h       corrcoef, RMSE, total variation, noise floors, p-values
-///     matrix_noise.h  what the sampling of a matrix does to its predictions
-///     multiple_tests.h several statistics judged together
-///     independence.h, gates_ahead.h  does a chain forget what matters?
-///     ending_shares.h how trials, walks or a prediction end, with intervals
-///     draws.h         binomial and multinomial counts
-///     power.h         how many trials show a difference
-///
-/// Included by name: scene/ (scene files, bins, matrices of a scene), pool/ (gate runs kept one by
-/// one, chains of trees, their predictions and error bars), study/ (what commands compute).
+///   source/source.h             what is asked about: a scene, a matrix, cells of one's own; predict()
+///   pool/pooled_prediction.h    what predict() says of each start, with error bars
+///   scene/scene.h               the scene file
+///   field/problem.h             cells, the field's size, where trials start
+///   field/field_trials.h        trials of the full dynamics: run_field()
+///   field/gate_chain.h          a matrix as a markov::Chain, a start as one of its states
+///   study/validation.h          the chain against the full dynamics: validate_chain()
+///   statistics/ending_shares.h  how trials, walks or a prediction end, with intervals
+///   statistics/compare.h        corrcoef, RMSE, total variation, noise floors, p-values
 // clang-format on
 
-#include "lattice/field/field_params.h"
 #include "lattice/field/field_trials.h"
 #include "lattice/field/gate_chain.h"
+#include "lattice/source/source.h"
 #include "lattice/statistics/compare.h"
-#include "lattice/statistics/draws.h"
 #include "lattice/statistics/ending_shares.h"
-#include "lattice/statistics/gates_ahead.h"
-#include "lattice/statistics/independence.h"
-#include "lattice/statistics/matrix_noise.h"
-#include "lattice/statistics/multiple_tests.h"
-#include "lattice/statistics/power.h"
+#include "lattice/study/validation.h"

@@ -45,7 +45,7 @@ PYTHONPATH=installed/usr/lib/python3/dist-packages /usr/bin/python3 -c 'import g
 cmake --install "$build" --prefix "$work/prefix" >/dev/null
 cat >own.cpp <<'END'
 #include <cstdio>
-#include "lattice/scene/scene.h"
+#include "lattice/lattice.h"
 int main() { std::printf("%g\n", gatewalk::lattice::read_scene("field.toml", {}).gate.body.mass); }
 END
 cp "$root/scenes/field.toml" .

@@ -31,7 +31,7 @@ must_find 'loads https://example.org/a.png' index.html 's|<h1>|<img src="https:/
 must_find 'loads //example.org/a.css' _static/site.css '$ a @import url(//example.org/a.css);'
 must_find 'gatewalk.power is not documented' python.html 's|id="gatewalk.power"||'
 must_find '--accuracy is not documented' commands/predict.html 's|id="cmdoption-gatewalk-predict-accuracy"||'
-must_find 'gatewalk::markov::solve_directly is not documented' cpp/markov.html 's|14solve_directlyE|14solve_directlyd|g'
+must_find 'gatewalk::markov::Walker is not documented' cpp/markov.html 's|markov6WalkerE|markov6Walkerd|g'
 rm -rf "$broken"
 [ $failures = 0 ] && echo "all fine"
 exit $failures

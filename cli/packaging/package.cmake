@@ -28,12 +28,6 @@ find_dependency(fmt 9)
 find_dependency(hwy CONFIG)
 find_dependency(netCDF)
 find_dependency(tomlplusplus)
-find_path(GATEWALK_RANDOM123_INCLUDE_DIR Random123/philox.h)
-if(NOT GATEWALK_RANDOM123_INCLUDE_DIR)
-  set(gatewalk_FOUND FALSE)
-  set(gatewalk_NOT_FOUND_MESSAGE "Random123/philox.h was not found (Debian: librandom123-dev)")
-  return()
-endif()
 @find_png@
 include("${CMAKE_CURRENT_LIST_DIR}/gatewalkTargets.cmake")
 ]] @ONLY)
@@ -114,7 +108,7 @@ set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Multi-scale Markov chain analysis of lo
  Runs a body through single gates of a cluttered field, chains the outcomes
  over the whole field, and compares the final gates with the full dynamics.")
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libtbb-dev, libhwy-dev, librandom123-dev, libnetcdf-dev, libhdf5-dev, libtomlplusplus-dev, libsuitesparse-dev, libpng-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libtbb-dev, libhwy-dev, libnetcdf-dev, libhdf5-dev, libtomlplusplus-dev, libsuitesparse-dev, libpng-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "Libraries of gatewalk: dynamics, chains, fields
  Static libraries with their headers, for CMake and pkg-config.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

@@ -32,8 +32,8 @@ INDEX = """C++ reference
 
 What ``cmake --install`` brings: ``find_package(gatewalk)``, then link ``gatewalk::dynamics``, ``gatewalk::markov`` or
 ``gatewalk::lattice``, which brings the other two. :doc:`The front page </index>` has a first program, :doc:`lattice
-</lattice/index>` says which function is which command. Folder, namespace and library have one name;
-``dynamics/dynamics.h``, ``markov/markov.h`` and ``lattice/lattice.h`` include what most programs need.
+</lattice/index>` has more. Folder, namespace and library have one name; ``lattice/lattice.h`` includes what most
+programs need, ``markov/markov.h`` what chains alone need.
 
 Here are all headers with what they declare. A member's default with named parts (``= {.trials = 100}``) is not shown.
 """
