@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -11,13 +12,19 @@
 
 using namespace gatewalk;
 
-// lorentz GAP: where points of a Lorentz gas leave a field of 6 x 6 cells, by a chain with error
+// lorentz GAP: where points of a Lorentz gas leave a field of 3 x 3 cells, by a chain with error
 // bars, and by trials through the field.
 int main(int, char** words) try {
-  const auto cell = std::make_shared<lorentz::LorentzCell>(std::stod(words[1]));
+  const auto gas = std::make_shared<lorentz::LorentzCell>(std::stod(words[1]));
+  const auto cell = std::make_shared<dynamics::FunctionCell>(
+      gas->section(), [gas](dynamics::Body& body) {  // the points are kicked in each gap
+        double& v = body.entry.at[1];
+        v = std::clamp(v + 0.3 * body.random.normal(), -0.99, 0.99);
+        return gas->pass(body);
+      });
   lattice::Problem problem;
   problem.cells = dynamics::CellField::uniform(cell);
-  problem.field = {.columns = 6, .rows = 6, .max_gates = 0};
+  problem.field = {.columns = 3, .rows = 3, .max_gates = 0};
   problem.start = {0, {0.01, 0.3}};
   for (const std::string& wrong : dynamics::check_cell(*cell, {problem.start})) {
     std::puts(wrong.c_str());

@@ -62,11 +62,13 @@ struct LorentzCell : dynamics::Cell {
           "some fly on for ever between rows of discs: there is no diffusion coefficient");
     lattice << 2.0 + gap, 1.0 + gap / 2.0, 0.0, std::sqrt(3.0) * (1.0 + gap / 2.0);
     corners_ = {Point(0, 0), lattice.col(0), lattice.rowwise().sum(), lattice.col(1)};
-    // Name, the move that enters there, its mirror image, what is odd in that, in words, usual.
+    // Name, the move that enters there, its mirror image, what is odd in that, in words.
     section_.faces = {{"S", 0, 1, 0, 0, "from below", {}},
                       {"E", -1, 0, 3, 0, "from the right", {}},
                       {"N", 0, -1, 2, 0, "from above", {}},
                       {"W", 1, 0, 1, 0, "from the left", {}}};
+    for (dynamics::Face& face : section_.faces)
+      face.usual = {{{-gap / 2.0, gap / 2.0}, {-1.0, 1.0}}};
     section_.coordinates = {{"s", "s", "1", "place in the gap", gap},
                             {"v", "v", "1", "velocity along it", 2.0}};
     section_.costs = {{"time", "1", "time of flight"}};
