@@ -7,7 +7,7 @@ set -euo pipefail
 build=$1 root=$(realpath "$2") compiler=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cmake --install "$build" --prefix "$work/prefix" >/dev/null
+cmake --install "$build" --component dev --prefix "$work/prefix" >/dev/null
 mkdir "$work/project"
 cp "$root"/tests/library/* "$work/project"
 
