@@ -15,15 +15,18 @@ cd "$root"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-for scene in results/limits/gate.toml scenes/walker.toml; do
-  to=$here/$(basename "$scene" .toml)
-  "$gatewalk" chart limits "$scene" --seed 1 -o "$to" --force >"$to.txt"
-done
+near() {  # SCENE [OPTION...]
+  local to
+  to=$here/$(basename "$1" .toml)
+  "$gatewalk" chart limits "$@" --seed 1 -o "$to" --force >"$to.txt"
+}
+near results/limits/gate.toml
 # Where methods refuse: of each only the figure that shows it.
-beyond() {  # NAME NUMBER --set KEY=VALUE...
+beyond() {  # NAME NUMBER OPTION...
   "$gatewalk" chart limits results/limits/gate.toml "${@:3}" --seed 1 -o "$work" --force >"$here/$1.txt"
   cp "$work/$2.svg" "$here/$1.svg"
 }
 beyond rigid stiffness --set beams.stiffness_left_Nm_per_rad=4e9 --set beams.stiffness_right_Nm_per_rad=4e9
-beyond creeping damping --set beams.damping_Nms_per_rad=5e4
+beyond creeping damping --quick --set beams.damping_Nms_per_rad=5e4
+near scenes/walker.toml --quick
 manifest "results/limits/run.sh" >"$here/manifest.txt"
