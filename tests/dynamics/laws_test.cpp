@@ -276,6 +276,9 @@ TEST_P(ExactHits, FirstHitsObeyTheLaw) {
     const double after = ((end.body.x - start.body.x - start.body.vx * t) * kick_x +
                           (end.body.y - start.body.y - start.body.vy * t) * kick_y) /
                          (kick * kick);
+    // In the middle of the step: rates to 50 m/s, 500 J, 1000 kg m^2/s, of places that up to 250
+    // steps have rounded.
+    const double digits = 1024 * kEps;
     // Up to 250 steps round positions; the kick turns that into time.
     const double late = m.at_mid_step ? 1e-13 : m.place + 50 * 7e-15 / kick;  // m; s
     const double hit = m.at_mid_step ? t - 0.5 * p.run.step : t - after;
@@ -296,10 +299,13 @@ TEST_P(ExactHits, FirstHitsObeyTheLaw) {
     const double u = gap_rate(touch, start.body, start.beams[side]);
     ASSERT_LE(touch.gap, 40.0 * late) << start.body.x << ' ' << start.body.y;
     ASSERT_GE(touch.gap, m.at_mid_step ? u * p.run.step : -40.0 * late);
-    ASSERT_NEAR(gap_rate(touch, end.body, end.beams[side]), -e * u, 1e3 * late);
-    ASSERT_NEAR(kick_x * touch.ny - kick_y * touch.nx, 0.0, 1e2 * late);
+    ASSERT_NEAR(gap_rate(touch, end.body, end.beams[side]), -e * u,
+                m.at_mid_step ? 50 * digits : 1e3 * late);
+    ASSERT_NEAR(kick_x * touch.ny - kick_y * touch.nx, 0.0,
+                m.at_mid_step ? 50 * digits : 1e2 * late);
     const double lost = 0.5 * (1 - e * e) * u * u / compliance(p.body.mass, inertia, touch.lever);
-    ASSERT_NEAR(energy(p, start) - energy(p, end), lost, 1e-10 + 1e3 * late);
+    ASSERT_NEAR(energy(p, start) - energy(p, end), lost,
+                m.at_mid_step ? 500 * digits : 1e-10 + 1e3 * late);
     // In the gate's frame theta of the right beam turns the other way.
     const double sign = side == kLeft ? 1.0 : -1.0;
     const auto spin = [&](const GateState& s) {
@@ -307,7 +313,7 @@ TEST_P(ExactHits, FirstHitsObeyTheLaw) {
       return rx * s.body.vy - ry * s.body.vx + sign * inertia * s.beams[side].omega;
     };
     if (touch.kind != ContactKind::pin) {
-      ASSERT_NEAR(spin(end), spin(start), 1e-10);
+      ASSERT_NEAR(spin(end), spin(start), m.at_mid_step ? 1000 * digits : 1e-10);
     }
   }
 }

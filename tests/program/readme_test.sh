@@ -32,7 +32,8 @@ while read -r words; do
   name=${words%% *}
   grep -qx -e "$name" <<<"$commands" || continue  # an option
   seen=$((seen + 1))
-  expect 0 Example: "$gatewalk" help "$name"
+  # shellcheck disable=SC2046
+  expect 0 Example: "$gatewalk" help $(sed -E 's/^(chart [a-z]+|[a-z-]+).*/\1/' <<<"$words")
   [ "$words" != "$name" ] || continue  # a name alone
   with=$(sed -E 's/\[[^],]*, [^]]*\]//g; s/[][]//g' <<<"$words" | named)
   without=$(sed -E 's/ *\[[^]]*\]//g' <<<"$words" | named)
