@@ -112,6 +112,7 @@ void refuse_old_name(const std::vector<std::string>& words) {
 
 /// The page of a command, or of its result; `words`: its name, and --result.
 int run_help(const std::vector<std::string>& words) {
+  refuse_old_name(words);
   const std::size_t n = words_of_name(words);
   const std::string name = words[0] + (n == 2 ? " " + words[1] : "");
   const Command* const command = find_command(name);

@@ -66,17 +66,20 @@ void describe(Fields& out, const Limit& limit) {
   describe_sign(out, limit.verdict);
   out.maybe({"remedy", "what helps at fault_at; null: nothing that was tried, or no fault"},
             limit.remedy, [](Fields& f, const dynamics::Remedy& r) {
-              f.text({"key", "key of the scene to change"}, r.key);
-              f.if_any({"value", "s or m", "value to give it, where that is a number"},
-                       r.method.empty() ? std::optional(r.value) : std::nullopt);
-              f.if_any({"method", "value to give it, where the key is run.method"},
+              f.if_any({"method", "value to give run.method, if it is to change"},
                        r.method.empty() ? std::nullopt : std::optional(r.method));
+              f.if_any({"setting",
+                        "key of the scene to change, if it is: run.step_s or "
+                        "run.event_tolerance_m"},
+                       r.key.empty() ? std::nullopt : std::optional(r.key));
+              f.if_any({"value", "s or m", "value to give it"},
+                       r.key.empty() ? std::nullopt : std::optional(r.value));
             });
 }
 
 void describe(Fields& out, const MethodLimits& m) {
-  out.text({"method", "run.method of the trials"}, m.method);
-  out.text(Label("key", "key of the scene that sets how exact the method is")
+  out.text({"name", "run.method of the trials"}, m.method);
+  out.text(Label("setting", "key of the scene that sets how exact the method is")
                .one_of({"run.step_s", "run.event_tolerance_m"}),
            m.own.key);
   out.number({"value", "s or m",
@@ -171,26 +174,29 @@ std::string cell_of(const Limit& limit, const MethodLimits& method) {
   if (method.verdict == Verdict::fine)
     return limit.axis.logarithmic ? factor(*limit.factor()) : "at " + digits(*limit.fault_at, 2);
   const bool is_finer_step =
-      &limit == &method.limits.front() && limit.remedy && limit.remedy->key == method.own.key;
+      &limit == &method.limits.front() && limit.remedy && limit.remedy->method.empty();
   return is_finer_step ? "ok " + factor(limit.remedy->value / method.own.value) : ".";
 }
 
+/// As the scene takes it: with digits enough for a step to fit the hold of the random force.
 std::string setting_of(const dynamics::Remedy& remedy) {
-  return remedy.key + " = " +
-         (remedy.method.empty() ? digits(remedy.value, 4) : '"' + remedy.method + '"');
+  std::string text = remedy.method.empty() ? "" : fmt::format("run.method = \"{}\"", remedy.method);
+  if (!remedy.key.empty())
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", remedy.key, digits(remedy.value));
+  return text;
 }
 
 /// What is to be known of a method, in a line.
 std::string sentence_of(const MethodLimits& m) {
   const bool is_fine = m.verdict == Verdict::fine;
   const Limit* const limit = is_fine ? m.nearest() : &m.limits.front();
-  if (!limit) return fmt::format("  {:<9}no fault within these factors\n", m.method);
+  if (!limit) return fmt::format("  {:<9}no fault at the values tried\n", m.method);
   const dynamics::Sign& sign = dynamics::sign_of(limit->verdict);
-  return fmt::format("  {:<9}{}: {}{}; {}\n", m.method,
-                     is_fine ? fmt::format("{} {}", limit->axis.name, cell_of(*limit, m)) : "here",
-                     sign.words, sign.key.empty() ? "" : fmt::format(" ({})", sign.key),
-                     limit->remedy ? "take " + setting_of(*limit->remedy)
-                                   : "no step and no other method here helps");
+  return fmt::format(
+      "  {:<9}{}: {}{}; {}\n", m.method,
+      is_fine ? fmt::format("{} {}", limit->axis.name, cell_of(*limit, m)) : "here", sign.words,
+      sign.key.empty() ? "" : fmt::format(" ({})", sign.key),
+      limit->remedy ? "take " + setting_of(*limit->remedy) : "nothing that was tried helps");
 }
 
 }  // namespace
@@ -217,9 +223,12 @@ std::string table_of(const LimitsResult& result) {
   return fmt::format(
       "{}: where each method breaks near the numbers of the scene (its own gate{}; {} trials a "
       "point)\n{}"
-      "x3: a fault at 3 times the scene's number, none before; /3: at a third; -: none within 100; "
-      "lever: share of the\nbeam, graze: of the radius, below which there are faults at the "
-      "scene's step. The nearest fault, its sign, a remedy:\n{}",
+      "x3: a fault at 3 times the scene's number, none at the values tried before; /3: at a third; "
+      "-: "
+      "none from a hundredth\nto 100 times (step: from a quarter to one draw of the random force); "
+      "lever: share of the beam, graze: of the radius,\nbelow which there are faults at the "
+      "scene's "
+      "step. The nearest fault, its sign, a remedy:\n{}",
       result.label, types, result.scene.options.trials, table.text(), lines);
 }
 

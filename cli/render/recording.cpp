@@ -88,9 +88,9 @@ void put_runs(int nc, const Recordings& recordings) {
   put_words(nc, put_variable(nc, "ending", run, ending, "1", "how a run ended"), known);
 }
 
-/// Coordinates of trajectories in the sense of CF, with their axes.
-const std::map<std::string_view, const char*> kAxes{
-    {"time_s", "T"}, {"field_x_m", "X"}, {"field_y_m", "Y"}};
+/// Coordinates of trajectories in the sense of CF, with their axes. The time, of which CF's axis T
+/// asks since when, has none.
+const std::map<std::string_view, const char*> kAxes{{"field_x_m", "X"}, {"field_y_m", "Y"}};
 
 /// A column of all runs: codes as bytes, what is counted as whole numbers.
 void put_column(int nc, int sample, const Column& c, const Recordings& recordings) {
@@ -104,7 +104,7 @@ void put_column(int nc, int sample, const Column& c, const Recordings& recording
                                       std::string(c.meaning));
     if (const auto axis = kAxes.find(c.name); axis != kAxes.end())
       put_text(nc, variable, "axis", axis->second);
-    else
+    else if (c.name != "time_s")
       put_text(nc, variable, "coordinates", "time_s field_x_m field_y_m");
     return variable;
   };

@@ -315,7 +315,7 @@ std::string Source::name_of(std::size_t start) const {
 
 std::vector<dynamics::Transitions> Source::matrices() const {
   if (!file) {
-    if (pool->starts.empty())
+    if (!pool || pool->starts.empty())
       throw std::invalid_argument(path + ": has no gate runs: predict() makes them");
     return matrices_of(problem, *pool, entries(), accuracy.per_leaf);
   }
@@ -356,6 +356,7 @@ PooledPrediction predict(Source& s, const dynamics::Work& work) {
     throw std::invalid_argument(s.path + ": has no trees, and no gate runs that could be added to");
   if (s.is_recorded()) return predict_recorded(s.problem, *s.pool, s.starts, s.accuracy);
   if (s.problem.cells.cells.empty()) s.choose_method(s.accuracy.seed, work);
+  if (s.pool.use_count() > 1) s.pool = std::make_shared<RunPool>(*s.pool);
   return predict_pooled(s.problem, *s.pool, s.entries(), s.accuracy, work);
 }
 

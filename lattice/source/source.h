@@ -41,6 +41,7 @@ struct Source {
   std::shared_ptr<const CellFile> cells{};   // ... of cells that are not ours
   std::shared_ptr<const MatrixFile> file{};  // it was read from
   /// Of trees: the gate runs that there are, none yet of a scene or a program. Without: of bins.
+  /// Copies share them until one of them adds to its own.
   std::shared_ptr<RunPool> pool{};
   /// While the scene leaves its method to a pilot, the problem has no cells.
   Problem problem{};

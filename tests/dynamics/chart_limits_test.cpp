@@ -286,7 +286,7 @@ TEST(LimitsOf, TellTheNearestFaultsAndWhatHelps) {
   EXPECT_EQ(paper.limits[0].fault_at, 2.0);
   EXPECT_FALSE(paper.limits[0].fine_to);
   ASSERT_TRUE(paper.limits[0].remedy);  // no finer step is fine here
-  EXPECT_EQ(paper.limits[0].remedy->key, "run.method");
+  EXPECT_EQ(paper.limits[0].remedy->key, "");
   EXPECT_EQ(paper.limits[0].remedy->method, "stable");
 
   const MethodLimits& stable = found[1];
@@ -311,6 +311,36 @@ TEST(LimitsOf, TellTheNearestFaultsAndWhatHelps) {
   EXPECT_EQ(found[3].limits[0].verdict, refused);
   EXPECT_EQ(found[3].limits[0].remedy->value, 2.0);
   EXPECT_EQ(found[3].nearest(), &found[3].limits[0]);
+}
+
+// No method is fine at its own step; one is at a finer one.
+TEST(LimitsOf, AnotherMethodMayHelpAtAFinerStep) {
+  using enum Verdict;
+  const std::vector<std::vector<Verdict>> faulty(3, std::vector<Verdict>(4, energy));
+  std::vector<FinishedMap> maps;
+  for (const char* method : {"paper", "stable", "moreau", "penalty", "event"})
+    maps.push_back(finished(method, faulty));
+  EXPECT_FALSE(limits_of(gate(), maps)[0].limits[0].remedy);
+  maps[2] = finished("moreau", std::vector<std::vector<Verdict>>(3, {kOk, energy, kOk, kOk}));
+  const auto remedy = limits_of(gate(), maps)[0].limits[0].remedy;
+  ASSERT_TRUE(remedy);
+  EXPECT_EQ(remedy->method, "moreau");
+  EXPECT_EQ(remedy->key, "run.step_s");
+  EXPECT_EQ(remedy->value, 1.0);
+}
+
+// Whatever a scene asks for is a value of the map, beside the others.
+TEST(LimitMaps, HaveTheScenesOwnToleranceHoweverFarOff) {
+  for (const double tolerance : {1e-20, 1.0, 5.0, 1e5}) {
+    LimitScene scene = gate();
+    scene.gate.run.event_tolerance = tolerance;
+    for (const LimitMap& map : limit_maps(scene)) {
+      EXPECT_TRUE(std::is_sorted(map.x.values.begin(), map.x.values.end()));
+      if (map.method != "event") continue;
+      ASSERT_TRUE(map.x.own);
+      EXPECT_EQ(map.x.values[*map.x.own], tolerance);
+    }
+  }
 }
 
 TEST(Signs, AreNumbersOfTheStatus) {

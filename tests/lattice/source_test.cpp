@@ -96,6 +96,17 @@ TEST(Source, APredictionChoosesTheMethodThatTheSceneLeavesOpen) {
   EXPECT_NEAR(prediction.starts[0].final.final_cells.sum(), 1.0, 1e-9);
 }
 
+TEST(Source, ACopyAddsRunsToItsOwn) {
+  const Source s = Source::open(opened(kField));
+  EXPECT_THROW((void)s.matrices(), std::invalid_argument);
+  Source copy = s;
+  copy.accuracy.accuracy = 0.3;
+  (void)predict(copy);
+  EXPECT_EQ(s.pool->gate_runs(), 0);
+  EXPECT_GT(copy.pool->gate_runs(), 0);
+  EXPECT_THROW((void)Source{}.matrices(), std::invalid_argument);
+}
+
 TEST(Source, AMatrixSaysWhatItsTreesWereMadeFor) {
   const Scene scene = parse_scene(kField, "a.toml");
   const TreeOptions how{.accuracy = {.accuracy = 0.2}, .starts = {own_start(scene)}};

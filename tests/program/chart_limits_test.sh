@@ -9,9 +9,9 @@ short=(--quick --trials 8 --set run.time_limit_s=3)
 holds '.scene == "field" and .trials_per_point == 8 and .types_not_charted == []' maps/limits.json
 holds '.maps | length == 45' maps/limits.json
 holds '[.maps[] | (.status | length) == (.y.values | length) and (.status[0] | length) == (.x.values | length)] | all' maps/limits.json
-holds '.methods | map(.method) == ["paper", "stable", "moreau", "penalty", "event"]' maps/limits.json
+holds '.methods | map(.name) == ["paper", "stable", "moreau", "penalty", "event"]' maps/limits.json
 holds '[.methods[] | .limits | length == 10] | all' maps/limits.json
-holds '.methods[1] | .key == "run.step_s" and .value == 0.02 and .limits[0].own == 0.02' maps/limits.json
+holds '.methods[1] | .setting == "run.step_s" and .value == 0.02 and .limits[0].own == 0.02' maps/limits.json
 [ "$(wc -l <table.txt)" -le 15 ] || fail "chart limits prints $(wc -l <table.txt) lines"
 [ "$(ls maps/*.svg | wc -l)" = 9 ] || fail "chart limits: $(ls maps)"
 [ "$(awk -F, '{ print NF }' maps/limits.csv | sort -u)" = 23 ] || fail "chart limits: uneven lines in limits.csv"
@@ -20,12 +20,25 @@ holds '.methods[1] | .key == "run.step_s" and .value == 0.02 and .limits[0].own 
 # The scene's own point is what gate says of it, and its sign stands in gate's warning.
 faults='{runs, runs_penetrating_over_1_percent, runs_creating_energy, runs_beyond_the_stability_bound, runs_not_finite, impacts, worst_penetration_m}'
 for k in 0 1 2 3 4; do
-  method=$(value ".methods[$k].method" maps/limits.json) sign=$(value ".methods[$k] | select(.status != \"outcomes off\") | .sign" maps/limits.json)
+  method=$(value ".methods[$k].name" maps/limits.json) sign=$(value ".methods[$k] | select(.status != \"outcomes off\") | .sign" maps/limits.json)
   "$gatewalk" gate "$scenes/field.toml" --set run.method=$method --set run.time_limit_s=3 --trials 8 --json gate.json --quiet >/dev/null 2>gate.err
   jq -s "(.[0].methods[$k].health | $faults) == (.[1].status | $faults)" maps/limits.json gate.json | grep -q true || fail "$method: gate reports other faults"
   grep -q -F -e "$sign" gate.err || [ -z "$sign" ] || fail "$method: gate does not warn: $sign"
 done
 holds '[.methods[] | .status] | unique | length > 1' maps/limits.json  # some are fine, some are not
+
+# What the table says helps is taken as it is printed, and helps.
+line=$(grep -m 1 '^  moreau .*step x5: .*; take run.step_s = ' table.txt) || fail "chart limits: moreau has no finer step"
+"$gatewalk" gate "$scenes/field.toml" --set run.method=moreau --set "run.step_s=${line##* = }" --set run.time_limit_s=3 --trials 8 --json helped.json --quiet >/dev/null ||
+  fail "a step that helps is refused: $line"
+holds '.status.clean' helped.json
+# Each number of the result has a line of its own in the table of numbers.
+"$gatewalk" chart limits "$scenes/single_gate.toml" -o maps --force --quick --trials 1 --set run.time_limit_s=1 --csv numbers.csv --quiet
+[ -z "$(cut -d, -f1-3 numbers.csv | sort | uniq -d)" ] || fail "chart limits: equal names in numbers.csv: $(cut -d, -f1-3 numbers.csv | sort | uniq -d | head -n 2)"
+# A tolerance that no map has.
+for tolerance in 1e-20 1e5; do
+  expect 0 'where each method breaks' "$gatewalk" chart limits "$scenes/single_gate.toml" -o maps --force --quick --trials 1 --set run.time_limit_s=1 --set run.event_tolerance_m=$tolerance
+done
 
 # What the scene has not is left out: damping, and the speed of a start at rest. The old figures go.
 expect 0 'undamped: where each method breaks' "$gatewalk" chart limits "$scenes/undamped.toml" -o maps --force "${short[@]}"

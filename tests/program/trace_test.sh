@@ -13,7 +13,7 @@ head -n 1 runs.csv | grep -q '^trial,time_s,gate_x,gate_y,x_m,y_m,' || fail "tra
 ncdump -v row_size runs.nc | tr -d ' \n;}' | grep -q "row_size=$(jq -r '[.runs[].t | length] | join(",")' runs.json)" || fail "trace: NetCDF has other runs"
 # As the CF conventions have trajectories.
 for attribute in ':Conventions = "CF-1.10"' ':featureType = "trajectory"' 'run_trial:cf_role = "trajectory_id"' \
-  'row_size:sample_dimension = "sample"' 'time_s:axis = "T"' 'x_m:coordinates = "time_s field_x_m field_y_m"'; do
+  'row_size:sample_dimension = "sample"' 'field_x_m:axis = "X"' 'x_m:coordinates = "time_s field_x_m field_y_m"'; do
   ncdump -h runs.nc | grep -q "$attribute" || fail "trace: NetCDF without $attribute"
 done
 ncdump -h runs.nc | grep -q 'contact_left:flag_meanings = "free hit held"' || fail "trace: no meanings of contact codes"

@@ -19,6 +19,7 @@ constexpr std::int64_t kGrazes = 8;    // starts of a graze: it falls anywhere i
 constexpr double kRounding = 1.5e-14;  // of R: methods count such gaps as contact, or not
 constexpr double kGap = 1e-12;         // of R, below the beam that is hit near its joint
 constexpr int kDecades = 2;            // how far numbers vary, down and up
+constexpr int kDoublings = 7;          // of the step, up
 constexpr std::int64_t kMostWorkOfTrial = 2'000'000;  // steps or evaluations of a trial, at least,
 constexpr double kMostWorkOfStep = 30.0;              // and for each of its steps: more is stuck
 constexpr std::int64_t kMostWorkOfReference = 4'000'000;
@@ -120,22 +121,20 @@ Setting own_setting(const LimitScene& scene, std::string_view method) {
 }
 
 /// What trades speed for accuracy, from fine to coarse: a quarter of the scene's step to the
-/// longest that there is, one draw of the random force.
+/// longest that there is, one draw of the random force, or 128 times its own.
 MapAxis effort_axis(const LimitScene& scene, std::string_view method) {
   const double own = own_setting(scene, method).value;
   const int per_doubling = scene.options.quick ? 1 : 2;
   MapAxis axis{"step", "s", "step (s)", {}};
   if (method == "event") {
     axis = {"tolerance", "m", "event tolerance (m)", {}};
-    const double most = 0.1 * scene.gate.body.radius * (1.0 + 1e-9),
-                 least = 1e-14 * scene.gate.body.radius;
-    for (const double value : decades(own, -2, 2, per_doubling))
-      if (value >= least && value <= most) axis.values.push_back(value);
+    axis.values = decades(own, -2, 2, per_doubling);
   } else {
     const double hold = 1.0 / scene.gate.forces.random_rate;
     const auto parts = std::lround(hold / own);
     std::vector<long> all;
-    for (int k = 2 * per_doubling; all.empty() || all.back() > 1; --k) {
+    for (int k = 2 * per_doubling;
+         k >= -kDoublings * per_doubling && (all.empty() || all.back() > 1); --k) {
       const long n = std::max(1L, std::lround(static_cast<double>(parts) *
                                               std::exp2(static_cast<double>(k) / per_doubling)));
       if (all.empty() || n != all.back()) all.push_back(n);
@@ -143,11 +142,13 @@ MapAxis effort_axis(const LimitScene& scene, std::string_view method) {
     for (const long n : all)
       axis.values.push_back(n == parts ? own : hold / static_cast<double>(n));
   }
-  const auto nearest =
-      std::min_element(axis.values.begin(), axis.values.end(),
-                       [&](double a, double b) { return std::abs(a - own) < std::abs(b - own); });
-  axis.from = static_cast<std::size_t>(nearest - axis.values.begin());
-  *nearest = own;
+  // The scene's own value is one of them, to the last bit.
+  auto at = std::lower_bound(axis.values.begin(), axis.values.end(), own * (1.0 - 1e-9));
+  if (at != axis.values.end() && *at <= own * (1.0 + 1e-9))
+    *at = own;
+  else
+    at = axis.values.insert(at, own);
+  axis.from = static_cast<std::size_t>(at - axis.values.begin());
   axis.own = axis.from;
   return axis;
 }
@@ -390,6 +391,10 @@ Limit limit_on(const MapAxis& axis, At at) {
   return limit;
 }
 
+const char* key_of(const FinishedMap& map) {
+  return map.map.method == "event" ? "run.event_tolerance_m" : "run.step_s";
+}
+
 /// The coarsest setting below place `from` without fault in a row of the map.
 std::optional<double> finer_setting(const FinishedMap& map, std::size_t from, std::size_t iy) {
   for (std::size_t ix = from; ix-- > 0;)
@@ -397,19 +402,23 @@ std::optional<double> finer_setting(const FinishedMap& map, std::size_t from, st
   return std::nullopt;
 }
 
-/// What to do about a fault at (ix, iy) of a map: a finer setting, else the first of the other
-/// methods that has none at its own setting there; `stable` is asked first.
+/// What to do about a fault at (ix, iy) of a map: a finer setting, else another method that has
+/// none there at its own setting, or else at a finer one; `stable` is asked first.
 std::optional<Remedy> remedy_for(const FinishedMap& map, std::size_t ix, std::size_t iy,
                                  std::span<const FinishedMap> of_all_methods) {
-  const char* const key = map.map.method == "event" ? "run.event_tolerance_m" : "run.step_s";
-  if (const auto finer = finer_setting(map, ix, iy)) return Remedy{key, *finer};
-  const FinishedMap* other = nullptr;
-  for (const FinishedMap& m : of_all_methods)
-    if (m.map.method != map.map.method && m.at(m.map.x.from, iy).verdict == Verdict::fine &&
-        (!other || m.map.method == "stable"))
-      other = &m;
-  if (!other) return std::nullopt;
-  return Remedy{"run.method", 0.0, other->map.method};
+  if (const auto finer = finer_setting(map, ix, iy)) return Remedy{key_of(map), *finer};
+  std::optional<Remedy> found;
+  const auto look = [&](const FinishedMap& m) {
+    if (m.map.method == map.map.method || found) return;
+    if (m.at(m.map.x.from, iy).verdict == Verdict::fine)
+      found = {"", 0.0, m.map.method};
+    else if (const auto finer = finer_setting(m, m.map.x.from, iy))
+      found = {key_of(m), *finer, m.map.method};
+  };
+  for (const bool is_stable : {true, false})
+    for (const FinishedMap& m : of_all_methods)
+      if ((m.map.method == "stable") == is_stable) look(m);
+  return found;
 }
 
 }  // namespace

@@ -115,11 +115,11 @@ struct FinishedMap {
 
 // ---- How far from the scene ----
 
-/// A way out of a fault: another step (or tolerance) of the same method, else another method.
+/// A way out of a fault: another step (or tolerance), another method, or both.
 struct Remedy {
-  std::string key;  // "run.step_s", "run.event_tolerance_m", "run.method"
+  std::string key{};  // "run.step_s", "run.event_tolerance_m"; empty: the method's own
   double value = 0.0;
-  std::string method{};  // of run.method
+  std::string method{};  // empty: the same
 };
 
 /// The nearest fault of a method along one axis, with all else as in the scene. First contacts near
