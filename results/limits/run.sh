@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Where each method breaks near the numbers of a scene: the paper's gate, the same with rigid and with creeping beams,
 # where methods refuse, and a small walking robot.
-#   results/limits/run.sh [GATEWALK]      3 minutes on two cores
+#   results/limits/run.sh [GATEWALK]      40 seconds on two cores
 # Writes gate/ and walker/ (limits.csv, limits.json, a figure per number), gate.txt and walker.txt (the tables), a table
 # and a figure of rigid and of creeping beams, manifest.txt.
 set -euo pipefail
