@@ -152,7 +152,7 @@ TEST_P(AnyMethod, StopsAtTheMomentOfLeaving) {
   Ride ride(by(test::free_rods(), 0.004), at_rest(19.99, 0.0, 10.0, 0.0));
   EXPECT_NEAR(ride.go(1.0), 0.501, GetParam().exit_time);
   EXPECT_TRUE(outside(ride.p, ride.s.body));
-  EXPECT_NEAR(ride.s.body.x, 25.0, 10 * GetParam().exit_time);
+  EXPECT_NEAR(ride.s.body.x, 25.0, GetParam().exit_place);
   if (GetParam().name != "event") {
     EXPECT_EQ(ride.watch.steps, 126);
   }
@@ -289,6 +289,7 @@ TEST_P(ExactHits, FirstHitsObeyTheLaw) {
     const auto touch_at_hit = [&](Side side) {
       return nearest(p, side, body, start.beams[side].theta + start.beams[side].omega * hit);
     };
+    ASSERT_FALSE(left && right);  // the other beam is not touched
     const bool nearer = std::abs(touch_at_hit(kLeft).gap) < std::abs(touch_at_hit(kRight).gap);
     const bool pin = !left && !right;  // neither beam feels it
     const Side side = left || (pin && nearer) ? kLeft : kRight;
@@ -343,8 +344,8 @@ TEST_P(ExactHits, ElasticHitsKeepTheEnergy) {
         inside = balance();
         passed += ride.step();
       }
-      impacts += ride.watch.impacts;
       if (ride.watch.forced_holds > 0) continue;
+      impacts += ride.watch.impacts;
       // 3000 steps that round up to 700 J.
       ASSERT_NEAR(inside, before, springs ? 3000 * kEps * 700 : 1e-12 * before) << i;
     }
@@ -364,6 +365,7 @@ TEST_P(BothAlike, CreatesLittleEnergyInTrials) {
     EXPECT_LE(health.worst_energy_created, c.most);
     EXPECT_LE(health.worst_penetration, GetParam().overlap_m);
     EXPECT_EQ(health.clean(), GetParam().clean);
+    EXPECT_EQ(health.creating_energy > 0, GetParam().reported);
     if (GetParam().holds && by_default && c.step == GateParams{}.run.step)
       measured({.requirement = 5,
                 .method = GetParam().name,
@@ -375,14 +377,15 @@ TEST_P(BothAlike, CreatesLittleEnergyInTrials) {
 }
 
 TEST_P(EnergyInSteps, EnergyCreatedFallsWithTheStep) {
-  const auto& [least, most, random, trials, one_restitution, limit] = GetParam().order;
+  const auto& [least, most, random, trials, one_restitution, limits] = GetParam().order;
   double last = 0.0, order = 10.0;
-  for (const double step : {0.004, 0.002, 0.001}) {
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const double step = 0.004 / (1 << i);
     GateParams p = by(test::study(10.0), step);
     p.forces.random = random;
     if (one_restitution) p.contact.tip_restitution = p.contact.restitution;
     const auto [mean, worst] = test::energy_created(p, trials);
-    EXPECT_LE(worst, limit) << step;
+    EXPECT_LE(worst, limits[i]) << step;
     if (last > 0.0) {
       EXPECT_LE(std::log2(last / mean), most) << step;
       order = std::min(order, std::log2(last / mean));
@@ -519,7 +522,8 @@ TEST_P(AnyMethod, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
-// S10: elastic, no damping, no drag: turned round, the disc finds its way back through ten hits.
+// S10: elastic, no damping, no drag: turned round, the disc finds its way back through four to ten
+// hits, from wherever it starts.
 TEST_P(ExactHits, ReturnsToTheStart) {
   GateParams p = by(test::study(0.0), 0.004);
   p.forces.random = 0.0;
@@ -530,7 +534,6 @@ TEST_P(ExactHits, ReturnsToTheStart) {
     s.body.vy = -s.body.vy;
     for (BeamState& b : s.beams) b.omega = -b.omega;
   };
-  int rides = 0;
   double worst = 0.0;
   for (int x = -18; x < 18; ++x) {
     SCOPED_TRACE(x);
@@ -539,7 +542,8 @@ TEST_P(ExactHits, ReturnsToTheStart) {
     int steps = 0;
     for (; ride.watch.impacts < 10 && steps < 1000 && !outside(p, ride.s.body); ++steps)
       ride.step();
-    if (outside(p, ride.s.body) || ride.watch.forced_holds > 0) continue;
+    EXPECT_FALSE(outside(p, ride.s.body));
+    EXPECT_EQ(ride.watch.forced_holds, 0);  // a hold has no way back
     const auto there = ride.watch.impacts;
     EXPECT_GE(there, 4);
     turn_round(ride.s);
@@ -547,17 +551,15 @@ TEST_P(ExactHits, ReturnsToTheStart) {
     turn_round(ride.s);
     EXPECT_EQ(ride.watch.impacts, 2 * there);
     worst = std::max(worst, test::largest_difference(ride.s, start));
-    ++rides;
   }
   EXPECT_LE(worst, GetParam().reversed);
-  EXPECT_GE(rides, GetParam().reversed_rides);
   measured({.requirement = 10,
             .method = GetParam().name,
             .what = "distance from the start on return",
             .figure = worst,
             .unit = "m, m/s, rad",
             .limit = 1e-6,
-            .cases = rides});
+            .cases = 36});
 }
 
 }  // namespace
