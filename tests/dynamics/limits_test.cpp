@@ -189,6 +189,7 @@ TEST_P(StiffWall, IsHardlyMoved) {
       EXPECT_LE(fall.watch.max_theta[kRight], most);
       EXPECT_LE(fall.s.body.y, 20.0 + 25.0 * most + GetParam().wall_overlap);
       EXPECT_LE(fall.watch.max_penetration, GetParam().wall_overlap);
+      EXPECT_LE(fall.watch.energy_created, 1e-9);  // J; nothing is held yet
     }
 }
 
@@ -244,6 +245,9 @@ TEST_P(HeldContacts, BeamsThatAreTooFastAreRefused) {
   EXPECT_EQ(refused(p), "");
   p.beams.damping = 1.001 * rate * inertia;
   EXPECT_EQ(refused(p), GetParam().fastest_key);
+  // Where the message names the step, a shorter one helps.
+  p.run.step = 0.01;
+  EXPECT_EQ(refused(p), GetParam().fastest_key == "run.step_s" ? "" : GetParam().fastest_key);
 }
 
 // ---- S11 - S14: near-singular starts ----
@@ -288,14 +292,14 @@ TEST_P(HeldContacts, ATipIsHitOnlyBelowTheRadius) {
   p.contact.impulse_threshold = 0.0;
   p.run.step = 0.0005;  // the chord below R by delta lasts 2 sqrt(2 delta) R / v
   const double R = p.body.radius;
-  for (double decade = 1e-3; decade >= GetParam().graze; decade /= 10)
+  for (double decade = 1e-2; decade >= GetParam().graze; decade /= 10)
     for (const double sign : {1.0, -1.0}) {
       GateState s = at_rest(R * (1 + sign * decade), 10.0, 0.0, 10.0);
       s.beams[kRight].theta = 1.5;              // out of the way
       const double delta = (R - s.body.x) / R;  // as rounded
       SCOPED_TRACE(testing::Message() << "delta = " << delta);
       Ride ride(p, s);
-      ride.go(4.0);
+      ride.go(2.5);  // not as far as the other beam
       const double kick = std::hypot(ride.s.body.vx, ride.s.body.vy - 10.0);
       const auto impulse = [&](double depth) {  // of a hit as deep as that below R
         if (depth <= 0.0) return 0.0;
