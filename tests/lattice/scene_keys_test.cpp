@@ -181,18 +181,24 @@ TEST_P(SceneKeys, MayBelongToATypeOfGateOrAnAction) {
          beams || forces || table() == "contact");
 }
 
-// A key's unit may have another prefix; the range is then said in that unit.
+// A key's unit may have another prefix, c only of lengths and speeds; the range is then said in
+// that unit. Other units are refused.
 TEST_P(SceneKeys, TakesUnitsWithAPrefixAndNoOthers) {
-  if (GetParam().unit.empty()) return;
-  for (const std::string prefix : {"k", "m", "u", "n", ""}) {
+  const std::string& own_unit = GetParam().unit;
+  if (own_unit.empty()) return;
+  const bool kilogram = own_unit == "kg";
+  std::string stem;
+  int taken = 0;
+  for (const std::string prefix : {"k", "c", "m", "u", "n", ""}) {
     // The prefix stands before the unit, which is all that follows the name.
     for (std::size_t at = leaf().find('_'); at != std::string::npos;
          at = leaf().find('_', at + 1)) {
       std::string other = leaf();
-      const bool kilogram = GetParam().unit == "kg";
       other.replace(at + 1, kilogram ? 1 : 0, prefix);
       const auto unit = unit_of(table() + "." + other, key());
       if (!unit || other == leaf()) continue;
+      ++taken;
+      stem = leaf().substr(0, at + 1);
       const double own = in_own_unit(3.0, *unit);
       EXPECT_NEAR(own, 3.0 * std::pow(10.0, unit->power), 1e-12 * own);
       const std::string what = scene_refusal("[" + table() + "]\n" + other + " = nan\n");
@@ -205,6 +211,17 @@ TEST_P(SceneKeys, TakesUnitsWithAPrefixAndNoOthers) {
       EXPECT_EQ(twice, "bad.toml:3: " + table() + "." + other + " = 1 is the same quantity as " +
                            key() + " = 1 (bad.toml:2): give one of them");
     }
+  }
+  const bool centi = own_unit == "m" || own_unit == "m/s";
+  EXPECT_EQ(taken, centi ? 5 : 4);
+  std::vector<std::string> others{"ft", own_unit == "s" ? "m" : "s",
+                                  "M" + leaf().substr(stem.size())};
+  if (!centi) others.push_back("c" + leaf().substr(stem.size()));
+  for (const std::string& other : others) {
+    const std::string wrong = stem + other;
+    const std::string what = scene_refusal("[" + table() + "]\n" + wrong + " = 1\n");
+    EXPECT_TRUE(what.starts_with("bad.toml:2: unknown key " + table() + "." + wrong)) << what;
+    EXPECT_NE(what.find(key()), what.npos) << what;
   }
 }
 
