@@ -19,9 +19,9 @@ import gatewalk
 import prepare
 
 # A user of the installed libraries looks for these first.
-CPP = ["dynamics::Transitions", "dynamics::StateSpace", "dynamics::GateParams", "dynamics::add_trials",
-       "lattice::make_chain", "lattice::chain_start", "lattice::predict_pooled", "markov::Chain", "markov::FieldChain",
-       "markov::Counts", "markov::solve_directly", "markov::Ending", "markov::Exit"]
+CPP = ["dynamics::Transitions", "dynamics::StateSpace", "dynamics::GateParams", "dynamics::Cell",
+       "lattice::make_chain", "lattice::chain_start", "lattice::Source", "markov::Chain", "markov::FieldChain",
+       "markov::Counts", "markov::Walker", "markov::Ending", "markov::Exit"]
 LOADS = {"script": "src", "img": "src", "iframe": "src", "source": "src", "video": "src", "audio": "src",
          "embed": "src", "object": "data", "image": "href", "use": "href"}
 NOT_LOADED = ("canonical", "index", "search", "next", "prev", "author", "copyright")
