@@ -86,12 +86,13 @@ std::string charts() {
   return lines;
 }
 
-/// What has another name since version 2.0.
+/// Commands that have another name since version 2.0. `chart` is renamed where the word behind it
+/// is no chart.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kRenamed{
     {{"chart-chain", "chart chain"},
      {"chart-field", "chart field"},
      {"stability", "chart limits SCENE"},
-     {"chart", "chart methods"}}};  // which is said of what names no chart
+     {"chart", "chart methods"}}};
 
 /// Refuses a command by its old name, with the words that it has now.
 void refuse_old_name(const std::vector<std::string>& words) {

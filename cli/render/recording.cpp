@@ -88,8 +88,8 @@ void put_runs(int nc, const Recordings& recordings) {
   put_words(nc, put_variable(nc, "ending", run, ending, "1", "how a run ended"), known);
 }
 
-/// Coordinates of trajectories in the sense of CF, with their axes. The time, of which CF's axis T
-/// asks since when, has none.
+/// Coordinates of trajectories with their axes, as the CF conventions name them. The time has no
+/// axis: CF's axis T needs a date from which time counts, and a trial has none.
 const std::map<std::string_view, const char*> kAxes{{"field_x_m", "X"}, {"field_y_m", "Y"}};
 
 /// A column of all runs: codes as bytes, what is counted as whole numbers.

@@ -28,8 +28,9 @@ class PieceSize {
   std::int64_t least_, size_;
 };
 
-/// Items of work that are done in one go, or in pieces: trials, by their numbers. Several stages
-/// that are divided as one have so many items `before` this one, `of` all of them.
+/// Items of work that are done in one go, or in pieces: trials, by their numbers. Where several
+/// stages are divided together, `before` counts the items of the stages before this one, and `of`
+/// the items of all stages.
 struct Stage {
   std::string_view what;
   TrialRange items;
@@ -114,7 +115,8 @@ void in_kept_pieces(const Work& work, const Stage& stage, const T& none,
   in_pieces_of(work, stage, {run_and_take, run_to_bytes, take_bytes});
 }
 
-/// Whether to prepare a stage, of which a part may do nothing. It is done with where not.
+/// Whether this part of a divided run does any items of the stage. If it does none, the stage need
+/// not be prepared, and counts as done.
 [[nodiscard]] bool has_share(const Work& work, const Stage& stage);
 
 }  // namespace gatewalk::dynamics
