@@ -26,12 +26,16 @@ namespace {
 
 std::string memory_advice;
 
+// Headings of a help page, in their order.
+constexpr const char *kMostUsed = "Options that most people need", *kOthers = "Other options",
+                     *kOutput = "Output", *kHowItRuns = "How it runs";
+
 /// Options that cannot change a result, left out of the recorded command.
 bool shapes_nothing(const std::string& name) {
   return name == "threads" || name == "quiet" || name == "json" || name == "csv" ||
          name == "output" || name == "strict" || name == "figure" || name == "netcdf" ||
-         name == "page" || name == "force" || name == "checkpoint" || name == "resume" ||
-         name == "max-time" || name == "shard" || name == "part";
+         name == "page" || name == "details" || name == "force" || name == "checkpoint" ||
+         name == "resume" || name == "max-time" || name == "shard" || name == "part";
 }
 
 /// Of an option that is meant to be given once, the last one counts; says so.
@@ -310,6 +314,11 @@ Option Options::add_strict() {
       "strict", "exit status 1 when the result's status is not clean; it is written all the same");
 }
 
+void Options::add_details(const std::string& shown) {
+  add_flag("details", "also show " + shown);
+  state_->details_shown = shown;
+}
+
 TextOption Options::add_kept(std::set<std::string> divided) {
   declare_kept(*this, !divided.empty());
   state_->divided = std::move(divided);
@@ -360,6 +369,22 @@ void Options::without_scene(const std::string& reason) { state_->no_scene = reas
 
 // ---- What is given ----
 
+void Options::most_used(std::vector<std::string> names) { state_->most_used = std::move(names); }
+
+std::string Options::group_of(const std::string& name) const {
+  static const std::set<std::string> kRun{"threads", "force",  "quiet", "help",     "checkpoint",
+                                          "resume",  "strict", "shard", "max-time", "part"};
+  if (std::count(state_->most_used.begin(), state_->most_used.end(), name) > 0) return kMostUsed;
+  if (is_written(name) || name == "details") return kOutput;
+  return kRun.contains(name) ? kHowItRuns : kOthers;
+}
+
+bool Options::is_written(const std::string& name) const {
+  return std::any_of(state_->output_files.begin(), state_->output_files.end(),
+                     [&](const State::Output& o) { return o.name == name; }) ||
+         name == "output" || name == "figure";
+}
+
 CommandHelp Options::help() const {
   CommandHelp help{state_->synopsis, state_->about, state_->example, {}, {}};
   for (const auto& [name, text] : state_->positional_help)
@@ -373,16 +398,42 @@ CommandHelp Options::help() const {
       const std::string letters =
           option->canonical_display_name(po::command_line_style::allow_dash_for_short);
       const bool is_file =
-          std::any_of(state_->output_files.begin(), state_->output_files.end(),
-                      [&](const State::Output& o) { return o.name == name; }) ||
+          is_written(name) ||
           std::any_of(state_->reads.begin(), state_->reads.end(),
-                      [&](const auto& r) { return r.first == name && name != "set"; }) ||
-          name == "output" || name == "figure";
-      help.options.push_back({name, value, option->description(),
-                              letters.size() == 2 ? letters[1] : char{0}, is_file,
-                              kind_of(*option->semantic()), option->semantic()->is_composing()});
+                      [&](const auto& r) { return r.first == name && name != "set"; });
+      help.options.push_back(
+          {name, value, option->description(), letters.size() == 2 ? letters[1] : char{0}, is_file,
+           kind_of(*option->semantic()), option->semantic()->is_composing(), group_of(name)});
     }
+  const auto place = [&](const CommandHelp::Option& o) {
+    const auto& first = state_->most_used;
+    const auto at = std::find(first.begin(), first.end(), o.name) - first.begin();
+    const std::string groups[] = {kMostUsed, kOthers, kOutput, kHowItRuns};
+    return std::pair(std::find(groups, std::end(groups), o.group) - groups, at);
+  };
+  std::stable_sort(help.options.begin(), help.options.end(),
+                   [&](const auto& a, const auto& b) { return place(a) < place(b); });
   return help;
+}
+
+std::string Options::help_page() const {
+  constexpr unsigned kColumns = 100;
+  const CommandHelp page = help();
+  lattice::TextStream text;
+  text << "gatewalk " << page.synopsis << "\n\n" << page.about << "\n\n";
+  TextTable positionals({{"", -22, 0, "", "  "}, {"", 0, 0, "", "  "}});
+  for (const auto& [name, what] : page.arguments) positionals.row({name, what});
+  text << positionals.text() << "\nExample:\n  " << page.example << "\n";
+  for (auto at = page.options.begin(); at != page.options.end();) {
+    po::options_description group(at->group, kColumns);
+    for (const std::string& heading = at->group; at != page.options.end() && at->group == heading;
+         ++at)
+      for (const auto* all : {&state_->own, &state_->shared})
+        for (const auto& option : all->options())
+          if (option->long_name() == at->name) group.add(option);
+    text << "\n" << group;
+  }
+  return text.str();
 }
 
 bool Options::parse(const Arguments& arguments) {
@@ -438,15 +489,7 @@ bool Options::parse(const Arguments& arguments) {
                                  mistake_in(e, offered, arguments.words), state_->name()));
   }
   if (Option(*this, "help")) {
-    lattice::TextStream page;
-    page << "gatewalk " << state_->synopsis << "\n\n" << state_->about << "\n\n";
-    TextTable positionals({{"", -22, 0, "", "  "}, {"", 0, 0, "", "  "}});
-    for (const auto& [name, help] : state_->positional_help)
-      positionals.row({upper_case(name), help});
-    page << positionals.text() << "\n"
-         << state_->own << "\n"
-         << state_->shared << "\nExample:\n  " << state_->example << "\n";
-    write_text_atomically("-", page.str());
+    write_text_atomically("-", help_page());
     return false;
   }
   if (!state_->no_scene.empty() && set)
@@ -478,12 +521,13 @@ bool Options::parse(const Arguments& arguments) {
         std::any_of(state_->output_files.begin(), state_->output_files.end(),
                     [&](const State::Output& o) { return o.name == option.string_key; }) ||
         (option.string_key == "output" && !state_->needs_output.empty());
-    const bool is_strict = option.string_key == "strict";  // of the result of all parts
-    Strings& words = is_output || is_strict ? state_->words.outputs : state_->words.shaping;
+    // Of the result of all parts.
+    const bool is_of_whole = option.string_key == "strict" || option.string_key == "details";
+    Strings& words = is_output || is_of_whole ? state_->words.outputs : state_->words.shaping;
     if (option.position_key >= 0) {
       words.push_back(option.value.front());
     } else if (option.string_key != "part" && option.string_key != "checkpoint" &&
-               (is_output || is_strict || !shapes_nothing(option.string_key))) {
+               (is_output || is_of_whole || !shapes_nothing(option.string_key))) {
       if (option.value.empty()) words.push_back("--" + option.string_key);
       for (const auto& value : option.value)
         words.push_back(fmt::format("--{}={}", option.string_key, value));

@@ -43,6 +43,7 @@ struct CommandHelp {
     bool is_file = false;
     std::string kind = "text";  // or flag, count, seed, number
     bool is_repeated = false;
+    std::string group{};  // heading on the page; options of a group stand together
   };
   std::vector<Option> options;
 };
@@ -91,6 +92,16 @@ class UsageError : public std::runtime_error {
 };
 
 inline constexpr std::int64_t kMostCount = 1'000'000'000'000'000;  // doubles are exact up to here
+
+/// What a command shows on the terminal.
+struct Screen {
+  Screen(std::string text, std::string more = {}, std::vector<std::string> then = {})  // NOLINT
+      : answer(std::move(text)), details(std::move(more)), next(std::move(then)) {}
+
+  std::string answer;             // at most 15 lines for one start, without maps
+  std::string details;            // printed behind the answer with --details
+  std::vector<std::string> next;  // what the user can do next, a line each
+};
 
 class Options;
 
@@ -187,6 +198,8 @@ class Options {
   /// --trials, by default the paper's 100, and --seed.
   CountOption add_trials_and_seed(const std::string& trials_help);
   Option add_strict();
+  /// --details, which also prints Screen::details; `shown` says in words what these are.
+  void add_details(const std::string& shown);
 
   /// Declare that the command's pieces are kept (kept/kept_run.h): --checkpoint, which it returns,
   /// --resume, --max-time; and, with the names of stages that may be divided, --shard and --part.
@@ -213,6 +226,9 @@ class Options {
   /// page.
   void without_scene(const std::string& reason);
 
+  /// Names the options that most users need, five at most: they stand first on the help page.
+  void most_used(std::vector<std::string> names);
+
   /// Reads the arguments and looks at every file they name. False when --help was asked for and
   /// printed. Throws UsageError.
   [[nodiscard]] bool parse(const Arguments& arguments);
@@ -223,7 +239,7 @@ class Options {
       checkpoint{*this, "checkpoint"}, max_time{*this, "max-time"}, shard{*this, "shard"},
       part{*this, "part"};
   const Option force{*this, "force"}, quiet{*this, "quiet"}, resume{*this, "resume"},
-      strict{*this, "strict"}, set{*this, "set"};
+      strict{*this, "strict"}, set{*this, "set"}, details{*this, "details"};
   const CountOption trials{*this, "trials"}, first_trial{*this, "first-trial"},
       threads{*this, "threads"};
 
@@ -265,15 +281,15 @@ class Options {
   [[nodiscard]] Provenance provenance(const lattice::Scene& scene) const;
   [[nodiscard]] Provenance provenance(const lattice::Source& source) const;
 
-  /// Gives the result to Arguments::given_out; without it prints it: JSON where --json says, the
-  /// table on standard output otherwise; with --json FILE the table too, unless --quiet. `indent`
-  /// -1: JSON on one line, for long arrays.
-  void give_out(const Description& describe, const std::string& table, int indent = 2) const;
+  /// Passes the result to Arguments::given_out. Without that function, writes JSON where --json
+  /// says and prints the screen on standard output; beside --json FILE the screen is printed unless
+  /// there is --quiet. `indent` -1 writes JSON on one line, for long arrays.
+  void give_out(const Description& describe, const Screen& screen, int indent = 2) const;
   /// The same of a result that is described.
   template <class Result>
   requires requires(Fields& out, const Result& result) { describe(out, result); }
-  void give_out(const Result& result, const std::string& table, int indent = 2) const {
-    give_out(Description([&](Fields& out) { describe(out, result); }), table, indent);
+  void give_out(const Result& result, const Screen& screen, int indent = 2) const {
+    give_out(Description([&](Fields& out) { describe(out, result); }), screen, indent);
   }
   /// To be called before an output is written: what is there is kept as a Backup until the command
   /// is done, unless there is --force or it is written again. Then it is said which backups stay.
@@ -296,7 +312,11 @@ class Options {
   [[nodiscard]] bool has(const std::string& name) const;
   [[nodiscard]] std::string text(const std::string& name) const;
   [[nodiscard]] std::vector<NamedFile> inputs() const;
+  [[nodiscard]] bool is_written(const std::string& option) const;
+  [[nodiscard]] std::string group_of(const std::string& option) const;
   [[nodiscard]] CommandHelp help() const;
+  [[nodiscard]] std::string help_page() const;
+  [[nodiscard]] std::string text_of(const Screen& screen) const;
   void check_values_given() const;
   void check_files();
 };

@@ -52,12 +52,24 @@ Provenance Options::provenance(const lattice::Scene& scene) const {
   return p;
 }
 
-void Options::give_out(const Description& describe, const std::string& table, int indent) const {
+std::string Options::text_of(const Screen& screen) const {
+  std::string text = screen.answer;
+  if (details) text += screen.details;
+  if (!talk()) return text;
+  std::vector<std::string> next = screen.next;
+  if (!details && !screen.details.empty())
+    next.push_back("--details shows " + state_->details_shown);
+  for (const std::string& line : next)
+    text += (&line == &next.front() ? "Next: " : "      ") + line + "\n";
+  return text;
+}
+
+void Options::give_out(const Description& describe, const Screen& screen, int indent) const {
   const std::string table_file = state_->has_table ? csv.value() : "", json_file = json.value();
   if (!state_->given_out && is_first_rank()) {
     const bool to_stdout = json_file == "-" || table_file == "-";
     if (!to_stdout && ((json_file.empty() && table_file.empty()) || talk()))
-      write_text_atomically("-", table);
+      write_text_atomically("-", text_of(screen));
     if (json) write(json_file, result_json(describe, indent));
   }
   if (!table_file.empty()) write(table_file, table_of_numbers(describe));

@@ -70,6 +70,8 @@ struct Options::NamedFile {
 
 struct Options::State {
   std::string synopsis, about, example;
+  std::string details_shown;           // with --details, in words
+  std::vector<std::string> most_used;  // options, the first on the help page
   /// The command's name, one word or two: what the synopsis begins with, "chart field SCENE ...".
   [[nodiscard]] std::string name() const {
     return synopsis.substr(0, synopsis.find_first_not_of("abcdefghijklmnopqrstuvwxyz ") - 1);

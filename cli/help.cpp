@@ -93,7 +93,10 @@ std::string manual_of(const Page& page) {
   for (const auto& [name, what] : page.help.arguments)
     text += fmt::format(".TP\n.I {}\n{}\n", roff(name), roff(what));
   text += ".SH OPTIONS\n";
+  std::string group;
   for (const CommandHelp::Option& o : page.help.options) {
+    if (o.group != group) text += fmt::format(".SS {}\n", roff(o.group));
+    group = o.group;
     text += ".TP\n";
     if (o.letter != 0) text += fmt::format("\\fB\\-{}\\fR, ", o.letter);
     text +=

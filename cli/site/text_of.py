@@ -47,6 +47,8 @@ def command_page(manual: str, name: str) -> str:
                     out += [f"````{{option}} {_plain(head)}", _words(body), "````", ""]
                 else:
                     out += ["", f"`{_plain(head.removeprefix('.I '))}`", f": {_words(body)}", ""]
+            elif lines[0].startswith(".SS "):
+                out, lines = [*out, "", f"### {_plain(lines[0][4:])}", ""], lines[1:]
             elif lines[0].startswith("."):
                 out, lines = [*out, ""], lines[1:]
             else:
