@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace gatewalk::cli {
@@ -35,6 +36,30 @@ std::string p_words(double p) {
 std::string digits(double x, int significant) { return fmt::format("{:.{}g}", x, significant); }
 
 std::string scientific(double x, int decimals) { return fmt::format("{:.{}e}", x, decimals); }
+
+std::string wrapped(std::string_view text, std::string_view indent) {
+  const auto columns = [](std::string_view words) {  // characters of UTF-8, not bytes
+    return static_cast<std::size_t>(
+        std::count_if(words.begin(), words.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+  };
+  std::string lines, line;
+  bool is_empty = true;  // but for its indent
+  while (!text.empty()) {
+    // Blanks in front of a word stay with it, so that the first line may be indented.
+    const std::size_t word = text.find_first_not_of(' ');
+    const std::size_t end = text.find(' ', std::min(word, text.size()));
+    std::string_view next = text.substr(0, end);
+    text.remove_prefix(next.size());
+    if (!is_empty && columns(line) + columns(next) > kScreenColumns) {
+      lines += line + "\n";
+      line = indent;
+      next.remove_prefix(next.find_first_not_of(' '));
+    }
+    line += next;
+    is_empty = false;
+  }
+  return lines + line + "\n";
+}
 
 std::string counted(std::int64_t n, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", n, n == 1 ? one : many);

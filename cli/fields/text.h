@@ -3,11 +3,14 @@
 /// Numbers and words of tables.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace gatewalk::cli {
+
+inline constexpr std::size_t kScreenColumns = 100;  // no table is wider
 
 /// Fixed-point text of x with `digits` decimals; "-" for a value that is not a number.
 /// Never "-0.00".
@@ -25,6 +28,9 @@ namespace gatewalk::cli {
 [[nodiscard]] std::string digits(double x, int significant = 7);
 /// "6.9e-04" of one decimal.
 [[nodiscard]] std::string scientific(double x, int decimals);
+/// Lines of at most kScreenColumns characters, each ended: the text is broken at blanks, and lines
+/// after the first begin with `indent`. A longer word stays whole.
+[[nodiscard]] std::string wrapped(std::string_view text, std::string_view indent = {});
 /// "1 gap", "12 gaps"
 [[nodiscard]] std::string counted(std::int64_t n, std::string_view one, std::string_view many);
 

@@ -8,6 +8,7 @@
 
 #include "cli/fields/csv.h"
 #include "cli/fields/text.h"
+#include "cli/fields/text_table.h"
 #include "cli/paper/studies.h"
 
 namespace gatewalk::cli {
@@ -94,11 +95,28 @@ std::string csv_of(const std::vector<Claim>& claims) {
 }
 
 std::string table_of(const std::vector<Claim>& claims) {
+  const std::string indent(13, ' ');
   std::string text;
   for (const Claim& c : claims)
-    text += fmt::format("{:13}{} ({})\n{:13}paper: {}; here: {}\n", name_of(c.verdict), c.claim,
-                        c.where, "", c.paper, c.ours);
+    text += wrapped(fmt::format("{:13}{} ({})", name_of(c.verdict), c.claim, c.where), indent) +
+            wrapped(fmt::format("{}paper: {}; here: {}", indent, c.paper, c.ours), indent);
   return text;
+}
+
+std::string summary_of(const std::vector<Claim>& claims) {
+  const auto is_of_table4 = [](const Claim& c) { return std::string_view(c.see) == kTable4; };
+  TextTable table({{"Table IV", -36}, {"paper", 15}, {"here (sd)", 28}, {"", 0, 0, "", "  "}});
+  std::string differing;
+  for (const Claim& c : claims)
+    if (is_of_table4(c))
+      table.row({c.claim, c.paper, c.ours, name_of(c.verdict)});
+    else if (c.verdict == Verdict::differs)
+      differing +=
+          wrapped(fmt::format("- {} Paper: {}; here: {}.", c.claim, c.paper, c.ours), "  ");
+  return "Corrcoef / RMSE of the final gates, 100 trials of the full dynamics against the "
+         "chain:\n" +
+         table.text() +
+         (differing.empty() ? "" : "Of the other claims these differ:\n" + differing);
 }
 
 }  // namespace gatewalk::cli

@@ -23,13 +23,19 @@ struct Claim {
   const char* see = "";  // a section of the report
 };
 
+/// The section of the report with Table IV: Claim::see of the claims about its starts.
+inline constexpr const char* kTable4 = "table4";
+
 /// All of them, in the order of the report.
 [[nodiscard]] std::vector<Claim> claims_of(const Findings& f);
 /// Throws std::out_of_range for a claim that there is not.
 [[nodiscard]] Claim claim_of(std::string_view id, const Findings& f);
 
 [[nodiscard]] std::string csv_of(const std::vector<Claim>& claims);
+/// All claims, each with its verdict, the paper's value and ours.
 [[nodiscard]] std::string table_of(const std::vector<Claim>& claims);
+/// Table IV beside the values found here, and the other claims that differ.
+[[nodiscard]] std::string summary_of(const std::vector<Claim>& claims);
 
 // ---- The table that they come from
 

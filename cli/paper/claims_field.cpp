@@ -152,7 +152,7 @@ Measured thirteen_steps(const Findings& f) {
 }
 
 ClaimRow table4_claim(const char* id, Measured (*measure)(const Findings&)) {
-  return {{id, "Sec. III-C, Table IV", "table4"},
+  return {{id, "Sec. III-C, Table IV", kTable4},
           "Chain and dynamics, {start}.",
           {"{paper_corrcoef:3} / {paper_rmse:3}", "{exact}", measure},
           {"Mean (sd) of 100 trials against the exact chain; by chance alone a perfect chain gives "

@@ -222,7 +222,7 @@ Section table4(const Findings& f) {
   draw_table4(upper, rows, 2);
   draw_table4(lower, rows, 6);
   return {
-      "table4",
+      kTable4,
       "Table IV: prediction against dynamics, beside what chance allows",
       {fmt::format(
           "With 100 trials of the dynamics even a perfect chain would not reach corrcoef 1 and "

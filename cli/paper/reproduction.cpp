@@ -214,7 +214,7 @@ class Records {
 };
 
 /// Carries out what is not done yet, and takes what all of them gave.
-Results carry_out(const std::vector<Study>& studies, bool talk) {
+Results carry_out(const std::vector<Study>& studies, bool talk, bool each) {
   Records records;
   Results results;
   std::vector<const Study*> left;
@@ -241,9 +241,10 @@ Results carry_out(const std::vector<Study>& studies, bool talk) {
                  results.findings);
     done += s->cost;
     progress.finish();
-    if (talk)
+    ++number;
+    if (each)
       std::cout << fmt::format(
-                       "{:>8}  {:<18}{:>7} s{}\n", fmt::format("[{}/{}]", ++number, studies.size()),
+                       "{:>8}  {:<18}{:>7} s{}\n", fmt::format("[{}/{}]", number, studies.size()),
                        s->name, fixed(records.of(*s).seconds, 1),
                        records.of(*s).remarks.empty() ? "" : "   (with remarks: data/done.json)")
                 << std::flush;
@@ -351,7 +352,8 @@ Report reproduce(const ReproductionOptions& options) {
   const std::vector<Report::Scene> scenes = write_scenes();
   // No old page beside new figures, should this be stopped between them.
   std::filesystem::remove("report.html");
-  Report r = report_of(carry_out(studies, options.talk), studies, options.quick, scenes);
+  Report r =
+      report_of(carry_out(studies, options.talk, options.each), studies, options.quick, scenes);
   write_text_atomically("claims.csv", csv_of(r.claims));
   write_text_atomically("report.json", result_json([&](Fields& out) { describe(out, r); }, -1));
   if (has_pages()) write_text_atomically("report.html", report_page(r, drawn_figure));

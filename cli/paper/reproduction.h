@@ -11,7 +11,8 @@ namespace gatewalk::cli {
 struct ReproductionOptions {
   std::string folder;  // is made if there is none
   bool quick = false;  // fewer trials
-  bool talk = true;    // a line on standard output for every study
+  bool talk = true;    // progress, and which studies were done before
+  bool each = false;   // a line on standard output for every study
   bool force = false;  // also in a folder with files of others
 };
 

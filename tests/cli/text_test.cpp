@@ -22,5 +22,19 @@ TEST(Text, OneOfAKindIsNamedSo) {
   EXPECT_EQ(counted(12, "gap", "gaps"), "12 gaps");
 }
 
+TEST(Text, LinesAreBrokenAtBlanksWithinTheScreen) {
+  EXPECT_EQ(wrapped("one line"), "one line\n");
+  EXPECT_EQ(wrapped(""), "\n");
+  const std::string word(45, 'x'), wide(120, 'y'), accents = "\u00e9\u00e9";
+  EXPECT_EQ(wrapped("  " + word + " " + word, "    "), "  " + word + " " + word + "\n");
+  EXPECT_EQ(wrapped("  " + word + " " + word + " on", "    "), "  " + word + " " + word + " on\n");
+  EXPECT_EQ(wrapped("  " + word + " " + word + " next line", "    "),
+            "  " + word + " " + word + " next\n    line\n");
+  EXPECT_EQ(wrapped("a " + wide + " b", "  "), "a\n  " + wide + "\n  b\n");
+  // A letter of two bytes is one column.
+  EXPECT_EQ(wrapped(word + " " + word + " 123456 " + accents),
+            word + " " + word + " 123456 " + accents + "\n");
+}
+
 }  // namespace
 }  // namespace gatewalk::cli
