@@ -375,8 +375,8 @@ std::string Options::group_of(const std::string& name) const {
   static const std::set<std::string> kRun{"threads", "force",  "quiet", "help",     "checkpoint",
                                           "resume",  "strict", "shard", "max-time", "part"};
   if (std::count(state_->most_used.begin(), state_->most_used.end(), name) > 0) return kMostUsed;
-  if (is_written(name) || name == "details") return kOutput;
-  return kRun.contains(name) ? kHowItRuns : kOthers;
+  if (kRun.contains(name)) return kHowItRuns;
+  return is_written(name) || name == "details" ? kOutput : kOthers;
 }
 
 bool Options::is_written(const std::string& name) const {

@@ -87,7 +87,7 @@ int run_sweep(const Arguments& arguments) {
   const SweepResult result{axes, std::move(points), options.provenance(scene)};
   if (csv == "-") {
     write_text_atomically("-", csv_of(result));
-    if (!options.json.value().empty()) options.give_out(result, "");
+    if (!options.json.value().empty()) options.give_out(result, std::string());
   } else {
     if (!csv.empty()) options.write(csv, csv_of(result));
     options.give_out(result, table_of(result, scene));

@@ -105,11 +105,14 @@ std::string table_of(const std::vector<Claim>& claims) {
 
 std::string summary_of(const std::vector<Claim>& claims) {
   const auto is_of_table4 = [](const Claim& c) { return std::string_view(c.see) == kTable4; };
-  TextTable table({{"Table IV", -36}, {"paper", 15}, {"here (sd)", 28}, {"", 0, 0, "", "  "}});
+  TextTable table({{"Table IV", -kFit, 0, "", "  "},
+                   {"paper", kFit, 0, "", "  "},
+                   {"here (sd)", kFit, 0, "", "  "},
+                   {"", 0, 0, "", "  "}});
   std::string differing;
   for (const Claim& c : claims)
     if (is_of_table4(c))
-      table.row({c.claim, c.paper, c.ours, name_of(c.verdict)});
+      table.row({c.claim.substr(c.claim.find("d = ")), c.paper, c.ours, name_of(c.verdict)});
     else if (c.verdict == Verdict::differs)
       differing +=
           wrapped(fmt::format("- {} Paper: {}; here: {}.", c.claim, c.paper, c.ours), "  ");

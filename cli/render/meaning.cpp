@@ -272,13 +272,11 @@ std::vector<FarFromWalkers> far_from_walkers(const Meaning& m, const lattice::Sc
 
 std::string far_from_walkers_line(const lattice::Scene& scene) {
   if (scene.named.empty() || lattice::derived_keys(scene).empty()) return "";
-  std::string all;
-  for (const FarFromWalkers& far :
-       far_from_walkers(dynamics::meaning_of(scene.gate, scene.start), scene))
-    all += (all.empty() ? "" : "; ") + far.what;
-  if (all.empty()) return all;
+  const auto all = far_from_walkers(dynamics::meaning_of(scene.gate, scene.start), scene);
+  if (all.empty()) return "";
   return fmt::format(
-      "that is far from any animal or robot that walks: {} (gatewalk scene {} says why)", all,
+      "no walking animal or robot is like this scene: {}{} (gatewalk scene {} says why)",
+      all.front().what, all.size() > 1 ? fmt::format(", and {} more", all.size() - 1) : "",
       scene.source);
 }
 

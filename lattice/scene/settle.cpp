@@ -80,14 +80,15 @@ std::string with_value(const KeyInfo& k) {
 std::string derived_keys(const Scene& scene) {
   if (scene.named.empty() && !scene.terrain)
     return scene.source + " names no key: this is the paper's scene, 1 kg and 10 m in radius";
-  std::string all;
-  for (const KeyInfo& k : describe(scene)) {
-    if (k.source != "derived" || of_the_method(k.key)) continue;
-    all += (all.empty() ? "" : ", ") + with_value(k);
-  }
-  if (all.empty()) return all;
-  return scene.source +
-         " leaves out keys, which follow from the others by the paper's proportions: " + all;
+  const std::vector<KeyInfo> keys = describe(scene);
+  const auto left_out = std::count_if(keys.begin(), keys.end(), [](const KeyInfo& k) {
+    return k.source == "derived" && !of_the_method(k.key);
+  });
+  if (left_out == 0) return "";
+  return fmt::format(
+      "{0} leaves out {1} key{2}: gatewalk scaled the paper's values to this body (gatewalk scene "
+      "{0} shows them)",
+      scene.source, left_out, left_out == 1 ? "" : "s");
 }
 
 namespace {

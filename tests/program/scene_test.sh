@@ -15,7 +15,7 @@ holds '.made_by.derived | index("run.time_limit_s") != null' out-mine.toml.json
 echo '# edited' >>full.toml
 expect 0 'kept as full.toml.~1~$' "$gatewalk" scene mine.toml --new -o full.toml
 [ "$(tail -n 1 full.toml.~1~)" = '# edited' ] || fail "scene --new: an edited scene is lost"
-expect 0 'mine.toml leaves out keys, .*beams.length_m = 0.2,' "$gatewalk" gate mine.toml --trials 10
+expect 0 'mine.toml leaves out [1-9][0-9]* keys: .* .gatewalk scene mine.toml shows them.$' "$gatewalk" gate mine.toml --trials 10
 # What the file leaves out follows from the file, whatever is overridden.
 "$gatewalk" scene mine.toml --set forces.propulsion_N=1.6 --json set.json --quiet
 holds '[.keys[] | select(.key == "beams.stiffness_left_Nm_per_rad") | .value][0] == "0.31999999999999995"' set.json
@@ -43,7 +43,7 @@ expect 0 'they hold the push of 0.24 N at 25.3 degrees' "$gatewalk" scene "$scen
 holds '.meaning | .far_from_walkers == [] and .top_speed_m_per_s > 0.29 and .top_speed_m_per_s < 0.31' walker.json
 "$gatewalk" scene --set body.mass_g=90 --set body.radius_cm=6 --set forces.propulsion_N=1 --json small.json --quiet
 holds '[.meaning.far_from_walkers[].name] == ["froude", "push_per_weight", "random_per_weight", "draws_per_body_length", "passages_waited"]' small.json
-expect 0 'far from any animal or robot that walks: .*a random force of 1.63 times the body.s weight' "$gatewalk" gate mine.toml --trials 10
+expect 0 'no walking animal or robot is like this scene: .*, and [1-9] more .gatewalk scene mine.toml says why.$' "$gatewalk" gate mine.toml --trials 10
 expect 2 'figure has no meaning beside --new' "$gatewalk" scene mine.toml --new --figure three.svg
 # A push in the file changes what is left out, by an option it does not: said where pushes are given, with the numbers to
 # write; not where the file has these numbers, nor where no push is given.
