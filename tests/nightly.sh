@@ -11,7 +11,8 @@
 # small  without films and pages, as on a cluster: needs neither cairo nor libpng, and says so when asked for them.
 # debug  g++ with the checks of the standard library, of Eigen and of TBB: unit tests. -Og, with which those
 #        of the dynamics take three to four times as long as in a Release build.
-# clang  clang++, warnings are errors: unit tests and the command line's contract.
+# clang  clang++ 16, the first that reads lambdas which capture structured bindings; warnings are errors: unit tests and the
+#        contract of the command line.
 # address  all tests but those of Python and of pages in a browser, with the sanitizers of addresses and undefined behaviour (clang): no finding.
 #        What is forgiven is in tests/sanitizers (Open MPI's leaks: tests/mpi_test.sh), with its reason. Lanes are not instrumented (dynamics/CMakeLists.txt):
 #        that takes compilers hours. Their plain references are; and a program whose
@@ -97,7 +98,7 @@ debug() {
 }
 
 clang() {
-  cmake -S . -B build-clang -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release -DGATEWALK_WERROR=ON -DBUILD_TESTING=ON
+  cmake -S . -B build-clang -G Ninja -DCMAKE_CXX_COMPILER=clang++-16 -DCMAKE_BUILD_TYPE=Release -DGATEWALK_WERROR=ON -DBUILD_TESTING=ON
   cmake --build build-clang
   ctest --test-dir build-clang --output-on-failure -j "$(nproc)" -E "$web"
 }
@@ -127,7 +128,7 @@ thread() {
     done
     (cd "$tbb" && sources=(-o Dir::Etc::sourcelist=/dev/null -o "Dir::Etc::sourceparts=$tbb/apt/parts" -o "Dir::State::lists=$tbb/lists") &&
       apt-get "${sources[@]}" update && apt-get "${sources[@]}" source onetbb)
-    cmake -S "$tbb"/onetbb-* -B "$tbb/build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTBB_SANITIZE=thread -DTBB_STRICT=OFF -DTBB_TEST=OFF \
+    cmake -S "$tbb"/onetbb-* -B "$tbb/build" -G Ninja -DCMAKE_CXX_COMPILER=clang++-16 -DCMAKE_C_COMPILER=clang-16 -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTBB_SANITIZE=thread -DTBB_STRICT=OFF -DTBB_TEST=OFF \
       -DTBBMALLOC_BUILD=OFF -DCMAKE_INSTALL_PREFIX="$tbb" -DCMAKE_INSTALL_LIBDIR=lib
     cmake --build "$tbb/build"
     cmake --install "$tbb/build"
@@ -138,7 +139,7 @@ thread() {
 sanitized() {
   local kind=$1
   shift
-  cmake -S . -B "build-$kind" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O2 -g1' \
+  cmake -S . -B "build-$kind" -G Ninja -DCMAKE_CXX_COMPILER=clang++-16 -DCMAKE_C_COMPILER=clang-16 -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O2 -g1' \
     -DGATEWALK_SANITIZE="$kind" -DBUILD_TESTING=ON "$@"
   cmake --build "build-$kind"  # at -O1 clang inlines nothing, which takes ten times as long
   # SANITIZED: shell tests leave out what bounds a program's memory, of which these need terabytes of addresses.
@@ -174,17 +175,17 @@ coverage() {
   # Vectorised sources for one instruction set only: each is the same source.
   local lanes=-O2
   [ "$(uname -m)" != x86_64 ] || lanes='-O2 -march=x86-64-v3 -maes -mpclmul'
-  cmake -S . -B build-coverage -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang -DCMAKE_BUILD_TYPE=Debug \
+  cmake -S . -B build-coverage -G Ninja -DCMAKE_CXX_COMPILER=clang++-16 -DCMAKE_C_COMPILER=clang-16 -DCMAKE_BUILD_TYPE=Debug \
     -DCMAKE_CXX_FLAGS_DEBUG="$lanes -fprofile-instr-generate -fcoverage-mapping -DHWY_COMPILE_ONLY_STATIC" -DBUILD_TESTING=ON
   cmake --build build-coverage
   rm -rf build-coverage/profiles
   export LLVM_PROFILE_FILE=$PWD/build-coverage/profiles/%4m.profraw
   ctest --test-dir build-coverage --output-on-failure -j "$(nproc)" -LE elsewhere -E "$web|^(schemas|slurm|mpi|python)$" --timeout 3000
-  llvm-profdata merge -sparse build-coverage/profiles/*.profraw -o $all
+  llvm-profdata-16 merge -sparse build-coverage/profiles/*.profraw -o $all
   for binary in build-coverage/tests/*_tests; do objects+=(-object "$binary"); done
   echo "module,lines_percent,branches_percent" >$out/coverage.csv
   for module in dynamics markov lattice; do
-    llvm-cov export build-coverage/gatewalk "${objects[@]}" -instr-profile $all "$PWD/$module" >build-coverage/$module.json
+    llvm-cov-16 export build-coverage/gatewalk "${objects[@]}" -instr-profile $all "$PWD/$module" >build-coverage/$module.json
     # A condition of a template is one, whatever it is made for.
     jq '[.data[0].files[] | .filename as $file | [.branches | group_by(.[:4])[] |
       {at: "\($file):\(.[0][0])", true: (map(.[4]) | add), false: (map(.[5]) | add)}]] | add' \
@@ -209,10 +210,10 @@ steps=(odr alone small debug clang address thread reproducible fuzz coverage)
 for step in "$@"; do
   case " ${steps[*]} " in *" $step "*) ;; *) echo "no step '$step': ${steps[*]}" >&2; exit 2 ;; esac
 done
-case " $* " in *" clang "* | *" fuzz "* | *" address "* | *" thread "* | *" coverage "*) packages+=(clang libclang-rt-dev) ;; esac
+case " $* " in *" clang "* | *" fuzz "* | *" address "* | *" thread "* | *" coverage "*) packages+=(clang-16 libclang-rt-16-dev) ;; esac
 case " $* " in *" reproducible "*) packages+=(pybind11-dev python3-dev python3-numpy) ;; esac
 case " $* " in *" alone "*) packages+=(jq libgtest-dev) ;; esac
-case " $* " in *" coverage "*) packages+=(llvm) ;; esac
+case " $* " in *" coverage "*) packages+=(llvm-16) ;; esac
 case " $* " in *" thread "*) packages+=(dpkg-dev) ;; esac
 case " $* " in *" debug "* | *" clang "* | *" address "* | *" thread "* | *" coverage "*)  # what tests need
   packages+=(libgtest-dev jq netcdf-bin ffmpeg libchipmunk-dev libopenmpi-dev openmpi-bin slurmctld slurmd slurm-client munge) ;;

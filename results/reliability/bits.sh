@@ -31,7 +31,7 @@ hwcaps=glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-AVX2,-FMA,-FMA4
 all=(gcc-O0 gcc-O1 gcc-O2 clang-O2 clang-O3 threads-1 threads-2 threads-32 ranks-2 ranks-4 avx2 sse2 libm)
 all+=(arm64 s390x)
 [ $# -gt 0 ] || set -- "${all[@]}"
-packages+=(jq netcdf-bin hdf5-tools openmpi-bin libopenmpi-dev qemu-user clang g++-aarch64-linux-gnu g++-s390x-linux-gnu)
+packages+=(jq netcdf-bin hdf5-tools openmpi-bin libopenmpi-dev qemu-user clang-16 g++-aarch64-linux-gnu g++-s390x-linux-gnu)
 install_missing
 
 program() { # FOLDER [CMAKE-OPTION...]
@@ -98,7 +98,7 @@ made() { # VARIANT: makes it, and says where the program is
       compiled "$1" g++ "$option"
       echo "$work/$1/gatewalk" ;;
     clang-*)
-      compiled "$1" clang++ "$option"
+      compiled "$1" clang++-16 "$option"
       echo "$work/$1/gatewalk" ;;
     threads-*) wrapped "$1" "'$gatewalk' \"\$@\" --threads ${1#threads-}" ;;
     ranks-*) wrapped "$1" "$mpirun ${1#ranks-} '$build/tests/gatewalk_mpi' \"\$@\"" ;;
@@ -136,6 +136,6 @@ fi
 manifest "${LINES:+LINES='$LINES' }results/reliability/bits.sh $*" >"$out/bits.txt"
 {
   echo "date: $(date -I)"
-  for program in g++ clang++ qemu-x86_64; do "$program" --version | head -n 1; done
+  for program in g++ clang++-16 qemu-x86_64; do "$program" --version | head -n 1; done
 } >>"$out/bits.txt"
 exit $failed

@@ -10,9 +10,9 @@ cd "$(dirname "$0")/../.."
 build=${BUILD:-build-fuzz}
 seconds=${SECONDS_EACH:-60}
 . ./.ci/prepare
-packages+=(clang libclang-rt-dev)
+packages+=(clang-16 libclang-rt-16-dev)
 ! command -v apt-get >/dev/null || install_missing
-cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O2 \
+cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++-16 -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O2 \
   -DGATEWALK_FUZZ=ON -DGATEWALK_PAGES=OFF -DBUILD_TESTING=OFF
 cmake --build "$build" --target fuzz
 [ $# -gt 0 ] || mapfile -t names < <(sed -n 's/^GATEWALK_FUZZ_TARGET(\(.*\))/\1/p' tests/fuzz/targets.def)
