@@ -35,8 +35,9 @@ namespace {
 
 void print_help(std::ostream& out) {
   out << "gatewalk " << kVersion
-      << ": multi-scale Markov chain analysis of locomotion through cluttered obstacles\n\n"
-         "usage: gatewalk COMMAND [arguments] [options]\n\n";
+      << ": how bodies move through cluttered obstacles, by simulation and Markov chains\n\n"
+         "usage: gatewalk COMMAND [arguments] [options]\n\n"
+         "Begin with: gatewalk sample walker -o walker.toml; gatewalk predict walker.toml\n\n";
   bool is_first = true;
   for (const Command& c : kCommandsAndGroups) {
     if (!c.run)
@@ -45,11 +46,11 @@ void print_help(std::ostream& out) {
       out << "  " << std::left << std::setw(15) << c.name << c.summary << "\n";
     is_first = false;
   }
-  out << "\ngatewalk COMMAND --help, or gatewalk help COMMAND, explains a command and gives an "
-         "example.\ngatewalk --version --verbose says what it was built with.\n"
+  out << "\ngatewalk help COMMAND explains a command and gives an example.\n"
+         "gatewalk --version --verbose shows the version and how the program was built.\n"
          "exit status: 0 fine, 1 failure (with --strict also a result whose status is not clean),\n"
          "2 wrong use or input, 130 stopped by ctrl-C, SIGTERM, SIGHUP or SIGUSR1, 75 stopped and\n"
-         "--resume goes on, 141 the reader of a pipe went away (| head)\n";
+         "--resume continues, 141 the reader of a pipe has closed it (| head)\n";
 }
 
 /// The command of that name; without one says so, and which may be meant.
