@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "cli/next.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace gatewalk::cli {
+namespace {
+
+/// Options that belong to the scene, so that another command takes them over.
+constexpr std::array<std::string_view, 4> kOfScene{"set", "start", "cell-program", "cell-timeout"};
+
+/// "force" of "--force" and of "--force=2"; empty for a file.
+std::string_view option_of(std::string_view word) {
+  if (!word.starts_with("--")) return {};
+  word.remove_prefix(2);
+  return word.substr(0, word.find('='));
+}
+
+/// As a person writes it: "--set forces.random_N=2"; with = where the value looks like an option.
+std::string written(const std::string& word) {
+  const std::size_t equals = word.find('=');
+  if (option_of(word).empty() || equals == word.npos) return shell_quoted(word);
+  const std::string value = word.substr(equals + 1);
+  const char* const between = value.starts_with('-') ? "=" : " ";
+  return word.substr(0, equals) + between + shell_quoted(value);
+}
+
+}  // namespace
+
+NextCommands& NextCommands::add(const std::string& command, const std::string& more,
+                                const std::string& why) {
+  std::string line = "gatewalk " + command;
+  for (const std::string& word : options_.words().shaping) {
+    const std::string_view option = option_of(word);
+    if (option.empty() || std::ranges::count(kOfScene, option) > 0) line += " " + written(word);
+  }
+  put(line + (more.empty() ? "" : " " + more), why);
+  return *this;
+}
+
+NextCommands& NextCommands::again(const std::string& name, const std::string& value,
+                                  const std::string& why) {
+  std::string line = "gatewalk " + options_.words().command;
+  for (const std::string& word : options_.words().shaping)
+    if (option_of(word) != name) line += " " + written(word);
+  put(line + " --" + name + (value.empty() ? "" : " " + value), why);
+  return *this;
+}
+
+void NextCommands::put(std::string command, const std::string& why) {
+  if (std::ranges::count(options_.words().shaping, "-") > 0) return;
+  lines_.push_back(std::move(command) + "  # " + why);
+}
+
+}  // namespace gatewalk::cli
