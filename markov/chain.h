@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A Markov chain over the states in which a walker enters a cell of a lattice.
-/// One row per input state, one column per output. Where an output leads is data (`Exit`), so the
-/// module knows nothing about what the states mean.
+/// A Markov chain over the states in which a walker enters a cell of a lattice. The matrix has one
+/// row per input state and one column per output. Each output has an `Exit`, which says where the
+/// output leads, so this module does not know what states mean.
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
@@ -17,7 +17,8 @@ namespace gatewalk::markov {
 using Counts = Eigen::SparseMatrix<std::int64_t, Eigen::RowMajor>;   // (n_in x n_out)
 using Probabilities = Eigen::SparseMatrix<double, Eigen::RowMajor>;  // (n_in x n_out)
 
-/// Where one output leads: the input state of the neighbouring cell (di_x, di_y) away, or nowhere.
+/// Where one output leads: to an input state of the cell that is (di_x, di_y) away, or nowhere
+/// (trapped).
 struct Exit {
   static constexpr int kTrapped = -1;
   int next_input = kTrapped;
@@ -27,22 +28,24 @@ struct Exit {
 };
 
 /// Throws std::invalid_argument naming the output (counted from 0) unless there is one exit per
-/// output, next_input is in [0, inputs) or kTrapped, and a trapped exit does not move.
+/// output, each next_input is in [0, inputs) or kTrapped, and trapped exits do not move.
 void validate(const std::vector<Exit>& exits, std::int64_t inputs, std::int64_t outputs);
 
-/// Immutable, row-stochastic, sparse. A row without samples is kept apart ("unsampled"): whoever
-/// walks into it is reported as such, it never absorbs by accident.
+/// A sparse, row-stochastic matrix with its exits; a Chain never changes. A row without samples is
+/// marked "unsampled": a walk that enters it ends as Ending::unsampled and is never absorbed by
+/// accident.
 class Chain {
  public:
-  /// Rows become counts / row sum; an all-zero row becomes "unsampled".
-  /// `start_rows` stand behind the others: no exit needs to lead to them.
-  /// Throws std::invalid_argument naming the row (counted from 0, as all messages here) on a
-  /// negative count or an overflowing sum, and on exits that do not fit.
+  /// Makes a chain from counts: each row is divided by its sum, and an all-zero row becomes
+  /// "unsampled". `start_rows` are appended behind the other rows; exits need not lead to them.
+  /// Throws std::invalid_argument naming the row (counted from 0, as in all messages) for a
+  /// negative count or an overflowing sum, and for exits that do not fit.
   static Chain from_counts(const Counts& counts, std::vector<Exit> exits,
                            const Counts& start_rows = {});
 
-  /// Rows must be finite, non-negative and sum to 1 within 1e-12 (nothing is normalised silently);
-  /// an empty row is "unsampled". Throws std::invalid_argument naming row and sum.
+  /// Makes a chain from probabilities. Rows must be finite, non-negative and sum to 1 within 1e-12;
+  /// nothing is normalised. An empty row is "unsampled". Throws std::invalid_argument naming the
+  /// row and its sum.
   static Chain from_probabilities(Probabilities matrix, std::vector<Exit> exits);
 
   [[nodiscard]] int inputs() const { return static_cast<int>(p_.rows()); }
@@ -60,25 +63,25 @@ class Chain {
   std::vector<Exit> exits_;
 };
 
-/// What the cells of a field draw from: a chain per type of cell, and the type of each cell.
+/// The chains of a field: one chain per type of cell, and the type of each cell.
 class FieldChain {
  public:
-  /// Uniform: one chain in all cells, of a field of any size.
+  /// One chain in all cells, for fields of any size.
   FieldChain(Chain everywhere);  // NOLINT(google-explicit-constructor): a Chain is the uniform case
-  /// Cells of row r draw from chains[type_of_row[r]]; for fields of that many rows. Throws
+  /// Cells of row r draw from chains[type_of_row[r]]; for fields with that many rows. Throws
   /// std::invalid_argument unless there is a chain, all chains have the same number of inputs, and
-  /// each row is given one of them.
+  /// each row has one of the chains.
   [[nodiscard]] static FieldChain by_row(std::vector<Chain> chains, std::vector<int> type_of_row);
   /// Cell (column, row) draws from chains[type_of_cell[row * columns + column]]; for fields of that
-  /// size. Throws as by_row, and unless the cells fill whole rows.
+  /// size. Throws std::invalid_argument as by_row does, and unless the cells fill whole rows.
   [[nodiscard]] static FieldChain by_cell(std::vector<Chain> chains, int columns,
                                           std::vector<int> type_of_cell);
 
-  /// The same types of cells with other chains, as many and with as many inputs. Throws
-  /// std::invalid_argument otherwise.
+  /// The same layout of cell types with other chains. Throws std::invalid_argument unless there are
+  /// as many chains as before, with as many inputs.
   [[nodiscard]] FieldChain with(std::vector<Chain> chains) const;
 
-  [[nodiscard]] const std::vector<Chain>& chains() const { return chains_; }  // one per type
+  [[nodiscard]] const std::vector<Chain>& chains() const { return chains_; }  // by type
   [[nodiscard]] int inputs() const { return chains_.front().inputs(); }
   [[nodiscard]] int type_of(std::int64_t column, std::int64_t row) const {
     return types_[static_cast<std::size_t>(row * row_stride_ + column * column_stride_)];
@@ -88,7 +91,7 @@ class FieldChain {
   }
   /// Whether all cells of a row have the same type, in every row.
   [[nodiscard]] bool has_uniform_rows() const;
-  /// The size of the fields it is made for; 0: any.
+  /// The size of the fields that this chain is made for; 0: any size.
   [[nodiscard]] std::int64_t columns() const;
   [[nodiscard]] std::int64_t rows() const;
 
@@ -100,15 +103,15 @@ class FieldChain {
   std::int64_t row_stride_ = 0, column_stride_ = 0;
 };
 
-/// A rectangle of cells; a move that ends outside has left the field.
+/// A rectangular field of cells. A walk that moves outside has left the field.
 struct Field {
   int columns = 9;
   int rows = 9;
 };
 
-/// How a walk ends: in a trapped output, by a move over an edge of the field (`far_edge`: beyond
-/// the last row, `near_edge`: before the first; a move over a corner counts there), cut off by the
-/// limit of cells, or in a state whose row was never sampled.
+/// How a walk ends: in a trapped output; by a move over an edge of the field (`far_edge`: beyond
+/// the last row, `near_edge`: before the first row, also over a corner); cut off at the limit of
+/// cells; or in an unsampled state.
 enum class Ending : std::uint8_t {
   trapped,
   far_edge,
@@ -122,7 +125,7 @@ inline constexpr std::size_t kEndings = 7;
 inline constexpr std::array<Ending, 4> kEdges{Ending::far_edge, Ending::left_edge,
                                               Ending::right_edge, Ending::near_edge};
 
-/// Over which edge of the field a move left that would have led to (column, row) outside it.
+/// The edge of the field over which a move left whose target (column, row) is outside.
 [[nodiscard]] constexpr Ending edge_before(const Field& field, std::int64_t column,
                                            std::int64_t row) {
   if (row >= field.rows) return Ending::far_edge;
@@ -130,8 +133,9 @@ inline constexpr std::array<Ending, 4> kEdges{Ending::far_edge, Ending::left_edg
   return column < 0 ? Ending::left_edge : Ending::right_edge;
 }
 
-/// What becomes of a walk that has drawn `exit` in cell (column, row): its ending, or none, and the
-/// cell becomes the next one. With its last draw it is cut off where it would go on.
+/// Moves a walk that has drawn `exit` in cell (column, row). Returns the ending if the walk ends;
+/// otherwise column and row become the next cell. If `last_draw`, a walk that would go on is cut
+/// off.
 [[nodiscard]] constexpr std::optional<Ending> follow(const Field& field, const Exit& exit,
                                                      bool last_draw, std::int64_t& column,
                                                      std::int64_t& row) {
@@ -145,16 +149,18 @@ inline constexpr std::array<Ending, 4> kEdges{Ending::far_edge, Ending::left_edg
   return {};
 }
 
-/// Where a walk begins: cell (column, row), both from 0, and the input state there.
+/// The start of a walk: cell (column, row), both from 0, and the input state there.
 struct Start {
   int column = 0;
   int row = 0;
   int input = 0;
 };
 
-/// Throws std::invalid_argument if field, start or max_cells (0: no limit) cannot belong together.
+/// Throws std::invalid_argument if chain, field, start and max_cells (0: no limit) do not fit
+/// together.
 void validate(const Chain& chain, const Field& field, const Start& start, int max_cells);
-/// Also if the field is not of the size the types are given for.
+/// Throws std::invalid_argument if chain, field, start and max_cells do not fit together, or if the
+/// field does not have the size for which the cell types are given.
 void validate(const FieldChain& chain, const Field& field, const Start& start, int max_cells);
 
 }  // namespace gatewalk::markov

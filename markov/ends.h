@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Where bodies end in a field, and how: counted of trials or of walks, or as shares of all.
+/// Where and how bodies end in a field: as counts of trials or walks, or as shares of all bodies.
 
 #include <algorithm>
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace gatewalk::markov {
 
-/// A number for each cell (rows x columns).
+/// An array with one number for each cell (rows x columns).
 template <class Number>
 using CellNumbers = Eigen::Array<Number, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using CellCounts = CellNumbers<std::int64_t>;
 using CellProbabilities = CellNumbers<double>;
 
-/// What ended in one cell.
+/// The bodies that ended in one cell, by ending.
 template <class Number>
 struct CellEndings {
   std::int64_t cell = 0;                     // row * columns + column
@@ -28,32 +28,34 @@ struct CellEndings {
   friend bool operator==(const CellEndings&, const CellEndings&) = default;
 };
 
-/// `Number`: std::int64_t for counts of bodies, double for shares of all bodies.
+/// Final cells and endings of many bodies. `Number` is std::int64_t for counts of bodies, double
+/// for shares of all bodies.
 template <class Number>
 struct Ends {
-  /// Bodies by their last cell inside the field, however they ended there (rows x columns).
+  /// Bodies by the last cell inside the field (rows x columns), whatever their ending.
   CellNumbers<Number> final_cells{};
   std::array<Number, kEndings> endings{};  // by Ending
-  /// Cells in which bodies ended otherwise than trapped, in ascending order: most cells of a large
-  /// field only trap. In all others, all of final_cells was trapped.
+  /// Cells with an ending other than trapped, in ascending order. In all other cells, every body of
+  /// final_cells was trapped; in large fields these are most cells.
   std::vector<CellEndings<Number>> mixed_cells{};
 
   [[nodiscard]] Number operator[](Ending e) const { return endings[static_cast<std::size_t>(e)]; }
   [[nodiscard]] Number trapped() const { return (*this)[Ending::trapped]; }
-  /// By a move over any of the four edges.
+  /// Bodies that left the field over any of its four edges.
   [[nodiscard]] Number left_field() const;
-  /// The limit of cells was visited, and the body would have gone on.
+  /// Bodies that had visited the largest permitted number of cells and would have gone on.
   [[nodiscard]] Number cut_off() const { return (*this)[Ending::cut_off]; }
-  /// A state was entered whose row was never sampled.
+  /// Bodies that entered an unsampled state.
   [[nodiscard]] Number unsampled() const { return (*this)[Ending::unsampled]; }
 
-  /// Throws std::invalid_argument if both have cells, of different fields.
+  /// Adds the numbers of other bodies. Throws std::invalid_argument if both have cells and their
+  /// fields differ.
   Ends& operator+=(const Ends& other);
 };
 extern template struct Ends<std::int64_t>;
 extern template struct Ends<double>;
 
-/// Those that were trapped in each cell; that left the field from it (rows x columns).
+/// Bodies trapped in each cell (rows x columns).
 template <class Number>
 [[nodiscard]] CellNumbers<Number> trapped_cells(const Ends<Number>& ends) {
   CellNumbers<Number> cells = ends.final_cells;
@@ -69,7 +71,7 @@ template <class Number>
   return cells;
 }
 
-/// Each number as share_of(number).
+/// The same ends with share_of() applied to each number.
 template <class Number, class ShareOf>
 [[nodiscard]] Ends<double> shares_of(const Ends<Number>& ends, ShareOf share_of) {
   Ends<double> shares;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The exact distribution of the final cell: what infinitely many walks would give.
+/// The exact distribution of final cells and endings: the result of infinitely many walks.
 
 #include <array>
 #include <cstdint>
@@ -12,61 +12,65 @@
 
 namespace gatewalk::markov {
 
-/// Shares of all walks. final_cells.sum() + remainder == 1 and the sum of all endings + remainder
-/// == 1, both within 1e-12 as long as mean_steps times what a row's sum lacks from 1 (counts: some
-/// 1e-16) stays below that: nothing is normalised.
+/// The predicted shares of all walks. final_cells.sum() + remainder and the sum of all endings +
+/// remainder are both 1 within 1e-12, as long as mean_steps times the error of a row's sum (some
+/// 1e-16 for counts) is smaller than 1e-12. Nothing is normalised.
 struct FinalDistribution : Ends<double> {
-  /// Still walking when the sum was stopped; of a solve, what its solution leaves unaccounted for;
-  /// and `endless`. As that would end at most once, it bounds the errors of all cells together, and
-  /// of each number above.
+  /// The share of walks that are not accounted for: walks still going on when the sum was stopped,
+  /// or what a linear solve leaves over; `endless` included. Each of these walks would end at most
+  /// once, so `remainder` bounds the error of each number above and of all cells together.
   double remainder = 0.0;
-  /// The part of it that can never end: walks in states from which no way leads to an end. Only
-  /// Solver::direct tells it.
+  /// The part of `remainder` that can never end: walks in states from which no way leads to an end.
+  /// Only Solver::direct computes this number.
   double endless = 0.0;
-  /// What rounding adds to these errors at most, to first order in 1e-16 (that of counts into
-  /// probabilities included).
+  /// Bound on the error by rounding, to first order in 1e-16, including the rounding of counts into
+  /// probabilities.
   double rounding = 0.0;
-  double mean_steps = 0.0;  // draws per walk, as WalkTally::steps / walks; without the remainder's
-  int steps = 0;            // propagation steps done (0 for a solve)
-  double operations = 0.0;  // products that Solver::direct took; 0 for any other
+  double mean_steps = 0.0;  // draws per walk, as WalkTally::steps / walks; excludes the remainder
+  int steps = 0;            // propagation steps; 0 for a linear solve
+  double operations = 0.0;  // multiplications of Solver::direct; else 0
 };
 
-/// How a prediction is made: the limit of cells, the route to the answer, and when it stops. All
-/// defaults stand here.
+/// Options of a prediction: the limit of cells, the solver, and when the solver stops.
 struct PredictOptions {
-  /// Cells a walk may visit before it is cut off; 0: no limit.
+  /// Largest number of cells that a walk may visit before it is cut off; 0: no limit.
   int max_cells = 0;
 
-  /// automatic: `rows` if there is no limit of cells and no exit leads to a row below; else
-  ///   `steps`. Without limit `direct` instead where these would take more than 10^4 sums, or keep
-  ///   fewer than 6 digits; `klu` where the field is too large for `direct`, if it keeps 6.
-  /// steps: forward propagation of all planes of the field, step by step. Memory per start: 4 n_in
-  ///   numbers per cell that can be reached, half of that when every move leads to the other colour
-  ///   of a chessboard. With a limit it stops once next to nobody walks (1e-30 of all walks in any
-  ///   state of a cell).
-  /// rows: without limit, row by row: what enters a row walks in it until it has left it, then the
-  ///   next row is entered. Memory: a few rows x n_in numbers, whatever the number of rows, and for
-  ///   elimination up to 512 MiB.
-  /// direct: without limit, by sparse elimination of all reachable (cell, input) pairs. Nothing is
-  ///   subtracted: digits hold however seldom a walk ends.
-  /// klu: without limit, by one sparse LU solve over these pairs; faster, with fewer digits.
+  /// The solver.
+  /// - automatic: `steps` with a limit of cells or if an exit leads to a row below, else `rows`.
+  ///   Without a limit, `direct` replaces a solver that would need more than 10^4 sums or keep
+  ///   fewer than 6 digits; `klu` replaces `direct` in fields too large for `direct`, if `klu`
+  ///   keeps 6 digits.
+  /// - steps: forward propagation of the whole field, step by step. Memory per start: 4 n_in
+  ///   numbers for each reachable cell; half of that if every move changes the colour of a
+  ///   chessboard. With a limit, `steps` stops early once at most 1e-30 of all walks are left in
+  ///   any state of a cell.
+  /// - rows: without a limit, row by row. Walks that enter a row are followed until they leave it,
+  ///   then the next row is entered. Memory: a few rows x n_in numbers for any number of rows, plus
+  ///   up to 512 MiB for elimination.
+  /// - direct: without a limit, sparse elimination of all reachable (cell, input) pairs. Nothing is
+  ///   subtracted, so digits hold however seldom a walk ends.
+  /// - klu: without a limit, one sparse LU solve over the same pairs; faster than `direct`, with
+  ///   fewer digits.
   enum class Solver { automatic, steps, rows, direct, klu };
   Solver solver = Solver::automatic;
 
-  /// How `rows` finds the visits of a row. `elimination` of its columns takes as long whatever the
-  /// number of moves; it needs cells of one type, and no move within the row to any but the next
-  /// column. `sweeps` to both sides bring on what each state gives to the next ones; they need
-  /// cells of one type, and walks that soon leave the row. `sums` over more and more moves take any
-  /// row, and stand in where the method asked for does not suit. `cheapest`: what takes least time
-  /// by estimate.
+  /// How `rows` computes the expected visits within a row.
+  /// - elimination: eliminates the row's columns. Its time does not grow with the number of moves.
+  ///   It needs cells of one type, and moves within the row only to the next column.
+  /// - sweeps: sweeps to both sides that pass each state's visits on to the next states. They need
+  ///   cells of one type, and walks that soon leave the row.
+  /// - sums: sums over more and more moves. They suit any row, and replace a method that does not
+  ///   suit.
+  /// - cheapest: the method with the least estimated time.
   enum class RowMethod { cheapest, elimination, sweeps, sums };
   RowMethod row_method = RowMethod::cheapest;
 
-  /// Without limit: the share of all walks that may be left walking (`remainder`; elimination may
-  /// leave more where rounding lets it not do better). None: 1e-12 for `rows`, else 1e-13.
+  /// Without a limit: the share of all walks that may be left unfinished (`remainder`); elimination
+  /// may leave more where rounding prevents better. Default: 1e-12 for `rows`, else 1e-13.
   std::optional<double> tolerance = std::nullopt;
-  /// Without limit: steps after which `steps` stops (the caller reads `remainder`), and moves
-  /// within one row after which `rows` by sums gives up.
+  /// Without a limit: the number of steps after which `steps` stops (check `remainder`), and the
+  /// number of moves within one row after which sums of `rows` give up.
   int max_steps = 1'000'000;
 
   [[nodiscard]] double tolerance_of(Solver used) const {
@@ -76,37 +80,38 @@ struct PredictOptions {
 
 struct PredictionPlan;
 
-/// A field's chain, prepared for any starts and any field it fits. May be used from several threads
-/// at a time.
+/// A field's chain, prepared for predictions from any start in any field that fits the chain.
+/// Several threads may use one Predictor at a time.
 class Predictor {
  public:
-  /// Throws std::invalid_argument for moves of more than 10^4 cells.
+  /// Prepares the chain. Throws std::invalid_argument for moves of more than 10^4 cells.
   explicit Predictor(FieldChain chain);
   ~Predictor();
   Predictor(const Predictor&) = delete;
   Predictor& operator=(const Predictor&) = delete;
 
-  /// Throws std::invalid_argument when chain, field, start and options cannot belong together
-  /// (`rows`, `direct` and `klu` with a limit of cells, `rows` unless can_go_by_rows());
-  /// std::runtime_error when walks can circle (almost) for ever: `rows` takes more than max_steps
-  /// sums in a row, or it or `klu` is left with fewer than 6 digits, and `automatic` cannot take
-  /// `direct` instead.
+  /// Predicts where and how walks from one start end. Throws std::invalid_argument if chain, field,
+  /// start and options do not fit together (`rows`, `direct` and `klu` with a limit of cells;
+  /// `rows` unless can_go_by_rows()). Throws std::runtime_error if walks can circle (almost) for
+  /// ever: `rows` needs more than max_steps sums in a row, or `rows` or `klu` keeps fewer than 6
+  /// digits, and `automatic` cannot use `direct` instead; also for a field that is too large for
+  /// `direct`.
   [[nodiscard]] FinalDistribution predict(const Field& field, const Start& start,
                                           const PredictOptions& options = {}) const;
-  /// From several starts side by side, on all threads of the current TBB arena: the same bits as
-  /// one by one, in less time.
+  /// Predicts from several starts at once, on all threads of the current TBB arena. The bits are
+  /// those of separate predictions, in less time.
   [[nodiscard]] std::vector<FinalDistribution> predict_all(
       const Field& field, const std::vector<Start>& starts,
       const PredictOptions& options = {}) const;
 
-  /// Whether Solver::rows can be used: no exit leads to a row below.
+  /// Whether Solver::rows can be used: true if no exit leads to a row below.
   [[nodiscard]] bool can_go_by_rows() const;
 
  private:
   std::unique_ptr<const PredictionPlan> plan_;
 };
 
-/// One prediction per start: Predictor(chain).predict_all(field, starts, options).
+/// Makes one prediction per start: Predictor(chain).predict_all(field, starts, options).
 [[nodiscard]] std::vector<FinalDistribution> predict(const FieldChain& chain, const Field& field,
                                                      const std::vector<Start>& starts,
                                                      const PredictOptions& options = {});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Monte Carlo walks: what the paper's "Markov Chain Monte Carlo" pseudo-code does, per cell one
-/// draw from the row of Eq. (16)'s matrix.
+/// Monte Carlo walks, as in the paper's "Markov Chain Monte Carlo" pseudo-code: one draw per cell
+/// from the row of Eq. (16)'s matrix.
 
 #include <array>
 #include <cstdint>
@@ -12,53 +12,54 @@
 
 namespace gatewalk::markov {
 
-/// Walks first, first + 1, ... first + count - 1: a walk is named by its number, so any split over
-/// calls, threads or machines gives the same walks.
+/// The walks numbered first, first + 1, ..., first + count - 1. The number names a walk, so any
+/// split over calls, threads or machines gives the same walks.
 struct WalkRange {
   std::int64_t first = 0;
   std::int64_t count = 0;
 };
 
-/// How walks ended, all but those still walking: the sum of all endings is walks - still_walking.
+/// How walks ended. The sum of all endings is walks - still_walking.
 struct WalkTally : Ends<std::int64_t> {
   std::int64_t walks = 0;
-  std::int64_t still_walking = 0;  // without max_cells: followed for kMostCells cells, not ended
-  std::int64_t steps = 0;          // draws over all walks
-  /// Throws std::invalid_argument if both have cells, of different fields.
+  std::int64_t still_walking = 0;  // without a limit: not ended within kMostCells cells
+  std::int64_t steps = 0;          // draws of all walks
+  /// Adds other walks. Throws std::invalid_argument if both have cells and their fields differ.
   WalkTally& operator+=(const WalkTally& other);
 };
 
-/// Walk w under `seed` draws from Philox4x64-10 with key {seed, kWalkStream} and counter
-/// {block, w, start input, 0}: four words a block, one word a draw. Other users of the same seed
-/// take another second key word, so no two ever share a stream.
+/// The second word of the key for walks. Walk w under `seed` draws from Philox4x64-10 with key
+/// {seed, kWalkStream} and counter {block, w, start input, 0}: four words per block, one word per
+/// draw. Other users of the same seed take another second word, so no two share a stream.
 inline constexpr std::uint64_t kWalkStream = 0x77616c6b'00000001;  // "walk", version 1
 
-/// Draws from the rows of a chain: Walker's alias method (Vose's construction), one table per row,
-/// built in integers: each probability is met to a few words of 2^64, except that what a row lacks
-/// from 1 (rounding, at most 1e-12) goes to its largest entry.
+/// Draws walks from a chain by Walker's alias method (Vose's construction) with one table per row.
+/// Tables are integers: each probability is exact to a few parts in 2^64, except that the row's
+/// largest entry takes what the row's sum lacks from 1 (rounding, at most 1e-12).
 class Walker {
  public:
-  /// Where the field has no limit, a walk is followed through no more cells than this.
+  /// The number of cells after which a walk without a limit is stopped.
   static constexpr int kMostCells = 1'000'000;
 
   explicit Walker(const FieldChain& chain);
 
-  /// An output of `row` for a uniform 64-bit word; never one of probability zero. Rows and outputs
-  /// of several types of cells are numbered one behind the other.
+  /// Draws an output of `row` from a uniform 64-bit word; outputs of probability zero are never
+  /// drawn. With several types of cells, rows and outputs of all types are numbered consecutively.
   [[nodiscard]] int draw(int row, std::uint64_t word) const;
 
-  /// Runs `range` (from 0 up) on all threads of the current TBB arena, many walks at once in vector
-  /// registers (Google Highway). At most `max_cells` cells are visited (0: no limit of the field;
-  /// then a walk is followed through kMostCells, and is `still_walking`). Same walks for any number
-  /// of threads and any instruction set. `final_cell_of_walk`, if given, gets row * columns +
-  /// column per walk, also of those still walking: where they were stopped. Chains with an exit of
-  /// 512 cells or more, or with 2^21 nonzeros or more, and fields with cells of several types are
-  /// walked plainly.
+  /// Runs the walks of `range` (numbers >= 0) on all threads of the current TBB arena, many at once
+  /// in vector registers (Google Highway). A walk visits at most `max_cells` cells; 0 means no
+  /// limit, and a walk is then `still_walking` after kMostCells cells. The walks are the same for
+  /// any number of threads and any instruction set.
+  ///
+  /// `final_cell_of_walk`, if given, receives row * columns + column of each walk's last cell, also
+  /// for walks still going on. Chains with an exit of 512 cells or more or with 2^21 nonzeros or
+  /// more, and fields with several types of cells, do not use vector registers.
   [[nodiscard]] WalkTally walk(const Field& field, const Start& start, int max_cells,
                                std::uint64_t seed, WalkRange range,
                                std::vector<std::int32_t>* final_cell_of_walk = nullptr) const;
 
-  /// The same walks, one after the other: the plain reference.
+  /// Runs the same walks one after the other: the plain reference for walk().
   [[nodiscard]] WalkTally walk_plainly(
       const Field& field, const Start& start, int max_cells, std::uint64_t seed, WalkRange range,
       std::vector<std::int32_t>* final_cell_of_walk = nullptr) const;
@@ -80,14 +81,13 @@ class Walker {
   [[nodiscard]] std::int32_t pick(int row, std::uint64_t word) const;
   [[nodiscard]] std::uint64_t packed(const Exit& exit) const;
 
-  Chain chain_;                      // of all types of cells, one behind the other
-  std::optional<FieldChain> types_;  // which cell has which, if there are several
-  // Slots: one per nonzero, in the order of the matrix, and one more for all unsampled rows in
-  // lanes.
-  std::vector<std::uint64_t> keep_;    // (slots) the first output, up to here within the slot
-  std::vector<std::int32_t> outputs_;  // (slots x 2) else the second
+  Chain chain_;                      // of all types of cells, one after the other
+  std::optional<FieldChain> types_;  // types of the cells, if there are several
+  // Slots: one per nonzero in the order of the matrix, plus one for all unsampled rows (in lanes).
+  std::vector<std::uint64_t> keep_;    // (slots) words up to this one draw the first output
+  std::vector<std::int32_t> outputs_;  // (slots x 2) the first and the second output
   std::vector<std::uint64_t>
-      moves_;  // (slots x 2) outputs packed for lanes; empty if that cannot be
+      moves_;  // (slots x 2) outputs packed for lanes; empty if they do not fit
 };
 
 }  // namespace gatewalk::markov

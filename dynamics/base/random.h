@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Random numbers in named streams: counter-based, so that any can be drawn again alone.
+/// Random numbers in named streams. The generator is counter-based, so any stream can be drawn
+/// again on its own.
 
 #include <algorithm>
 #include <array>
@@ -11,18 +12,21 @@
 
 namespace gatewalk::dynamics {
 
-/// Names one random sequence. Counter-based: any trial can be replayed alone, on any thread.
+/// The name of one random sequence. Seed, row and trial give the same numbers on any thread, so any
+/// trial can be replayed alone.
 struct Stream {
   std::uint64_t seed = 1;
-  std::uint64_t row = 0;    // what is run: a row of the matrix, or a start
-  std::uint64_t trial = 0;  // which repeat
+  std::uint64_t row = 0;    // what is simulated: a row of the matrix, or a start
+  std::uint64_t trial = 0;  // number of the repeat
 };
 
 inline constexpr std::size_t kPointDimensions = 8;
-/// Numbers in (0, 1) that lay the noise of a passage (Cell::lay_noise).
+/// A point of the unit cube, each number in (0, 1), that determines the noise of one passage
+/// (Cell::lay_noise).
 using Point = std::array<double, kPointDimensions>;
 
-/// Which experiment a stream belongs to, so that no two experiments share their randomness.
+/// The experiment that a stream belongs to. Each experiment has a purpose of its own, so no two
+/// experiments share random numbers.
 enum class Purpose : std::uint64_t {
   gate = 1,
   row = 2,
@@ -41,12 +45,14 @@ enum class Purpose : std::uint64_t {
   fit = 15
 };
 
-/// Uniform in (0, 1), both ends excluded: (n + 1/2) 2^-53, the last of which would round to 1.
+/// A uniform number in (0, 1), both ends excluded: (n + 1/2) 2^-53. The largest n would round to 1
+/// and gives 1 - 2^-53.
 [[nodiscard]] inline double open_uniform(std::uint64_t word) {
   return std::min((static_cast<double>(word >> 11) + 0.5) * 0x1p-53, 1.0 - 0x1p-53);
 }
 
-/// Words, uniforms and standard normals of one stream (Philox 4x64, Salmon et al. 2011).
+/// The random numbers of one stream: 64-bit words, uniforms and standard normals (Philox 4x64,
+/// Salmon et al. 2011).
 class Random {
  public:
   Random(Purpose purpose, const Stream& s)
@@ -57,19 +63,19 @@ class Random {
     return words_[used_++];
   }
   [[nodiscard]] double uniform() { return open_uniform(word()); }
-  /// A whole number in [0, n).
+  /// A random integer in [0, n).
   [[nodiscard]] std::int64_t below(std::int64_t n) {
     __extension__ using Wide = unsigned __int128;
     return static_cast<std::int64_t>((static_cast<Wide>(word()) * static_cast<Wide>(n)) >> 64);
   }
 
-  /// As many standard normals at once as keep the longest registers busy (Google Highway), with the
-  /// same bits for any instruction set and any C library.
+  /// A batch of 32 standard normals, computed in vector registers (Google Highway). The bits are
+  /// the same for any instruction set and any C library.
   using Normals = std::array<double, 32>;
   void normals(Normals& out);
 
-  /// One standard normal, Box-Muller in double; two uniforms give two: the plain reference of
-  /// normals(), which takes the same uniforms in the same order and differs in the last digits.
+  /// One standard normal by Box-Muller in double precision: the plain reference for normals(). Both
+  /// functions take the same uniforms in the same order and differ in the last digits.
   [[nodiscard]] double normal() {
     if (has_spare_) {
       has_spare_ = false;
@@ -83,7 +89,7 @@ class Random {
   }
 
  private:
-  /// Not inline: whoever compiles it without optimising would slow all down.
+  /// Not inline: code compiled without optimisation would slow down all callers.
   void refill();
 
   std::array<std::uint64_t, 2> key_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Trials by their numbers, and long work that somebody may watch and stop.
+/// Ranges of trials by number, and long work that reports its progress and can be stopped.
 
 #include <chrono>
 #include <cstdint>
@@ -14,24 +14,25 @@
 
 namespace gatewalk::dynamics {
 
-class KeptPieces;  // of this program alone, as is Ranks
+class KeptPieces;  // KeptPieces and Ranks belong to the program and are not installed
 class Ranks;
 
-/// Trials first, first + 1, ... first + count - 1. A trial is named by its number, so any split
-/// over calls, threads or machines gives the same trials.
+/// The trials numbered first, first + 1, ..., first + count - 1. The number names a trial, so any
+/// split over calls, threads or machines gives the same trials.
 struct TrialRange {
   std::int64_t first = 0;
   std::int64_t count = 0;
 };
 
-/// Trials by their numbers, as ranges that neither touch nor overlap: sums over them add in any
-/// order, and no trial twice.
+/// A set of trial numbers, kept as ranges that neither touch nor overlap. Sums over trial sets can
+/// be added in any order, and no trial is counted twice.
 class TrialSet {
  public:
   TrialSet() = default;
   explicit TrialSet(TrialRange range) { add(range); }
 
-  /// Throw std::invalid_argument naming a trial that is held already, and change nothing then.
+  /// Adds trials. Throws std::invalid_argument naming a trial that the set holds already; the set
+  /// is then unchanged.
   void add(TrialRange range);
   void add(const TrialSet& other);
 
@@ -39,7 +40,8 @@ class TrialSet {
   [[nodiscard]] const std::map<std::int64_t, std::int64_t>& ranges() const { return ends_; }
   friend bool operator==(const TrialSet&, const TrialSet&) = default;
 
-  /// As a piece of long work is kept.
+  /// Writes the set to an archive or reads the set from one (see bytes.h). Reading throws
+  /// std::runtime_error for ranges that no set can have.
   template <class Archive>
   friend void each_part(Archive& archive, TrialSet& set) {
     std::vector<TrialRange> ranges;
@@ -58,38 +60,43 @@ class TrialSet {
   std::map<std::int64_t, std::int64_t> ends_;  // first -> one past the last
 };
 
-/// Whoever starts long work says here who is told how far it is; this program also who keeps what
-/// is done, and which processes share it. Nobody by default.
+/// How the caller of long work follows and stops the work. `told` receives progress; by default
+/// nobody is told. The program also sets `kept`, which stores finished pieces, and `ranks`, the
+/// processes that share the work.
 struct Work {
-  /// Told before each piece, and when all is done: `done` of `total` of what. May throw to stop.
+  /// Called before each piece and at the end: `done` of `total` items of `what` are finished. The
+  /// function may throw to stop the work.
   std::function<void(std::string_view what, std::int64_t done, std::int64_t total)> told;
   KeptPieces* kept = nullptr;
   Ranks* ranks = nullptr;
 
-  /// Calls run(range) for consecutive ranges that cover [0, total) exactly once, each
-  /// some 0.3 s long, of `together` at least. The ranges depend on the machine's speed, so results
-  /// must not depend on how [0, total) is cut.
+  /// Calls run(range) for consecutive ranges that together cover [0, total) exactly once. A range
+  /// takes about 0.3 s and holds at least `together` items. The ranges depend on the machine's
+  /// speed, so results must not depend on how [0, total) is cut.
   void in_pieces(std::string_view what, std::int64_t total,
                  const std::function<void(TrialRange)>& run, std::int64_t together = 1) const;
 
-  /// A part of a run knows some of its trials only, and has no result.
+  /// Whether this run does only its part of a run that is divided over machines. A part has only
+  /// some of the trials, and therefore no result.
   [[nodiscard]] bool is_part() const;
-  /// Where all trials are needed from here on: ends a part.
+  /// Call this where all trials are needed from here on: it ends a run that is only a part, by the
+  /// exception of KeptPieces::end_part, and does nothing in a whole run.
   void end_part() const;
 
-  /// Part number `index` of `count` of equal size, all under one name: what is told of it is told
-  /// as that share of the whole.
+  /// The work of part `index` of `count` equal parts. Progress of the part is reported under the
+  /// name `what`, as a share of the whole.
   [[nodiscard]] Work part(std::string what, std::size_t index, std::size_t count) const;
-  /// The same for parts of any size: from `from` to `from + size` of `total`.
+  /// The work of a part of any size: from `from` to `from + size` of `total`. Progress of the part
+  /// is reported under the name `what`, as a share of the whole.
   [[nodiscard]] Work part(std::string what, double from, double size, std::int64_t total) const;
 
-  /// Tells it, if there is somebody.
+  /// Calls `told` if it is set.
   void tell(std::string_view what, std::int64_t done, std::int64_t total) const {
     if (told) told(what, done, total);
   }
 };
 
-/// Seconds since construction.
+/// A clock that counts the seconds since its construction.
 class Stopwatch {
  public:
   [[nodiscard]] double seconds() const {

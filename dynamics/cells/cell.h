@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A cell that bodies are carried through: what is derived from to simulate any kind of obstacle.
-/// Pools, chains and predictions need only what the cells look like (CellMap); a Cell makes new
-/// passages.
+/// The base class of all cells: derive from Cell to simulate any kind of obstacle that bodies pass.
+/// Pools, chains and predictions need only the description of the cells (CellMap); a Cell simulates
+/// new passages.
 
 #include <atomic>
 #include <cstddef>
@@ -22,20 +22,20 @@
 
 namespace gatewalk::dynamics {
 
-/// What becomes of a body in a cell. `broken`: nothing is known, by a fault or because the body was
-/// lost from sight.
+/// How a passage ends. `broken`: the outcome is unknown, because the simulation failed or the body
+/// was lost from sight.
 enum class Fate : std::uint8_t { left, trapped, broken };
 
-/// A body's way through one cell.
+/// The outcome of one body's passage through one cell.
 struct Passage {
   Fate fate = Fate::broken;
-  Entry next{};   // into the neighbour, if it left
-  Costs costs{};  // by Section::costs
+  Entry next{};   // the entry into the neighbouring cell, if fate is `left`
+  Costs costs{};  // by cost, as Section::costs lists them
 };
 
-/// Memory that a body carries from cell to cell and that no entry shows, such as the random force
-/// that is acting just now: one object of a type that the cell chooses, copied as bytes. The chain
-/// forgets it.
+/// State that a body carries from cell to cell and that its entry does not show, such as the random
+/// force acting at the moment. A Carried holds one object of a trivially copyable type that the
+/// cell chooses. The chain ignores this state.
 class Carried {
  public:
   static constexpr std::size_t kMostBytes = 768;
@@ -45,7 +45,7 @@ class Carried {
     static_assert(sizeof(T) <= kMostBytes && alignof(T) <= alignof(std::max_align_t));
     return *new (bytes_) T(value);
   }
-  /// What was put there; of the same type.
+  /// The object that put() stored. T must be the type that was put.
   template <class T>
   [[nodiscard]] T& as() {
     return *std::launder(reinterpret_cast<T*>(bytes_));
@@ -55,77 +55,82 @@ class Carried {
   alignas(std::max_align_t) std::byte bytes_[kMostBytes];
 };
 
-/// A body that is to enter a cell, of some trial.
+/// A body about to enter a cell.
 struct Body {
   std::int64_t trial = -1;
   Entry entry;
-  Random random;      // noise not used yet
-  Carried carried{};  // see Cell::begin
+  Random random;      // source of the noise still to come
+  Carried carried{};  // set by Cell::begin
 };
 
-/// Called with a body and what became of its last passage (null before the first): the owner takes
-/// the result, puts the next body there and returns true, or returns false: there are no more.
+/// A source of bodies. A cell calls the function with a body and the outcome of that body's last
+/// passage (null before the first one). The function stores the outcome and either replaces the
+/// body by the next one and returns true, or returns false: no bodies are left.
 using NextPassage = std::function<bool(Body& body, const Passage* ended)>;
 
-/// One type of cell. Called by several threads at once, for different bodies: it must not change
-/// itself. What becomes of a body depends on that body alone.
+/// One type of cell. Several threads call the same object at once for different bodies, so a cell
+/// must not change itself. The outcome of a passage must depend on the body alone.
 class Cell {
  public:
   virtual ~Cell() = default;
 
   [[nodiscard]] virtual const Section& section() const = 0;
-  /// Mirror images (left for right) of passages are passages.
+  /// Whether the mirror image (left for right) of every passage is a passage too, equally likely.
   [[nodiscard]] virtual bool is_symmetric() const { return false; }
 
-  /// Carries the body through. If it left, the body is then as it enters the neighbour, and
-  /// body.entry is the passage's `next`.
+  /// Carries the body through the cell. If the body leaves, body.entry becomes its entry into the
+  /// neighbouring cell, equal to Passage::next.
   [[nodiscard]] virtual Passage pass(Body& body) const = 0;
-  /// Until `next` has no more; by default pass() after pass(). For cells that carry many bodies at
-  /// once, but no more than `at_once`. Adds what went wrong to `health`.
+  /// Carries out passages until `next` returns false. By default it calls pass() for one body after
+  /// the other. A cell that carries many bodies at once overrides the function and holds at most
+  /// `at_once` bodies. Numerical problems are added to `health`.
   virtual void carry_out(const NextPassage& next, Health& health, std::int64_t at_once) const;
-  /// Whether carry_out_trials() carries out some passages once more, to see whether they are the
-  /// same: not of a cell whose own tests show it.
+  /// Whether carry_out_trials() repeats some passages to check that the outcomes are the same. A
+  /// cell whose own tests show this returns false.
   [[nodiscard]] virtual bool has_to_show_itself() const { return true; }
-  /// carry_out() of those passages, of which there are at least `at_once`: where a cell has
-  /// processes, by another one.
+  /// Repeats passages for the check of carry_out_trials(); there are at least `at_once` of them. A
+  /// cell that runs in several processes overrides this function to use another process.
   virtual void carry_out_once_more(const NextPassage& next, Health& health,
                                    std::int64_t at_once) const {
     carry_out(next, health, at_once);
   }
 
-  /// The memory of a body that begins a trial at its entry is put in place: with noise of
+  /// Sets up the carried state of a body that begins a trial at its entry, with noise of
   /// body.random.
   virtual void begin(Body&) const {}
-  /// Memory is dropped as if the body began here, with the noise not used yet.
+  /// Replaces the carried state as if the body began a trial here, with noise not used yet.
   virtual void forget(Body& body) const { begin(body); }
-  /// Memory is kept; the noise from now on is another one.
+  /// Continues the body with other noise from now on. The carried state stays.
   virtual void fork(Body& body, const Random& random) const { body.random = random; }
-  /// Whether lay_noise() does anything.
+  /// Whether lay_noise() has an effect.
   [[nodiscard]] virtual bool lays_noise() const { return false; }
-  /// The noise of the passage to come is laid by this point: uniform points make the noise that
-  /// there is without them, points that are evenly spread spread it evenly. Memory is kept.
+  /// Determines the noise of the next passage by a point. Uniformly distributed points give the
+  /// cell's usual noise; evenly spread points (quasi-Monte Carlo) spread the noise evenly. The
+  /// carried state stays.
   virtual void lay_noise(Body&, const Point&) const {}
-  /// The number that names a start in its trials' streams: other starts, other noise. By default
-  /// from its face and numbers, each in its scale.
+  /// The number that names a start in the random streams of its trials, so that different starts
+  /// have different noise. By default a hash of the start's face and its coordinates, each divided
+  /// by its scale.
   [[nodiscard]] virtual std::uint64_t stream_of(const Entry& start) const;
 
-  /// What a passage depends on and may be changed to ask what difference it makes.
+  /// A parameter of the cell that sensitivity studies may change.
   struct Number {
     std::string key;
     double value = 0.0;
   };
   [[nodiscard]] virtual std::vector<Number> numbers() const { return {}; }
-  /// The cell with so many times that number; null where it is not permitted.
+  /// A copy of the cell in which parameter `number` is multiplied by `times`; null where such a
+  /// cell is not permitted.
   [[nodiscard]] virtual std::unique_ptr<Cell> with(std::size_t /*number*/, double /*times*/) const {
     return nullptr;
   }
-  /// How much room there is about an entry, in a unit of the cell's own; negative: none, a body
-  /// cannot enter so.
+  /// The clearance of an entry, in a unit that the cell chooses. Negative: a body cannot enter
+  /// there.
   [[nodiscard]] virtual double clearance(const Entry&) const { return 0.0; }
 
  private:
   friend class TrialsOfCell;
-  /// Passages that carry_out_trials() has had from this object; a copy begins anew.
+  /// How many passages carry_out_trials() has carried out with this object. A copy starts at 0.
   struct Passed {
     Passed() = default;
     Passed(const Passed&) {}
@@ -135,7 +140,7 @@ class Cell {
   mutable Passed passed_;
 };
 
-/// A cell of a function, which carries a body through as Cell::pass does.
+/// A cell made from a function that carries a body through, as Cell::pass does.
 class FunctionCell : public Cell {
  public:
   using Pass = std::function<Passage(Body&)>;
@@ -151,37 +156,39 @@ class FunctionCell : public Cell {
   bool symmetric_;
 };
 
-/// Throws std::invalid_argument for a section that is not valid, and for a face of a symmetric cell
-/// without a mirror image.
+/// Throws std::invalid_argument for an invalid section, and for a symmetric cell with a face that
+/// has no mirror image.
 void require_valid(const Cell& cell);
 
-/// What stands where, and the cells to run, by type; none where runs were recorded.
+/// The layout of a field together with the cells to simulate, by type. `cells` is empty where
+/// passages were recorded, not simulated.
 struct CellField {
   CellMap map;
   std::vector<std::shared_ptr<const Cell>> cells;
 
-  /// The same cell everywhere. Throws std::invalid_argument as require_valid.
+  /// A field with the same cell everywhere. Throws std::invalid_argument as require_valid does.
   [[nodiscard]] static CellField uniform(std::shared_ptr<const Cell> cell);
   [[nodiscard]] const Cell& at(int column, int row) const {
     return *cells[static_cast<std::size_t>(map.type_of(column, row))];
   }
 };
 
-/// Puts a trial's first body there.
+/// Sets up the first body of the trial body.trial.
 using BeginBody = std::function<void(Body& body)>;
-/// Takes a passage; true when the same trial goes on with the body that is there now.
+/// Receives a passage. Returns true if the trial goes on with the body as it is now.
 using TakePassage = std::function<bool(Body& body, const Passage& passage)>;
 
-/// Carries out all passages of trials 0 .. count - 1 through one cell on all threads of the current
-/// TBB arena. Both functions are called by several threads at once, for different trials. What went
-/// wrong is added to `health`.
+/// Carries out all passages of trials 0 .. count - 1 through one cell, on all threads of the
+/// current TBB arena. Several threads call both functions at once, for different trials. Numerical
+/// problems are added to `health`.
 ///
-/// Some of the passages, of a new cell the first few, then one of twenty and ever fewer, are
-/// carried out once more, in another order and company. Throws std::runtime_error with both answers
-/// where one differs: such a cell depends on more than its body, and nothing can be told by it.
+/// Some passages are repeated in another order and in other company: the first few of a new cell,
+/// then one in twenty, and ever fewer as the run goes on. Throws std::runtime_error with both
+/// outcomes if a repeated passage ends differently: the cell then depends on more than the body,
+/// and its results mean nothing.
 void carry_out_trials(const Cell& cell, std::int64_t count, const BeginBody& begin,
                       const TakePassage& take, Health& health);
-/// The same, each passage once.
+/// As carry_out_trials, but without repeating passages as a check.
 void carry_out_trials_once(const Cell& cell, std::int64_t count, const BeginBody& begin,
                            const TakePassage& take, Health& health);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// For tests of cells of one's own: does a cell keep what Cell promises?
+/// A check for your own cells: does a cell keep the promises of Cell?
 
 #include <cstdint>
 #include <string>
@@ -11,17 +11,17 @@
 namespace gatewalk::dynamics {
 
 struct CheckOptions {
-  std::int64_t trials = 200;  // from the starts in turn
-  int cells = 8;              // that a trial passes at most
+  std::int64_t trials = 200;  // number of trials; the starts take turns
+  int cells = 8;              // largest number of cells that a trial passes
   std::uint64_t seed = 1;
 };
 
-/// What is wrong with a cell, in words; none: nothing was found. Trials are carried out several
-/// times, on one and on four threads, in batches of any and of small sizes, alone and in reverse
-/// order, by a copy with the same numbers: the bits must be the same. Sections must be valid,
-/// entries finite and by known faces, costs finite and the first of them a time > 0, nothing may
-/// break, and a cell that says it is symmetric must send bodies from mirrored starts to the
-/// mirrored faces as often. Throws std::invalid_argument without starts.
+/// Checks a cell and returns one sentence for each fault found; an empty result means that no fault
+/// was found. The check repeats the trials on one and four threads, in batches of any and of small
+/// size, alone in reverse order, and with copies that have the same parameters: the bits must be
+/// the same. The section must be valid, entries finite and on known faces, costs finite and the
+/// first cost a time > 0. No passage may break. A symmetric cell must send bodies from mirrored
+/// starts to the mirrored faces equally often. Throws std::invalid_argument without starts.
 [[nodiscard]] std::vector<std::string> check_cell(const Cell& cell,
                                                   const std::vector<Entry>& starts,
                                                   const CheckOptions& options = {});

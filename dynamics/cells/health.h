@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The record of how far runs can be trusted.
+/// The record of numerical faults, which says how far results can be trusted.
 
 #include <array>
 #include <cstdint>
 
 namespace gatewalk::dynamics {
 
-/// What went wrong, or nearly, over many runs. A run is counted as
-/// - penetrating: the disc sank into a beam by more than 1 % of its radius;
-/// - creating energy: energy less work done rose by more than 1e-4 of propulsion * traverse_y plus
-///   the largest kinetic energy of the body;
-/// - fast: disc or beam tip moved over half a radius in one step, so hits may have been missed;
-/// - unstable: steps longer than the method's stability bound for free beams were taken;
+/// Numerical faults and near-faults, counted over many runs. A run counts as
+/// - penetrating: the disc sank into a beam by more than 1 % of the disc's radius;
+/// - creating energy: energy minus work done rose by more than 1e-4 of (propulsion * traverse_y +
+///   the largest kinetic energy of the body);
+/// - fast: the disc or a beam tip moved by more than half a radius in one step, so hits may have
+///   been missed;
+/// - unstable: steps were longer than the method's stability bound for free beams;
 /// - broken: the state stopped being finite.
-/// What no single run can show, that the method itself shapes the outcomes, a sample shows that is
-/// run again by a better method (Problem::check): outcome_error, if somebody looked.
+/// A single run cannot show that the numerical method itself distorts the outcomes. A sample of
+/// trials repeated with a better method (Problem::check) shows such distortion: outcome_error.
 struct Health {
-  /// Share of the steps in which hits may pile up until they are forced to end; `stable` needs it
-  /// about once in a million steps where it is sound.
+  /// The largest permitted share of steps in which accumulating hits are forced to end. Sound runs
+  /// of `stable` need one such step in about a million.
   static constexpr double kPermittedHolds = 1e-3;
 
   std::int64_t runs = 0;
@@ -35,34 +36,35 @@ struct Health {
   double worst_penetration = 0.0;     // m
   double worst_energy_created = 0.0;  // J
   double worst_speed = 0.0;           // m/s
-  std::int64_t checked_trials = 0;    // run again by a better method
-  double outcome_error = 0.0;  // total variation of their outcomes that chance does not explain
+  std::int64_t checked_trials = 0;    // trials repeated with a better method
+  double outcome_error = 0.0;  // total variation between the two methods' outcomes beyond chance
 
   Health& operator+=(const Health& other);
   [[nodiscard]] bool piled_up() const {
     return static_cast<double>(forced_holds) > kPermittedHolds * static_cast<double>(steps);
   }
-  /// Outcomes that are off by more than this are a fault.
+  /// An outcome_error above this total variation is a fault.
   static constexpr double kPermittedOutcomeError = 0.02;
   [[nodiscard]] bool outcomes_off() const { return outcome_error > kPermittedOutcomeError; }
-  /// No run penetrated, created energy, was too fast for its step, took unstable steps, broke or
-  /// met a contact that its method has no formula for, hits did not pile up, and a better method
-  /// was not seen to give other outcomes.
+  /// Whether no fault was found: no run penetrated, created energy, moved too fast for the step,
+  /// took unstable steps, broke, or met a contact for which the method has no formula; few steps
+  /// were forced to end accumulating hits; and a better method gave no other outcomes.
   [[nodiscard]] bool clean() const {
     return penetrating == 0 && creating_energy == 0 && fast == 0 && unstable == 0 && broken == 0 &&
            undefined_contacts == 0 && !piled_up() && !outcomes_off();
   }
 };
 
-/// One number of Health: a count or a largest value (the other is null), with its name in files,
-/// unit and meaning.
+/// One number of Health with its name in files, unit and meaning. The number is either a count or a
+/// largest value; the other pointer is null.
 struct HealthNumber {
   const char *key, *unit, *meaning;
   std::int64_t Health::*count = nullptr;
   double Health::*largest = nullptr;
-  bool is_recent = false;  // older files have none
+  bool is_recent = false;  // older files lack this number
 };
-/// All of them, in the order of files. Counts add, of the others the largest stays.
+/// All numbers of Health, in the order in which files list them. Adding two Health records sums the
+/// counts and keeps the larger of the largest values.
 inline constexpr std::array<HealthNumber, 16> kHealthNumbers{{
     {"runs", "1", "number of gate runs", &Health::runs},
     {"runs_penetrating_over_1_percent", "1",
