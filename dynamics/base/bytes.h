@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Results as bytes, to be read again by the same program: numbers as they are in memory.
+/// Serialisation of results to bytes and back, for the same program on the same machine: numbers
+/// are stored as they are in memory.
 
 #include <cstdint>
 #include <cstring>
@@ -13,9 +14,9 @@
 
 namespace gatewalk::dynamics {
 
-/// Goes through what it is called with, part by part. What is kept of a type that memory alone does
-/// not hold is said once, for writing and reading, by a function each_part(archive, object) that
-/// calls archive(part, ...).
+/// Base of the archives: archive(part, ...) writes or reads the parts one after the other. A type
+/// that is not trivially copyable has a function each_part(archive, object), which calls
+/// archive(part, ...) and serves both writing and reading.
 template <class Archive>
 class PartByPart {
  public:
@@ -62,7 +63,7 @@ class WriteBytes : public PartByPart<WriteBytes> {
   std::string bytes_;
 };
 
-/// Throws std::runtime_error where there are too few or too many bytes.
+/// Reads parts from bytes. Throws std::runtime_error if there are too few or too many bytes.
 class ReadBytes : public PartByPart<ReadBytes> {
  public:
   static constexpr bool reads = true;
@@ -88,10 +89,10 @@ class ReadBytes : public PartByPart<ReadBytes> {
 template <class T>
 [[nodiscard]] std::string bytes_of(const T& value) {
   WriteBytes write;
-  write(const_cast<T&>(value));  // which is only read
+  write(const_cast<T&>(value));  // WriteBytes only reads it
   return write.take();
 }
-/// Into `value`, which is as new.
+/// Reads `value`, a newly made object, from its bytes.
 template <class T>
 void read_bytes(std::string_view bytes, T& value) {
   ReadBytes read(bytes);

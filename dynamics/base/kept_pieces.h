@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Long work whose finished pieces are kept in files, or shared by several processes.
+/// Long work whose finished pieces are kept in files or shared by several processes.
 
 #include <cstdint>
 #include <functional>
@@ -16,8 +16,8 @@
 
 namespace gatewalk::dynamics {
 
-/// How many items to do before looking up again: about 0.3 s of work, learnt from the pieces so
-/// far. A multiple of `least`, with which it starts; grows at most fourfold at a time.
+/// The number of items of the next piece: about 0.3 s of work, estimated from the pieces so far.
+/// The number is a multiple of `least`, starts there, and grows at most fourfold at a time.
 class PieceSize {
  public:
   explicit PieceSize(std::int64_t least = 1) : least_(least), size_(least) {}
@@ -28,56 +28,56 @@ class PieceSize {
   std::int64_t least_, size_;
 };
 
-/// Items of work that are done in one go, or in pieces: trials, by their numbers. Where several
-/// stages are divided together, `before` counts the items of the stages before this one, and `of`
-/// the items of all stages.
+/// A stage of work: items with numbers (trials) that are done in pieces. If several stages are
+/// divided together, `before` counts the items of earlier stages and `of` the items of all stages.
 struct Stage {
   std::string_view what;
   TrialRange items;
   std::int64_t before = 0, of = items.count;
-  std::int64_t together = 1;  // fewest of a piece, where one process does them all
+  std::int64_t together = 1;  // fewest items of a piece in a single process
 };
 
-/// Finished pieces that are kept: a run that was stopped goes on where it was, and runs on several
-/// machines make one. Every run of a command has the same stages in the same order.
+/// A store of finished pieces, so that a stopped run can continue, and runs on several machines can
+/// be combined. Every run of a command must have the same stages in the same order.
 class KeptPieces {
  public:
   virtual ~KeptPieces() = default;
-  /// From now on pieces are of this stage.
+  /// Begins a stage: all following pieces belong to this stage.
   virtual void begin(const Stage& stage) = 0;
-  /// What comes first from item `at` on: a piece that is kept, with its bytes; or items that are to
-  /// be done. None: what is left is not for this run. May throw where an item is missing.
+  /// The next piece from item `at` on: either a kept piece with its bytes, or items still to be
+  /// done. nullopt: no further items of the stage are for this run. May throw if an item is
+  /// missing.
   struct Next {
     TrialRange items;
     std::optional<std::string> bytes;
   };
   [[nodiscard]] virtual std::optional<Next> next(std::int64_t at) = 0;
   virtual void keep(TrialRange items, std::string bytes) = 0;
-  /// This run does a part of each stage only.
+  /// Whether this run does only a part of each stage.
   [[nodiscard]] virtual bool is_part() const = 0;
   /// Whether any item of the stage is for this run.
   [[nodiscard]] virtual bool has_share(const Stage& stage) const = 0;
-  /// From here on all pieces are needed: a part ends. Throws what ends it.
+  /// Called where all pieces are needed. In a part, it throws the exception that ends the run.
   virtual void end_part() = 0;
 };
 
-/// Processes that carry out the same command and share its pieces among them: each gets those of
-/// all, in the same order. All of them make the same calls.
+/// Processes that run the same command and share its pieces. Each process receives the pieces of
+/// all processes in the same order. All processes must make the same calls.
 class Ranks {
  public:
   virtual ~Ranks() = default;
   [[nodiscard]] virtual int rank() const = 0;
   [[nodiscard]] virtual int size() const = 0;
-  /// The first rank's number.
+  /// Broadcasts the first rank's number.
   [[nodiscard]] virtual std::int64_t of_first(std::int64_t number) = 0;
-  /// Each rank's bytes, by rank.
+  /// Gathers the bytes of all ranks, by rank.
   [[nodiscard]] virtual std::vector<std::string> all(const std::string& own) = 0;
-  /// Throws on all of them where one is to stop.
+  /// Throws on all ranks if one of them has been asked to stop.
   virtual void stop_if_asked() = 0;
 };
 
-/// How a stage's items are done: in this process, for other processes, and as bytes of a piece that
-/// was done before.
+/// The three ways of doing a piece: run it and use the result here; run it and return the result as
+/// bytes for other processes; use the bytes of a piece done before.
 struct PieceSteps {
   std::function<void(TrialRange)> run_and_take;
   std::function<std::string(TrialRange)> run_to_bytes;
@@ -85,9 +85,9 @@ struct PieceSteps {
 };
 void in_pieces_of(const Work& work, const Stage& stage, const PieceSteps& steps);
 
-/// The same of work whose pieces can be kept: what run(range) returns goes to take(T), in the
-/// order of the ranges, and so do the pieces that are kept already. `none`: a T of no items. A
-/// part of a run takes its own items only, and may take none.
+/// Runs a stage whose pieces can be kept. take() receives the result of run(range), or the kept
+/// result, in the order of the ranges. `none` is a T of no items. A part of a run handles only its
+/// own items, perhaps none.
 template <class T>
 void in_kept_pieces(const Work& work, const Stage& stage, const T& none,
                     const std::type_identity_t<std::function<T(TrialRange)>>& run,
@@ -115,8 +115,8 @@ void in_kept_pieces(const Work& work, const Stage& stage, const T& none,
   in_pieces_of(work, stage, {run_and_take, run_to_bytes, take_bytes});
 }
 
-/// Whether this part of a divided run does any items of the stage. If it does none, the stage need
-/// not be prepared, and counts as done.
+/// Whether this run does any items of the stage. If not, the stage counts as done and need not be
+/// prepared.
 [[nodiscard]] bool has_share(const Work& work, const Stage& stage);
 
 }  // namespace gatewalk::dynamics

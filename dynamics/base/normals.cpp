@@ -39,7 +39,7 @@ HWY_EXPORT(box_muller);
 
 void Random::refill() {
   const auto drawn = r123::Philox4x64()({{block_++, trial_, 0, 0}}, {{key_[0], key_[1]}});
-  // One by one: a copy of all four would wait until the processor has written each.
+  // Copied one by one: a copy of all four would wait for each store.
   words_ = {drawn[0], drawn[1], drawn[2], drawn[3]};
   used_ = 0;
 }

@@ -9,9 +9,9 @@ namespace {
 constexpr std::size_t kBits = 32;
 using Directions = std::array<std::array<std::uint32_t, kBits>, kPointDimensions>;
 
-/// A primitive polynomial over the integers mod 2, its inner coefficients as binary digits, and the
-/// first direction numbers: Joe and Kuo 2008, "Constructing Sobol sequences with better
-/// two-dimensional projections", from the second coordinate on.
+/// A primitive polynomial over the integers mod 2: its degree, its inner coefficients as binary
+/// digits, and the first direction numbers. Values from the second coordinate on: Joe and Kuo 2008,
+/// "Constructing Sobol sequences with better two-dimensional projections".
 struct Polynomial {
   std::size_t degree;
   std::uint32_t inner;
@@ -49,7 +49,8 @@ Directions sobol_directions() {
 ScrambledPoints::ScrambledPoints(Random& random) {
   static const Directions plain = sobol_directions();
   for (std::size_t axis = 0; axis < kPointDimensions; ++axis) {
-    std::array<std::uint32_t, kBits> matrix;  // row i: what digit i is made of, itself and larger
+    std::array<std::uint32_t, kBits>
+        matrix;  // row i: the digits that make up digit i, itself and larger ones
     for (std::size_t i = 0; i < kBits; ++i) {
       const std::uint32_t own = std::uint32_t{1} << (kBits - 1 - i);
       matrix[i] = own | (static_cast<std::uint32_t>(random.word() >> 32) & ~(own | (own - 1)));

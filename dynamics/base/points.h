@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Points that fill a unit cube more evenly than random ones do, each of them uniform: randomised
-/// quasi-Monte Carlo (L'Ecuyer 2018, "Randomized quasi-Monte Carlo: an introduction for
+/// Randomised quasi-Monte Carlo: points that fill the unit cube more evenly than random points do,
+/// each uniformly distributed (L'Ecuyer 2018, "Randomized quasi-Monte Carlo: an introduction for
 /// practitioners").
 
 #include <array>
@@ -12,16 +12,16 @@
 
 namespace gatewalk::dynamics {
 
-/// Sobol's sequence (direction numbers of Joe and Kuo 2008), scrambled by
-/// a random lower triangular matrix over its bits and a digital shift (Matoušek 1998), which has
-/// the variance of Owen's nested scrambling. Points of one scramble depend on each other, those of
-/// two do not.
+/// Sobol's sequence (direction numbers of Joe and Kuo 2008), scrambled by a random lower triangular
+/// matrix over the bits and a digital shift (Matoušek 1998). The variance is that of Owen's nested
+/// scrambling. Points of one scramble depend on each other; points of two scrambles are
+/// independent.
 class ScrambledPoints {
  public:
-  /// The scramble is drawn.
+  /// Draws a scramble.
   explicit ScrambledPoints(Random& random);
-  /// Any 2^k points whose numbers begin at a multiple of 2^k fill the cube evenly. Numbers: below
-  /// 2^32.
+  /// The point with this number, below 2^32. Any 2^k points whose numbers begin at a multiple of
+  /// 2^k fill the cube evenly.
   [[nodiscard]] Point operator()(std::uint32_t number) const;
 
  private:
@@ -30,7 +30,7 @@ class ScrambledPoints {
   std::array<std::uint64_t, kPointDimensions> shift_;
 };
 
-/// Standard normals, by Box and Muller, as the point is uniform; the same bits everywhere.
+/// Maps a uniform point to standard normals by Box-Muller; the bits are the same on any machine.
 [[nodiscard]] std::array<double, kPointDimensions> normals_of(const Point& point);
 
 }  // namespace gatewalk::dynamics

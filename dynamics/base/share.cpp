@@ -7,7 +7,7 @@
 namespace gatewalk::dynamics {
 namespace {
 
-/// Of a product that is rounded.
+/// One trial, less the rounding error of trials * share.
 constexpr double kOneTrial = 1.0 - 1e-9;
 
 std::array<double, 2> jeffreys(double part, double others) {
@@ -22,7 +22,7 @@ std::array<double, 2> share_interval(std::int64_t part, std::int64_t whole) {
 }
 
 std::array<double, 2> interval_of_share(double share, double equivalent_trials) {
-  constexpr double kMostTrials = 1e9;  // of more the quantiles need not converge
+  constexpr double kMostTrials = 1e9;  // beyond this the quantiles may not converge
   const double trials = std::min(equivalent_trials, kMostTrials);
   const auto [low, high] = jeffreys(trials * share, trials * std::max(0.0, 1.0 - share));
   return {std::min(low, share), std::max(high, share)};

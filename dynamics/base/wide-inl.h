@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Numbers side by side in two vector registers, written as one, for use inside Highway's
-// foreach_target (so no plain include guard). Two registers because a single one waits for itself:
-// the two do not depend on each other. Nothing is fused and nothing is summed over lanes, so that
-// every lane has the same bits with any instruction set.
+// Wide: two vector registers of numbers, used like a single number inside Highway's foreach_target
+// (hence no plain include guard). Two registers hide latency, because they do not depend on each
+// other. No operation is fused and no sum runs over lanes, so every lane has the same bits with any
+// instruction set.
 #if defined(GATEWALK_DYNAMICS_WIDE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef GATEWALK_DYNAMICS_WIDE_INL_H_
 #undef GATEWALK_DYNAMICS_WIDE_INL_H_
@@ -75,12 +75,14 @@ HWY_INLINE Wide or_zero(WideMask m, Wide yes) {
   return {hn::IfThenElseZero(m.a, yes.a), hn::IfThenElseZero(m.b, yes.b)};
 }
 
-// Functions of a Number are for Wide and for double: the plain code has the same bits as the lanes.
+// Functions of a Number work for Wide and for double, so the plain code has the same bits as the
+// lanes.
 HWY_INLINE Wide like(Wide, double x) { return all(x); }
 HWY_INLINE double like(double, double x) { return x; }
 HWY_INLINE double choose(bool m, double yes, double no) { return m ? yes : no; }
 
-/// c[0] + c[1] z + ...; even and odd powers apart, so that one need not wait for the other.
+/// The polynomial c[0] + c[1] z + ... Even and odd powers are summed apart, so that neither sum
+/// waits for the other.
 template <class Number, std::size_t N>
 HWY_INLINE Number series(Number z, const double (&c)[N]) {
   static_assert(N >= 2);
@@ -99,16 +101,18 @@ struct Direction2 {
   Number c, s;
 };
 
-/// The nearest whole number, the even one of two, for |x| < 2^51: no digit after the point is left.
+/// The nearest whole number, ties to even, for |x| < 2^51, where a double has digits after the
+/// point.
 template <class Number>
 HWY_INLINE Number rounded(Number x) {
   const Number big = like(x, 0x1.8p+52);
   return (x + big) - big;
 }
 
-/// cos and sin to 3e-16 for |angle| < 10^6, so that near their zeros the relative error is larger:
-/// reduced to [-pi/4, pi/4] by three parts of pi/2, the first two short enough for exact products;
-/// then Taylor's series, next terms below 6e-17 of the sum.
+/// cos and sin with an absolute error of 3e-16 for |angle| < 10^6; near zeros the relative error is
+/// larger. The angle is reduced to [-pi/4, pi/4] by three parts of pi/2, of which the first two are
+/// short enough for exact products. Taylor series follow, with omitted terms below 6e-17 of the
+/// sum.
 template <class Number>
 HWY_INLINE Direction2<Number> direction_of(Number angle) {
   const Number quarter = rounded(0x1.45f306dc9c883p-1 * angle);  // 2/pi
@@ -134,8 +138,8 @@ HWY_INLINE Direction2<Number> direction_of(Number angle) {
   return {choose(one | (turn == like(z, 2.0)), -c, c), choose(upper, -s, s)};
 }
 
-/// The direction turned on by |d| < 1/16, to the last digits: Taylor series, the next terms are
-/// d^10 / 10! < 3e-19 and d^11 / 11!.
+/// The direction rotated by d, |d| < 1/16, exact to the last digits: Taylor series with omitted
+/// terms d^10 / 10! < 3e-19 and d^11 / 11!.
 template <class Number>
 HWY_INLINE Direction2<Number> turned_by(Number d, const Direction2<Number>& from) {
   constexpr double kSin[] = {-1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880};
@@ -145,8 +149,9 @@ HWY_INLINE Direction2<Number> turned_by(Number d, const Direction2<Number>& from
   return {from.c * c - from.s * s, from.s * c + from.c * s};
 }
 
-/// log to 1 or 2 units in the last place, for normal x > 0: x = 2^e m with m in [1/sqrt 2, sqrt 2),
-/// log m = 2 artanh s with s = (m - 1)/(m + 1), |s| < 0.172; next term of the series below 3e-17.
+/// log to 1 or 2 units in the last place, for normal x > 0. With x = 2^e m and m in [1/sqrt 2, sqrt
+/// 2), log m = 2 artanh s for s = (m - 1)/(m + 1), |s| < 0.172; omitted terms of the series are
+/// below 3e-17.
 HWY_INLINE Wide log(Wide x) {
   const hn::RebindToUnsigned<D> du;
   const hn::RebindToSigned<D> di;

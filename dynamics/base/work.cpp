@@ -13,7 +13,7 @@
 namespace gatewalk::dynamics {
 namespace {
 
-/// One piece on each rank.
+/// Does one piece on each rank, and returns the number of items done on all ranks.
 std::int64_t on_all_ranks(const Work& work, TrialRange items, std::int64_t size,
                           const PieceSteps& steps) {
   Ranks* const ranks = work.ranks;
@@ -74,7 +74,8 @@ void PieceSize::measured(std::int64_t count, double seconds) {
   constexpr double kSeconds = 0.3;
   constexpr std::int64_t kMost = std::int64_t{1} << 40;
   const std::int64_t ceiling = std::min(kMost, 4 * size_);
-  const double wanted = static_cast<double>(count) * kSeconds / seconds;  // inf if too quick to see
+  const double wanted = static_cast<double>(count) * kSeconds /
+                        seconds;  // infinite if the time was too short to measure
   size_ = wanted < static_cast<double>(ceiling)
               ? std::max<std::int64_t>(least_, std::llround(wanted))
               : ceiling;
@@ -135,7 +136,7 @@ void Work::end_part() const {
 }
 
 Work Work::part(std::string what, std::size_t index, std::size_t count) const {
-  constexpr double kEach = 1000.0;  // as fine as a progress line shows
+  constexpr double kEach = 1000.0;  // the resolution of a progress line
   return part(std::move(what), kEach * static_cast<double>(index), kEach,
               std::llround(kEach * static_cast<double>(count)));
 }
