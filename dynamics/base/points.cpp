@@ -49,8 +49,7 @@ Directions sobol_directions() {
 ScrambledPoints::ScrambledPoints(Random& random) {
   static const Directions plain = sobol_directions();
   for (std::size_t axis = 0; axis < kPointDimensions; ++axis) {
-    std::array<std::uint32_t, kBits>
-        matrix;  // row i: the digits that make up digit i, itself and larger ones
+    std::array<std::uint32_t, kBits> matrix;  // row i: digit i and the larger digits added to it
     for (std::size_t i = 0; i < kBits; ++i) {
       const std::uint32_t own = std::uint32_t{1} << (kBits - 1 - i);
       matrix[i] = own | (static_cast<std::uint32_t>(random.word() >> 32) & ~(own | (own - 1)));

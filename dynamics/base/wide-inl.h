@@ -101,8 +101,7 @@ struct Direction2 {
   Number c, s;
 };
 
-/// The nearest whole number, ties to even, for |x| < 2^51, where a double has digits after the
-/// point.
+/// The nearest whole number, ties to even, for |x| < 2^51.
 template <class Number>
 HWY_INLINE Number rounded(Number x) {
   const Number big = like(x, 0x1.8p+52);

@@ -74,8 +74,8 @@ void PieceSize::measured(std::int64_t count, double seconds) {
   constexpr double kSeconds = 0.3;
   constexpr std::int64_t kMost = std::int64_t{1} << 40;
   const std::int64_t ceiling = std::min(kMost, 4 * size_);
-  const double wanted = static_cast<double>(count) * kSeconds /
-                        seconds;  // infinite if the time was too short to measure
+  // Infinite if the time was too short to measure.
+  const double wanted = static_cast<double>(count) * kSeconds / seconds;
   size_ = wanted < static_cast<double>(ceiling)
               ? std::max<std::int64_t>(least_, std::llround(wanted))
               : ceiling;

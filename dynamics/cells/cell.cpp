@@ -26,14 +26,15 @@ void Cell::carry_out(const NextPassage& next, Health& health, std::int64_t) cons
 }
 
 std::uint64_t Cell::stream_of(const Entry& start) const {
-  // From the bits of its numbers; the random generator serves as the hash.
+  // A hash of the bits of the start's numbers, made by the random generator.
   const std::vector<Coordinate>& coordinates = section().coordinates;
   r123::Philox4x64::ctr_type hash = {{static_cast<std::uint64_t>(start.face), 0, 0, 0}};
   for (std::size_t k = 0; k < coordinates.size(); ++k) {
-    hash[1] = std::bit_cast<std::uint64_t>(start.at[k] / coordinates[k].scale + 0.0);  // -0 is 0
+    // -0 becomes 0
+    hash[1] = std::bit_cast<std::uint64_t>(start.at[k] / coordinates[k].scale + 0.0);
     hash = r123::Philox4x64()(hash, {{0, 0}});
   }
-  return hash[0] >> 8;  // the top byte of a key is its purpose
+  return hash[0] >> 8;  // the top byte of a key holds the purpose
 }
 
 void require_valid(const Cell& cell) {
@@ -51,8 +52,8 @@ CellField CellField::uniform(std::shared_ptr<const Cell> cell) {
   return {std::move(map), {std::move(cell)}};
 }
 
-/// Trials that several threads share: a free thread takes the next trial, and no thread waits for
-/// the end of a block.
+/// Runs trials on several threads: a free thread takes the next trial, so no thread waits for the
+/// end of a block.
 class TrialsOfCell {
  public:
   TrialsOfCell(const Cell& cell, std::int64_t count, const BeginBody& begin,
@@ -66,14 +67,15 @@ class TrialsOfCell {
         first_ones_(passed_before_ == 0 ? kFirstOnes : 0) {}
 
   void carry_out(Health& health) {
-    const std::int64_t each = (count_ + threads_ - 1) / threads_;  // not what others could do
-    tbb::enumerable_thread_specific<Health> parts;  // sums and largest values: any order will do
+    // a thread holds no more than its share
+    const std::int64_t each = (count_ + threads_ - 1) / threads_;
+    tbb::enumerable_thread_specific<Health> parts;  // sums and maxima do not depend on the order
     tbb::parallel_for(0, threads_, [&](int) {
       try {
         Share share(*this);
         share.carry_out(parts.local(), each);
       } catch (...) {
-        next_trial_ = count_;  // nobody takes another one
+        next_trial_ = count_;  // no thread takes another trial
         throw;
       }
     });
@@ -81,14 +83,14 @@ class TrialsOfCell {
   }
 
  private:
-  /// Which passages are carried out once more: the first `kFirstOnes` of a new cell, then one of
-  /// `kOneOf`. At most `kMostKept` wait at a time. The cell repeats them after `kFirstTime`
-  /// passages and whenever that number has doubled, but not before `kEnough` wait. A run of fewer
-  /// than `kFew` passages repeats all of its own at its end.
+  /// Which passages are repeated: the first `kFirstOnes` of a new cell, then one in `kOneOf`. At
+  /// most `kMostKept` passages wait for their repetition. A cell repeats them after `kFirstTime`
+  /// passages and whenever that number has doubled, but not before `kEnough` passages wait. A run
+  /// of fewer than `kFew` passages repeats all of its own at its end.
   static constexpr std::int64_t kFirstOnes = 4, kOneOf = 20, kMostKept = 64, kFirstTime = 128,
                                 kEnough = 8, kFew = 2 * kMostKept * kOneOf;
 
-  /// The passages of one thread.
+  /// The part of the trials that one thread runs.
   class Share {
    public:
     explicit Share(TrialsOfCell& all) : all_(all) {
@@ -111,7 +113,7 @@ class TrialsOfCell {
     }
 
    private:
-    /// A passage that ended, and how it began.
+    /// A finished passage and the body before it.
     struct Seen {
       Body before;
       SeenPassage once;
@@ -133,7 +135,7 @@ class TrialsOfCell {
       all_.begin_(body);
       return begin(body);
     }
-    /// False: the body waits until what was kept has been seen once more.
+    /// Returns false if the body must wait until the kept passages have been repeated.
     bool begin(const Body& body) {
       if (!all_.once_more_) return true;
       if (passed() >= next_time_ && std::ssize(watched_) + std::ssize(seen_) >= kEnough)
@@ -146,7 +148,7 @@ class TrialsOfCell {
       if (is_wanted(body.trial)) watched_.push_back(body);
       return true;
     }
-    /// As if all threads had begun as many.
+    /// Estimated number of passages, as if all threads had begun as many as this one.
     [[nodiscard]] std::int64_t passed() const {
       return all_.passed_before_ + begun_ * all_.threads_;
     }
@@ -154,7 +156,7 @@ class TrialsOfCell {
       if (std::ssize(watched_) + std::ssize(seen_) >= kMostKept) return false;
       const bool is_first = all_.first_ones_ > 0 && all_.first_ones_-- > 0;
       if (!is_first && begun_ % kOneOf != 0) return false;
-      return std::none_of(seen_.begin(), seen_.end(),  // a trial's number tells which one it is
+      return std::none_of(seen_.begin(), seen_.end(),  // the trial's number identifies a passage
                           [&](const Seen& seen) { return seen.before.trial == trial; });
     }
     void keep(const Body& body, const Passage& passage) {
@@ -199,7 +201,8 @@ class TrialsOfCell {
     TrialsOfCell& all_;
     std::int64_t begun_ = 0, next_time_ = kFirstTime;
     bool is_time_ = false;
-    std::vector<Body> watched_, waiting_;  // under way and to be kept; stopped until it was seen
+    // under way and to be repeated; waiting for the repetition
+    std::vector<Body> watched_, waiting_;
     std::vector<Seen> seen_;
   };
 

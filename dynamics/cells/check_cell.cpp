@@ -68,13 +68,13 @@ class CellChecker {
     const Entry& start = starts_[static_cast<std::size_t>(trial) % starts_.size()];
     body.trial = trial;
     body.entry = mirror ? mirrored(section_, start) : start;
-    // Mirror images get noise of their own: what is compared is then independent.
+    // Mirror images get other noise, so that the two samples are independent.
     const Stream stream{options_.seed, cell_.stream_of(start),
                         static_cast<std::uint64_t>(trial + (mirror ? options_.trials : 0))};
     body.random = Random(Purpose::field, stream);
     cell_.begin(body);
   }
-  /// Whether the trial goes on.
+  /// Records a passage and returns whether the trial goes on.
   bool take(CheckedTrials& trials, const Body& body, const Passage& passage) const {
     std::vector<SeenPassage>& trial = trials[static_cast<std::size_t>(body.trial)];
     trial.push_back({passage, body.entry});
@@ -183,7 +183,8 @@ class CellChecker {
     return {};
   }
 
-  /// First passages from each start by face or fate, against those from its mirror image.
+  /// Compares the first passages from each start, by face or fate, with those from the mirrored
+  /// start.
   void check_symmetry(const CheckedTrials& trials) {
     const std::size_t faces = section_.faces.size(), kinds = faces + 2;
     std::vector<double> here(starts_.size() * kinds), there(here);
@@ -207,7 +208,7 @@ class CellChecker {
       free += 1.0;
     }
     free -= static_cast<double>(starts_.size());
-    // Chance makes more than this less than once in a million checks.
+    // A symmetric cell exceeds this bound in fewer than one of a million checks.
     if (chi_squared > free + 6.0 * std::sqrt(2.0 * std::max(free, 0.0)) + 20.0)
       complain(
           "it says that it is symmetric, but sends bodies from mirrored starts elsewhere "

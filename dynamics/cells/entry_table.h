@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Entries, many of them, in columns: as small as the section allows.
+/// A compact table of many entries, stored in columns with only the section's coordinates.
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,8 @@ namespace gatewalk::dynamics {
 
 class EntryTable {
  public:
-  EntryTable(const Section& section, const std::vector<Entry>& entries = {})  // NOLINT: of what
+  EntryTable(const Section& section,
+             const std::vector<Entry>& entries = {})  // NOLINT(google-explicit-constructor)
       : coordinates_(section.coordinates.size()) {
     for (const Entry& entry : entries) push_back(entry);
   }
@@ -26,7 +27,7 @@ class EntryTable {
     at_.insert(at_.end(), entry.at.data(), entry.at.data() + coordinates_);
   }
   [[nodiscard]] int face(std::size_t i) const { return faces_[i]; }
-  /// The entry's coordinates, as many as there are.
+  /// The coordinates of entry i: an array of coordinates() numbers.
   [[nodiscard]] const double* at(std::size_t i) const { return at_.data() + i * coordinates_; }
   [[nodiscard]] Entry operator[](std::size_t i) const {
     Entry entry{face(i)};

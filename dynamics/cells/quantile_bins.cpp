@@ -8,7 +8,7 @@
 namespace gatewalk::dynamics {
 namespace {
 
-/// Bins along each of so many coordinates whose product is nearest to `states`.
+/// The number of bins along each of `coordinates` axes whose product is nearest to `states`.
 int bins_per_axis(double states, std::size_t coordinates) {
   const auto half_of_product = [&](int bins) {
     double product = 0.5;
@@ -20,10 +20,10 @@ int bins_per_axis(double states, std::size_t coordinates) {
   return n;
 }
 
-/// The place nearest to `at` where ascending `values` change, so that equal values stay together; 0
-/// or the end when there is none nearer. Of two as near: the lower one in the lower half (side <
-/// 0), the upper one in the upper half, and none, 0, in the middle: mirror images have mirrored
-/// places.
+/// The index nearest to `at` at which ascending `values` change, so that equal values stay
+/// together; 0 or the end if none is nearer. If two are equally near: the lower one in the lower
+/// half (side < 0), the upper one in the upper half, and none (0) in the middle, so mirrored data
+/// have mirrored edges.
 std::size_t between_values(const std::vector<double>& values, std::size_t at, int side) {
   const std::size_t n = values.size();
   if (at == 0 || at == n || values[at - 1] != values[at]) return at;
@@ -34,8 +34,8 @@ std::size_t between_values(const std::vector<double>& values, std::size_t at, in
   return at - below < above - at ? below : above;
 }
 
-/// Edges of `bins` bins at the quantiles of `values` (not empty), the outermost at their extremes;
-/// those of `range` where all values are the same.
+/// The edges of `bins` bins at the quantiles of `values` (not empty), the outermost at the
+/// extremes. If all values are equal, the edges of `range`, widened to contain the value.
 std::vector<double> quantile_edges(std::vector<double> values, int bins,
                                    const std::array<double, 2>& range) {
   std::sort(values.begin(), values.end());
@@ -105,10 +105,10 @@ bool Resolution::poor() const {
 }
 
 Resolution resolution_of(const StateSpace& space, const std::vector<Entry>& seen) {
-  struct Group {  // sums over its entries
+  struct Group {  // sums over the entries of a state or face
     std::int64_t n = 0;
     std::array<double, kMostCoordinates> mean{},
-        squares{};  // squares: of the deviations from the mean (Welford)
+        squares{};  // squares: of deviations from the mean (Welford)
     void add(const Entry& c, std::size_t coordinates) {
       ++n;
       for (std::size_t axis = 0; axis < coordinates; ++axis) {

@@ -12,7 +12,7 @@
 namespace gatewalk::dynamics {
 namespace {
 
-/// Whether face f and the one that it has for a mirror image are images of each other.
+/// Whether face f and its mirror face are mirror images of each other.
 bool are_images(const std::vector<Face>& faces, std::size_t f) {
   const Face &face = faces[f], &image = faces[static_cast<std::size_t>(face.mirror)];
   return image.mirror == static_cast<int>(f) && image.odd == face.odd && image.di_x == -face.di_x &&

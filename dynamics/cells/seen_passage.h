@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What was seen of a passage, to be compared. Not part of the installed headers.
+/// An observed passage, for comparing repeated passages. Not part of the installed headers.
 
 #include <string>
 
@@ -8,18 +8,18 @@
 
 namespace gatewalk::dynamics {
 
-/// What a passage said, and how the body then was.
+/// A passage as the cell returned it, with the body's entry afterwards.
 struct SeenPassage {
   Passage passage;
   Entry body;
 
-  /// To the last bit.
+  /// Whether both passages are equal to the last bit.
   [[nodiscard]] bool same_as(const SeenPassage& other) const;
-  /// "left by S (s = 0.1), time_s = 2"
+  /// The passage in words: "left by S (s = 0.1), time_s = 2".
   [[nodiscard]] std::string words(const Section& section) const;
 };
 
-/// "S (s = 0.1, vx = 2)"
+/// The entry in words: "S (s = 0.1, vx = 2)".
 [[nodiscard]] std::string words_of(const Section& section, const Entry& entry);
 
 }  // namespace gatewalk::dynamics

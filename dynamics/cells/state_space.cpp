@@ -16,7 +16,7 @@ namespace {
 
 int count(const std::vector<double>& edges) { return static_cast<int>(edges.size()) - 1; }
 
-/// Bin of v; outside all bins the nearest one, and `beyond` is set.
+/// The bin of v. If v is outside all bins, the nearest bin, and `beyond` is set.
 int bin_of(const std::vector<double>& edges, double v, bool& beyond) {
   if (v < edges.front() || v > edges.back()) beyond = true;
   const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, v);
@@ -28,7 +28,8 @@ std::invalid_argument too_many_states(double factor) {
       fmt::format("bins: factor {:f} makes more than {} states", factor, kMostStates));
 }
 
-/// `edges` in max(1, round(n * factor)) equal bins; as they are if that is as many as now.
+/// The range of `edges` in max(1, round(n * factor)) equal bins; `edges` themselves if that number
+/// is n.
 std::vector<double> rebinned(const std::vector<double>& edges, double factor) {
   const double wanted = std::max(1.0, std::round(count(edges) * factor));
   if (!(wanted <= kMostStates)) throw too_many_states(factor);
@@ -77,7 +78,7 @@ StateSpace::StateSpace(Section section, std::vector<Bins> bins, bool open,
 
 namespace {
 
-/// Follows a tree in preorder.
+/// Reads a tree in preorder and collects the ranges of its leaves.
 struct TreeReader {
   using Range = decltype(StateRange::at);
 
@@ -85,13 +86,13 @@ struct TreeReader {
   const std::string& face;
   int coordinates;
   int first_state;
-  std::vector<int> next{};                    // as StateSpace::next_
-  std::vector<std::array<double, 2>>& sides;  // as StateSpace::sides_, appended
+  std::vector<int> next{};                    // see StateSpace::next_
+  std::vector<std::array<double, 2>>& sides;  // see StateSpace::sides_; leaves are appended
 
   [[noreturn]] void refuse(const char* what) const {
     throw std::invalid_argument("state space: the tree of boundary " + face + " " + what);
   }
-  /// Takes the nodes of one part, which has this range.
+  /// Reads the nodes of one part of the tree, whose range is `range`.
   void read(Range range, int depth = 0) {
     constexpr int kDeepest = 64;
     const std::size_t at = next.size();
@@ -231,7 +232,8 @@ StateRange StateSpace::range(int state) const {
 Entry StateSpace::sample(int state, Random& random) const {
   const StateRange range = this->range(state);
   Entry entry{range.face};
-  for (std::size_t axis = 0; axis < section_.coordinates.size(); ++axis) {  // draws for points too
+  // draws for points too, so that the stream does not depend on the state
+  for (std::size_t axis = 0; axis < section_.coordinates.size(); ++axis) {
     const auto& [from, to] = range.at[axis];
     entry.at[axis] = from + (to - from) * random.uniform();
   }

@@ -16,7 +16,7 @@ namespace {
 template <std::size_t N>
 class Grower {
  public:
-  /// An entry with its place among all; many are moved about: no larger than they must be.
+  /// An entry with its index among all entries. Sorting moves many of them, so the type is small.
   struct Seen {
     std::array<double, N> at;
     int place;
@@ -40,7 +40,7 @@ class Grower {
     add(entries);
     return std::move(tree_);
   }
-  /// A tree of one state, for which nothing was seen.
+  /// A tree of a single state, for a face without observed entries.
   [[nodiscard]] Tree unseen(const Face& face) {
     ++states_;
     return {.nodes = {Tree::Node{}}, .seen = usual_at(section_, face)};
@@ -51,7 +51,7 @@ class Grower {
     return [axis](const Seen& a, const Seen& b) { return a.at[axis] < b.at[axis]; };
   }
 
-  /// Axes by how far the entries spread along them, on their scales, the most first.
+  /// The axes in order of the entries' spread along them, in units of the scales, largest first.
   [[nodiscard]] std::array<std::size_t, N> axes_by_spread(Entries entries) const {
     const auto n = static_cast<double>(entries.size());
     const std::array<double, N> origin = entries.front().at;
@@ -73,8 +73,8 @@ class Grower {
     return axes;
   }
 
-  /// Puts entries below a cut near the median of an axis before those above it, and returns how
-  /// many they are; 0 where equal values leave no cut with enough entries on both sides.
+  /// Partitions the entries at a cut near the median of an axis and returns the number of entries
+  /// below. Returns 0 if equal values leave no cut with enough entries on both sides.
   [[nodiscard]] std::size_t halve(Entries entries, std::size_t axis) const {
     const std::size_t n = entries.size();
     const auto middle = entries.begin() + static_cast<std::ptrdiff_t>(n / 2);
@@ -105,7 +105,7 @@ class Grower {
         const double from = std::max_element(low.begin(), low.end(), less_along(axis))->at[axis],
                      to = std::min_element(high.begin(), high.end(), less_along(axis))->at[axis];
         const double cut = 0.5 * from + 0.5 * to;
-        if (!(from < cut && cut < to)) continue;  // neighbours among the doubles
+        if (!(from < cut && cut < to)) continue;  // from and to are adjacent doubles
         tree_.nodes.push_back({static_cast<int>(axis), cut});
         add(low);
         add(high);
@@ -120,11 +120,11 @@ class Grower {
   std::array<double, N> per_unit_{};
   std::size_t per_leaf_;
   std::vector<int>& state_of_;
-  int states_ = 0;  // leaves so far, of all trees
+  int states_ = 0;  // number of leaves so far, in all trees
   Tree tree_;
 };
 
-/// By face. The state of each entry is put into `states`.
+/// Grows one tree per face and writes the state of each entry into `states`.
 template <std::size_t N>
 std::vector<Tree> trees_of(const Section& section, const EntryTable& seen, std::size_t per_leaf,
                            std::vector<int>& states) {
@@ -144,7 +144,7 @@ std::vector<Tree> trees_of(const Section& section, const EntryTable& seen, std::
   return trees;
 }
 
-/// trees_of for 1, 2, ... coordinates.
+/// The instances of trees_of for 1, 2, ... coordinates.
 template <std::size_t... I>
 constexpr auto trees_of_each(std::index_sequence<I...>) {
   return std::array{&trees_of<I + 1>...};
