@@ -14,8 +14,7 @@ namespace gatewalk::dynamics {
 
 class EntryTable {
  public:
-  EntryTable(const Section& section,
-             const std::vector<Entry>& entries = {})  // NOLINT(google-explicit-constructor)
+  EntryTable(const Section& section, const std::vector<Entry>& entries = {})  // NOLINT
       : coordinates_(section.coordinates.size()) {
     for (const Entry& entry : entries) push_back(entry);
   }

@@ -12,20 +12,21 @@
 
 namespace gatewalk::dynamics {
 
-/// The number that names a start in its trials' streams: other starts, other noise. From the start
-/// in the scene's own units (Scale), so that a rescaled scene has the same noise.
+/// The number that names a start in the random streams of its trials, so that different starts have
+/// different noise. It is computed in the scene's own units (Scale), so a rescaled scene has the
+/// same noise.
 [[nodiscard]] std::uint64_t stream_row(const GateParams& p, const BodyState& start);
 
-/// How a run through a gate ended, as a passage.
+/// Converts the result of a gate run into a passage.
 [[nodiscard]] Passage passage_of(const GateParams& p, const GateRun& run);
 
-/// Bodies carry their exact state, which an entry rounds to the boundary, and the random force:
-/// its draw in force is held on in the next gate.
+/// A gate as a Cell. A body carries its exact state, which its entry rounds to the boundary, and
+/// its random force: the current draw goes on in the next gate.
 class DiscCell : public Cell {
  public:
-  /// Throws InvalidParameter as make_method and disc_section(p).
+  /// Throws InvalidParameter as make_method and disc_section(p) do.
   explicit DiscCell(const GateParams& p);
-  DiscCell(const DiscCell&) = delete;  // its method refers to its own p_
+  DiscCell(const DiscCell&) = delete;  // method_ refers to p_
   DiscCell& operator=(const DiscCell&) = delete;
 
   [[nodiscard]] const Section& section() const override { return section_; }
@@ -35,22 +36,23 @@ class DiscCell : public Cell {
   [[nodiscard]] bool has_to_show_itself() const override { return false; }
 
   void begin(Body& body) const override;
-  /// At a place inside the gate too, which no entry shows.
+  /// Begins a trial at any state, also inside the gate, where no entry could be.
   void begin_at(Body& body, const BodyState& start) const;
-  /// Drops the rest of the draw in force: the next one of the same sequence comes now.
+  /// Drops the rest of the current draw; the next draw of the same sequence begins now.
   void forget(Body& body) const override;
-  /// The draw in force is held on; those after it are of another sequence.
+  /// Keeps the current draw until its end; later draws come from another sequence.
   void fork(Body& body, const Random& random) const override;
   [[nodiscard]] bool lays_noise() const override { return true; }
-  /// By the slowest parts of the force, over as long as a body takes from rest through a gate
-  /// without beams.
+  /// The point determines the slowest modes of the random force, over the time that a body takes
+  /// from rest through a gate without beams.
   void lay_noise(Body& body, const Point& point) const override;
   [[nodiscard]] std::uint64_t stream_of(const Entry& start) const override;
 
-  /// Those of gate_param_table that are what a scene is, not how it is computed.
+  /// The numbers of gate_param_table that describe the scene, without those that describe its
+  /// computation.
   [[nodiscard]] std::vector<Number> numbers() const override;
   [[nodiscard]] std::unique_ptr<Cell> with(std::size_t number, double times) const override;
-  /// To the nearer of the beams at rest (m).
+  /// Distance (m) to the nearer beam at rest.
   [[nodiscard]] double clearance(const Entry& entry) const override;
 
   [[nodiscard]] const GateParams& params() const { return p_; }
@@ -59,7 +61,7 @@ class DiscCell : public Cell {
   GateParams p_;
   Section section_;
   std::unique_ptr<const Method> method_;
-  int block_;  // draws, of RandomForce::lay
+  int block_;  // draws per block, for RandomForce::lay
 };
 
 }  // namespace gatewalk::dynamics

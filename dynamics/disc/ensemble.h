@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Many gate runs at once.
+/// Many trials of a single gate.
 
 #include <array>
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace gatewalk::dynamics {
 
-/// The force of trial number `trial` from one start.
+/// The random force of trial number `trial` from one start.
 [[nodiscard]] RandomForce gate_force(const GateParams& p, std::uint64_t seed, std::int64_t trial);
 
-/// Trial number `trial` from one start: the same run whoever asks for it. `most_work` as in
-/// run_gate.
+/// Runs trial number `trial` from one start. The number alone determines the random force.
+/// `most_work` as in run_gate.
 [[nodiscard]] GateRun run_gate_trial(
     const GateParams& p, const Method& method, const BodyState& start, std::uint64_t seed,
     std::int64_t trial, std::int64_t most_work = std::numeric_limits<std::int64_t>::max());
 
-/// Outcomes of single-gate trials. Tallies add in any order.
+/// Counts of the outcomes of single-gate trials. Tallies can be added in any order.
 struct GateTally {
   std::int64_t trials = 0;
-  TrialSet held;                                 // which, where they were run by range
+  TrialSet held;                                 // numbers of the trials, if run by range
   std::array<std::int64_t, kOutcomes> counts{};  // by Outcome
   Health health;
 
@@ -39,17 +39,18 @@ struct GateTally {
     return (*this)[Outcome::exited_left] + (*this)[Outcome::exited_right];
   }
   void add(const GateParams& p, const GateRun& run);
-  /// Throws std::invalid_argument, and changes nothing, when a trial would be counted twice.
+  /// Adds other trials. Throws std::invalid_argument, and changes nothing, if a trial would be
+  /// counted twice.
   GateTally& operator+=(const GateTally& other);
 };
-/// As a piece is kept (base/bytes.h).
+/// Writes or reads a tally as bytes (base/bytes.h).
 template <class Archive>
 void each_part(Archive& archive, GateTally& tally) {
   archive(tally.trials, tally.held, tally.counts, tally.health);
 }
 
-/// Runs `range` from one start, on all threads of the current TBB arena. Throws InvalidParameter
-/// for a scene that cannot be run.
+/// Runs the trials of `range` from one start, on all threads of the current TBB arena. Throws
+/// InvalidParameter for a scene that cannot be simulated.
 [[nodiscard]] GateTally run_gate_trials(const GateParams& p, const BodyState& start,
                                         std::uint64_t seed, TrialRange range);
 

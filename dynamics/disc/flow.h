@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Free motion in closed form: a disc under constant force and linear drag, a damped torsional
-/// spring under constant torque. Exact for any step, so free flight costs one evaluation.
+/// Free motion in closed form: a disc under constant force and linear drag, and a damped torsional
+/// spring under constant torque. The formulas are exact for any step, so free flight costs one
+/// evaluation.
 
 #include <array>
 
@@ -9,9 +10,10 @@
 
 namespace gatewalk::dynamics {
 
-/// v' = decay v + (F/M) rise;  x' = x + rise v + (F/M) fall.  Drag -> 0: 1, dt, dt^2/2.
+/// Motion of the body over a time dt: v' = decay v + (F/M) rise, x' = x + rise v + (F/M) fall.
+/// Without drag the coefficients are 1, dt, dt^2/2.
 struct BodyFlow {
-  static constexpr double kSeries = 1e-2;  // a power series up to this (D/M) dt
+  static constexpr double kSeries = 1e-2;  // a power series is used below this (D/M) dt
   double decay = 1.0, rise = 0.0, fall = 0.0;
   BodyFlow(double drag_over_mass, double dt);
 
@@ -23,8 +25,9 @@ struct BodyFlow {
   }
 };
 
-/// theta'' = -(k/I) theta - (d/I) theta' + a, from Eq. (3), for constant a (rad/s^2):
-/// (theta, omega)' = [tt tw; wt ww] (theta, omega) + a (ta, wa). Any damping, k = 0 and d = 0 too.
+/// Motion of a beam over a time dt: theta'' = -(k/I) theta - (d/I) theta' + a, from Eq. (3), for
+/// constant a (rad/s^2): (theta, omega)' = [tt tw; wt ww] (theta, omega) + a (ta, wa). Any k and d
+/// >= 0 are allowed.
 struct BeamFlow {
   double tt = 1.0, tw = 0.0, wt = 0.0, ww = 1.0, ta = 0.0, wa = 0.0;
   BeamFlow() = default;
@@ -37,33 +40,33 @@ struct BeamFlow {
   }
 };
 
-/// One beam's flows over any dt, with what they share computed once.
+/// The flows of one beam over any dt, with common terms computed once.
 struct BeamLaw {
-  static constexpr double kSeries = 0.5;  // a power series up to this phase, rate |dt|
+  static constexpr double kSeries = 0.5;  // a power series is used below this phase, rate |dt|
   static constexpr int kTerms = 16;       // 0.5^16 / 16! < 1e-18
-  double k, d;                            // 1/s^2, 1/s, per inertia
-  double rate;                            // 1/s, bound on both characteristic roots
-  // Response to a unit push from rest: theta = dt^2 sum theta[i] z^i, omega = dt sum omega[i] z^i
-  // with z = rate dt.
+  double k, d;  // 1/s^2, 1/s: stiffness and damping divided by the inertia
+  double rate;  // 1/s, upper bound of both characteristic roots
+  // Coefficients of the response to a unit acceleration from rest: theta = dt^2 sum theta[i] z^i,
+  // omega = dt sum omega[i] z^i with z = rate dt.
   double theta[kTerms], omega[kTerms];
 
   BeamLaw(double stiffness_over_inertia, double damping_over_inertia);
   [[nodiscard]] BeamFlow over(double dt) const;
-  /// |theta| (rad) where the free beam first comes to rest, if it does so within `dt` (s), else 0.
-  /// It never swings out further after that.
+  /// |theta| (rad) where the free beam first comes to rest, if within `dt` (s), else 0. Later
+  /// swings are never larger.
   [[nodiscard]] double swing(BeamState beam, double dt) const;
 };
 
-/// Body and both beams over one dt.
+/// The flows of the body and both beams over one dt.
 struct GateFlow {
   double dt;
   BodyFlow body;
   BeamFlow left, right;
 };
 
-/// The gate's flows over any dt.
+/// The flows of a gate over any dt.
 struct GateLaw {
-  double drag;  // 1/s, over the body's mass
+  double drag;  // 1/s, drag divided by the body's mass
   std::array<BeamLaw, 2> beams;
   explicit GateLaw(const GateParams& p);
   [[nodiscard]] GateFlow over(double dt) const {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The potential energy landscape of Sec. II-C: what it costs to stand somewhere in the gate with
-/// both beams deflected forward and in contact, Eqs. (14) and (15). It knows no motion; a body that
-/// is slower than the beams, or beside a beam that swings free, is above or below it.
+/// The potential energy landscape of Sec. II-C: the energy of a body at rest in the gate with both
+/// beams deflected forward and in contact, Eqs. (14) and (15). The landscape ignores motion. A body
+/// slower than the beams, or beside a beam that swings freely, has another energy.
 
 #include <Eigen/Core>
 #include <array>
@@ -12,13 +12,13 @@
 
 namespace gatewalk::dynamics {
 
-/// Which beams resist; without one of them it is the paper's Fig. 6C.
+/// Which beams are present; with only one of them, the landscape is the paper's Fig. 6C.
 using BeamsThatPush = std::array<bool, 2>;
 inline constexpr BeamsThatPush kBothBeams{true, true};
 
-/// Angle (rad) at which the beam, deflected forward, just touches a disc behind it with its centre
-/// at (x, y): on the beam's side, or with the tip. 0 where a beam at rest is not reached. Infinite
-/// where the disc covers the joint: no angle is out of its way.
+/// Angle (rad) at which a beam, deflected forward, just touches a disc centred at (x, y) behind it,
+/// with its side or its tip. 0 if the disc does not reach the beam at rest. Infinite if the disc
+/// covers the joint, because no angle then clears the disc.
 [[nodiscard]] double forward_deflection(const GateParams& p, Side side, double x, double y);
 
 /// Elastic energy of the beams (J), Eq. (14).
@@ -28,67 +28,68 @@ inline constexpr BeamsThatPush kBothBeams{true, true};
 /// Energy of the propulsion (J), Eq. (15): zero at the far boundary y = traverse_y.
 [[nodiscard]] double propulsion_energy(const GateParams& p, double y);
 
-/// Eqs. (14) and (15) on a grid over the gate, side to side and from `y_low` to traverse_y.
+/// Eqs. (14) and (15) on a grid over the gate, from side to side and from `y_low` to traverse_y.
 struct Landscape {
   std::vector<double> x, y;  // m
   Eigen::ArrayXXd elastic;   // (y x x) J, Eq. (14)
   Eigen::ArrayXXd total;     // (y x x) J, Eq. (15)
 };
-/// `spacing` in m, the paper's is 0.5; both ends are on the grid, so it is shortened to fit. Throws
-/// std::invalid_argument unless 0 < spacing and y_low < traverse_y, or for more than 10^8 points.
+/// Computes the landscape. `spacing` is in m (the paper's is 0.5); it is shortened so that both
+/// ends are on the grid. Throws std::invalid_argument unless 0 < spacing and y_low < traverse_y, or
+/// for more than 10^8 points.
 [[nodiscard]] Landscape landscape(const GateParams& p, double y_low, double spacing,
                                   BeamsThatPush beams = kBothBeams);
 
-/// The way through the gate whose highest point is lowest, step by step over the grid.
+/// The minimax path through the gate: the path over the grid whose highest point is lowest.
 struct Pass {
-  double x = 0.0,
-         y = 0.0;       // m, its highest point: the lowest saddle, or the start if all is downhill
-  double energy = 0.0;  // J, there
+  /// The highest point of the path (m): the lowest saddle, or the start if the path only descends.
+  double x = 0.0, y = 0.0;
+  double energy = 0.0;                     // J, at the highest point
   double start_energy = 0.0;               // J, at the grid point nearest to the start
   std::vector<std::array<double, 2>> way;  // m, from the start to traverse_y
   [[nodiscard]] double barrier() const { return energy - start_energy; }
 };
-/// Where steepest descent over `total` from (x, y) ends (m): in a basin, or on the far boundary if
-/// there is none on the way. Throws as lowest_pass does.
+/// The end (m) of steepest descent over `total` from (x, y): in a basin, or on the far boundary if
+/// no basin is on the way. Throws as lowest_pass does.
 [[nodiscard]] std::array<double, 2> basin_below(const Landscape& l, double x, double y);
 
-/// From (x, y) to the far boundary, inside the gate, over `total`. Throws std::invalid_argument for
-/// a start off the grid, std::runtime_error when there is no way (joints covered from side to
-/// side).
+/// Finds the minimax path over `total` from (x, y) to the far boundary, inside the gate. Throws
+/// std::invalid_argument for a start off the grid, std::runtime_error if there is no path (joints
+/// covered from side to side).
 [[nodiscard]] Pass lowest_pass(const Landscape& l, double x, double y);
 
-// ---- The way through, on two grids ----
+// ---- The pass on two grids ----
 
-/// Spacings (m) for a grid over the gate and down to the start.
+/// Permitted spacings (m) of a grid over the gate that extends down to the start.
 struct Spacings {
-  double least;  // 2000 of them along the longer side
-  double usual;  // the paper's, half a unit of length (Scale), but neither below `least` nor above
-                 // `most`
-  double most;   // two from side to side
+  double least;  // 2000 points along the longer side
+  double usual;  // half a unit of length (Scale) as in the paper, between `least` and `most`
+  double most;   // two steps from side to side
 };
 [[nodiscard]] Spacings spacings_for(const GateParams& p, const BodyState& start);
 
-/// What one grid shows.
+/// The landscape and the passes on one grid.
 struct GridPasses {
-  double spacing = 0.0;  // m, at most
+  double spacing = 0.0;  // m, upper bound
   Landscape landscape;
-  Pass from_start, from_basin;  // of the basin below the start
+  Pass from_start, from_basin;  // from_basin starts in the basin below the start
 
-  /// From the start to the pass out of the basin (J); below zero where the start lies higher.
+  /// Energy (J) from the start up to the pass out of the basin; negative if the start is higher
+  /// than the pass.
   [[nodiscard]] double above_start() const { return from_basin.energy - from_start.start_energy; }
-  /// There is no basin on the way to the far boundary.
+  /// Whether no basin is on the way to the far boundary.
   [[nodiscard]] bool downhill() const { return from_basin.way.size() == 1; }
 };
 
-/// The lowest way through on a grid and on a finer one: the pass may lie between grid points.
+/// The passes on a coarse and on a finer grid, because the pass may lie between grid points.
 struct Passes {
   BeamsThatPush beams = kBothBeams;
   double kinetic_energy = 0.0;  // J, of the start
-  GridPasses coarse;            // of the spacing asked for
-  GridPasses fine;              // ten times finer, or of the least spacing
+  GridPasses coarse;            // on the requested spacing
+  GridPasses fine;              // ten times finer, or the least spacing
 };
-/// The grids begin at y = 0, or at the start if that lies lower. Throws std::invalid_argument for a
-/// spacing outside spacings_for, and as landscape and lowest_pass do.
+/// Finds the passes on both grids, which begin at y = 0, or at the start if it is lower. Throws
+/// std::invalid_argument for a spacing outside spacings_for, and as landscape and lowest_pass do.
 [[nodiscard]] Passes passes(const GateParams& p, const BodyState& start, double spacing,
                             BeamsThatPush beams = kBothBeams);
 
