@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How fixed-step methods walk through a spell of constant force.
+/// How fixed-step methods step through a spell of constant force.
 
 #include <algorithm>
 
@@ -8,8 +8,8 @@
 
 namespace gatewalk::dynamics {
 
-/// Equal steps that fill a duration: the usual one, run.step, or shorter ones where the duration
-/// (the rest of a hold) is no whole number of those.
+/// Equal steps that fill a duration: of length run.step, or shorter if the duration (the rest of a
+/// hold) is not a whole number of these.
 struct Spell {
   double duration;  // s
   long steps;
@@ -24,9 +24,9 @@ struct Spell {
   }
 };
 
-/// Takes the steps of `spell`, each by `one_step(s)`, and stops at the moment of leaving the gate
-/// or when the state is no longer finite. `stored(s)` is called after each step: energy (J) that
-/// the method keeps outside the state. Returns the seconds advanced.
+/// Takes the steps of `spell`, each by `one_step(s)`, and stops when the body leaves the gate or
+/// the state is no longer finite. After each step, `stored(s)` returns the energy (J) that the
+/// method keeps outside the state. Returns the seconds advanced.
 template <class OneStep, class Stored>
 double march(const GateParams& p, const Spell& spell, GateState& s, double force_x,
              EnergyLedger& ledger, Watch& watch, OneStep one_step, Stored stored) {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// `paper`: the paper's scheme as its text gives it, faults included. Explicit Euler; overlapping
-/// and closing contacts get the collision law, left beam first, then right; a hit with |dP| below
-/// epsilon turns the contact into a constraint on accelerations (Eqs. (11), (13)), which is
-/// integrated like everything else and therefore drifts. The joint has no formula in the paper:
-/// such overlaps are counted in Watch::undefined_contacts and nothing is done.
+/// `paper`: the scheme as the paper's text gives it, faults included. Explicit Euler. Overlapping
+/// and closing contacts get the collision law, the left beam first, then the right. A hit with |dP|
+/// below epsilon turns the contact into a constraint on accelerations (Eqs. (11), (13)), which is
+/// integrated like everything else and therefore drifts. For the joint the paper has no formula:
+/// such overlaps are counted in Watch::undefined_contacts and otherwise ignored.
 
 #include "dynamics/disc/methods/method.h"
 
 namespace gatewalk::dynamics {
 
-/// The longest step (s) with which explicit Euler does not blow up a free beam: d/k of the stiffer
-/// beam while it swings (d^2 < 4 k I), 2 / (fastest rate), about 2 I/d, when it creeps.
+/// The longest step (s) for which explicit Euler is stable for a free beam: d/k of the stiffer beam
+/// if it swings (d^2 < 4 k I); 2 / (fastest rate), about 2 I/d, if it creeps.
 [[nodiscard]] double euler_bound(const GateParams& p);
 
 class PaperMethod final : public Method {
