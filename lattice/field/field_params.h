@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The field's size, where a trial starts in it, and how much of it the full dynamics follows.
+/// Size of the field of gates, where trials start, and which gates the full dynamics simulates.
 
 #include <array>
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 namespace gatewalk::lattice {
 
-/// Which beams a body meets, and what becomes of those it does not meet.
+/// Which gates the full dynamics simulates around a body.
 enum class Fidelity : std::uint8_t {
-  active,    // the paper: only the gate the body is in, its beams at rest on entry
+  active,    // the paper's: only the gate that the body is in; its beams are at rest on entry
   remember,  // beams keep moving behind the body; the gate it came from still pushes within reach
-  all,       // every gate whose beams are within reach pushes, all beams keep moving
+  all,       // every gate whose beams are within reach pushes; all beams keep moving
 };
 inline constexpr std::array<std::string_view, 3> kFidelityNames{"active", "remember", "all"};
 
@@ -20,11 +20,12 @@ inline constexpr std::array<std::string_view, 3> kFidelityNames{"active", "remem
   return kFidelityNames[static_cast<std::size_t>(f)];
 }
 
-/// i_x runs from -columns/2 (whole division), i_y from 0; a trial starts in gate (0, 0).
+/// Size of the field in gates. Column indices i_x run from -columns/2 (integer division), row
+/// indices i_y from 0; a trial starts in gate (0, 0).
 struct FieldParams {
   int columns = 9;
   int rows = 9;
-  int max_gates = 13;  // gates a trial may visit, 0: no limit
+  int max_gates = 13;  // most gates that a trial visits; 0: no limit
   Fidelity fidelity = Fidelity::active;
 
   [[nodiscard]] int start_column() const { return columns / 2; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Counts + state space -> chain.
+/// Builds a gate chain from counted transitions and their state space.
 
 #include <vector>
 
@@ -13,26 +13,30 @@ namespace gatewalk::lattice {
 
 struct CountedField;
 
-/// Exits of a state space: output j enters the next gate in state j; the last one is "trapped".
+/// The chain's exits, one per output: output j enters the next gate in state j; the last output is
+/// "trapped".
 [[nodiscard]] std::vector<markov::Exit> exits_of(const dynamics::StateSpace& space);
 
+/// The chain of one cell type, with the transition probabilities that the counts give.
 [[nodiscard]] markov::Chain make_chain(const dynamics::Transitions& t);
 
-/// A chain for each of map.types, where that type stands.
+/// The chain of a field: `chains` has one chain for each of map.types.
 [[nodiscard]] markov::FieldChain field_chain(const dynamics::CellMap& map,
                                              std::vector<markov::Chain> chains);
-/// The same of matrices with the same states.
+/// The chain of a field from one matrix of counts for each of map.types; all matrices have the same
+/// states.
 [[nodiscard]] markov::FieldChain make_chain(const dynamics::CellMap& map,
                                             const std::vector<dynamics::Transitions>& matrices);
 
-/// Every cell draws from the matrix of its type; matrices as map.types.
+/// Counts and chain of a field in which every cell draws from the matrix of its type; `matrices`
+/// has one matrix for each of map.types.
 [[nodiscard]] CountedField counted_field(const dynamics::CellMap& map,
                                          const std::vector<dynamics::Transitions>& matrices);
-/// Every cell draws from the same matrix.
+/// Counts and chain of a field in which every cell draws from the same matrix.
 [[nodiscard]] CountedField counted_field(const dynamics::Transitions& matrix);
 
-/// The chain's start for a body that enters the field's start cell so: its state, and whether it
-/// lies outside the bins as StateSpace::Index says.
+/// The chain's start for a body that enters the field's start cell by a given entry: the state, and
+/// whether the entry lies outside the bins (StateSpace::Index).
 struct ChainStart {
   markov::Start start;
   bool clamped = false, beyond = false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Passages through cells, many of them: as small as the section allows.
+/// A table of passages through cells that stores only the coordinates and costs that the section
+/// has.
 
 #include <algorithm>
 #include <cstddef>
@@ -12,26 +13,27 @@
 
 namespace gatewalk::lattice {
 
-/// How a trial's passage through one cell ended, that cell's type, with which entry into the next
-/// cell, inside the field or outside (no entry where it did not leave its cell), and what it took.
+/// A trial's passage through one cell: how the passage ended, the cell's type, the entry into the
+/// next cell (inside or outside the field; none if the body did not leave the cell), and the costs.
 struct CellPassage {
   dynamics::Fate fate = dynamics::Fate::trapped;
-  std::uint8_t type = 0;  // of the field's types
+  std::uint8_t type = 0;  // index into the field's types
   dynamics::Entry entry{};
   dynamics::Costs costs{};
 };
 
-/// A passage, and the entry by which it began.
+/// A passage, and the entry by which the body came into the cell.
 struct EnteredPassage {
   dynamics::Entry from{};
   CellPassage passage{};
 };
 
+/// Passages through cells of one section, in compact form.
 class PassageTable {
  public:
   PassageTable() = default;
   explicit PassageTable(const dynamics::Section& section) { begin(section); }
-  /// Says what an empty table is of; one that has passages stays as it is.
+  /// Sets the section of an empty table; a table that has passages stays as it is.
   void begin(const dynamics::Section& section) {
     if (!empty()) return;
     coordinates_ = section.coordinates.size();
@@ -47,9 +49,10 @@ class PassageTable {
     numbers_.insert(numbers_.end(), at, at + coordinates_);
     numbers_.insert(numbers_.end(), costs, costs + costs_);
   }
-  /// All those of another table of the same section.
+  /// Appends all passages of another table of the same section.
   void append(const PassageTable& other) { append(other, 0, other.size()); }
-  /// Rows begin to end of it.
+  /// Appends rows `begin` to `end` (not included) of a table of the same section; throws
+  /// std::logic_error for another section.
   void append(const PassageTable& other, std::size_t begin, std::size_t end) {
     if (begin == end) return;
     if (empty()) {
@@ -73,13 +76,13 @@ class PassageTable {
     std::copy_n(numbers + coordinates_, costs_, passage.costs.begin());
     return passage;
   }
-  /// Makes room for so many passages.
+  /// Reserves memory for this number of passages.
   void reserve(std::size_t passages) {
     kinds_.reserve(passages);
     numbers_.reserve(passages * (coordinates_ + costs_));
   }
 
-  /// Some rows, one after the other, which are made as they are read.
+  /// Consecutive rows of the table; each CellPassage is built when it is read.
   class Rows {
    public:
     struct Iterator {
@@ -105,7 +108,7 @@ class PassageTable {
     const PassageTable* table_;
     std::size_t begin_, end_;
   };
-  /// As a piece of long work is kept.
+  /// Writes or reads the table as part of a kept piece of work.
   template <class Archive>
   friend void each_part(Archive& archive, PassageTable& table) {
     archive(table.coordinates_, table.costs_, table.kinds_, table.numbers_);
@@ -116,7 +119,7 @@ class PassageTable {
   [[nodiscard]] Rows rows(std::size_t begin, std::size_t end) const { return {*this, begin, end}; }
 
  private:
-  /// Throws std::runtime_error for a table that no passages make.
+  /// Throws std::runtime_error if the numbers that were read do not form a table of passages.
   void require_whole() const {
     const bool is_sized = coordinates_ <= dynamics::kMostCoordinates &&
                           costs_ <= dynamics::kMostCosts &&

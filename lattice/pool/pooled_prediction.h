@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What a prediction from the gate runs of full trials says of each start, with its error bars: the
-/// chain's answer, or the trials' own shares where these are the more certain.
+/// The prediction for each start from the gate runs of full trials, with error bars: the answer of
+/// the chain, or the shares of the start's own trials where these are more precise.
 
 #include <array>
 #include <cstdint>
@@ -20,52 +20,56 @@ namespace gatewalk::lattice {
 
 struct AccuracyOptions {
   double accuracy = 0.02;  // total variation of the final gates that 95 % of answers keep
-  /// New gate runs, but for the first few of each start. (These take some GB.)
+  /// Most new gate runs; the first few of each start are always made. (The default takes some GB.)
   std::int64_t most_runs = 20'000'000;
-  /// None are added but these: so many first runs of a start that the pool does not know.
+  /// Number of first runs of a start that the pool does not know. If given, no other runs are
+  /// added.
   std::optional<std::int64_t> first_runs{};
-  /// Exactly so many full trials of all starts together, or from anywhere in a range, whatever the
-  /// accuracy.
+  /// Number of full trials of all starts together, or from anywhere in a range. If given, exactly
+  /// these are run, whatever the accuracy.
   std::optional<std::int64_t> trials{};
   int per_leaf = dynamics::kEntriesPerLeaf;
   std::uint64_t seed = 1;
 
-  /// Gate runs, about, that no more are added from.
+  /// Simulation stops after about this number of gate runs.
   [[nodiscard]] std::int64_t limit() const {
     return trials ? std::numeric_limits<std::int64_t>::max() : most_runs;
   }
 };
 
-/// What is said of one start.
+/// The prediction for one start.
 struct StartAnswer {
   dynamics::Entry start{};
   bool as_seen = false;             // not one start: all first entries of the pool's trials
   markov::FinalDistribution final;  // the answer
-  bool from_trials = false;         // it is the shares of the start's own full trials
+  bool from_trials = false;         // the answer is the shares of the start's own full trials
   Error95 error;
-  double kernel_error_95 = 0.0;  // total variation, of the chain with endlessly many first runs;
-                                 // of all where walks make the answer
-  double unseen =
-      0.0;  // share of first runs that enter the second gate where no run of the pool
-            // did (missing_mass): the chain's error bars have it on top, corrcoef then has none
-  double trials_error_95 = 1.0;  // total variation, of the trials' own shares
+  /// Total variation: the error bar that the kernel alone would give (infinitely many first runs).
+  /// Where Monte Carlo walks give the answer: the whole error bar.
+  double kernel_error_95 = 0.0;
+  /// Share of first runs that enter the second gate where no run of the pool did (missing_mass).
+  /// The chain's error bars include this share on top; error.corrcoef is then NaN.
+  double unseen = 0.0;
+  double trials_error_95 = 1.0;  // total variation, of the shares of the start's own trials
   EndingShares endings{std::array<double, markov::kEndings>{}};
   FieldExits exits{};
-  std::array<CellProbabilities, 2> gates_95;  // low, high
-  std::int64_t trials = 0, first_runs = 0;    // full ones; those through the first gate
-  double direct_seconds = 0.0;  // of direct simulation for the same error bar; NaN where nothing
-                                // was run that would tell
+  std::array<CellProbabilities, 2> gates_95;  // lower and upper bounds
+  std::int64_t trials = 0, first_runs = 0;    // full trials; runs through the first gate
+  /// Time that direct simulation would take for the same error bar; NaN if no runs were made to
+  /// measure the speed.
+  double direct_seconds = 0.0;
 };
 
-/// In the manner of Hausman's test (1978): where the chain is right it is the better estimate of
-/// the same shares from the same runs, so that the difference varies less than the trials' own
-/// shares would. The p-value is that of as many draws from the chain's answer (JointTest: final
-/// gates and endings): rather too large than too small.
+/// A test of the chain against the full trials in the manner of Hausman (1978). If the chain is
+/// right, the chain is the better estimate of the same shares from the same runs, and the
+/// difference varies less than the trials' own shares. The p-value takes the variance of
+/// independent draws from the chain's answer (JointTest: final gates and endings), so it errs on
+/// the large side.
 struct HausmanCheck {
   static constexpr double kLevel = 0.01;
 
   std::int64_t trials = 0;
-  double total_variation = 0.0;         // of the final gates
+  double total_variation = 0.0;         // between the final gates of trials and chain
   double chance_total_variation = 0.0;  // mean over the draws
   double p = 1.0;
 
@@ -74,14 +78,15 @@ struct HausmanCheck {
 
 struct PooledPrediction {
   std::vector<StartAnswer> starts;
-  bool reached = true;  // all answers are as accurate as was asked for
-  /// The full trials of all starts whose answer is the chain's, and exact, against the chain.
+  bool reached = true;  // every answer has the accuracy that was asked for
+  /// Compares the chain with the full trials of all starts whose answer is the chain's; empty if
+  /// Monte Carlo walks gave the answers.
   std::optional<HausmanCheck> hausman_check{};
-  std::int64_t gate_runs = 0;  // made now
+  std::int64_t gate_runs = 0;  // new runs
   int states = 0;
   std::int64_t nonzeros = 0;
-  double seconds = 0.0;      // of all: runs, chains, error bars
-  double run_seconds = 0.0;  // of the runs
+  double seconds = 0.0;      // everything: runs, chains and error bars
+  double run_seconds = 0.0;  // the runs only
   dynamics::Health health;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The chain against the full dynamics, start by start.
+/// Validation: the chain against the full dynamics, start by start.
 
 #include <algorithm>
 #include <cmath>
@@ -20,11 +20,12 @@
 
 namespace gatewalk::lattice {
 
-// What the commands of this program show besides.
+// Results of further studies, which only some commands show.
 struct ForceMemory;
 struct MemoryStudy;
 struct ObservedComparison;
 
+/// Mean and standard deviation of the finite numbers added.
 struct MeanAndSd {
   double sum = 0.0, squares = 0.0;
   std::int64_t n = 0;
@@ -43,7 +44,7 @@ struct MeanAndSd {
   }
 };
 
-/// What the paper did: 100 trials of each, over and over, from the trials at hand in blocks of 100.
+/// The paper's comparison, repeated: 100 trials against 100 walks, for each block of 100 trials.
 struct PaperSized {
   MeanAndSd exact_corrcoef, exact_rmse, walks_corrcoef, walks_rmse;
   double exact_products = 0.0;  // sum of corrcoef * rmse over the blocks
@@ -56,46 +57,50 @@ struct PaperSized {
   }
 };
 
-/// What the comparison of one start finds.
+/// The finding of one start's comparison.
 enum class Finding {
-  within_trials,             // chance in the trials alone makes as much (95 % of the time)
-  within_trials_and_matrix,  // chance in the trials and in the sampling of the matrix does
-  own_error,                 // more than both: the chain itself is off (bins, memory)
+  within_trials,             // sampling error of the trials explains the difference (95 % level)
+  within_trials_and_matrix,  // sampling error of trials and matrix explains it
+  own_error,                 // neither explains it: the chain itself is off (bins, memory)
 };
-/// `differs`: what the one test of trials and matrix says (JointTest); the total variation of the
-/// final gates from the exact chain's, and what 95 % of samples of that chain have no more than.
+/// `differs`: verdict of the JointTest of trials and matrix. `total_variation`: of the trials'
+/// final gates from the exact chain's. `floor_95`: 95 % of samples drawn from that chain are at
+/// most this far.
 [[nodiscard]] Finding finding_of(bool differs, double total_variation, double floor_95);
 
 struct ValidationOptions {
   std::int64_t trials = 100;            // of the full dynamics, per start
-  std::optional<std::int64_t> walks{};  // per start; as many as trials
-  /// Behind each p-value; 999 to 9999, by the size of the work.
+  std::optional<std::int64_t> walks{};  // per start; default: the number of trials
+  /// Draws behind each p-value; default: 999 to 9999, by the size of the work.
   std::optional<std::int64_t> null_draws{};
   std::uint64_t seed = 1;
-  /// Runs the trials again with the random force drawn anew at crossings (ForceMemory).
+  /// Also runs the trials with the random force drawn anew at each crossing (ForceMemory).
   bool force_memory = false;
-  /// Counts of an experiment from the start, to hold against both; then there is one start.
+  /// Counts of an experiment to compare with both chain and dynamics; only with a single start.
   std::optional<SeenEndings> observed{};
 };
 
-/// Everything about one start. Trials, walks and p-values belong to the options' seed.
+/// All results of one start. Trials, walks and p-values belong to the options' seed.
 struct StartValidation {
   dynamics::Entry start{};
   ChainStart chain_start{};
   FieldTally dynamics;
   markov::WalkTally walks{};
   markov::FinalDistribution exact{};
-  Comparison walks_against{}, exact_against{};  // the dynamics' final gates against these
+  /// The dynamics' final gates against walks, and against the exact chain.
+  Comparison walks_against{}, exact_against{};
   PaperSized paper_sized{};
-  NoiseFloor floor_100_exact{}, floor_100_walks{};  // of 100 trials, against exact and 100 walks
+  /// Noise floors of 100 trials, against the exact chain and against 100 walks.
+  NoiseFloor floor_100_exact{}, floor_100_walks{};
   JointTest joint_test{};
-  std::int64_t resampled = 0;                             // matrices behind the two:
-  double matrix_noise_mean = 0.0, matrix_noise_sd = 0.0;  // total variation of their predictions
+  std::int64_t resampled = 0;  // number of resampled matrices
+  /// Mean and sd of the total variation of the resampled matrices' predictions from `exact`.
+  double matrix_noise_mean = 0.0, matrix_noise_sd = 0.0;
   EndingShares dynamics_endings, walks_endings, exact_endings;
   FieldExits dynamics_exits{}, exact_exits{};
   double dynamics_seconds = 0.0, walks_seconds = 0.0, exact_seconds = 0.0;
-  std::shared_ptr<const ForceMemory> force{};            // if asked for
-  std::shared_ptr<const ObservedComparison> observed{};  // if there is an experiment
+  std::shared_ptr<const ForceMemory> force{};            // only if asked for
+  std::shared_ptr<const ObservedComparison> observed{};  // only with an experiment
 
   [[nodiscard]] Finding finding() const {
     return finding_of(joint_test.differs(), exact_against.total_variation,
@@ -103,26 +108,27 @@ struct StartValidation {
   }
 };
 
+/// The results of validate_chain().
 struct Validation {
   std::int64_t trials = 0, walks = 0;  // per start
   std::vector<StartValidation> starts;
-  dynamics::Health health;                // of the matrix's runs and the trials
-  std::int64_t entries = 0, clamped = 0;  // between gates, of all trials; outside every bin
-  FaceCounts entries_by{};                // of these, by face
+  dynamics::Health health;  // of the matrix's runs and the trials
+  /// Moves between gates in all trials; those with an entry outside all bins.
+  std::int64_t entries = 0, clamped = 0;
+  FaceCounts entries_by{};  // moves, by face
   std::size_t threads = 0;
   LeftOut left_out{};
   std::shared_ptr<const MemoryStudy> memory{};  // of the first kMostRemembered trials of each start
-  /// Whether the chain forgets what matters: where a body was before, which cell of its walk or
-  /// which row it is in tells of what comes next, at a level of 5 % for all questions together.
+  /// True if the chain lacks memory that matters: a body's earlier gates, its step or its row help
+  /// to predict what comes next (level 5 % for all these questions together).
   [[nodiscard]] bool remembers() const;
 };
 
 inline constexpr std::int64_t kMostRemembered = 100'000;
 
-/// Compares the chain of these matrices, one for each type, with the full
-/// dynamics from each start. Some 50 predictions of every gate are kept: throws
-/// std::invalid_argument for fields of more than 100 000 gates, for an experiment and several
-/// starts, and as chain_start and run_field do.
+/// Compares the chain with the full dynamics from each start; `matrices` has one matrix per cell
+/// type. Throws std::invalid_argument for fields of more than 100 000 gates, for an experiment with
+/// several starts, and as chain_start and run_field do.
 [[nodiscard]] Validation validate_chain(const Problem& problem,
                                         const std::vector<dynamics::Transitions>& matrices,
                                         const std::vector<dynamics::Entry>& starts,
