@@ -15,7 +15,7 @@ std::size_t place_on(std::size_t side, std::int64_t cell, std::int64_t columns) 
   return static_cast<std::size_t>(side == kFarSide ? cell % columns : cell / columns);
 }
 
-/// Who left at each place, by kSides.
+/// Number or share of bodies that left at each place, by kSides.
 template <class Number>
 std::array<std::vector<Number>, kSides.size()> by_place(const markov::Ends<Number>& ends) {
   const Eigen::Index columns = ends.final_cells.cols();
@@ -29,7 +29,7 @@ std::array<std::vector<Number>, kSides.size()> by_place(const markov::Ends<Numbe
   return places;
 }
 
-/// `interval_of(own share, shares of the others)` for every place.
+/// Shares with intervals: interval_of(own share, the others' shares) for every place.
 template <class IntervalOf>
 FieldExits with_intervals(const ExitShares& own, const std::vector<ExitShares>& others,
                           IntervalOf interval_of) {
@@ -73,7 +73,8 @@ FieldExits within_sides(FieldExits exits, const EndingShares& endings) {
       auto& [low, high] = exits[side].interval[i];
       low = std::min(low, of_side[0]);
       high = std::min(high, of_side[1]);
-      // Where nobody leaves, trials alone set the bound: what tells of the side tells of it too.
+      // A place where nobody leaves is bounded by trials alone; the side's bound holds for the
+      // place too.
       if (exits[side].share[i] <= kShareRounding) high = std::min(high, of_side[1] - of_side[0]);
     }
   }

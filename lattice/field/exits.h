@@ -15,29 +15,31 @@ namespace gatewalk::lattice {
 
 struct FieldTally;
 
-/// Bounds of the places along side number `side` of kSides, m (places + 1): along the far one from
-/// the middle of the start's column, along the others from the near end of the field. Of cells of
-/// this width and length (m).
+/// Bounds of the places along side number `side` of kSides, in m (places + 1 values), for cells of
+/// this width and length (m). Zero is the middle of the start's column on the far side, and the
+/// near end of the field on the other sides.
 [[nodiscard]] std::vector<double> exit_bounds(double width, double length, const FieldParams& field,
                                               std::size_t side);
 
-/// With Jeffreys' intervals.
+/// Shares of trials by place of exit, with Jeffreys intervals.
 [[nodiscard]] FieldExits exits_of(const FieldTally& trials);
 
-/// A part of a side is never more than the side: no place's interval reaches beyond that of its
-/// ending. Alone it may: where few tell of a place, or nothing but the number of trials does.
+/// Cuts each place's interval to the interval of its side's ending, because a part of a side is
+/// never more than the side. A place's own interval may be wider where few runs inform it.
 [[nodiscard]] FieldExits within_sides(FieldExits exits, const EndingShares& endings);
 
 using ExitShares = std::array<std::vector<double>, kSides.size()>;  // by kSides (places)
+/// Predicted shares by place of exit, without intervals.
 [[nodiscard]] ExitShares exit_shares(const markov::FinalDistribution& prediction);
-/// What is predicted, with intervals from predictions of resampled matrices (resampled_95). Without
-/// any resampled: none.
+/// Predicted shares by place of exit, with intervals from predictions of resampled matrices
+/// (resampled_95); no intervals without any resampled matrix.
 [[nodiscard]] FieldExits exits_of(const ExitShares& prediction,
                                   const std::vector<ExitShares>& resampled, const Evidence& from);
-/// By with_unfinished() of each share.
+/// Widens each interval by the walks that were not followed to their end (with_unfinished()).
 [[nodiscard]] FieldExits with_unfinished(FieldExits exits,
                                          const markov::FinalDistribution& prediction);
-/// The same from predictions of groups of the trials, by share_95.
+/// Predicted shares by place of exit, with intervals from predictions of groups of the trials
+/// (share_95).
 [[nodiscard]] FieldExits exits_of_groups(const ExitShares& prediction,
                                          const std::vector<ExitShares>& groups,
                                          const Evidence& from);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How long trials through the field took, and what work, by how they ended.
+/// Durations and other costs of trials through the field, by ending.
 
 #include <array>
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace gatewalk::lattice {
 
-/// Sums over trials, in the order in which they are added.
+/// Sums of costs over trials, in the order in which the trials are added.
 class FieldCosts {
  public:
-  /// Durations, the first cost, are kept to `bin` (s).
+  /// `bin` (s): resolution to which durations, the first cost, are kept.
   explicit FieldCosts(double bin) : bin_(bin) {}
 
-  /// Trials that broke are left out.
+  /// Adds trials; those with a broken passage are left out.
   void add(const FieldTrials& trials);
 
-  /// Of trials with these endings.
+  /// Sums over the trials with one ending, or with any.
   struct Sums : dynamics::CostSums {
     std::int64_t trials = 0;
-    [[nodiscard]] double mean(std::size_t cost) const;  // by Section::costs
+    [[nodiscard]] double mean(std::size_t cost) const;  // of a cost of Section::costs
     [[nodiscard]] double sd(std::size_t cost) const;
   };
   [[nodiscard]] double bin() const { return bin_; }  // s
@@ -32,10 +32,11 @@ class FieldCosts {
   [[nodiscard]] const Sums& of(markov::Ending e) const {
     return sums_[static_cast<std::size_t>(e)];
   }
-  /// How many ended by each duration (s): ascending; all endings, or one.
+  /// The cumulative number of trials by duration (s), in ascending order; for all endings or for
+  /// one.
   struct Step {
     double seconds;
-    std::int64_t trials;  // so far
+    std::int64_t trials;  // number of trials up to this duration
   };
   [[nodiscard]] std::vector<Step> durations() const;
   [[nodiscard]] std::vector<Step> durations(markov::Ending e) const;
@@ -46,7 +47,7 @@ class FieldCosts {
   std::array<std::map<std::int64_t, std::int64_t>, markov::kEndings> durations_{};  // by bin
 };
 
-/// The duration that a part `level` of the trials does not exceed; NaN without trials.
+/// The duration that a share `level` of the trials does not exceed; NaN without trials.
 [[nodiscard]] double quantile(const std::vector<FieldCosts::Step>& durations, double level);
 
 }  // namespace gatewalk::lattice

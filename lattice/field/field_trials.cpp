@@ -183,13 +183,13 @@ void begin_trial(const Cell& cell, const Entry& start, std::uint64_t seed, std::
 
 namespace {
 
-/// Trials that wait for a passage through cells of the same type.
+/// Trials that wait for a passage through cells of one type.
 struct Wave {
   std::vector<std::int64_t> trials;
-  std::mutex mutex;  // trials join from several threads
+  std::mutex mutex;  // several threads append trials
 };
 
-/// Moves inside the field.
+/// Moves from cell to cell inside the field, and those with an entry outside all bins.
 struct Moves {
   FaceCounts entries{}, clamped{};
 };
@@ -229,13 +229,13 @@ FieldTally run_field(const CellField& cells, const FieldParams& field, const Beg
       throw std::invalid_argument("field: a body is to meet a type of cell that there is not");
     return static_cast<std::size_t>(type);
   };
-  // In waves, the trials in cells of one type together. A trial goes on while the type stays the
-  // same; else it waits for the next wave of its own.
+  // Trials run in waves, those in cells of one type together. A trial goes on while the type stays
+  // the same; else it joins the next wave of the other type.
   std::vector<Wave> waves(types);
   for (std::int64_t i = 0; i < range.count; ++i)
     waves[type_at(i, start_of(i).entry)].trials.push_back(i);
   Health health;
-  tbb::enumerable_thread_specific<Moves> moves;  // sums: any order will do
+  tbb::enumerable_thread_specific<Moves> moves;  // sums, so the order does not matter
   for (bool more = true; more;) {
     more = false;
     for (std::size_t type = 0; type < types; ++type) {

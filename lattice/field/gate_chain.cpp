@@ -13,7 +13,7 @@ std::vector<markov::Exit> exits_of(const StateSpace& space) {
     const Face& face = space.section().faces[space.face(state)];
     exits[state] = {state, face.di_x, face.di_y};
   }
-  return exits;  // the last one is a default Exit: trapped
+  return exits;  // the last exit is a default Exit: trapped
 }
 
 markov::Chain make_chain(const Transitions& t) {
@@ -34,7 +34,7 @@ markov::FieldChain make_chain(const CellMap& map, const std::vector<Transitions>
 CountedField counted_field(const CellMap& map, const std::vector<dynamics::Transitions>& matrices) {
   CountedField field{make_chain(map, matrices), {}, matrices.front().space.has_trees()};
   for (const dynamics::Transitions& t : matrices) field.counts.push_back(t.counts());
-  if (!field.small_rows) return field;  // bins count no images
+  if (!field.small_rows) return field;  // matrices of bins count no mirror images
   for (std::size_t m = 0; m < matrices.size(); ++m) {
     const dynamics::StateSpace& space = matrices[m].space;
     auto& images = field.images.emplace_back(static_cast<std::size_t>(space.size()), 1);

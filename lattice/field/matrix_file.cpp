@@ -21,13 +21,14 @@ std::string edges_array(const Face& face, const Coordinate& coordinate) {
   return face.name + "_" + coordinate.name + "_edges";
 }
 
-// Tables of a face's tree: by node, in preorder, but the last one: low and high by coordinate.
+// Names of the arrays of a face's tree. Axes and cuts are by node, in preorder; `seen` has low and
+// high by coordinate.
 std::string tree_array(const Face& face, const std::string& name) {
   return face.name + "_tree_" + name;
 }
 constexpr const char *kTreeAxis = "axis", *kTreeCut = "cut", *kTreeSeen = "seen";
 
-// Only a space that is open, or has points, has these.
+// Only files of an open space have kOpenBins, only those of a space with points kPointBoundary.
 constexpr const char* kOpenBins = "outermost_bins_are_open";
 constexpr const char* kPointBoundary = "point_boundary";
 
@@ -142,7 +143,7 @@ void add_bins(markov::CountsFile& out, const Section& section, const Face& face,
   }
 }
 
-// What the runs behind each count took: tables in the order of the counts.
+// Names of the arrays of costs: sums over the runs behind each count, in the order of the counts.
 constexpr const char* kCountCosts = "count_";
 std::string cost_array(const CostInfo& cost, bool squares, const std::string& type) {
   return kCountCosts + cost.key + (squares ? "_squared" : "") + (type.empty() ? "" : "_of_" + type);
@@ -184,7 +185,7 @@ void read_costs(const markov::CountsFile& in, const std::string& type, const std
       if (table != nullptr && table->size() != counts)
         throw markov::BadFile(path + ": " + name + " does not belong to the counts");
     }
-  if (missing == 2 * costs.size()) return;  // an older file
+  if (missing == 2 * costs.size()) return;  // files of older versions have no costs
   if (missing > 0) throw markov::BadFile(path + ": some tables of what runs took are missing");
   std::size_t at = 0;
   for (std::size_t row = 0; row < t.rows.size(); ++row)
@@ -198,7 +199,7 @@ void read_costs(const markov::CountsFile& in, const std::string& type, const std
     }
 }
 
-// What the states are, for readers that know no trees and bins: not read back.
+// Arrays that describe the states to readers that know no trees and bins; read_matrix ignores them.
 constexpr const char* kStates = "state_";
 
 void add_states(markov::CountsFile& out, const StateSpace& space) {
@@ -223,7 +224,7 @@ void add_states(markov::CountsFile& out, const StateSpace& space) {
     }
 }
 
-/// Tables that do not belong to the state space.
+/// The arrays that do not belong to the state space, nor to the costs.
 std::vector<markov::NamedArray> others_in(std::vector<markov::NamedArray> arrays,
                                           const Section& section) {
   std::set<std::string> own{kOpenBins, kPointBoundary, std::string(kStates) + "face"};
@@ -339,7 +340,7 @@ std::string comment_on_counts(const CellMap& map, const StateSpace& space) {
 
 namespace {
 
-/// With these arrays in place of its own.
+/// Writes a matrix file with these arrays in place of its own.
 void write_matrix(const std::string& path, const MatrixFile& file,
                   std::vector<markov::NamedArray> arrays) {
   const Transitions& t = file.transitions;

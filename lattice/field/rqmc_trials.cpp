@@ -34,13 +34,13 @@ bool lays_noise(const CellField& cells) {
 
 namespace {
 
-/// A body that is to enter a cell.
+/// A body that is about to enter a cell.
 struct Entering {
-  std::size_t place;  // of its trial
+  std::size_t place;  // index of its trial
   Entry entry;
 };
 
-/// The axis along which they spread most, in the section's scales.
+/// The axis along which the entries spread most, in the section's scales.
 std::size_t longest_axis(const Section& section, std::span<const Entering> part) {
   std::size_t longest = 0;
   double most = -1.0;
@@ -62,8 +62,8 @@ std::size_t longest_axis(const Section& section, std::span<const Entering> part)
   return longest;
 }
 
-/// Puts them in an order in which neighbours enter alike: cut in two again and again, by the face,
-/// then across the longest axis, always where the numbers of points are cut into nets.
+/// Sorts entries so that neighbours enter alike. The range is halved again and again: first by
+/// face, then across the longest axis, always where the point numbers split into nets.
 void put_in_order(const Section& section, std::span<Entering> part) {
   if (part.size() < 2) return;
   const auto cut = std::bit_floor(part.size() - 1);
@@ -81,7 +81,7 @@ void put_in_order(const Section& section, std::span<Entering> part) {
   put_in_order(section, part.subspan(cut));
 }
 
-/// Trials on their way, all at the same step.
+/// All trials of the arrays under way, all at the same step.
 class Arrays {
  public:
   Arrays(const CellField& cells, const FieldParams& field, const RqmcTrials& trials,
@@ -107,7 +107,7 @@ class Arrays {
   [[nodiscard]] bool any() const { return !live_.empty(); }
   [[nodiscard]] std::int64_t ended() const { return trials_.count() - std::ssize(live_); }
 
-  /// Lays the noise of the next passage of all bodies.
+  /// Sets the noise of every body's next passage.
   void lay() {
     const std::size_t types = cells_.cells.size(),
                       arrays = static_cast<std::size_t>(trials_.arrays);
@@ -136,7 +136,7 @@ class Arrays {
     });
   }
 
-  /// Carries all bodies through the cells where they are.
+  /// Carries every body through the cell where the body is.
   void pass(bool keep_passages, PieceSize& size, const std::function<void(std::int64_t)>& tick) {
     std::vector<std::uint8_t> goes_on(bodies_.size(), 0);
     for (std::size_t type = 0; type < waves_.size(); ++type)
@@ -190,9 +190,10 @@ class Arrays {
   const RqmcTrials& trials_;
   std::vector<RunningTrial> running_;
   std::vector<Body> bodies_;
-  std::vector<Random> scrambles_;                // by array
-  std::vector<std::size_t> live_;                // places of trials that go on
-  std::vector<std::vector<std::size_t>> waves_;  // the same by type of the cell
+  std::vector<Random> scrambles_;  // by array
+  std::vector<std::size_t> live_;  // indices of trials that go on
+  // indices of trials that go on, by the type of their cell
+  std::vector<std::vector<std::size_t>> waves_;
   bool first_ = true;
 };
 
@@ -201,7 +202,7 @@ class Arrays {
 FieldTally run_even_field(const CellField& cells, const FieldParams& field,
                           const RqmcTrials& trials, std::uint64_t seed, FieldTrials* each,
                           const std::function<void(std::int64_t)>& tick) {
-  constexpr std::int64_t kFew = 1024;  // fewer at once leave lanes idle
+  constexpr std::int64_t kFew = 1024;  // fewer at once would leave vector lanes idle
   cells.map.require_fits(field.columns, field.rows);
   require_cells(cells);
   Arrays arrays(cells, field, trials, seed);

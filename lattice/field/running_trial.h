@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Trials on their way through the field, and as they are kept.
+/// Trials that are still under way in the field, and the form in which finished trials are kept.
 
 #include <cstdint>
 #include <memory>
@@ -16,15 +16,15 @@
 
 namespace gatewalk::lattice {
 
-/// Trials, and what each did.
+/// A tally of trials, and what each trial did.
 struct RunTrials {
   FieldTally tally;
   FieldTrials each;
 };
-/// Throws std::runtime_error for a piece that was read and that no trials make.
+/// Throws std::runtime_error if a piece that was read does not form whole trials.
 void require_whole(const RunTrials& piece, const std::vector<std::uint8_t>& endings,
                    std::uint8_t broken);
-/// As a piece is kept (dynamics/base/bytes.h).
+/// Writes or reads trials as part of a kept piece of work (dynamics/base/bytes.h).
 template <class Archive>
 void each_part(Archive& archive, RunTrials& piece) {
   auto& [tally, each] = piece;
@@ -44,25 +44,26 @@ void each_part(Archive& archive, RunTrials& piece) {
   }
 }
 
-/// The body of a trial from this entry into `cell`: its noise is the stream {seed,
-/// stream_of(start), trial}.
+/// Prepares the body of a trial that enters `cell` by `start`. The stream {seed, stream_of(start),
+/// trial} is the trial's noise.
 void begin_trial(const dynamics::Cell& cell, const dynamics::Entry& start, std::uint64_t seed,
                  std::int64_t trial, dynamics::Body& body);
 
-/// Throws std::invalid_argument where there are no cells to run.
+/// Throws std::invalid_argument if there are no cells to run.
 void require_cells(const dynamics::CellField& cells);
 
-/// Where a passage through a cell of this section leads, as markov::follow takes it.
+/// The exit to which a passage through a cell of this section leads, in the form markov::follow
+/// takes.
 [[nodiscard]] markov::Exit exit_of(const dynamics::Section& section, dynamics::Fate fate,
                                    const dynamics::Entry& next);
 
-/// One trial on its way through the field, whoever carries its body.
+/// One trial on its way through the field, independent of what carries its body.
 class RunningTrial {
  public:
   explicit RunningTrial(std::int32_t start_column) : column_(start_column) {}
 
-  /// Takes a passage through the cell where the trial is, of this type. The entry into the next
-  /// cell; none when the trial ends here. Passages are kept if asked for.
+  /// Adds a passage through the trial's current cell, which is of type `type`. Returns the entry
+  /// into the next cell, or nullopt if the trial ends here. `keep_passages` keeps the passage.
   [[nodiscard]] std::optional<dynamics::Entry> follow(const dynamics::CellMap& map,
                                                       const FieldParams& field,
                                                       const dynamics::Passage& passage,
@@ -80,18 +81,18 @@ class RunningTrial {
   [[nodiscard]] std::int32_t passed() const { return cells_; }
   [[nodiscard]] const std::optional<markov::Ending>& ending() const { return ending_; }
 
-  /// The body, while it waits for cells of another type.
+  /// The body, while the trial waits for cells of another type.
   std::unique_ptr<dynamics::Body> waiting;
 
  private:
-  std::optional<markov::Ending> ending_;  // none: a passage broke
+  std::optional<markov::Ending> ending_;  // none: a passage broke, or the trial goes on
   std::int32_t column_, row_ = 0;
-  int cells_ = 0;  // visited
+  int cells_ = 0;  // cells visited
   dynamics::Costs costs_{};
   PassageTable passages_;
 };
 
-/// The tally of trials that have ended, and `each` of them.
+/// The tally of finished trials; `each`, if given, gets what each trial did.
 [[nodiscard]] FieldTally tally_of(const std::vector<RunningTrial>& trials,
                                   const dynamics::CellMap& map, const FieldParams& field,
                                   dynamics::TrialRange range, FieldTrials* each);

@@ -10,10 +10,10 @@
 namespace gatewalk::lattice {
 namespace {
 
-constexpr double kOpen = 1e-12;       // of max|b|: a contact that closes no faster is at rest
-constexpr double kDependent = 1e-13;  // of its diagonal: a pivot this small is round-off
+constexpr double kOpen = 1e-12;  // relative to max|b|: a contact that closes more slowly is at rest
+constexpr double kDependent = 1e-13;  // relative to its diagonal: a smaller pivot is round-off
 
-/// Solves W z = -b over the contacts `in`, by Cholesky's method. False when a pivot falls to
+/// Solves W z = -b over the contacts `in`, by Cholesky's method. Returns false if a pivot falls to
 /// `least` of its diagonal: that contact depends on those before it.
 bool solve(const Eigen::MatrixXd& w, const Eigen::VectorXd& b, const std::vector<int>& in,
            double least, std::vector<double>& z) {
@@ -61,10 +61,10 @@ Eigen::VectorXd solve_lcp(const Eigen::MatrixXd& w, const Eigen::VectorXd& b) {
 
   const double open = kOpen * b.cwiseAbs().maxCoeff();
   std::vector<int> in;                  // contacts that have joined, in the order of joining
-  std::vector<bool> useless(n, false);  // depends on those in `in`
+  std::vector<bool> useless(n, false);  // contacts that depend on those in `in`
   std::vector<double> tried;
   const int most_rounds =
-      100 * n;  // far beyond what is ever needed; only round-off could turn in circles
+      100 * n;  // far more than ever needed; only round-off could make the method cycle
   for (int round = 0; round < most_rounds; ++round) {
     const Eigen::VectorXd rate = w * z + b;
     int next = -1;
@@ -82,8 +82,8 @@ Eigen::VectorXd solve_lcp(const Eigen::MatrixXd& w, const Eigen::VectorXd& b) {
     }
     std::fill(useless.begin(), useless.end(), false);
     while (std::any_of(tried.begin(), tried.end(), [](double x) { return x <= 0.0; })) {
-      // As far towards `tried` as nobody pulls; whoever would be the first to pull leaves. Those in
-      // `in` have z > 0, but for the new one, which has tried > 0: the quotient is never 0/0.
+      // Moves towards `tried` until the first contact would pull, which then leaves. All contacts
+      // in `in` have z > 0, except the new one, which has tried > 0: the quotient is never 0/0.
       const auto part = [&](std::size_t i) { return z[in[i]] / (z[in[i]] - tried[i]); };
       double share = 1.0;
       for (std::size_t i = 0; i < in.size(); ++i)

@@ -25,11 +25,11 @@ InvalidParameter wrong_fidelity(const FieldParams& field, const std::string& why
                                 "\" is not permitted: " + why};
 }
 
-/// Trial by trial, each with all its beams.
+/// Runs trials one by one, each with all its beams.
 FieldTally run_with_beams(const GateParams& p, const FieldParams& field, const CellMap& map,
                           const BodyState& start, std::uint64_t seed, TrialRange range,
                           FieldTrials* each, const StateSpace* space, Memory memory) {
-  (void)make_method(p);  // refuses what cannot be run
+  (void)make_method(p);  // throws for parameters that cannot be run
   std::vector<RunningTrial> trials;
   for (std::int64_t i = 0; i < range.count; ++i) trials.emplace_back(field.start_column());
   struct Seen {

@@ -118,7 +118,7 @@ void FieldStepper::go_on(dynamics::Outcome outcome) {
 }
 
 void FieldStepper::choose_awake(double h) {
-  // What the disc may travel within the step; beams do not come nearer than their length.
+  // The disc's longest way within the step; beams come no nearer than their length.
   const double slack = h * (std::abs(body_.vx) + std::abs(body_.vy));
   next_.assign(1, current_);
   const auto add = [&](std::size_t i) {
@@ -131,7 +131,8 @@ void FieldStepper::choose_awake(double h) {
     const auto within = [](double at, double low, double high) {
       return static_cast<int>(std::clamp(at, low, high));
     };
-    // Gates whose joints lie within +-reach of the centre in x and in y, as steps from this gate.
+    // Gates whose joints lie within +-reach of the disc's centre in x and in y, as steps from this
+    // gate.
     const Gate here = gates_[current_];
     const double left = -here.column, right = field_.columns - 1 - here.column;
     const double bottom = -here.row, top = field_.rows - 1 - here.row;
@@ -166,7 +167,8 @@ void FieldStepper::choose_awake(double h) {
 }
 
 double FieldStepper::advance(double force_x, double duration, Watch& watch) {
-  // A spell that is no whole number of steps (the rest of a hold) is cut into equal, shorter ones.
+  // A duration that is not a whole number of steps (the rest of a hold) is cut into equal, shorter
+  // steps.
   const double wanted = duration / p_.run.step;
   const auto steps = std::max<long>(1, std::lround(std::ceil(wanted - 1e-6)));
   const bool usual = std::abs(wanted - static_cast<double>(steps)) < 1e-6;
@@ -207,7 +209,7 @@ void FieldStepper::step(const Step& k, double force_x, Watch& watch) {
           contacts_.push_back({gate, side, t, gap_rate(t, body_, beam),
                                gap_rate(t, {0.0, 0.0, vx, vy}, {0.0, omega}), 0.0});
       }
-      beam.omega = omega;  // the angle follows below
+      beam.omega = omega;  // the code below updates the angle
     }
   }
   double after_vx = vx, after_vy = vy;
@@ -242,20 +244,20 @@ void FieldStepper::resolve(const Step& k, double& vx, double& vy) {
                         c.before;
   };
   const std::size_t n = contacts_.size();
-  if (n <= 2) {  // one or two by cases; two terms commute to the last bit
+  if (n <= 2) {  // one or two contacts by cases; two terms commute to the last bit
     Contact& a = contacts_.front();
     Contact& b = contacts_.back();
     const bool two = n == 2;
     const auto impulse = dynamics::unilateral_impulses({own(a), own(b), two ? cross(a, b) : 0.0},
                                                        {rate(a), two ? rate(b) : 0.0}, {true, two});
     b.impulse = impulse[1];
-    a.impulse = impulse[0];  // last: without a second contact both are the same
+    a.impulse = impulse[0];  // last: without a second contact, a and b are the same
     vx += (impulse[0] * a.touch.nx + impulse[1] * b.touch.nx) / k.mass;
     vy += (impulse[0] * a.touch.ny + impulse[1] * b.touch.ny) / k.mass;
     return;
   }
 
-  // From left to right, rows upwards in either direction: the mirror image is the other direction.
+  // Left to right or right to left, rows upwards in both: the mirror image has the other order.
   const auto in_order = [&](bool from_left) {
     std::sort(contacts_.begin(), contacts_.end(), [&](const Contact& a, const Contact& b) {
       const auto place = [&](const Contact& c) {
@@ -287,8 +289,8 @@ void FieldStepper::resolve(const Step& k, double& vx, double& vy) {
     }
     return s;
   };
-  // Both ways round, and the mean of the two: what round-off does then has no direction. Contacts
-  // stand where they stood before when they are put in the same order again.
+  // The mean over both orders has no preferred direction in its round-off. Sorting in the first
+  // order again puts the contacts back in place.
   in_order(true);
   const Eigen::VectorXd forwards = impulses();
   in_order(false);
@@ -327,7 +329,7 @@ void FieldStepper::watch_all(const BodyState& before, double force_x, double h, 
       watch.state(p_, s, h);
       continue;
     }
-    // Counted as part of the same step; max_theta is that of the gate the body is in.
+    // Counts as part of the same step; max_theta is that of the body's gate.
     Watch other;
     other.state(p_, s, h);
     watch.max_penetration = std::fmax(watch.max_penetration, other.max_penetration);

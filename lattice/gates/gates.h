@@ -10,15 +10,15 @@
 
 namespace gatewalk::lattice {
 
-/// The gates of a field: one type everywhere, or a type per cell. All have the same body, width,
-/// length and joints.
+/// The gates of a field: one type everywhere, or a type per cell. All types have the same body,
+/// width, length and joints.
 class FieldGates {
  public:
   FieldGates(
       dynamics::GateParams everywhere);  // NOLINT(google-explicit-constructor): the usual case
-  /// The gate in (column, row) is types[type_of_cell[row * columns + column]]. Throws
-  /// std::invalid_argument unless there is a type (256 at most), all are of one size and for one
-  /// body, and each cell is given one of them.
+  /// A field whose gate in (column, row) is types[type_of_cell[row * columns + column]]. Throws
+  /// std::invalid_argument unless there are 1 to 256 types, all of one size and for one body, and
+  /// each cell has one of them.
   [[nodiscard]] static FieldGates by_cell(std::vector<dynamics::GateParams> types, int columns,
                                           std::vector<int> type_of_cell);
 
@@ -30,22 +30,23 @@ class FieldGates {
   [[nodiscard]] const dynamics::GateParams& at(int column, int row) const {
     return types_[static_cast<std::size_t>(type_of(column, row))];
   }
-  /// (rows x columns) of types(); empty: all are the first.
+  /// (rows x columns), indices into types(); empty: all are the first
   [[nodiscard]] const std::vector<int>& type_of_cell() const { return type_of_cell_; }
-  /// What a chain knows of them. Throws InvalidParameter as dynamics::disc_section.
+  /// The gates as a chain sees them. Throws InvalidParameter, as dynamics::disc_section.
   [[nodiscard]] dynamics::CellMap map() const;
-  /// A DiscCell for each type. Throws InvalidParameter as that.
+  /// One DiscCell per type. Throws InvalidParameter, as DiscCell.
   [[nodiscard]] dynamics::CellField cells() const;
 
  private:
   std::vector<dynamics::GateParams> types_;
   int columns_ = 0;
-  std::vector<int> type_of_cell_;  // (rows x columns); empty: all are the first
+  /// (rows x columns), indices into types_; empty: all are the first
+  std::vector<int> type_of_cell_;
 };
 
-/// Throws dynamics::InvalidParameter when this fidelity cannot be run in these gates: `remember`
-/// and `all` have a stepper of their own (field_stepper.h), which is that of method moreau; `all`
-/// looks at a few neighbours only, so beams must not reach over many gates.
+/// Throws dynamics::InvalidParameter if these gates cannot run with this fidelity. `remember` and
+/// `all` have their own stepper (field_stepper.h), which needs method moreau; `all` considers only
+/// a few neighbours, so beams must not reach over many gates.
 void validate(const dynamics::GateParams& p, const FieldParams& field);
 
 }  // namespace gatewalk::lattice

@@ -18,7 +18,7 @@ LineState split_fields(std::string_view line, char separator, std::vector<std::s
                        std::string& unquoted) {
   fields.clear();
   unquoted.clear();
-  unquoted.reserve(line.size());  // so that what lies in it stays where it is
+  unquoted.reserve(line.size());  // no reallocation, so that fields stay where they are
   const char *at = line.data(), *const end = at + line.size();
   const auto skip_spaces = [&] {
     while (at < end && is_space(*at, separator)) ++at;
@@ -30,7 +30,7 @@ LineState split_fields(std::string_view line, char separator, std::vector<std::s
       for (++at;; ++at) {
         if (at == end) return LineState::open;
         if (*at == '"' && (at + 1 == end || at[1] != '"')) break;
-        if (*at == '"') ++at;  // two stand for one
+        if (*at == '"') ++at;  // two quotation marks stand for one
         unquoted += *at;
       }
       ++at;

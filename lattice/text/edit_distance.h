@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How far apart two words are, to say which known one was meant.
+/// How much two words differ, to suggest the known word that was meant.
 
 #include <algorithm>
 #include <cstddef>
@@ -12,7 +12,8 @@
 
 namespace gatewalk::lattice {
 
-/// Letters to insert, remove or replace to make one of the other (Levenshtein 1966).
+/// Number of letters to insert, remove or replace to turn one word into the other (Levenshtein
+/// 1966).
 [[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -27,8 +28,8 @@ namespace gatewalk::lattice {
   return row.back();
 }
 
-/// The name that `word` is meant to be: it begins so, or at most every third letter is wrong. Empty
-/// where there is none.
+/// The name that `word` probably means: a name that begins with `word`, or differs in at most every
+/// third letter. Empty if there is none.
 [[nodiscard]] inline std::string meant_name(std::string_view word,
                                             const std::vector<std::string>& names) {
   word = word.substr(0, 100);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Reads JSON that the program wrote itself, as far as the library needs it.
+/// Reads JSON that the program itself wrote, as far as the library needs it.
 
 #include <charconv>
 #include <limits>
@@ -15,8 +15,8 @@
 
 namespace gatewalk::lattice {
 
-/// The text of the value that `rest` begins with, taken off it. Throws std::invalid_argument where
-/// there is none, or only its beginning.
+/// Takes the JSON value at the beginning of `rest`, as text, and removes it from `rest`. Throws
+/// std::invalid_argument if there is no value, or only its beginning.
 [[nodiscard]] inline std::string_view take_json(std::string_view& rest) {
   rest = behind_blanks(rest);
   std::size_t at = 0;
@@ -44,8 +44,8 @@ namespace gatewalk::lattice {
   return value;
 }
 
-/// Calls take(rest) for each element between the marks. Throws std::invalid_argument for what is
-/// not of that form.
+/// Calls take(rest) for each element between the marks. Throws std::invalid_argument for text of
+/// another form.
 template <class Take>
 void each_in_json(std::string_view text, char open, char close, Take take) {
   if (!take_mark(text, open)) throw std::invalid_argument("is of another kind");
@@ -57,21 +57,22 @@ void each_in_json(std::string_view text, char open, char close, Take take) {
   if (!behind_blanks(text).empty()) throw std::invalid_argument("has more behind it");
 }
 
-/// Of an array, by place.
+/// The elements of a JSON array, each as text.
 [[nodiscard]] inline std::vector<std::string_view> json_elements(std::string_view text) {
   std::vector<std::string_view> all;
   each_in_json(text, '[', ']', [&](std::string_view& rest) { all.push_back(take_json(rest)); });
   return all;
 }
 
-/// A text without characters that JSON would write otherwise.
+/// The content of a JSON text without escaped characters. Throws std::invalid_argument for any
+/// other.
 [[nodiscard]] inline std::string json_text(std::string_view text) {
   if (text.size() < 2 || !text.starts_with('"') || text.find('\\') != text.npos)
     throw std::invalid_argument("is no plain text");
   return std::string(text.substr(1, text.size() - 2));
 }
 
-/// NaN for null.
+/// The number in `text`; NaN for null. Throws std::invalid_argument for any other text.
 [[nodiscard]] inline double json_number(std::string_view text) {
   if (text == "null") return std::numeric_limits<double>::quiet_NaN();
   const auto number = take_number(text);
@@ -82,7 +83,7 @@ void each_in_json(std::string_view text, char open, char close, Take take) {
 /// The values of an object, each as text.
 class JsonObject {
  public:
-  /// Throws std::invalid_argument for text that is no object. The text must outlive it.
+  /// Throws std::invalid_argument if `text` is no object. `text` must outlive the JsonObject.
   explicit JsonObject(std::string_view text) {
     each_in_json(text, '{', '}', [&](std::string_view& rest) {
       std::string key = json_text(take_json(rest));
@@ -91,15 +92,15 @@ class JsonObject {
     });
   }
   [[nodiscard]] bool has(std::string_view key) const { return values_.contains(key); }
-  /// Throws std::invalid_argument where there is none.
+  /// The value of a key. Throws std::invalid_argument if the key is missing.
   [[nodiscard]] std::string_view at(std::string_view key) const {
     const auto found = values_.find(key);
     if (found == values_.end()) throw std::invalid_argument("has no " + std::string(key));
     return found->second;
   }
-  /// NaN for null.
+  /// The number behind a key; NaN for null.
   [[nodiscard]] double number(std::string_view key) const { return json_number(at(key)); }
-  /// Throws std::invalid_argument for all but whole numbers from 0 on.
+  /// The count behind a key. Throws std::invalid_argument for all but whole numbers from 0 up.
   template <class Integer>
   [[nodiscard]] Integer count(std::string_view key) const {
     const std::string_view text = at(key);

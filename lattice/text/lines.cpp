@@ -23,7 +23,7 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 struct FileKind {
   std::string_view first, words;
 };
-using namespace std::string_view_literals;  // some have zeros in them
+using namespace std::string_view_literals;  // some signatures contain zero bytes
 constexpr std::array<FileKind, 19> kKinds{{
     {"\xFF\xFE"sv, "is text in UTF-16: save it as UTF-8 (Excel: CSV UTF-8)"},
     {"\xFE\xFF"sv, "is text in UTF-16: save it as UTF-8 (Excel: CSV UTF-8)"},
@@ -54,7 +54,7 @@ std::string no_text(std::string_view first) {
   const bool is_binary = std::any_of(first.begin(), first.end(),
                                      [](char c) { return static_cast<unsigned char>(c) < '\t'; });
   for (const FileKind& kind : kKinds) {
-    // A column may be called so.
+    // A column may have such a name.
     const bool is_word = kind.first == "PAR1" || kind.first == "ARROW1" || kind.first == "BZh";
     if (first.starts_with(kind.first) && (is_binary || !is_word)) return std::string(kind.words);
   }
@@ -96,7 +96,7 @@ bool Lines::next(std::string_view& line) {
   ++number_;
   line = {at(), static_cast<std::size_t>(end - at())};
   begin_ = std::min(filled_, begin_ + line.size() + 1);
-  // Programs that end lines in CRLF themselves and write to a file of text make CRCRLF of it.
+  // Programs that write CRLF through a text-mode file produce CRCRLF.
   if (end_ == '\n')
     while (line.ends_with('\r')) line.remove_suffix(1);
   return true;
@@ -117,7 +117,7 @@ void Lines::fail() const {
   throw std::invalid_argument(name_ + ": cannot be read: " + std::strerror(errno));
 }
 
-/// Reads on behind what is left. False at the end.
+/// Reads more bytes after the unread part. Returns false at the end of the file.
 bool Lines::fill() {
   std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_),
             buffer_.begin() + static_cast<std::ptrdiff_t>(filled_), buffer_.begin());
@@ -139,7 +139,7 @@ bool Lines::fill() {
 void require_different(const std::vector<std::string>& paths) {
   for (std::size_t i = 0; i < paths.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      std::error_code missing;  // who reads it says so
+      std::error_code missing;  // the reader of the file reports a missing file
       if (paths[i] == paths[j] || std::filesystem::equivalent(paths[i], paths[j], missing))
         throw std::invalid_argument(paths[i] + ": is given twice" +
                                     (paths[i] == paths[j] ? "" : " (" + paths[j] + ")"));

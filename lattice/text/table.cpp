@@ -14,10 +14,10 @@
 namespace gatewalk::lattice {
 namespace {
 
-constexpr std::size_t kMostBefore = 200;        // lines that are looked at for the header
-constexpr std::size_t kMostLinesOfHeader = 16;  // where its names have line ends in them
+constexpr std::size_t kMostBefore = 200;        // lines searched for the header
+constexpr std::size_t kMostLinesOfHeader = 16;  // if column names contain line ends
 
-/// What programs write for a number that there is not, though a body may be called so.
+/// Words that programs write for a missing number, although a body may have such a name.
 bool is_no_number(std::string_view field) {
   constexpr std::array<std::string_view, 5> kWords{".", "nat", "n.a.", "1.#inf", "-1.#inf"};
   return std::find(kWords.begin(), kWords.end(), in_small_letters(field)) != kWords.end();
@@ -38,7 +38,7 @@ Table::Table(const std::string& path, const IsHeader& is_header) : lines_(path) 
 }
 
 void Table::find_header(const IsHeader& is_header) {
-  std::string open;  // lines of a header in which a quotation mark is open
+  std::string open;  // lines of a header with an open quotation mark
   std::size_t open_lines = 0;
   std::string_view line;
   while (held_.size() < kMostBefore && lines_.next(line)) {
@@ -73,7 +73,7 @@ void Table::find_header(const IsHeader& is_header) {
 }
 
 bool Table::is_header_line(std::string_view line, const IsHeader& is_header) {
-  // numpy and MATLAB write the names as a comment.
+  // numpy and MATLAB write the column names as a comment.
   const std::size_t first = line.find_first_not_of(" \t#%");
   const std::string_view bare = line.substr(std::min(first, line.size()));
   for (const std::string_view text : {line, bare})
@@ -89,7 +89,7 @@ bool Table::is_header_line(std::string_view line, const IsHeader& is_header) {
   return false;
 }
 
-/// What the file has where the names that are wanted should be.
+/// Takes the first line as the columns, for messages, because no line is a header.
 void Table::take_first_line() {
   std::string_view line;
   while (next_line(line)) {
@@ -155,7 +155,7 @@ bool Table::next() {
       continue;
     fit_to_columns();
     if (std::equal(fields_.begin(), fields_.end(), columns_.begin(), columns_.end())) {
-      ++headers_;  // of files that were put together
+      ++headers_;  // the header of a further file in a concatenated one
       continue;
     }
     if (!same_.empty()) require_same_content();
@@ -164,12 +164,12 @@ bool Table::next() {
   return false;
 }
 
-/// Takes off what a row has more than the line of the columns: its number, as R writes it, or
-/// nothing behind a separator at the end.
+/// Removes the extra field of a row: a row number as R writes it, or an empty field after a final
+/// separator.
 void Table::fit_to_columns() {
   const std::size_t wanted = columns_.size();
   const bool has_more = fields_.size() == wanted + 1;
-  // R writes names of rows in quotation marks. Without them the extra field may be the last one.
+  // R quotes row names. If the first field is not quoted, the extra field may be the last one.
   if (std::exchange(is_first_row_, false) && has_more && begins_quoted_)
     if (const auto number = whole(fields_.front()); number && (*number == 0 || *number == 1)) {
       if (fields_.back().empty())
@@ -250,7 +250,7 @@ std::optional<std::size_t> Table::column(std::string_view name) {
   if (!found) return {};
   std::vector<std::size_t>& all = places_[columns_[*found]];
   for (std::size_t k = 1; k < all.size(); ++k) same_.emplace_back(*found, all[k]);
-  all.resize(1);  // these are known now
+  all.resize(1);  // handled now
   return found;
 }
 
@@ -279,7 +279,7 @@ std::optional<double> Table::number(std::string_view field) {
   return std::isfinite(value) ? value : kNone;
 }
 
-/// A table that has both may mean thousands by one of them.
+/// Notes the decimal mark of a number. A table with both marks may use one for thousands.
 void Table::note_decimal(char mark, std::string_view field) {
   if (decimal_ == '\0') {
     decimal_ = mark;
@@ -295,7 +295,7 @@ std::optional<std::int64_t> Table::whole(std::string_view field) {
   if (field.ends_with(".0")) field.remove_suffix(2);
   std::int64_t value = 0;
   if (is_all_of(field, value)) return value;
-  constexpr double kMost = 9007199254740992.0;  // doubles hold all whole numbers up to it
+  constexpr double kMost = 9007199254740992.0;  // doubles hold all whole numbers up to here
   double real = 0.0;                            // R writes 100000 as 1e+05
   const bool has_exponent = field.find_first_of("eE") != field.npos;
   if (!has_exponent || field.find('.') != field.npos || !is_all_of(field, real) ||

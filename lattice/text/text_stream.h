@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Streams that say what goes wrong.
+/// A text stream that reports errors.
 
 #include <locale>
 #include <sstream>
 
 namespace gatewalk::lattice {
 
-/// Writes into a text, and throws where memory for it is missing. Other streams then leave out the
-/// rest without a word, and write whole numbers in groups where the process's locale has some.
-/// Others than whole numbers are written by fmt.
+/// A stream into a text that throws if memory runs out, and that ignores the process's locale. (A
+/// std::ostringstream would drop the rest silently, and may group digits.) Numbers other than whole
+/// numbers are written by fmt.
 struct TextStream : std::ostringstream {
   TextStream() {
     imbue(std::locale::classic());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Values of a TOML file as messages show them.
+/// Values of a TOML file, as messages show them.
 
 #include <toml++/toml.h>
 
@@ -11,7 +11,7 @@
 
 namespace gatewalk::lattice {
 
-/// Capitals of ASCII made small; no locale changes it.
+/// `text` with ASCII capitals in lower case, independent of the locale.
 [[nodiscard]] inline std::string in_small_letters(std::string_view text) {
   std::string small(text);
   for (char& c : small)
@@ -19,12 +19,12 @@ namespace gatewalk::lattice {
   return small;
 }
 
-/// Whether the name of a file ends so, in capitals or not; `ending` is in small letters.
+/// True if the file name ends in `ending` (lower case), in upper or lower case.
 [[nodiscard]] inline bool has_ending(std::string_view path, std::string_view ending) {
   return in_small_letters(path).ends_with(ending);
 }
 
-/// Without the blanks around it.
+/// `s` without blanks at both ends.
 [[nodiscard]] inline std::string_view trimmed(std::string_view s) {
   constexpr std::string_view kBlank = " \t\r";
   const std::size_t first = s.find_first_not_of(kBlank);
@@ -32,7 +32,7 @@ namespace gatewalk::lattice {
                          : s.substr(first, s.find_last_not_of(kBlank) - first + 1);
 }
 
-/// Fit for one line of a message, whatever a file contains.
+/// `raw` on one line of a message, without control characters and cut after 60 bytes.
 [[nodiscard]] inline std::string printable(std::string_view raw) {
   constexpr std::size_t kLongest = 60;
   std::string shown;
@@ -46,7 +46,7 @@ namespace gatewalk::lattice {
   return shown;
 }
 
-/// A name in files: a letter, then letters, digits and _, at most 60.
+/// True for a name in files: a letter, then letters, digits and _, at most 60 characters.
 [[nodiscard]] inline bool is_name(std::string_view name) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   return !name.empty() && name.size() <= 60 && is_letter(name.front()) &&
@@ -54,7 +54,7 @@ namespace gatewalk::lattice {
                      [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-/// " = -3", " = \"fast\"", " (an array)": the value behind a key, as a message shows it.
+/// The value of a key as a message shows it: " = -3", " = \"fast\"", " (an array)".
 [[nodiscard]] inline std::string shown_value(const toml::node& node) {
   if (const auto* number = node.as_floating_point()) return " = " + toml_float(number->get());
   if (const auto* whole = node.as_integer()) return " = " + std::to_string(whole->get());
@@ -65,7 +65,7 @@ namespace gatewalk::lattice {
   return " (a date or time)";
 }
 
-/// That two keys of a document give the same quantity, by the line of the later one.
+/// The message that two keys of a document give the same quantity, at the line of the later key.
 template <class Place>
 [[nodiscard]] std::string given_twice(const toml::node& a, const std::string& a_key,
                                       const toml::node& b, const std::string& b_key,
