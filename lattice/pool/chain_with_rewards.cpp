@@ -17,7 +17,7 @@ namespace {
 
 using namespace dynamics;
 
-/// Means over the draws behind each count, as the chain's nonzeros stand.
+/// Mean costs of the runs behind each count, in the order of the chain's nonzeros.
 std::vector<markov::Reward> rewards_of(const std::vector<std::int64_t>& counts,
                                        const std::vector<CostSums>& sums, std::size_t costs) {
   std::vector<markov::Reward> rewards(costs);
@@ -57,7 +57,7 @@ ChainWithRewards chain_with_rewards(const Kernel& kernel, const CellMap& map,
 
 namespace {
 
-/// Entries of the pool's runs by leaf, mirror images too.
+/// Entries of the pool's runs by leaf, with mirror images.
 std::vector<EntryTable> entries_of_leaves(const Kernel& kernel, const CellMap& map,
                                           const RunPool& pool, TrialGroup group) {
   std::vector<EntryTable> entries(static_cast<std::size_t>(kernel.space.size()),
@@ -73,7 +73,7 @@ std::vector<EntryTable> entries_of_leaves(const Kernel& kernel, const CellMap& m
   return entries;
 }
 
-/// Entries of the start's row: the one, or those seen.
+/// The entries of the start's row: the start itself, or the entries seen.
 EntryTable first_entries(const Kernel& kernel, const CellMap& map, const RunPool& pool,
                          const FirstRow& start, TrialGroup group,
                          const std::vector<EntryTable>& of_leaves) {

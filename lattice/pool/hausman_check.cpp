@@ -8,7 +8,7 @@ namespace {
 
 using markov::FinalDistribution;
 
-/// What a body of any of the trials does by the chains: their mean, by numbers of trials.
+/// The mean of the chains' answers, weighted by numbers of trials.
 FinalDistribution mean_of(const std::vector<TrialsAndChain>& all, double trials) {
   FinalDistribution mean;
   for (const auto& [of, chain] : all) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A chain set against the full trials that it was made from. Trials keep what a chain may lose:
-/// what bodies remember from gate to gate, what differs within a state, which gate is of which
-/// type. So a wrong chain is found out, as far as so many trials can tell.
+/// Compares a chain with the full trials that it was made from. Trials keep what a chain may lose:
+/// memory from gate to gate, differences within a state, which gate has which type. The test
+/// therefore detects a wrong chain as far as this number of trials allows.
 
 #include <cstdint>
 #include <optional>
@@ -14,13 +14,13 @@
 
 namespace gatewalk::lattice {
 
-/// Trials of one start, or of a range, and the chain's exact answer for their bodies.
+/// Trials of one start or of a range, and the chain's exact answer for their bodies.
 struct TrialsAndChain {
   const FieldTrials& trials;
   const markov::FinalDistribution& chain;
 };
 
-/// All together, in one test. None: there are no trials.
+/// Tests all trials together; nullopt if there are no trials.
 [[nodiscard]] std::optional<HausmanCheck> hausman_check(const std::vector<TrialsAndChain>& all,
                                                         const FieldParams& field,
                                                         std::uint64_t seed);

@@ -14,9 +14,9 @@ namespace {
 
 using namespace dynamics;
 
-/// Calls use(entry, passage, next) for the runs of some trials of the group that did not break, but
-/// the first `skipped` ones of each trial. `start_of(i)`: where trial i started; `next`: the
-/// following run of the same trial, which is the next call's passage, or null.
+/// Calls use(entry, passage, next) for the unbroken runs of the group's trials, without the first
+/// `skipped` runs of each trial. `start_of(i)`: where trial i started; `next`: the following run of
+/// the same trial, which is the next call's passage, or null.
 template <class StartOf, class Use>
 void each_run(const FieldTrials& trials, TrialGroup group, std::size_t skipped, StartOf start_of,
               Use use) {
@@ -47,19 +47,20 @@ void each_kernel_run(const RunPool& pool, TrialGroup group, Use use) {
       [&](std::int64_t i) { return pool.scattered.starts[static_cast<std::size_t>(i)]; }, use);
 }
 
-// Leaves next to each other in preorder lie near each other; some hundred entries.
+// Number of leaves in a box: leaves adjacent in preorder are near each other; together they have
+// some hundred entries.
 constexpr int kStatesOfBox = 16;
 
 int output_of(const StateSpace& space, const CellPassage& passage, const Entry& entry) {
   return passage.fate == Fate::trapped ? space.trapped() : space.index_of(entry).state;
 }
 
-/// Counts of runs from row[i] to column[i].
+/// Counts of runs from state row[i] to output column[i].
 markov::Counts counted(const std::vector<int>& row, const std::vector<int>& column, int states) {
   std::vector<std::int64_t> end(static_cast<std::size_t>(states) + 1, 0);
   for (const int r : row) ++end[static_cast<std::size_t>(r) + 1];
   std::partial_sum(end.begin(), end.end(), end.begin());
-  std::vector<int> sorted(column.size());  // by row
+  std::vector<int> sorted(column.size());  // columns, sorted by row
   for (std::size_t i = 0; i < row.size(); ++i)
     sorted[static_cast<std::size_t>(end[static_cast<std::size_t>(row[i])]++)] = column[i];
   markov::Counts counts(states, std::int64_t{states} + 1);
@@ -79,20 +80,20 @@ markov::Counts counted(const std::vector<int>& row, const std::vector<int>& colu
   return counts;
 }
 
-/// By type: how many counts a run makes, 2 with its mirror image.
+/// By type: the number of counts per run, 2 in symmetric cells.
 std::vector<std::size_t> images_of(const CellMap& map) {
   std::vector<std::size_t> images;
   for (const CellMap::Type& type : map.types) images.push_back(type.symmetric ? 2 : 1);
   return images;
 }
 
-/// Parts of a tree: as many leaves together as it takes for `least` runs in each. `runs`: of each
-/// leaf; the first leaf of its part takes each leaf's place in `first`.
+/// Joins the leaves of a tree into parts with at least `least` runs each. `runs`: of each leaf;
+/// `first` gets for each leaf the first leaf of its part.
 void join_leaves(const Tree& tree, const std::int64_t* runs, std::int64_t least, int first_state,
                  int* first) {
   const std::size_t nodes = tree.nodes.size();
-  std::vector<std::size_t> above(nodes), leaves(nodes, 1), end(nodes);  // of a node: its second
-                                                                        // half, size, next node
+  // by node: its second half, number of leaves, next node
+  std::vector<std::size_t> above(nodes), leaves(nodes, 1), end(nodes);
   for (std::size_t i = nodes; i-- > 0;) {
     end[i] = i + 1;
     if (tree.nodes[i].axis == Tree::kLeaf) continue;
@@ -100,7 +101,7 @@ void join_leaves(const Tree& tree, const std::int64_t* runs, std::int64_t least,
     end[i] = end[above[i]];
     leaves[i] = leaves[i + 1] + leaves[above[i]];
   }
-  std::vector<std::pair<std::size_t, std::size_t>> open{{0, 0}};  // node, its first leaf
+  std::vector<std::pair<std::size_t, std::size_t>> open{{0, 0}};  // node, index of its first leaf
   while (!open.empty()) {
     const auto [node, begin] = open.back();
     open.pop_back();
@@ -118,8 +119,8 @@ void join_leaves(const Tree& tree, const std::int64_t* runs, std::int64_t least,
   }
 }
 
-/// The counts of one type, row[i] to column[i]; where leaves have few runs, of several together,
-/// the first of which takes each one's place in `first`.
+/// Counts of one type, from row[i] to column[i]. Leaves with few runs are counted together; `first`
+/// gets for each leaf the first leaf that it is counted with.
 markov::Counts counts_of_type(const StateSpace& space, std::vector<int> row,
                               const std::vector<int>& column, std::int64_t least,
                               std::vector<int>& first) {
@@ -247,7 +248,7 @@ double missing_mass(const Kernel& kernel, const CellMap& map, const FieldParams&
       const auto passages = trials->of_trial(i);
       const CellPassage passage = passages.front();
       if (passages.size() > 1 || passage.fate != Fate::left)
-        continue;  // the kernel has the entry, or there is none
+        continue;  // the kernel has this entry, or there is none
       const Face& move = kernel.space.section().faces[passage.entry.face];
       const int column = field.start_column() + move.di_x;
       if (!field.contains(column, move.di_y)) continue;
@@ -257,10 +258,9 @@ double missing_mass(const Kernel& kernel, const CellMap& map, const FieldParams&
       ++here[type][at];
       if (!kernel.seen[type].holds(at, passage.entry)) ++outside;
     }
-  // Of n entries the next one of the same kind lies beyond one of the sides of their box with
-  // sides / (n + 1), about; how many of several do is the less certain the more there are of one
-  // box.
-  constexpr std::int64_t kFew = 12;  // of fewer nothing is known
+  // With n entries in a box, the next one lies outside one of the box's sides with probability
+  // about sides / (n + 1). The variance grows with the number of first runs in one box.
+  constexpr std::int64_t kFew = 12;  // boxes with fewer entries say nothing
   const double sides = 2.0 * static_cast<double>(kernel.space.section().coordinates.size());
   double expected = 0.0, variance = 0.0;
   for (std::size_t type = 0; type < here.size(); ++type)
@@ -341,8 +341,8 @@ std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel, const CellMap
 
 namespace {
 
-/// Calls use(output, passage) for the first runs of these trials of one group, where `with_images`
-/// for their mirror images too.
+/// Calls use(output, passage) for the first runs of one group of these trials; `with_images`: for
+/// their mirror images too.
 template <class Use>
 void each_first_run(const CellMap& map, const StateSpace& space, const FieldTrials& trials,
                     bool with_images, TrialGroup group, Use use) {
@@ -359,8 +359,8 @@ void each_first_run(const CellMap& map, const StateSpace& space, const FieldTria
 
 /// Calls use_run(output, passage) for the first runs behind a start's row in cells of this type:
 /// its own, or those of all scattered trials through such cells. The latter count without mirror
-/// images: cells may be symmetric while the distribution of starts is not. Where there are no runs,
-/// use_leaf(leaf) is called instead: of the start's leaf, or of those of all scattered trials.
+/// images, because cells may be symmetric while the distribution of starts is not. Without any
+/// runs, calls use_leaf(leaf) instead: for the start's leaf, or for those of all scattered trials.
 template <class UseRun, class UseLeaf>
 void each_first_run(const Kernel& kernel, const CellMap& map, const RunPool& pool,
                     const FirstRow& start, int type, TrialGroup group, UseRun use_run,
@@ -420,7 +420,7 @@ std::vector<CostSums> first_cost_sums(const Kernel& kernel,
                                       const std::vector<std::vector<CostSums>>& sums,
                                       const CellMap& map, const RunPool& pool,
                                       const FirstRow& start, int type, TrialGroup group) {
-  std::map<int, CostSums> row;  // by output
+  std::map<int, CostSums> row;  // sums by output
   each_first_run(
       kernel, map, pool, start, type, group,
       [&](int output, const CellPassage& run) { row[output].add(run.costs); },

@@ -17,8 +17,8 @@ namespace {
 
 using dynamics::Entry;
 
-/// Cuts states along an axis into parts of about equal weight; adds each one's part to its key.
-/// States of the same place stay together.
+/// Cuts states along an axis into parts of about equal weight, and appends each state's part to its
+/// key. States at the same place stay together.
 void cut(std::span<int> states, std::size_t axis, int parts, const std::vector<Entry>& places,
          const std::vector<double>& weights, std::vector<std::vector<int>>& keys) {
   const auto place = [&](int s) { return places[static_cast<std::size_t>(s)].at[axis]; };
@@ -32,7 +32,7 @@ void cut(std::span<int> states, std::size_t axis, int parts, const std::vector<E
   for (auto at = states.begin(); at != states.end();) {
     const auto next = std::find_if(at, states.end(), [&](int s) { return place(s) != place(*at); });
     const double here = std::transform_reduce(at, next, 0.0, std::plus<>(), weight);
-    if (all > 0.0)  // by the middle of those here
+    if (all > 0.0)  // by the middle of these states' weights
       part = std::min(parts - 1, static_cast<int>((below + 0.5 * here) / all * parts));
     for (; at != next; ++at) keys[static_cast<std::size_t>(*at)].push_back(part);
     below += here;
@@ -78,7 +78,7 @@ std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain, const dynami
     chains.push_back(std::move(of_type.chain));
   }
   try {
-    constexpr double kTolerance = 1e-6;  // of differences that are told to four digits
+    constexpr double kTolerance = 1e-6;  // the differences are shown with four digits
     if (passages.totals().remainder > kTolerance) return {};
     const auto coarse = markov::predict(
         field_chain(map, std::move(chains)), cells,
@@ -90,7 +90,7 @@ std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain, const dynami
     lumped.final_gates =
         0.5 * (final_cells(c, field, passages) - of_lumped.final_cells).abs().sum();
     return lumped;
-  } catch (const std::runtime_error&) {  // walks without end
+  } catch (const std::runtime_error&) {  // walks do not end
     return {};
   }
 }

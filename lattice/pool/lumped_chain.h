@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What it costs to have fewer states: a chain with several of them as one, beside it.
+/// The error of a coarser chain: lumps states, and compares the lumped chain with the original.
 
 #include <optional>
 #include <vector>
@@ -12,21 +12,23 @@
 
 namespace gatewalk::lattice {
 
-/// Into how many parts the states of each boundary are cut by the first coordinate, then each part
-/// by the next one; the parts of a cut are visited about as often. Coordinates without a number are
-/// not cut.
+/// The number of parts into which the first coordinate cuts the states of each face, then the
+/// number for the next coordinate within each part, and so on. The parts of a cut have about equal
+/// visits; coordinates without a number are not cut.
 using LumpingParts = std::vector<int>;
 
+/// Errors of a lumped chain.
 struct LumpedChain {
-  int states = 0;  // the start's own is one of them
-  /// Total variation between the rows of two states of one part: the largest, a mean over parts by
-  /// visits, in the type of gate where it is most.
+  int states = 0;  // including the start's own state
+  /// Total variation between the rows of two states of one part: the largest, averaged over parts
+  /// by visits, for the gate type with the largest value.
   double largest = 0.0;
-  double endings = 0.0, final_gates = 0.0;  // total variation to the chain's
+  double endings = 0.0, final_gates = 0.0;  // total variation from the original chain's answer
 };
 
-/// `passages`: of the chain; rows of a part count by the visits of their states, in gates of all
-/// types. None where walks of either chain do not end.
+/// Lumps a chain and predicts with it. `passages` are those of the chain; within a part, rows count
+/// by the visits of their states in gates of all types. Returns nullopt if walks of either chain do
+/// not end.
 [[nodiscard]] std::optional<LumpedChain> lumped_chain(const AnalysedChain& chain,
                                                       const dynamics::CellMap& map,
                                                       const FieldParams& field,

@@ -13,12 +13,12 @@ namespace {
 
 using markov::FinalDistribution;
 
-// Where exact predictions take more multiplications, walks are made: so many, of a group a part of
-// them.
+// Above kMostExact multiplications answers come from walks: kWalks for all trials, kWalksOfGroup
+// for each group.
 constexpr double kMostExact = 1e9;
 constexpr std::int64_t kWalks = std::int64_t{1} << 22, kWalksOfGroup = std::int64_t{1} << 18;
 
-/// Multiplications that an exact prediction takes, about.
+/// About the number of multiplications that an exact prediction takes.
 double exact_cost(std::int64_t nonzeros, const FieldParams& field) {
   constexpr double kStepsWithoutLimit = 50.0;
   const double cells = static_cast<double>(field.columns) * field.rows;
@@ -28,29 +28,30 @@ double exact_cost(std::int64_t nonzeros, const FieldParams& field) {
                                               : std::min(cells, 2.0 * steps * steps) * steps / 2.0);
 }
 
-/// Whether answers come by walks, where they would take so long. A single column has few cells: it
-/// is always predicted exactly.
+/// Whether answers come from Monte Carlo walks. A single column has few cells and is always
+/// predicted exactly.
 bool by_walks(std::int64_t nonzeros, const FieldParams& field) {
   return field.columns > 1 && exact_cost(nonzeros, field) > kMostExact;
 }
 
-/// Whether adjoints of all chains pay: measured, one takes about as long as a prediction for each
-/// cell; bars ask for several rows of each start, so they do for a quarter as many starts as cells.
-/// They go through all steps, also those that nobody walks any more, and are of gates of one type.
+/// Whether the adjoints of all chains cost less. Measured: an adjoint takes about as long as one
+/// prediction per cell; error bars ask for several rows of each start, so adjoints pay from a
+/// quarter as many starts as cells. Adjoints go through all steps, also those after which no body
+/// walks any more, and need gates of one type.
 bool pays_adjoint(const dynamics::CellMap& map, const FieldParams& field, std::size_t starts) {
   return map.types.size() == 1 && field.max_gates > 0 &&
          field.max_gates <= 2 * (field.columns + field.rows) &&
          4 * static_cast<std::int64_t>(starts) >= std::int64_t{field.columns} * field.rows;
 }
 
-/// Runs behind the rows of kernels.
+/// Number of runs behind the rows of kernels.
 std::int64_t kernel_runs(const RunPool& pool) {
   std::int64_t runs = std::ssize(pool.scattered.each.passages);
   for (const OwnRuns& s : pool.starts) runs += std::ssize(s.full.passages);
   return runs;
 }
 
-/// What walks say, as a prediction.
+/// The shares of a walk tally as a prediction.
 FinalDistribution prediction_of(const markov::WalkTally& tally) {
   const auto n = static_cast<double>(tally.walks);
   const auto share = [&](std::int64_t count) { return static_cast<double>(count) / n; };
@@ -60,7 +61,7 @@ FinalDistribution prediction_of(const markov::WalkTally& tally) {
   return d;
 }
 
-/// Exact, or by `walks` where there are any.
+/// Exact predictions, or predictions from `walks` if there are any.
 KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
                          const markov::Counts& first_rows, const FieldParams& field,
                          markov::WalkRange walks, std::uint64_t seed) {
@@ -96,7 +97,8 @@ PoolChains::PoolChains(const dynamics::CellMap& map, const FieldParams& field, i
       seed_(seed) {}
 
 bool PoolChains::by_adjoint(const RunPool& pool, std::size_t starts) const {
-  // That adjoints keep, and need meanwhile: some 2 and 8 for each cell and state.
+  // Limit of the numbers that adjoints keep (about 2 per cell and state) and need meanwhile (about
+  // 8).
   constexpr std::int64_t kMostNumbers = 400'000'000;
   const std::int64_t cells = std::int64_t{field_.columns} * field_.rows,
                      states = 2 * 2 * kernel_runs(pool) / per_leaf_;  // of all chains, at most
@@ -106,7 +108,7 @@ bool PoolChains::by_adjoint(const RunPool& pool, std::size_t starts) const {
 void PoolChains::renew(const RunPool& pool) {
   const std::int64_t runs = kernel_runs(pool);
   if (std::exchange(runs_, runs) == runs) return;
-  by_walks_ = by_walks(2 * runs, field_);  // some nonzeros a run
+  by_walks_ = by_walks(2 * runs, field_);  // some nonzeros per run
   std::vector<std::optional<Kernel>> kernels(kTrialGroups + 1);
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};

@@ -12,10 +12,10 @@ namespace {
 
 using namespace dynamics;
 
-static_assert(kArrays == kTrialGroups);  // error bars by independent arrays
+static_assert(kArrays == kTrialGroups);  // error bars come from independent arrays
 
-// Numbers of first trials, so that no other command runs these: full ones, those through one gate,
-// scattered ones.
+// Numbers of the first trials, which no other command uses: full trials, trials through one gate,
+// scattered trials.
 constexpr std::int64_t kFullOwn = std::int64_t{1} << 41, kFirstOwn = std::int64_t{1} << 42,
                        kScatteredOwn = std::int64_t{1} << 43;
 
@@ -119,7 +119,7 @@ void PoolRunner::run_even(const Begun& begun, std::int64_t count, FieldTrials& a
                      done = std::ssize(all.passed);
   const auto points = points_of(begun);
   FieldTrials got{.final_gates = {}, .keep_passages = true};  // array by array
-  std::size_t ordered = 0;                                    // of them, in `all` already
+  std::size_t ordered = 0;  // how many trials of `got` are already in `all`
   in_kept_pieces(
       work_, {begun.what, {0, kArrays * batches}, 0, kArrays * batches, kArrays},
       RunTrials{FieldTally(problem_.field), {.final_gates = {}, .keep_passages = true}},

@@ -25,7 +25,7 @@ using namespace dynamics;
 using markov::FinalDistribution;
 
 constexpr std::int64_t kFirstRound = 20 * kTrialGroups;  // trials of all starts together
-constexpr std::int64_t kLeastFirstRuns = 500;            // of a start that meets a pool
+constexpr std::int64_t kLeastFirstRuns = 500;            // per new start of a pool that has runs
 
 void require_fine(const AccuracyOptions& options) {
   if (!(options.accuracy > 0.0 && options.accuracy < 1.0))
@@ -33,19 +33,19 @@ void require_fine(const AccuracyOptions& options) {
                                 " is not permitted: must lie in (0, 1)");
 }
 
-/// Total variation that so many walks keep from what endlessly many would give, 95 times in 100.
+/// Total variation that this number of walks keeps, in 95 % of cases, from infinitely many walks.
 double chance_of_walks(const FinalDistribution& d, std::int64_t walks) {
   constexpr double kToQuantile = 1.3;
   return walks == 0 ? 0.0 : kToQuantile * expected_total_variation(d.final_cells, walks);
 }
 
-/// What cannot be told of a share of the bodies may lie anywhere.
+/// Widens an interval by a share of bodies about which nothing is known.
 void widen(std::array<double, 2>& interval, double share) {
   interval = {std::max(0.0, interval[0] - share), std::min(1.0, interval[1] + share)};
 }
 
-/// The chain's answer for one start with its error bars; `first_runs` behind its first row,
-/// `pooled`: trials in the pool, `chance`: of the walks behind `whole`.
+/// The chain's answer for one start, with error bars. `first_runs`: behind the chain's first row;
+/// `pooled`: trials in the pool; `chance`: sampling error of the walks behind `whole`.
 StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, std::int64_t pooled,
                          FinalDistribution whole, double chance, double unseen,
                          const std::vector<FinalDistribution>& groups,
@@ -66,7 +66,7 @@ StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, std:
   std::vector<ExitShares> group_exits;
   for (const FinalDistribution& g : groups) group_exits.push_back(exit_shares(g));
   a.exits = exits_of_groups(exit_shares(whole), group_exits, evidence_of(whole, behind));
-  if (unseen > 0.0) {  // moved from one gate to another they make the largest RMSE
+  if (unseen > 0.0) {  // the RMSE is largest if they all move from one gate to another
     const auto gates = static_cast<double>(a.gates_95[0].size());
     a.error.rmse_per_100 += 100.0 * unseen * std::sqrt(2.0 / gates);
     a.error.corrcoef = std::nan("");
@@ -82,7 +82,8 @@ StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, std:
   return a;
 }
 
-/// The same, or the shares of the start's own trials where these are the more certain.
+/// The chain's answer for one start, or the shares of the start's own trials if these are more
+/// precise.
 StartAnswer answer_of(const FieldParams& field, const OwnRuns& s, std::int64_t pooled,
                       FinalDistribution whole, double chance, double unseen,
                       const std::vector<FinalDistribution>& groups,
@@ -114,27 +115,27 @@ StartAnswer answer_of(const FieldParams& field, const OwnRuns& s, std::int64_t p
   return a;
 }
 
-/// By how much a round of more trials goes on. Errors fall as 1 / sqrt(trials); but an error bar is
-/// an estimate itself, the better the nearer it is to what is wanted.
+/// How many more trials the next round makes. Errors fall as 1 / sqrt(trials), but an error bar is
+/// itself an estimate, which gets better as it comes near the goal.
 struct Schedule {
-  double far = 2.5;          // from so many times the trials on ...
-  double part_of_far = 0.6;  // ... only so much of them at once, ...
-  double most = 16.0;        // ... and no more than so many times: else trials may be wasted
-  double margin = 1.1;       // nearer by, so much more than needed, and ...
-  double least = 1.2;        // ... no less than so many times: else rounds may be many
+  double far = 2.5;          // above this factor of trials, ...
+  double part_of_far = 0.6;  // ... a round makes only this part of the factor, ...
+  double most = 16.0;        // ... and at most this factor: otherwise trials may be wasted
+  double margin = 1.1;       // below `far`, a round makes this factor more than needed, ...
+  double least = 1.2;        // ... and at least this factor: otherwise there may be many rounds
 };
 
-/// Of many starts chains and their answers take as long as the runs: fewer rounds, and larger ones.
+/// For many starts, chains and answers take as long as the runs: fewer and larger rounds.
 constexpr Schedule kForMany{.part_of_far = 0.8, .margin = 1.6, .least = 1.6};
 
-/// So many times the trials.
+/// The factor by which the number of trials grows in the next round.
 double times_more(double error, double wanted, const Schedule& by = {}) {
   const double times = (error / wanted) * (error / wanted);
   return times > by.far ? std::min(by.part_of_far * times, by.most)
                         : std::max(by.margin * times, by.least);
 }
 
-/// What direct simulation would take for the same error bar, by this run's speed.
+/// Time that direct simulation would take for the same error bar, at this run's speed, s.
 double direct_seconds(const StartAnswer& a, const PoolRunner& runner, std::uint64_t seed) {
   if (runner.gate_runs == 0) return std::nan("");
   constexpr std::int64_t kTrials = 10'000;
@@ -150,7 +151,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Adds trials of the starts whose answers are not certain enough, until all are.
+/// Adds trials for the starts whose answers are too uncertain, until all answers are precise
+/// enough.
 class PredictionRun {
  public:
   PredictionRun(const Problem& problem, RunPool& pool, const std::vector<Entry>& starts,
@@ -167,7 +169,7 @@ class PredictionRun {
   }
 
   [[nodiscard]] PooledPrediction carry_out() {
-    if (options_.trials) work_.end_part();  // else all parts need the same ones
+    if (options_.trials) work_.end_part();  // only then do all parts of a run need the same trials
     const bool may_add = !options_.first_runs && !options_.trials;
     while (ask() && runner_.may_go_on() && may_add) add_trials();
     result_.reached = open_.empty();
@@ -199,7 +201,7 @@ class PredictionRun {
     return starts;
   }
 
-  /// Finds the starts in the pool, or puts them there with some trials each.
+  /// Finds the starts in the pool, or adds them with some trials each.
   void place(const std::vector<Entry>& starts) {
     const bool has_kernel = pool_.gate_runs() > 0;
     for (auto to_place = std::ssize(starts); const Entry& entry : starts) {
@@ -215,11 +217,11 @@ class PredictionRun {
     }
   }
 
-  /// Answers for the open starts, and closes those that are certain enough. False where more trials
-  /// are not wanted, or would not help.
+  /// Computes the answers for the open starts, and closes those that are precise enough. Returns
+  /// false if no more trials are wanted, or if they would not help.
   [[nodiscard]] bool ask() {
-    // By the adjoint all starts cost as much as one. So closed ones are asked again: an error bar
-    // that was small by chance is seen to be larger.
+    // With the adjoint all starts cost as much as one. Closed starts are therefore asked again,
+    // which corrects error bars that were small by chance.
     if (chains_.by_adjoint(pool_, open_.size())) open_ = all();
     std::vector<FirstRow> asked;
     for (const std::size_t k : open_) asked.emplace_back(&pool_.starts[places_[k]]);
@@ -239,21 +241,22 @@ class PredictionRun {
     std::erase_if(open_, [&](std::size_t k) {
       return result_.starts[k].error.total_variation <= options_.accuracy;
     });
-    // The groups' walks have their chance too: where it makes half of the error, trials do not
+    // The walks have their own sampling error: if it makes up half of the error, more trials do not
     // help.
     return !open_.empty() && std::all_of(chances.begin(), chances.end(), [&](double chance) {
       return chance < 0.5 * options_.accuracy;
     });
   }
 
-  /// The part of the error that first runs make.
+  /// The part of the error that comes from the first runs.
   [[nodiscard]] static double first_error(const StartAnswer& a) {
     const double e = a.error.total_variation - a.unseen, k = a.kernel_error_95 - a.unseen;
     return std::sqrt(std::max(1e-4 * e * e, e * e - k * k));
   }
 
-  /// Error bars that kernels should make alone, so that the fewest gate runs are needed in all: the
-  /// kernel's serve all starts, first runs one each; each part of a square goes with 1 / runs.
+  /// The error bar that kernels should reach alone, so that the total number of gate runs is
+  /// smallest. The kernel's runs serve all starts, first runs only their own start; each part of
+  /// the squared error falls as 1 / runs.
   [[nodiscard]] double kernel_goal() const {
     std::vector<double> kernel, first;
     for (const std::size_t k : open_) {
@@ -267,13 +270,14 @@ class PredictionRun {
            std::sqrt(std::clamp(shared / std::max(1e-9, shared + own), 0.2, 0.72));
   }
 
-  /// What a start lacks: so many full trials more, and so many runs through its first gate in all.
+  /// What a start needs: further full trials, and the total number of runs through its first gate.
   struct Order {
     std::size_t start;
     double full = 0.0, first = 0.0;
   };
 
-  /// A round. If it would take more gate runs than are left, each order gets its part of them.
+  /// Runs a round. If the orders need more gate runs than are left, each order gets its share of
+  /// them.
   void add_trials() {
     const std::vector<Order> orders = by_walks_ ? orders_for_walks() : orders_for_kernels();
     std::vector<double> costs;
@@ -291,13 +295,14 @@ class PredictionRun {
     }
   }
 
-  /// First runs that an order still asks for, when so many full trials are there too.
+  /// First runs that an order still needs once `full` more full trials are run.
   [[nodiscard]] double more_first(const Order& order, double full = 0.0) const {
     const auto made = static_cast<double>(pool_.starts[places_[order.start]].first_runs());
     return std::max(0.0, order.first - made - full);
   }
 
-  /// Rounds take long, and walks have their chance too: the shortest way.
+  /// Orders when answers come from walks: rounds take long, so full trials grow by the whole
+  /// factor.
   [[nodiscard]] std::vector<Order> orders_for_walks() const {
     std::vector<Order> orders;
     for (const std::size_t k : open_) {
@@ -310,10 +315,10 @@ class PredictionRun {
   [[nodiscard]] std::vector<Order> orders_for_kernels() const {
     const Schedule by = chains_.by_adjoint(pool_, result_.starts.size()) ? kForMany : Schedule{};
     const double goal = kernel_goal();
-    std::vector<std::size_t> lacking;  // starts for which the kernel is too uncertain
+    std::vector<std::size_t> lacking;  // starts whose kernel is too uncertain
     for (const std::size_t k : open_)
       if (result_.starts[k].kernel_error_95 > 1.05 * goal) lacking.push_back(k);
-    // Where they are few, first runs can make up for it, up to a point.
+    // If these starts are few, first runs can compensate to some extent.
     if (4 * lacking.size() < result_.starts.size())
       std::erase_if(lacking, [&](std::size_t k) {
         return result_.starts[k].kernel_error_95 < 0.85 * options_.accuracy;
@@ -332,8 +337,8 @@ class PredictionRun {
     return orders;
   }
 
-  /// Full trials of this start: as many as if only its own could help, or its part of as many as if
-  /// all helped alike, whichever is less.
+  /// Full trials for this start's kernel: the number needed if only its own trials helped, or its
+  /// part of the number needed if all trials helped alike, whichever is less.
   [[nodiscard]] double trials_for_kernel(std::size_t k, double goal, std::int64_t lacking,
                                          const Schedule& by) const {
     const StartAnswer& a = result_.starts[k];
@@ -342,7 +347,7 @@ class PredictionRun {
     return std::min(own_trials_of(k), all) * (times_more(a.kernel_error_95, goal, by) - 1.0);
   }
 
-  /// Those that it has, at least half of a first round.
+  /// The start's number of full trials, at least half of a first round.
   [[nodiscard]] double own_trials_of(std::size_t k) const {
     const std::int64_t trials = std::ssize(pool_.starts[places_[k]].full.passed);
     return static_cast<double>(std::max(trials, kFirstRound / 2));
@@ -355,9 +360,9 @@ class PredictionRun {
   const Work& work_;
   PoolRunner runner_;
   PoolChains chains_;
-  bool by_walks_ = false;            // are the answers so far
-  std::vector<std::size_t> places_;  // of the starts in the pool
-  std::vector<std::size_t> open_;    // starts that are not certain enough yet
+  bool by_walks_ = false;            // whether the current answers come from walks
+  std::vector<std::size_t> places_;  // indices of the starts in the pool
+  std::vector<std::size_t> open_;    // starts whose answers are not precise enough yet
   PooledPrediction result_;
 };
 
@@ -367,7 +372,7 @@ FinalDistribution shares_of(const FieldTrials& trials, const FieldParams& field)
   const auto n = static_cast<double>(trials.final_gates.size());
   FieldTally tally(field);
   tally.count(trials.final_gates, trials.endings);
-  // Added up one by one.
+  // Adds 1 / n once per trial, as a sum over trials would.
   FinalDistribution d{markov::shares_of(tally, [&](std::int64_t count) {
     double share = 0.0;
     for (; count > 0; --count) share += 1.0 / n;
@@ -482,7 +487,7 @@ PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& 
   PooledRange result;
   result.range = range;
   result.tried_on = kTried;
-  // The starts that it is tried on; their runs are not kept.
+  // The starts tried; their runs are not kept.
   RunPool tried;
   for (int k = 0; k < kTried; ++k) {
     OwnRuns& s = tried.starts.emplace_back();
@@ -507,8 +512,8 @@ PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& 
     result.worst_kernel_error_95 = *std::max_element(errors.begin(), errors.end());
     result.reached = result.kernel_error_95 <= options.accuracy;
     if (result.reached || !runner.may_go_on() || options.trials) break;
-    // To try a large pool costs more than its runs: after the last step it is not tried again, and
-    // its error is taken to fall as 1 / sqrt(runs).
+    // Trying a large pool costs more than its runs. After the last step the pool is not tried
+    // again, and its error is taken to fall as 1 / sqrt(runs).
     const auto n = static_cast<double>(pool.scattered.starts.size());
     const bool last = pool.scattered.starts.size() >= kLargestTried;
     const double times = std::min(times_more(result.kernel_error_95, options.accuracy), 4.0);

@@ -21,7 +21,7 @@ ReactiveVisits::ReactiveVisits(const ChainWithRewards& c, const FieldParams& fie
       inputs_(c.chain.inputs()),
       cells_(std::int64_t{field.columns} * field.rows),
       state_visits_(static_cast<std::size_t>(c.chain.inputs()), 0.0) {
-  constexpr double kOfChance = 0.25;  // of the time, about
+  constexpr double kOfChance = 0.25;  // part of the time, about
   double told = 0.0;
   const auto tell = [&](double part) {
     if (!parts.told || part <= told) return;
@@ -117,7 +117,8 @@ markov::CellProbabilities final_cells(const ChainWithRewards& c, const FieldPara
   if (!is_sampled(c.start.column, c.start.row, c.start.input))
     ends(c.start.row, c.start.column) = 1.0;
   const auto trapped = trapped_shares(chain);
-  std::int64_t far = 0;  // how far moves lead: most cells are farther from all edges
+  // the farthest move of any exit: most cells are farther than this from all edges
+  std::int64_t far = 0;
   bool all_sampled = true;
   for (const markov::Chain& one : chain.chains()) {
     for (const markov::Exit& exit : one.exits())

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Gate runs of full trials, pooled over all gates of a type, since one is like the other; and the
-/// chain that they make: a start's own first runs are its row, all later runs fill the rows of
-/// trees grown over the entries that were seen (dynamics/cells/tree_space.h), their mirror images
-/// too where the gate is symmetric. All types share the trees: what enters a gate comes from
-/// another one.
+/// Gate runs of full trials, pooled over all gates of a type, because all gates of a type are
+/// alike; and the chain made from these runs. A start's own first runs form its row. All later runs
+/// fill the rows of trees grown over the entries seen (dynamics/cells/tree_space.h), with their
+/// mirror images if the gate is symmetric. All types share the trees, because a body enters a gate
+/// from a gate of any type.
 
 #include <array>
 #include <cstdint>
@@ -21,13 +21,14 @@
 
 namespace gatewalk::lattice {
 
-/// Trials from one start (y = 0) with their passages; field.fidelity "active".
+/// Trials from one start (y = 0), with their passages; field.fidelity is "active".
 struct OwnRuns {
   dynamics::Entry start{};
   FieldTrials full{.final_gates = {}, .keep_passages = true};
-  FieldTrials first{.final_gates = {}, .keep_passages = true};  // that ran through one gate only
+  /// trials that ran through one gate only
+  FieldTrials first{.final_gates = {}, .keep_passages = true};
 
-  /// Runs through the first gate.
+  /// Number of runs through the first gate.
   [[nodiscard]] std::int64_t first_runs() const {
     return std::ssize(full.passed) + std::ssize(first.passed);
   }
@@ -36,34 +37,35 @@ struct OwnRuns {
   }
 };
 
-/// Trials that start anywhere: all their runs are pooled.
+/// Trials from anywhere in a range; all their runs are pooled.
 struct RangeRuns {
   std::vector<dynamics::Entry> starts;  // (trials)
   FieldTrials each{.final_gates = {}, .keep_passages = true};
 };
 
-/// Where the chain's row of a start comes from: the start's own first runs, the runs of the leaf
+/// Where the chain's row for a start comes from: the start's own first runs, the runs of the leaf
 /// that holds an entry, or (monostate) the first runs of all scattered trials.
 using FirstRow = std::variant<std::monostate, const OwnRuns*, dynamics::Entry>;
 
+/// All trials that a chain of trees is made from.
 struct RunPool {
   std::vector<OwnRuns> starts;
   RangeRuns scattered;
 
-  /// Place of a start among `starts`; their number if it is none.
+  /// Index of a start in `starts`; starts.size() if it is not there.
   [[nodiscard]] std::size_t place_of(const dynamics::Entry& start) const;
-  /// From the start's own runs if it has any, else from its leaf; without an entry from all
+  /// The source of a start's row: its own runs if it has any, else its leaf; for nullopt, all
   /// scattered trials.
   [[nodiscard]] FirstRow first_row(const std::optional<dynamics::Entry>& start) const;
   [[nodiscard]] std::int64_t gate_runs() const;
-  /// Those that ran through the field.
+  /// Number of trials that ran through the field.
   [[nodiscard]] std::int64_t trials() const;
-  /// Bodies that made them.
+  /// Number of bodies that made these trials.
   [[nodiscard]] std::int64_t bodies() const;
 };
 
-/// Trials number group, group + of, group + 2 of, ... of every start; where bodies made several
-/// trials each, all those of bodies number group, group + of, ...
+/// A group of trials: numbers group, group + of, group + 2 of, ... of every start. If bodies made
+/// several trials each: all trials of bodies number group, group + of, ...
 struct TrialGroup {
   std::int64_t group = 0, of = 1;
   [[nodiscard]] bool holds(const FieldTrials& trials, std::int64_t trial) const {

@@ -15,7 +15,7 @@ namespace {
 
 using namespace dynamics;
 
-/// What walks from the starts end with, or from anywhere in the range where there are none.
+/// Answers for the starts, or, without starts, for bodies from anywhere in the range.
 std::vector<markov::FinalDistribution> answers(const Problem& problem, const RunPool& pool,
                                                const Kernel& kernel, std::uint64_t seed) {
   const CellMap& map = problem.map();
@@ -27,7 +27,7 @@ std::vector<markov::FinalDistribution> answers(const Problem& problem, const Run
       .final;
 }
 
-/// Larger leaves, until there are no more states than that.
+/// Makes leaves larger, until there are at most `most` states.
 void limit_states(TreeChain& chain, const Problem& problem, int most, std::uint64_t seed) {
   const auto faces = std::ssize(chain.kernel.space.trees());
   if (most < faces)
@@ -49,7 +49,7 @@ void limit_states(TreeChain& chain, const Problem& problem, int most, std::uint6
         std::max(chain.states_bias, total_variation(before[i].final_cells, after[i].final_cells));
 }
 
-/// With the starts of these trials as states of their own.
+/// The matrices with the starts of these trials as states of their own.
 std::vector<Transitions> transitions_with(const Problem& problem, const RunPool& pool,
                                           const Kernel& kernel,
                                           const std::vector<const OwnRuns*>& own) {
@@ -61,7 +61,7 @@ std::vector<Transitions> transitions_with(const Problem& problem, const RunPool&
       first_rows(kernel, map, pool, {own.begin(), own.end()}, problem.start_type()));
 }
 
-/// All full trials of the pool against the chain as it is.
+/// All full trials of the pool against the final chain.
 std::optional<HausmanCheck> look_at_own_trials(const TreeChain& chain, const Problem& problem,
                                                std::uint64_t seed) {
   const RunPool& pool = chain.pool;
@@ -113,7 +113,7 @@ TreeChain make_tree_chain(const Problem& problem, const TreeOptions& options, co
     limit_states(chain, problem, *options.most_states, options.accuracy.seed);
   chain.hausman_check = look_at_own_trials(chain, problem, options.accuracy.seed);
   if (chain.prediction)
-    chain.prediction->hausman_check = {};  // that was before states were limited
+    chain.prediction->hausman_check = {};  // it belongs to the chain before states were limited
   std::vector<const OwnRuns*> own;
   for (const OwnRuns& s : chain.pool.starts) own.push_back(&s);
   chain.transitions = transitions_with(problem, chain.pool, chain.kernel, own);
@@ -139,19 +139,19 @@ const RunArray kTrialRuns{"trial_runs", "1",
                "field, or one gate only",
                true,
                {"from_anywhere", "from_its_start_through_the_field", "from_its_start_one_gate"}},
-    // Only where there are several.
+    // Only if there are several types.
     kRunType{"run_type", "1",
              "type of the gate of each run: 0 the scene's own, then those of its terrain that are "
              "not like one before, by name",
              true},
-    // Only where not all start by the first face.
+    // Only if trials start by other faces than the first.
     kTrialFace{"trial_face", "1", "by which face each trial started, numbered as run_boundary",
                true},
-    // Only where one body made several trials.
+    // Only if a body made several trials.
     kTrialBody{"trial_body", "1", "number of the body that made each trial", true};
 
-/// How a run ended, by place: its fate, of one that left with the move to the next cell. Before
-/// files knew of other cells than gates they had the first four.
+/// How a run ended, by number: its fate, or the move to the next cell. Files made before other
+/// cells than gates were supported have only the first four.
 const std::vector<std::string> kRunEndings{"traversed", "exited_left", "exited_right",
                                            "trapped",   "moved_back",  "lost_from_sight"};
 constexpr int kTrapped = 3, kBroken = 5;
@@ -163,7 +163,7 @@ int ending_of(const Section& section, const CellPassage& passage) {
   return move.di_x < 0 ? 1 : 2;
 }
 
-/// `others`: some ended in another way than a gate's runs do.
+/// `others`: some runs ended in a way that gate runs do not have.
 RunArray ending_array(bool others) {
   return {"run_ending",
           "1",
@@ -178,7 +178,7 @@ RunArray face_array(const Section& section) {
   for (const Face& face : section.faces) array.codes.push_back(face.name);
   return array;
 }
-/// Where each trial started, by coordinate.
+/// Arrays of where each trial started, by coordinate.
 std::vector<RunArray> start_arrays(const Section& section) {
   std::vector<RunArray> arrays;
   for (const Coordinate& c : section.coordinates)
@@ -187,7 +187,7 @@ std::vector<RunArray> start_arrays(const Section& section) {
                                      : c.words + " there"});
   return arrays;
 }
-/// Where each run entered the next gate, by coordinate.
+/// Arrays of where each run entered the next gate, by coordinate.
 std::vector<RunArray> entry_arrays(const Section& section) {
   std::vector<RunArray> arrays;
   for (const Coordinate& c : section.coordinates)
@@ -196,7 +196,7 @@ std::vector<RunArray> entry_arrays(const Section& section) {
          (arrays.empty() ? "where on that boundary" : c.words + " there") + " (trapped: 0)"});
   return arrays;
 }
-/// What each run took, by cost; older files have none.
+/// Arrays of each run's costs; older files have none.
 std::vector<RunArray> cost_arrays(const Section& section) {
   std::vector<RunArray> arrays;
   for (const CostInfo& c : section.costs)
@@ -206,7 +206,7 @@ std::vector<RunArray> cost_arrays(const Section& section) {
 
 enum Kind : int { kScattered, kFullTrial, kFirstRun };
 
-/// Appends trials to the tables.
+/// The arrays of runs in a file, filled trial by trial.
 struct RunTables {
   const Section& section;
   std::vector<double> trial_runs, trial_kind, trial_face, trial_body;
@@ -292,7 +292,7 @@ const std::vector<double>* find(const MatrixFile& file, const std::string& name)
   return nullptr;
 }
 
-/// The tables of a file, checked.
+/// Reads the arrays of runs in a file, and checks them.
 class RunReader {
  public:
   RunReader(const MatrixFile& file, std::size_t types, const std::string& path)
@@ -349,7 +349,7 @@ class RunReader {
     for (const RunArray& array : arrays) columns.push_back(&table(array));
     return columns;
   }
-  /// A whole number in [0, end).
+  /// `x` as a whole number in [0, end); refuses the file if it is none.
   [[nodiscard]] int whole(double x, double end, const std::string& what) const {
     if (!(x >= 0.0 && x < end && x == std::floor(x))) refuse(what);
     return static_cast<int>(x);
@@ -405,22 +405,23 @@ class RunReader {
   }
 
   const MatrixFile& file_;
-  std::size_t types_;  // of gates
+  std::size_t types_;  // number of gate types
   const Section& section_;
   const std::string& path_;
   const std::vector<double>&runs_, &kind_;
   Columns start_;
-  const std::vector<double>*start_face_, *body_;  // null: all are the first, each has its own
+  // null: all by the first face; each trial has its own body
+  const std::vector<double>*start_face_, *body_;
   const std::vector<double>& ending_;
-  const std::vector<double>* type_;  // null: all are the first
+  const std::vector<double>* type_;  // null: all runs in gates of the first type
   const std::vector<double>& face_;
   Columns entry_;
-  Columns costs_;       // null: an older file
-  std::size_t at_ = 0;  // run
+  Columns costs_;       // null: an older file, without costs
+  std::size_t at_ = 0;  // index of the current run
 };
 
-/// Follows trials through a field by their passages, to where and how they end there. Nothing is
-/// known of that when they were not run in such a field.
+/// Follows trials through a field by their passages, to find where and how they end. Trials that
+/// did not run in such a field get no endings.
 void find_endings(const CellMap& map, const FieldParams& field, FieldTrials& trials) {
   FieldTrials ended;
   for (std::size_t i = 0; i < trials.passed.size(); ++i) {
@@ -428,7 +429,7 @@ void find_endings(const CellMap& map, const FieldParams& field, FieldTrials& tri
     bool goes_on = true;
     for (const CellPassage p : trials.of_trial(i)) {
       if (!goes_on || p.fate == Fate::broken || p.type != map.type_of(trial.column(), trial.row()))
-        return;  // it went on where this field has an end, or another gate
+        return;  // the trial went on where this field ends, or in another gate type
       goes_on = trial.follow(map, field, {p.fate, p.entry, p.costs}, false).has_value();
     }
     if (goes_on) return;
@@ -439,7 +440,8 @@ void find_endings(const CellMap& map, const FieldParams& field, FieldTrials& tri
   trials.costs = std::move(ended.costs);
 }
 
-/// Trials that began in a gate of another type than trials do here are none of a start's own.
+/// Moves the trials of starts whose first gate has another type than the start's gate here to the
+/// scattered trials.
 void scatter_others(RunPool& pool, const CellMap& map, int type) {
   const auto is_other = [&](const OwnRuns& s) {
     const FieldTrials& any = s.full.passages.empty() ? s.first : s.full;

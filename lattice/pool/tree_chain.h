@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A chain whose states are trees: how it is made, what its file keeps, and how it serves a start
-/// that it does not know.
+/// A chain whose states are leaves of trees: how it is made, what its file keeps, and how it serves
+/// a start that is not a state of its own.
 
 #include <cstdint>
 #include <optional>
@@ -15,48 +15,52 @@
 
 namespace gatewalk::lattice {
 
+/// What a chain of trees is made for.
 struct TreeOptions {
   AccuracyOptions accuracy{};
-  std::vector<dynamics::Entry> starts{};  // that are states of their own
-  std::optional<StartRange> range{};      // of starts that it is to be good for
-  std::optional<int> most_states{};       // not counting the starts
+  std::vector<dynamics::Entry> starts{};  // starts that become states of their own
+  std::optional<StartRange> range{};      // range of starts that the chain must serve
+  std::optional<int> most_states{};       // without the starts
 };
 
+/// A chain of trees with the runs behind it.
 struct TreeChain {
   RunPool pool;
   Kernel kernel;
-  /// By types; the first one has the health of all.
+  /// By gate type; the first one has the health of all runs.
   std::vector<dynamics::Transitions> transitions;
   int per_leaf = dynamics::kEntriesPerLeaf;
-  std::optional<PooledPrediction> prediction;  // of the starts, before states were limited
+  /// for the starts, before the number of states was limited
+  std::optional<PooledPrediction> prediction;
   std::optional<PooledRange> range;
-  /// Total variation of the final gates that the limit of states makes; 0 without one.
+  /// Total variation of the final gates caused by the limit of states; 0 without one.
   double states_bias = 0.0;
-  /// All full trials of the pool against this chain; none where answers come by walks.
+  /// All full trials of the pool against this chain; nullopt if answers come from Monte Carlo
+  /// walks.
   std::optional<HausmanCheck> hausman_check{};
 };
 
-/// A chain that gives the starts an error bar of the accuracy, and any start of the range half of
-/// it: the other half is for its own first runs, and for the worst of many. Throws as
-/// predict_pooled and pool_range; std::invalid_argument for neither start nor range, and for fewer
-/// states than boundaries.
+/// Makes a chain whose error bar is at most the accuracy for each of the starts, and half of it for
+/// any start of the range; the other half is for the start's own first runs, and for the worst of
+/// many starts. Throws as predict_pooled and pool_range; std::invalid_argument for neither starts
+/// nor range, and for fewer states than faces.
 [[nodiscard]] TreeChain make_tree_chain(const Problem& problem, const TreeOptions& options,
                                         const dynamics::Work& work = {});
 
-/// Part of the accuracy asked for a range that error bars of a single start are to keep.
+/// The part of a range's accuracy that the error bar of a single start must keep.
 inline constexpr double kPartForOne = 0.5;
 
-/// The runs of a pool of entries in this section as tables of a matrix file, and back. How full
-/// trials of a start end is known where they were run in the scene's field. Throws markov::BadFile
-/// naming `path` when they do not add up.
+/// Converts a pool's runs to arrays of a matrix file, and back. Endings of a start's full trials
+/// are known only if these ran in the scene's field. Throws markov::BadFile naming `path` if the
+/// arrays are inconsistent.
 [[nodiscard]] std::vector<markov::NamedArray> arrays_of(const RunPool& pool,
                                                         const dynamics::Section& section);
 [[nodiscard]] bool has_runs(const MatrixFile& file);
 [[nodiscard]] RunPool pool_of(const MatrixFile& file, const Problem& problem,
                               const std::string& path);
 
-/// The matrices of a pool, by types, with these starts as states of their own.
-/// Each start needs runs of its own.
+/// The matrices of a pool, by cell type, with these starts as states of their own. Each start needs
+/// runs of its own.
 [[nodiscard]] std::vector<dynamics::Transitions> matrices_of(
     const Problem& problem, const RunPool& pool, const std::vector<dynamics::Entry>& starts,
     int per_leaf);
