@@ -31,13 +31,14 @@ void require_same_shape(Eigen::Index rows_a, Eigen::Index cols_a, Eigen::Index r
     throw std::invalid_argument("compare: the two fields differ in size");
 }
 
-/// p-values and the null's total variation over `null_draws` calls of draw(k), in any order.
+/// Fills in p-values and the null's total variation, from `null_draws` calls of draw(k), in any
+/// order.
 template <class Draw>
 void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draws, Draw draw) {
   if (null_draws < 1) throw std::invalid_argument("compare: null_draws must be at least 1");
   std::vector<Statistics> null(null_draws);
   tbb::parallel_for(std::int64_t{0}, null_draws, [&](std::int64_t k) { null[k] = draw(k); });
-  // Equal results of different rounding count as equal.
+  // Results that differ only by rounding count as equal.
   const auto p_value = [&](double Statistics::*what) {
     if (std::isnan(seen.*what)) return seen.*what;
     const double bar = seen.*what * (1.0 - 1e-12);
@@ -54,11 +55,12 @@ void fill_p_values(Comparison& c, const Statistics& seen, std::int64_t null_draw
   std::tie(c.floor_total_variation, c.floor_total_variation_95) = mean_and_95(tv);
 }
 
-/// Two samples, whose trials are dealt out anew for the null of a permutation test. Of more than
-/// kMostDealt together, both are drawn from the pooled shares instead.
+/// Two samples and their permutations for the null. Above kMostDealt pooled trials, both samples
+/// are drawn from the pooled shares instead.
 class TwoSamples {
  public:
-  /// `pooled`: counts of both together in these places, `shares` of all; the samples' sizes.
+  /// `pooled`: counts of both samples together in these places; `shares`: of all; `first` and
+  /// `second`: sizes of the samples.
   TwoSamples(const CellCounts& pooled, Eigen::VectorXd shares,
              const std::vector<Eigen::Index>& places, std::int64_t first, std::int64_t second)
       : shares_(std::move(shares)), first_(first), second_(second) {
@@ -71,7 +73,7 @@ class TwoSamples {
 
   [[nodiscard]] bool are_dealt() const { return first_ + second_ <= kMostDealt; }
 
-  /// Shares of the first and of the second sample.
+  /// One permutation: shares of the first and of the second sample.
   [[nodiscard]] std::pair<Eigen::VectorXd, Eigen::VectorXd> anew(Random& random) const {
     const auto n = static_cast<double>(first_), m = static_cast<double>(second_);
     if (!are_dealt()) {
@@ -94,7 +96,7 @@ class TwoSamples {
  private:
   Eigen::VectorXd shares_;
   std::int64_t first_, second_;
-  std::vector<std::int32_t> trials_;  // every pooled trial, as its place
+  std::vector<std::int32_t> trials_;  // the place of every pooled trial
 };
 
 }  // namespace
@@ -147,7 +149,8 @@ NoiseFloor noise_floor(double s, std::int64_t gates, std::int64_t trials,
           100.0 * std::sqrt(first + second)};
 }
 
-// Beyond this the logarithms of factorials (3e13) leave less than two digits; no study goes there.
+// Above this, logarithms of factorials (3e13) leave less than two digits; no study needs as many
+// trials.
 constexpr std::int64_t kMostTrialsAsked = std::int64_t{1} << 40;
 
 double expected_total_variation(const CellProbabilities& p, std::int64_t trials) {
@@ -156,7 +159,7 @@ double expected_total_variation(const CellProbabilities& p, std::int64_t trials)
   double sum = 0.0;
   for (Eigen::Index i = 0; i < p.size(); ++i) {
     const double share = p.data()[i];
-    if (!(share > 0.0 && share < 1.0)) continue;  // no chance in it
+    if (!(share > 0.0 && share < 1.0)) continue;  // a certain count has no variation
     const double m = std::floor(n * share) + 1.0;
     // (1-p) m P(X = m) = n C(n-1, m-1) p^m (1-p)^(n-m+1), with n C(n-1, m-1) = n! / ((m-1)! (n-m)!)
     sum += 2.0 / n *
@@ -185,7 +188,7 @@ CellCounts sampled(const CellProbabilities& p, std::int64_t trials, std::uint64_
   Random random(Purpose::comparison, {seed, kSamples, replicate});
   CellCounts cells(p.rows(), p.cols());
   const auto size = static_cast<std::size_t>(p.size());
-  const CellProbabilities weights = p.max(0.0);  // rounding may leave less
+  const CellProbabilities weights = p.max(0.0);  // rounding may leave negative shares
   multinomial(trials, {weights.data(), size}, {cells.data(), size}, random);
   return cells;
 }
@@ -239,7 +242,7 @@ Comparison compare_pairs(const std::vector<std::int32_t>& first,
   const Eigen::VectorXd expected = on_support(pooled, support);
   const auto n = static_cast<std::int64_t>(first.size());
   const double rare = rare_share(expected, n);
-  // Pairs that differ, as places in the support; the others are the same either way round.
+  // The pairs that differ, as places in the support; other pairs are the same after a swap.
   std::vector<std::pair<Eigen::Index, Eigen::Index>> unlike;
   const auto place = [&](std::int32_t cell) {
     return std::lower_bound(support.gates.begin(), support.gates.end(), cell) -
@@ -251,7 +254,7 @@ Comparison compare_pairs(const std::vector<std::int32_t>& first,
       statistics(on_support(a, support), on_support(b, support), expected, rare, support);
   fill_p_values(c, seen, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, kSwaps, static_cast<std::uint64_t>(k)});
-    // Trials of the first sample less those of the second.
+    // Trials of the first sample minus trials of the second.
     Eigen::VectorXd moved = Eigen::VectorXd::Zero(expected.size());
     std::uint64_t coins = 0;
     for (std::size_t i = 0; i < unlike.size(); ++i) {
@@ -288,14 +291,15 @@ Comparison compare(const CellCounts& sample, const CellProbabilities& exact,
 
 namespace {
 
-/// What a trial can come to.
+/// One possible outcome of a trial.
 struct GateEnding {
   Eigen::Index place;  // of the gate in the support
   std::size_t ending;
   double probability;
 };
 
-/// What a trial of the predicted chain may come to. Where a gate is not mixed, all were trapped.
+/// All outcomes of a trial of the predicted chain. In gates that are not in mixed_cells, all trials
+/// were trapped.
 std::vector<GateEnding> outcomes_of(const markov::FinalDistribution& prediction,
                                     const Support& support) {
   std::vector<GateEnding> outcomes;
@@ -314,8 +318,8 @@ std::vector<GateEnding> outcomes_of(const markov::FinalDistribution& prediction,
   return outcomes;
 }
 
-/// Where trials could end in ways that so many runs would show less than once: (ending) places on
-/// the support; all of them for an ending that is as rare but has no place of its own there.
+/// By ending: the places on the support where the prediction expects fewer than one of `runs` to
+/// end so. If an ending is as rare but has no such place, all places.
 std::array<std::vector<Eigen::Index>, markov::kEndings> rare_places(
     const markov::FinalDistribution& prediction, const Support& support, std::int64_t runs) {
   using markov::Ending;
@@ -344,7 +348,7 @@ std::array<std::vector<Eigen::Index>, markov::kEndings> rare_places(
 }
 
 constexpr std::size_t kGateTests = 3;
-/// Statistics, as JointTest lists them; NaN: not asked for.
+/// Statistics in the order of JointTest; NaN: not tested.
 using Tests = std::array<double, kGateTests + markov::kEndings>;
 
 Tests nothing_asked() {
@@ -373,7 +377,8 @@ Endings shares_of(const SeenEndings& seen) {
   return shares;
 }
 
-/// The verdict on the last row, which was seen; the rows before it are the null's.
+/// The verdict on the last row, which has the observed values; the rows before it are draws of the
+/// null.
 JointTest joint_test_of(const std::vector<Tests>& all) {
   std::vector<double> tv, rows;
   for (std::size_t k = 0; k + 1 < all.size(); ++k) tv.push_back(all[k][0]);
@@ -434,7 +439,7 @@ JointTest joint_test(const SeenEndings& seen, const markov::FinalDistribution& p
     return t;
   };
   std::vector<Tests> all(static_cast<std::size_t>(null_draws) +
-                         1);  // the null's, then what was seen
+                         1);  // the null's draws, then the observed values
   all.back() = tests(on_support(sample, support), shares_of(seen));
   tbb::parallel_for(std::int64_t{0}, null_draws, [&](std::int64_t k) {
     Random random(Purpose::comparison, {seed, kJointTests, static_cast<std::uint64_t>(k)});
@@ -483,7 +488,7 @@ JointTest joint_test(const SeenEndings& seen, const SeenEndings& other, std::int
   const double rare = gates ? rare_share(expected, std::min(n, m)) : 0.0;
   const TwoSamples both_gates(pooled_gates, expected, support.gates, n, m);
 
-  // The endings, and behind them trials without one (of runs that stopped being finite).
+  // The endings, followed by the trials without one (of broken runs).
   CellCounts pooled_endings = CellCounts::Zero(1, markov::kEndings + 1);
   for (std::size_t e = 0; e < markov::kEndings; ++e)
     pooled_endings.data()[e] = seen.endings[e] + other.endings[e];
@@ -502,7 +507,7 @@ JointTest joint_test(const SeenEndings& seen, const SeenEndings& other, std::int
     return t;
   };
   std::vector<Tests> all(static_cast<std::size_t>(null_draws) +
-                         1);  // the null's, then what was seen
+                         1);  // the null's draws, then the observed values
   using Pair = std::pair<Eigen::VectorXd, Eigen::VectorXd>;
   all.back() = tests(gates ? Pair{on_support(shares(seen.final_gates), support),
                                   on_support(shares(other.final_gates), support)}

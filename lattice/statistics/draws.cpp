@@ -15,11 +15,11 @@ namespace {
 
 using dynamics::Random;
 
-constexpr std::int64_t kMostDrawn = std::int64_t{1} << 53;  // whole numbers of a double
-constexpr double kFew = 10.0;  // expected successes up to which they are counted up one by one
+constexpr std::int64_t kMostDrawn = std::int64_t{1} << 53;  // whole numbers that a double holds
+constexpr double kFew = 10.0;  // up to this many expected successes, by inversion
 
-/// By inversion: P(0), P(1), ... are taken from a uniform until it is used up. p <= 1/2, n p <
-/// kFew.
+/// Binomial draw by inversion: subtracts P(0), P(1), ... from a uniform number until it is used up.
+/// Needs p <= 1/2 and n p < kFew.
 std::int64_t counted_up(double n, double p, Random& random) {
   const double odds = p / (1.0 - p);
   const double none = std::exp(n * std::log1p(-p));
@@ -29,12 +29,12 @@ std::int64_t counted_up(double n, double p, Random& random) {
       if (left <= chance) return static_cast<std::int64_t>(k);
       left -= chance;
       chance *= odds * (n - k) / (k + 1.0);
-      if (chance == 0.0) break;  // rounding has left over what belongs to nobody: draw again
+      if (chance == 0.0) break;  // rounding left a remainder that belongs to no count: draws again
     }
   }
 }
 
-/// log k! - (log sqrt(2 pi) + (k + 1/2) log(k + 1) - (k + 1)): what Stirling's formula leaves.
+/// log k! - (log sqrt(2 pi) + (k + 1/2) log(k + 1) - (k + 1)): the remainder of Stirling's formula.
 double stirling_rest(double k) {
   static constexpr std::array<double, 10> kFirst{
       0.08106146679532726,  0.04134069595540929, 0.02767792568499834, 0.02079067210376509,
@@ -45,8 +45,8 @@ double stirling_rest(double k) {
   return (1.0 / 12.0 - (1.0 / 360.0 - 1.0 / 1260.0 * x) * x) / (k + 1.0);
 }
 
-/// Hormann, The generation of binomial random variates, J. Statist. Comput. Simul. 46, 1993: BTRS,
-/// transformed rejection with squeeze. p <= 1/2, n p >= kFew.
+/// Binomial draw by transformed rejection with squeeze (BTRS; Hormann, The generation of binomial
+/// random variates, J. Statist. Comput. Simul. 46, 1993). Needs p <= 1/2 and n p >= kFew.
 std::int64_t by_rejection(double n, double p, Random& random) {
   const double q = 1.0 - p, sd = std::sqrt(n * p * q);
   const double b = 1.15 + 2.53 * sd, a = -0.0873 + 0.0248 * b + 0.01 * p, c = n * p + 0.5;
@@ -84,7 +84,7 @@ void multinomial(std::int64_t trials, std::span<const double> weights,
                  std::span<std::int64_t> counts, Random& random) {
   if (weights.size() != counts.size())
     throw std::invalid_argument("multinomial: weights and counts differ in length");
-  // What is left for an outcome and all after it: summed from the last on, so that nothing cancels.
+  // Sums of the remaining weights, from the last outcome backwards, so that nothing cancels.
   std::vector<double> left(weights.size() + 1);
   for (std::size_t i = weights.size(); i-- > 0;) {
     if (!(weights[i] >= 0.0 && std::isfinite(weights[i])))
@@ -101,7 +101,7 @@ void multinomial(std::int64_t trials, std::span<const double> weights,
 }
 
 double gamma(double shape, Random& random) {
-  // The draw of a larger shape, times a power of a uniform.
+  // A draw with a larger shape, times a power of a uniform number.
   if (shape < 1.0) return gamma(shape + 1.0, random) * std::pow(random.uniform(), 1.0 / shape);
   const double d = shape - 1.0 / 3.0, c = 1.0 / std::sqrt(9.0 * d);
   for (;;) {

@@ -23,10 +23,11 @@ Ensemble::Ensemble(LogDensity density, Eigen::MatrixXd walkers)
 
 void Ensemble::step(dynamics::Random& random) {
   const Index half = walkers_.cols() / 2, numbers = walkers_.rows();
-  for (const Index first : {Index{0}, half})  // each half along lines to the other
+  for (const Index first : {Index{0}, half})  // each half moves along lines to the other half
     for (Index i = first; i < first + half; ++i) {
       const Index other = (first == 0 ? half : 0) + static_cast<Index>(random.below(half));
-      // Between 1/2 and 2, its density as 1 / sqrt(z): their (9), a = 2.
+      // z in [1/2, 2] with density proportional to 1 / sqrt(z): equation (9) of Goodman and Weare,
+      // a = 2.
       const double root = 1.0 + random.uniform(), z = 0.5 * root * root;
       const VectorXd to = walkers_.col(other) + z * (walkers_.col(i) - walkers_.col(other));
       const double log = density_(to);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Draws from any density of a few numbers: walkers that stretch towards and away from each other,
-/// which needs no tuning and does not mind correlated numbers (Goodman and Weare 2010, "Ensemble
-/// samplers with affine invariance").
+/// An ensemble sampler for any density of a few numbers (Goodman and Weare 2010, "Ensemble samplers
+/// with affine invariance"). Walkers stretch towards and away from each other, which needs no
+/// tuning and handles correlated numbers.
 
 #include <Eigen/Core>
 #include <functional>
@@ -11,15 +11,16 @@
 
 namespace gatewalk::lattice {
 
-/// The log of a density, up to a constant; minus infinity where there is none.
+/// The log of a density, up to a constant; minus infinity where the density is 0.
 using LogDensity = std::function<double(const Eigen::VectorXd&)>;
 
+/// Walkers that sample a density.
 class Ensemble {
  public:
-  /// Walkers (numbers x walkers), an even number of them, at least twice as many as numbers, where
-  /// the density is not 0. Throws std::invalid_argument for others.
+  /// `walkers` (numbers x walkers): an even number of walkers, at least twice the number of
+  /// numbers, all where the density is not 0. Throws std::invalid_argument otherwise.
   Ensemble(LogDensity density, Eigen::MatrixXd walkers);
-  /// Moves each walker once, or leaves it where it is.
+  /// Proposes one move for each walker, and accepts or rejects it.
   void step(dynamics::Random& random);
   [[nodiscard]] const Eigen::MatrixXd& walkers() const { return walkers_; }
   [[nodiscard]] const Eigen::VectorXd& log_densities() const { return logs_; }

@@ -53,7 +53,7 @@ Statistics statistics(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
                       const Eigen::VectorXd& expected, double rare, const Support& support) {
   const Eigen::VectorXd difference = a - b;
   Statistics s;
-  // Rare gates count as one: alone, a single trial in one of them would outweigh all others.
+  // Rare gates are merged: otherwise a single trial in one of them would outweigh all others.
   double rare_difference = 0.0, rare_expected = 0.0;
   for (Eigen::Index i = 0; i < difference.size(); ++i) {
     if (expected[i] < rare) {
@@ -73,7 +73,7 @@ Statistics statistics(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
 
 Eigen::VectorXd drawn_shares(const Eigen::VectorXd& p, std::int64_t n, dynamics::Random& random) {
   std::vector<std::int64_t> counts(static_cast<std::size_t>(p.size()));
-  const Eigen::VectorXd weights = p.cwiseMax(0.0);  // rounding may leave less
+  const Eigen::VectorXd weights = p.cwiseMax(0.0);  // rounding may leave negative shares
   multinomial(n, {weights.data(), counts.size()}, counts, random);
   Eigen::VectorXd drawn(p.size());
   for (Eigen::Index i = 0; i < p.size(); ++i)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What comparisons share: statistics of final gates, which grow with the difference between two
-/// distributions, and draws.
+/// Building blocks of comparisons: test statistics of final gates, which grow with the difference
+/// between two distributions, and random draws.
 
 #include <cstdint>
 #include <vector>
@@ -11,7 +11,8 @@
 
 namespace gatewalk::lattice {
 
-/// Rows of the streams of Purpose::comparison: one for each use, so that no two share their draws.
+/// The second word of the streams of Purpose::comparison: one per use, so that no two uses share
+/// draws.
 enum Use : std::uint64_t {
   kDeals = 0,
   kExactDraws = 1,
@@ -26,36 +27,37 @@ enum Use : std::uint64_t {
 
 /// The gates that either distribution can reach, and the distances between them.
 struct Support {
-  std::vector<Eigen::Index> gates;  // linear index
-  Eigen::MatrixXd distance;         // empty: there are too many of them
+  std::vector<Eigen::Index> gates;  // index row * columns + column
+  Eigen::MatrixXd distance;         // empty: too many gates
 };
 
 [[nodiscard]] Support support_of(const CellProbabilities& pooled);
-/// Fills in the distances between the gates.
+/// Adds the distances between the gates to `s`.
 [[nodiscard]] Support with_distances(Support s, Eigen::Index columns);
-/// With distances up to kMostEnergyGates.
+/// The support of `pooled`, with distances if it has at most kMostEnergyGates gates.
 [[nodiscard]] Support affordable_support_of(const CellProbabilities& pooled);
 
-/// NaN for a support without distances.
+/// Energy distance of a difference of shares; NaN for a support without distances.
 [[nodiscard]] double energy_of(const Eigen::VectorXd& difference, const Support& s);
 
 [[nodiscard]] Eigen::VectorXd on_support(const CellProbabilities& p, const Support& s);
 
-/// Gates of a smaller expected share than this are rare in a sample of n: under 5 trials expected.
-/// 0, none, when nearly all would be.
+/// The expected share below which a gate is rare in a sample of n: fewer than 5 trials expected.
+/// Returns 0 (no rare gates) if nearly all gates would be rare.
 [[nodiscard]] double rare_share(const Eigen::VectorXd& expected, std::int64_t n);
 
 struct Statistics {
   double chi_squared = 0.0, total_variation = 0.0, energy = 0.0;
 };
 
-/// a, b: shares on the support; `expected`: shares against whose sampling noise a difference
-/// counts; gates of a smaller expected share than `rare` count as one.
+/// Test statistics of two vectors of shares, `a` and `b`, on the support. `expected`: shares that
+/// give the sampling noise of a difference; gates with an expected share below `rare` are merged
+/// into one.
 [[nodiscard]] Statistics statistics(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
                                     const Eigen::VectorXd& expected, double rare,
                                     const Support& support);
 
-/// Shares of `n` draws from other shares, as a few binomials.
+/// Shares of `n` draws from the shares `p`.
 [[nodiscard]] Eigen::VectorXd drawn_shares(const Eigen::VectorXd& p, std::int64_t n,
                                            dynamics::Random& random);
 

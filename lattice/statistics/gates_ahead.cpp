@@ -16,11 +16,11 @@ namespace gatewalk::lattice {
 namespace {
 
 using Table = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-/// Row of the streams of Purpose::memory; tests of independence have the small numbers.
+/// Second word of the streams of Purpose::memory; tests of independence have small numbers.
 constexpr std::uint64_t kDealStream = 1u << 20;
 
-/// What each run of a state led to, state by state: the state entered, kTrapped, or, of the last
-/// run of a walk that was stopped, -2 less the state entered.
+/// The outcomes of all runs, sorted by state: the state entered, kTrapped, or, for the last run of
+/// a walk that was stopped, -2 minus the state entered.
 struct OutcomeSeen {
   static constexpr std::int32_t kTrapped = StateWalks::kTrapped;
   std::vector<std::int32_t> all;    // (runs)
@@ -47,9 +47,9 @@ struct OutcomeSeen {
   }
 };
 
-/// Shares of walks that begin in each state, by where they are 0, 1, ... `most` gates ahead:
-/// (states x ways + 1) each. A state without runs goes on as those that are entered its way do, or
-/// all if there are none.
+/// For 0, 1, ... `most` gates ahead, the predicted shares of walks from each state by way (states x
+/// ways + 1). A state without runs continues as the states entered in the same way do, or as all
+/// states if there are none.
 std::vector<Table> powers(const StateWalks& w, const OutcomeSeen& outcomes, int most) {
   const auto states = static_cast<Eigen::Index>(w.way.size());
   std::vector<Table> ahead{Table::Zero(states, w.ways + 1)};
@@ -57,7 +57,7 @@ std::vector<Table> powers(const StateWalks& w, const OutcomeSeen& outcomes, int 
   for (int k = 1; k <= most; ++k) {
     const Table& before = ahead.back();
     Table table = Table::Zero(states, w.ways + 1), of_way = Table::Zero(w.ways + 1, w.ways + 1);
-    Eigen::VectorXd runs_of_way = Eigen::VectorXd::Zero(w.ways + 1);  // last row: all together
+    Eigen::VectorXd runs_of_way = Eigen::VectorXd::Zero(w.ways + 1);  // last row: all ways together
     for (Eigen::Index s = 0; s < states; ++s) {
       const auto n = static_cast<double>(outcomes.runs(s));
       if (n == 0.0) continue;
@@ -84,8 +84,8 @@ std::vector<Table> powers(const StateWalks& w, const OutcomeSeen& outcomes, int 
   return ahead;
 }
 
-/// Counts of runs by the way now and where their walks are then: (gates ahead from 0 to most) times
-/// (ways x ways + 1).
+/// Counts of runs by the way now and where their walks are later: by gates ahead (0 to most), (ways
+/// x ways + 1).
 using Counts = std::vector<Table>;
 
 class Seen {
@@ -96,14 +96,14 @@ class Seen {
         most_(static_cast<int>(ahead.size()) - 1),
         counts_(ahead.size(), Table::Zero(w.ways, w.ways + 1)) {}
 
-  /// A walk through these states, all of whose runs count; `last`: outcome of its last run.
+  /// Adds a walk through these states, all of whose runs count; `last`: outcome of its last run.
   void add(const std::vector<std::int32_t>& states, std::int32_t last) {
     const auto length = static_cast<int>(states.size());
     for (int at = 0; at < length; ++at)
       for (int k = 0; k <= std::min(at, most_); ++k)
         counts_[k](w_.way[states[at - k]], w_.way[states[at]]) += 1.0;
     const std::int32_t end = OutcomeSeen::entered(last);
-    // From its i-th last run it gets to the end in i gates.
+    // The i-th last run reaches the end in i gates.
     for (int i = 1; i <= std::min(length, most_); ++i)
       for (int k = i; k <= most_; ++k) {
         const std::int32_t from = w_.way[states[length - i]];
@@ -122,7 +122,7 @@ class Seen {
   Counts counts_;
 };
 
-/// What the kernel's powers say of as many runs in each state (`runs`).
+/// What the kernel's powers predict for `runs` in each state.
 Counts predicted(const StateWalks& w, const std::vector<Table>& ahead,
                  const std::vector<std::int64_t>& runs) {
   Counts counts(ahead.size(), Table::Zero(w.ways, w.ways + 1));
@@ -141,8 +141,9 @@ Counts excess(Counts seen, const Counts& predicted, const std::vector<std::int64
   return seen;
 }
 
-/// Walks from the same first states, every state's outcomes dealt out anew: seen less predicted,
-/// as shares of the runs. Runs in circles that no walk gets into are left out.
+/// One draw of the null: walks from the same first states, with every state's outcomes permuted.
+/// Returns seen minus predicted, as shares of the runs. Runs in circles that no walk reaches are
+/// left out.
 Counts dealt_excess(const StateWalks& w, const std::vector<Table>& ahead, OutcomeSeen outcomes,
                     dynamics::Random random) {
   for (std::size_t s = 0; s < w.way.size(); ++s)
@@ -165,10 +166,10 @@ Counts dealt_excess(const StateWalks& w, const std::vector<Table>& ahead, Outcom
   return excess(seen.counts(), predicted(w, ahead, runs), runs);
 }
 
-/// Between two tables of one step.
+/// Total variation of a table of differences.
 double half_sum(const Table& excess) { return 0.5 * excess.cwiseAbs().sum(); }
 
-/// Implied time scales of a table of shares, ways x ways + 1, the longest first.
+/// Implied time scales of a table of shares (ways x ways + 1), the longest first.
 std::vector<double> time_scales(const Table& shares, int gates) {
   Eigen::MatrixXd kernel = shares.leftCols(shares.rows());
   for (Eigen::Index way = 0; way < shares.rows(); ++way)
@@ -179,14 +180,14 @@ std::vector<double> time_scales(const Table& shares, int gates) {
   return scales;
 }
 
-/// The values that 95 % of them lie between.
+/// The middle 95 % of the values.
 std::array<double, 2> middle_95(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const auto rim = static_cast<std::size_t>(0.025 * static_cast<double>(values.size()));
   return {values[rim], values[values.size() - 1 - rim]};
 }
 
-/// Step number `gates`, with what chance makes of it; `null`: the excess of every draw.
+/// The step of `gates` gates, with its null distribution; `null`: the excess of every draw.
 GatesAhead::Step step_of(int gates, const Table& seen, const Table& predicted,
                          const std::vector<Counts>& null) {
   GatesAhead::Step step;

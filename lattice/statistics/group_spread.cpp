@@ -17,13 +17,14 @@ namespace {
 
 using dynamics::Random;
 
-/// Of what states of a group (eight times as large) cost more than the whole one's, the part that
-/// the whole one's cost too, which is no chance and adds to it in full: as if that cost went with
-/// the power 0.4 of their size, 1 / (8^0.4 - 1). (2/3 where outcomes vary smoothly with the entry,
-/// less where they jump.) Error bars then hold as often as they should (results/tree).
+/// The states of a group are eight times as large as those of the whole prediction, which itself
+/// has a bias of the same kind. This factor extrapolates from the groups' offset to the whole's
+/// bias: a bias that grows with the power 0.4 of the states' size gives 1 / (8^0.4 - 1). (The power
+/// is 2/3 where outcomes vary smoothly with the entry, less where they jump.) Error bars then hold
+/// as often as they should (results/tree).
 constexpr double kBiasLeft = 0.75;
 
-/// Draws behind a quantile, fewer for large fields.
+/// Number of draws behind a quantile; fewer for large fields.
 int draws_for(Eigen::Index numbers) {
   return static_cast<int>(
       std::clamp<Eigen::Index>(40'000'000 / std::max<Eigen::Index>(1, numbers), 60, 400));
@@ -37,7 +38,7 @@ double quantile(std::vector<double> values, double level) {
   return *at;
 }
 
-/// Of errors that are drawn.
+/// Error bounds from errors that are drawn.
 Error95 error_of_draws(int draws, const CellProbabilities& p,
                        const std::function<CellProbabilities(int)>& draw) {
   std::vector<double> distances, correlations, rmses;
@@ -53,13 +54,14 @@ Error95 error_of_draws(int draws, const CellProbabilities& p,
   return {quantile(distances, 0.95), least, quantile(rmses, 0.95)};
 }
 
-/// The largest share that so many trials miss altogether 5 times in 100.
+/// The largest share that this number of trials misses completely with probability 5 %.
 double unseen_95(std::int64_t trials) {
   return 1.0 - std::pow(0.05, 1.0 / static_cast<double>(std::max<std::int64_t>(1, trials)));
 }
 
-/// A share that is moved from one gate to another makes the largest RMSE, and turns the shares' own
-/// spread over the gates by the largest angle.
+/// Raises error bounds by a share that no trial may have shown. A share that moves from one gate to
+/// another makes the largest RMSE, and turns the shares' deviation from their mean by the largest
+/// angle.
 void count_unseen(Error95& e, const CellProbabilities& p, std::int64_t trials) {
   const double unseen = unseen_95(trials), gates = static_cast<double>(p.size());
   const double rmse = 100.0 * unseen * std::sqrt(2.0 / gates);
@@ -71,9 +73,9 @@ void count_unseen(Error95& e, const CellProbabilities& p, std::int64_t trials) {
                    : std::nan("");
 }
 
-constexpr std::uint64_t kGroupDraws = 0x67726f7570;  // "group", row of their streams
+constexpr std::uint64_t kGroupDraws = 0x67726f7570;  // "group", second word of the streams
 
-/// Student's t with 7 degrees of freedom, 97.5 %: kTrialGroups - 1 of them.
+/// 97.5 % quantile of Student's t with kTrialGroups - 1 = 7 degrees of freedom.
 constexpr double kQuantile = 2.3646;
 static_assert(kTrialGroups == 8);
 
@@ -88,25 +90,26 @@ Spread spread_of(const std::vector<double>& groups) {
   return {mean, std::sqrt(squares / (n * (n - 1.0)))};
 }
 
-/// Half the interval of a share up to a half, as a part of it; 0 where no group has any.
+/// Half the interval of a share up to 1/2, relative to the share; 0 if no group has any.
 double relative_half_width(double whole, const std::vector<double>& groups) {
   const Spread plain = spread_of(groups);
   if (!(plain.mean > 0.0)) return 0.0;
   std::vector<double> roots;
   for (const double g : groups) roots.push_back(std::sqrt(std::max(0.0, g)));
-  // Small shares are skewed: eight of them often look more alike than they are. Their roots tell.
+  // Small shares are skewed: eight of them often look more alike than they are. Their square roots
+  // show the spread.
   const Spread root = spread_of(roots);
   const double error = std::max(plain.error / plain.mean, 2.0 * root.error / root.mean);
   const double bias = std::abs(plain.mean - whole) / std::max(plain.mean, whole);
   return kQuantile * error + kBiasLeft * bias;
 }
 
-/// How many independent errors the errors of all gates are worth. A sum of squares of normal errors
-/// of covariance C varies as one of r = (tr C)^2 / tr C^2 independent ones (Satterthwaite). Of few
-/// groups, errors that are many look like fewer.
+/// The effective number of independent errors among the errors of all gates. A sum of squares of
+/// normal errors with covariance C varies as one of r = (tr C)^2 / tr C^2 independent errors
+/// (Satterthwaite). With few groups, many errors look like fewer.
 struct IndependentErrors {
-  double in_groups = 1.0;  // r of the covariance that the groups show
-  double in_truth = 1.0;   // r of the true one, estimated
+  double in_groups = 1.0;  // r of the groups' covariance
+  double in_truth = 1.0;   // r of the true covariance, estimated
 
   IndependentErrors(const std::vector<markov::FinalDistribution>& groups,
                     const CellProbabilities& mean) {
@@ -119,7 +122,7 @@ struct IndependentErrors {
         if (&a == &b) trace += product;
       }
     if (!(trace > 0.0)) return;
-    constexpr double kMost = 1000.0;  // as good as endlessly many
+    constexpr double kMost = 1000.0;  // practically infinitely many
     in_groups = trace * trace / squares;
     // The groups' covariance S has E (tr S)^2 = (tr C)^2 + 2 tr C^2 / n and
     // E tr S^2 = (1 + 1 / n) tr C^2 + (tr C)^2 / n; solved for C.
@@ -129,14 +132,15 @@ struct IndependentErrors {
   }
 };
 
-/// Wilson and Hilferty's approximation, good to a few per cent from 7 degrees on.
+/// A chi-squared draw by the approximation of Wilson and Hilferty, good to a few per cent from 7
+/// degrees of freedom on.
 double chi_squared(double freedom, Random& random) {
   const double part = 2.0 / (9.0 * freedom);
   const double root = 1.0 - part + std::sqrt(part) * random.normal();
   return freedom * std::max(1e-3, root * root * root);
 }
 
-/// Weights of the groups' deviations (their standard error taken out) for a draw of an error.
+/// Weights of the groups' deviations for one drawn error, in units of their standard error.
 std::vector<double> drawn_weights(const IndependentErrors& independent, std::size_t groups,
                                   Random& random) {
   std::vector<double> weights;
@@ -150,8 +154,9 @@ std::vector<double> drawn_weights(const IndependentErrors& independent, std::siz
     squares += w * w;
   }
   const double n = static_cast<double>(groups) - 1.0;
-  // On a sphere they make a sum of squares of variance (1 + 2 / in_groups) / (1 + 2 / n) - 1, by
-  // its mean; what is left to 2 / in_truth is drawn, and so is how much the groups show too little.
+  // On a sphere, the sum of squares has the relative variance (1 + 2 / in_groups) / (1 + 2 / n) -
+  // 1. The rest up to 2 / in_truth is drawn, and so is the factor by which the groups may show too
+  // little.
   const double more =
       (1.0 + 2.0 / independent.in_truth) * (1.0 + 2.0 / n) / (1.0 + 2.0 / independent.in_groups) -
       1.0;
@@ -220,7 +225,7 @@ namespace {
 std::array<double, 2> interval_of_drawn(std::vector<double> drawn, double share,
                                         const Evidence& from) {
   std::sort(drawn.begin(), drawn.end());
-  const std::size_t beyond = (drawn.size() + 1) / 40;  // 2.5 % on either side
+  const std::size_t beyond = (drawn.size() + 1) / 40;  // 2.5 % on each side
   const std::size_t at = beyond > 0 ? beyond - 1 : 0;
   std::array<double, 2> middle{drawn[at], drawn[drawn.size() - 1 - at]};
   if (middle[1] - middle[0] <= kShareRounding)
@@ -294,7 +299,7 @@ Error95 GroupSpread::error(std::int64_t trials, std::uint64_t seed) const {
 
 namespace {
 
-/// By share_95, of value(prediction).
+/// The interval of value(prediction), by share_95.
 template <class Value>
 std::array<double, 2> interval_of(const markov::FinalDistribution& whole,
                                   const std::vector<markov::FinalDistribution>& groups,
@@ -308,7 +313,7 @@ std::array<double, 2> interval_of(const markov::FinalDistribution& whole,
 
 std::array<CellProbabilities, 2> GroupSpread::gates_95(std::int64_t trials) const {
   std::array<CellProbabilities, 2> range{whole_.final_cells, whole_.final_cells};
-  // At once: in a large field these are most.
+  // Computed once: in a large field most gates have a share of 0.
   const auto never = dynamics::interval_of_share(0.0, static_cast<double>(trials));
   for (Eigen::Index i = 0; i < whole_.final_cells.size(); ++i) {
     const auto share = [i](const markov::FinalDistribution& d) { return d.final_cells.data()[i]; };

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How far off a prediction may be that was made from trials: predictions from groups of the
-/// trials, each with states of its own, differ from each other by sampling, and their mean from the
-/// whole one's by what larger states cost (a group of an eighth of the trials has states eight
-/// times as large). Both are counted, at the cost of one prediction more. In the field's words:
-/// random groups, or batch means, as in Wolter, Introduction to Variance Estimation (2007), ch. 2.
+/// Errors of a prediction made from trials, by random groups (batch means; Wolter, Introduction to
+/// Variance Estimation, 2007, ch. 2). A prediction is made from each group of the trials, with
+/// states of its own. The spread between the groups measures sampling error. The offset of their
+/// mean from the whole prediction measures the bias of coarser states: a group of an eighth of the
+/// trials has states eight times as large.
 
 #include <array>
 #include <cstdint>
@@ -19,49 +19,52 @@
 namespace gatewalk::lattice {
 
 inline constexpr int kTrialGroups = 8;
-/// Fewer bodies than this make no intervals: groups of one would stand for all.
+/// Fewer bodies than this give no intervals: a group of one body would stand for all.
 inline constexpr std::int64_t kLeastBodies = 2 * kTrialGroups;
 
-/// Any number of all trials with its 95 % interval by kTrialGroups groups of them: their spread is
-/// sampling; their mean less the whole's, what larger states would change. NaN: not known, as
-/// without groups, or where all of them are alike, which no number of trials makes certain.
+/// A number from all trials with its 95 % interval from kTrialGroups groups. The spread of the
+/// groups gives sampling error; the offset of their mean gives the bias of coarser states. NaN:
+/// unknown, because there are no groups, or because all groups agree, which no number of trials
+/// makes certain.
 struct Mean95 {
   double mean = 0.0;
   std::array<double, 2> interval{};
 };
 [[nodiscard]] Mean95 mean_95(double whole, const std::vector<double>& groups);
 
-/// A mean of fewer runs, or of fewer in some group, has no interval: a few long ones in a hundred
-/// make much of a mean, and groups in which none of these happened to be are alike.
+/// A mean of fewer runs, in all or in any group, has no interval: a few long runs in a hundred
+/// dominate a mean, and groups without any of them agree by chance.
 inline constexpr double kLeastRunsOfMean = 100.0, kLeastRunsOfGroup = 8.0;
-/// Runs behind a mean: in all, and by group. Those of an ending are as many as the chain expects.
+/// Numbers of runs behind a mean: in all, and by group. For one ending, the number that the chain
+/// expects.
 struct RunsBehind {
   double all = 0.0;
   std::vector<double> groups;
 };
 struct Mean95OfRuns : Mean95 {
-  std::string why_none{};  // why there is no interval though there are groups, in words
+  std::string why_none{};  // why there is no interval although there are groups, in words
 };
 [[nodiscard]] Mean95OfRuns mean_95(double whole, const std::vector<double>& groups,
                                    const RunsBehind& runs);
-/// Half of the 95 % interval of the mean of kTrialGroups numbers that do not depend on each other:
-/// Student's t.
+/// Half of the 95 % interval of the mean of kTrialGroups independent numbers (Student's t).
 [[nodiscard]] double half_width_95(const std::vector<double>& groups);
 
-/// Of a prediction from so many trials.
+/// The evidence behind a prediction from this number of trials.
 [[nodiscard]] Evidence evidence_of(const markov::FinalDistribution& whole, std::int64_t trials);
 
+/// Error bars of a prediction from predictions of groups of the trials.
 class GroupSpread {
  public:
-  /// `groups`: two or more, from disjoint parts of the trials of equal size. Throws
-  /// std::invalid_argument for fewer, and for other fields.
+  /// `groups`: two or more predictions, from disjoint parts of the trials of equal size. Throws
+  /// std::invalid_argument for fewer groups, and for fields of another size.
   GroupSpread(const markov::FinalDistribution& whole,
               const std::vector<markov::FinalDistribution>& groups);
 
-  /// From errors drawn as the groups differ. `trials`: behind the prediction. Where no
-  /// group has a share, so many trials say how large it can be; here and below.
+  /// Error bounds, from errors drawn with the groups' spread. `trials`: number behind the
+  /// prediction. A share that is 0 in all groups is bounded by this number; the same holds for the
+  /// other members.
   [[nodiscard]] Error95 error(std::int64_t trials, std::uint64_t seed) const;
-  /// Final gates: low and high (rows x columns).
+  /// Bounds of the final gates' shares: low and high (rows x columns).
   [[nodiscard]] std::array<CellProbabilities, 2> gates_95(std::int64_t trials) const;
   [[nodiscard]] EndingShares endings_95(std::int64_t trials) const;
 
@@ -70,7 +73,8 @@ class GroupSpread {
   const std::vector<markov::FinalDistribution>& groups_;
 };
 
-/// The same of the shares of `trials` themselves, which `counts` (rows x columns) are.
+/// Error bounds of the shares of the trials themselves; `counts`: trials by final gate (rows x
+/// columns).
 [[nodiscard]] Error95 error_of_shares(const CellCounts& counts, std::uint64_t seed);
 
 }  // namespace gatewalk::lattice

@@ -21,16 +21,16 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kPooled = 0, kStrongest = 1, kStateByState = 2, kStatistics = 3;
-/// Differences with a smaller variance, of fewer than some five counts, are too rough to be the
+/// Differences with a smaller variance, of fewer than about five counts, are too rough to be the
 /// strongest.
 constexpr double kLeastVariance = 5.0;
 
-/// The runs that can tell, state by state.
+/// The informative runs, state by state.
 struct Strata {
   int labels = 0, outcomes = 0;
   std::vector<std::int32_t> label, outcome, cluster;  // (runs)
-  std::vector<std::size_t> ends;                      // (states) behind the last run of each
-  /// (states x labels x outcomes) by dealing out at random; without clusters.
+  std::vector<std::size_t> ends;                      // (states) index after the last run of each
+  /// (states x labels x outcomes) expected under permutation; without clusters
   std::vector<double> expected;
 
   [[nodiscard]] int cells() const { return labels * outcomes; }
@@ -38,7 +38,7 @@ struct Strata {
   [[nodiscard]] double size(std::size_t s) const { return static_cast<double>(ends[s] - begin(s)); }
 };
 
-/// How often each number comes up in [begin, end).
+/// How often each number occurs in [begin, end).
 Eigen::VectorXd tally(const std::vector<std::int32_t>& numbers, std::size_t begin, std::size_t end,
                       int count) {
   Eigen::VectorXd n = Eigen::VectorXd::Zero(count);
@@ -86,12 +86,12 @@ Strata strata_of(std::span<const LabelledRun> runs, const IndependenceOptions& o
   return strata;
 }
 
-/// What the null makes of the pooled differences.
+/// The null distribution of the pooled differences.
 struct Pooled {
   Eigen::MatrixXd covariance;  // (cells x cells)
-  Eigen::VectorXd deviation;   // (cells) 0: of too few counts
-  Eigen::MatrixXd whitening;   // (degrees x cells): whitened differences are as standard normals
-  Eigen::MatrixXd planted;     // (labels x outcomes) what a memory of total variation 1 adds
+  Eigen::VectorXd deviation;   // (cells) 0: too few counts
+  Eigen::MatrixXd whitening;   // (degrees x cells) makes differences standard normal
+  Eigen::MatrixXd planted;     // (labels x outcomes) effect of a memory of total variation 1
 
   [[nodiscard]] int degrees() const { return static_cast<int>(whitening.rows()); }
   [[nodiscard]] double noncentrality() const {  // of that memory
@@ -103,7 +103,7 @@ struct Pooled {
   }
 };
 
-/// +1/2 or -1/2 for each label: halves that are as large as can be, label by label.
+/// +1/2 or -1/2 for each label: splits the labels into halves with runs as equal as possible.
 Eigen::VectorXd halves_of(const Eigen::VectorXd& label_runs) {
   std::vector<int> order(static_cast<std::size_t>(label_runs.size()));
   std::iota(order.begin(), order.end(), 0);
@@ -118,14 +118,14 @@ Eigen::VectorXd halves_of(const Eigen::VectorXd& label_runs) {
   return side;
 }
 
-/// Rows that whiten: V^(-1/2) where V has a spread at all. From the correlations, so that rare
-/// counts are not taken for none.
+/// Whitening matrix V^(-1/2) on the space where V has any variance. Works on correlations, so that
+/// rare counts are not taken for zero.
 Eigen::MatrixXd whitening_of(const Eigen::MatrixXd& v) {
   const Eigen::VectorXd scale =
       v.diagonal().unaryExpr([](double x) { return x > 0.0 ? 1.0 / std::sqrt(x) : 0.0; });
   const auto [values, vectors] =
       markov::symmetric_eigen(scale.asDiagonal() * v * scale.asDiagonal());
-  constexpr double kNone = 1e-9;  // rounding leaves some 1e-14 of a correlation
+  constexpr double kNone = 1e-9;  // rounding leaves about 1e-14 of a correlation
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < v.rows(); ++i)
     if (values[i] > kNone) kept.push_back(i);
@@ -146,8 +146,8 @@ Pooled pooled_of(const Strata& strata) {
     const double n = strata.size(s);
     const auto l = tally(strata.label, strata.begin(s), strata.ends[s], strata.labels);
     const auto o = tally(strata.outcome, strata.begin(s), strata.ends[s], outcomes);
-    // Counts of a table with these margins: Cov = (n diag(l) - l l') x (n diag(o) - o o') /
-    // (n^2 (n - 1)).
+    // Covariance of the counts of a table with these margins: Cov = (n diag(l) - l l') x (n diag(o)
+    // - o o') / (n^2 (n - 1)).
     const Eigen::MatrixXd of_labels = (n * Eigen::MatrixXd(l.asDiagonal()) - l * l.transpose()) / n;
     const Eigen::MatrixXd of_outcomes =
         (n * Eigen::MatrixXd(o.asDiagonal()) - o * o.transpose()) / (n * (n - 1.0));
@@ -174,7 +174,7 @@ Pooled pooled_of(const Strata& strata) {
 
 struct PooledDifferences {
   Eigen::VectorXd pooled;  // (cells)
-  double squares = 0.0;    // state by state, over its runs
+  double squares = 0.0;    // state by state, relative to its runs
 };
 
 PooledDifferences differences(const Strata& strata, const std::vector<std::int32_t>& outcome) {
@@ -192,11 +192,11 @@ PooledDifferences differences(const Strata& strata, const std::vector<std::int32
   return d;
 }
 
-/// Differences over their standard deviations, but those without one.
+/// Differences relative to their standard deviations, without those that have none.
 struct Sizes {
-  double squares = 0.0;  // of all together
+  double squares = 0.0;  // sum over all
   double largest = 0.0;
-  int strongest = -1;  // whose it is; -1: none has a deviation
+  int strongest = -1;  // index of the largest; -1: no difference has a deviation
 
   Sizes(const Eigen::VectorXd& d, const Eigen::VectorXd& deviation) {
     for (Eigen::Index i = 0; i < d.size(); ++i) {
@@ -210,7 +210,7 @@ struct Sizes {
   }
 };
 
-/// The statistics of every draw of the null, and in the last row what was seen.
+/// The statistics of every draw of the null, and of the observed data in the last row.
 std::vector<double> all_statistics(const Strata& strata, const Pooled& pooled,
                                    const IndependenceOptions& options) {
   const auto draws = static_cast<std::size_t>(options.null_draws);
@@ -231,14 +231,15 @@ std::vector<double> all_statistics(const Strata& strata, const Pooled& pooled,
   return all;
 }
 
-/// The noncentrality at which the distribution has this share up to x; 0 if it has no more without.
+/// The noncentrality at which the distribution has this share up to x; 0 if the central one has no
+/// more.
 double noncentrality_at(int degrees, double x, double share) {
   const boost::math::chi_squared central(degrees);
   if (x <= 0.0 || boost::math::cdf(central, x) <= share) return 0.0;
   return boost::math::non_central_chi_squared::find_non_centrality(degrees, x, share);
 }
 
-/// Fills in how large a memory is, and how large a one would be found.
+/// Fills in the size of the memory, and the size that the test would detect.
 void measure(Independence& result, const Pooled& pooled, double single_level) {
   const double unit = pooled.noncentrality();
   const auto memory = [&](double noncentrality) {
@@ -256,7 +257,7 @@ void measure(Independence& result, const Pooled& pooled, double single_level) {
   if (least <= 1.0) result.seen_at_90 = least;  // no total variation is more
 }
 
-/// Fills in whose the largest difference is. `label_runs`: of each label.
+/// Fills in label and outcome of the largest difference. `label_runs`: runs of each label.
 void name_strongest(Independence& result, const Strata& strata, const Eigen::VectorXd& seen,
                     const Eigen::VectorXd& deviation, const Eigen::VectorXd& label_runs) {
   const int at = Sizes(seen, deviation).strongest;
@@ -266,7 +267,7 @@ void name_strongest(Independence& result, const Strata& strata, const Eigen::Vec
   result.more = seen[at] / label_runs[result.label];
 }
 
-/// Each run is its own: outcomes are dealt out anew.
+/// Test of independent runs, by permuting outcomes.
 void test_by_dealing(Independence& result, const Strata& strata,
                      const IndependenceOptions& options) {
   const Pooled pooled = pooled_of(strata);
@@ -292,10 +293,10 @@ Eigen::VectorXd shares(const std::vector<std::int32_t>& numbers, std::size_t beg
   return share;
 }
 
-/// Each cluster's sum of differences keeps its sign or changes it.
+/// Test of clustered runs, by random signs of each cluster's sum of differences.
 void test_by_signs(Independence& result, const Strata& strata, const IndependenceOptions& options) {
-  // (cells x clusters) Counts less expected; as drawn, with the chance that a state's few runs take
-  // away by being their own mean given back.
+  // (cells x clusters) Observed minus expected counts. `drawn` restores the variance that a state's
+  // few runs lose because their own mean is subtracted.
   Eigen::MatrixXd by_cluster = Eigen::MatrixXd::Zero(strata.cells(), options.clusters),
                   drawn = by_cluster;
   Eigen::VectorXd label_runs = Eigen::VectorXd::Zero(strata.labels);

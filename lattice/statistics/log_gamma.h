@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The logarithm of the gamma function on several threads at a time.
+/// A thread-safe logarithm of the gamma function.
 
 #include <cmath>
 
 namespace gatewalk::lattice {
 
-/// std::lgamma(x), which also writes its sign to a place that all threads share.
+/// log |gamma(x)|. Unlike std::lgamma, writes the sign to no variable that threads share.
 [[nodiscard]] inline double log_gamma(double x) {
   int sign = 0;
   return ::lgamma_r(x, &sign);

@@ -31,15 +31,15 @@ std::int64_t CountedField::runs_at(const markov::Start& start) const {
 
 namespace {
 
-/// A share of walks without an end that is negligible.
+/// A negligible share of walks without an end.
 constexpr double kHardlyAny = 1e-6;
 
-/// A resampled row is one of as many steps, but for rounding.
+/// A resampled row sums to this many steps, except for rounding.
 constexpr double kSteps = 0x1p52;
-/// Of one run that is counted twice, as it was and as its mirror image.
+/// The concentration of a single run.
 constexpr double kLeastConcentration = 0.5;
 
-/// Sums of a resampled matrix, where it is too large to be solved.
+/// Limit of sums for a resampled matrix that is too large to be solved.
 constexpr int kMostSums = 100'000;
 
 bool equals_row_before(const markov::Counts& counts, int row) {
@@ -50,15 +50,16 @@ bool equals_row_before(const markov::Counts& counts, int row) {
   return row > 0 && same(counts.innerIndexPtr()) && same(counts.valuePtr());
 }
 
-/// The largest share of walks that one row may send elsewhere whose runs all had one outcome: the
-/// walks that pass it, times the chance of another outcome that as many runs miss (Jeffreys) at
-/// each cell in which they draw from it; a return to a cell and state is no other draw. Many such
-/// rows miss about as much as others show too often, which resampling counts; nothing makes up for
-/// one row that most walks pass.
+/// The largest share of walks that a single row may send elsewhere if all its runs had one outcome:
+/// the walks that pass the row, times the probability of an outcome that as many runs miss
+/// (Jeffreys), for each cell in which walks draw from the row. A return to a cell and state is not
+/// another draw. With many such rows, resampling already accounts for the error; a single row that
+/// most walks pass needs this bound.
 double hidden_share(const CountedField& gates, const markov::Start& start,
                     const markov::Field& field, int max_cells) {
   const auto& chains = gates.chains.chains();
-  std::vector<std::vector<double>> missed(chains.size());  // by matrix and row; 0: others were seen
+  // by matrix and row; 0: several outcomes were seen
+  std::vector<std::vector<double>> missed(chains.size());
   bool any = false, leads_back = false;
   for (std::size_t m = 0; m < chains.size(); ++m) {
     missed[m].assign(static_cast<std::size_t>(gates.counts[m].rows()), 0.0);
@@ -73,9 +74,9 @@ double hidden_share(const CountedField& gates, const markov::Start& start,
     for (const markov::Exit& exit : chains[m].exits()) leads_back |= exit.di_y < 0;
   }
   if (!any) return 0.0;
-  constexpr int kMoves = 1000;  // later ones are returns, or of hardly any walk
+  constexpr int kMoves = 1000;  // later moves are returns, or of hardly any walk
   if (max_cells == 0 && leads_back) max_cells = kMoves;
-  std::map<std::tuple<std::size_t, int, std::int64_t>, double> draws;  // matrix, row, cell
+  std::map<std::tuple<std::size_t, int, std::int64_t>, double> draws;  // by matrix, row, cell
   (void)markov::walk_totals(gates.chains, field, start, max_cells, {},
                             [&](int, std::int64_t cell, int input, double share) {
                               const auto m = static_cast<std::size_t>(
@@ -85,7 +86,7 @@ double hidden_share(const CountedField& gates, const markov::Start& start,
                             },
                             {.all = 1e-6});
   struct Walks {
-    double pass = 0.0, draws = 0.0;  // the share in the cell that most draw in; summed over cells
+    double pass = 0.0, draws = 0.0;  // share in the cell with most draws; sum over cells
   };
   std::map<std::pair<std::size_t, int>, Walks> walks;
   for (const auto& [at, share] : draws) {
@@ -121,7 +122,7 @@ markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed, std::
   using Entry = markov::Counts::InnerIterator;
   std::vector<Eigen::Triplet<std::int64_t>> drawn;
   std::vector<double> weights;
-  int first = 0;  // of the rows that are the same runs
+  int first = 0;  // first of the rows that are the same runs
   for (int row = 0; row < counts.rows(); ++row) {
     if (!small_rows || !equals_row_before(counts, row)) first = row;
     const auto all = static_cast<double>(counts.row(row).sum()),
@@ -164,7 +165,7 @@ Replicates replicate_predictions(const CountedField& gates, const markov::Field&
   tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t k) {
     std::vector<markov::Chain> chains;
     for (std::size_t m = 0; m < gates.counts.size(); ++m) {
-      // Another matrix of the same replicate takes another stream.
+      // Other matrices of the same replicate use other streams.
       const std::uint64_t replicate =
           static_cast<std::uint64_t>(first + k) + (std::uint64_t{m} << 32);
       chains.push_back(markov::Chain::from_counts(
@@ -199,8 +200,8 @@ Replicates replicate_predictions(const CountedField& gates, const markov::Field&
 
 std::int64_t affordable_replicates(const markov::Field& field, int max_cells, std::int64_t nonzeros,
                                    std::int64_t most) {
-  // Measured: some 40 ns a cell without limit, and a cell and step with one, of a matrix of 300
-  // nonzeros.
+  // Measured for a matrix of 300 nonzeros: about 40 ns per cell without a limit, and per cell and
+  // step with one.
   constexpr double kCellSteps = 1e8, kNonzeros = 300.0;
   const double steps = std::max(1, max_cells);
   const double cells =
@@ -214,8 +215,8 @@ std::int64_t affordable_replicates(const markov::Field& field, int max_cells, st
 
 std::int64_t affordable_replicates(const CountedField& gates, const markov::Field& field,
                                    int max_cells, std::int64_t most) {
-  // Without limit, rows of several types and chains of many states are not solved by elimination,
-  // but by sums: so many.
+  // Without a limit, rows with several types and chains of many states are solved by sums instead
+  // of elimination; this is a typical number of sums.
   constexpr int kSteps = 100, kManyStates = 1000;
   if (max_cells == 0 && (!gates.chains.has_uniform_rows() || gates.chains.inputs() > kManyStates))
     max_cells = kSteps;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How far a prediction is to be trusted because its matrix was sampled: what matrices of other
-/// runs would have predicted. The chain's own error (bins, memory) is not in it.
+/// The sampling error of a matrix: how much predictions vary between matrices counted from other
+/// sets of runs. The chain's own approximation error (bins, memory) is not included.
 
 #include <array>
 #include <cstdint>
@@ -13,70 +13,70 @@
 
 namespace gatewalk::lattice {
 
-/// What the cells of a field draw from, with the counts behind it.
+/// The chain of a field's cells, with the counts behind it.
 struct CountedField {
   markov::FieldChain chains;
   std::vector<markov::Counts> counts;  // one per type, as chains.chains()
-  bool small_rows = false;  // as those of trees: neighbours that are equal are the same runs
-  /// By matrix and row: how many counts a run makes in it, 2 with its mirror image; empty: 1.
+  bool small_rows = false;  // matrices of trees: equal neighbouring rows are the same runs
+  /// By matrix and row: the number of counts per run, 2 with its mirror image; empty: 1.
   std::vector<std::vector<std::int64_t>> images{};
-  bool exact = false;  // probabilities were given, not counted: nothing is known of their sampling
+  bool exact = false;  // imported probabilities, whose sampling error is unknown
 
-  /// Runs of the row that a walk begins in, mirror images not counted twice.
+  /// Number of runs of the row that a walk begins in, without mirror images.
   [[nodiscard]] std::int64_t runs_at(const markov::Start& start) const;
-  /// These, those of all rows, and what rows of one outcome may hide from walks without a limit of
-  /// cells (`max_cells` 0) or with it.
+  /// The evidence behind a prediction: the runs of the start's row, the runs of all rows, and what
+  /// rows with a single outcome may hide, for walks with a limit of cells or without one
+  /// (`max_cells` 0).
   [[nodiscard]] Evidence evidence_at(const markov::Start& start, const markov::Field& field,
                                      int max_cells) const;
 };
 
-/// A matrix that another set of runs might have given: each row a draw from a Dirichlet
-/// distribution around its own shares (a Bayesian bootstrap), in whole steps of 2^-52, which matter
-/// by their ratios alone. Its concentration is n - 1 for n runs, so that shares p vary by p (1 - p)
-/// / n, as in n other runs. Predictions average to the prediction itself where walks pass a row but
-/// once, and every way that was seen stays possible, so that no walk circles that did not before.
-/// What a row never saw does not happen in it: resampled_95() leaves that open. `small_rows`, as
-/// CountedField's: neighbouring rows that are equal are the same runs, and stay equal. `images`, as
-/// CountedField's of this matrix: a row in which a run makes two counts has half as many runs: that
-/// is right for starts in the middle; for others, which see one row of a mirrored pair more than
-/// the other, the spread is up to sqrt(2) too large.
+/// A matrix that another set of runs might have given (Bayesian bootstrap): each row is a Dirichlet
+/// draw around its own shares, as multiples of 2^-52 of which only the ratios matter. The
+/// concentration n - 1 for n runs makes shares p vary by p (1 - p) / n. Observed outcomes stay
+/// possible, so that no new circles arise; outcomes that a row never showed stay impossible
+/// (resampled_95() allows for them). Where walks pass a row only once, the mean of the predictions
+/// is the prediction itself. `small_rows`: equal neighbouring rows are the same runs, and stay
+/// equal. `images`: a row with two counts per run has half as many runs, which is right for starts
+/// in the middle; for other starts the spread is up to sqrt(2) too large.
 [[nodiscard]] markov::Counts resampled(const markov::Counts& counts, std::uint64_t seed,
                                        std::uint64_t replicate, bool small_rows = false,
                                        const std::vector<std::int64_t>& images = {});
 
+/// Predictions from resampled matrices.
 struct Replicates {
   std::vector<std::vector<markov::FinalDistribution>> predictions;  // (starts x matrices)
-  LeftOut left_out;                                                 // of these there are none
+  LeftOut left_out;  // matrices that gave no prediction
 };
 
-/// Predictions from replicates first, ... first + count - 1: each matrix resampled() on its own.
-/// By Predictor::predict, on all threads of the current TBB arena; the same bits for any number of
-/// them. `own`, if given, by start: the predictions of the matrix itself, which say whether sums
-/// take too long, and whether walks circle for ever in it too: only then are replicates in which
-/// they do not left out. Throws std::invalid_argument as Predictor::predict does.
+/// Predicts from resampled matrices number first, ... first + count - 1, on all threads of the
+/// current TBB arena; the bits do not depend on the number of threads. `own`, if given: by start,
+/// the predictions of the matrix itself, which tell whether sums take too long, and whether walks
+/// circle for ever there too. Only then are matrices without a prediction not left out. Throws
+/// std::invalid_argument as Predictor::predict does.
 [[nodiscard]] Replicates replicate_predictions(
     const CountedField& gates, const markov::Field& field, const std::vector<markov::Start>& starts,
     int max_cells, std::uint64_t seed, std::int64_t first, std::int64_t count,
     const std::vector<markov::FinalDistribution>& own = {});
 
-/// Fewer replicates than this are not made.
+/// The least number of replicates that are made.
 inline constexpr std::int64_t kLeastReplicates = 50;
 
-/// How many replicates a field and a matrix of this size let one make in some seconds: 0 to `most`.
-/// Below kLeastReplicates it is 0.
-/// `nonzeros` of the matrix.
+/// The number of replicates, up to `most`, that take some seconds for a field of this size and a
+/// matrix of `nonzeros`; 0 if fewer than kLeastReplicates.
 [[nodiscard]] std::int64_t affordable_replicates(const markov::Field& field, int max_cells,
                                                  std::int64_t nonzeros, std::int64_t most);
 
-/// The same for these matrices.
+/// The number of replicates, up to `most`, that take some seconds for these matrices; 0 if fewer
+/// than kLeastReplicates.
 [[nodiscard]] std::int64_t affordable_replicates(const CountedField& gates,
                                                  const markov::Field& field, int max_cells,
                                                  std::int64_t most);
 
-/// The spread of predictions that the sampling of the matrix makes.
+/// The spread of predictions that comes from the sampling of the matrix.
 class MatrixNoise {
  public:
-  /// `from`: the runs behind it, see resampled_95().
+  /// `from`: the evidence behind the prediction, for resampled_95().
   MatrixNoise(const markov::FinalDistribution& prediction, const Evidence& from);
   void add(const markov::FinalDistribution& replicate);
 
@@ -84,13 +84,13 @@ class MatrixNoise {
     return static_cast<std::int64_t>(distances_.size());
   }
   [[nodiscard]] const Evidence& from() const { return from_; }
-  /// By resampled_95(), of the shares of this ending. Needs a replicate at least.
+  /// The 95 % interval of this ending's share (resampled_95()). Needs at least one replicate.
   [[nodiscard]] std::array<double, 2> interval_95(markov::Ending e) const;
-  /// Total variation of the final cells between replicates and the prediction (NaN without
-  /// replicates).
+  /// Total variation of the final cells between replicates and the prediction; NaN without
+  /// replicates.
   [[nodiscard]] double mean_total_variation() const;
   [[nodiscard]] double sd_total_variation() const;
-  [[nodiscard]] double total_variation_95() const;  // 95 % of the replicates have no more
+  [[nodiscard]] double total_variation_95() const;  // 95 % of the replicates are at most this far
 
  private:
   const markov::FinalDistribution& prediction_;

@@ -8,8 +8,8 @@
 namespace gatewalk::lattice {
 namespace {
 
-/// Of statistic t, in how many rows it is at least as large as in each row; NaN counts as the
-/// least.
+/// For statistic t: in how many rows it is at least as large as in each row. NaN counts as the
+/// smallest value.
 std::vector<std::int64_t> ranks(const std::vector<double>& all, std::size_t statistics,
                                 std::size_t t) {
   std::vector<double> values;
@@ -18,7 +18,7 @@ std::vector<std::int64_t> ranks(const std::vector<double>& all, std::size_t stat
   std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
   std::vector<std::int64_t> rank;
-  for (const double x : values)  // equal results of different rounding count as equal
+  for (const double x : values)  // results that differ only by rounding count as equal
     rank.push_back(sorted.end() -
                    std::lower_bound(sorted.begin(), sorted.end(), x - 1e-12 * std::abs(x)));
   return rank;
@@ -61,7 +61,7 @@ MultipleTests::MultipleTests(const std::vector<double>& all, std::size_t statist
 
 double MultipleTests::single_level(double level) const {
   const auto of_all = static_cast<double>(least_.size());
-  const auto beyond = static_cast<std::size_t>(level * of_all);  // ranks that may be found
+  const auto beyond = static_cast<std::size_t>(level * of_all);  // ranks that may be significant
   const std::int64_t rank =
       beyond >= least_.size() ? std::ssize(least_) : std::max<std::int64_t>(least_[beyond] - 1, 0);
   return static_cast<double>(rank) / of_all;

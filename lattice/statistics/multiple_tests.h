@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Several statistics of the same data, judged together by the same draws of the null.
+/// Several test statistics of the same data, judged together with the same draws of the null.
 
 #include <cstdint>
 #include <utility>
@@ -10,25 +10,26 @@
 
 namespace gatewalk::lattice {
 
-/// Mean, and what 95 % of the values do not exceed.
+/// Mean and 95 % quantile of the values.
 [[nodiscard]] std::pair<double, double> mean_and_95(std::vector<double> values);
 
-/// What looking at several statistics finds.
+/// p-values of several statistics, single and adjusted for testing all of them.
 struct MultipleTests {
   using Test = JointTest::Test;
   std::vector<Test> tests;
-  double p = 1.0;  // of all together: the smallest adjusted one
+  double p = 1.0;  // overall: the smallest adjusted p-value
 
-  /// `all`: (draws + 1 x statistics) row by row, the null's draws and in the last row what was
-  /// seen. Statistics grow with the difference.
+  /// `all`: (draws + 1 x statistics), row by row: the null's draws, and in the last row the
+  /// observed values. Statistics must grow with the difference.
   MultipleTests(const std::vector<double>& all, std::size_t statistics);
 
-  /// The largest p-value of a single statistic that is found at `level` when all are looked at; 0:
-  /// there are too few draws for any.
+  /// The largest p-value of a single statistic that is significant at `level` when all are tested;
+  /// 0 if the draws are too few for any.
   [[nodiscard]] double single_level(double level) const;
 
  private:
-  std::vector<std::int64_t> least_;  // (draws + 1) rank of each row, over its statistics; sorted
+  /// (draws + 1) smallest rank of each row over its statistics; sorted
+  std::vector<std::int64_t> least_;
 };
 
 }  // namespace gatewalk::lattice

@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// All exponents of so many numbers whose sum is at most the degree; the constant first.
+/// All exponents of `numbers` variables with a sum of at most `degree`; the constant term first.
 std::vector<std::vector<int>> all_powers(Index numbers, int degree) {
   std::vector<std::vector<int>> all;
   std::vector<int> powers(static_cast<std::size_t>(numbers), 0);
@@ -34,7 +34,7 @@ std::vector<std::vector<int>> all_powers(Index numbers, int degree) {
   return all;
 }
 
-/// (points x outcomes), of rows of terms.
+/// Log probabilities (points x outcomes) from rows of terms.
 MatrixXd log_chances_of(const MatrixXd& terms, const MatrixXd& coefficients) {
   MatrixXd logs(terms.rows(), coefficients.cols() + 1);
   logs.leftCols(coefficients.cols()) = terms * coefficients;
@@ -46,7 +46,8 @@ MatrixXd log_chances_of(const MatrixXd& terms, const MatrixXd& coefficients) {
   return logs;
 }
 
-/// Of the negative log likelihood (parameters x parameters), outcome by outcome: its lower half.
+/// Second derivatives of the negative log likelihood (parameters x parameters), outcome by outcome;
+/// lower half only.
 MatrixXd curvature(const MatrixXd& terms, const VectorXd& trials, const MatrixXd& chances) {
   const Index of_each = terms.cols(), outcomes = chances.cols() - 1;
   MatrixXd all(of_each * outcomes, of_each * outcomes);
@@ -56,7 +57,8 @@ MatrixXd curvature(const MatrixXd& terms, const VectorXd& trials, const MatrixXd
       if (a == b) weights += chances.col(a);
       const MatrixXd weighted = weights.cwiseProduct(trials).asDiagonal() * terms;
       auto block = all.block(a * of_each, b * of_each, of_each, of_each);
-      for (Index t = 0; t < of_each; ++t) {  // each block is symmetric; sums as over_rows has them
+      // each block is symmetric; sums in the order of over_rows
+      for (Index t = 0; t < of_each; ++t) {
         const Index below = of_each - t;
         block.col(t).tail(below).noalias() =
             terms.rightCols(below).transpose().lazyProduct(weighted.col(t));
@@ -120,20 +122,20 @@ OutcomeModel::OutcomeModel(const OutcomeCounts& seen, int degree, const VectorXd
   MatrixXd logs = log_chances_of(of_points, best_);
   double likelihood = log_likelihood(counts, logs);
   constexpr int kMostSteps = 100;
-  constexpr double kEnough = 1e-6;  // of a log likelihood: far below what chance changes, 1/2
+  constexpr double kEnough = 1e-6;  // of a log likelihood; far below its sampling error of 1/2
   for (int step = 0;; ++step) {
     const MatrixXd chances = logs.array().exp();
     const MatrixXd slope =
         over_rows(of_points, counts - trials.asDiagonal() * chances).leftCols(outcomes - 1);
     const Eigen::LLT<MatrixXd> bent(curvature(of_points, trials, chances));
     const VectorXd change = bent.solve(slope.reshaped());
-    const double gain = change.dot(slope.reshaped());  // twice that of Newton's step
+    const double gain = change.dot(slope.reshaped());  // twice the gain of Newton's step
     if (bent.info() != Eigen::Success || !std::isfinite(gain) || step == kMostSteps)
       throw std::runtime_error("OutcomeModel: no polynomials of degree " + std::to_string(degree) +
                                " are found");
     root_ = bent.matrixL();
     if (gain < kEnough) break;
-    // The step, or a part of it that gains.
+    // Newton's step, or a fraction of it that increases the likelihood.
     for (double part = 1.0;; part *= 0.5) {
       const Coefficients next = best_ + part * change.reshaped(terms_of_each, outcomes - 1);
       MatrixXd next_logs = log_chances_of(of_points, next);
@@ -158,7 +160,7 @@ OutcomeModel::OutcomeModel(const OutcomeCounts& seen, int degree, const VectorXd
 OutcomeModel::Coefficients OutcomeModel::drawn(dynamics::Random& random) const {
   VectorXd chance(parameters());
   for (double& x : chance) x = random.normal();
-  // root' y = x has the inverse of the curvature as covariance.
+  // root' y = x gives y the inverse of the curvature as covariance.
   root_.triangularView<Eigen::Lower>().transpose().solveInPlace(chance);
   return best_ + chance.reshaped(best_.rows(), best_.cols());
 }

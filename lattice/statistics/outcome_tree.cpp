@@ -16,7 +16,7 @@ namespace {
 
 using Model = std::shared_ptr<const OutcomeModel>;
 
-/// Of the degree with the least criterion; none where there are too few points.
+/// The model of the degree with the smallest criterion; null if the points are too few.
 Model best_model(const OutcomeCounts& seen, const VectorXd& shares,
                  const OutcomeTreeOptions& options) {
   Model best;
@@ -37,7 +37,7 @@ Model best_model(const OutcomeCounts& seen, const VectorXd& shares,
   return best;
 }
 
-/// Points on both sides of the median of one number.
+/// The points on each side of the median of one number.
 std::array<OutcomeCounts, 2> halves(const OutcomeCounts& seen, Index number, double* between) {
   std::vector<Index> order(static_cast<std::size_t>(seen.points.rows()));
   std::iota(order.begin(), order.end(), Index{0});
@@ -88,7 +88,7 @@ std::size_t OutcomeTree::grow(const OutcomeCounts& seen, const Model& model, con
         next.criterion += next.models[half]->criterion();
       }
       if (next.criterion < best.criterion) best = std::move(next);
-    } catch (const std::exception&) {  // a half has no such model: it stays whole
+    } catch (const std::exception&) {  // a half has no such model, so the node is not split
     }
   Node node = best.node;
   if (node.number < 0) {

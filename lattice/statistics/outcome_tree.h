@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Chances of several outcomes where one polynomial is too smooth: the points are halved along one
-/// number, and the halves again, as long as models of the halves are better than one of both
-/// (model-based recursive partitioning, Zeileis et al. 2008).
+/// Outcome probabilities where one polynomial is too smooth: the points are split in half along one
+/// number, again and again, as long as two models fit better than one (model-based recursive
+/// partitioning, Zeileis et al. 2008).
 
 #include <Eigen/Core>
 #include <memory>
@@ -14,22 +14,24 @@ namespace gatewalk::lattice {
 
 struct OutcomeTreeOptions {
   int most_degree = 4;
-  double most_parameters = 1200.0;  // of a leaf; degree 1 may have more
-  Eigen::Index most_divided = 150;  // parameters of a model that is: more take too long
-  double lack_of_fit = 0.0;         // nats a trial: a model that lacks no more is not divided
+  double most_parameters = 1200.0;  // per leaf; degree 1 may have more
+  /// parameters of a model that is split: larger models take too long
+  Eigen::Index most_divided = 150;
+  double lack_of_fit = 0.0;  // nats per trial: a model with no more than this is not split
 };
 
+/// A tree of outcome models, one per leaf.
 class OutcomeTree {
  public:
   using Coefficients = std::vector<OutcomeModel::Coefficients>;  // by leaf
 
-  /// Each leaf has the degree of the least criterion, and at least twice as many points as terms.
-  /// Throws as OutcomeModel where no polynomial of degree 1 is found for all points.
+  /// Fits the tree. Each leaf has the degree with the smallest criterion, and at least twice as
+  /// many points as terms. Throws as OutcomeModel if no polynomial of degree 1 fits all points.
   OutcomeTree(const OutcomeCounts& seen, const OutcomeTreeOptions& options);
 
   [[nodiscard]] Eigen::Index leaves() const { return std::ssize(models_); }
-  [[nodiscard]] int degree() const;                                  // the highest
-  [[nodiscard]] double lack_of_fit() const { return lack_of_fit_; }  // as OutcomeModel's
+  [[nodiscard]] int degree() const;                                  // the highest of all leaves
+  [[nodiscard]] double lack_of_fit() const { return lack_of_fit_; }  // as OutcomeModel::lack_of_fit
   [[nodiscard]] Coefficients best() const;
   [[nodiscard]] Coefficients drawn(dynamics::Random& random) const;
   void log_chances(const Coefficients& coefficients, const Eigen::VectorXd& point,
@@ -38,7 +40,7 @@ class OutcomeTree {
  private:
   struct Node {
     Eigen::Index number = -1;  // -1: a leaf
-    double between = 0.0;      // up to here the first child, beyond it the second
+    double between = 0.0;      // the first child has values up to here, the second the rest
     std::size_t first = 0, second = 0;
     std::size_t leaf = 0;
   };

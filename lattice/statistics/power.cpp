@@ -27,7 +27,7 @@ void require_share(double share) {
     throw std::invalid_argument("power: a share must lie in [0, 1]");
 }
 
-/// Chance of at most, and of at least, so many of n, each with chance p.
+/// Binomial distribution of n trials with success probability p.
 class Binomial {
  public:
   Binomial(std::int64_t n, double p) : n_(n), binomial_(static_cast<double>(n), p) {}
@@ -47,7 +47,8 @@ class Binomial {
   boost::math::binomial_distribution<> binomial_;
 };
 
-/// The least of low, ..., high for which `holds`, which goes on to hold from there; high + 1: none.
+/// The smallest number in low, ..., high for which `holds`, which must stay true from there; high +
+/// 1: none.
 template <class Holds>
 std::int64_t first_of(std::int64_t low, std::int64_t high, Holds holds) {
   ++high;
@@ -61,14 +62,15 @@ std::int64_t first_of(std::int64_t low, std::int64_t high, Holds holds) {
   return low;
 }
 
-/// Counts that are found to differ: `low` and fewer (-1: none), `high` and more (n + 1: none).
+/// Counts that are significant: up to `low` (-1: none), and from `high` (n + 1: none).
 struct Critical {
   std::int64_t low, high;
 };
 Critical critical_counts(std::int64_t n, double expected, double level) {
   const Binomial null(n, expected);
   const double mean = static_cast<double>(n) * expected;
-  const double slack = 1e-9 * static_cast<double>(n);  // equal distances of different rounding
+  // distances that differ only by rounding are equal
+  const double slack = 1e-9 * static_cast<double>(n);
   const auto above = static_cast<std::int64_t>(std::floor(mean)) + 1;
   const auto mirror = [&](std::int64_t k) { return 2.0 * mean - static_cast<double>(k); };
   const std::int64_t high = first_of(above, n, [&](std::int64_t k) {
@@ -76,7 +78,7 @@ Critical critical_counts(std::int64_t n, double expected, double level) {
                null.at_most(static_cast<std::int64_t>(std::floor(mirror(k) + slack))) <=
            level;
   });
-  // Counted down from the mean: `steps` below it.
+  // `steps` counts down from the mean.
   const auto below = static_cast<std::int64_t>(std::ceil(mean)) - 1;
   const std::int64_t steps = first_of(0, below, [&](std::int64_t s) {
     const std::int64_t k = below - s;
@@ -87,7 +89,7 @@ Critical critical_counts(std::int64_t n, double expected, double level) {
   return {below - steps, high};
 }
 
-/// Where a binomial has all but next to nothing, and its chances there.
+/// The range in which a binomial has nearly all its probability, and the probabilities there.
 struct Likely {
   std::int64_t first = 0;
   std::vector<double> chance;
@@ -111,7 +113,7 @@ double log_choose(std::int64_t n, std::int64_t k) {
          log_gamma(static_cast<double>(n - k) + 1.0);
 }
 
-/// Of `total` among two samples of n each: the chance that one of them has at most k.
+/// Probability that one of two samples of n each has at most k of `total` successes.
 double at_most_of(std::int64_t n, std::int64_t total, std::int64_t k) {
   const std::int64_t least = std::max<std::int64_t>(0, total - n);
   if (k < least) return 0.0;
@@ -125,7 +127,7 @@ double at_most_of(std::int64_t n, std::int64_t total, std::int64_t k) {
   return sum;
 }
 
-/// The least number for which, and for `ahead` numbers behind which, power(n) is at least `wanted`.
+/// The least n for which power(n), and the power of the next `ahead` numbers, is at least `wanted`.
 template <class Power, class Ahead>
 std::optional<std::int64_t> least_trials(Power power, double wanted, Ahead ahead) {
   std::int64_t high = 1;
@@ -133,7 +135,7 @@ std::optional<std::int64_t> least_trials(Power power, double wanted, Ahead ahead
     if (high == kMostPlanned) return {};
     high = std::min(2 * high, kMostPlanned);
   }
-  // Below `low` it may be reached by a tooth, but is not on the way up.
+  // Below `low`, a tooth of the sawtooth may reach the goal, but the rising power does not.
   std::int64_t n = high;
   for (std::int64_t low = high / 2; n - low > 1;) {
     const std::int64_t middle = low + (n - low) / 2;
@@ -162,8 +164,8 @@ double power_of_two_shares(std::int64_t trials_each, double first, double second
   require_share(first);
   require_share(second);
   const Likely a = likely(trials_each, first), b = likely(trials_each, second);
-  // By the total: what the sample with fewer must not have more of. It grows by at most one where
-  // the total does.
+  // By total: the largest count of the smaller sample that is significant. It grows by at most one
+  // when the total does.
   std::vector<std::int64_t> most;
   std::int64_t k = -1;
   for (std::int64_t total = a.first + b.first; total <= a.last() + b.last(); ++total) {
@@ -186,7 +188,8 @@ std::optional<std::int64_t> trials_for_share(double expected, double truth, cons
   const double spread = std::max({truth * (1.0 - truth), expected * (1.0 - expected), 1e-4});
   return least_trials(
       [&](std::int64_t n) { return power_of_share(n, expected, truth, goal.level); }, goal.power,
-      // Teeth are about as wide: the power's height of a tooth, 1/sqrt(n spread), over its slope.
+      // About the width of a tooth: the height of a tooth, 1/sqrt(n spread), over the slope of the
+      // power.
       [&](std::int64_t n) {
         return 20 + static_cast<std::int64_t>(2.0 * std::sqrt(static_cast<double>(n) / spread));
       });
@@ -197,7 +200,7 @@ std::optional<std::int64_t> trials_for_two_shares(double first, double second,
   if (first == second) return {};
   return least_trials(
       [&](std::int64_t n) { return power_of_two_shares(n, first, second, goal.level); }, goal.power,
-      [](std::int64_t) { return 20; });  // totals vary: the teeth are small
+      [](std::int64_t) { return 20; });  // totals vary, so the teeth are small
 }
 
 SmallestDifference smallest_difference(std::int64_t trials, double expected,
@@ -218,7 +221,7 @@ SmallestDifference smallest_difference(std::int64_t trials, double expected,
 
 namespace {
 
-/// As many as fit a fixed amount of work: each multiplies with a matrix of gates x gates.
+/// As many draws as fit a fixed amount of work: each multiplies with a matrix of gates x gates.
 std::int64_t draws_of_power(Eigen::Index outcomes) {
   const std::int64_t gates = std::min<std::int64_t>(outcomes, kMostEnergyGates);
   return std::clamp<std::int64_t>(20'000'000 / (outcomes + gates * gates / 8 + 1), 400, 4000);
@@ -274,7 +277,7 @@ SimulatedTest::SimulatedTest(const Outcomes& first, const Eigen::VectorXd& secon
   calibrate(0.5 * (first.shares + second), level, {});
 }
 
-/// Of one sample from `first` where there is no `second`.
+/// Statistics of draws: of one sample from `first` if there is no `second`.
 std::vector<SimulatedTest::Row> SimulatedTest::rows(std::uint64_t use, const Eigen::VectorXd& first,
                                                     const Eigen::VectorXd* second) const {
   std::vector<Row> all(static_cast<std::size_t>(outcomes_.draws));
@@ -287,7 +290,7 @@ std::vector<SimulatedTest::Row> SimulatedTest::rows(std::uint64_t use, const Eig
     }
     const Eigen::VectorXd b = drawn_shares(*second, trials_, random);
     const Eigen::VectorXd pooled = 0.5 * (a + b);
-    // What neither has seen makes no difference, and has no noise to hold it against.
+    // An outcome that neither sample shows makes no difference, and has no sampling noise.
     const Eigen::VectorXd expected =
         (pooled.array() > 0.0).select(pooled, std::numeric_limits<double>::min());
     all[k] = outcomes_.differences(a, b, expected, trials_);
@@ -312,7 +315,7 @@ void SimulatedTest::calibrate(const Eigen::VectorXd& null, double level,
 bool SimulatedTest::finds(const Row& row) const {
   for (std::size_t s = 0; s < row.size(); ++s) {
     if (std::isnan(row[s])) continue;
-    // Equal results of different rounding count as equal.
+    // Results that differ only by rounding count as equal.
     const auto as_large = null_[s].end() - std::lower_bound(null_[s].begin(), null_[s].end(),
                                                             row[s] - 1e-12 * std::abs(row[s]));
     const double p = static_cast<double>(as_large + 1) / static_cast<double>(null_[s].size() + 1);
@@ -337,7 +340,7 @@ double SimulatedTest::power() const {
 
 namespace {
 
-/// Places of the outcomes in the half that loses, and what that half has.
+/// The outcomes of the losing half, and the sum of their shares.
 std::pair<std::vector<bool>, double> losing_half(const Eigen::VectorXd& shares) {
   std::vector<Eigen::Index> by_size(static_cast<std::size_t>(shares.size()));
   std::iota(by_size.begin(), by_size.end(), 0);
@@ -369,7 +372,7 @@ std::optional<Eigen::VectorXd> hardest_to_see(const Eigen::VectorXd& shares,
 
 namespace {
 
-/// By doubling and halving to 1 %: the power is known to no better.
+/// Doubling, then bisection to 1 %: the power is not known better.
 template <class Power>
 std::optional<std::int64_t> about_least_trials(Power power, double wanted) {
   std::int64_t low = 1, high = 4;

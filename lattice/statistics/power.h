@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How many trials an experiment needs to show a difference, and what difference so many can show.
+/// Sample size and power: how many trials detect a difference, and which difference trials detect.
 
 #include <array>
 #include <cstdint>
@@ -13,36 +13,37 @@
 
 namespace gatewalk::lattice {
 
-/// A test that finds a difference where there is none in `level` of all experiments, and is to find
-/// one that there is in `power` of them.
+/// A test that finds a difference with probability `level` if there is none, and with probability
+/// `power` if there is one.
 struct PowerGoal {
   double power = 0.8;
   double level = 0.05;
 };
 
-/// More trials than this are not looked for.
+/// The largest number of trials that is considered.
 inline constexpr std::int64_t kMostPlanned = 100'000;
 
 // ---- Shares: the exact binomial ----
 
-/// How often the share among `trials` is found to differ from the one that is expected, two-sided
-/// by the distance of both as in joint_test(), if the true share is `truth`.
+/// Power of a two-sided test of the share among `trials` against an expected one, if the true share
+/// is `truth`. The test statistic is the distance of both, as in joint_test().
 [[nodiscard]] double power_of_share(std::int64_t trials, double expected, double truth,
                                     double level);
-/// How often two samples of so many trials each are found to differ in their shares: the
-/// permutation test, which is Fisher's exact test.
+/// Power to find that two samples of `trials_each` trials differ in a share: Fisher's exact test,
+/// which is the permutation test.
 [[nodiscard]] double power_of_two_shares(std::int64_t trials_each, double first, double second,
                                          double level);
 
-/// The least number of trials (of each sample) from which on the power is that of the goal: it goes
-/// up with the trials in teeth, and does not fall below it again. None up to kMostPlanned.
+/// The least number of trials (per sample) from which on the power reaches the goal. Power rises
+/// with the number of trials in a sawtooth, and does not fall below the goal again from there.
+/// nullopt: more than kMostPlanned.
 [[nodiscard]] std::optional<std::int64_t> trials_for_share(double expected, double truth,
                                                            const PowerGoal& goal);
 [[nodiscard]] std::optional<std::int64_t> trials_for_two_shares(double first, double second,
                                                                 const PowerGoal& goal);
 
-/// By how much more or less than expected a share must be to be found by so many trials; none:
-/// not even all or none of them would be.
+/// How far above or below its expected value a share must be to be detected by this number of
+/// trials; nullopt: not even a share of 1, or of 0, would be.
 struct SmallestDifference {
   std::optional<double> more{}, fewer{};
 };
@@ -51,39 +52,41 @@ struct SmallestDifference {
 
 // ---- Distributions: by simulation of the test ----
 
-/// What is looked at together: statistics of two vectors of shares, of samples of at least
-/// `trials`, that grow with their difference; `expected`: shares against whose noise it counts.
+/// Computes test statistics of two vectors of shares, of samples of at least `trials` trials; the
+/// statistics grow with the difference. `expected`: shares that give its sampling noise.
 using Differences =
     std::function<std::vector<double>(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
                                       const Eigen::VectorXd& expected, std::int64_t trials)>;
 
-/// Shares of some kinds of outcome, and what is looked at in them.
+/// Shares of several outcomes, and the test statistics for them.
 struct Outcomes {
   Eigen::VectorXd shares;
   Differences differences;
-  std::int64_t draws = 0;  // that are affordable
+  std::int64_t draws = 0;  // affordable number of null draws
 };
-/// Final gates that one of the two can reach, and the statistics of joint_test(); the second's
-/// shares are on the same gates.
+/// Final gates that either prediction can reach, and the statistics of joint_test(). The second
+/// form also returns the second prediction's shares of the same gates.
 [[nodiscard]] Outcomes gate_outcomes(const CellProbabilities& prediction);
 [[nodiscard]] std::pair<Outcomes, Eigen::VectorXd> gate_outcomes(const CellProbabilities& first,
                                                                  const CellProbabilities& second);
 /// Endings, and the differences of their shares.
 [[nodiscard]] Outcomes ending_outcomes(const std::array<double, markov::kEndings>& prediction);
 
-/// The test of joint_test() for samples of one size: its critical values from draws of the null,
-/// found once for many experiments.
+/// The test of joint_test() for samples of one size. Its critical values come from draws of the
+/// null, made once for many experiments.
 class SimulatedTest {
  public:
-  /// A sample of `trials` against outcomes that are known exactly. `single_level`: the largest p of
-  /// a single statistic that is a finding; without it that which all together keep `level` with.
+  /// A sample of `trials` against exactly known outcomes. `single_level`: the largest p of a single
+  /// statistic that is significant; by default, the value with which all statistics together keep
+  /// `level`.
   SimulatedTest(const Outcomes& expected, std::int64_t trials, double level, std::uint64_t seed,
                 std::optional<double> single_level = {});
-  /// Two samples of so many trials each; the null draws both from the mean of the shares.
+  /// Two samples of `trials_each` trials; the null draws both from the mean of the shares.
   SimulatedTest(const Outcomes& first, const Eigen::VectorXd& second, std::int64_t trials_each,
                 double level, std::uint64_t seed);
 
-  /// How often the difference is found: of a sample from `truth`; of samples from both.
+  /// Power: probability that the test finds the difference, for a sample from `truth`, or for
+  /// samples from both.
   [[nodiscard]] double power(const Eigen::VectorXd& truth) const;
   [[nodiscard]] double power() const;
 
@@ -103,15 +106,16 @@ class SimulatedTest {
   double single_level_ = 0.0;
 };
 
-/// Shares that are off by this total variation in the way that is hardest to see: in two halves of
-/// the outcomes each share is the same part larger or smaller. (Of all with this total variation
-/// these have the least chi-squared, 4 TV^2 where the halves are equal: Cauchy-Schwarz.) None where
-/// a half has less than that to lose.
+/// Shares at this total variation from `shares` that are hardest to detect: each outcome of one
+/// half loses the same fraction, each outcome of the other half gains the same fraction. (Of all
+/// such shares these have the least chi-squared, 4 TV^2 for equal halves: Cauchy-Schwarz.) nullopt
+/// if the losing half has less than that to lose.
 [[nodiscard]] std::optional<Eigen::VectorXd> hardest_to_see(const Eigen::VectorXd& shares,
                                                             double total_variation);
 
-/// The least number of trials that show a total variation, hardest_to_see; two samples' difference.
-/// To some 3 %, by simulation. None: more than kMostPlanned, or there is no such difference.
+/// The least number of trials that detects a total variation of the kind hardest_to_see(), or the
+/// difference of two samples; by simulation, to about 3 %. nullopt: more than kMostPlanned, or
+/// there is no such difference.
 [[nodiscard]] std::optional<std::int64_t> trials_for_total_variation(const Outcomes& expected,
                                                                      double total_variation,
                                                                      const PowerGoal& goal,
@@ -119,8 +123,8 @@ class SimulatedTest {
 [[nodiscard]] std::optional<std::int64_t> trials_for_two(const Outcomes& first,
                                                          const Eigen::VectorXd& second,
                                                          const PowerGoal& goal, std::uint64_t seed);
-/// The least total variation, hardest_to_see, that so many trials show; none: not the largest that
-/// there is of that kind.
+/// The least total variation of the kind hardest_to_see() that this number of trials detects;
+/// nullopt: not even the largest of that kind.
 [[nodiscard]] std::optional<double> smallest_total_variation(
     const Outcomes& expected, std::int64_t trials, const PowerGoal& goal, std::uint64_t seed,
     std::optional<double> single_level = {});

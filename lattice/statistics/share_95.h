@@ -1,45 +1,44 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What a predicted share may be: one rule for endings, gates and chances, also of those that none
-/// or all of the trials show.
+/// 95 % intervals of predicted shares: one rule for endings, gates and probabilities, also for
+/// shares that none or all of the trials show.
 
 #include <array>
 #include <vector>
 
 namespace gatewalk::lattice {
 
-/// Shares, and differences of shares, below this are rounding.
+/// Shares, and differences of shares, below this are rounding errors.
 inline constexpr double kShareRounding = 1e-12;
 
-/// What a share was predicted from: independent trials, and all their gate runs.
+/// The evidence behind a predicted share: independent trials, and all their gate runs.
 struct Evidence {
   double trials = 0.0, gate_runs = 0.0;
-  /// The largest share of all walks that one row of a matrix may send elsewhere, as all its runs
-  /// had one outcome and were too few to exclude another.
+  /// The largest share of all walks that one row of a matrix may send elsewhere, because all runs
+  /// of the row had one outcome and were too few to exclude another.
   double hidden = 0.0;
 };
 
-/// 95 % interval of a share that is predicted from all trials, `whole`, and from each of
-/// kTrialGroups groups of them: Jeffreys' of as many independent trials as would make the relative
-/// error that the groups show, so that it leans to the side where few were seen. It is no narrower
-/// than if each gate run were a trial. Where none or all of the trials end so, it is theirs.
-/// `besides`: half of the interval that an error makes which the groups have in common.
+/// 95 % interval of a share predicted from all trials, `whole`, and from each of kTrialGroups
+/// groups: the Jeffreys interval for an effective number of independent trials. That number comes
+/// from the spread between the groups, and never exceeds the number of gate runs. If none or all of
+/// the trials end so, it is the number of trials. `besides`: half-width of an error that the groups
+/// have in common.
 [[nodiscard]] std::array<double, 2> share_95(double whole, const std::vector<double>& groups,
                                              const Evidence& from, double besides = 0.0);
 
-/// 95 % interval of a share that a matrix predicts, `own`, from what resampled ones predict (one at
-/// least; MatrixNoise): their middle 95 %. Where `own` does not lie within these, as their
-/// distribution is skewed, it is Jeffreys' interval of as many independent trials as would vary
-/// like them. Where they show no spread, it is what the trials `from` the row that all walks begin
-/// in leave open. Resampled rows hold nothing that no run showed. So the interval is no narrower
-/// than if each gate run were a trial (gate_runs 0: may be narrower), nor than what a row of one
-/// outcome hides.
+/// 95 % interval of a share that a matrix predicts, `own`, from the predictions of resampled
+/// matrices (at least one; MatrixNoise): their middle 95 %. If `own` lies outside, because their
+/// distribution is skewed: the Jeffreys interval for an effective number of trials with the same
+/// variance. If they do not vary: the Jeffreys interval for the trials of the start's row.
+/// Resampled rows contain no new outcomes, so the interval is never narrower than with each gate
+/// run as one trial (gate_runs 0: no such bound), nor than what rows with a single outcome hide.
 [[nodiscard]] std::array<double, 2> resampled_95(std::vector<double> drawn, double own,
                                                  const Evidence& from);
 
-/// Walks that were not followed to their end, `unfinished` of all, may add to a share, and
-/// `rounding` takes from it or adds: the interval with both. Without an interval (NaN): what the
-/// share may be. As it is where both are less than any digit that is shown.
+/// Widens an interval by walks that were not followed to their end (a share `unfinished` of all,
+/// which may only add to the share) and by `rounding` (in both directions). An interval of NaN
+/// starts from the share itself. Returns it unchanged if both are smaller than any digit shown.
 [[nodiscard]] std::array<double, 2> with_unfinished(const std::array<double, 2>& interval,
                                                     double share, double unfinished,
                                                     double rounding);

@@ -10,13 +10,12 @@
 namespace gatewalk::lattice {
 namespace {
 
-/// Sums over the rows of a scramble.
+/// Sums over the rows of one scramble.
 struct Sums {
-  double answers = 0.0;  // of A and B
-  double squares = 0.0;  // of their differences from the mean, one times the other
-  double noise = 0.0;    // squares of one minus the other, of all points
-  std::vector<double> own,
-      all;  // by number: what the first and the total index has for a numerator
+  double answers = 0.0;          // over A and B
+  double squares = 0.0;          // products of the deviations from the mean of one and of the other
+  double noise = 0.0;            // squares of one minus the other, over all points
+  std::vector<double> own, all;  // by number: numerators of first-order and total index
 };
 
 Sums sums_of(const IndexDesign& design, int group, double mean, const std::vector<double>& one,
@@ -38,8 +37,8 @@ Sums sums_of(const IndexDesign& design, int group, double mean, const std::vecto
   return s;
 }
 
-/// Of a number that is made from sums over all rows: what leaving out each scramble changes
-/// (Wolter, Introduction to Variance Estimation, 2007, ch. 4).
+/// Jackknife interval of a number computed from sums over all rows: its changes when each scramble
+/// is left out (Wolter, Introduction to Variance Estimation, 2007, ch. 4).
 Mean95 jackknife(const std::vector<Sums>& scrambles,
                  const std::function<double(const std::vector<const Sums*>&)>& number) {
   std::vector<const Sums*> all;
