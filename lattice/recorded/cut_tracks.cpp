@@ -15,11 +15,11 @@ namespace {
 
 using dynamics::Entry;
 
-/// What is measured where a border is crossed, and what it is then.
+/// A quantity measured where a border is crossed, with its units.
 struct Measured {
   std::string_view name;
   std::array<std::string_view, 3> units;
-  bool is_odd_upwards, is_odd_sideways;  // changes its sign in the mirror, by moves up or sideways
+  bool is_odd_upwards, is_odd_sideways;  // sign change in the mirror, for moves up or sideways
 };
 constexpr std::array<Measured, 5> kMeasured{{
     {"s", {"m"}, true, false},
@@ -37,14 +37,14 @@ const Measured& measured(const dynamics::Coordinate& coordinate) {
                               "its middle), vx, vy, speed (m/s), heading (rad)");
 }
 
-/// A border crossed at a time, on the smooth path.
+/// A crossing of a border by the smooth path.
 struct Crossing {
   double time, x, y, vx, vy, velocity_gain;
   int di_x, di_y;
 };
 
-/// The way between frames i - 1 and i: places by the cubic that has the places and velocities of
-/// both, velocities straight from one to the other.
+/// The path between frames i - 1 and i: places by the cubic through the places and velocities of
+/// both frames, velocities by linear interpolation.
 class Between {
  public:
   Between(const SmoothPath& path, std::size_t i)
@@ -56,7 +56,8 @@ class Between {
     return a +
            u * (at_a + u * (3.0 * (b - a) - 2.0 * at_a - at_b + u * (2.0 * (a - b) + at_a + at_b)));
   }
-  /// Where the border is crossed, in [0, 1]; the frames are on both sides of it, or on it.
+  /// Where the border is crossed, in [0, 1]; the two frames are on opposite sides of the border, or
+  /// on it.
   [[nodiscard]] double reaches(const std::vector<double>& x, const std::vector<double>& v,
                                double border) const {
     double low = 0.0, high = 1.0;
@@ -89,11 +90,12 @@ class Between {
 
 int cell_at(double place, double size) { return static_cast<int>(std::floor(place / size)); }
 
-/// As far from the origin as that, and no further from frame to frame, in cells.
+/// Limits in cells: distance from the origin, and distance from frame to frame.
 constexpr double kMostCells = 1e9, kMostCellsAtOnce = 1000.0;
 
-/// Adds the crossings of the borders k size of one axis: whoever is further than `margin` over a
-/// border has crossed it, where it last did so. Returns how often borders were crossed in all.
+/// Adds the crossings of the borders k size of one axis. A crossing counts if the path then goes
+/// further than `margin` beyond the border, at its last crossing of that border. Returns the number
+/// of all crossings.
 std::int64_t add_crossings(const SmoothPath& path, bool is_x, double size, double margin,
                            std::vector<Crossing>& crossings) {
   const std::vector<double>&place = is_x ? path.x : path.y, &speed = is_x ? path.vx : path.vy;
@@ -140,7 +142,7 @@ class Cutter {
                                   (words.empty() ? "" : ": " + words));
     }
     for (const TrackPiece& piece : cut_.pieces) require_near(piece);
-    // Five standard deviations of a place of the path: seldom passed by noise alone.
+    // Five standard deviations of a place of the path: noise alone seldom goes that far.
     cut_.hysteresis = 5.0 * cut_.noise.place * std::sqrt(place_gain(cut_.noise.window));
     if (cut_.hysteresis > 0.25 * std::min(cell_.width, cell_.length))
       throw std::invalid_argument(
@@ -159,8 +161,8 @@ class Cutter {
   }
 
  private:
-  /// Why pieces are short, in words: most steps between places of a body are longer than a frame,
-  /// or some are, or too fast. Empty: none of it.
+  /// Why pieces are short, as text: most steps, or some, are longer than a frame, or too fast.
+  /// Empty if none of these applies.
   [[nodiscard]] std::string words_of_steps() const {
     std::vector<double> frames, speeds;
     for (const Track& t : file_.tracks)
@@ -187,7 +189,7 @@ class Cutter {
         all += n;
         missing += n - 1.0;
       }
-      const auto most = gaps + (frames.end() - gaps) * 9 / 10;  // of ten gaps nine are no longer
+      const auto most = gaps + (frames.end() - gaps) * 9 / 10;  // nine of ten gaps are no longer
       add(rounded(std::round(1000.0 * missing / all) / 10.0) + " % of the frames are missing, " +
           (*gaps == *most ? rounded(*most - 1.0)
                           : rounded(*gaps - 1.0) + " to " + rounded(*most - 1.0)) +
@@ -292,7 +294,7 @@ class Cutter {
     }
   }
 
-  /// Throws std::invalid_argument for a body that is, or goes at once, too far to be among cells.
+  /// Throws std::invalid_argument for a body that is, or jumps, too far away to be among cells.
   void require_near(const TrackPiece& piece) const {
     const Track& track = *piece.track;
     const auto cells = [&](std::size_t i) {
@@ -312,7 +314,7 @@ class Cutter {
       }
   }
 
-  /// What --window asks for, in frames.
+  /// The window of --window, in frames.
   std::optional<int> window() const {
     std::string text = options_.window;
     if (text.empty()) return {};
@@ -364,7 +366,7 @@ class Cutter {
     cut_.uncounted += std::max<std::int64_t>(0, all - std::ssize(crossings));
     int column = cell_at(path.x[0], cell_.width), row = cell_at(path.y[0], cell_.length);
     cut_.first_stays += is_inside(column, row) ? 1 : 0;
-    std::optional<CutPassage> now;  // under way
+    std::optional<CutPassage> now;  // the passage under way
     double since = 0.0;
     bool was_inside = false;
     for (const Crossing& c : crossings) {
@@ -395,11 +397,12 @@ class Cutter {
     (void)finish(*now, path.time.back() - since, CutEnd::lost, {path.x.back(), path.y.back()}, {});
   }
 
-  /// Trapped, if it took as long as that; true: then the trial is at its end.
+  /// Ends a passage; it counts as trapped if it took as long as trapped_after. Returns true if
+  /// trapped, which ends the trial.
   bool finish(CutPassage& passage, double time, CutEnd end, std::array<double, 2> to, Entry out) {
     const bool trapped = cell_.trapped_after && time >= *cell_.trapped_after;
     passage.end = trapped ? CutEnd::trapped : end;
-    // Straight through a corner takes no time, and the format has no passage without any.
+    // A way through a corner takes no time, but the format needs a positive time.
     const double some =
         1e-6 * std::min(file_.interval, cell_.trapped_after.value_or(file_.interval));
     passage.time = trapped ? *cell_.trapped_after : std::max(time, some);
@@ -409,7 +412,7 @@ class Cutter {
     return trapped;
   }
 
-  /// The entry into a cell.
+  /// The entry into a cell by a crossing.
   Entry entry_of(const Crossing& c, int column, int row, const Track& track) {
     ++cut_.crossings;
     gains_ += c.velocity_gain;
@@ -435,9 +438,9 @@ class Cutter {
     return entry;
   }
 
-  /// Which way is up, where that may be wrong; `highest`: of all places.
+  /// A sentence if the direction of up may be wrong; `highest`: largest y of all places.
   [[nodiscard]] std::string words_of_ways(double highest) const {
-    double up = 0.0;  // of all bodies
+    double up = 0.0;  // sum over all bodies
     for (const Track& t : file_.tracks)
       if (!t.y.empty()) up += t.y.back() - t.y.front();
     const bool is_below = highest < 0.0;
@@ -474,10 +477,10 @@ class Cutter {
   const TrackFile& file_;
   const CellFile& cell_;
   const CutOptions& options_;
-  std::vector<std::ptrdiff_t> measured_;  // by coordinate, of kMeasured
+  std::vector<std::ptrdiff_t> measured_;  // by coordinate: index into kMeasured
   std::vector<LostBy> ends_;              // by piece
-  std::vector<int> trials_;               // by track
-  double gains_ = 0.0;                    // of all crossings
+  std::vector<int> trials_;               // number of trials, by track
+  double gains_ = 0.0;                    // sum over all crossings
   CutTracks cut_;
 };
 
@@ -486,7 +489,8 @@ std::string face_move(const dynamics::Face& face) {
          std::to_string(face.di_y) + ")";
 }
 
-/// What changes its sign in the mirror (x to -x) is known of tracks: a symmetric cell must say so.
+/// Tracks show what changes sign in the mirror (x to -x): the file of a symmetric cell must state
+/// the same.
 void require_odd(const CellFile& cell) {
   const auto& section = cell.map.section;
   for (const dynamics::Face& face : section.faces) {
@@ -552,7 +556,7 @@ RecordedRuns recorded_runs(const CutTracks& cut, const TrackFile& file, const Ce
   const auto& costs = cell.map.section.costs;
   RecordedRuns runs;
   runs.passages.begin(cell.map.section);
-  std::vector<std::int32_t> numbers(file.tracks.size(), -1);  // of bodies, by track
+  std::vector<std::int32_t> numbers(file.tracks.size(), -1);  // by track: index of the body
   const CutPassage* last = nullptr;
   for (const CutPassage& p : cut.passages) {
     std::int32_t& body = numbers[p.track];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Tracks cut at the borders of cells into passages.
+/// Cuts tracks at the borders of cells into passages.
 
 #include <array>
 #include <cstdint>
@@ -16,70 +16,75 @@
 
 namespace gatewalk::lattice {
 
+/// How tracks are cut.
 struct CutOptions {
-  double fastest = 0.0;  // m/s; a step that is faster is a jump to another place, or another body
-  std::string window{};  // of the local fits: "15" (frames), "0.125s"; empty: as noise_of finds it
-  int bridge = 0;        // so many frames may be missing without a gap
-  int columns = 0, rows = 0;  // of the lattice, from its origin; 0: the field of the cell file
-  bool endless = false;       // the lattice has no end, to any side
+  double fastest = 0.0;  // m/s; a faster step is a jump to another place, or another body
+  std::string window{};  // of the local fits: "15" (frames) or "0.125s"; empty: chosen by noise_of
+  int bridge = 0;        // most missing frames in a row that are bridged
+  /// of the lattice, counted from its origin; 0: the field of the cell file
+  int columns = 0, rows = 0;
+  bool endless = false;  // the lattice extends without end to all sides
 };
 
-/// What became of a body in a cell; lost: from sight.
+/// What became of a body in a cell; lost: nobody saw.
 enum class CutEnd : std::uint8_t { left, trapped, lost };
-/// By what it was lost.
+/// Why a body was lost.
 enum class LostBy : std::uint8_t { gap, jump, end };
 inline constexpr std::array<std::string_view, 3> kLostNames{"gap", "jump", "end of the track"};
 
-/// A body's way through one cell, from where it was seen to enter.
+/// A body's passage through one cell, from where the body was seen to enter.
 struct CutPassage {
   std::size_t track = 0;
-  int trial = 0;  // of its body, from 1
+  int trial = 0;  // number among the body's trials, from 1
   int type = 0;   // of cell
   CutEnd end = CutEnd::lost;
   LostBy lost_by = LostBy::end;
-  dynamics::Entry in{}, out{};         // `out` where it left: into the next cell
+  dynamics::Entry in{}, out{};         // `out`: entry into the next cell, if the body left
   double time = 0.0;                   // s
-  std::array<double, 2> from{}, to{};  // m, where it entered and was last in the cell
+  std::array<double, 2> from{}, to{};  // m, where the body entered, and its last place in the cell
 };
 
+/// The passages cut from tracks, and what was left out.
 struct CutTracks {
-  std::vector<CutPassage> passages;  // by track and time
+  std::vector<CutPassage> passages;  // by track, then by time
   TrackNoise noise;
   double crossing_velocity_noise = 0.0;  // m/s, root mean square over the crossings
-  double hysteresis = 0.0;               // m: who is not further over a border has not crossed it
-  int columns = 0, rows = 0;             // of the lattice; 0: without end
-  std::vector<TrackPiece> pieces;        // of the file that was cut, which must stay where it is
+  /// m; a crossing counts only if the path then goes further than this beyond the border
+  double hysteresis = 0.0;
+  int columns = 0, rows = 0;       // of the lattice; 0: without end
+  std::vector<TrackPiece> pieces;  // of the TrackFile that was cut, which must stay in memory
   std::int64_t gaps = 0, jumps = 0;
-  std::int64_t short_pieces = 0, short_frames = 0;  // too short for a fit, left out
+  std::int64_t short_pieces = 0, short_frames = 0;  // too short for a fit; left out
   std::int64_t trials = 0, crossings = 0;
-  std::int64_t uncounted = 0;    // crossings to and fro within the hysteresis
-  std::int64_t first_stays = 0;  // in cells that nobody saw entered
-  std::int64_t places_outside = 0, bodies_outside = 0;  // of the lattice; bodies never seen in it
-  std::int64_t came_back = 0;   // trials that begin where a body comes into the lattice again
-  std::int64_t moved_ends = 0;  // places beyond their face's end, by no more than the hysteresis
-  double fastest_step = 0.0;    // m/s, of those that are no jumps
-  std::vector<std::string> doubts;  // what is likely to be wrong with the options, in words
+  std::int64_t uncounted = 0;    // crossings back and forth within the hysteresis
+  std::int64_t first_stays = 0;  // stays in cells that nobody saw entered
+  /// outside the lattice; bodies never seen inside
+  std::int64_t places_outside = 0, bodies_outside = 0;
+  std::int64_t came_back = 0;   // trials that begin where a body comes back into the lattice
+  std::int64_t moved_ends = 0;  // places beyond the end of their face, by at most the hysteresis
+  double fastest_step = 0.0;    // m/s, among steps that are no jumps
+  std::vector<std::string> doubts;  // what is probably wrong with the options, one sentence each
 
   [[nodiscard]] std::int64_t count(CutEnd end) const;
   [[nodiscard]] std::int64_t lost(LostBy by) const;
 };
 
-/// What can be measured of an entry: s (m, along the face from its middle, as x or y grows), vx,
-/// vy, speed (m/s), heading (rad, 0 upwards, from +y towards +x). Throws std::invalid_argument
-/// naming faces, coordinates, units or mirror images of `cell` that tracks cannot have.
+/// Throws std::invalid_argument naming faces, coordinates, units or mirror images of `cell` that
+/// tracks cannot have. Tracks give the coordinates s (m, along the face from its middle, as x or y
+/// grows), vx, vy, speed (m/s) and heading (rad, 0 upwards, from +y towards +x).
 void require_measurable(const CellFile& cell);
 
-/// Cells are rectangles of `cell`, side by side from the tracks' origin: column and row 0 begin
-/// there, and what lies outside the lattice is no cell. A trial begins where a body is first seen
-/// to cross a border into a cell, and ends where it leaves the lattice, is trapped
-/// (CellFile::trapped_after), or is lost: in a gap, by a jump, or at the track's end. A body that
-/// comes back into the lattice begins another trial there. Throws std::invalid_argument for options
-/// that make no sense with these tracks, a lattice that nobody gave, a crossing by a move that no
-/// face has, and where nobody crosses any border.
+/// Cuts tracks into passages. Cells are rectangles of `cell`, side by side from the tracks' origin,
+/// where column and row 0 begin; there are no cells outside the lattice. A trial begins where a
+/// body is first seen to cross a border into a cell. It ends where the body leaves the lattice, is
+/// trapped (CellFile::trapped_after), or is lost: in a gap, by a jump, or at the track's end. A
+/// body that comes back into the lattice begins another trial. Throws std::invalid_argument for
+/// options that do not fit these tracks, a lattice that is not given, a crossing by a move that no
+/// face has, and tracks without any crossing.
 [[nodiscard]] CutTracks cut_tracks(const TrackFile& file, const CellFile& cell,
                                    const CutOptions& options);
 
-/// The passages as recorded runs. What else a passage takes is not known of tracks.
+/// The passages as recorded runs. Costs other than the time are unknown (NaN).
 [[nodiscard]] RecordedRuns recorded_runs(const CutTracks& cut, const TrackFile& file,
                                          const CellFile& cell);
 

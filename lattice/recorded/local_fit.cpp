@@ -11,10 +11,10 @@
 namespace gatewalk::lattice {
 namespace {
 
-/// x and y over time by three coefficients each, in u = (time - middle) / half.
+/// Parabolas x and y over time, three coefficients each, in u = (time - middle) / half.
 struct Quadratic {
   double middle, half;      // s
-  Eigen::Matrix3d inverse;  // of the normal equations
+  Eigen::Matrix3d inverse;  // inverse of the matrix of the normal equations
   Eigen::Vector3d x, y;
 
   [[nodiscard]] Eigen::Vector3d powers(double time) const {
@@ -50,20 +50,20 @@ Quadratic fitted(const Track& track, std::size_t begin, std::size_t count) {
   return q;
 }
 
-/// What the parabolas fitted to all windows of so many frames leave, of x and y together: mean
-/// squares.
+/// Mean squares of the residuals of parabolas fitted to all windows of one length, over x and y.
 struct Left {
   double all = 0.0;    // m^2, per degree of freedom
-  double cubic = 0.0;  // m^2: its share along u^3, a unit vector at right angles to parabolas
+  double cubic = 0.0;  // m^2: the part along u^3, a unit vector orthogonal to parabolas
 };
-/// A body at rest, or one that the tracker has lost: nothing of its noise is seen.
+/// True for a body at rest, or one that the tracker has lost: its places show no noise.
 bool is_one_place(const Track& track, std::size_t begin, std::size_t count) {
   for (std::size_t i = begin + 1; i < begin + count; ++i)
     if (track.x[i] != track.x[begin] || track.y[i] != track.y[begin]) return false;
   return true;
 }
 
-/// Of so many windows of all as tell it well enough; none where no piece is as long.
+/// Residuals of enough windows, evenly chosen among all; nullopt if no piece is as long as
+/// `window`.
 std::optional<Left> left_by_fits(const std::vector<TrackPiece>& pieces, std::size_t window) {
   constexpr std::size_t kEnough = 10'000;
   std::size_t all = 0;
@@ -100,14 +100,14 @@ std::optional<Left> left_by_fits(const std::vector<TrackPiece>& pieces, std::siz
   return Left{sum.all / (both * static_cast<double>(window - 3)), sum.cubic / both};
 }
 
-/// Of the velocity amid a window: variances of noise and of bias (m^2/s^2), where fits of that
-/// window leave that much and places have that variance (m^2).
+/// Variances of noise and of bias (m^2/s^2) of the velocity in the middle of a window, for these
+/// residuals and this variance of places (m^2).
 struct VelocityErrors {
   double noise, bias;
 };
 VelocityErrors velocity_errors(int window, double interval, const Left& left, double variance) {
-  // A third derivative j leaves j u^3 / 6 about a parabola over u in [-h, h], whose mean square is
-  // j^2 h^6 (1/7 - 3/25) / 36, and a slope amid them that is off by j h^2 / 10.
+  // A third derivative j leaves a residual j u^3 / 6 over u in [-h, h], with mean square j^2 h^6
+  // (1/7 - 3/25) / 36, and a slope error of j h^2 / 10 in the middle.
   constexpr double kBias = 36.0 / 100.0 / (1.0 / 7.0 - 3.0 / 25.0);
   const double w = window, h2 = 0.25 * (w * w - 1.0) * interval * interval;
   return {3.0 * variance / (w * h2), kBias * std::max(0.0, left.cubic - variance) / (w * h2)};
@@ -151,7 +151,7 @@ TrackNoise noise_of(const std::vector<TrackPiece>& pieces, double interval,
     throw std::invalid_argument("no body was seen in " + std::to_string(kLeastWindow) +
                                 " frames in a row, without a gap or a jump");
   const double variance = shortest->all;
-  // Longer ones would be fits to the few that are seen so long.
+  // Longer windows would fit only the few bodies that are seen for so long.
   std::size_t frames = 0;
   for (const TrackPiece& p : pieces) frames += p.size();
   const auto most_are_as_long = [&](int w) {
@@ -179,8 +179,8 @@ TrackNoise noise_of(const std::vector<TrackPiece>& pieces, double interval,
                left_by_fits(pieces, static_cast<std::size_t>(*window)).value_or(*shortest));
     return known(best);
   }
-  // Each is longer by a seventh or so than the one before. Where fits leave much more than noise
-  // the ways are no parabolas, nor cubes.
+  // Each window is longer than the one before by about a seventh. If the residuals far exceed the
+  // noise, the paths are neither parabolas nor cubics.
   for (int w = kLeastWindow; w <= kMostWindow; w += 2 * std::max(1, w / 14)) {
     const auto left = left_by_fits(pieces, static_cast<std::size_t>(w));
     if (w > kLeastWindow && (!most_are_as_long(w) || !left || left->all > 2.0 * variance)) break;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Places and velocities along tracks: polynomials of second degree, each fitted by least squares
-/// to the frames about one (Savitzky and Golay, 1964), and what the fits say of the tracks' noise.
+/// Smooth places and velocities along tracks by local parabolas, each fitted by least squares to
+/// the frames around one (Savitzky and Golay, 1964), and the noise of tracks that the fits'
+/// residuals show.
 
 #include <cstddef>
 #include <optional>
@@ -11,7 +12,7 @@
 
 namespace gatewalk::lattice {
 
-/// Frames begin to end - 1 of a track, without a gap or jump between.
+/// Frames begin to end - 1 of a track, without a gap or jump in between.
 struct TrackPiece {
   const Track* track;
   std::size_t begin, end;
@@ -20,29 +21,35 @@ struct TrackPiece {
 
 inline constexpr int kLeastWindow = 5, kMostWindow = 101;  // frames, odd
 
-/// The path of a piece, by frame. At its ends the fits are those of the first and last window.
+/// The smooth path of a piece, by frame. The first and last frames use the fits of the first and
+/// last window.
 struct SmoothPath {
-  std::vector<double> time;           // s
-  std::vector<double> x, y, vx, vy;   // m, m/s
-  std::vector<double> velocity_gain;  // s^-2: variance of a velocity over that of a measured place
+  std::vector<double> time;          // s
+  std::vector<double> x, y, vx, vy;  // m, m/s
+  /// s^-2: variance of a velocity over the variance of a measured place
+  std::vector<double> velocity_gain;
 };
-/// `window` frames per fit, at most the piece's own, of which there are kLeastWindow at least.
+/// Smooths a piece with `window` frames per fit, or all frames of a shorter piece, which must have
+/// at least kLeastWindow.
 [[nodiscard]] SmoothPath smoothed(const TrackPiece& piece, int window);
 
-/// How much less a fitted place scatters than a measured one, amid a window of equal steps:
-/// variance over variance.
+/// Variance of a fitted place over the variance of a measured one, in the middle of a window of
+/// equal steps.
 [[nodiscard]] double place_gain(int window);
 
+/// The noise of tracks, and of the velocities fitted to them.
 struct TrackNoise {
-  double place = 0.0;     // m, standard deviation of each of x and y, from the residuals of the
-                          // shortest fits; taken to be independent from frame to frame
-  int window = 0;         // frames per fit
-  double velocity = 0.0;  // m/s, what that makes of each velocity amid a window
-  double velocity_bias = 0.0;  // m/s, root mean square of what the fits smooth away of one
+  /// m, standard deviation of each of x and y, from the residuals of the shortest fits; assumed
+  /// independent from frame to frame
+  double place = 0.0;
+  int window = 0;              // frames per fit
+  double velocity = 0.0;       // m/s, noise of a velocity in the middle of a window
+  double velocity_bias = 0.0;  // m/s, root mean square of the bias of a velocity by smoothing
 };
-/// Without a window the one whose velocities have the least mean square error, noise and bias
-/// together: what fits of longer and longer windows leave tells it. `interval` is from frame to
-/// frame (s). Throws std::invalid_argument when no piece is as long as the shortest fit.
+/// Estimates the noise. Without a `window`, chooses the one with the least mean square error of
+/// velocities (noise and bias), estimated from the residuals of longer and longer windows.
+/// `interval`: from frame to frame, s. Throws std::invalid_argument if no piece is as long as the
+/// shortest fit.
 [[nodiscard]] TrackNoise noise_of(const std::vector<TrackPiece>& pieces, double interval,
                                   std::optional<int> window);
 

@@ -9,8 +9,8 @@
 namespace gatewalk::lattice {
 namespace {
 
-constexpr double kSeldom = 1e-3;            // runs of one place, by chance, in a whole file
-constexpr std::size_t kEnough = 1'000'000;  // values that tell a quantile
+constexpr double kSeldom = 1e-3;            // expected number of chance runs of one place per file
+constexpr std::size_t kEnough = 1'000'000;  // number of values that suffice for a quantile
 
 double quantile(std::vector<double>& values, double share) {
   if (values.empty()) return 0.0;
@@ -20,7 +20,7 @@ double quantile(std::vector<double>& values, double share) {
   return *at;
 }
 
-/// Along one axis: how fine places are written, and how much they scatter.
+/// Along one axis: the resolution of written places, and their scatter.
 struct Grain {
   std::vector<double> places, bends;  // bends: |second differences|
 
@@ -28,10 +28,11 @@ struct Grain {
     places.push_back(middle);
     bends.push_back(std::abs(before - 2.0 * middle + behind));
   }
-  /// The most that the chance may be that a body at rest is seen twice at the same coordinate. A
-  /// low quantile of the bends is of bodies that hardly speed up or turn: what is left is noise.
+  /// Upper bound on the probability that a body at rest is seen twice at the same coordinate. The
+  /// low quantile of the bends comes from bodies that hardly speed up or turn, so that only noise
+  /// remains.
   [[nodiscard]] double chance_of_same() {
-    constexpr double kTenth = 0.1256613;  // of |x| of a normal x: as many are less
+    constexpr double kTenth = 0.1256613;  // 10 % quantile of |x| for standard normal x
     const double noise = quantile(bends, 0.1) / (kTenth * std::sqrt(6.0));
     std::sort(places.begin(), places.end());
     places.erase(std::unique(places.begin(), places.end()), places.end());
@@ -42,7 +43,7 @@ struct Grain {
   }
 };
 
-/// The longest run of one place that noise makes now and then.
+/// The longest run of one place that noise produces occasionally.
 double longest_by_chance(const TrackFile& file) {
   std::size_t places = 0;
   for (const Track& track : file.tracks) places += track.time.size();
@@ -62,10 +63,10 @@ double longest_by_chance(const TrackFile& file) {
   if (!(same < 1.0)) return HUGE_VAL;
   const double by_chance =
       1.0 + std::log(kSeldom / static_cast<double>(places)) / std::log(std::max(same, 1e-300));
-  return std::max<double>(kLeastWindow - 1, by_chance);  // shorter ones fill no fit
+  return std::max<double>(kLeastWindow - 1, by_chance);  // shorter runs do not fill a fit
 }
 
-/// Of the steps of bodies that move, nine of ten are no longer.
+/// The 90 % quantile of the steps of moving bodies, m.
 double usual_step(const TrackFile& file) {
   std::vector<double> steps;
   for (const Track& t : file.tracks)
@@ -78,7 +79,7 @@ double usual_step(const TrackFile& file) {
 }  // namespace
 
 void leave_out_lost(TrackFile& file, const TrackOptions& options) {
-  constexpr double kAway = 2.0, kFar = 10.0;  // usual steps
+  constexpr double kAway = 2.0, kFar = 10.0;  // in usual steps
   const double longest = longest_by_chance(file), usual = usual_step(file);
   std::int64_t at_rest = 0;
   const double zero_x = file.metres_per_unit * (0.0 - options.origin_x);
@@ -101,7 +102,7 @@ void leave_out_lost(TrackFile& file, const TrackOptions& options) {
       const bool is_far = (begin > 0 || end < t.time.size()) &&
                           (begin == 0 || distance(begin, begin - 1) > kFar * usual) &&
                           (end == t.time.size() || goes_further(kFar));
-      // A body that rests goes on from where it was; one that was lost is elsewhere by then.
+      // A body at rest continues from its place; a body that was lost is elsewhere by then.
       const bool is_held = is_long && goes_further(kAway);
       const std::size_t stays = is_zero && (is_long || is_far) ? 0 : is_held ? 1 : end - begin;
       (is_zero ? file.at_zero : file.repeated) += static_cast<std::int64_t>(end - begin - stays);

@@ -29,13 +29,13 @@ using dynamics::Entry;
 using dynamics::Fate;
 using dynamics::Section;
 
-constexpr std::size_t kBytesAtOnce = 1 << 20;  // that are written
-constexpr double kSameClock = 1e-9;  // relative: how far a time may be off trapped_after_s
+constexpr std::size_t kBytesAtOnce = 1 << 20;  // bytes written at once
+constexpr double kSameClock = 1e-9;  // relative tolerance of times against trapped_after_s
 constexpr const char* kNumber = "a number, such as 0.25 or -2.5e-1";
 
 // ---- Columns
 
-/// The columns of a table, in the order in which they are written.
+/// The columns of a table, in the order of writing.
 std::vector<std::string> column_names(const CellFile& cells, bool with_type) {
   std::vector<std::string> names{"body", "trial"};
   if (with_type) names.emplace_back("type");
@@ -56,15 +56,15 @@ std::string with_commas(const std::vector<std::string>& names) {
 
 constexpr std::size_t kMostColumns = 5 + 2 * dynamics::kMostCoordinates + dynamics::kMostCosts;
 
-/// Where in a line what stands.
+/// Index of each column.
 struct Columns {
   std::size_t body = 0, trial = 0, in = 0, out = 0;
-  std::size_t type = kMostColumns;  // none
+  std::size_t type = kMostColumns;  // no such column
   std::array<std::size_t, dynamics::kMostCoordinates> in_at{}, out_at{};
   std::array<std::size_t, dynamics::kMostCosts> costs{};
 };
 
-/// Names in the order in which they first come.
+/// Names in the order of first occurrence.
 class NameTable {
  public:
   [[nodiscard]] std::size_t place_of(std::string_view name) {
@@ -183,7 +183,7 @@ class RunsReader {
     if (!value || std::isnan(*value)) refuse_value(column, allowed);
     return *value;
   }
-  /// Place of the face; their number for a word that is none.
+  /// Index of the face; the number of faces for an unknown name.
   [[nodiscard]] std::size_t face_named(std::string_view name) const {
     std::size_t f = 0;
     while (f < section_.faces.size() && section_.faces[f].name != name) ++f;
@@ -236,7 +236,8 @@ class RunsReader {
     runs_.trials.push_back({entry, static_cast<std::int32_t>(body), std::ssize(runs_.passages), 0});
     seen_.push_back({body, trial_number(), table_.line()});
   }
-  /// Different texts, different numbers; those of whole numbers are their own.
+  /// A number for the trial's text: whole numbers stand for themselves, and different texts get
+  /// different numbers.
   std::uint64_t trial_number() {
     constexpr std::uint64_t kText = std::uint64_t{1} << 63;
     std::uint64_t number = 0;
@@ -297,7 +298,7 @@ class RunsReader {
     return passage;
   }
 
-  /// The first one is the time.
+  /// The cost of a passage; cost 0 is the time.
   double cost_in(std::size_t cost, const CellPassage& passage) {
     const std::size_t column = columns_.costs[cost];
     const bool lost = passage.fate == Fate::broken;
@@ -313,7 +314,7 @@ class RunsReader {
     return time;
   }
 
-  /// Who stayed as long as that is trapped, and nobody else.
+  /// Throws unless exactly the passages that took trapped_after_s are trapped.
   void require_clock(const CellPassage& passage) const {
     if (!cells_.trapped_after) return;
     const double time = passage.costs[0], limit = *cells_.trapped_after;
@@ -358,8 +359,8 @@ class RunsReader {
   RecordedRuns runs_;
   NameTable bodies_, texts_;
   std::vector<SeenTrial> seen_;
-  std::string body_, trial_;                // of the trial under way
-  CellPassage last_{.fate = Fate::broken};  // of it
+  std::string body_, trial_;                // of the current trial
+  CellPassage last_{.fate = Fate::broken};  // last passage of the current trial
   std::int64_t last_line_ = 0;
 };
 
@@ -500,7 +501,7 @@ std::vector<EnteredPassage> entered_passages(const RecordedRuns& runs) {
 
 bool has_columns(const std::string& path, std::initializer_list<std::string_view> columns) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe is read only once
+  if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe can be read only once
   const auto has_all = [&](const Table::Names& names) {
     return std::all_of(columns.begin(), columns.end(), [&](std::string_view column) {
       return Table::column_in(names, column).has_value();
@@ -508,7 +509,7 @@ bool has_columns(const std::string& path, std::initializer_list<std::string_view
   };
   try {
     return Table(path, has_all).has_header();
-  } catch (const std::invalid_argument&) {  // who reads it says why it is no table
+  } catch (const std::invalid_argument&) {  // the reader of the table reports what is wrong with it
     return false;
   }
 }

@@ -64,7 +64,7 @@ Problem problem_of(const CellFile& cells, const RunPool& pool) {
                   .source = cells.source,
                   .check = {}};
   CellMap& map = problem.cells.map;
-  if (map.types.size() > 1 && map.type_of_cell.empty()) {  // the first one stands everywhere
+  if (map.types.size() > 1 && map.type_of_cell.empty()) {  // the first type everywhere
     map.columns = cells.field.columns;
     map.type_of_cell.assign(
         static_cast<std::size_t>(cells.field.columns) * static_cast<std::size_t>(cells.field.rows),
@@ -135,7 +135,7 @@ RunPool with_lost(const RunPool& pool, const Problem& problem, LostFate fate, in
                   std::uint64_t seed) {
   const Kernel kernel = kernel_of(problem.map(), pool, per_leaf);
   const FieldTrials& from = pool.scattered.each;
-  // Of each state and type, the passages that left.
+  // By state and type: the passages that left.
   std::vector<std::vector<std::size_t>> left(static_cast<std::size_t>(kernel.space.size()) *
                                              problem.map().types.size());
   const auto place_of = [&](const Entry& entry, const CellPassage& passage) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Recorded runs as what chains are made of.
+/// Recorded runs as the pool that chains are made from.
 
 #include <array>
 #include <cstdint>
@@ -15,35 +15,37 @@
 
 namespace gatewalk::lattice {
 
-/// All runs of all trials; those of one body go together when trials are taken in groups.
+/// All runs as a pool; all trials of one body go into the same group.
 [[nodiscard]] RunPool pool_of(RecordedRuns runs);
 
-/// The other way round: simulated trials from a start, each of a body of its own, added to `runs`;
-/// and the cells that they ran through, as a cell file. Who was trapped is so by the table: the
-/// file has no time limit. `runs.passages` must be of the section.
+/// Adds simulated trials from a start to `runs`, each with a body of its own. `runs.passages` must
+/// belong to the same section.
 void add_trials(RecordedRuns& runs, const FieldTrials& each, const dynamics::Entry& start);
+/// The cells of a problem as a cell file. It has no time limit: bodies count as trapped if the
+/// table says so.
 [[nodiscard]] CellFile cells_of(const Problem& problem);
 
-/// The field of the cells; there are none to run. Faces without a usual range get that of the
-/// entries seen, or one scale about 0 where there was none: nothing leads to such a state.
+/// The field of recorded cells, which has no cells to run. A face without a usual range gets the
+/// range of the entries seen, or one scale around 0 if there were none: no run leads to that state.
 [[nodiscard]] Problem problem_of(const CellFile& cells, const RunPool& pool);
 
-/// What recorded runs cannot tell, a sentence each: few bodies, faces that nobody entered by.
+/// What recorded runs cannot tell, one sentence each: too few bodies for error bars, faces by which
+/// no body entered.
 [[nodiscard]] std::vector<std::string> doubts_of(const RunPool& pool, const Problem& problem);
-/// Whether places on the faces are farther off than a cell is large. Empty: none is.
+/// A sentence if places on the faces are further from the middle than a cell is large; else empty.
 [[nodiscard]] std::string far_from_faces(const RunPool& pool, const Problem& problem);
 
-/// What became of bodies that were lost from sight, if one may guess: all were trapped, or all left
-/// as another body did that entered by the same state (drawn; those of states that nobody is known
-/// to have left stay lost).
+/// The assumed fate of bodies that were lost: all were trapped, or all left as another body from
+/// the same state did. That body is drawn at random; bodies in states from which no body is known
+/// to have left stay lost.
 enum class LostFate { trapped, left };
 [[nodiscard]] RunPool with_lost(const RunPool& pool, const Problem& problem, LostFate fate,
                                 int per_leaf, std::uint64_t seed);
 /// The share of all passages that were lost.
 [[nodiscard]] double lost_share(const RunPool& pool);
 
-/// Predictions from a start (none: as bodies were seen to enter first) if all lost bodies had been
-/// trapped, and if all had left; without any when nobody was lost.
+/// Predictions from a start (nullopt: from the observed first entries) if all lost bodies had been
+/// trapped, and if all had left; without predictions if no body was lost.
 struct LostBounds {
   double lost = 0.0;  // share of all passages
   std::array<markov::FinalDistribution, 2> final{};

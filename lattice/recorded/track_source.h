@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What the readers of tracks share. Not part of the installed headers.
+/// Helpers that the readers of tracks share. Not part of the installed headers.
 
 #include <optional>
 #include <string>
@@ -12,41 +12,42 @@
 
 namespace gatewalk::lattice {
 
-/// Whether it can be the number of a frame: a whole one, up to 1e12.
+/// True if `number` can be a frame number: a whole number, up to 1e12 in size.
 [[nodiscard]] bool is_frame(double number);
 
-/// `"text"`, fit for a message.
+/// `"text"`, shortened for a message.
 [[nodiscard]] std::string in_quotes(const std::string& text);
 
-/// Refuses what the file does not say and the user did not: names all options that are missing.
+/// Collects what neither the file nor the user says, and refuses it with all missing options named.
 class Lacking {
  public:
   explicit Lacking(std::string path) : path_(std::move(path)) {}
   void add(const std::string& what, const std::string& option) {
     text_ += (text_.empty() ? "" : "; ") + what + ": " + option;
   }
-  /// Throws std::invalid_argument unless nothing is lacking.
+  /// Throws std::invalid_argument if anything is missing.
   void refuse() const;
 
  private:
   std::string path_, text_;
 };
 
-/// Throws std::invalid_argument for an option that this kind of file makes no use of.
+/// Throws std::invalid_argument for an option that this kind of file does not use.
 void refuse_unused(bool given, const std::string& path, const std::string& option,
                    const std::string& why);
 
-/// Which of `names` was meant: the one asked for, or the only one, which is said. Throws
-/// std::invalid_argument naming them.
+/// Index of the key point asked for, or of the only one, which a remark then names. Throws
+/// std::invalid_argument naming all `names`.
 [[nodiscard]] std::size_t key_point_in(const std::vector<std::string>& names, TrackFile& file,
                                        const TrackOptions& options);
 
-/// Sorts out places as they come, one frame of one body after the other.
+/// Adds places to tracks, and sorts out invalid ones.
 class TrackMaker {
  public:
-  /// Of a file whose metres_per_unit is known.
+  /// `file`: its metres_per_unit must be known.
   TrackMaker(TrackFile& file, const TrackOptions& options) : file_(file), options_(options) {}
-  /// `x` and `y` in the file's unit, NaN where there is none; `confidence` too, if it is known.
+  /// Adds a place: `x` and `y` in the file's unit, NaN if there is none; `confidence` if it is
+  /// known.
   void add(Track& track, double time, double x, double y, std::optional<double> confidence);
 
  private:
@@ -54,24 +55,24 @@ class TrackMaker {
   const TrackOptions& options_;
 };
 
-/// Of all tracks, from a frame in which a body was seen to its next one, s.
+/// Time from each frame in which a body was seen to its next one, for all tracks, s.
 [[nodiscard]] std::vector<double> steps_of(const TrackFile& file);
-/// Where frames have times of their own: the interval that most steps of all tracks have (their
-/// median), which is said.
+/// The frame interval of files whose frames have times: the median step of all tracks, s, which a
+/// remark names.
 [[nodiscard]] double median_step(TrackFile& file);
-/// Throws std::invalid_argument where most steps of the times (s) are no whole number of the frames
-/// that `fps` means; `fps_words` and `time_words` name both.
+/// Throws std::invalid_argument if most steps of the times (s) are not whole numbers of frames at
+/// `fps`; `fps_words` and `time_words` name both.
 void require_steps(std::vector<double> steps, const std::string& source, double fps,
                    const std::string& fps_words, const std::string& time_words);
 
-/// A table of the columns that the options name, or one of DeepLabCut.
+/// Reads a table of the columns that the options name, or one of DeepLabCut.
 [[nodiscard]] TrackFile read_track_table(const std::string& path, const TrackOptions& options);
-/// Whether a line is the first of a table of DeepLabCut, or of what writes like it.
+/// True if the line is the first of a table that DeepLabCut, or a compatible program, wrote.
 [[nodiscard]] bool is_of_deeplabcut(const Table::Names& line);
-/// Leaves out places that a tracker wrote in frames in which it had lost its body: the same one
-/// again, for more frames than the noise of places allows, until the body is elsewhere, but for the
-/// first of them; and (0, 0) of the file, for as many frames or far from those before and behind.
-/// Counts them, with a warning.
+/// Leaves out places that a tracker wrote while it had lost its body, and counts them, with a
+/// warning. These are: the same place for more frames than noise explains, followed by another
+/// place (the first frame is kept); and (0, 0) of the file, for as many frames or far from the
+/// places before and after.
 void leave_out_lost(TrackFile& file, const TrackOptions& options);
 
 [[nodiscard]] TrackFile read_deeplabcut(Table& table, const TrackOptions& options);

@@ -45,7 +45,8 @@ constexpr std::array<UnitWords, 18> kUnits{{
     {{UnitKind::pixel}, {"px", "pix", "pixel", "pixels"}},
 }};
 
-// Also in the middle of a name, "time_ms_rel": these are nothing else.
+// Units that count even in the middle of a name ("time_ms_rel"), because they have no other
+// meaning.
 constexpr std::array<std::string_view, 24> kUnmistakable{
     "ms",          "msec",        "msecs",        "millis",  "millisecond", "milliseconds",
     "us",          "µs",          "μs",           "usec",    "µsec",        "μsec",
@@ -53,11 +54,11 @@ constexpr std::array<std::string_view, 24> kUnmistakable{
     "nanoseconds", "sec",         "secs",         "seconds", "minutes",     "hours"};
 
 struct Word {
-  std::string_view text, gap;  // gap: what stands between it and the word before
+  std::string_view text, gap;  // gap: the text between this word and the one before
   std::size_t begin;
 };
 
-/// "timeMs_rel": time, Ms, rel. Letters beyond ASCII (µ) are letters.
+/// The words of a name: "timeMs_rel" gives time, Ms, rel. Letters beyond ASCII (µ) are letters.
 std::vector<Word> words_in(std::string_view text) {
   const auto is_lower = [](char c) { return c >= 'a' && c <= 'z'; };
   const auto is_upper = [](char c) { return c >= 'A' && c <= 'Z'; };
@@ -83,8 +84,8 @@ bool is_time(const std::optional<TrackUnit>& unit) {
   return unit && (unit->kind == UnitKind::time || unit->kind == UnitKind::frame);
 }
 
-/// Where "mm/s", "mm per s" or "mm s-1" begins; npos: nothing is per time. A name says so only
-/// behind a length; between brackets "(1/s)" does too.
+/// Where "mm/s", "mm per s" or "mm s-1" begins; npos if nothing is per time. In a name, a time
+/// counts only after a length; in brackets "(1/s)" counts too.
 std::size_t begin_of_speed(std::string_view text, bool is_name) {
   const std::vector<Word> words = words_in(text);
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -101,8 +102,8 @@ std::size_t begin_of_speed(std::string_view text, bool is_name) {
   return text.npos;
 }
 
-/// Whether numbers of frames are meant: "FrameNumber", but neither "frame_time" nor "time of
-/// frame".
+/// The word that stands for frame numbers, as in "FrameNumber", but not in "frame_time" or "time of
+/// frame"; else null.
 const Word* frames_in(const std::vector<Word>& words) {
   const Word* found = nullptr;
   bool has_time = false;
@@ -121,15 +122,14 @@ const Word* frames_in(const std::vector<Word>& words) {
   return found;
 }
 
-/// Of words that are units between brackets: as the end of a name they are more often another
-/// thing.
+/// True for words that are units in brackets, but usually mean something else at the end of a name.
 bool is_ambiguous(std::string_view word) {
   return word == "in" || word == "foot" || word == "feet";
 }
 
 [[noreturn]] void refuse_unit(const std::string& what) { throw std::invalid_argument(what); }
 
-/// The one that is stated surely, else the first; they agree.
+/// The unit stated with certainty, else the first one; throws if units disagree.
 const StatedUnit* agreed(const std::vector<StatedUnit>& stated, const std::string& what) {
   const StatedUnit* found = nullptr;
   for (const StatedUnit& s : stated) {
@@ -183,7 +183,8 @@ StatedUnit unit_in_name(const std::string& name) {
       continue;
     }
     const bool is_last = i + 1 == words.size();
-    const bool is_letter = word.text.size() == 1 && i > 0 && word.gap.empty();  // xM
+    // a single letter, as in xM
+    const bool is_letter = word.text.size() == 1 && i > 0 && word.gap.empty();
     const bool is_known = is_last ? !is_letter && !is_ambiguous(in_small_letters(word.text)) &&
                                         (words.size() > 1 || unit->kind == UnitKind::time)
                                   : std::find(kUnmistakable.begin(), kUnmistakable.end(),
@@ -209,7 +210,7 @@ double metres_per_unit_of(const std::vector<StatedUnit>& of_x, const std::vector
                           const std::string& x_name, const std::string& y_name, TrackFile& file,
                           const TrackOptions& options) {
   const auto given = options.metres_per_unit;
-  // The end of a name that would be a time is something else: x_s is smoothed.
+  // A time at the end of a name of a place means something else: x_s is smoothed.
   const auto of_length = [](std::vector<StatedUnit> all) {
     std::erase_if(all, [](const StatedUnit& s) { return !s.is_sure && is_time(s.unit); });
     return all;

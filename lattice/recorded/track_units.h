@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Units that files of tracks state: believed, or refused, never passed over. Not part of the
+/// Units that files of tracks state: each one is used or refused, never ignored. Not part of the
 /// installed headers.
 
 #include <optional>
@@ -14,9 +14,10 @@ namespace gatewalk::lattice {
 
 enum class UnitKind : std::uint8_t { time, frame, length, pixel };
 
+/// A unit of time, frames, length or pixels.
 struct TrackUnit {
   UnitKind kind;
-  double above = 1.0, below = 1.0;  // x of it is x * above / below in s, or in m
+  double above = 1.0, below = 1.0;  // a value x in this unit is x * above / below in s, or in m
 
   [[nodiscard]] double in_si(double x) const { return x * above / below; }
   [[nodiscard]] bool same_as(const TrackUnit& other) const {
@@ -24,35 +25,36 @@ struct TrackUnit {
   }
 };
 
-/// The unit that is called so, "ms", "sec", "micron", "px", "frame"; brackets and capitals are no
-/// matter. None for any other text.
+/// The unit of this name, such as "ms", "sec", "micron", "px", "frame", whatever brackets and
+/// capitals; nullopt for any other text.
 [[nodiscard]] std::optional<TrackUnit> unit_called(std::string_view text);
 
-/// What a file says that a column, or a variable, is in.
+/// The unit that a file states for a column or a variable.
 struct StatedUnit {
-  std::string text;               // "(ms)"; empty: nothing
+  std::string text;               // "(ms)"; empty: none
   std::string where;              // "in the row of units"
-  std::optional<TrackUnit> unit;  // none: nothing that is known
+  std::optional<TrackUnit> unit;  // nullopt: an unknown unit
   bool is_sure = true;            // false: the end of a name, which may mean something else
-  bool gives_way = false;         // to the user: programs write it whether it was set or not
+  /// true: the user's unit goes first, because programs write this one whether it was set or not
+  bool gives_way = false;
 
   [[nodiscard]] std::string words() const { return "in " + text + ", " + where; }
 };
 
-/// What the name of a column says: "Time [ms]", "t_ms", "x (cm)", "timeMs"; "mm/s" of "x_mm/s",
-/// which is no unit. Units of time that cannot be anything else count anywhere in it
-/// ("time_ms_rel"), and so do frames ("frame_idx", but not "frame_time").
+/// The unit in the name of a column: "Time [ms]", "t_ms", "x (cm)", "timeMs"; "mm/s" of "x_mm/s",
+/// which is no unit here. Unmistakable units of time count anywhere in the name ("time_ms_rel"),
+/// and so do frames ("frame_idx", but not "frame_time").
 [[nodiscard]] StatedUnit unit_in_name(const std::string& name);
 
-/// The unit of times; none: nothing is stated. Throws std::invalid_argument, beginning with `what`,
-/// for what is no unit of time, and for frames.
+/// The unit of times; nullopt if none is stated. Throws std::invalid_argument, with a message that
+/// begins with `what`, for anything but a unit of time, and for frames.
 [[nodiscard]] std::optional<TrackUnit> time_unit_of(const std::vector<StatedUnit>& stated,
                                                     const std::string& what,
                                                     const std::string& instead_of_frames);
 
-/// Metres of a unit of places, as the file states it of x and of y, or as the user does. Throws
-/// std::invalid_argument where both do and differ, where nobody does, and for what is no length. A
-/// unit that gives way, or that nobody knows, is a warning then.
+/// Metres per unit of places, stated by the file for x and y, or by the user. Throws
+/// std::invalid_argument if both state it and differ, if neither does, and for units that are no
+/// length. A stated unit that is unknown or gives way (StatedUnit) then causes a warning.
 [[nodiscard]] double metres_per_unit_of(const std::vector<StatedUnit>& of_x,
                                         const std::vector<StatedUnit>& of_y,
                                         const std::string& x_name, const std::string& y_name,

@@ -19,7 +19,7 @@ namespace gatewalk::lattice {
 std::string in_quotes(const std::string& text) { return '"' + printable(text) + '"'; }
 
 bool is_frame(double number) {
-  constexpr double kMost = 1e12;  // all of them have different times
+  constexpr double kMost = 1e12;  // all these have different times in s
   return number == std::floor(number) && std::abs(number) <= kMost;
 }
 
@@ -99,7 +99,7 @@ double median_step(TrackFile& file) {
 
 void require_steps(std::vector<double> steps, const std::string& source, double fps,
                    const std::string& fps_words, const std::string& time_words) {
-  constexpr double kOff = 0.1;  // of a frame: times are rounded, and cameras not quite even
+  constexpr double kOff = 0.1;  // of a frame: times are rounded, and cameras slightly uneven
   if (steps.empty()) return;
   const double step = middle_of(std::move(steps)), frames = step * fps;
   if (std::round(frames) >= 1.0 && std::abs(frames - std::round(frames)) <= kOff) return;
@@ -136,7 +136,7 @@ TrackFile read_by_kind(const std::string& path, const TrackOptions& options) {
   return read_track_table(path, options);
 }
 
-/// Names that tell the files apart: "a" of "a.csv", or the whole paths where these are alike.
+/// Names that distinguish the files: "a" for "a.csv", or the whole paths if names are equal.
 std::vector<std::string> short_names(const std::vector<std::string>& paths) {
   std::vector<std::string> names;
   for (const std::string& path : paths)
@@ -146,7 +146,7 @@ std::vector<std::string> short_names(const std::vector<std::string>& paths) {
   return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end() ? names : paths;
 }
 
-/// Those of all recordings once, others with the name of their file.
+/// Joins remarks: those common to all recordings once, others with the name of their file.
 std::vector<std::string> joined_remarks(const std::vector<std::string>& paths,
                                         const std::vector<std::vector<std::string>>& of_files) {
   std::vector<std::string> joined;
@@ -166,7 +166,7 @@ std::vector<std::string> joined_remarks(const std::vector<std::string>& paths,
 
 /// Adds the bodies of another recording.
 void add_recording(TrackFile& all, TrackFile&& file, const std::string& name) {
-  constexpr double kSameInterval = 1e-3;  // relative; clocks of cameras of one kind
+  constexpr double kSameInterval = 1e-3;  // relative; tolerance for clocks of cameras of one kind
   if (all.tracks.empty()) {
     all.kind = file.kind;
     all.interval = file.interval;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// DeepLabCut's CSV: rows scorer, (individuals,) bodyparts, coords, then a row a frame.
+// Reads DeepLabCut's CSV: rows scorer, (individuals,) bodyparts, coords, then one row per frame.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,7 +13,7 @@
 namespace gatewalk::lattice {
 namespace {
 
-/// Where one individual's key point stands in a row; 0: nowhere.
+/// Columns of one individual's key point; 0: none.
 struct KeyPointColumns {
   std::string individual;
   std::size_t x = 0, y = 0, likelihood = 0;
@@ -81,7 +81,7 @@ class WideTable {
     require(next(coords_) && coords_[0] == "coords", "coords");
   }
 
-  /// Of every individual that has the key point.
+  /// The columns of all individuals that have the key point.
   std::vector<KeyPointColumns> places_of_key_point() {
     std::vector<std::string> names;
     for (std::size_t c = 1; c < bodyparts_.size(); ++c)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The NetCDF of movement (xarray): position(time, space, keypoints, individuals), its dimensions in
-// any order and, since its version 0.17, without the s; of boxes without key points.
+// Reads the NetCDF of movement (xarray): position(time, space, keypoints, individuals), with
+// dimensions in any order and, since its version 0.17, in the singular; boxes have no key points.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -27,7 +27,7 @@ struct LabelledArray {
   std::vector<std::string> dimensions;
   std::vector<std::size_t> lengths;
 
-  /// The dimension's place among them; npos: none.
+  /// Index of a dimension; npos if missing.
   [[nodiscard]] std::size_t along(const std::string& dimension) const {
     const auto found = std::find(dimensions.begin(), dimensions.end(), dimension);
     return found == dimensions.end() ? static_cast<std::size_t>(-1)
@@ -101,7 +101,7 @@ class MovementFile {
     return *found;
   }
 
-  /// Of a variable, or of the file; empty for no attribute of text.
+  /// A text attribute of a variable, or of the file; empty if there is none.
   std::string text_of(const std::string& attribute, int of = NC_GLOBAL) const {
     nc_type type = NC_NAT;
     std::size_t length = 0;
@@ -131,7 +131,7 @@ class MovementFile {
       if (count > 0) check(nc_get_var_string(image_, v.id, raw.data()), name);
       for (const char* text : raw) all.emplace_back(text ? text : "");
       if (count > 0) check(nc_free_string(count, raw.data()), name);
-    } else if (type == NC_CHAR && v.lengths.size() == 2) {  // as NetCDF-3 has them
+    } else if (type == NC_CHAR && v.lengths.size() == 2) {  // as NetCDF-3 stores them
       std::string raw(count * v.lengths[1], '\0');
       if (!raw.empty()) check(nc_get_var_text(image_, v.id, raw.data()), name);
       for (std::size_t i = 0; i < count; ++i) {
@@ -145,7 +145,7 @@ class MovementFile {
   }
 
   /// All numbers of a variable at the key point, if it has one, in the file's order of the other
-  /// dimensions. What the file marks as none is NaN.
+  /// dimensions. Missing values are NaN.
   std::vector<double> values_of(const LabelledArray& v) const {
     for (const char* packed : {"scale_factor", "add_offset"})
       if (nc_inq_attid(image_, v.id, packed, nullptr) == NC_NOERR)
@@ -168,7 +168,7 @@ class MovementFile {
     return values;
   }
 
-  /// Where a value stands in what values_of gives: `at` by names of dimensions, 0 for the others.
+  /// Index into the result of values_of; 0 along dimensions that the variable does not have.
   std::size_t index_of(const LabelledArray& v, std::size_t time, std::size_t space,
                        std::size_t individual) const {
     std::size_t index = 0;
@@ -180,7 +180,7 @@ class MovementFile {
     return index;
   }
 
-  /// Empty where there are none: no variable, or not one number in it.
+  /// Empty if there is no such variable, or not a single number in it.
   std::vector<double> confidences() {
     const auto v = find("confidence");
     if (!v) return {};
@@ -224,8 +224,8 @@ class MovementFile {
         metres_per_unit_of(of_places, of_places, "position", "position", file_, options_);
   }
 
-  /// By movement's attribute of the file, and by the units of the variable, which xarray gives to
-  /// times that have some.
+  /// Reads the unit of times from movement's attribute of the file, and from the variable's units,
+  /// which xarray gives to times that have some.
   void read_time_unit() {
     const std::string of_file = text_of("time_unit");
     std::string units = text_of("units", required("time").id);
@@ -279,7 +279,7 @@ class MovementFile {
     return times;
   }
 
-  /// One, where the file is of one individual that was chosen before it was saved.
+  /// Names of all bodies; a single one if one individual was chosen before the file was saved.
   std::vector<std::string> names_of_bodies() {
     if (position_.has(individual_)) return words(individual_);
     std::string name;
@@ -325,13 +325,13 @@ class MovementFile {
 
   const TrackOptions& options_;
   TrackFile file_;
-  std::vector<char> bytes_;  // what image_ reads from
+  std::vector<char> bytes_;  // the memory that image_ reads
   markov::netcdf::Image image_;
   LabelledArray position_, confidence_;
   std::string individual_, key_point_;
-  bool in_frames_ = false;               // else times are
+  bool in_frames_ = false;               // otherwise times are in time_unit_
   TrackUnit time_unit_{UnitKind::time};  // in this
-  std::size_t point_ = 0;                // which of the key points, if there are any
+  std::size_t point_ = 0;                // index of the key point, if there are any
   double fps_ = 0.0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tables whose columns are named by the user: a line a place, or a line a frame that has columns
+// Reads tables whose columns the user names: one place per line, or one frame per line with columns
 // for each body.
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@ constexpr const char* kColumnsHelp =
     "the file says otherwise, in place of frame=...; confidence=... if there is one; no body= for "
     "one body, or where columns are of a body each: x=x*,y=y*)";
 
-/// What a column means.
+/// The meanings of columns.
 enum Meaning : std::size_t { kBody, kFrame, kTime, kX, kY, kConfidence, kMeanings };
 constexpr std::array<const char*, kMeanings> kMeaningNames{"body", "frame", "time",
                                                            "x",    "y",     "confidence"};
@@ -31,7 +31,7 @@ using NamedColumns = std::array<std::string, kMeanings>;
 
 bool is_pattern(const std::string& name) { return name.find('*') != name.npos; }
 
-/// The names that --columns gives.
+/// The column names in --columns.
 NamedColumns named_columns(const std::string& given) {
   const auto refuse = [&](const std::string& what) {
     throw std::invalid_argument("--columns " + printable(given) + ": " + what);
@@ -68,7 +68,7 @@ NamedColumns named_columns(const std::string& given) {
   return names;
 }
 
-/// "1" of column "x1" and pattern "x*", in capitals or not; none: it is another column.
+/// "1" for column "x1" and pattern "x*", whatever the case; nullopt for another column.
 std::optional<std::string> body_in(const std::string& column, std::string_view pattern) {
   const std::size_t star = pattern.find('*');
   const std::string before = in_small_letters(pattern.substr(0, star)),
@@ -84,8 +84,8 @@ std::string column_of(const std::string& body, std::string pattern) {
   return pattern.replace(pattern.find('*'), 1, body);
 }
 
-/// The pattern of x where columns look like places of a body each: "X_Arena0_Ind*" of
-/// X_Arena0_Ind1 beside Y_Arena0_Ind1. Empty: they do not.
+/// The pattern of x if columns look like places of several bodies: "X_Arena0_Ind*" for
+/// X_Arena0_Ind1 with Y_Arena0_Ind1. Else empty.
 std::string pattern_in(const Table::Names& names) {
   const std::unordered_set<std::string> all(names.begin(), names.end());
   for (const std::string& name : names) {
@@ -98,7 +98,7 @@ std::string pattern_in(const Table::Names& names) {
   return {};
 }
 
-/// Whether a line names all columns that --columns does.
+/// True if a line names all columns of --columns.
 bool has_columns(const Table::Names& line, const NamedColumns& names) {
   return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
     if (name.empty()) return true;
@@ -135,7 +135,7 @@ class TrackTable {
     std::uint32_t line;
     double when, x, y, confidence;
   };
-  /// Where a body's places are; kNone: nowhere.
+  /// Columns of a body's places; kNone: no such column.
   struct Places {
     std::size_t x, y, confidence;
   };
@@ -189,15 +189,15 @@ class TrackTable {
                                : kNone});
         file_.tracks.push_back({*body, {}, {}, {}});
       }
-      if (places_.empty()) (void)column(names_[kX], "x");  // there is none: refused
+      if (places_.empty()) (void)column(names_[kX], "x");  // no such column: refused
     }
     if (body_ == kNone && file_.tracks.empty()) {
       file_.tracks.push_back({std::filesystem::path(file_.source).stem().string(), {}, {}, {}});
       file_.remarks.push_back("no column is body=: one body, " + printable(file_.tracks[0].body));
     }
   }
-  /// A column of times beside that of frames, which may contradict --fps. Places and the like are
-  /// none, whatever their names end in.
+  /// Finds a column of times besides the column of frames, to check --fps. Columns of places and
+  /// the like are no times, whatever their names end in.
   void find_other_times() {
     const auto is_used = [&](std::size_t i) {
       return i == when_ || i == body_ ||
@@ -218,7 +218,7 @@ class TrackTable {
       }
   }
 
-  /// Whether the row, behind the header, tells what the columns are in.
+  /// True if the row, directly after the header, states units of the columns.
   bool is_unit_row() {
     if (!may_be_units_) return false;
     const Places& at = places_.front();
@@ -232,7 +232,7 @@ class TrackTable {
     }
     may_be_units_ = false;
     if (held_.empty()) return false;
-    // TrackMate writes three rows, whatever their units are; others write one of units.
+    // TrackMate writes three rows, whatever their units; other programs write one row of units.
     if (is_text ||
         (held_.size() < kMostUnitRows && !(unit_called(units_[at.x]) && unit_called(units_[at.y]))))
       refuse_held();
@@ -288,8 +288,8 @@ class TrackTable {
     if (other_time_ != kNone) compare_times(rows_.back());
   }
 
-  /// From one frame of a body to a later one, of those that come first. What does not rise all the
-  /// time is no clock.
+  /// Compares the times of a body's first frames with its frame numbers. Values that do not always
+  /// increase are no clock.
   void compare_times(const Row& row) {
     const auto time = table_.number(table_[other_time_]);
     if (!time || std::isnan(*time)) return;
@@ -309,7 +309,7 @@ class TrackTable {
     const auto is_near = [&](double frames) {
       return std::abs(*middle * *options_.fps / frames - 1.0) <= kOff;
     };
-    // Times may count frames; those of which nothing is said may be in ms or microseconds.
+    // Times may count frames; times without a stated unit may be in ms or microseconds.
     if (is_near(1.0) || is_near(*options_.fps)) return;
     if (!other_is_stated_ && (is_near(1e3) || is_near(1e6))) return;
     file_.warnings.push_back(file_.source + ": --fps " + shortest(*options_.fps) +
@@ -326,7 +326,7 @@ class TrackTable {
     throw std::invalid_argument(file_.source + ": has no line of any body");
   }
 
-  /// What the file says that a column is in: by the row of units, and by its name.
+  /// The units that the file states for a column: by the row of units, and by its name.
   [[nodiscard]] std::vector<StatedUnit> stated_of(std::size_t at) const {
     std::vector<StatedUnit> all{unit_in_name(table_.columns()[at])};
     const std::string text = units_.empty() ? std::string() : units_[at];
@@ -339,7 +339,7 @@ class TrackTable {
     return "column " + printable(table_.columns()[at]);
   }
 
-  /// Frames in s, or times in what the file says.
+  /// The time in s of a frame number, or of a time in the file's unit.
   double seconds_of(double when) const {
     return has(kFrame) ? when / *options_.fps : time_unit_ ? time_unit_->in_si(when) : when;
   }
@@ -377,7 +377,8 @@ class TrackTable {
     file_.metres_per_unit = metres;
   }
 
-  /// Among numbers from 0 on, -1 is what clustering and tracking give to those of no body.
+  /// Drops body -1 among bodies numbered from 0: clustering and tracking give it to places without
+  /// a body.
   void drop_minus_one() {
     const auto whole = [](const std::string& name) { return Table::whole(name); };
     std::optional<std::size_t> none;
@@ -432,13 +433,14 @@ class TrackTable {
   NamedColumns names_;
   TrackFile file_;
   std::size_t body_ = kNone, when_ = kNone, other_time_ = kNone;  // columns
-  std::vector<Places> places_;                                    // of each body, or of all
+  std::vector<Places> places_;  // of each body; a single one if bodies have a column
   bool may_be_units_ = true, is_first_row_ = true, other_is_stated_ = false;
-  std::vector<std::int64_t> held_;      // lines that may be units
-  std::vector<std::string> units_;      // the last of them
-  std::optional<TrackUnit> time_unit_;  // that it states
+  std::vector<std::int64_t> held_;      // lines that may state units
+  std::vector<std::string> units_;      // fields of the last such line
+  std::optional<TrackUnit> time_unit_;  // stated by the file
   TrackUnit other_unit_{UnitKind::time};
-  std::unordered_map<std::int32_t, std::pair<double, double>> seen_;  // frame and time, by body
+  // last frame and time, by body
+  std::unordered_map<std::int32_t, std::pair<double, double>> seen_;
   std::vector<double> seconds_a_frame_;
   std::unordered_map<std::string, std::int32_t> bodies_;
   std::vector<Row> rows_;
