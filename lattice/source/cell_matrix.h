@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Matrix files of cells that are not ours: the chain of their runs, the runs, and the cell file;
-/// or a chain that was made elsewhere, without runs.
+/// Matrix files of cells that are not gates: the chain of recorded or simulated runs, the runs, and
+/// the cell file; or an imported chain, without runs.
 
 #include <memory>
 #include <optional>
@@ -13,35 +13,38 @@
 
 namespace gatewalk::lattice {
 
-/// The key of a matrix file's text that has the cell file.
+/// The key of the cell file in a matrix file's text.
 inline constexpr const char* kCellText = "cell";
 
-/// What such a file holds. The field and start are the cell file's, with overrides.
+/// The contents of a matrix file of such cells. Field and start are those of the cell file, with
+/// overrides.
 struct CellMatrix {
   std::shared_ptr<const MatrixFile> file;
   CellFile cells;
-  std::optional<RunPool> pool;  // none of a chain that was made elsewhere
+  std::optional<RunPool> pool;  // none for an imported chain
   Problem problem;
 };
-/// Of a matrix of such cells that was read from there. Throws markov::BadFile, and SceneError for
-/// an override that is not permitted.
+/// Unpacks a matrix file of such cells; `path` names the file in messages. Throws markov::BadFile,
+/// and SceneError for an override that is not permitted.
 [[nodiscard]] CellMatrix cell_matrix(std::shared_ptr<const MatrixFile> file,
                                      const std::string& path,
                                      const std::vector<std::string>& overrides = {});
 
-/// The matrices of a pool, by type, without starts of their own.
+/// The matrices of a pool, by cell type, without states for single starts.
 [[nodiscard]] std::vector<dynamics::Transitions> cell_matrices(const Problem& problem,
                                                                const RunPool& pool, int per_leaf);
-/// A file of these, with `text` beside the cell file: scales are kept as they are.
+/// A matrix file of these matrices, with the cell file and `text`. The scales of coordinates are
+/// kept.
 [[nodiscard]] MatrixFile cell_matrix_file(std::vector<dynamics::Transitions> matrices,
                                           CellFile cells, const RunPool& pool,
                                           std::map<std::string, std::string> text);
 
-/// One matrix for each type of `cells`, of its file.
+/// The matrices of a file, one per type of `cells`.
 [[nodiscard]] std::vector<dynamics::Transitions> matrices_of(const MatrixFile& file,
                                                              const CellFile& cells);
 
-/// A matrix file of any cells, whose section is that of its cell file, or of a disc in its gate.
+/// Reads a matrix file of any cells. Its section comes from the cell file in it, or is that of a
+/// disc in its gate.
 [[nodiscard]] MatrixFile read_matrix(const std::string& path);
 
 }  // namespace gatewalk::lattice

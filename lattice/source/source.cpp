@@ -27,8 +27,8 @@
 namespace gatewalk::lattice {
 namespace {
 
-/// A chain has field.fidelity "active" alone: refuses another one that a scene or an override asks
-/// for. What only the scene in a matrix has is said.
+/// Chains support field.fidelity "active" only: throws if the scene or an override asks for
+/// another. If only the scene kept in a matrix does, adds a doubt instead.
 void require_active(Source& s, const SourceOptions& options) {
   if (s.scene->field.fidelity == Fidelity::active) return;
   const std::string key = "field.fidelity",
@@ -50,7 +50,7 @@ void require_active(Source& s, const SourceOptions& options) {
       given == s.scene->named.end() ? s.scene->source : given->second, key, value));
 }
 
-/// Of a scene, also of a matrix's: it has its path and scene.
+/// Sets the problem of a source that has path and scene.
 void put_problem(Source& s, const SourceOptions& options) {
   require_active(s, options);
   s.problem = problem_without_cells(*s.scene);
@@ -76,7 +76,7 @@ Source open_matrix(const SourceFile& file, const SourceOptions& options) {
   SceneMatrix m = scene_matrix(file.matrix(), file.own_scene(), file.path(),
                                options.scene ? &options.scene->toml() : nullptr, options.overrides);
   Source s{.path = file.path(), .scene = std::move(m.scene), .file = std::move(m.file)};
-  if (options.scene)  // a matrix's own scene names every key
+  if (options.scene)  // the scene kept in a matrix names every key
     s.doubts = keys_without_effect(*s.scene, RunsFrom::everywhere);
   put_problem(s, options);
   if (!has_runs(*s.file)) return s;
@@ -87,7 +87,7 @@ Source open_matrix(const SourceFile& file, const SourceOptions& options) {
   return s;
 }
 
-/// Throws std::invalid_argument where the cell of a program is not that of a file.
+/// Throws std::invalid_argument if the cell of a program differs from the cell of the file.
 void require_same(const dynamics::Cell& cell, const CellFile& file, const std::string& path) {
   const dynamics::Section &program = cell.section(), &own = file.map.section;
   const auto refuse = [](const std::string& what) {
@@ -136,7 +136,7 @@ std::string keys_of(const std::vector<dynamics::CostInfo>& costs) {
   return text;
 }
 
-/// A cell file, or a matrix of such cells, with the cell that carries bodies through.
+/// Opens a cell file, or a matrix of such cells, with the cell that carries bodies through.
 Source open_cells(const SourceFile& file, const SourceOptions& options) {
   Source s{.path = file.path()};
   CellFile cells;
@@ -172,7 +172,7 @@ Source open_cells(const SourceFile& file, const SourceOptions& options) {
   return s;
 }
 
-/// Recorded runs, or a chain that was made elsewhere.
+/// Opens recorded runs, or an imported chain.
 Source open_recorded(const SourceFile& file, const SourceOptions& options) {
   CellMatrix m = cell_matrix(file.matrix(), file.path(), options.overrides);
   Source s{.path = file.path(), .file = std::move(m.file), .problem = std::move(m.problem)};
@@ -180,7 +180,7 @@ Source open_recorded(const SourceFile& file, const SourceOptions& options) {
   if (m.pool) {
     s.cells = std::make_shared<const CellFile>(std::move(m.cells));
     s.pool = std::make_shared<RunPool>(*std::move(m.pool));
-    s.accuracy.accuracy = 1.0;  // whatever its runs give
+    s.accuracy.accuracy = 1.0;  // accepts any accuracy that its runs give
     s.accuracy.per_leaf = tree_info(*s.file, s.path).entries_per_leaf;
     s.doubts = doubts_of(*s.pool, s.problem);
     return s;
@@ -194,8 +194,8 @@ Source open_recorded(const SourceFile& file, const SourceOptions& options) {
   return s;
 }
 
-/// What is doubtful about starts of recorded runs. Throws std::invalid_argument for one that nobody
-/// was seen at.
+/// Sentences on doubtful starts of recorded runs. Throws std::invalid_argument for a start in a
+/// state that no body was seen to enter.
 std::vector<std::string> doubts_of_starts(const Source& s) {
   const std::vector<dynamics::Transitions> matrices = s.matrices();
   const auto& seen = matrices[static_cast<std::size_t>(s.problem.start_type())];

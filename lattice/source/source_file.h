@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A file that sources are opened from, read once whatever is asked of it; and what only the
-/// commands of this program ask of a source.
+/// A file that sources are opened from, read only once; and questions about a source that only the
+/// commands of this program ask.
 
 #include <cstdint>
 #include <memory>
@@ -20,11 +20,11 @@
 
 namespace gatewalk::lattice {
 
-/// A file, opened once by all that ask for it. One thread at a time may ask.
+/// A file that is read once, at first use. Only one thread at a time may use it.
 class SourceFile {
  public:
-  /// "-": standard input. What cannot be read is refused by whoever asks for what it holds.
-  /// Standard input is read when it is asked for first, a file now.
+  /// `path`: "-" is standard input, which is read at first use; a file is read at once. A file with
+  /// bad contents is refused when its contents are asked for.
   explicit SourceFile(std::string path) : path_(std::move(path)) {
     if (path_ != "-") toml_ = TomlFile::read(path_);
   }
@@ -33,18 +33,18 @@ class SourceFile {
 
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const TomlFile& toml() const;
-  /// Standard input is none, and is not read to say so.
+  /// False for standard input, which is not read for this.
   [[nodiscard]] bool is_matrix() const { return path_ != "-" && toml().is_matrix(); }
-  /// The matrix, read when it is asked for first. Throws markov::BadFile.
+  /// The matrix, read at first use. Throws markov::BadFile.
   [[nodiscard]] const std::shared_ptr<const MatrixFile>& matrix() const;
-  /// Whether it is a matrix of cells that are not ours. Throws as matrix().
+  /// True for a matrix of cells that are not gates. Throws as matrix().
   [[nodiscard]] bool is_of_cells() const;
   /// The scene that a matrix of gates keeps. Throws markov::BadFile.
   [[nodiscard]] const Scene& own_scene() const;
-  /// Reads all of a matrix now, also the gate runs that it keeps, and keeps it in memory: each
-  /// Source copies the runs. Throws markov::BadFile and SceneError.
+  /// Reads the whole matrix now, with its gate runs, and keeps it in memory; each Source copies the
+  /// runs. Throws markov::BadFile and SceneError.
   void keep_in_memory();
-  /// These runs, in the field of own_scene(), if they are in memory.
+  /// The gate runs in the field of own_scene(), if keep_in_memory() has read them.
   [[nodiscard]] const std::optional<RunPool>& runs() const { return runs_; }
 
  private:
@@ -55,14 +55,14 @@ class SourceFile {
   std::optional<RunPool> runs_;
 };
 
-/// The method that was chosen for the scene, if it left that to a pilot.
+/// The method that a pilot chose for the scene, if the scene left it open.
 [[nodiscard]] std::optional<Settled> settled_of(const Source& source);
-/// Of a matrix of a scene.
+/// The matrix and scene of a source that is a matrix of a scene.
 [[nodiscard]] SceneMatrix scene_matrix_of(const Source& source);
-/// Of a matrix of bins, or one that was made elsewhere: what the cells draw from.
+/// The counts and chain of a matrix of bins, or of an imported chain.
 [[nodiscard]] CountedField counted_of(const Source& source);
-/// So finely (s) durations of trials are kept: to a thousandth of the time after which a body is
-/// trapped, or else of the mean duration of some trials.
+/// Resolution (s) to which durations of trials are kept: a thousandth of the time after which a
+/// body is trapped, or of the mean duration of some trials.
 [[nodiscard]] double bin_of_durations(const Source& source, std::uint64_t seed);
 
 }  // namespace gatewalk::lattice

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A start as text: as --start gives it, and as results name it.
+/// Starts as text: as --start takes them, and as results name them.
 
 #include <optional>
 #include <string>
@@ -9,16 +9,17 @@
 
 namespace gatewalk::lattice {
 
-/// By which faces of the first cell trials may start, and whether as recorded bodies did ("seen").
+/// Which starts are permitted: by the first face, by any face, or by any face and also "seen" (as
+/// recorded bodies entered).
 enum class StartsBy { first_face, any_face, any_face_or_seen };
 
-/// Of "0.01,0,0.2", of "W:0.01,0,0.2" or, as bodies were seen to enter first, of "seen" (none).
-/// Throws std::invalid_argument.
+/// The start in a text such as "0.01,0,0.2" or "W:0.01,0,0.2"; nullopt for "seen", the observed
+/// first entries. Throws std::invalid_argument.
 [[nodiscard]] std::optional<dynamics::Entry> start_in(const std::string& text,
                                                       const dynamics::Section& section,
                                                       StartsBy by);
 
-/// "start d 4 m, vx 5 m/s, vy 10 m/s"; with the face's name where it is not the first one.
+/// "start d 4 m, vx 5 m/s, vy 10 m/s"; names the face if it is not the first one.
 [[nodiscard]] std::string title_of(const dynamics::Section& section,
                                    const std::optional<dynamics::Entry>& start);
 
