@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How likely walks are to end in one way, from every state of every cell: the committor of their
-/// leaving over the far edge, the same of any other ending, and with a limit of cells; and to enter
+/// The probability that walks end in a given way, from every state of every cell (for leaving over
+/// the far edge: the committor), with or without a limit of cells; and the probability to enter
 /// every row, from one start.
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace gatewalk::markov {
 
-/// Chance that a walk without limit of cells ends so.
+/// The probability that a walk without a limit of cells has the given ending.
 struct Committor {
   int columns = 0, rows = 0, inputs = 0;
   std::vector<double> values;  // (rows x columns x inputs)
@@ -23,34 +23,38 @@ struct Committor {
   }
 };
 
-/// What rows of a field are solved to.
+/// The relative tolerance to which rows of a field are solved.
 inline constexpr double kRowTolerance = 1e-12;
 
-/// Row by row from the far edge; within a row by sweeps to both sides until no value changes by
-/// more than `tolerance` of it (in a row of cells of one type that walks soon leave in registers,
-/// to that tolerance of each value). Where moves lead to a row below: by sweeps over all rows
-/// until, besides, no more than `tolerance` of the walks from any state are still on their way. Of
-/// few states then, and wherever 10^5 sweeps do not do, by the elimination of first_passages
-/// (first_passage.h). Relative accuracy is that of sums of positive numbers, however small the
-/// values: nothing is subtracted. A row never sampled ends as `unsampled`. Walks that can never end
-/// have no ending: the chance is 0. Throws std::invalid_argument for fields of another size than
-/// the chain's, and as first_passages.
+/// Computes the committor of an ending. Rows are solved from the far edge on, each by sweeps to
+/// both sides until no value changes by more than `tolerance` of itself (or, in vector registers
+/// for a row of cells of one type that walks soon leave, to that tolerance of each value). If moves
+/// lead to a row below, sweeps cover all rows, until also at most `tolerance` of the walks from any
+/// state are under way. The elimination of first_passages (first_passage.h) replaces these sweeps
+/// if states are few, and any sweeps if 10^5 do not suffice.
+///
+/// Nothing is subtracted, so the relative accuracy holds for values of any size. A walk into an
+/// unsampled row ends as `unsampled`. Walks that can never end have no ending: probability 0.
+/// Throws std::invalid_argument for fields of another size than the chain's, and as first_passages
+/// does.
 [[nodiscard]] Committor committor(const FieldChain& chain, const Field& field,
                                   Ending ending = Ending::far_edge,
                                   double tolerance = kRowTolerance);
 
-/// The same of walks that may visit so many cells.
+/// The probability that a walk with a limit of cells has the given ending, from every state and for
+/// every number of draws made.
 class EndingChance {
  public:
-  /// max_cells 0: no limit, as committor(), to `tolerance`. Memory: max_cells x rows x columns x
-  /// inputs numbers; throws std::invalid_argument above 4 GiB. `from`: with a limit only of cells
-  /// and draws that walks from its cell can come to, in less time and memory; elsewhere the chance
-  /// is not a number. On all threads of the current TBB arena.
+  /// Computes the probabilities on all threads of the current TBB arena. max_cells 0: no limit, as
+  /// committor(), to `tolerance`. `from` (with a limit only): computes only cells and draws that
+  /// walks from its cell can reach, in less time and memory; elsewhere the probability is NaN.
+  /// Memory: max_cells x rows x columns x inputs numbers; throws std::invalid_argument above 4 GiB.
   EndingChance(const FieldChain& chain, const Field& field, Ending ending, int max_cells,
                double tolerance = kRowTolerance, const std::optional<Start>& from = {});
 
-  /// From a cell (row * columns + column) in which the walk is to make its `draw`-th draw, counted
-  /// from 1; behind the last one it is cut off. Without limit the number says nothing.
+  /// The probability from a cell (row * columns + column) and state in which the walk makes its
+  /// `draw`-th draw, counted from 1; beyond the last draw the walk is cut off. Without a limit,
+  /// `draw` is ignored.
   [[nodiscard]] double operator()(int draw, std::int64_t cell, std::int64_t input) const {
     const std::int64_t layer = max_cells_ == 0 ? 0 : draw - 1;
     if (layer >= layers_) return ending_ == Ending::cut_off ? 1.0 : 0.0;
@@ -64,13 +68,14 @@ class EndingChance {
   Ending ending_;
   int max_cells_;
   std::int64_t cells_, inputs_, layers_;
-  std::vector<std::int64_t> begin_;  // (layers x cells) of `values_`; -1: nobody comes there
+  std::vector<std::int64_t> begin_;  // (layers x cells) index into `values_`; -1: not reachable
   std::vector<double> values_;       // by input
 };
 
-/// Chance that a walk without limit of cells from there enters rows start.row + 1, ..., field.rows;
-/// the last is to leave over the far edge. Row by row from the start, by the same sweeps, with the
-/// same relative accuracy. Throws as committor, and std::invalid_argument for moves over a row.
+/// The probability that a walk from `start` without a limit of cells enters rows start.row + 1,
+/// ..., field.rows; the last one is to leave over the far edge. Computed row by row from the start
+/// with the sweeps and the accuracy of committor(). Throws as committor, and std::invalid_argument
+/// for moves that skip a row.
 [[nodiscard]] std::vector<double> row_chances(const FieldChain& chain, const Field& field,
                                               const Start& start);
 

@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Eigen's dense factorizations, compiled once for all that use them: each takes seconds.
+/// Eigen's dense factorizations, compiled only here because each takes seconds to compile.
 
 #include <Eigen/Core>
 
 namespace gatewalk::markov {
 
-/// Orthonormal columns that span the same (n x k, k <= n), by Householder reflections.
+/// Orthonormal columns (n x k, k <= n) with the same span, by Householder reflections.
 [[nodiscard]] Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
 
-/// Absolute values of the eigenvalues of a square matrix, the largest first.
+/// The absolute values of the eigenvalues of a square matrix, largest first.
 [[nodiscard]] Eigen::VectorXd eigenvalue_moduli(const Eigen::MatrixXd& m);
 
-/// a b
+/// The product a b.
 [[nodiscard]] Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Of a symmetric matrix: eigenvalues, the smallest first, and their eigenvectors, column by
-/// column.
+/// The eigenvalues of a symmetric matrix, smallest first, and their eigenvectors as columns.
 struct SymmetricEigen {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;

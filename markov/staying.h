@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How long walks stay in a row of the field: what sums over more and more moves take.
+/// How long walks stay in a row of the field, which determines the cost of sums over moves.
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 
 namespace gatewalk::markov {
 
-/// A bound on the share of walks that stay in the row per move, over many moves: of k moves the
-/// largest share that any state leaves in the row, to the power 1/k. (That of one move alone is
-/// often 1: a state of few runs, all of which went on sideways.) `each(use)` calls use(from, to, p)
+/// An upper bound of the share of walks that stay in the row per move, over many moves: the largest
+/// share that stays for k moves from any state, to the power 1/k. (For a single move the share is
+/// often 1: a state with few runs, all of which went sideways.) `each(use)` calls use(from, to, p)
 /// for all moves within the row.
 template <class Each>
 [[nodiscard]] double staying_per_move(int inputs, Each each) {

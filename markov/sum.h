@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Neumaier's compensated sum.
+/// Neumaier's compensated summation.
 
 #include <cmath>
 
 namespace gatewalk::markov {
 
-/// The error stays at a few eps of the sum of magnitudes, however many terms there are.
+/// A compensated sum. Its error is a few eps of the sum of magnitudes, for any number of terms.
 class CompensatedSum {
  public:
   CompensatedSum& operator+=(double term) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What walks add up on their way: durations, works. A semi-Markov chain: each draw takes a random
-/// time that depends on the state and on what is drawn.
+/// Totals that walks accumulate, such as duration or work, in a semi-Markov chain: each draw takes
+/// a random time that depends on the state and on the output drawn.
 
 #include <array>
 #include <cstdint>
@@ -20,13 +20,14 @@ namespace gatewalk::markov {
 struct Reward {
   std::vector<double> mean, square;
 };
-/// The quantities of a field's chains: [chain][quantity].
+/// The quantities of the chains of a field: [chain][quantity].
 using Rewards = std::vector<std::vector<Reward>>;
 
-/// Mean and variance of a total over some of the walks.
+/// The first two moments of a total over some of the walks.
 struct Moments {
-  double share = 0.0;              // of all walks
-  double sum = 0.0, square = 0.0;  // of the total and of its square, over all walks
+  double share = 0.0;  // of all walks
+  /// Means of the total and of its square over all walks, where walks that are not meant count 0.
+  double sum = 0.0, square = 0.0;
   [[nodiscard]] double mean() const {
     return share > 0.0 ? sum / share : std::numeric_limits<double>::quiet_NaN();
   }
@@ -35,57 +36,61 @@ struct Moments {
 
 struct WalkTotals {
   std::array<double, kEndings> endings{};
-  double remainder = 0.0;                 // still walking when the sum was stopped
+  double remainder = 0.0;                 // share of walks still going on when the sum was stopped
   CellProbabilities visits;               // (rows x columns) expected draws in each cell
-  std::array<Moments, kEndings> draws{};  // how many, by ending
+  std::array<Moments, kEndings> draws{};  // number of draws, by ending
   std::vector<std::array<Moments, kEndings>> totals{};  // by quantity and ending
-  /// Walks drawn for the moments of `draws` and `totals`, which are exact where this is 0; the
-  /// means of all walks together are exact in any case.
+  /// Number of walks drawn by Monte Carlo for the moments of `draws` and `totals`; 0: these moments
+  /// are exact. The means over all walks together are always exact.
   std::int64_t drawn_walks = 0;
 
-  /// Of all walks together.
+  /// The moments over all walks together.
   [[nodiscard]] static Moments all(const std::array<Moments, kEndings>& by_ending);
 };
 
-/// Told of all states that walks pass: `share` of the walks make their `draw`-th draw, from 1, in
-/// this cell (row * columns + column) and state.
+/// Called for all states that walks pass: `share` of the walks make their `draw`-th draw, counted
+/// from 1, in this cell (row * columns + column) and state.
 using EachState = std::function<void(int draw, std::int64_t cell, int input, double share)>;
 
-/// Without limit of cells: which walks are followed no further (`remainder`).
+/// Without a limit of cells: when the remaining walks are not followed further (`remainder`).
 struct WalkTolerance {
-  double all = 1e-12;                    // that share of all walks ...
-  const EndingChance* chance = nullptr;  // ... but of those that end so ...
-  double of_target = 1e-9;               // ... only that share of them
-  /// In large fields, of the visits in a row.
+  double all = 1e-12;                    // largest share of all walks that may be dropped
+  const EndingChance* chance = nullptr;  // if given, `of_target` holds for its ending too
+  double of_target = 1e-9;               // largest share of walks with that ending dropped
+  /// In large fields: the tolerance of the visits in each row.
   double of_row = kRowTolerance;
-  /// Fields with so many cells, times nonzeros of a cell's chain, are large: a second or two.
+  /// A field is large if its cells times the nonzeros of a cell's chain exceed this number: a
+  /// second or two of work.
   double large = 1e7;
 };
 
-/// First and second moments, exact: propagated with the shares of the walks. With a limit of cells
-/// step by step, as Solver::steps does; without, row by row, the draws of a walk are not told
-/// apart (`each` is told of draw 1), and a row is left after 10^5 sweeps at the latest. Where moves
-/// lead to a row below, step by step until no more than `tolerance.all` of the walks are on their
-/// way, or 10^5 steps are done. Where walks circle so long that more are left, and states are few
-/// (1000), all is found by elimination. In large fields without limit, whose rows are
-/// of one type each, visits, endings and the means of all walks are exact to `tolerance.of_row` of
-/// each row, the other moments those of walks drawn with `seed`: 2^16 of all, and, where
-/// `tolerance.chance` is of fewer than 2^12 of these, so many of those that end so. Without rewards
-/// no walks are drawn, and the moments of `draws` are not a number. Throws std::invalid_argument
-/// when rewards do not belong to the chain, and as validate().
+/// Computes first and second moments of totals by propagating them with the shares of walks,
+/// exactly. With a limit of cells the propagation goes step by step, as in Solver::steps. Without
+/// one it goes row by row; draws are then not distinguished (`each` is called with draw 1), and a
+/// row is left after 10^5 sweeps at the latest. If moves lead to a row below, it goes step by step
+/// until at most `tolerance.all` of the walks are under way, or for 10^5 steps. If more walks then
+/// remain and states are few (1000), elimination computes everything.
+///
+/// In large fields without a limit, whose rows have one type each, visits, endings and the means of
+/// all walks are exact to `tolerance.of_row` of each row. Other moments come from walks drawn with
+/// `seed`: 2^16 of all walks, and, if `tolerance.chance` covers fewer than 2^12 of these, as many
+/// with that ending. Without rewards no walks are drawn, and the moments of `draws` are NaN.
+///
+/// Throws std::invalid_argument if rewards do not fit the chain, and as validate() does.
 [[nodiscard]] WalkTotals walk_totals(const FieldChain& chain, const Field& field,
                                      const Start& start, int max_cells, const Rewards& rewards = {},
                                      const EachState& each = {},
                                      const WalkTolerance& tolerance = {}, std::uint64_t seed = 0);
 
-/// How a walk ended, and its total of the first quantity.
+/// The ending of a walk and its total of the first quantity.
 struct TimedWalk {
   Ending ending = Ending::trapped;
   double total = 0.0;
 };
-/// Walks 0 .. count - 1: outputs as Walker draws them, and with each a value of the first quantity
-/// that is gamma distributed with the moments of its nonzero, so that totals have the mean and the
-/// variance of walk_totals. On all threads of the current TBB arena, the same for any number.
+/// Draws walks 0 .. count - 1 as Walker does, and with each output a gamma-distributed value of the
+/// first quantity that has the moments of its nonzero. Totals therefore have the mean and the
+/// variance of walk_totals. Runs on all threads of the current TBB arena, with the same result for
+/// any number.
 [[nodiscard]] std::vector<TimedWalk> timed_walks(const FieldChain& chain, const Field& field,
                                                  const Start& start, int max_cells,
                                                  const Rewards& rewards, std::int64_t count,

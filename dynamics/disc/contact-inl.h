@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// contact.h and the free motion of hybrid.h in all lanes: the same operations in the same order, so
-// that every lane has the bits of the plain functions of the same names.
+// The functions of contact.h and the free motion of hybrid.h in all lanes: the same operations in
+// the same order, so every lane has the bits of the plain function of the same name.
 #if defined(GATEWALK_DYNAMICS_CONTACT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef GATEWALK_DYNAMICS_CONTACT_INL_H_
 #undef GATEWALK_DYNAMICS_CONTACT_INL_H_
@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace gatewalk::dynamics {
 namespace HWY_NAMESPACE {
 
-/// The scene, ready for use.
+/// The numbers of a scene, prepared for the lanes.
 struct LaneGate {
   double joint_x, joint_y, length, radius, mass, inertia, stiffness[2], damping, propulsion, drag;
   double per_mass, per_inertia;  // 1/M, 1/I
@@ -37,14 +37,16 @@ struct LaneGate {
         acceleration(propulsion / mass) {}
 };
 
-/// Body and N beams: left and right, or one that is told apart from lane to lane.
+/// The state of a body and N beams: left and right, or one beam whose side differs from lane to
+/// lane.
 template <int N>
 struct StateOf {
   Wide x, y, vx, vy;
   Wide theta[N], omega[N];
   WideMask held[N];
 
-  // Number by number: as a block, g++ copies it by string instructions, many times as slowly.
+  // Copied number by number: g++ copies the whole block with string instructions, many times
+  // slower.
   StateOf() = default;
   HWY_INLINE StateOf(const StateOf& o) { *this = o; }
   HWY_INLINE StateOf& operator=(const StateOf& o) {
@@ -76,14 +78,14 @@ HWY_INLINE WideState choose(WideMask m, const WideState& yes, const WideState& n
   return s;
 }
 
-/// 1 for the left beam, -1 for the right one: takes x of the gate's frame into the beam's own.
+/// 1 for the left beam, -1 for the right: converts x from the gate's frame to the beam's own.
 HWY_INLINE Wide mirror_of(Side side) { return all(side == kLeft ? 1.0 : -1.0); }
 
 HWY_INLINE WideMask nowhere() { return all(1.0) < all(0.0); }
 HWY_INLINE WideMask operator^(WideMask x, WideMask y) {
   return {hn::Xor(x.a, y.a), hn::Xor(x.b, y.b)};
 }
-/// std::max(x, y), of which it has the bits for numbers that are none too.
+/// std::max(x, y), with the same bits also for NaN.
 HWY_INLINE Wide larger(Wide x, Wide y) { return choose(x < y, y, x); }
 
 struct WideDirection {
@@ -108,7 +110,7 @@ struct WideTouch {
   WideDirection beam;
 };
 
-/// nearest(): what its gap alone asks for.
+/// The part of nearest() that its gap needs.
 struct Reach {
   Wide along, across, r, qx, qy, distance;
   WideMask interior;
@@ -158,7 +160,7 @@ HWY_INLINE void nearest(const LaneGate& g, Wide mirror, Wide x, Wide y, const Wi
   touch.beam.to.c = c;
   touch.beam.to.s = s;
 }
-/// Touch{} in the lanes not wanted.
+/// nearest() in the wanted lanes, Touch{} in the others.
 HWY_INLINE void nearest_wanted(const LaneGate& g, WideMask wanted, Wide mirror, Wide x, Wide y,
                                const WideDirection& beam, WideTouch& t) {
   nearest(g, mirror, x, y, beam, t);
@@ -198,7 +200,8 @@ HWY_INLINE Wide gap_rate_bias(const LaneGate& g, Wide mirror, const WideTouch& t
   return bias;
 }
 
-// Of one contact or both. With one, what the other would add to a sum is a zero, as it is there.
+// Numbers of one contact or of both. With one contact, the other contributes zeros to sums, as in
+// the plain code.
 
 template <int N>
 struct Each {
@@ -281,7 +284,7 @@ HWY_INLINE Each<N> unilateral_impulses(const WideCoupling<N>& w, const Each<N>& 
   return z;
 }
 
-/// contact_forces() with unilateral_impulses; touches that are not `active` are Touch{}.
+/// contact_forces() with unilateral_impulses; touches that are not `active` must be Touch{}.
 template <int N>
 HWY_INLINE Each<N> contact_forces(const LaneGate& g, const Beams<N>& beams, const StateOf<N>& s,
                                   const WideTouch (&touch)[N], Wide force_x,

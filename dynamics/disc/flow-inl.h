@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Free motion over any short time as power series, for Wide and for double (wide-inl.h): plain code
+// Free motion over short times as power series, for Wide and for double (wide-inl.h): plain code
 // and lanes have the same bits.
 #if defined(GATEWALK_DYNAMICS_FLOW_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef GATEWALK_DYNAMICS_FLOW_INL_H_
@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace gatewalk::dynamics {
 namespace HWY_NAMESPACE {
 
-/// As BodyFlow and BeamFlow.
+/// The coefficients of BodyFlow and BeamFlow as Numbers.
 template <class Number>
 struct BodyFlowOf {
   Number decay, rise, fall;
@@ -25,8 +25,8 @@ struct BeamFlowOf {
   Number tt, tw, wt, ww, ta, wa;
 };
 
-/// For g dt < BodyFlow::kSeries. (1 - e^-z)/z and (z - 1 + e^-z)/z^2 with z = g dt; the next terms
-/// are below 1e-17.
+/// The body's coefficients for g dt < BodyFlow::kSeries, from the series of (1 - e^-z)/z and (z - 1
+/// + e^-z)/z^2 with z = g dt; omitted terms are below 1e-17.
 template <class Number>
 HWY_INLINE BodyFlowOf<Number> body_series(double g, Number dt) {
   constexpr double kRise[] = {1.0, -1.0 / 2, 1.0 / 6, -1.0 / 24, 1.0 / 120, -1.0 / 720, 1.0 / 5040};
@@ -37,14 +37,14 @@ HWY_INLINE BodyFlowOf<Number> body_series(double g, Number dt) {
   return {like(z, 1.0) - g * rise, rise, dt * dt * series(z, kFall)};
 }
 
-/// For |rate dt| < BeamLaw::kSeries.
+/// The beam's coefficients for |rate dt| < BeamLaw::kSeries.
 template <class Number>
 HWY_INLINE BeamFlowOf<Number> beam_series(const BeamLaw& law, Number dt) {
   const Number x = law.rate * dt;
   BeamFlowOf<Number> f;
   f.ta = dt * dt * series(x, law.theta);
   f.wa = dt * series(x, law.omega);
-  // Response to a unit velocity: the derivative of that to a push.
+  // The response to a unit velocity is the derivative of the response to a unit acceleration.
   f.ww = like(x, 1.0) - law.d * f.wa - law.k * f.ta;
   f.tw = f.wa;
   f.wt = -law.k * f.wa;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Files that are replaced as a whole: a reader never sees half of one.
+/// Files that are replaced as a whole, so that a reader never sees half of one.
 
 #include <csignal>
 #include <functional>
@@ -10,30 +10,32 @@
 
 namespace gatewalk::markov {
 
-/// The reader of a pipe went away before everything was written.
+/// Thrown when the reader of a pipe is gone before everything is written.
 class BrokenPipe : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Replaces `path` by `bytes`, or leaves it as it was: a temporary file beside it is written,
-/// synced and renamed, then the folder is synced. An existing file keeps its permissions, a new one
-/// follows the umask. A pipe or a character device (/dev/null, >(command)) cannot be replaced and
-/// is written into; links to anything else, folders, sockets and block devices are refused. Throws
-/// std::runtime_error naming the file and the reason, BrokenPipe where a pipe has no reader any
-/// more; no temporary file stays behind.
+/// Replaces the file `path` by `bytes`, or leaves it as it was: writes, syncs and renames a
+/// temporary file in the same folder, then syncs the folder. An existing file keeps its
+/// permissions; a new one follows the umask. Pipes and character devices (/dev/null, >(command))
+/// cannot be replaced and are written into. Links to anything else, folders, sockets and block
+/// devices are refused. Throws std::runtime_error naming the file and the reason, BrokenPipe for a
+/// pipe without a reader. No temporary file stays behind.
 void replace_file(const std::string& path, std::string_view bytes);
 
-/// Takes the next bytes of a file.
+/// Receives the next bytes of a file.
 using WriteBytes = std::function<void(std::string_view bytes)>;
-/// The same with bytes that `make` hands on piece by piece; what it throws leaves `path` as it was.
+/// As replace_file with bytes that `make` writes piece by piece. If `make` throws, `path` stays as
+/// it was.
 void replace_file(const std::string& path, const std::function<void(const WriteBytes&)>& make);
 
-/// Throws std::runtime_error, as replace_file would, when `path` cannot be written: to be asked
-/// before long work, not after it. Makes and removes a temporary file in its folder.
+/// Throws std::runtime_error, as replace_file would, if `path` cannot be written; call it before
+/// long work. Makes and removes a temporary file in the folder.
 void require_replaceable(const std::string& path);
 
-/// While it lives, a reader that went away is an error of write(), not the end of the process.
+/// While an IgnoreBrokenPipe exists, a pipe without a reader makes write() fail instead of ending
+/// the process.
 class IgnoreBrokenPipe {
  public:
   IgnoreBrokenPipe();
@@ -45,11 +47,11 @@ class IgnoreBrokenPipe {
   struct sigaction old_;
 };
 
-/// Writes all of `bytes`. False, with errno, when that fails.
+/// Writes all of `bytes`. Returns false, with errno set, if that fails.
 [[nodiscard]] bool write_all(int descriptor, std::string_view bytes);
 
-/// Removes the temporary file of a replace_file under way, if there is one. For signal handlers
-/// that end the process: makes async-signal-safe calls only.
+/// Removes the temporary file of a replace_file in progress, if there is one. For signal handlers
+/// that end the process: all calls are async-signal-safe.
 void remove_unfinished_file() noexcept;
 
 }  // namespace gatewalk::markov

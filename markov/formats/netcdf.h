@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Writing and reading NetCDF-4 on an image in memory: HDF5 1.10 crashes at exit after a write that
-/// failed, and files are replaced as a whole. Not part of the installed headers.
+/// Writing and reading NetCDF-4 in a memory image: HDF5 1.10 crashes at exit after a failed write
+/// to a file, and files are replaced as a whole. Not part of the installed headers.
 
 #include <netcdf.h>
 #include <netcdf_mem.h>
@@ -15,8 +15,7 @@
 
 namespace gatewalk::markov::netcdf {
 
-/// Throws std::runtime_error that names `what` unless `rc` is fine; std::bad_alloc for want of
-/// memory.
+/// Throws std::runtime_error naming `what` if `rc` is an error; std::bad_alloc if memory is short.
 inline void check(int rc, const std::string& what) {
   if (rc == NC_NOERR) return;
   if (rc == NC_ENOMEM) throw std::bad_alloc();
@@ -28,9 +27,8 @@ inline void check(int rc, const std::string& what) {
 
 inline constexpr const char* kCannotOpen = "cannot open: cut short or damaged, or not NetCDF-4";
 
-/// From here on HDF5 prints no errors in this thread: a question that has no for an answer is one
-/// to it. NetCDF does this itself, but only in the thread that calls it first. Call it before
-/// NetCDF.
+/// Stops HDF5 from printing errors in this thread; HDF5 counts every negative answer as an error.
+/// NetCDF does this itself, but only in the thread that calls it first. Call this before NetCDF.
 void silence_hdf5();
 
 class Image {
@@ -80,17 +78,17 @@ inline void put_text(int nc, int variable, const std::string& name, const std::s
   check(nc_put_att_text(nc, variable, name.c_str(), text.size(), text.data()), "attribute " + name);
 }
 
-/// That a file keeps the Climate and Forecast conventions (CF).
+/// Marks a file as following the Climate and Forecast conventions (CF).
 inline void put_conventions(int nc) { put_text(nc, NC_GLOBAL, "Conventions", "CF-1.10"); }
 
 inline int define_dimension(int nc, const std::string& name, std::size_t length) {
   int dimension = -1;
-  // A length of 0 is NC_UNLIMITED, which is how NetCDF holds an empty list.
+  // A length of 0 is NC_UNLIMITED, which is how NetCDF stores an empty list.
   check(nc_def_dim(nc, name.c_str(), length, &dimension), "dimension " + name);
   return dimension;
 }
 
-/// A compressed, checksummed variable; returns its number.
+/// Defines and writes a compressed, checksummed variable; returns its number.
 template <class T>
 int put_variable(int nc, const std::string& name, int dimension, const std::vector<T>& values,
                  const std::string& unit, const std::string& meaning) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How walks end, found backwards: from what the last draw leads to back to the first one, for all
-/// states from which a walk can draw, and kLanes questions at a time.
+/// How walks end, by backward recursion: from the last draw back to the first, for all states from
+/// which a walk can draw, and for kLanes questions at a time.
 
 #include <algorithm>
 #include <cstdint>
@@ -16,14 +16,14 @@
 
 namespace gatewalk::markov {
 
-/// Whether a walk ends in this cell (none: in any) and in this way (none: in any). Neither cell nor
-/// way: how often it draws.
+/// A question about a walk: does it end in this cell (none: in any) with this ending (none: any)?
+/// Without cell and ending: how often does it draw?
 struct Question {
   std::optional<std::int64_t> cell{};  // row * columns + column
   std::optional<Ending> why{};
 };
 
-/// Columns and rows, the last ones included; none where an end lies before its beginning.
+/// A rectangle of cells, last columns and rows included; empty if an end lies before its beginning.
 struct Box {
   std::int64_t left, right, bottom, top;
 
@@ -35,14 +35,14 @@ struct Box {
   [[nodiscard]] std::int64_t cells() const { return columns() * (top - bottom + 1); }
 };
 
-/// Answers of all inputs of some cells of a box, each to kLanes questions that lie side by side; in
-/// all other cells they are zero.
+/// The answers of all inputs in some cells of a box, each to kLanes questions side by side. In all
+/// other cells the answers are zero.
 class AnswerLayer {
  public:
   explicit AnswerLayer(std::ptrdiff_t inputs) : each_(inputs * kLanes) {}
 
-  /// Calls use(column, row, its answers, not set) for those cells of the window that
-  /// is_asked(column, row). All that was before is forgotten.
+  /// Calls use(column, row, answers) for the cells of the window for which is_asked(column, row) is
+  /// true; the answers are not initialised. Earlier content is lost.
   template <class Is, class Use>
   void cover(const Box& window, Is is_asked, Use use) {
     window_ = window;
@@ -61,7 +61,7 @@ class AnswerLayer {
     places_.clear();
   }
 
-  /// Null: all zero.
+  /// The answers of a cell; null: all zero.
   [[nodiscard]] const double* at(std::int64_t column, std::int64_t row) const {
     if (!window_.holds(column, row)) return nullptr;
     return places_[static_cast<std::size_t>((row - window_.bottom) * window_.columns() + column -
@@ -78,14 +78,15 @@ class AnswerLayer {
 
   std::ptrdiff_t each_;
   Box window_{0, -1, 0, -1};
-  std::vector<double*> places_{};  // by cell of the window
+  std::vector<double*> places_{};
   PlaneBuffer memory_{};
 };
 
-/// The recursion, of walks that begin in one cell. The same bits on any number of threads.
+/// The backward recursion for walks that begin in one cell. The bits are the same for any number of
+/// threads.
 class Backward {
  public:
-  /// `chain` and `field` must live as long. Checks nothing.
+  /// Prepares the recursion without checking the arguments. `chain` and `field` must outlive it.
   Backward(const FieldChain& chain, const Field& field, int column, int row, int max_cells);
 
   [[nodiscard]] int last_move() const { return last_; }
@@ -94,16 +95,16 @@ class Backward {
   [[nodiscard]] const std::vector<Move>& moves(std::int64_t column, std::int64_t row) const {
     return sums_at(column, row).moves;
   }
-  /// Where walks may be after so many moves, if each move goes as far as any does.
+  /// The cells where walks may be after `moves` moves if each move goes as far as any move does.
   [[nodiscard]] Box reached(std::int64_t moves) const;
-  /// Whether a walk that comes to this cell may have made so many moves: not if every move leads to
-  /// the other colour of a chessboard, and the cell has the wrong one.
+  /// Whether a walk can be in this cell after `moves` moves: false if every move changes the colour
+  /// of a chessboard and the cell has the wrong colour.
   [[nodiscard]] bool has_colour(std::int64_t column, std::int64_t row, std::int64_t moves) const;
 
-  /// Calls use(numbers of the questions) for up to kLanes questions after the other, until all were
-  /// asked. With a limit of cells `use` takes step(last_move()), step(last_move() - 1), ...;
-  /// without, settle(). Neighbours are asked for together: of them the same cells matter. (Every
-  /// other row backwards.)
+  /// Calls use(indices of the questions) for groups of up to kLanes questions until all are asked.
+  /// With a limit of cells `use` calls step(last_move()), step(last_move() - 1), ...; without one,
+  /// settle(). Neighbouring cells are grouped, because they depend on the same cells; every other
+  /// row of blocks goes backwards.
   template <class Use>
   void ask(const std::vector<Question>& questions, Use use) {
     std::vector<std::size_t> order(questions.size());
@@ -123,25 +124,26 @@ class Backward {
       use(some);
     }
   }
-  /// From the answers of walks that have made one move more, those of walks about to draw after so
-  /// many moves.
+  /// Computes the answers of walks about to draw after `moves` moves from those after one move
+  /// more.
   void step(int moves);
-  /// Row by row, until no answer changes by more than 1e-13. False where walks circle for too long.
+  /// Iterates row by row until no answer changes by more than 1e-13. Returns false if walks circle
+  /// for too long.
   [[nodiscard]] bool settle();
 
-  /// Of walks about to draw in this cell: (inputs x kLanes). Null: all zero.
+  /// The answers of walks about to draw in this cell: (inputs x kLanes). Null: all zero.
   [[nodiscard]] const double* at(std::int64_t column, std::int64_t row) const {
     return now_.at(column, row);
   }
-  /// Of walks whose first draw is this exit, once those that have made a move are answered.
+  /// The answer for walks whose first draw is this exit, once the answers after one move are known.
   [[nodiscard]] double after(const Exit& exit, std::size_t question) const;
 
  private:
-  /// A chain as sums over what a draw leads to.
+  /// A chain as sums over the results of a draw.
   struct Sums {
     std::vector<Move> moves;
     std::vector<GatherTerm> terms;
-    std::vector<int> ends{0};    // of each input's terms (inputs + 1)
+    std::vector<int> ends{0};    // end of each input's terms (inputs + 1)
     std::vector<double> shares;  // (inputs x Share)
     explicit Sums(const Chain& chain);
     [[nodiscard]] int shares_each() const;
@@ -155,13 +157,14 @@ class Backward {
   [[nodiscard]] const Sums& sums_at(std::int64_t column, std::int64_t row) const {
     return sums_[static_cast<std::size_t>(chain_.type_of(column, row))];
   }
-  /// Cells that can be reached in so many moves and from which a cell asked for still can.
+  /// The cells that can be reached in `moves` moves and from which a cell of a question can still
+  /// be reached.
   [[nodiscard]] Box window(std::int64_t moves) const;
-  /// Finds where the answers lie that a draw in the cell leads to.
+  /// Finds the answers of the cells to which a draw in this cell leads.
   void look(Cell& cell, const AnswerLayer& next) const;
-  /// Renews up to kMostGathered cells of one type.
+  /// Computes the answers of up to kMostGathered cells of one type.
   void draw(std::span<const Cell> cells, bool is_last) const;
-  /// Adds what one draw in the cell ends with.
+  /// Adds the contribution of walks that end with a draw in the cell.
   void reward(const Cell& cell, bool is_last) const;
   [[nodiscard]] std::optional<Ending> ends_by(const Move& m, std::int64_t column, std::int64_t row,
                                               bool is_last) const;
@@ -169,13 +172,13 @@ class Backward {
   const FieldChain& chain_;
   const Field& field_;
   std::int64_t column_, row_;
-  int last_;                // moves that a walk may make; -1: any number
+  int last_;                // most moves of a walk; -1: no limit
   std::vector<Sums> sums_;  // by type of cell
   int widest_ = 0, lowest_ = 0, highest_ = 0, most_terms_ = 0;
   bool is_chequered_ = true, has_unsampled_ = false;
   std::ptrdiff_t inputs_;
   PlaneBuffer zeros_;
-  const double* nothing_;  // answers in cells that cannot be reached
+  const double* nothing_;  // zero answers, for cells that cannot be reached
   std::vector<Question> questions_{};
   AnswerLayer now_, next_;
 };

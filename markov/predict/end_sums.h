@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Where walks end and how, as all exact methods count it.
+/// Sums of where and how walks end, shared by all exact methods.
 
 #include <algorithm>
 #include <array>
@@ -22,16 +22,16 @@ namespace gatewalk::markov {
   return inside ? row * field.columns + column : -1;
 }
 
-/// What rounding makes at most, in all cells together and to first order: u (mean_steps per_move +
-/// ending), u = eps/2. Each move is a sum of positive products that goes through `per_move`
-/// roundings, so of the mass moved at most u per_move comes to the wrong place or is lost, and all
-/// moves of a walk move mean_steps in the mean. Mass in the wrong place ends once, so it is wrong
-/// in one cell and ending. The mass that ends, 1 in all, goes through `ending` more roundings.
+/// An upper bound of the rounding error in all cells together, to first order: u (mean_steps
+/// per_move + ending), u = eps/2. Each move is a sum of positive products with `per_move`
+/// roundings, so at most u per_move of the moved mass is misplaced or lost, and a walk makes
+/// mean_steps moves on average. Misplaced mass ends once, so it is wrong in one cell and ending.
+/// The mass that ends, 1 in all, has `ending` more roundings.
 [[nodiscard]] inline double rounding_bound(double mean_steps, double per_move, double ending) {
   return 0.5 * std::numeric_limits<double>::epsilon() * (mean_steps * per_move + ending);
 }
 
-/// Collects where walks end, and how.
+/// Accumulates the final cells and endings of walks.
 class EndSums {
  public:
   explicit EndSums(const Field& field)
@@ -53,7 +53,7 @@ class EndSums {
     others_[static_cast<std::size_t>(block) * kBlock + at % kBlock]
            [static_cast<std::size_t>(why) - 1] += mass;
   }
-  /// By a move from `cell` to (column, row), outside the field.
+  /// Adds mass that leaves the field by a move from `cell` to (column, row).
   void depart(std::int64_t cell, std::int64_t column, std::int64_t row, double mass) {
     add(edge_before(field_, column, row), cell, mass);
   }
@@ -86,16 +86,16 @@ class EndSums {
   }
 
  private:
-  // Most cells of a large field only trap. What ends otherwise is kept for small blocks of cells,
-  // each from the first such ending on.
+  // Most cells of a large field only trap. Other endings are stored in small blocks of cells, each
+  // opened by its first such ending.
   static constexpr std::size_t kBlock = 8;
   static constexpr std::int32_t kNone = -1;
 
   Field field_;
   std::vector<CompensatedSum> trapped_;  // (cells)
-  std::vector<std::int32_t> block_;      // of each block, its place in others_, or kNone
+  std::vector<std::int32_t> block_;      // index of each block in others_, or kNone
   std::vector<std::array<CompensatedSum, kEndings - 1>>
-      others_;  // (opened blocks x kBlock) by Ending less 1
+      others_;  // (opened blocks x kBlock) by Ending - 1
 };
 
 }  // namespace gatewalk::markov

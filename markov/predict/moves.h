@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How walks go on that lead to no row below: what solutions row by row are made of.
+/// The moves of chains without moves to a row below, for solutions row by row.
 
 #include <algorithm>
 #include <cstddef>
@@ -12,18 +12,17 @@
 
 namespace gatewalk::markov {
 
-/// A chain's entries by row, those that stay within a row of the field apart from those that leave
-/// it upwards.
+/// A chain's entries by input, with moves within a row of the field apart from moves upwards.
 struct Moves {
   struct Entry {
     double p;
     int di_x, di_y, next;
   };
   std::vector<Entry> entries;
-  std::vector<double> ends;  // (inputs) chance of the ending at once, wherever the cell is
+  std::vector<double> ends;  // (inputs) probability of the ending in the next draw, in any cell
   std::vector<std::size_t> up,
-      side;        // (inputs + 1): where those of an input begin; side: behind up
-  int widest = 0;  // |di_x| within a row
+      side;        // (inputs + 1) first entry of an input; its `side` entries follow its `up`
+  int widest = 0;  // largest |di_x| within a row
 
   Moves(const Chain& chain, Ending ending) {
     for (int input = 0; input < chain.inputs(); ++input) {

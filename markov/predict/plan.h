@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What the solvers by steps (by_steps.cpp) and by rows (by_rows.cpp) share: prepared chains, and
-/// what has ended of the walks from one start.
+/// Shared parts of the solvers by steps (by_steps.cpp) and by rows (by_rows.cpp): prepared chains,
+/// and the sums of ended walks from one start.
 
 #include <cmath>
 #include <memory>
@@ -17,17 +17,18 @@
 
 namespace gatewalk::markov {
 
-/// A mass that is nothing: products with it must not become denormal numbers, which are slow.
+/// A negligible mass. Smaller masses are dropped, because products with them would become denormal
+/// numbers, which are slow.
 inline constexpr double kNothing = 1e-280;
 
-/// Planes of a tally: all mass; then what ends in a cell: trapped, in a state never sampled, gone
-/// by the first move, by the second, ...
+/// The planes of a tally: all mass; then the mass that ends in a cell: trapped, unsampled, moved by
+/// the first move, by the second, ...
 enum Tally : int { kTallyTotal, kTallyTrapped, kTallyUnsampled, kTallyMoved };
 
-/// staying_per_move() of a chain, found when it is first asked for. Thread-safe.
+/// staying_per_move() of a chain, computed on first use. Thread-safe.
 class LazyStay {
  public:
-  /// `sideways`: the moves within a row, of so many inputs.
+  /// Returns the number. `sideways` are the moves within a row of `inputs` inputs.
   [[nodiscard]] double get(const Stencil& sideways, int inputs) const {
     std::call_once(made_, [&] { per_move_ = per_move(sideways, inputs); });
     return per_move_;
@@ -41,26 +42,26 @@ class LazyStay {
 
 /// A chain as stencils.
 struct PreparedChain {
-  std::vector<int> walking_inputs, unsampled;  // of the inputs that are entered
-  Stencil moves;                               // all of them
-  Stencil first_sideways;                      // within a row: of inputs entered from below
-  Stencil sideways;                            // within a row: of inputs entered sideways
-  std::vector<Stencil> upwards;                // by 1 row, 2 rows, ...
-  Stencil ends;                                // to the planes of a Tally but the first
-  Stencil walking;                             // to kTallyTotal: all that walks on
-  std::unique_ptr<const LazyRowElimination> elimination;          // none where it cannot be used
+  std::vector<int> walking_inputs, unsampled;  // among inputs that some exit leads to
+  Stencil moves;                               // all moves
+  Stencil first_sideways;                      // moves within a row, of inputs entered from below
+  Stencil sideways;                            // moves within a row, of inputs entered sideways
+  std::vector<Stencil> upwards;                // moves by 1 row, 2 rows, ...
+  Stencil ends;                                // to all planes of a Tally but the first
+  Stencil walking;                             // to kTallyTotal: all mass that goes on
+  std::unique_ptr<const LazyRowElimination> elimination;          // null if the chain does not suit
   std::unique_ptr<LazyStay> stay = std::make_unique<LazyStay>();  // of `sideways`
 };
 
 struct PredictionPlan {
   FieldChain field_chain;
   bool has_uniform_rows = true;       // all cells of a row have one type
-  int inputs = 0, outputs = 0;        // outputs: of the chain with most
+  int inputs = 0, outputs = 0;        // outputs: the largest number of any chain
   int most_terms = 0;                 // of a sum over moves
-  std::vector<Move> moves;            // that some exit makes
+  std::vector<Move> moves;            // moves of all exits
   int widest = 0;                     // largest |di_x|
   int lowest = 0, highest = 0;        // di_y
-  bool is_chequered = true;           // every move leads to the other colour of a chessboard
+  bool is_chequered = true;           // every move changes the colour of a chessboard
   std::vector<int> from_below;        // inputs entered from a row below
   std::vector<int> sideways;          // inputs entered within a row
   Stencil arriving, staying;          // to kTallyTotal: all mass in from_below, sideways
@@ -72,11 +73,11 @@ struct PredictionPlan {
   }
 };
 
-/// Foresees how many steps a sum takes, from what is left after 512, 1024, 2048, ... of them.
+/// Predicts how many steps a sum takes, from the remainder after 512, 1024, 2048, ... steps.
 class Pace {
  public:
-  /// Whether more than `most`, until no more than `enough` is left. (Of a sum of which nothing has
-  /// ended yet nothing is foreseen.)
+  /// Whether the sum takes more than `most` steps until at most `enough` is left. While nothing has
+  /// ended yet, nothing is predicted.
   [[nodiscard]] bool is_too_slow(int steps, double left, double enough, int most) {
     constexpr int kFirst = 512;
     if (steps >= most) return true;
@@ -90,7 +91,7 @@ class Pace {
   double before_ = 0.0;
 };
 
-/// What has ended of the walks from a start, and what is left.
+/// The sums of ended walks from one start, and the remainder.
 struct StartTally {
   Start start;
   EndSums ends;
@@ -98,11 +99,11 @@ struct StartTally {
   CompensatedSum draws, remainder;
   int steps = 0;
   bool over = false;
-  bool stopped = false;  // before it was done
+  bool stopped = false;  // stopped before it was done
 
   StartTally(const Field& field, const Start& from) : start(from), ends(field) {}
 
-  /// The first draw; `enter(column, row, input, p)` for what walks on.
+  /// Makes the first draw. `enter(column, row, input, p)` receives the mass that goes on.
   template <class Enter>
   void draw_first(const Chain& chain, const Field& field, bool is_last, Enter enter) {
     const std::int64_t cell = std::int64_t{start.row} * field.columns + start.column;
@@ -129,8 +130,8 @@ struct StartTally {
     }
   }
 
-  /// What visitors of a cell draw: one number per plane of ends at `tally`. `is_last`: whoever
-  /// would go on is cut off.
+  /// Counts the draws of the mass in a cell: one number for each plane of ends at `tally`.
+  /// `is_last`: mass that would go on is cut off.
   void count(const Field& field, const std::vector<Move>& moves, std::int64_t column,
              std::int64_t row, bool is_last, const double* tally, std::ptrdiff_t stride) {
     const std::int64_t cell = row * field.columns + column;
@@ -152,7 +153,8 @@ struct StartTally {
     draws += drawn;
   }
 
-  /// Roundings that a move and an ending go through: see rounding_bound().
+  /// The result; `per_move` and `ending` count the roundings of a move and of an ending, see
+  /// rounding_bound().
   [[nodiscard]] FinalDistribution result(double per_move, double ending) const {
     FinalDistribution d = ends.result();
     d.remainder = remainder.value();
@@ -163,12 +165,12 @@ struct StartTally {
   }
 };
 
-/// After so many sums a direct solve takes over, where it may.
+/// The number of sums after which a direct solve takes over, where permitted.
 inline constexpr int kMostSums = 10'000;
 
-/// Predictor::predict_all by Solver::steps and Solver::rows, arguments checked. With `may_stop`,
-/// without limit of cells: none for starts of which it would take more than kMostSums sums, or keep
-/// fewer than 6 digits.
+/// Predictor::predict_all by Solver::steps and Solver::rows, with checked arguments. With
+/// `may_stop` and without a limit of cells, a start has no result if it would take more than
+/// kMostSums sums or keep fewer than 6 digits.
 using MaybePredicted = std::vector<std::optional<FinalDistribution>>;
 [[nodiscard]] MaybePredicted predict_by_steps(const PredictionPlan& plan, const Field& field,
                                               const std::vector<Start>& starts,
@@ -177,16 +179,16 @@ using MaybePredicted = std::vector<std::optional<FinalDistribution>>;
                                              const std::vector<Start>& starts,
                                              const PredictOptions& options, bool may_stop);
 
-/// solve_absorption() whose factors have at most `most_numbers` numbers; throws std::runtime_error
-/// for more.
+/// solve_absorption() with factors of at most `most_numbers` numbers; throws std::runtime_error for
+/// more.
 [[nodiscard]] FinalDistribution solve_by_klu(const FieldChain& chain, const Field& field,
                                              const Start& start, double most_numbers);
 
-/// Where walks circle too long for sums, and there is no limit of cells: by the elimination without
-/// subtraction, which keeps all digits, in at most so many products; where it would take more, by
-/// KLU's LU, if that has at most 2e8 numbers and keeps 6 digits. None where neither does, and for
-/// fields of too many pairs of a cell and an input: the choice depends on the chain and the field
-/// alone. Throws std::bad_alloc.
+/// Solves fields without a limit of cells in which walks circle too long for sums: by elimination
+/// without subtraction, which keeps all digits, within `most_operations` products; else by KLU's LU
+/// if it has at most 2e8 numbers and keeps 6 digits. Returns nullopt if neither does, or if the
+/// field has too many (cell, input) pairs. The choice depends only on the chain and the field.
+/// Throws std::bad_alloc.
 [[nodiscard]] std::optional<FinalDistribution> solve_circles(const FieldChain& chain,
                                                              const Field& field, const Start& start,
                                                              double most_operations = 2e9);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What the numbers of a scene amount to: how fast its body is, how far noise shakes it sideways,
-/// what holds it, how long it may take. All of it follows from the scene in closed form, but for
-/// two roots; only deciding_numbers() runs the gate.
+/// What the numbers of a scene mean: the speed of its body, the lateral spread by the random force,
+/// the resistance of the beams, the time available. Everything is computed in closed form except
+/// two roots; only deciding_numbers() simulates the gate.
 
 #include <array>
 #include <cstdint>
@@ -14,60 +14,64 @@
 namespace gatewalk::dynamics {
 
 /// Standard gravity (m/s^2; 3rd General Conference on Weights and Measures, 1901). The model has no
-/// weight: this only tells how a scene compares with what walks on Earth.
+/// weight; gravity only serves to compare a scene with walkers on Earth.
 inline constexpr double kGravity = 9.80665;
 
-/// How a beam that was let go comes to rest.
+/// How a deflected beam comes to rest once it is released.
 struct RingDown {
-  double period = 0.0;  // s, from swing to swing on the same side; infinite where it only creeps
-  double kept = 0.0;    // of a swing's angle in the next one; 0 where it only creeps
-  double half = 0.0;    // s in which its angle, or that of its swings, halves in the long run;
-                        // infinite where nothing brings it back or stops it
+  double period = 0.0;  // s, time between swings on the same side; infinite if the beam creeps
+  double kept = 0.0;    // angle of the next swing / angle of a swing; 0 if the beam creeps
+  /// s, half-life of the angle, or of the swings, in the long run; infinite if undamped or not
+  /// driven back
+  double half = 0.0;
 };
 [[nodiscard]] RingDown ring_down(const GateParams& p, Side side);
 
-/// A body on the middle line that presses both beams forward, slowly.
+/// A body on the middle line that slowly presses both beams forward.
 struct BeamsOnTheMiddle {
-  double resistance = 0.0;  // N, the most they resist with; infinite where it covers their joints
-  double angle = 0.0;       // rad, of a beam there
-  double held_angle = 0.0;  // rad at which they balance the propulsion; NaN where it gets past
+  /// N, largest resistance of the beams; infinite if the body covers the joints
+  double resistance = 0.0;
+  double angle = 0.0;  // rad, angle of a beam at the largest resistance
+  /// rad, angle where the beams balance the propulsion; NaN if the body gets past
+  double held_angle = 0.0;
 };
 [[nodiscard]] BeamsOnTheMiddle beams_on_the_middle(const GateParams& p);
 
-/// What the random force does to a body that is at rest sideways: the standard deviation of x (m)
-/// after `seconds`, without beams. Draws are held for 1/random_rate from the first moment on;
-/// more than a million of them are taken in groups.
+/// The standard deviation of x (m) after `seconds` for a body at rest sideways, under the random
+/// force and without beams. Each draw is held for 1/random_rate from the start on. More than a
+/// million draws are computed in groups.
 [[nodiscard]] double shaken_sideways(const GateParams& p, double seconds);
 
 struct Meaning {
-  double top_speed = 0.0;       // m/s, propulsion over drag: the open's; infinite without drag
-  double top_speed_time = 0.0;  // s from rest to 95 % of it
-  double passage = 0.0;         // s from the start through a gate without beams; infinite: never
-  double passage_speed = 0.0;   // m/s at its end; NaN: never there
-  double shaken = 0.0;  // m: shaken_sideways within the passage, or the time limit if that is less
-  double draws_per_length = 0.0;  // of the random force while the body goes its own length, 2 R
-  double froude = 0.0;  // v^2 / (g R), the radius for a leg's length: of the top speed, or of the
-                        // passage's where there is none
+  double top_speed = 0.0;       // m/s, propulsion / drag, far from gates; infinite without drag
+  double top_speed_time = 0.0;  // s, from rest to 95 % of the top speed
+  double passage = 0.0;         // s, from the start through a gate without beams; infinite: never
+  double passage_speed = 0.0;   // m/s, speed at the end of the passage; NaN: never there
+  double shaken = 0.0;  // m, shaken_sideways over the passage, or over the time limit if shorter
+  double draws_per_length = 0.0;  // draws of the random force while the body moves by 2 R
+  /// v^2 / (g R), R in place of a leg's length, v the top speed, else the passage's
+  double froude = 0.0;
   double push_per_weight = 0.0, random_per_weight = 0.0;
-  double passages_waited = 0.0;  // time limit over passage
+  double passages_waited = 0.0;  // time limit / passage
   BeamsOnTheMiddle beams;
   std::array<RingDown, 2> ring_down;  // by Side
 };
-/// Throws InvalidParameter as validate().
+/// Computes the meaning of a scene. Throws InvalidParameter as validate() does.
 [[nodiscard]] Meaning meaning_of(const GateParams& p, const BodyState& start);
 
-/// What becomes of a body, whichever side it takes.
+/// What becomes of a body at a gate, on either side.
 enum class GateFate : std::uint8_t { crosses, leaves, trapped };
 
-/// A number that sits on a step: 1 % more or less of it turns a gate that bodies cross into one
-/// that keeps them. Little noise makes such steps; a measured number is seldom known to 1 %.
+/// A number of the scene near a threshold: all runs with 1 % less of it end in one way, all runs
+/// with 1 % more in another. Such thresholds occur with little noise; a measured number is seldom
+/// known to 1 %.
 struct Deciding {
-  std::string_view words;  // "the stiffness", of both beams
-  GateFate less, more;     // of every run with 1 % less, 1 % more of it
+  std::string_view words;  // "the stiffness" (of both beams)
+  GateFate less, more;     // fate of all runs with 1 % less, with 1 % more
 };
-/// Runs the gate from `start` with 1 % less and 1 % more of each number by itself: once without a
-/// random force, else up to 20 times. Numbers with which runs end differently among themselves
-/// decide nothing.
+/// Finds the deciding numbers: runs the gate from `start` with 1 % less and 1 % more of each number
+/// in turn, once without a random force, else up to 20 times. A number is not deciding if its runs
+/// end differently among themselves.
 [[nodiscard]] std::vector<Deciding> deciding_numbers(const GateParams& p, const BodyState& start);
 
 }  // namespace gatewalk::dynamics

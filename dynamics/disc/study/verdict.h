@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// One word for how far a method can be trusted on a scene: the worst that its runs showed.
+/// A one-word verdict on a method for a scene: the worst fault of its runs.
 
 #include <array>
 #include <cstdint>
@@ -10,20 +10,19 @@
 
 namespace gatewalk::dynamics {
 
-/// From good to bad. `missed_hit` is for scenes whose hits are known beforehand.
+/// The verdicts, from good to bad. `missed_hit` is for scenes whose hits are known in advance.
 enum class Verdict : std::uint8_t {
   fine,
-  missed_hit,    // a hit that should have been was not, or the other way round
-  no_formula,    // contacts for which the method has no formula
-  too_fast,      // disc or beam moved so far in a step that hits may have been missed
+  missed_hit,    // an expected hit did not occur, or an unexpected hit did
+  no_formula,    // contacts for which the method has no formula occurred
+  too_fast,      // disc or beam moved so far in a step that hits may be missed
   outcomes,      // a better method gives other outcomes
-  energy,        // energy from nothing
+  energy,        // energy was created
   penetration,   // the disc sank into a beam by more than 1 % of its radius
-  beyond_bound,  // steps longer than the method's stability bound for free beams: explains the
-                 // above
-  stuck,         // hits piled up or the run took more work than it was granted
+  beyond_bound,  // steps beyond the method's stability bound; may cause those above
+  stuck,         // hits accumulated, or the run reached the limit of work
   not_finite,
-  refused,  // the method does not take the scene: InvalidParameter
+  refused,  // the method refuses the scene (InvalidParameter)
 };
 inline constexpr std::array<std::string_view, 11> kVerdictNames{
     "ok",          "missed hit",   "no formula", "too fast",   "outcomes off", "energy",
@@ -32,8 +31,8 @@ inline constexpr std::array<std::string_view, 11> kVerdictNames{
   return kVerdictNames[static_cast<std::size_t>(v)];
 }
 
-/// How a user of `gate` and its like recognises a verdict: the number of the status, and what the
-/// warning says. Of a missed hit there is no sign; who is refused gets no result.
+/// The sign by which a user of `gate` and similar commands recognises a verdict: the key in the
+/// status and the words of the warning. A missed hit has no sign; a refused scene has no result.
 struct Sign {
   std::string_view key, words;
 };
@@ -51,8 +50,9 @@ inline constexpr std::array<Sign, kVerdictNames.size()> kSigns{
      {"", "the method refuses the scene"}}};
 [[nodiscard]] inline const Sign& sign_of(Verdict v) { return kSigns[static_cast<std::size_t>(v)]; }
 
-/// The worst fault that more than `permitted` (a share) of the runs showed. No run may break or be
-/// cut short; contacts without a formula are compared with the number of steps.
+/// The worst fault that more than `permitted` (a share) of the runs showed. Broken runs and runs at
+/// the limit of work are never permitted. Contacts without a formula are compared with the number
+/// of steps.
 [[nodiscard]] Verdict judge(const Health& health, std::int64_t out_of_work, double permitted);
 
 }  // namespace gatewalk::dynamics
