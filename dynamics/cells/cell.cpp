@@ -67,7 +67,7 @@ class TrialsOfCell {
         first_ones_(passed_before_ == 0 ? kFirstOnes : 0) {}
 
   void carry_out(Health& health) {
-    // a thread holds no more than its share
+    // A thread holds no more than its share.
     const std::int64_t each = (count_ + threads_ - 1) / threads_;
     tbb::enumerable_thread_specific<Health> parts;  // sums and maxima do not depend on the order
     tbb::parallel_for(0, threads_, [&](int) {
@@ -201,7 +201,7 @@ class TrialsOfCell {
     TrialsOfCell& all_;
     std::int64_t begun_ = 0, next_time_ = kFirstTime;
     bool is_time_ = false;
-    // under way and to be repeated; waiting for the repetition
+    // Bodies under way whose passage is to be repeated; bodies that wait for the repetition.
     std::vector<Body> watched_, waiting_;
     std::vector<Seen> seen_;
   };

@@ -232,7 +232,7 @@ StateRange StateSpace::range(int state) const {
 Entry StateSpace::sample(int state, Random& random) const {
   const StateRange range = this->range(state);
   Entry entry{range.face};
-  // draws for points too, so that the stream does not depend on the state
+  // Draws for points too, so that the stream does not depend on the state.
   for (std::size_t axis = 0; axis < section_.coordinates.size(); ++axis) {
     const auto& [from, to] = range.at[axis];
     entry.at[axis] = from + (to - from) * random.uniform();

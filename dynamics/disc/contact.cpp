@@ -21,7 +21,7 @@ Direction Direction::turned_to(double angle) const {
 }
 
 Touch nearest(const GateParams& p, Side side, const BodyState& body, const Direction& beam) {
-  // Centre from the joint, in the beam's own frame.
+  // The disc's centre relative to the joint, in the beam's own frame.
   const double px = from_joint(p, side, body.x);
   const double py = body.y - p.beams.joint_y;
   const double c = beam.c, s = beam.s;
@@ -122,12 +122,14 @@ Coupling coupling(const GateParams& p, const std::array<Touch, 2>& touch) {
 std::array<double, 2> bilateral_impulses(const Coupling& w, const std::array<double, 2>& b,
                                          const std::array<bool, 2>& active) {
   if (active[kLeft] && active[kRight]) {
-    // With a = |cross| and s its sign: z = -(b e' + a (b - s b')) / det, where a dash is the other
-    // side's and e = w - a. Nothing cancels where heavy beams make W nearly singular.
+    // With a = |cross| and s its sign: z = -(b e' + a (b - s b')) / det, where e = w - a and a
+    // prime marks the other side. This form has no cancellation if heavy beams make W nearly
+    // singular.
     const double s = w.cross < 0.0 ? -1.0 : 1.0, a = s * w.cross;
     const double left = w.left - a, right = w.right - a;
     const double det = left * right + a * (left + right);
-    // det > 0 unless both contacts coincide (two pins in one place); then share equally.
+    // det > 0 unless both contacts coincide (two pins in one place); then both share the impulse
+    // equally.
     if (det <= 1e-14 * (w.left * w.right)) {
       const double z = -(b[kLeft] + b[kRight]) / ((w.left + w.right) + 2.0 * w.cross);
       return {z, z};
@@ -145,7 +147,7 @@ std::array<double, 2> unilateral_impulses(const Coupling& w, const std::array<do
   const bool need_left = active[kLeft] && b[kLeft] < 0.0;
   const bool need_right = active[kRight] && b[kRight] < 0.0;
   if (!need_left && !need_right) return {0.0, 0.0};
-  // One alone, if it leaves the other open.
+  // One contact alone, if its impulse leaves the other open.
   if (need_left) {
     const double z = -b[kLeft] / w.left;
     if (!active[kRight] || b[kRight] + w.cross * z >= 0.0) return {z, 0.0};

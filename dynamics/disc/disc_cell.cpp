@@ -15,7 +15,7 @@ namespace {
 
 /// What a body carries from gate to gate.
 struct Memory {
-  BodyState from;  // where it begins, in its new gate's frame
+  BodyState from;  // start in the new gate, in that gate's frame
   RandomForce force;
 };
 
@@ -31,15 +31,15 @@ std::vector<const ParamInfo*> physical_params() {
   return infos;
 }
 
-/// Draws of a block: the least power of 2 for which kSlowBlocks of them last as long as a body
-/// takes from rest through the gate, were there no beams (about: without drag, and as if drag were
-/// all).
+/// The number of draws in a block: the least power of 2 for which kSlowBlocks blocks last as long
+/// as a body takes from rest through a gate without beams. That time is estimated as the sum of a
+/// passage without drag and one with drag alone.
 int block_of(const GateParams& p) {
   const double way = p.run.traverse_y;
   const double seconds =
       std::min(p.run.time_limit, std::sqrt(2.0 * way * p.body.mass / p.forces.propulsion) +
                                      way * p.forces.drag / p.forces.propulsion);
-  constexpr auto kMost = static_cast<int>(kSlowBlocks);  // blocks fit into what is drawn at once
+  constexpr auto kMost = static_cast<int>(kSlowBlocks);  // a block must fit into one batch of draws
   int block = 1;
   while (block < kMost && block * kMost < seconds * p.forces.random_rate) block *= 2;
   return block;
@@ -48,13 +48,13 @@ int block_of(const GateParams& p) {
 }  // namespace
 
 std::uint64_t stream_row(const GateParams& p, const BodyState& b) {
-  // From the bits of the state; the random generator serves as the hash.
+  // A hash of the bits of the state, made by the random generator.
   const Scale scale = scale_of(p);
-  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 is 0
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 becomes 0
   const r123::Philox4x64::ctr_type state = {{bits(b.x / scale.length), bits(b.y / scale.length),
                                              bits(b.vx / scale.speed()),
                                              bits(b.vy / scale.speed())}};
-  return r123::Philox4x64()(state, {{0, 0}})[0] >> 8;  // the top byte of a key is its purpose
+  return r123::Philox4x64()(state, {{0, 0}})[0] >> 8;  // the top byte of a key holds the purpose
 }
 
 Passage passage_of(const GateParams& p, const GateRun& run) {

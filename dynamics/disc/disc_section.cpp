@@ -21,7 +21,7 @@ std::vector<Bins> table3_bins(const GateParams& p) {
                                "beams.joint_y_m + body.radius_m = " +
                                fmt::format("{:f}", y + r));
   const double unit = scale_of(p).speed();
-  const auto speeds = [unit](std::vector<double> edges) {  // Table III's, in m/s
+  const auto speeds = [unit](std::vector<double> edges) {  // edges of Table III, in m/s
     for (double& v : edges) v *= unit;
     return edges;
   };

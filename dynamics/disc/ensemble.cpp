@@ -34,7 +34,7 @@ GateTally& GateTally::operator+=(const GateTally& o) {
 GateTally run_gate_trials(const GateParams& p, const BodyState& start, std::uint64_t seed,
                           TrialRange range) {
   const auto method = make_method(p);
-  tbb::enumerable_thread_specific<GateTally> tallies;  // sums and largest values: any order will do
+  tbb::enumerable_thread_specific<GateTally> tallies;  // the order does not matter
   carry_out_trials(
       p, *method, range.count,
       [&](RunSlot& slot) {

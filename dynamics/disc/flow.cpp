@@ -23,7 +23,7 @@ BeamFlow::BeamFlow(double k, double d, double dt) : BeamFlow(BeamLaw(k, d).over(
 
 BeamLaw::BeamLaw(double stiffness, double damping)
     : k(stiffness), d(damping), rate(std::sqrt(stiffness) + damping) {
-  // theta'' = 1 - d theta' - k theta, power by power. In units of `rate` no root exceeds 1, so that
+  // Power series of theta'' = 1 - d theta' - k theta. In units of `rate` no root exceeds 1, so
   // |omega[i]| <= 1 / i!.
   const double scaled_d = rate > 0.0 ? d / rate : 0.0;
   const double scaled_k = rate > 0.0 ? k / rate / rate : 0.0;

@@ -12,10 +12,10 @@
 
 namespace gatewalk::dynamics {
 
-// d, phi: the centre seen from the joint, in the beam's own frame. A beam turned forward by theta
-// has the disc behind it, theta > phi. Its side touches where the tangent from the joint does, at
-// the distance sqrt(d^2 - R^2): theta = phi + asin(R/d). If that is beyond the tip, the tip
-// touches: R^2 = d^2 + L^2 - 2 d L cos(theta - phi).
+// d, phi: polar coordinates of the disc's centre from the joint, in the beam's own frame. A beam
+// turned forward by theta > phi has the disc behind it. The beam's side touches where the tangent
+// from the joint touches, at the distance sqrt(d^2 - R^2): theta = phi + asin(R/d). If that point
+// is beyond the tip, the tip touches: R^2 = d^2 + L^2 - 2 d L cos(theta - phi).
 double forward_deflection(const GateParams& p, Side side, double x, double y) {
   const double length = p.beams.length, radius = p.body.radius;
   const double px = from_joint(p, side, x), py = y - p.beams.joint_y;
@@ -92,7 +92,7 @@ std::array<double, 2> basin_below(const Landscape& l, double x, double y) {
     double steepest = 0.0;  // J/m
     Eigen::Index down = 0, right = 0;
     for (const Eigen::Index i : {1, 0, -1})
-      for (const Eigen::Index j : {0, -1, 1}) {  // straight on before aside
+      for (const Eigen::Index j : {0, -1, 1}) {  // straight moves before diagonal ones
         if (row + i < 0 || row + i >= l.total.rows() || column + j < 0 ||
             column + j >= l.total.cols())
           continue;
@@ -113,7 +113,7 @@ std::array<double, 2> basin_below(const Landscape& l, double x, double y) {
   }
 }
 
-// Dijkstra with the highest energy on the way for a distance; of ways equally high a short one.
+// Dijkstra's algorithm with the highest energy on the path as the distance; the length breaks ties.
 Pass lowest_pass(const Landscape& l, double x, double y) {
   const std::size_t columns = l.x.size(), rows = l.y.size();
   const double dx = l.x[1] - l.x[0], dy = l.y[1] - l.y[0];

@@ -62,7 +62,7 @@ struct Pass {
 
 /// Permitted spacings (m) of a grid over the gate that extends down to the start.
 struct Spacings {
-  double least;  // 2000 points along the longer side
+  double least;  // 2000 intervals along the longer side
   double usual;  // half a unit of length (Scale) as in the paper, between `least` and `most`
   double most;   // two steps from side to side
 };

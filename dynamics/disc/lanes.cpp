@@ -23,7 +23,7 @@ namespace gatewalk::dynamics {
 constexpr int kMostLanes = 16;
 using Row = double[kMostLanes];
 
-/// One number per lane. Beams: left, right.
+/// The bodies of all lanes, one number per lane; beams: left, right.
 struct alignas(64) LaneBodies {
   Row x, y, vx, vy;
   Row theta[2], omega[2];
@@ -36,14 +36,15 @@ struct alignas(64) LaneSteps {
   Row inv_inertia[2], w_to_w[2], w_per_rad[2];
 };
 
-/// What Watch and EnergyLedger keep of a run.
+/// The records of Watch and EnergyLedger for all lanes.
 struct alignas(64) LaneWatches {
   Row y0, work, lowest, created;
   Row max_theta[2], penetration, speed_squared;
   Row steps, impacts, fast;
 };
 
-/// The runs in the lanes and all that happens between two steps: spells of constant force, ends.
+/// The runs in the lanes, and everything between two steps: spells of constant force and the ends
+/// of runs.
 class LaneRuns {
  public:
   LaneRuns(const GateParams& p, const NextRun& next, int lanes)
@@ -62,7 +63,7 @@ class LaneRuns {
 
   [[nodiscard]] bool any() const { return busy_ > 0; }
 
-  /// The spell in lane i is over.
+  /// Ends the spell in lane i.
   void spell_over(int i) {
     Run& run = runs_[i];
     run.slot.force.pass(run.spell.duration);
@@ -70,7 +71,8 @@ class LaneRuns {
     if (!begin_spell(i)) end(i, state(bodies, i));
   }
 
-  /// The body in lane i has left the gate, or is no number, in the step from `bodies` to `after`.
+  /// Ends the run in lane i, whose body left the gate, or stopped being finite, in the step from
+  /// `bodies` to `after`.
   void left(int i, const LaneBodies& after) {
     Run& run = runs_[i];
     const GateState before = state(bodies, i);
@@ -101,7 +103,7 @@ class LaneRuns {
     end(i, s);
   }
 
-  /// The body in lane i stays in the gate.
+  /// Continues the run in lane i, whose body stays in the gate.
   void go_on(int i, const LaneBodies& after, double steps_left) {
     bodies.x[i] = after.x[i];
     bodies.y[i] = after.y[i];
@@ -134,7 +136,7 @@ class LaneRuns {
     return s;
   }
 
-  /// False when there is none: the run's time is over.
+  /// Begins the next spell. Returns false if the run's time is over.
   bool begin_spell(int i) {
     Run& run = runs_[i];
     if (run.result.seconds >= nearly_over_) return false;
@@ -178,7 +180,7 @@ class LaneRuns {
     take(i, &r);
   }
 
-  /// The next run into lane i; without one the lane rests: nothing moves in it.
+  /// Puts the next run into lane i. Without one the lane rests: nothing moves in it.
   void take(int i, const GateRun* ended) {
     Run& run = runs_[i];
     while (next_(run.slot, ended)) {
@@ -230,7 +232,7 @@ HWY_BEFORE_NAMESPACE();
 namespace gatewalk::dynamics {
 namespace HWY_NAMESPACE {
 
-/// What tells whether disc and beam touch, nearest() of contact.h in all lanes ...
+/// The first part of nearest() (contact.h) in all lanes, which shows whether disc and beam touch.
 struct Look {
   Wide c, s, along, across;
   Wide r, qx, qy, distance_sq;  // the nearer end point, joint or tip, at r from the joint; from
@@ -250,7 +252,7 @@ HWY_INLINE Look look_at(const GateParams& p, Wide px, Wide py, Wide theta) {
           qx, qy, distance_sq, interior, away_sq <= all(p.body.radius * p.body.radius)};
 }
 
-/// ... and where, in the lanes that do.
+/// The second part of nearest() in all lanes: the contact point, where disc and beam touch.
 struct Touches {
   Wide nx, ny, gap, lever;
   WideMask tip;
@@ -269,7 +271,7 @@ HWY_INLINE Touches touch_of(const GateParams& p, Side side, const Look& at) {
           ~at.interior & (at.r > all(0.0))};
 }
 
-/// One step in every lane (MoreauMethod::one_step), then the ends of spells and runs.
+/// Takes one step in every lane (MoreauMethod::one_step), then handles the ends of spells and runs.
 HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
   LaneBodies& b = runs.bodies;
   LaneSteps& k = runs.steps;
@@ -294,8 +296,8 @@ HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
     t[side] = touch_of(p, side, at);
   }
 
-  // Both beams at once, with unilateral_impulses of contact.h: one alone if that leaves the other
-  // open, else both.
+  // Both beams at once, as in unilateral_impulses of contact.h: one contact alone if its impulse
+  // leaves the other open, else both.
   const Wide inv_mass = load(k.inv_mass);
   Wide before[2], rate[2], give[2], impulse[2];  // give: 1/M + l^2/I
   WideMask need[2], alone[2];
@@ -353,7 +355,7 @@ HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
   const WideMask gone =
       (y1 > all(p.run.traverse_y)) | (abs(x1) > all(p.beams.joint_x)) | ~finite(vx + vy);
 
-  // Watch::motion and EnergyLedger::step, but for the runs that end in this step.
+  // Watch::motion and EnergyLedger::step, except for runs that end in this step.
   const Wide work = load(w.work) + force * (x1 - x0);
   const Wide kinetic = p.body.mass * speed_sq + p.beams.inertia() * spin;
   const Wide balance = 0.5 * (kinetic + elastic) - p.forces.propulsion * (y1 - load(w.y0)) - work;
@@ -365,7 +367,7 @@ HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
   keep(max(load(w.speed_squared), speed_sq), w.speed_squared);
   for (const Side side : {kLeft, kRight})
     keep(max(load(w.max_theta[side]), abs(theta[side])), w.max_theta[side]);
-  // Penetration at the end of the step, from the gap in mid-step and its rate since.
+  // Penetration at the end of the step, from the gap in mid-step and its rate.
   Wide deepest = load(w.penetration);
   for (const Side side : {kLeft, kRight}) {
     const Touches& c = t[side];
@@ -373,7 +375,7 @@ HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
   }
   keep(deepest, w.penetration);
   keep(load(w.steps) + one, w.steps);
-  // (v + L |omega|) h > R/2, without a root
+  // Tests (v + L |omega|) h > R/2 without a square root.
   const Wide rest = all(0.5 * p.body.radius) - p.beams.length * fastest * h;
   const WideMask too_fast = (rest < zero) | (speed_sq * (h * h) > rest * rest);
   keep(load(w.fast) + or_zero(too_fast, one), w.fast);
@@ -400,7 +402,7 @@ HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
     store(left, spell_left);
     store(or_zero(gone, one), flag);
     for (int i = 0; i < lanes; ++i) {
-      if (std::isinf(spell_left[i])) continue;  // a resting lane has no run that could end
+      if (std::isinf(spell_left[i])) continue;  // a resting lane has no run
       if (flag[i] == 0.0) {
         runs.go_on(i, after, spell_left[i]);
       } else {

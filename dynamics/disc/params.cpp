@@ -11,13 +11,14 @@ namespace {
 
 using P = GateParams;
 
-// Any unit will do, as long as nothing that is computed overflows: see require_computable.
+// The largest permitted value in SI units: any unit will do as long as nothing overflows
+// (require_computable).
 constexpr double kHuge = 1e100;
-// The same for the scene's own units, and for values in these.
+// The largest permitted own unit of a scene, and the largest value in such units.
 constexpr double kHugeUnit = 1e60;
 constexpr double kFar = 1e18;
 
-// key, place, lowest, highest, whether the lowest itself is refused, meaning
+// Columns: key, place, lowest, highest, whether the lowest itself is refused, meaning.
 constexpr ParamInfo kTable[] = {
     {"body.mass_kg", [](P& p) -> double& { return p.body.mass; }, 0.0, kHuge, true,
      "mass M of the disc"},
@@ -62,7 +63,7 @@ constexpr ParamInfo kTable[] = {
      "method auto: total variation of the outcomes that it may cost"},
 };
 
-/// The shortest digits that read back as `v`, or `digits` significant ones.
+/// Formats `v` with the shortest digits that read back as `v`, or with `digits` significant digits.
 std::string text(double v, int digits = 0) {
   std::array<char, 32> buffer;
   char* const begin = buffer.data();
@@ -85,8 +86,8 @@ const ParamInfo& info(std::string_view key) {
                        [key](const ParamInfo& i) { return i.key == key; });
 }
 
-/// These refuse units so large or small, and values so many units away, that products of some of
-/// them could overflow or vanish.
+/// Refuses units so large or small, and values so many units away, that products could overflow or
+/// vanish. require_units checks the units, require_computable both.
 void require_units(const GateParams& p) {
   const Scale u = scale_of(p);
   for (const double unit :
@@ -127,7 +128,7 @@ void require_computable(const GateParams& p) {
                  ", body.radius_m = " + text(p.body.radius) + " and the forces it must lie in [" +
                  text(low, 6) + ", " + text(high, 6) + "]");
   }
-  // A tenth of a radius is no tolerance any more; rounding is no tolerance yet.
+  // The tolerance must lie between rounding error and a tenth of a radius.
   const double least = 1e-14 * p.body.radius, most = 0.1 * p.body.radius,
                given = p.run.event_tolerance;
   if (p.run.method == "event" && !(given >= least && given <= most))
@@ -162,13 +163,14 @@ double default_step(const GateParams& p) {
 
 namespace {
 
-/// What the tolerances of a scene's hits are multiplied with where little force presses a body onto
-/// a beam: an impulse threshold is three times what it does in the paper's step at most. 1 in the
+/// The factor on the tolerances of hits, below 1 if little force presses a body onto a beam: the
+/// impulse threshold is at most three times the impulse of that force in the paper's step. 1 in the
 /// paper's scenes.
 double gentleness(const GateParams& p) {
   const Scale scale = scale_of(p);
   const double force =
-      std::max(p.forces.propulsion, 0.1 * p.forces.random);  // the random one for a hold only
+      // The random force acts for a hold only.
+      std::max(p.forces.propulsion, 0.1 * p.forces.random);
   const double usual = ContactParams{}.impulse_threshold * scale.impulse();
   return force > 0.0 ? std::min(1.0, 3.0 * force * (kPaperStep * scale.time) / usual) : 1.0;
 }
@@ -185,8 +187,8 @@ double default_event_tolerance(const GateParams& p) {
 
 namespace {
 
-/// How long the propulsion takes from rest through an open gate (s): the free fall and the drag's
-/// share, one after the other. Infinite without propulsion.
+/// The time (s) that the propulsion takes from rest through an open gate: the time without drag
+/// plus the time with drag alone. Infinite without propulsion.
 double opening_time(const GateParams& p) {
   const double gate = p.run.traverse_y, force = p.forces.propulsion;
   return std::sqrt(2.0 * gate * p.body.mass / force) + gate * p.forces.drag / force;
@@ -203,7 +205,7 @@ std::vector<std::string_view> fill_in(GateParams& p, BodyState& start, const IsN
   };
   const GateParams paper;
   const bool own_body = named("body.mass_kg") || named("body.radius_m");
-  Scale u;  // of what the paper's scene has in units of 1 m, 1 kg, 1 s
+  Scale u;  // units that replace the paper's 1 m, 1 kg, 1 s
   if (own_body) {
     if (named("body.radius_m"))
       u.length = p.body.radius / paper.body.radius;
@@ -236,7 +238,7 @@ std::vector<std::string_view> fill_in(GateParams& p, BodyState& start, const IsN
     fill("body.radius_m", p.body.radius, paper.body.radius * u.length);
     const double length = p.beams.length, joint_x = p.beams.joint_x;
     const double left = p.beams.stiffness_left, right = p.beams.stiffness_right;
-    // Tips that meet, beams that are alike.
+    // By default the tips meet and the beams are alike.
     fill("beams.length_m", p.beams.length,
          named("beams.joint_x_m") ? joint_x : paper.beams.length * u.length);
     fill("beams.mass_kg", p.beams.mass, paper.beams.mass * u.mass);
@@ -283,7 +285,7 @@ int steps_per_hold(const GateParams& params) {
   const double whole = std::round(steps);
   if (whole >= 1.0 && std::abs(steps - whole) <= 1e-6 * whole) return static_cast<int>(whole);
 
-  // The nearest steps that do fit, one longer and one shorter, where the table permits them.
+  // The nearest longer and shorter steps that fit, if the table permits them.
   std::string nearest;
   for (const double n : {std::floor(steps), std::floor(steps) + 1.0}) {
     const double fit = 1.0 / (rate * n);  // inf for n = 0

@@ -8,7 +8,7 @@
 namespace gatewalk::dynamics {
 namespace {
 
-/// Cosine modes of kSlowBlocks numbers, orthonormal, the slowest first.
+/// The slowest cosine modes over kSlowBlocks numbers, orthonormal, slowest first.
 using Modes = std::array<std::array<double, kSlowBlocks>, kPointDimensions>;
 
 Modes slowest_modes() {

@@ -20,7 +20,7 @@ RowTrials row_trials(const StateSpace& space, const GateParams& p, std::uint64_t
     return entries[row][random.below(static_cast<std::int64_t>(entries[row].size()))];
   };
   const auto method = make_method(p);
-  std::vector<std::int64_t> first_run{0};  // of each row, among all of these
+  std::vector<std::int64_t> first_run{0};  // first run of each row, among all runs
   for (int row = 0; row < space.size(); ++row)
     first_run.push_back(first_run.back() + range.count * runs_per_trial(space, row));
   const auto row_of = [&](std::int64_t run) {
@@ -31,7 +31,7 @@ RowTrials row_trials(const StateSpace& space, const GateParams& p, std::uint64_t
   RowTrials all{.trials = range.count,
                 .arrivals = std::vector<Arrival>(static_cast<std::size_t>(first_run.back())),
                 .health = {}};
-  tbb::enumerable_thread_specific<Health> health;  // sums and largest values: any order will do
+  tbb::enumerable_thread_specific<Health> health;  // the order does not matter
   carry_out_trials(
       p, *method, std::ssize(all.arrivals),
       [&](RunSlot& slot) {

@@ -27,7 +27,7 @@ void carry_out(const GateParams& p, const Method& method, const NextRun& next,
 
 void carry_out_trials(const GateParams& p, const Method& method, std::int64_t count,
                       const BeginTrial& begin, const TakeRun& take, std::int64_t most_work) {
-  // Whoever is free takes the next trial: no lane waits for the end of a block.
+  // A free thread takes the next trial, so no lane waits for the end of a block.
   std::atomic<std::int64_t> next_trial{0};
   const NextRun next = [&](RunSlot& slot, const GateRun* ended) {
     if (ended != nullptr && take(slot, *ended)) return true;
@@ -37,12 +37,13 @@ void carry_out_trials(const GateParams& p, const Method& method, std::int64_t co
     return true;
   };
   const int threads = tbb::this_task_arena::max_concurrency();
-  const std::int64_t each = (count + threads - 1) / threads;  // nobody takes what others could do
+  // A thread holds no more than its share.
+  const std::int64_t each = (count + threads - 1) / threads;
   tbb::parallel_for(0, threads, [&](int) {
     try {
       carry_out(p, method, next, most_work, each);
     } catch (...) {
-      next_trial = count;  // nobody takes another one
+      next_trial = count;  // no thread takes another trial
       throw;
     }
   });

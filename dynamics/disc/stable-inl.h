@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What `stable` does between two looks at the clock, in all lanes: glides, hits, impacts. The same
-// operations in the same order as in methods/stable.cpp and methods/hybrid.{h,cpp}, so that every
-// lane has the bits of the plain method. What is rare is left to that: `failed` lanes have no
-// result here.
+// The glides, hits and impacts of `stable` in all lanes: the same operations in the same order as
+// in methods/stable.cpp and methods/hybrid.{h,cpp}, so every lane has the bits of the plain method.
+// Rare cases are left to the plain method: `failed` lanes have no result here.
 #if defined(GATEWALK_DYNAMICS_STABLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef GATEWALK_DYNAMICS_STABLE_INL_H_
 #undef GATEWALK_DYNAMICS_STABLE_INL_H_
@@ -36,7 +35,7 @@ struct StableRules {
         tip_restitution(p.contact.tip_restitution) {}
 };
 
-/// Where flow_over() is the plain method's flow over any time up to dt (s).
+/// The lanes where flow_over() has the plain method's flow over any time up to dt (s).
 HWY_INLINE WideMask in_series(const StableRules& r, Wide dt) {
   const GateLaw& law = r.method.law();
   return (law.drag * dt < all(BodyFlow::kSeries)) &
@@ -80,7 +79,8 @@ HWY_INLINE void apply_impulses(const LaneGate& g, WideMask where, const WideTouc
   for (int i = 0; i < N; ++i) s.omega[i] = choose(where, s.omega[i] + by.beta[i], s.omega[i]);
 }
 
-/// `touch` is where the contacts are, before and after.
+/// Projects `contacts` back onto their constraints. `touch` holds the contact points before, and
+/// then after.
 template <int N>
 HWY_INLINE void put_back(const StableRules& r, const Beams<N>& beams, StateOf<N>& s,
                          const WideMask (&contacts)[N], WideTouch (&touch)[N]) {
@@ -118,7 +118,8 @@ HWY_INLINE void put_back(const StableRules& r, const Beams<N>& beams, StateOf<N>
   apply_impulses(g, some, touch, bilateral_impulses(coupling(g, touch), rate, contacts), s);
 }
 
-/// Returns the lanes with a handover; `gap` is that of the contacts that are still held.
+/// Motion with held contacts. Returns the lanes with a handover; `gap` receives the gaps of the
+/// contacts that are still held.
 template <int N>
 HWY_NOINLINE WideMask glide_held(const StableRules& r, const Beams<N>& beams, Wide force_x,
                                  const FlowOf<N>& flow, const FlowOf<N>& half_flow, StateOf<N>& s,
@@ -153,7 +154,7 @@ HWY_NOINLINE WideMask glide_held(const StableRules& r, const Beams<N>& beams, Wi
 
 struct Glided {
   WideMask handover;
-  WideMask left;  // where the one held contact was the left one
+  WideMask left;  // the only held contact is the left one
   Each<2> gap;    // of the held contacts
 };
 
@@ -168,7 +169,7 @@ HWY_INLINE Glided glide(const StableRules& r, Wide force_x, const WideFlow& flow
   if constexpr (N == 2) {
     done.handover = glide_held(r, both_beams(r.gate), force_x, flow, half_flow, s, done.gap);
   } else {
-    // The beam alone with the body, whichever it is; the other one flies.
+    // The held beam moves with the body, whichever side it is on; the other beam flies.
     const WideMask left = done.left;
     const auto of = [&](const Wide(&x)[2]) HWY_ATTR { return choose(left, x[kLeft], x[kRight]); };
     const auto one_of = [&](const WideFlow& f) HWY_ATTR {
@@ -208,7 +209,8 @@ HWY_INLINE Glided glide(const StableRules& r, Wide force_x, const WideFlow& flow
   }
   return done;
 }
-/// Over any dt in series. Where the plain method has its flow `kept`, it adds the zeros of no push.
+/// Motion without new hits over any dt within the series. In lanes where the plain method uses its
+/// flow `kept`, the zeros of no push are added as there.
 template <int N>
 HWY_INLINE Glided glide(const StableRules& r, Wide force_x, Wide dt, WideMask kept, WideState& s) {
   const WideFlow flow = flow_over(r, dt);
@@ -225,17 +227,17 @@ HWY_INLINE Glided glide(const StableRules& r, Wide force_x, Wide dt, WideMask ke
   return no_contacts();
 }
 
-/// What a piece has led to.
+/// The end of a piece.
 struct Arrival {
   WideMask hit[2];
   Wide overlap;   // m
-  WideMask lost;  // outside the gate, or no numbers
+  WideMask lost;  // outside the gate, or not finite
 };
 template <int N>
 HWY_INLINE Arrival arrive(const StableRules& r, const WideState& end, const Glided& glided) {
   Arrival a;
   a.overlap = all(0.0);
-  // With one held contact: that beam first, which is seldom free now.
+  // With one held contact, its beam comes first, because it is seldom free now.
   const WideMask in_order = N == 1 ? glided.left : ~nowhere();
   WideMask hit[2];
   for (const int i : {0, 1}) {
@@ -259,7 +261,7 @@ HWY_INLINE Arrival arrive(const StableRules& r, const WideState& end, const Glid
     a.overlap = choose(looked, larger(a.overlap, -gap), a.overlap);
   }
   for (const Side side : {kLeft, kRight}) a.hit[side] = choose(in_order, hit[side], hit[1 - side]);
-  // Direction::of is the C library's beyond kMostAngle.
+  // Direction::of uses the C library beyond kMostAngle.
   const Wide most = all(Direction::kMostAngle);
   const Wide sum = (end.x + end.y) + (end.vx + end.vy) + (end.omega[kLeft] + end.omega[kRight]);
   a.lost = outside(r, end.x, end.y) | ~finite(sum) |
@@ -297,8 +299,8 @@ HWY_INLINE Wide halving(Wide n) {
   return power;
 }
 
-/// StableMethod::level, as far as it depends on beams and the place in the step; `plain` where it
-/// may be more, in lanes that turn or go too far.
+/// StableMethod::level as far as it depends on the beams and on the place in the step. `plain`
+/// marks lanes where it may be larger, because something turns or moves too far.
 HWY_INLINE Wide level_of(const StableRules& r, const WideState& s, Wide step, Wide unit,
                          WideMask& plain) {
   const auto& halvings = r.limits.halvings;
@@ -328,8 +330,8 @@ HWY_INLINE Wide level_of(const StableRules& r, const WideState& s, Wide step, Wi
   return level;
 }
 
-/// crossing() of methods/stable.cpp. `gap` also counts its evaluations in the lanes that it is
-/// told.
+/// crossing() of methods/stable.cpp. `gap` also counts its evaluations, in the lanes that it
+/// receives.
 template <class Gap>
 HWY_INLINE Wide crossing(WideMask lanes, Wide dt, Wide start, Wide end, WideMask from_zero,
                          Wide tolerance, Gap gap) {
@@ -365,7 +367,8 @@ struct WideHit {
   WideState there;
   WideMask failed;
 };
-/// Of the left beam where `mirror` is 1, of the right one where it is -1; `end` is dt after `s`.
+/// Finds a hit of the left beam where `mirror` is 1, of the right beam where it is -1; `end` is dt
+/// after `s`.
 template <int N>
 HWY_NOINLINE WideHit find_hit(const StableRules& r, const WideState& s, const WideState& end,
                               Wide force_x, Wide dt, Wide mirror, WideMask lanes,
@@ -392,7 +395,7 @@ HWY_NOINLINE WideHit find_hit(const StableRules& r, const WideState& s, const Wi
   count(lanes);
   const Wide end_gap = gap_of(end.x, end.y, theta1);
 
-  // interpolated() of methods/method.cpp, in which only places matter.
+  // interpolated() of methods/method.cpp, for positions only.
   const auto gap_between = [&](Wide t, WideMask where) HWY_ATTR {
     const Wide z = t / dt, z2 = z * z, z3 = z2 * z;
     const Wide wb = 3.0 * z2 - 2.0 * z3, da = dt * (z - 2.0 * z2 + z3), db = dt * (z3 - z2);
@@ -423,7 +426,7 @@ HWY_NOINLINE WideHit find_hit(const StableRules& r, const WideState& s, const Wi
     off = off & (falling < all(0.0)) & (next > all(0.0)) & (next <= dt);
     if (!any(off)) break;
     hit.when = choose(off, next, hit.when);
-    // In the other lanes the same again.
+    // The other lanes repeat their result.
     hit.there = s;
     glide<N>(r, force_x, hit.when, nowhere(), hit.there);
   }
@@ -431,8 +434,8 @@ HWY_NOINLINE WideHit find_hit(const StableRules& r, const WideState& s, const Wi
   return hit;
 }
 
-/// resolve_hits() with the limits of `stable`, in the lanes where nothing has piled up; returns
-/// those that are not done after some rounds.
+/// resolve_hits() with the limits of `stable`, in lanes without accumulated hits. Returns the lanes
+/// that are not done after some rounds.
 HWY_NOINLINE WideMask resolve_hits(const StableRules& r, WideMask lanes, WideState& s,
                                    Wide& impacts) {
   constexpr int kRounds = 8;

@@ -22,9 +22,10 @@
 namespace gatewalk::dynamics {
 
 constexpr int kMostLanes = 16;
-constexpr int kMostRuns = 512;  // in flight: fewer leave lanes empty, more leave the cache
+constexpr int kMostRuns = 512;  // fewer runs leave lanes empty, more exceed the cache
 
-/// Numbers of many runs, a row of each kind. Behind the last there is room for a load of all lanes.
+/// A table of many runs: one row for each kind of number, one column for each run. Each row has
+/// room for a load of all lanes behind the last run.
 template <int kRows>
 struct alignas(64) Table {
   double rows[kRows][kMostRuns + kMostLanes] = {};
@@ -37,39 +38,40 @@ struct alignas(64) Table {
   }
 };
 
-// Rows of a state.
+// The rows of a state.
 constexpr int kX = 0, kY = 1, kVx = 2, kVy = 3, kTheta = 4, kOmega = 6, kHeld = 8, kState = 10;
 
-// Rows of a deck: the state and that after the piece; what the run needs next, see below;
+// The rows of a deck: the state now, the state after the piece, and what the run needs next
+// (below);
 constexpr int kNow = 0, kNext = kState, kNeed = 2 * kState;
-// the force (N, along x), the step (s), steps left in the spell; StableMethod::Progress, and how
-// often the next piece must be halved at least;
+// the force (N, along x), the step (s) and the steps left in the spell; StableMethod::Progress with
+// the least number of halvings of the next piece;
 constexpr int kForce = kNeed + 1, kStep = kForce + 1, kStepsLeft = kStep + 1;
 constexpr int kUnit = kStepsLeft + 1, kPassed = kUnit + 1, kHalved = kPassed + 1;
-// of the piece: its units and time (s), the overlap (m), evaluations and impacts;
+// for the piece: its units and time (s), the overlap (m), evaluations and impacts;
 constexpr int kUnits = kHalved + 1, kTime = kUnits + 1, kOverlap = kTime + 1;
 constexpr int kNewEvaluations = kOverlap + 1, kNewImpacts = kNewEvaluations + 1;
-// EnergyLedger; Watch.
+// the numbers of EnergyLedger and of Watch.
 constexpr int kLastX = kNewImpacts + 1, kFirstY = kLastX + 1, kWork = kFirstY + 1;
 constexpr int kLowest = kWork + 1, kCreated = kLowest + 1, kMaxTheta = kCreated + 1;
 constexpr int kPenetration = kMaxTheta + 2, kSpeed = kPenetration + 1, kSteps = kSpeed + 1;
 constexpr int kEvaluations = kSteps + 1, kImpacts = kEvaluations + 1, kHolds = kImpacts + 1;
 constexpr int kFast = kHolds + 1, kDeckRows = kFast + 1;
 
-// What a run needs next.
-constexpr double kNothing = 0.0;  // there is none
+// The values of kNeed: what a run needs next.
+constexpr double kNothing = 0.0;  // no run
 constexpr double kPiece = 1.0;
-constexpr double kWait = 2.0;    // a queue has it
+constexpr double kWait = 2.0;    // it waits in a queue
 constexpr double kCommit = 3.0;  // its piece is done
 constexpr double kSpell = 4.0;   // the next draw of the random force
-constexpr double kBroken = 5.0;  // the same, but the state is no numbers
-constexpr double kGone = 6.0;    // the body has left, or is no number
+constexpr double kBroken = 5.0;  // a spell, but the state is not finite
+constexpr double kGone = 6.0;    // the body has left or is not finite
 
 using Deck = Table<kDeckRows>;
 
-// Rows of a queue, pieces in which something was hit: the state from which they go on, and where
-// that leads without a hit; the force, the time of the piece and what is left of it (s); by which
-// beams it is hit; evaluations and impacts so far, and how often it was hit.
+// The rows of a queue of pieces with a hit: the state from which the piece goes on, and its end
+// without a hit; the force, the time of the piece and the time left (s); which beams are hit;
+// evaluations and impacts so far; the number of hits.
 constexpr int kFrom = 0, kTo = kState, kHitForce = 2 * kState, kPieceTime = kHitForce + 1;
 constexpr int kLeftOver = kPieceTime + 1, kHit = kLeftOver + 1, kHitEvaluations = kHit + 2;
 constexpr int kHitImpacts = kHitEvaluations + 1, kTimesHit = kHitImpacts + 1;
@@ -97,7 +99,7 @@ void put_state(const GateState& s, Rows& rows, int first, int i) {
   }
 }
 
-/// The runs in flight, and all that is done for them one by one.
+/// The runs in flight, and all work that is done run by run.
 class StableRuns {
  public:
   StableRuns(const GateParams& p, const StableMethod& method, const NextRun& next,
@@ -128,7 +130,7 @@ class StableRuns {
     for (const Deck& deck : decks) sum += deck.size;
     return sum;
   }
-  /// For enough others to fill all lanes.
+  /// The number of runs that wait until enough others need the same work to fill all lanes.
   [[nodiscard]] int waiting() const {
     int sum = 0;
     for (int n = 0; n <= 2; ++n) sum += hits[n].size + rests[n].size + decks[kShort + n].size;
@@ -136,7 +138,7 @@ class StableRuns {
   }
   [[nodiscard]] bool has_stiff_beams() const { return has_stiff_beams_; }
 
-  /// The rest of the step by the plain method.
+  /// Takes the rest of the step by the plain method.
   void finish_plainly(Deck& deck, int i) {
     auto& row = deck.rows;
     GateState s = get_state(row, kNow, i);
@@ -159,7 +161,7 @@ class StableRuns {
   }
   void finish_plainly(int run) { finish_plainly(deck_of(run), runs_[run].lane); }
 
-  /// The piece of a run has ended in row i of a queue, without further hits.
+  /// Ends the piece in column i of a queue, without further hits.
   void finish(const Queue& queue, int i, double overlap) {
     const Run& run = runs_[queue.run[i]];
     auto& row = deck_of(queue.run[i]).rows;
@@ -170,7 +172,7 @@ class StableRuns {
     row[kNeed][run.lane] = kCommit;
   }
 
-  /// A piece that was not finished plainly is over, without hits.
+  /// Records the swing of the beams in a piece without hits that the lanes have finished.
   void watch_swing(Deck& deck, int i) {
     auto& row = deck.rows;
     const GateState before = get_state(row, kNow, i);
@@ -182,7 +184,7 @@ class StableRuns {
     }
   }
 
-  /// Spells and runs that are over.
+  /// Handles spells and runs that have ended.
   void look_after(Deck& deck) {
     for (int i = deck.size; i-- > 0;) {
       const double need = deck.rows[kNeed][i];
@@ -191,7 +193,7 @@ class StableRuns {
       if (!spell_over(deck, i, need)) remove(deck, i);
     }
   }
-  /// Everybody into the right deck.
+  /// Moves every run into the right deck.
   void sort() {
     for (int n = 0; n < kDecks; ++n)
       for (int i = decks[n].size; i-- > 0;) {
@@ -200,8 +202,9 @@ class StableRuns {
       }
   }
 
-  // By the number of held contacts: runs between two pieces, the next of which is a usual step or,
-  // kShort decks later, any other; searches for hits; what is left of the pieces after a hit.
+  // Indexed by the number of held contacts: `decks` hold runs between two pieces, whose next piece
+  // is a usual step or, kShort decks later, of any other length; `hits` hold searches for a hit;
+  // `rests` hold the rest of a piece after a hit.
   static constexpr int kShort = 3, kDecks = 6;
   Deck decks[kDecks];
   Queue hits[3], rests[3];
@@ -241,7 +244,7 @@ class StableRuns {
     remove(decks[from], i);
   }
 
-  /// False when its run is over and there is no other.
+  /// Ends a spell. Returns false if the run has ended and there is no other.
   bool spell_over(Deck& deck, int i, double need) {
     auto& row = deck.rows;
     Run& run = runs_[deck.run[i]];
@@ -255,7 +258,7 @@ class StableRuns {
     return (need == kSpell && begin_spell(deck, i)) || end(deck, i);
   }
 
-  /// False when the run is over: no time left, or too much work done.
+  /// Begins the next spell. Returns false if the run is over: no time left, or too much work.
   bool begin_spell(Deck& deck, int i) {
     auto& row = deck.rows;
     Run& run = runs_[deck.run[i]];
@@ -275,13 +278,13 @@ class StableRuns {
     return true;
   }
 
-  /// The run is over; false when there is no other.
+  /// Ends the run. Returns false if there is no other.
   bool end(Deck& deck, int i) {
     const GateRun ended = result(deck, i);
     return take(deck, i, &ended);
   }
 
-  /// The next run into lane i; false when there is none.
+  /// Puts the next run into lane i. Returns false if there is none.
   bool take(Deck& deck, int i, const GateRun* ended) {
     Run& run = runs_[deck.run[i]];
     GateRun at_once;
@@ -360,7 +363,7 @@ HWY_INLINE WideState load_state(const Rows& rows, int first, int i) {
   return s;
 }
 HWY_INLINE Wide flag(WideMask m) { return or_zero(m, all(1.0)); }
-/// In the lanes of `m`; the others keep what they have.
+/// Stores the state in the lanes of `m`; other lanes stay unchanged.
 template <class Rows>
 HWY_INLINE void store_state(const WideState& s, WideMask m, Rows& rows, int first, int i) {
   const auto put = [&](int k, Wide x) HWY_ATTR {
@@ -385,14 +388,14 @@ HWY_INLINE WideFlow same_in_all(const GateFlow& f) {
   return {{all(f.body.decay), all(f.body.rise), all(f.body.fall)}, {beam(f.left), beam(f.right)}};
 }
 
-/// The first k lanes.
+/// A mask of the first k lanes.
 HWY_INLINE WideMask first_lanes(int k) {
   alignas(64) double number[kMostLanes];
   for (int i = 0; i < kMostLanes; ++i) number[i] = i;
   return load(number) < all(k);
 }
 
-/// What all lanes do together.
+/// The work that all lanes do together.
 class Rounds {
  public:
   Rounds(const GateParams& p, const StableMethod& method, StableRuns& runs)
@@ -402,7 +405,7 @@ class Rounds {
     const int lanes = static_cast<int>(width());
     while (runs_.in_flight() > 0) {
       runs_.sort();
-      // What few need waits until they fill all lanes, unless too many wait.
+      // Work that few runs need waits until they fill all lanes, unless too many wait.
       const int least = 4 * runs_.waiting() > runs_.in_flight() ? 1 : lanes;
       try_deck<0>(least);
       try_deck<1>(least);
@@ -424,7 +427,7 @@ class Rounds {
     for (int i = 0; i + least <= some; i += lanes) try_pieces<N, false>(i);
   }
 
-  /// A piece without hits and with N held contacts, in the lanes from i on.
+  /// Tries a piece with N held contacts, as if there were no hits, in the lanes from i on.
   template <int N, bool kUsual>
   HWY_NOINLINE void try_pieces(int i) {
     Deck& deck = runs_.decks[kUsual ? N : StableRuns::kShort + N];
@@ -468,7 +471,7 @@ class Rounds {
     const WideMask hit = a.hit[kLeft] | a.hit[kRight];
     plain = ready & (plain | a.lost | (hit & ~series));
     const Wide evaluations = all(2.0 + 3.0 * N);
-    if constexpr (N > 0) {  // the contact force jumps: only a short piece may cross that
+    if constexpr (N > 0) {  // only a short piece may cross the jump of the contact force
       const WideMask again =
           ready & ~plain & glided.handover & (level < all(rules_.method.finest()));
       store(choose(again, level + all(1.0), load(row[kHalved] + i)), row[kHalved] + i);
@@ -488,7 +491,7 @@ class Rounds {
     if (any(plain | left | right)) send_off(deck, i, N, plain, left, right);
   }
 
-  /// act(k) for each lane k of `m`.
+  /// Calls act(k) for each lane k of `m`.
   template <class Do>
   static HWY_INLINE void each_lane(WideMask m, const Do& act) {
     if (!any(m)) return;
@@ -498,7 +501,7 @@ class Rounds {
       if (flags[k] != 0.0) act(k);
   }
 
-  /// Lanes that are not done with their piece.
+  /// Sends lanes with unfinished pieces to the plain method or to a queue.
   HWY_NOINLINE void send_off(Deck& deck, int i, int contacts, WideMask plain, WideMask left,
                              WideMask right) {
     each_lane(plain, [&](int k) { runs_.finish_plainly(deck, i + k); });
@@ -524,7 +527,8 @@ class Rounds {
     });
   }
 
-  /// One batch of the queues that have `least` entries; false when none has.
+  /// Works off one batch of each queue with `least` entries or more. Returns false if there is
+  /// none.
   bool work_off(int least) {
     bool worked = work_off<0>(least);
     worked |= work_off<1>(least);
@@ -540,7 +544,7 @@ class Rounds {
     return search || glide;
   }
 
-  /// The last entries of a queue, as many as there are lanes.
+  /// The last entries of a queue, at most one for each lane.
   struct Batch {
     int first, size;
   };
@@ -554,7 +558,7 @@ class Rounds {
     to.run[to.size++] = from.run[i];
   }
 
-  /// The first hit in what is left of pieces, and the impact.
+  /// Finds the first hit in the rest of pieces and applies the impact.
   template <int N>
   HWY_NOINLINE void find_hits() {
     Queue& queue = runs_.hits[N];
@@ -598,7 +602,7 @@ class Rounds {
     }
   }
 
-  /// What is left of pieces after a hit.
+  /// Takes the rest of pieces after a hit.
   template <int N>
   HWY_NOINLINE void glide_rests() {
     constexpr double kMostHits = 8;
@@ -630,14 +634,15 @@ class Rounds {
     }
   }
 
-  /// What is done becomes the state; EnergyLedger::step and Watch::motion where a step is over.
+  /// Makes finished pieces the current state, with EnergyLedger::step and Watch::motion at the end
+  /// of a step.
   HWY_NOINLINE void commit(Deck& deck, int i) {
     auto& row = deck.rows;
     const LaneGate& g = rules_.gate;
     const WideMask done = load(row[kNeed] + i) == all(kCommit);
     if (!any(done)) return;
     if (runs_.has_stiff_beams()) {
-      // Few swing further than they ever did.
+      // Only beams that may swing further than before need the exact swing.
       const WideMask free =
           done & (load(row[kNewImpacts] + i) == all(0.0)) & (load(row[kTime] + i) > all(0.0));
       WideMask wider = nowhere();

@@ -6,7 +6,7 @@
 namespace gatewalk::dynamics {
 namespace {
 
-/// The part of a sample that its state tells.
+/// The part of a sample that follows from its state.
 TraceSample seen(const GateParams& p, const GateState& s) {
   TraceSample t;
   t.state = s;
@@ -37,7 +37,7 @@ GateTrace trace_gate(const GateParams& p, const Method& method, const BodyState&
     TraceSample t = seen(p, step.state);
     t.time = last.time + step.seconds;
     t.random_force = step.force_x;
-    // Newton's law Eq. (2) over the step: what the known forces leave is the beams'.
+    // Newton's law Eq. (2) over the step: the force of the beams is what the known forces leave.
     const BodyState &a = last.state.body, &b = step.state.body;
     if (step.seconds > 0.0) {
       const auto rest = [&](double dv, double known, double way) {
@@ -48,7 +48,7 @@ GateTrace trace_gate(const GateParams& p, const Method& method, const BodyState&
     }
     for (const Side side : {kLeft, kRight}) {
       t.impulse[side] = step.watch.impulse[side] - before.impulse[side];
-      // Moreau's impulses go on while bodies lie on each other: that is no hit.
+      // Moreau's impulses act in every step of a lasting contact, which is no hit.
       const bool pushed = t.impulse[side] > 0.0, hits = step.watch.impacts > before.impacts;
       t.contact[side] = step.state.beams[side].held || (pushed && !hits) ? ContactMode::held
                         : pushed                                         ? ContactMode::hit

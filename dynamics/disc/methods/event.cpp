@@ -9,11 +9,10 @@
 namespace gatewalk::dynamics {
 namespace {
 
-constexpr double kMaxHoldPhase =
-    1000.0;                         // rad or e-folds of a beam in one hold of the random force
-constexpr int kMostPieces = 2000;   // events in one hold before contact is forced
-constexpr int kMostLooks = 100000;  // for contact in one flight
-constexpr int kMostAttempts = 100;  // Runge-Kutta steps tried for one accepted
+constexpr double kMaxHoldPhase = 1000.0;  // rad or e-folds of a beam per hold of the random force
+constexpr int kMostPieces = 2000;         // events in a hold before contact is forced
+constexpr int kMostLooks = 100000;        // checks for contact in one flight
+constexpr int kMostAttempts = 100;        // Runge-Kutta attempts for an accepted step
 
 constexpr std::array<double, 2> kNotSeen{std::numeric_limits<double>::quiet_NaN(),
                                          std::numeric_limits<double>::quiet_NaN()};
@@ -119,8 +118,8 @@ Step integrated(const GateParams& p, const GateState& s, const Motion& start, do
     motion = Motion(p, state, force_x);
     k[i] = motion.rate;
   }
-  // Errors in m: a speed counts as its way in the scene's unit of time, an angle as its tip's way
-  // or as that of the disc's speed of the same energy.
+  // Errors in m: a velocity counts as the distance in the scene's unit of time, an angle as the
+  // distance of the tip or as the disc's distance at the same energy.
   const double length = p.beams.length, mass = p.body.mass;
   const double spin = std::max(length, std::sqrt(p.beams.inertia() / mass));
   const Vector weight{1.0,
@@ -141,7 +140,7 @@ Step integrated(const GateParams& p, const GateState& s, const Motion& start, do
   return {state, motion, worst};
 }
 
-/// The first time at which gap + rate t - fall t^2 / 2 could be zero; infinite if never.
+/// The first time at which gap + rate t - fall t^2 / 2 can be zero; infinite if never.
 double first_zero(double gap, double rate, double fall) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   if (fall <= 0.0) return rate < 0.0 ? gap / -rate : kNever;
@@ -181,11 +180,12 @@ double EventMethod::advance(GateState& s, double force_x, double duration, Energ
   for (int pieces = 0; duration - passed > 1e-12 * duration; ++pieces) {
     const double left = duration - passed;
     if (pieces == 10 * kMostPieces) {
-      s.body.vx = std::numeric_limits<double>::quiet_NaN();  // stuck: the run says it is broken
+      s.body.vx = std::numeric_limits<double>::quiet_NaN();  // stuck: mark the run as broken
       return duration;
     }
     if (pieces > 0 && pieces % kMostPieces == 0) {
-      // Events pile up, as between an elastic tip and a disc pressed onto it: hold what touches.
+      // Events accumulate, for example between an elastic tip and a disc pressed onto it: hold
+      // every contact.
       ++watch.forced_holds;
       const auto t = touches(p_, s, {true, true});
       for (const Side side : {kLeft, kRight}) s.beams[side].held |= t[side].gap <= rise_;
@@ -239,7 +239,7 @@ EventMethod::Outlook EventMethod::look_ahead(const GateState& s, std::array<doub
     const double L = p_.beams.length, inertia = p_.beams.inertia();
     const double k = p_.beams.stiffness(side) / inertia;
     const double d = p_.beams.damping / inertia;
-    // A free beam's energy falls: a bound on its angular velocity for all time to come.
+    // The energy of a free beam only falls, which bounds its angular velocity for all later times.
     const double w = std::sqrt(beam.omega * beam.omega + k * beam.theta * beam.theta);
     const double px = from_joint(p_, side, b.x);
     const double py = b.y - p_.beams.joint_y;
@@ -264,15 +264,16 @@ EventMethod::Outlook EventMethod::look_ahead(const GateState& s, std::array<doub
     }
     if (gap > closing * horizon) continue;
 
-    // The form of the energy falls in the beam's derivatives too, which obey the same equation.
+    // The derivatives of the beam obey the same equation, so the same bound holds for them.
     const double beta = -k * beam.theta - d * beam.omega, jerk = -k * beam.omega - d * beta;
     const double w1 = std::sqrt(beta * beta + k * beam.omega * beam.omega);
     const double w2 = std::sqrt(jerk * jerk + k * beta * beta);
-    // gap'' >= now - steepest * time: `now` without the tip's and pin's own curvature, which is
-    // positive; where the contact may move onto the interior, with the terms that act there;
-    // `steepest` bounds every term of d/dt (n.a - l beta + bias) on interior, tip and pin.
+    // gap'' >= now - steepest * time. `now` excludes the curvature of motion around tip and pin,
+    // which is positive. If the contact may move onto the interior, `now` includes the terms that
+    // act there. `steepest` bounds every term of d/dt (n.a - l beta + bias) on interior, tip and
+    // pin.
     const double dist = t.gap + p_.body.radius, far = dist + closing * horizon;
-    const double turn = w + closing / p_.body.radius;  // rad/s, of n against the beam
+    const double turn = w + closing / p_.body.radius;  // rad/s, turning of n relative to the beam
     double now = free_gap_acceleration(p_, side, t, s, force_x) + t.nx * push.ax + t.ny * push.ay;
     if (t.kind != ContactKind::interior) {
       const double curvature = curvature_term(p_, side, t, b, beam);
@@ -283,10 +284,10 @@ EventMethod::Outlook EventMethod::look_ahead(const GateState& s, std::array<doub
     const double steepest = a * turn + drag * a + v * w1 + L * (w2 + turn * w1) +
                             2.0 * (w1 * v + w * (a + w * v)) + 2.0 * w * w1 * far +
                             w * w * closing + L * w * (2.0 * w1 + w * turn);
-    // From rest nothing can be proved: a margin lets a body leave.
+    // From rest no safe time can be proved; a margin lets a body leave.
     const double room = std::fmax(gap, 0.0) + (u < -rest_ ? 0.0 : 2.0 * touching_);
     double safe = 0.0;
-    for (double ahead = horizon; ahead > 0.0;) {  // a shorter look ahead has tighter bounds
+    for (double ahead = horizon; ahead > 0.0;) {  // a shorter horizon has tighter bounds
       const double zero = first_zero(room, u, steepest * ahead - now);
       if (zero >= ahead) {
         safe = ahead == horizon ? std::numeric_limits<double>::infinity() : ahead;
@@ -302,7 +303,8 @@ EventMethod::Outlook EventMethod::look_ahead(const GateState& s, std::array<doub
 }
 
 double EventMethod::leave(const GateState& start, GateState& s, double force_x, double dt) const {
-  // A cubic through a whole hold is off where drag is strong; one through a hundredth of it is not.
+  // A cubic over a whole hold is inaccurate with strong drag; a cubic over a hundredth of a hold is
+  // accurate.
   GateState end = s;
   const double about = back_to_exit(p_, start, end, dt);
   const double from = std::fmax(0.0, about - 0.005 * dt), to = std::fmin(dt, about + 0.005 * dt);
@@ -312,7 +314,7 @@ double EventMethod::leave(const GateState& start, GateState& s, double force_x, 
     end = after;
     when = from + back_to_exit(p_, before, end, to - from);
   }
-  // The place is beyond the border to the last bit; all else is in closed form.
+  // The position must be beyond the border to the last bit; all else is in closed form.
   s = flown(start, force_x, when);
   s.body.x = end.body.x;
   s.body.y = end.body.y;
@@ -322,13 +324,15 @@ double EventMethod::leave(const GateState& start, GateState& s, double force_x, 
 void EventMethod::resolve(GateState& s, double force_x, Watch& watch) const {
   resolve_hits(
       p_, s, touching_, rest_, watch, [&](Side side, const Touch& t, double, double rebound) {
-        // What drives it back: all forces, the other contact's too if that one is held.
+        // The acceleration that drives the contact back: of all forces, including the other
+        // contact's if it is held.
         double back = free_gap_acceleration(p_, side, t, s, force_x);
         if (s.beams[1 - side].held) {
           const Motion m(p_, s, force_x);
           if (m.force[1 - side] > 0.0) back += t.nx * m.push.ax + t.ny * m.push.ay;
         }
-        // Of nearly elastic hits less is weak, but for what numbers cannot tell from contact.
+        // For nearly elastic hits the limit is lower, but not below what rounding can tell from
+        // contact.
         const double part = weak_hits(p_, t.kind);
         const double rise = part > 0.0 ? std::fmax(part * tolerance_, 1e3 * touching_) : 0.0;
         return back < 0.0 && rebound * rebound <= 2.0 * -back * rise;
@@ -349,7 +353,7 @@ double EventMethod::fly_on(GateState& s, double force_x, double duration, Watch&
     t = over ? duration : t + ahead.safe;
     s = flown(start, force_x, t);
     if (!outside(p_, s.body)) {
-      // Out and back again in one flight: look where the body turns.
+      // The body may leave and return in one flight: check the points where it turns.
       const bool turns_x = start.body.vx * s.body.vx < 0.0,
                  turns_y = start.body.vy * s.body.vy < 0.0;
       for (const bool x : {true, false}) {
@@ -367,7 +371,8 @@ double EventMethod::fly_on(GateState& s, double force_x, double duration, Watch&
     }
     if (over || !std::isfinite(s.body.vx + s.body.vy)) return t;
   }
-  s.body.vx = std::numeric_limits<double>::quiet_NaN();  // no way ahead is safe: say broken
+  // No progress is possible: mark the run as broken.
+  s.body.vx = std::numeric_limits<double>::quiet_NaN();
   return duration;
 }
 
@@ -402,7 +407,7 @@ double EventMethod::slide_on(GateState& s, double force_x, double duration, Watc
       h *= std::clamp(shrink, 0.1, 0.9);
       continue;
     }
-    // The look ahead took the contact forces for constant. Where they were not, go less far.
+    // look_ahead assumed constant contact forces. If they were not constant, take a shorter step.
     bool overlap = false;
     for (const Side side : {kLeft, kRight}) {
       if (held[side] || std::isnan(surface[side])) continue;
@@ -415,7 +420,7 @@ double EventMethod::slide_on(GateState& s, double force_x, double duration, Watc
       h *= 0.5;
       continue;
     }
-    // A force that has become a pull: back to where it was zero, to within what the tolerance sees.
+    // A contact force became a pull: go back to where it was zero, within the tolerance.
     double release = 1.0;
     std::array<bool, 2> keep = held;
     for (const Side side : {kLeft, kRight}) {
@@ -440,7 +445,8 @@ double EventMethod::slide_on(GateState& s, double force_x, double duration, Watc
     if (outside(p_, s.body)) return back_to_exit(p_, before, s, h);
     return h;
   }
-  s.body.vx = std::numeric_limits<double>::quiet_NaN();  // no step is small enough: say broken
+  // No step is small enough: mark the run as broken.
+  s.body.vx = std::numeric_limits<double>::quiet_NaN();
   return duration;
 }
 

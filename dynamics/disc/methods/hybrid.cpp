@@ -40,7 +40,7 @@ std::array<Touch, 2> put_back(const GateParams& p, GateState& s, std::array<bool
     const std::array<double, 2> gap{contacts[kLeft] ? touch[kLeft].gap : 0.0,
                                     contacts[kRight] ? touch[kRight].gap : 0.0};
     if (std::max(std::abs(gap[kLeft]), std::abs(gap[kRight])) <= 1e-13 * p.body.radius) break;
-    // Shift along the mass metric: the same 2 x 2 system as for impulses, with gaps for rates.
+    // Shift along the mass metric: the 2 x 2 system of impulses with gaps in place of rates.
     const auto shift = bilateral_impulses(coupling(p, touch), gap, contacts);
     const Push by(p, touch, shift);
     s.body.x += by.ax;

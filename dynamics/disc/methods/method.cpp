@@ -41,7 +41,8 @@ void Watch::motion(const GateParams& p, const GateState& s, double dt) {
     max_theta[side] = std::max(max_theta[side], std::abs(s.beams[side].theta));
     fastest_beam = std::max(fastest_beam, std::abs(s.beams[side].omega));
   }
-  // Half a radius is far from passing through a beam, and far beyond what the paper's scenes do.
+  // Half a radius is far less than what passes through a beam, and far more than any step in the
+  // paper's scenes.
   fast_steps += (speed + fastest_beam * p.beams.length) * dt > 0.5 * p.body.radius;
 }
 
@@ -55,7 +56,7 @@ void Watch::penetration(const GateParams& p, const GateState& s) {
 
 namespace {
 
-/// Cubic Hermite interpolation between two moments dt apart, at t.
+/// Cubic Hermite interpolation at time t between two moments dt apart.
 struct Interpolation {
   double wb, da, db, rate, ra, rb;
   Interpolation(double dt, double t) {
@@ -100,7 +101,8 @@ std::array<BeamState, 2> mixed(const std::array<BeamState, 2>& a, const std::arr
 }
 
 double back_to_exit(const GateParams& p, const GateState& before, GateState& s, double dt) {
-  // Bisection: 50 halvings of a step leave nothing, and the last bracket's end is outside.
+  // Bisection: 50 halvings of a step reach rounding error, and the end of the last bracket is
+  // outside.
   const GateState after = s;
   double inside = 0.0, beyond = dt;
   for (int i = 0; i < 50; ++i) {

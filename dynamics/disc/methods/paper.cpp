@@ -38,7 +38,7 @@ void PaperMethod::collide(GateState& s, Watch& watch) const {
     if (!beam.held && out_of_reach(p_, side, s.body, beam.theta)) continue;
     const Touch t = nearest(p_, side, s.body, beam.theta);
     ++watch.evaluations;
-    if (t.kind == ContactKind::pin) {  // r of Eq. (5) would be the root of a negative number
+    if (t.kind == ContactKind::pin) {  // Eq. (5) would need the root of a negative number
       if (t.gap < 0.0) ++watch.undefined_contacts;
       beam.held = false;
       continue;
@@ -56,7 +56,7 @@ void PaperMethod::collide(GateState& s, Watch& watch) const {
     watch.hit_loss -=
         impulse * (u + 0.5 * impulse * compliance(p_.body.mass, p_.beams.inertia(), t.lever));
     if (impulse < p_.contact.impulse_threshold && t.lever != 0.0) {
-      beam.held = true;  // the switch sets the beam's velocity to satisfy Eq. (10) or (12)
+      beam.held = true;  // set the beam's velocity to satisfy
       beam.omega = (t.nx * s.body.vx + t.ny * s.body.vy) / t.lever;
     }
   }
@@ -71,7 +71,7 @@ void PaperMethod::euler(GateState& s, double force_x, double dt, Watch& watch) c
     watch.evaluations += 2;
     std::array<bool, 2> held{s.beams[kLeft].held, s.beams[kRight].held};
     force = contact_forces(p_, s, t, force_x, held, bilateral_impulses);
-    // A force that would pull releases its contact; then the other is solved alone.
+    // A force that would pull releases its contact; the other contact is then solved alone.
     const bool pulls_left = held[kLeft] && force[kLeft] < 0.0;
     const bool pulls_right = held[kRight] && force[kRight] < 0.0;
     if (pulls_left || pulls_right) {

@@ -11,11 +11,11 @@
 namespace gatewalk::dynamics {
 namespace {
 
-constexpr double kMostDamping = 4.0;  // zeta, more would leave no room for two contacts at once
+constexpr double kMostDamping = 4.0;  // largest zeta; more leaves no room for two contacts at once
 
-/// -ln e of a spring and damper that only push: with zeta = sin(a) the force is zero at
-/// w_d t = pi - 2 a, where the speed is exp(-tan(a) (pi - 2 a)) of what it was. Limit a -> pi/2: 2;
-/// beyond, with zeta = cosh(b): 2 b coth(b).
+/// -ln e for a spring and damper that only push. With zeta = sin(a), their force is zero when w_d t
+/// = pi - 2 a, where the speed has fallen by the factor exp(-tan(a) (pi - 2 a)). In the limit a ->
+/// pi/2 the result is 2; beyond, with zeta = cosh(b), it is 2 b coth(b).
 double loss(double zeta) {
   if (zeta < 1.0) {
     const double a = std::asin(zeta);
@@ -25,7 +25,8 @@ double loss(double zeta) {
   return b > 0.0 ? 2.0 * b / std::tanh(b) : 2.0;
 }
 
-/// The damping ratio with restitution e: loss(zeta) = -ln e. `loss` rises with zeta.
+/// The damping ratio for restitution e: the solution of loss(zeta) = -ln e. `loss` increases with
+/// zeta.
 double damping_ratio(double e) {
   if (e <= std::exp(-loss(kMostDamping))) return kMostDamping;
   const double wanted = -std::log(e);
@@ -62,7 +63,7 @@ double penalty_bound(const GateParams& p) {
   const auto contact = [&](double e) { return share(PenaltyMethod::spring(e, kW, 1.0)); };
   const double room =
       4.0 - 2.0 * std::fmax(contact(p.contact.restitution), contact(p.contact.tip_restitution));
-  // h^2 K + 2 h C = room, solved for h without cancellation.
+  // Solves h^2 K + 2 h C = room for h without cancellation.
   const auto longest = [room](double k, double c) {
     return k > 0.0 || c > 0.0 ? room / (c + std::sqrt(c * c + k * room))
                               : std::numeric_limits<double>::infinity();
@@ -91,8 +92,8 @@ double PenaltyMethod::advance(GateState& s, double force_x, double duration, Ene
   const double h = spell.step;
   const Springs springs = spell.usual ? usual_ : Springs(p_, h);
   const double inertia = p_.beams.inertia();
-  std::array<Touch, 2> touch;    // where the state is now; gap >= 0 stands for out of reach
-  std::array<double, 2> mass{};  // kg, effective in each contact
+  std::array<Touch, 2> touch;    // contact points now; gap >= 0 means out of reach
+  std::array<double, 2> mass{};  // kg, effective mass of each contact
 
   const auto look = [&](const GateState& now) {
     for (const Side side : {kLeft, kRight}) {
@@ -132,8 +133,8 @@ double PenaltyMethod::advance(GateState& s, double force_x, double duration, Ene
       beam.theta += h * beam.omega;
     }
   };
-  // Semi-implicit Euler keeps v^2 + K q (q - h v) of a spring K, not v^2 + K q^2: q - h v is where
-  // q was a step ago. It is the former that says whether energy appears.
+  // Semi-implicit Euler conserves v^2 + K q (q - h v) of a spring K, not v^2 + K q^2, where q - h v
+  // is the previous position. The conserved quantity shows whether energy appears.
   const auto stored = [&](const GateState& now) {
     look(now);
     std::array<double, 2> elastic{};

@@ -11,11 +11,12 @@
 namespace gatewalk::dynamics {
 namespace {
 
-constexpr double kMaxSubstepPhase = 0.5;  // rad or e-folds of a beam per substep
-constexpr int kContactHalvings = 4;       // for a held contact that turns fast or changes its kind
-constexpr int kMaxHits = 50;              // in one substep, then hits end in constraints
+constexpr double kMaxSubstepPhase = 0.5;  // rad or e-folds of a beam per piece
+// Halvings for a held beam that turns fast or changes its kind of contact.
+constexpr int kContactHalvings = 4;
+constexpr int kMaxHits = 50;  // hits in a piece, after which hits become constraints
 
-/// How often `phase` must be halved, up to `limit` times, not to exceed `most`.
+/// The number of halvings, at most `limit`, after which `phase` does not exceed `most`.
 int halvings_for(double phase, double most, int limit) {
   int n = 0;
   for (; phase > most && n < limit; phase *= 0.5) ++n;
@@ -39,14 +40,14 @@ void refuse_too_fast(const GateParams& p) {
                   p.run.step, rate, longest));
 }
 
-/// When `gap(t)` falls through zero on (0, dt]: regula falsi, Illinois variant, which keeps a
-/// bracket and is superlinear on smooth functions. Stops at |gap| <= tolerance.
-/// gap(0) = start > 0, gap(dt) = end < 0; or, `from_zero`, gap(0) = 0 and `start` is its rate > 0:
-/// then gap/t is searched, whose sign is safe from round-off near t = 0.
+/// The time at which `gap(t)` falls through zero on (0, dt]: regula falsi, Illinois variant, which
+/// keeps a bracket and is superlinear on smooth functions. The search stops at |gap| <= tolerance.
+/// gap(0) = start > 0 and gap(dt) = end < 0; or, with `from_zero`, gap(0) = 0 and `start` is its
+/// rate > 0: the search then uses gap/t, whose sign is safe from rounding near t = 0.
 template <class Gap>
 double crossing(double dt, double start, double end, bool from_zero, double tolerance, Gap gap) {
   double a = 0.0, fa = start, b = dt, fb = from_zero ? end / dt : end;
-  int kept = 0;  // which end stayed in the last round: -1 a, +1 b
+  int kept = 0;  // end that stayed in the last round: -1 a, +1 b
   for (int i = 0; i < 100; ++i) {
     const double margin = 1e-15 * dt;
     if (b - a <= 4 * margin) break;
@@ -69,7 +70,7 @@ double crossing(double dt, double start, double end, bool from_zero, double tole
   return b;
 }
 
-/// N s, of hits of that part of a beam.
+/// The impulse (N s) below which a hit of that part of a beam is weak.
 double weak_impulse(const GateParams& p, ContactKind kind) {
   return p.contact.impulse_threshold * p.run.step / (kPaperStep * scale_of(p).time) *
          weak_hits(p, kind);
@@ -84,7 +85,7 @@ StableMethod::Limits::Limits(const GateParams& p)
       rest(rest_speed(p)) {
   const double inertia = p.beams.inertia();
   for (const Side side : {kLeft, kRight}) {
-    // The explicit contact force must follow both of a held beam's rates.
+    // The explicit contact force must resolve both rates of a held beam.
     swing[side] = p.beams.stiffness(side) / inertia;
     swing_root[side] = std::sqrt(swing[side]);
     const double rate = std::max(swing_root[side], p.beams.damping / inertia);
@@ -115,7 +116,7 @@ double StableMethod::advance(GateState& s, double force_x, double duration, Ener
 
 void StableMethod::finish_step(GateState& s, double force_x, double step, Progress& done,
                                Watch& watch) const {
-  // Pieces are halves, quarters ... of the step, each begun at a multiple of its own length.
+  // Pieces are halves, quarters, ... of the step, each beginning at a multiple of its own length.
   while (done.unit < kUnits && !outside(p_, s.body)) {
     int n = std::max(level(s, step, done.unit), std::exchange(done.halved, 0));
     double time = 0.0;
@@ -143,7 +144,7 @@ int StableMethod::level(const GateState& s, double step, int unit) const {
 void StableMethod::watch_swing(Side side, const BeamState& before, double seconds,
                                Watch& watch) const {
   if (limits_.halvings[side] == 0 || before.held) return;
-  // By its energy it swings no further than this.
+  // The beam's energy bounds its swing.
   const double far =
       before.theta * before.theta + before.omega * before.omega / limits_.swing[side];
   if (far * (1 + 1e-9) <= watch.max_theta[side] * watch.max_theta[side]) return;
@@ -158,7 +159,7 @@ StableMethod::Piece StableMethod::piece(double step, int halvings) const {
 
 bool StableMethod::too_far(const GateState& s, double dt) const {
   const double most = 0.5 * p_.body.radius;
-  // Nearly always far from it: no root.
+  // Usually a bound without roots suffices.
   double turns = 0.0;
   for (const Side side : {kLeft, kRight})
     turns = std::max(turns, std::abs(s.beams[side].omega) +
@@ -169,7 +170,7 @@ bool StableMethod::too_far(const GateState& s, double dt) const {
   if (disc > most) return true;
   for (const Side side : {kLeft, kRight}) {
     const BeamState& beam = s.beams[side];
-    // A beam's energy falls between hits: it never turns faster than this.
+    // The beam's energy falls between hits, which bounds its angular velocity.
     const double turn =
         std::sqrt(beam.omega * beam.omega + limits_.swing[side] * beam.theta * beam.theta);
     const double tip = p_.beams.length * turn * dt;
@@ -186,7 +187,8 @@ int StableMethod::halvings(const GateState& s) const {
     if (beam.held) turning = std::max(turning, std::abs(beam.omega));
     if (limits_.halvings[side] <= most) continue;
     if (!beam.held) {
-      // Alone it moves in closed form; but it could hit and be gone again unseen, or be held.
+      // A free beam moves in closed form, but within a step it could hit and be gone again, or
+      // become held.
       const double speed = std::sqrt(s.body.vx * s.body.vx + s.body.vy * s.body.vy);
       const double turn =
           std::sqrt(beam.omega * beam.omega + limits_.swing[side] * beam.theta * beam.theta);
@@ -195,7 +197,7 @@ int StableMethod::halvings(const GateState& s) const {
     }
     most = limits_.halvings[side];
   }
-  // A light beam that a heavy disc holds near the joint may turn faster than any piece follows.
+  // A light beam that a heavy disc holds near the joint may turn too fast for any piece.
   return std::max(most, halvings_for(p_.run.step * turning, kMaxTurn, finest_));
 }
 
@@ -214,7 +216,8 @@ StableMethod::Glide StableMethod::glide(GateState& s, double force_x, const Piec
 StableMethod::Glide StableMethod::glide_held(GateState& s, double force_x, const GateFlow& flow,
                                              const GateFlow& half_flow) const {
   const auto held = held_of(s);
-  // Explicit midpoint: forces at the start carry to mid-step, forces there carry the whole step.
+  // Explicit midpoint rule: forces at the start move the state to mid-step; forces there move it
+  // over the whole step.
   const auto start = touches(p_, s, held);
   const Push first(p_, start, contact_forces(p_, s, start, force_x, held, unilateral_impulses));
   GateState mid = s;
@@ -224,7 +227,8 @@ StableMethod::Glide StableMethod::glide_held(GateState& s, double force_x, const
   const Push second(p_, middle, force);
   fly(p_, flow, force_x, second, s);
 
-  // Only push: without force at mid-step the contact is over, unless the bodies still overlap.
+  // Contacts only push: without force at mid-step the contact is over, unless the bodies still
+  // overlap.
   std::array<bool, 2> keep = held;
   const auto end = touches(p_, s, held, middle);
   bool handover = false;
@@ -248,7 +252,7 @@ double StableMethod::substep(GateState& s, double force_x, const Piece& piece, M
     GateState end = s;
     const Glide glided = glide(end, force_x, hits == 0 ? piece : Piece{left});
 
-    // A body that leaves the gate counts up to that moment.
+    // A body that leaves the gate counts until it leaves.
     const bool leaves = outside(p_, end.body);
     const double span = leaves ? leave(s, end, left) : left;
     std::array<bool, 2> hit{false, false};
@@ -262,7 +266,8 @@ double StableMethod::substep(GateState& s, double force_x, const Piece& piece, M
       overlap = std::max(overlap, -gap);
     }
     watch.evaluations += 2 + 3 * s.beams[kLeft].held + 3 * s.beams[kRight].held;
-    // The contact force jumps where a contact changes its kind: only a short piece may cross that.
+    // The contact force jumps where a contact changes its kind; only a short piece may cross the
+    // jump.
     if (hits == 0 && glided.handover && may_halve.handover) return 0.0;
     const double start = piece.dt - left;
     if (!hit[kLeft] && !hit[kRight]) {
@@ -270,9 +275,11 @@ double StableMethod::substep(GateState& s, double force_x, const Piece& piece, M
       watch.max_penetration = std::max(watch.max_penetration, overlap);
       return leaves ? start + span : piece.dt;
     }
-    // Hits pile up faster than the step resolves them: from here on each one ends in a constraint.
+    // Hits accumulate faster than the step resolves them: from here on each hit ends in a
+    // constraint.
     watch.forced_holds += hits == kMaxHits;
-    if (hits == 2 * kMaxHits) {  // not even that helps: finish the substep held together
+    // Constraints do not help either: finish the piece with all hit beams held.
+    if (hits == 2 * kMaxHits) {
       s = end;
       for (const Side side : {kLeft, kRight}) s.beams[side].held |= hit[side];
       put_back(p_, s, held_of(s), touches(p_, s, held_of(s)));
@@ -289,7 +296,7 @@ double StableMethod::substep(GateState& s, double force_x, const Piece& piece, M
                  [&](Side, const Touch& touch, double impulse, double rebound) {
                    const double threshold =
                        touch.kind == ContactKind::tip ? limits_.tip_threshold : limits_.threshold;
-                   // What does not bounce is in contact from now on.
+                   // A hit without rebound becomes a contact.
                    return impulse < threshold || rebound <= limits_.rest || hits >= kMaxHits;
                  });
     left -= when;
@@ -304,7 +311,7 @@ double StableMethod::substep(GateState& s, double force_x, const Piece& piece, M
 
 double StableMethod::leave(const GateState& before, GateState& s, double dt) const {
   const double when = back_to_exit(p_, before, s, dt);
-  // A free beam may swing many times in a step: no cubic follows that, its closed form does.
+  // A free beam may swing many times in a step, which no cubic follows; use its closed form.
   for (const Side side : {kLeft, kRight}) {
     if (before.beams[side].held) continue;
     s.beams[side] = before.beams[side];
@@ -321,8 +328,8 @@ double StableMethod::first_hit(GateState& s, double force_x, const GateState& en
     if (!hit[side]) continue;
     const Touch now = nearest(p_, side, s.body, s.beams[side].theta);
     const double rate = gap_rate(now, s.body, s.beams[side]);
-    // From contact, the next hit is where the gap comes back to what it is now; with u <= 0 there
-    // is nothing to wait for.
+    // From contact, the next hit is where the gap returns to its present value; with u <= 0 the hit
+    // is now.
     const bool from_contact = now.gap <= limits_.touching;
     if (from_contact && rate <= 0.0) return 0.0;
     const double level = from_contact ? now.gap : 0.0;
@@ -339,9 +346,9 @@ double StableMethod::first_hit(GateState& s, double force_x, const GateState& en
     };
     const double start = from_contact ? rate : now.gap;
 
-    // A first guess from the interpolated motion, which is cheap, then Newton's method on the
-    // motion itself while the gap closes. If that does not land on the contact, a safe search does.
-    // Near contact, where the hit may be at once, it must be a good one.
+    // The first guess comes from the interpolated motion, which is cheap. Newton's method on the
+    // exact motion follows while the gap closes. If it does not reach the contact, a safe search
+    // does. Near contact, where the hit may be at once, the first guess must be good.
     const double guess = (from_contact ? 10 : kGuess) * limits_.touching;
     double when = crossing(dt, start, gap_of(end), from_contact, guess,
                            [&](double t) { return gap_of(interpolated(s, end, dt, t)); });

@@ -27,9 +27,9 @@ const ParamInfo& info_of(std::string_view key) {
                        [key](const ParamInfo& i) { return i.key == key; });
 }
 
-/// Of the values and `infinite` more; NaN where that is infinity.
+/// The median of the values and of `infinite` infinite ones; NaN if the median is infinite.
 double median(std::vector<double> values, std::int64_t infinite) {
-  // The upper of the two in the middle: a distance that a trial really has.
+  // The upper of two middle values, so that the result is the distance of a real trial.
   const std::size_t rank = (values.size() + static_cast<std::size_t>(infinite)) / 2;
   if (rank >= values.size()) return std::numeric_limits<double>::quiet_NaN();
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(rank);
@@ -62,14 +62,14 @@ WeakError weak_error(std::span<const TrialEnd> a, std::span<const TrialEnd> b, i
   std::int64_t distance = 0;
   for (std::size_t c = 0; c < surplus.size(); ++c) {
     distance += std::abs(surplus[c]);
-    // `changed` steps of +-1: mean absolute sum sqrt(2/pi) sqrt(changed).
+    // The mean absolute sum of `changed` steps of +-1 is sqrt(2/pi) sqrt(changed).
     e.chance += std::sqrt(static_cast<double>(changed[c]));
   }
   e.total_variation = 0.5 * static_cast<double>(distance) / n;
   e.chance *= 0.5 * std::sqrt(2.0 / std::numbers::pi) / n;
 
-  // Total variation is the mean over trials of (s[to] - s[from]) / 2, s the sign of a column's
-  // surplus: its spread gives the standard error.
+  // The standard error comes from the spread of (s[to] - s[from]) / 2 over the trials, s the sign
+  // of a column's surplus; the mean of this quantity is the total variation.
   const auto sign = [](std::int64_t x) { return x > 0 ? 1.0 : x < 0 ? -1.0 : 0.0; };
   double squares = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -118,7 +118,7 @@ std::vector<Setting> chart_settings(std::string_view method, const GateParams& p
   else
     for (const double n : {1, 2, 3, 4, 5, 8, 10, 20}) add(kStep, 1.0 / (p.forces.random_rate * n));
   if (method == "moreau")
-    add(kStep, 1.0 / (p.forces.random_rate * 40));  // costs what others do at 4
+    add(kStep, 1.0 / (p.forces.random_rate * 40));  // costs as much as others at n = 4
   return settings;
 }
 
@@ -155,7 +155,7 @@ Verdict TrialEnds::verdict() const { return judge(health, out_of_work, kPermitte
 void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start,
                     std::uint64_t seed, TrialRange range, std::int64_t most_work) {
   const auto method = make_method(p);
-  // Without room ahead of the beams there is no next gate, and no column.
+  // Without room ahead of the beams there is no next gate, so no column.
   std::optional<StateSpace> space;
   if (p.run.traverse_y > p.beams.joint_y + p.body.radius) space = table3_space(p);
   const std::size_t before = ends.trials.size();
@@ -164,7 +164,7 @@ void add_trial_ends(TrialEnds& ends, const GateParams& p, const BodyState& start
     Health health;
     std::int64_t out_of_work = 0;
   };
-  tbb::enumerable_thread_specific<Faults> faults;  // whole numbers and maxima: any order will do
+  tbb::enumerable_thread_specific<Faults> faults;  // the order does not matter
   carry_out_trials(
       p, *method, range.count,
       [&](RunSlot& slot) {
@@ -220,7 +220,7 @@ double uncertainty_of(const WeakError& e, std::int64_t trials) {
 
 void check_outcomes(Health& health, const GateParams& p, std::span<const BodyState> starts,
                     std::uint64_t seed, std::int64_t trials, const Work& work) {
-  if (work.is_part()) return;  // who has all trials looks
+  if (work.is_part()) return;  // a run with all trials makes this check
   const GateParams better = checking_setting(p);
   TrialEnds here, there;
   std::vector<TrialRange> parts;
@@ -293,7 +293,7 @@ StrongError strong_error(const GateParams& p, std::span<const TrialEnd> run,
   const Scale scale = scale_of(p);
   const double far = kPartedLength * scale.length, late = kPartedTime * scale.time;
   std::vector<double> position, velocity, time, energy;
-  const auto way = [](Outcome o) {  // which beam gave way more is no difference in the ending
+  const auto way = [](Outcome o) {  // the larger deflection does not matter here
     return o == Outcome::traversed_right ? Outcome::traversed_left : o;
   };
   for (std::size_t i = 0; i < run.size(); ++i) {

@@ -9,24 +9,24 @@
 namespace gatewalk::dynamics {
 namespace {
 
-constexpr std::int64_t kLeastPilot = 4000;  // uncertainty 0.001 when 1 trial in 300 changes
-constexpr double kPilotTolerances = 4.0;    // trials times tolerance, at least: see uncertainty_of
-constexpr std::int64_t kCountTrials = 200;  // enough to count the work of a trial
+constexpr std::int64_t kLeastPilot = 4000;  // uncertainty 0.001 if 1 trial in 300 changes
+constexpr double kPilotTolerances = 4.0;    // least trials * tolerance; see uncertainty_of
+constexpr std::int64_t kCountTrials = 200;  // enough to measure the work of a trial
 
 struct Candidate {
   std::string_view method;
-  double microseconds;  // per evaluation, measured on scenes/field.toml: only ratios matter
+  double microseconds;  // per evaluation, measured on scenes/field.toml; only ratios matter
 };
 constexpr Candidate kCandidates[] = {{"stable", 0.06}, {"moreau", 0.003}, {"event", 0.13}};
 
-/// The trials of every start.
+/// The ranges of the trials of each start.
 std::vector<TrialRange> shares_of(std::int64_t trials, std::size_t starts) {
   std::vector<TrialRange> parts;
   for (std::size_t i = 0; i < starts; ++i) parts.push_back(share_of(trials, i, starts));
   return parts;
 }
 
-/// What all pilots have in common.
+/// The common part of all pilots.
 struct Pilots {
   const GateParams& p;
   std::span<const BodyState> starts;
@@ -34,7 +34,7 @@ struct Pilots {
   const PilotProgress& progress;
 
   [[nodiscard]] TrialEnds run(const Setting& setting, std::int64_t trials) const {
-    constexpr std::int64_t kBlock = 500;  // between two reports
+    constexpr std::int64_t kBlock = 500;  // trials between two reports
     const GateParams with = setting.applied_to(p);
     TrialEnds ends;
     std::int64_t done = 0;
@@ -51,7 +51,7 @@ struct Pilots {
   }
 };
 
-/// Runs the pilot with the first of these that can and does so without faults.
+/// Runs the pilot with the first of the reference settings that runs the scene without faults.
 TrialEnds reference_pilot(const Pilots& pilots, Choice& choice) {
   const Setting settings[] = {{"event", "run.event_tolerance_m", 1e-5 * scale_of(pilots.p).length},
                               {"stable", "run.step_s", 1.0 / (50.0 * pilots.p.forces.random_rate)}};
@@ -104,7 +104,7 @@ Choice choose_method(const GateParams& p, std::span<const BodyState> starts, std
         tried.verdict = ends.verdict();
         candidates.push_back(tried);
       } catch (const InvalidParameter& e) {
-        refusal = e;  // this method does not take the scene, another may
+        refusal = e;  // another method may take the scene
       }
     }
   }

@@ -15,13 +15,15 @@
 namespace gatewalk::dynamics {
 namespace {
 
-constexpr std::int64_t kGrazes = 8;    // starts of a graze: it falls anywhere in a step
-constexpr double kRounding = 1.5e-14;  // of R: methods count such gaps as contact, or not
-constexpr double kGap = 1e-12;         // of R, below the beam that is hit near its joint
-constexpr int kDecades = 2;            // how far numbers vary, down and up
-constexpr int kDoublings = 7;          // of the step, up
-constexpr std::int64_t kMostWorkOfTrial = 2'000'000;  // steps or evaluations of a trial, at least,
-constexpr double kMostWorkOfStep = 30.0;              // and for each of its steps: more is stuck
+constexpr std::int64_t kGrazes = 8;    // starts of a graze, at different phases of a step
+constexpr double kRounding = 1.5e-14;  // of R: rounding decides whether such a gap is contact
+constexpr double kGap = 1e-12;  // of R: initial gap below the beam that is hit near its joint
+constexpr int kDecades = 2;     // decades by which numbers vary, down and up
+constexpr int kDoublings = 7;   // doublings of the step, upwards
+// The limit of steps or evaluations of a trial, and of each of its steps: a trial beyond both is
+// stuck.
+constexpr std::int64_t kMostWorkOfTrial = 2'000'000;
+constexpr double kMostWorkOfStep = 30.0;
 constexpr std::int64_t kMostWorkOfReference = 4'000'000;
 
 constexpr std::array<LimitNumberInfo, 9> kNumbers{{
@@ -40,8 +42,8 @@ constexpr std::array<LimitNumberInfo, 9> kNumbers{{
 
 double speed_of(const BodyState& s) { return std::hypot(s.vx, s.vy); }
 
-/// How fast a body that starts so comes to the beams: by the propulsion, but not faster than the
-/// drag permits. A scene that moves nothing forward has its own unit of speed.
+/// The speed at which a body from this start reaches the beams: by the propulsion, limited by the
+/// drag. A scene without motion forward gives its own unit of speed.
 double approach_speed(const GateParams& p, const BodyState& start) {
   const double way = std::max(0.0, p.beams.joint_y - p.body.radius - start.y);
   const double first = speed_of(start), force = p.forces.propulsion;
@@ -50,7 +52,7 @@ double approach_speed(const GateParams& p, const BodyState& start) {
   return speed > 0.0 ? speed : scale_of(p).speed();
 }
 
-/// The scene's own value; 0 where the scene has none, or it is no place to begin.
+/// The scene's own value; 0 if the scene has none, or the value is no place to begin.
 double own_of(const LimitScene& scene, LimitNumber number) {
   const GateParams& p = scene.gate;
   switch (number) {
@@ -75,7 +77,7 @@ double own_of(const LimitScene& scene, LimitNumber number) {
   return 0.0;
 }
 
-/// 10^low, ..., 10^high times `unit`, `per_decade` values to a factor of ten.
+/// The values 10^low, ..., 10^high times `unit`, `per_decade` values per factor of ten.
 std::vector<double> decades(double unit, int low, int high, int per_decade) {
   std::vector<double> values;
   for (int i = low * per_decade; i <= high * per_decade; ++i)
@@ -106,7 +108,7 @@ MapAxis number_axis(const LimitScene& scene, LimitNumber number) {
     return axis;
   } else {
     axis.values = decades(own, -kDecades, kDecades, per_decade);
-    axis.values[axis.values.size() / 2] = own;  // to the last bit
+    axis.values[axis.values.size() / 2] = own;  // exact to the last bit
   }
   axis.from = place_of(axis.values, own);
   axis.own = axis.from;
@@ -120,8 +122,8 @@ Setting own_setting(const LimitScene& scene, std::string_view method) {
   return {p.run.method, "run.step_s", scene.options.own_step ? p.run.step : default_step(p)};
 }
 
-/// What trades speed for accuracy, from fine to coarse: a quarter of the scene's step to the
-/// longest that there is, one draw of the random force, or 128 times its own.
+/// The axis of steps (or tolerances), from fine to coarse: from a quarter of the scene's step to
+/// the longest possible one, a draw of the random force, or to 128 times the scene's step.
 MapAxis effort_axis(const LimitScene& scene, std::string_view method) {
   const double own = own_setting(scene, method).value;
   const int per_doubling = scene.options.quick ? 1 : 2;
@@ -142,7 +144,7 @@ MapAxis effort_axis(const LimitScene& scene, std::string_view method) {
     for (const long n : all)
       axis.values.push_back(n == parts ? own : hold / static_cast<double>(n));
   }
-  // The scene's own value is one of them, to the last bit.
+  // One value is the scene's own, to the last bit.
   auto at = std::lower_bound(axis.values.begin(), axis.values.end(), own * (1.0 - 1e-9));
   if (at != axis.values.end() && *at <= own * (1.0 + 1e-9))
     *at = own;
@@ -153,7 +155,7 @@ MapAxis effort_axis(const LimitScene& scene, std::string_view method) {
   return axis;
 }
 
-/// A number and its value; of the scene itself and of what `event` does not use the same one.
+/// A number and its value. The scene itself, and numbers that `event` ignores, share one key.
 using ReferenceKey = std::pair<LimitNumber, double>;
 ReferenceKey reference_key(const LimitScene& scene, LimitNumber number, double y) {
   const LimitNumber threshold = LimitNumber::impulse_threshold;
@@ -162,9 +164,9 @@ ReferenceKey reference_key(const LimitScene& scene, LimitNumber number, double y
   return {number, y};
 }
 
-/// What all methods are held against at this value of the number, `event` at the finest tolerance
-/// of a chart, whose error is far below what so few trials show. Nothing where that itself is no
-/// reference, and for grazes, of which is known whether they hit.
+/// The reference trials of all methods at this value of the number: `event` at the finest tolerance
+/// of a chart, whose error is far below what so few trials show. Empty if these trials are no
+/// reference, and for grazes, whose hits are known.
 std::vector<TrialEnd> reference_of(const LimitScene& scene, LimitNumber number, double y) {
   if (number == LimitNumber::graze) return {};
   const Setting setting = chart_settings("event", scene.gate).back();
@@ -180,8 +182,9 @@ std::vector<TrialEnd> reference_of(const LimitScene& scene, LimitNumber number, 
   return std::move(ends.trials);
 }
 
-/// Where make_method begins to refuse, going up from y.front(): bisection in log y; infinite:
-/// nowhere, or everywhere. No method refuses a beam for being too soft or too little damped.
+/// The value above which make_method refuses, searched upwards from y.front() by bisection in log
+/// y; infinite if it refuses nowhere or everywhere. No method refuses a beam for being too soft or
+/// too little damped.
 double refused_above(const LimitScene& scene, const LimitMap& map, double x) {
   const auto refused = [&](double log_y) {
     try {
@@ -194,7 +197,7 @@ double refused_above(const LimitScene& scene, const LimitMap& map, double x) {
   };
   double taken = std::log(map.y.values.front()), not_taken = std::log(map.y.values.back());
   if (refused(taken) || !refused(not_taken)) return std::numeric_limits<double>::infinity();
-  while (not_taken - taken > 1e-3) {  // a thousandth: far below what a figure shows
+  while (not_taken - taken > 1e-3) {  // a thousandth, far below the resolution of a figure
     const double middle = 0.5 * (taken + not_taken);
     (refused(middle) ? not_taken : taken) = middle;
   }
@@ -256,14 +259,15 @@ PointScene scene_at(const LimitScene& scene, LimitNumber number, std::string_vie
       p.contact.impulse_threshold = y;
       break;
     case LimitNumber::lever:
-      // Straight below the point of the left beam, so near that neither the lateral force nor the
-      // speed along the beam, which keeps the disc inside the gate, moves it before it touches.
+      // The body starts straight below a point of the left beam, so near that neither the lateral
+      // force nor the speed along the beam, which keeps the disc inside the gate, moves it before
+      // the hit.
       start = {y * p.beams.length - p.beams.joint_x, p.beams.joint_y - (1.0 + kGap) * p.body.radius,
                0.1 * speed, speed};
       break;
     case LimitNumber::graze: {
-      // Straight up beside the left tip, 1.5 radii left of the middle; the right one is far away.
-      // Starts differ, so that the graze falls anywhere in a step.
+      // The body moves straight up beside the left tip, 1.5 radii left of the middle; the right tip
+      // is far away. Starts differ, so the graze falls at different phases of a step.
       p.forces = {
           .propulsion = 0.0, .random = 0.0, .random_rate = p.forces.random_rate, .drag = 0.0};
       const double radius = p.body.radius, tip = -1.5 * radius;
@@ -276,7 +280,7 @@ PointScene scene_at(const LimitScene& scene, LimitNumber number, std::string_vie
             {tip + radius * (1.0 - y),
              p.beams.joint_y - 0.5 * radius - in_a_step * static_cast<double>(i) / kGrazes, 0.0,
              speed});
-      p.run.time_limit = (2.0 * radius + in_a_step) / speed;  // until it has passed
+      p.run.time_limit = (2.0 * radius + in_a_step) / speed;  // until the body has passed
       if (std::abs(y) > kRounding) point.must_hit = y > 0.0;
       break;
     }
@@ -307,7 +311,7 @@ MapPoint run_point(const PointScene& point, std::uint64_t seed,
         std::max(0.0, e.total_variation - 2.0 * uncertainty_of(e, point.trials));
   }
   result.verdict = judge(result.health, result.out_of_work, 0.0);
-  // Nothing but a hit pushes it sideways.
+  // Only a hit pushes the body sideways.
   const bool missed =
       point.must_hit && std::any_of(ends.trials.begin(), ends.trials.end(), [&](const TrialEnd& e) {
         return (e.exit.vx != 0.0) != *point.must_hit;
@@ -323,7 +327,7 @@ std::int64_t FinishedMap::count(Verdict v) const {
 
 std::vector<FinishedMap> run_maps(const LimitScene& scene, std::vector<LimitMap> maps,
                                   const Work& work) {
-  // References first, one for each value of each number.
+  // The references come first, one for each value of each number.
   std::map<ReferenceKey, std::vector<TrialEnd>> references;
   for (const LimitMap& map : maps)
     for (const double y : map.y.values) references[reference_key(scene, map.number, y)];
@@ -337,7 +341,7 @@ std::vector<FinishedMap> run_maps(const LimitScene& scene, std::vector<LimitMap>
                    });
                  });
   std::vector<FinishedMap> finished;
-  std::vector<std::pair<std::size_t, std::size_t>> points;  // of which map, and which of its points
+  std::vector<std::pair<std::size_t, std::size_t>> points;  // index of the map, index of its point
   for (LimitMap& map : maps) {
     const std::size_t n = map.x.values.size() * map.y.values.size();
     for (std::size_t i = 0; i < n; ++i) points.emplace_back(finished.size(), i);
@@ -359,17 +363,17 @@ std::vector<FinishedMap> run_maps(const LimitScene& scene, std::vector<LimitMap>
   return finished;
 }
 
-// ---- How far from the scene ----
+// ---- Distance from the scene to the faults ----
 
 namespace {
 
-/// How far a value is from another along an axis.
+/// The distance between two values along an axis.
 double distance(const MapAxis& axis, std::size_t from, std::size_t to) {
   const double a = axis.values[from], b = axis.values[to];
   return axis.logarithmic ? std::abs(std::log(b / a)) : std::abs(b - a);
 }
 
-/// The nearest fault along an axis of which point i is `at(i)`, from axis.from on.
+/// The nearest fault along an axis whose point i is `at(i)`, searched from axis.from on.
 template <class At>
 Limit limit_on(const MapAxis& axis, At at) {
   Limit limit{axis};
@@ -395,15 +399,15 @@ const char* key_of(const FinishedMap& map) {
   return map.map.method == "event" ? "run.event_tolerance_m" : "run.step_s";
 }
 
-/// The coarsest setting below place `from` without fault in a row of the map.
+/// The coarsest setting below index `from` without a fault, in a row of the map.
 std::optional<double> finer_setting(const FinishedMap& map, std::size_t from, std::size_t iy) {
   for (std::size_t ix = from; ix-- > 0;)
     if (map.at(ix, iy).verdict == Verdict::fine) return map.map.x.values[ix];
   return std::nullopt;
 }
 
-/// What to do about a fault at (ix, iy) of a map: a finer setting, else another method that has
-/// none there at its own setting, or else at a finer one; `stable` is asked first.
+/// The remedy for a fault at (ix, iy) of a map: a finer setting; else another method without a
+/// fault at its own setting, or else at a finer one. `stable` is tried first.
 std::optional<Remedy> remedy_for(const FinishedMap& map, std::size_t ix, std::size_t iy,
                                  std::span<const FinishedMap> of_all_methods) {
   if (const auto finer = finer_setting(map, ix, iy)) return Remedy{key_of(map), *finer};
@@ -471,13 +475,14 @@ std::vector<MethodLimits> limits_of(const LimitScene& scene, std::span<const Fin
 double semi_implicit_bound(const GateParams& p) {
   const double k = std::max(p.beams.stiffness_left, p.beams.stiffness_right);
   const double a = k / p.beams.inertia(), b = 2.0 * p.beams.damping / p.beams.inertia();
-  return 8.0 / (b + std::sqrt(b * b + 16.0 * a));  // root of a h^2 + b h = 4; inf for a = b = 0
+  // Root of a h^2 + b h = 4; infinite for a = b = 0.
+  return 8.0 / (b + std::sqrt(b * b + 16.0 * a));
 }
 
 std::vector<Border> borders(const LimitScene& scene, const LimitMap& map) {
   const std::vector<double>&x = map.x.values, &y = map.y.values;
   std::vector<Border> found;
-  // Points inside the map; where the line leaves it in between, another one begins.
+  // Adds the points inside the map. A line that leaves the map and returns makes two borders.
   const auto add = [&](const char* label, const std::vector<std::array<double, 2>>& points) {
     Border border{label, {}, {}};
     const auto end = [&] {
@@ -494,7 +499,7 @@ std::vector<Border> borders(const LimitScene& scene, const LimitMap& map) {
     }
     end();
   };
-  constexpr int kPieces = 500;  // from bottom to top
+  constexpr int kPieces = 500;  // pieces from bottom to top
   const auto along_y = [&](const char* label, auto x_of) {
     std::vector<std::array<double, 2>> points;
     for (int i = 0; i <= kPieces; ++i) {
@@ -521,7 +526,7 @@ std::vector<Border> borders(const LimitScene& scene, const LimitMap& map) {
   if (map.method == "penalty")
     along_y("semi-implicit Euler, free beams",
             [](const PointScene& point) { return semi_implicit_bound(point.gate); });
-  // Only steps that fit into a hold of the random force are accepted at all.
+  // Only steps that fit into a hold of the random force are accepted.
   std::vector<std::array<double, 2>> points;
   if (map.y.logarithmic && map.method != "paper")
     for (const double at : x) points.push_back({at, refused_above(scene, map, at)});

@@ -19,7 +19,8 @@ namespace {
 constexpr double kUnreached = std::numeric_limits<double>::infinity();
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// dE/dy of beam_energy on the middle line (N), from the derivative of forward_deflection.
+/// The resistance on the middle line (N): dE/dy of beam_energy, from the derivative of
+/// forward_deflection.
 double resistance_at(const GateParams& p, double y) {
   const double theta = forward_deflection(p, kLeft, 0.0, y);
   if (!(theta > 0.0)) return 0.0;
@@ -27,7 +28,7 @@ double resistance_at(const GateParams& p, double y) {
   const double length = p.beams.length, radius = p.body.radius;
   const double px = from_joint(p, kLeft, 0.0), py = y - p.beams.joint_y;
   const double d = std::hypot(px, py);
-  double opening = 0.0;  // its derivative by d
+  double opening = 0.0;  // derivative of the opening angle by d
   if (const double tangent = d * d - radius * radius; tangent <= length * length) {
     opening = -radius / (d * std::sqrt(tangent));
   } else {
@@ -39,7 +40,8 @@ double resistance_at(const GateParams& p, double y) {
          (px / (d * d) + opening * py / d);
 }
 
-/// The least x between `low`, where `is` is false, and `high`, where it is true.
+/// The least x at which `is` is true, between `low`, where it is false, and `high`, where it is
+/// true.
 template <class Is>
 double first_where(double low, double high, Is is) {
   for (int i = 0; i < 200; ++i) {
@@ -49,7 +51,7 @@ double first_where(double low, double high, Is is) {
   return high;
 }
 
-/// A body in the open, without noise.
+/// A body without gates and noise.
 struct Open {
   const GateParams& p;
   const BodyState& start;
@@ -108,8 +110,9 @@ BeamsOnTheMiddle beams_on_the_middle(const GateParams& p) {
   return found;
 }
 
-// A hold of the force f moves the body by f fall(h)/M and leaves it f rise(h)/M fast, which takes
-// it f rise(h) rise(u)/M further until u later. Draws are independent: their squares add.
+// A hold of the force f moves the body by f fall(h)/M and leaves it with the speed f rise(h)/M,
+// which moves it by f rise(h) rise(u)/M during a later time u. Draws are independent, so their
+// squares add.
 double shaken_sideways(const GateParams& p, double seconds) {
   constexpr double kMostHolds = 1e6;
   const double drag = p.forces.drag / p.body.mass, draws = seconds * p.forces.random_rate;
@@ -150,7 +153,7 @@ namespace {
 
 constexpr double kChange = 0.01;
 constexpr int kRuns = 20;
-constexpr std::int64_t kMostWork = 1'000'000;  // steps or evaluations; a second is too much here
+constexpr std::int64_t kMostWork = 1'000'000;  // steps or evaluations, well below a second
 
 std::optional<GateFate> fate_of(const GateRun& run) {
   if (run.outcome == Outcome::broken) return {};
@@ -158,7 +161,7 @@ std::optional<GateFate> fate_of(const GateRun& run) {
   return is_traversed(run.outcome) ? GateFate::crosses : GateFate::leaves;
 }
 
-/// Of all runs alike; nothing where they differ, or cannot be run.
+/// The fate of all runs; nullopt if the fates differ or the scene cannot be simulated.
 std::optional<GateFate> fate(const GateParams& p, const BodyState& start) {
   try {
     const auto method = make_method(p);

@@ -12,24 +12,25 @@
 namespace gatewalk::dynamics {
 namespace {
 
-constexpr double kSamePlace = 1e-9;        // of R: what is nearer is rounding, or the same bits
-constexpr double kChances = 2.0;           // times what chance would show: what stands out from it
-constexpr double kTimedSeconds = 0.1;      // of the usual setting: the trials that are timed
-constexpr std::int64_t kLeastTimed = 500;  // of these, for a setting that takes longer
-constexpr double kLookUp = 0.2;            // s, between two looks while times are taken
+constexpr double kSamePlace = 1e-9;        // of R: nearer positions differ by rounding only
+constexpr double kChances = 2.0;           // an error stands out above this multiple of chance
+constexpr double kTimedSeconds = 0.1;      // timed trials take this long at the usual setting
+constexpr std::int64_t kLeastTimed = 500;  // least number of timed trials of slower settings
+constexpr double kLookUp = 0.2;            // s, between two progress reports during timing
 
 double per_run(std::int64_t n, const Health& h) {
   return h.runs > 0 ? static_cast<double>(n) / static_cast<double>(h.runs)
                     : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Seconds of trials 0 .. n - 1 on this thread; of fewer, but `least`, if these take kTimedSeconds.
+/// Time of trials 0 .. n - 1 on this thread; of fewer trials, at least `least`, once these take
+/// kTimedSeconds.
 struct Timed {
   std::int64_t trials = 0;
   double seconds = 0.0;
 };
 
-/// The study as it is made.
+/// Makes the study.
 class Charting {
  public:
   Charting(const GateParams& p, const BodyState& start, const WorkPrecisionOptions& options,
@@ -60,7 +61,7 @@ class Charting {
  private:
   TrialEnds run(const Setting& s) const {
     const GateParams p = s.applied_to(chart_.params);
-    (void)make_method(p);  // refuses before any work
+    (void)make_method(p);  // refuses the scene before any work
     TrialEnds ends;
     work_.in_pieces(chart_.label + ", " + s.name(), chart_.trials, [&](TrialRange range) {
       add_trial_ends(ends, p, start_, options_.seed, range);
@@ -128,10 +129,10 @@ class Charting {
     return timed;
   }
 
-  /// Every setting once, round by round, so that noise of the machine hits all alike. The first
-  /// round warms up and is not kept.
+  /// Times every setting once per round, so that noise of the machine affects all settings alike.
+  /// The first round is a warm-up and is dropped.
   void time_settings() {
-    const ChartPoint* pace = nullptr;  // `stable` as scenes get it, or whatever ran
+    const ChartPoint* pace = nullptr;  // `stable` at its default, or any setting that ran
     for (const ChartPoint& point : chart_.points)
       if (point.ran() &&
           (pace == nullptr || (point.setting.usual && point.setting.method == "stable")))
@@ -180,7 +181,7 @@ double ChartPoint::median_microseconds() const {
 double ChartPoint::steps_per_trial() const { return per_run(health.steps, health); }
 double ChartPoint::evaluations_per_trial() const { return per_run(health.evaluations, health); }
 
-// ---- What can be told ----
+// ---- Limits of what can be shown ----
 
 double WorkPrecision::outcome_limit() const { return weak_limit(reference.own.outcomes, trials); }
 double WorkPrecision::column_limit() const { return weak_limit(reference.own.columns, trials); }
@@ -211,7 +212,7 @@ const ChartPoint* WorkPrecision::cheapest() const {
   return best;
 }
 
-// ---- All of it ----
+// ---- The whole study ----
 
 void require_reference(const GateParams& p) {
   (void)table3_space(p);
