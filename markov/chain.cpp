@@ -14,7 +14,7 @@
 namespace gatewalk::markov {
 namespace {
 
-// Decimal input with 13 digits passes; a forgotten output or a rounded table does not.
+// Accepts decimal input with 13 digits, but not a missing output or a rounded table.
 constexpr double kRowSumTolerance = 1e-12;
 
 std::string row_name(std::int64_t row) {

@@ -15,15 +15,15 @@
 namespace gatewalk::markov {
 namespace {
 
-/// Columns that are worked on at a time, in registers.
+/// The number of columns that are computed together, in registers.
 constexpr int kColumns = 8;
 using ColumnValues = std::array<double, kColumns>;
 
-/// How far moves lead, of those that stay in a field.
+/// The farthest moves of any action, at most the size of the field.
 struct Reach {
   int columns = 0, rows = 0;
 };
-/// A move beyond the field's size leads over the same edge as one of that size.
+/// Limits a move to the field's size, which does not change the edge that it crosses.
 Exit within(const Field& field, Exit exit) {
   exit.di_x = std::clamp(exit.di_x, -field.columns, field.columns);
   exit.di_y = std::clamp(exit.di_y, -field.rows, field.rows);
@@ -41,8 +41,8 @@ Reach reach_of(const std::vector<FieldChain>& actions, const Field& field) {
   return reach;
 }
 
-/// Values of all cells and states: of each row of cells and each input the columns side by side,
-/// within a border of cells beyond the field, whose values are those of leaving it.
+/// The values of all cells and states. For each row of cells and each input, columns are stored
+/// side by side. A border of cells beyond the field holds the values of leaving it.
 class ValuePlane {
  public:
   ValuePlane(const Field& field, int inputs, const Reach& reach)
@@ -54,11 +54,11 @@ class ValuePlane {
         values_(static_cast<std::size_t>(
             pitch_ * inputs * (static_cast<std::ptrdiff_t>(field.rows) + 2 * reach.rows))) {}
 
-  /// Column 0.
+  /// The values of a row and input, from column 0 on.
   [[nodiscard]] double* columns(std::ptrdiff_t row, int input) {
     return values_.data() + ((row + reach_.rows) * inputs_ + input) * pitch_ + reach_.columns;
   }
-  /// From a row's columns for input 0 to those of an exit.
+  /// The distance from a row's columns for input 0 to the columns of an exit.
   [[nodiscard]] std::ptrdiff_t step(const Exit& any) const {
     const Exit exit = within(field_, any);
     return (static_cast<std::ptrdiff_t>(exit.di_y) * inputs_ + exit.next_input) * pitch_ +
@@ -82,23 +82,23 @@ class ValuePlane {
   std::vector<double> values_;
 };
 
-/// The rows of an action's chain for cells of one type.
+/// The rows of an action's chain, for cells of one type.
 struct ActionRows {
   struct Move {
     double p;
     std::ptrdiff_t step;
   };
-  /// Of a row in doubt; its set is a single row where `radius` is 0.
+  /// The set of a row in doubt; a single row if `radius` is 0.
   struct Doubted {
-    double radius = 0.0;   // the most that sum (q - p)^2 / p may be
+    double radius = 0.0;   // largest sum (q - p)^2 / p
     double known = 0.0;    // mean gain of a draw
-    double trapped = 0.0;  // p
+    double trapped = 0.0;  // probability of being trapped
   };
-  std::vector<double> at_once;     // (inputs) mean gain of a draw, and of being trapped by it
+  std::vector<double> at_once;     // (inputs) mean gain of a draw, trapping included
   std::vector<std::size_t> first;  // (inputs + 1)
   std::vector<Move> moves;
-  std::vector<Doubted> doubted;  // (inputs), or none at all
-  ColumnValues when_trapped{};   // the same in all columns
+  std::vector<Doubted> doubted;  // (inputs), or empty
+  ColumnValues when_trapped{};   // the gain of trapping, in all columns
 
   ActionRows(const Chain& chain, const Gains& gains, const std::vector<double>* draw,
              const ValuePlane& plane) {
@@ -133,7 +133,7 @@ struct ActionRows {
     }
   }
 
-  /// Of some columns; `here`: the first of them, for input 0.
+  /// The value of a draw in some columns; `here` points to the first column, for input 0.
   [[nodiscard]] ColumnValues value(int input, const double* here) const {
     const auto i = static_cast<std::size_t>(input);
     if (!doubted.empty() && doubted[i].radius > 0.0) return worst(i, here);
@@ -153,10 +153,11 @@ struct ActionRows {
     if (doubted[i].trapped > 0.0) what(doubted[i].trapped, when_trapped.data());
   }
 
-  /// The least mean in the row's set: there q is 0 above some limit, below it p times a factor that
-  /// falls with the value. Of outputs that keep a share P the least mean is mean - sqrt(variance *
-  /// (P radius - (1 - P))), which says a limit in turn; begun with all outputs it only falls, to
-  /// the set's own, so that no output that is left out comes back.
+  /// The least mean over the row's set. The minimising q is 0 above some limit, and below it p
+  /// times a factor that falls with the value. If the outputs below the limit have the total
+  /// probability P, the least mean is mean - sqrt(variance * (P radius - (1 - P))), from which a
+  /// new limit follows. Starting with all outputs, the limit only falls, down to its fixed point,
+  /// so no excluded output returns.
   [[nodiscard]] ColumnValues worst(std::size_t i, const double* here) const {
     constexpr double kAll = std::numeric_limits<double>::infinity();
     ColumnValues limit, least, value;
@@ -189,7 +190,7 @@ struct ActionRows {
         const double variance = squares[k] / kept[k];
         const double room = std::max(0.0, doubted[i].radius * kept[k] - left_out[k]);
         value[k] = std::max(least[k], mean[k] - std::sqrt(variance * room));
-        // Rounding must not leave the least out.
+        // Rounding must not exclude the least value.
         limit[k] = room > 0.0 ? std::max(least[k], mean[k] + std::sqrt(variance / room)) : kAll;
         finished = finished && most[k] <= limit[k];
       }
@@ -257,7 +258,7 @@ void check_actions(const std::vector<FieldChain>& actions, const Field& field, c
   check_doubt(actions, gains, options, require);
 }
 
-/// The largest gain of an ending or a draw.
+/// The largest absolute gain of an ending or a draw.
 double largest(const Gains& gains) {
   double most = 0.0;
   for (const double gain : gains.ending) most = std::max(most, std::abs(gain));
@@ -267,7 +268,8 @@ double largest(const Gains& gains) {
   return most;
 }
 
-/// Of a value: what the sum over a row may be off by, and what rows may lack or have too much.
+/// The relative rounding error of a value: the error of the sum over a row, and of the row's sum of
+/// probabilities.
 double rounding_of(const std::vector<FieldChain>& actions) {
   double most = 0.0;
   for (const FieldChain& action : actions)
@@ -317,8 +319,8 @@ class Decider {
                                   : 0.0);
   }
 
-  /// From the last draw to the first. Where nothing near a row of cells has changed since the draw
-  /// before, it stays as it is.
+  /// Backward induction from the last draw to the first. A row of cells is skipped if nothing near
+  /// it has changed since the draw before.
   Decisions limited() {
     const auto draws_in_all = static_cast<std::size_t>(options_.max_cells);
     d_.action.resize(size_ * draws_in_all);
@@ -351,20 +353,23 @@ class Decider {
         });
       });
       std::swap(plane_, next);
-      // Rows that were left out have the same values in both.
+      // Skipped rows have the same values in both planes.
       std::swap(changed, changes);
     }
     d_.sweeps = options_.max_cells;
     return result();
   }
 
-  /// Most moves lead ahead: each row of the field is done for itself, from the far end, before all
-  /// are done together. Without costs values rise from 0, and decisions are worth at least what is
-  /// known of them: what they are worth in full is found before they are improved again. Where
-  /// draws cost, decisions may circle, whose value falls for ever: each sweep improves them.
-  /// In doubt all this holds as well: where values rise the least mean of a row does, by no more
-  /// than they do. From 0 they rise to those of the rows that are worst for ever; where these keep
-  /// a walk from ending its states have one value, 0, and are left for what is better.
+  /// Value iteration. Most moves lead ahead, so each row of the field is solved on its own, from
+  /// the far end, before all rows together.
+  ///
+  /// Without costs, values rise from 0 and never exceed what the present decisions are worth; these
+  /// decisions are evaluated fully before they are improved again. If draws cost, decisions may
+  /// circle, and their value then falls for ever, so each sweep improves them.
+  ///
+  /// The same holds in doubt: the least mean of a row rises with the values, and by no more. From 0
+  /// the values rise to those of the worst rows for ever. If these rows keep a walk from ending,
+  /// its states have one value, 0, and are left for a better action.
   Decisions unlimited() {
     d_.action.resize(size_);
     for (int row = d_.field.rows - 1; row >= 0; --row)
@@ -393,7 +398,7 @@ class Decider {
     return static_cast<std::size_t>(actions_[action].type_of(column, row));
   }
 
-  /// What an action gains in each of some columns.
+  /// The value of an action in each of some columns.
   [[nodiscard]] ColumnValues gained(std::size_t action, int row, int column, int count, int input,
                                     const double* here) const {
     const std::size_t type = type_of(action, column, row);
@@ -405,8 +410,8 @@ class Decider {
     return gains;
   }
 
-  /// In each column the first action that is better than the one there, or than all before it, by
-  /// more than rounding.
+  /// Chooses, in each column, the first action that is better by more than rounding than the kept
+  /// one, or than all before it.
   [[nodiscard]] Choices choose(int row, int column, int count, int input, const double* here,
                                std::optional<Choices> kept) const {
     Choices best;
@@ -434,9 +439,9 @@ class Decider {
         what(input, column, std::min(kColumns, d_.field.columns - column));
   }
 
-  /// Each value of a row from the newest of all others, but within a block of columns; whether any
-  /// changed. Improves decisions, or only finds what those that there are gain, which takes less
-  /// time.
+  /// Updates each value of a row from the newest values of all others (except within a block of
+  /// columns). Returns whether any value changed. Either improves decisions or only evaluates the
+  /// present ones, which takes less time.
   bool sweep(int row, bool improves) {
     if (++sweeps_ / d_.field.rows > options_.max_sweeps)
       throw std::runtime_error("decisions are not found in " + std::to_string(options_.max_sweeps) +
@@ -458,8 +463,8 @@ class Decider {
       if (improves) now = choose(row, column, count, input, here, now);
       for (int k = 0; k < count; ++k) {
         const auto at = static_cast<std::size_t>(k);
-        // A least mean is a difference, off by more than its own rounding: values that could fall
-        // by that might change for ever.
+        // A least mean is a difference with more than its own rounding error. If such values could
+        // fall, they might change for ever.
         if (doubts_) now.value[at] = std::max(now.value[at], values[k]);
         std::uint16_t& action = d_.action[d_.at(column + k, row, input)];
         const double size = std::max({std::abs(now.value[at]), std::abs(values[k]), least_});
@@ -483,14 +488,14 @@ class Decider {
 
   const std::vector<FieldChain>& actions_;
   DecideOptions options_;
-  bool costs_;        // of draws
-  bool doubts_;       // rows may be worse than they are
-  double rounding_;   // share of a value
-  double tolerance_;  // the same, of a change
-  double least_;      // value of which it is the share at least
+  bool costs_;        // draws have gains
+  bool doubts_;       // rows are in doubt
+  double rounding_;   // relative rounding error of a value
+  double tolerance_;  // smallest relative change that counts
+  double least_;      // smallest value to which changes are compared
   Reach reach_;
   ValuePlane plane_;
-  std::vector<std::vector<ActionRows>> rows_;  // by action and type of cell
+  std::vector<std::vector<ActionRows>> rows_;  // [action][type of cell]
   Decisions d_;
   std::size_t size_ = 0;  // cells x inputs
   std::int64_t sweeps_ = 0;
@@ -515,7 +520,8 @@ FieldChain decided(const std::vector<FieldChain>& actions, const Decisions& d, i
     validate(action, d.field, {}, 0);
   }
   require(d.action.size() == d.at(0, d.field.rows, 0, std::max(1, d.max_cells) - 1));
-  // Outputs of all actions side by side: a cell's chain has each row from the action chosen there.
+  // The outputs of all actions are numbered one after the other, so a cell's chain can take each
+  // row from the chosen action.
   std::vector<Chain> chains;
   std::vector<int> types;
   std::map<std::pair<std::vector<int>, std::vector<std::uint16_t>>, int> known;

@@ -17,11 +17,11 @@
 namespace gatewalk::markov {
 namespace {
 
-/// One cell, or two, and what they become.
+/// A change of one cell, or an exchange of two.
 struct Change {
-  double says = 0.0;  // what the gradient says
+  double says = 0.0;  // gain predicted by the gradient
   int cell = 0, type = 0;
-  int undone = -1;  // a cell that becomes what it was; -1: none
+  int undone = -1;  // a cell that returns to its own type; -1: none
 };
 
 class Designer {
@@ -94,13 +94,14 @@ class Designer {
   }
 
  private:
-  static constexpr std::size_t kAtOnce = 8;    // maps that are solved side by side
-  static constexpr double kMostBytes = 2.0e9;  // of the values of all draws
-  static constexpr double kHardlyAny = 1e-9;   // of walks without a limit: the rest is left out
-  static constexpr std::int64_t kMostDraws = 10000;  // the same, where walks circle
-  static constexpr double kRounding = 1e-12;         // of a gain
+  static constexpr std::size_t kAtOnce = 8;    // maps solved at the same time
+  static constexpr double kMostBytes = 2.0e9;  // bytes of the values of all draws
+  // Without a limit: walks still under way that are dropped.
+  static constexpr double kHardlyAny = 1e-9;
+  static constexpr std::int64_t kMostDraws = 10000;  // largest number of draws if walks circle
+  static constexpr double kRounding = 1e-12;         // relative rounding error of a gain
 
-  /// Whether the cell may become of that type.
+  /// Whether the cell may have this type.
   [[nodiscard]] bool may(std::size_t cell, int type) const {
     const std::vector<int>& kinds = options_.kind_of_type;
     return type == own_[cell] ||
@@ -108,7 +109,7 @@ class Designer {
             (kinds.empty() ||
              kinds[static_cast<std::size_t>(type)] == kinds[static_cast<std::size_t>(own_[cell])]));
   }
-  /// The changes of a map, by which it is known.
+  /// The changes of a map, which serve as its key.
   [[nodiscard]] std::vector<std::size_t> key_of(const Map& map) const {
     std::vector<std::size_t> key;
     for (std::size_t c = 0; c < cells_; ++c)
@@ -127,7 +128,7 @@ class Designer {
   [[nodiscard]] bool all_may_change() const {
     return static_cast<std::size_t>(options_.most_changes) == cells_;
   }
-  /// Sets of values: one for each number of draws made, or one for all.
+  /// The number of sets of values: one for each number of draws made, or one for all.
   [[nodiscard]] std::size_t levels() const {
     return static_cast<std::size_t>(std::max(1, options_.max_cells));
   }
@@ -136,7 +137,7 @@ class Designer {
     return decide({FieldChain::by_cell(chain_.chains(), field_.columns, map)}, field_, gains_,
                   {.max_cells = options_.max_cells});
   }
-  /// The more the better.
+  /// The gain of a map, with the sign for which more is better.
   [[nodiscard]] double solved(const Map& map) const {
     PredictOptions how;
     how.max_cells = options_.max_cells;
@@ -145,7 +146,7 @@ class Designer {
       final =
           predict(FieldChain::by_cell(chain_.chains(), field_.columns, map), field_, {start_}, how)
               .front();
-    } catch (const std::runtime_error&) {  // walks can circle for ever in it
+    } catch (const std::runtime_error&) {  // walks can circle for ever in this map
       return -std::numeric_limits<double>::infinity();
     }
     double sum = 0.0;
@@ -153,8 +154,8 @@ class Designer {
     return sign_ * sum;
   }
 
-  /// What a draw from `type` gains, where `after` has the values of the cells that follow; without
-  /// them it is the last draw.
+  /// The expected gain of a draw from `type`, if `after` holds the values of the following cells.
+  /// Without `after` the draw is the last one.
   [[nodiscard]] double drawn(int type, std::size_t cell, int input, const double* after) const {
     const Chain& chain = chain_.chains()[static_cast<std::size_t>(type)];
     if (!chain.is_sampled(input)) return gain(Ending::unsampled);
@@ -169,8 +170,8 @@ class Designer {
     return sum;
   }
 
-  /// Of each cell and type: over all visits to the cell, what a draw from the type gains more than
-  /// one from the cell's own; and which cells are visited.
+  /// For each cell and type, the sum over all visits to the cell of the gain of a draw from the
+  /// type less that of a draw from the cell's own type; and whether each cell is visited.
   struct Gradient {
     std::vector<double> of{};  // (cells x types)
     std::vector<char> visited{};
@@ -237,7 +238,7 @@ class Designer {
     return gradient;
   }
 
-  /// All changes of one cell and exchanges of two that are permitted, the most promising first.
+  /// All permitted changes of one cell and exchanges of two, the most promising first.
   [[nodiscard]] std::vector<Change> changes_at(const Map& map, const Gradient& gradient) const {
     const std::size_t types = chain_.chains().size();
     const bool more = changes_of(map) < options_.most_changes;
@@ -262,8 +263,8 @@ class Designer {
     return changes;
   }
 
-  /// The map with the more promising 1/n of the changes that the gradient says to be gains, of each
-  /// cell the best.
+  /// The map with the most promising 1/n of the changes that the gradient predicts as gains, taking
+  /// the best change of each cell.
   [[nodiscard]] Map changed_at_once(const Map& map, const std::vector<Change>& changes,
                                     std::size_t n) const {
     std::vector<const Change*> best;
@@ -280,10 +281,11 @@ class Designer {
     return changed;
   }
 
-  /// Where a search ends that others have come by before, these have ended too.
+  /// Searches from a map. If a search reaches a map that an earlier search has passed, it ends
+  /// where the earlier search ended.
   FieldDesign search_from(Map map) {
-    double gain = solved_of({map}).front();  // is known
-    double error = 0.0;                      // the largest of what the gradient said
+    double gain = solved_of({map}).front();  // known already
+    double error = 0.0;                      // largest error of the gradient's predictions
     std::vector<Map> way;
     for (;;) {
       if (const auto end = ends_.find(key_of(map)); end != ends_.end()) {
@@ -356,12 +358,13 @@ class Designer {
   double sign_ = 1.0;
   std::size_t cells_ = 0, inputs_ = 0;
   Map own_;
-  std::vector<char> may_become_;                          // by type
-  std::map<std::vector<std::size_t>, double> known_;      // gains of maps
-  std::map<std::vector<std::size_t>, FieldDesign> ends_;  // of searches that come by these maps
+  std::vector<char> may_become_;                      // by type
+  std::map<std::vector<std::size_t>, double> known_;  // gains of maps
+  // Ends of the searches that pass these maps.
+  std::map<std::vector<std::size_t>, FieldDesign> ends_;
   std::vector<double> own_gradient_;
   std::size_t search_ = 0;
-  bool has_enough_ = false;  // maps were solved
+  bool has_enough_ = false;  // most_solves is reached
 };
 
 }  // namespace

@@ -12,7 +12,8 @@ ExplicitChain explicit_chain(const FieldChain& chain, const Field& field, const 
                              int max_cells, std::int64_t most) {
   validate(chain, field, start, max_cells);
   ExplicitChain all;
-  std::unordered_map<std::uint64_t, std::int64_t> number;  // of a state, by its place among all
+  // Number of a state, by its index among all possible ones.
+  std::unordered_map<std::uint64_t, std::int64_t> number;
   const auto number_of = [&](const ExplicitChain::State& s) {
     const std::uint64_t place =
         ((static_cast<std::uint64_t>(s.draws) * static_cast<std::uint64_t>(field.rows) +
@@ -31,7 +32,8 @@ ExplicitChain explicit_chain(const FieldChain& chain, const Field& field, const 
     return found->second;
   };
   (void)number_of({start.column, start.row, start.input, 0});
-  // Endings are numbered behind the last state, which is known at the end: below 0 until then.
+  // Endings get negative numbers until the number of states is known; then they follow the last
+  // state.
   for (std::int64_t k = 0; k < std::ssize(all.states); ++k) {
     const ExplicitChain::State from = all.states[static_cast<std::size_t>(k)];
     std::map<std::int64_t, double> to;

@@ -45,7 +45,8 @@ int number_of_groups(const Chain& chain, const std::vector<int>& group_of,
   return static_cast<int>(groups);
 }
 
-/// Outputs by where they lead, seen by group: in the order of the chain's own.
+/// The outputs merged by the group and cell to which they lead, in the order of the chain's
+/// outputs.
 std::vector<Exit> lumped_exits(const Chain& chain, const std::vector<int>& group_of,
                                std::vector<Eigen::Index>& lumped_output) {
   std::vector<Exit> exits;
@@ -73,7 +74,8 @@ Lumping lump(const Chain& chain, const std::vector<int>& group_of,
   const int groups = number_of_groups(chain, group_of, weights);
   std::vector<Eigen::Index> lumped_output;
   std::vector<Exit> exits = lumped_exits(chain, group_of, lumped_output);
-  std::vector<std::vector<int>> sampled(static_cast<std::size_t>(groups));  // states, by group
+  // Sampled states of each group.
+  std::vector<std::vector<int>> sampled(static_cast<std::size_t>(groups));
   for (int input = 0; input < chain.inputs(); ++input)
     if (chain.is_sampled(input))
       sampled[static_cast<std::size_t>(group_of[static_cast<std::size_t>(input)])].push_back(input);
@@ -83,7 +85,7 @@ Lumping lump(const Chain& chain, const std::vector<int>& group_of,
   for (std::size_t g = 0; g < sampled.size(); ++g) {
     const std::vector<int>& states = sampled[g];
     Lumping::Group& group = all[g];
-    std::vector<Eigen::ArrayXd> rows;  // of its states, lumped
+    std::vector<Eigen::ArrayXd> rows;  // lumped rows of the group's states
     Eigen::ArrayXd shares(std::ssize(states));
     for (std::size_t i = 0; i < states.size(); ++i) {
       Eigen::ArrayXd row = Eigen::ArrayXd::Zero(std::ssize(exits));
@@ -101,7 +103,7 @@ Lumping lump(const Chain& chain, const std::vector<int>& group_of,
     Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(std::ssize(exits));
     for (std::size_t i = 0; i < rows.size(); ++i)
       mean += shares(static_cast<Eigen::Index>(i)) * rows[i];
-    if (rows.size() > 1) mean /= mean.sum();  // 1 but for the rounding of very many
+    if (rows.size() > 1) mean /= mean.sum();  // the sum is 1 up to rounding
     for (std::size_t i = 0; i < rows.size(); ++i) {
       group.mean += shares(static_cast<Eigen::Index>(i)) * total_variation(rows[i], mean);
       for (std::size_t j = 0; j < i; ++j)

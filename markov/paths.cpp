@@ -9,10 +9,10 @@
 namespace gatewalk::markov {
 namespace {
 
-/// A cell of a path. Paths share their first steps, however long they are.
+/// A step of a path. Paths share their common beginnings.
 struct Step {
   std::int64_t cell;
-  std::int64_t before;  // the step before, as its place in a list; -1: none
+  std::int64_t before;  // index of the previous step; -1: none
 };
 
 /// The cells of a path from the start to its last step.
@@ -24,12 +24,13 @@ std::vector<std::int64_t> cells_of(const std::vector<Step>& steps, std::int64_t 
   return cells;
 }
 
-/// A path, or its beginning: then the walks that pass it are in these states of its last cell.
+/// A complete path, or the beginning of one with the states that its walks have in the last cell.
 struct Beginning {
-  double at_most = 0.0;   // of the share that any path has which begins so; of a path its share
-  std::int64_t last = 0;  // step
-  int length = 1;         // cells
-  std::vector<std::pair<int, double>> states;  // input, share; none: the path is complete
+  // Upper bound of the share of any continuation; the share of a complete path.
+  double at_most = 0.0;
+  std::int64_t last = 0;                       // index of the last step
+  int length = 1;                              // number of cells
+  std::vector<std::pair<int, double>> states;  // {input, share}; empty: the path is complete
   friend bool operator<(const Beginning& a, const Beginning& b) { return a.at_most < b.at_most; }
 };
 

@@ -12,15 +12,15 @@
 namespace gatewalk::markov {
 namespace {
 
-constexpr int kBlock = 8;  // vectors: the second eigenvalue settles as the ninth one lets it
+constexpr int kBlock = 8;  // vectors; the ninth eigenvalue limits the convergence of the second
 constexpr int kMostIterations = 20'000;
-constexpr Eigen::Index kDense = 300;        // states of which all eigenvalues are found at once
-constexpr double kEigenTolerance = 1e-12;   // of the first eigenvalue's change from step to step
-constexpr double kSecondTolerance = 1e-10;  // the same of the second
+constexpr Eigen::Index kDense = 300;  // states up to which all eigenvalues are computed densely
+constexpr double kEigenTolerance = 1e-12;   // relative change of the first eigenvalue per step
+constexpr double kSecondTolerance = 1e-10;  // relative change of the second eigenvalue per step
 
 struct Kernel {
   Probabilities from_to;  // transposed: left eigenvectors become right ones
-  Eigen::VectorXd rows;   // (inputs) that a draw leads further, times its chance
+  Eigen::VectorXd rows;   // (inputs) mean di_y of a draw that goes on, times its probability
 };
 
 Kernel kernel_of(const FieldChain& chain, const std::vector<double>& share) {
@@ -48,8 +48,8 @@ QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<doub
     throw std::invalid_argument("quasi-stationary: one share for each type of cell is needed");
   const auto [kernel, rows] = kernel_of(chain, share);
   const Eigen::Index n = kernel.rows(), block = std::min<Eigen::Index>(kBlock, n);
-  // Any block that is not orthogonal to what is sought: triangular waves, whose lengths have no
-  // common multiple, by operations that are rounded alike on all processors.
+  // The start may be any block that is not orthogonal to the solution: here triangular waves of
+  // incommensurable lengths, computed by operations that round alike on all processors.
   constexpr double kTurns = 0.11803398874989485;  // (sqrt(5) - 2) / 2
   Eigen::MatrixXd v(n, block);
   for (Eigen::Index i = 0; i < n; ++i)
@@ -78,7 +78,7 @@ QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<doub
   };
   if (n <= kDense) {
     tell(eigenvalue_moduli(kernel.toDense()), kToldEigenvalues);
-  } else {  // on with the block until these settle
+  } else {  // iterate the block until these eigenvalues converge
     constexpr int kMoreIterations = 2000, kApart = 10;
     Eigen::VectorXd was = Eigen::VectorXd::Zero(block);
     for (int iteration = 0; iteration < kMoreIterations; ++iteration) {
@@ -95,7 +95,7 @@ QuasiStationary quasi_stationary(const FieldChain& chain, const std::vector<doub
       was = moduli;
     }
   }
-  // The first vector alone, from positive numbers: nothing is subtracted.
+  // The first vector alone, from positive numbers, so nothing is subtracted.
   Eigen::VectorXd states = Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n));
   for (int iteration = 0;; ++iteration) {
     if (iteration == kMostIterations)

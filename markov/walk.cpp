@@ -27,14 +27,13 @@ namespace gatewalk::markov {
 
 using Word = std::uint64_t;
 
-/// A move in one word, so that a draw takes two look-ups. Bits 0 to 9: di_x + 512; 10 to 31: slots
-/// of the row it leads to; 32 to 41: di_y + 512; 42 to 62: that row's first slot; 63: the walk
-/// ends.
+/// A move packed into one word, so that a draw takes two look-ups. Bits 0 to 9: di_x + 512; 10 to
+/// 31: the number of slots of the target row; 32 to 41: di_y + 512; 42 to 62: the first slot of the
+/// target row; 63: the walk ends.
 constexpr int kReach = 512;
 constexpr Word kMostSlots = Word{1} << 21;
 constexpr Word kStay = (Word{kReach} << 32) + kReach;
-constexpr Word kShift =
-    (Word{1} << 63) + (Word{0x3ff} << 32) + 0x3ff;  // the bits that change the cell
+constexpr Word kShift = (Word{1} << 63) + (Word{0x3ff} << 32) + 0x3ff;  // bits that change the cell
 constexpr Word kEndTrapped = (Word{1} << 63) + kStay;
 constexpr Word kEndUnsampled = kEndTrapped + (Word{1} << 10);
 constexpr Word kEndCutOff = kEndTrapped + (Word{2} << 10);
@@ -44,7 +43,7 @@ constexpr Word move_to(std::size_t first_slot, int slots, int di_x, int di_y) {
          (static_cast<Word>(slots) << 10) + static_cast<Word>(di_x + kReach);
 }
 
-/// A cell in one word: its row above, its column below.
+/// A cell packed into one word: row in the upper half, column in the lower.
 constexpr Word cell_at(int column, int row) {
   return (static_cast<Word>(row) << 32) + static_cast<Word>(column);
 }
@@ -53,20 +52,21 @@ struct WalkRules {
   const Word* keep;    // (slots)
   const Word* moves;   // (slots x 2)
   Word corner;         // the last cell
-  Word key[2], input;  // of the stream
+  Word key[2], input;  // key and counter word of the stream
 };
 
-/// Numbers that are counted in a cell: by Ending, and 0 behind the last.
+/// The numbers counted in a cell: by Ending, and 0 beyond the last.
 constexpr int kEachBits = 3;
 constexpr Word kEach = Word{1} << kEachBits;
 static_assert(kEndings <= kEach);
 
 constexpr int kMostLanes = 8;
-constexpr int kTogether = 4;  // registers of Philox blocks: a round waits long for its products
-constexpr int kPool = 2048;   // walks
+// Registers of Philox blocks computed together, to hide the latency of products.
+constexpr int kTogether = 4;
+constexpr int kPool = 2048;  // walks
 
-/// Walks that have drawn equally often. Those on their way stand at the front of `on`, those that
-/// ended at the back of `ended`, with their last move.
+/// Walks that have made equally many draws. Walks under way are at the front of `on`; ended walks
+/// are at the back of `ended`, with their last move.
 struct alignas(64) Pool {
   static constexpr int kRoom = kPool + kTogether * kMostLanes;  // whole registers
   struct Walks {
@@ -77,7 +77,7 @@ struct alignas(64) Pool {
   int walking, first_ended;
 };
 
-/// For every set of marked lanes: first the marked, then the others, four bits each.
+/// For each set of marked lanes: the marked lanes first, then the others, four bits each.
 constexpr auto kMarkedFirst = [] {
   std::array<Word, 1 << kMostLanes> order{};
   for (Word marks = 0; marks < order.size(); ++marks) {
@@ -106,9 +106,9 @@ HWY_INLINE V all(Word word) { return hn::Set(D(), word); }
 HWY_INLINE V low_half(V v) { return hn::And(v, all(0xffffffff)); }
 HWY_INLINE V high_half(V v) { return hn::ShiftRight<32>(v); }
 
-/// Product of the low halves.
+/// The product of the low halves.
 HWY_INLINE V mul_low(V a, V b) {
-#if HWY_TARGET == HWY_SCALAR  // has no registers of two halves
+#if HWY_TARGET == HWY_SCALAR  // has no registers with two halves
   return hn::Mul(low_half(a), low_half(b));
 #else
   const hn::Repartition<std::uint32_t, D> halves;
@@ -116,7 +116,7 @@ HWY_INLINE V mul_low(V a, V b) {
 #endif
 }
 
-/// The high word of a b.
+/// The high word of the product a b.
 HWY_INLINE V mul_high(V a, Word b) {
   const V a1 = high_half(a), b0 = all(b & 0xffffffff), b1 = all(b >> 32);
   const V middle = hn::Add(mul_low(a1, b0), high_half(mul_low(a, b0)));
@@ -128,7 +128,7 @@ HWY_INLINE V look_up(const Word* table, V index) {
   return hn::GatherIndex(D(), table, hn::BitCast(hn::RebindToSigned<D>(), index));
 }
 
-/// Block `block` of every walk's Philox4x64-10 (Salmon et al. 2011).
+/// Computes block `block` of every walk's Philox4x64-10 (Salmon et al. 2011).
 void fill_words(const WalkRules& rules, Word block, Pool& pool) {
   constexpr Word kMultiplier[] = {0xd2e7470ee14c6c93, 0xca5a826395121157};
   constexpr Word kBump[] = {0x9e3779b97f4a7c15, 0xbb67ae8584caa73b};
@@ -157,7 +157,7 @@ void fill_words(const WalkRules& rules, Word block, Pool& pool) {
   }
 }
 
-/// Every walk draws a move from the row that its last one led to (Walker::pick).
+/// Draws a move for every walk, from the row to which its last move led (Walker::pick).
 void draw_moves(const WalkRules& rules, const Word* words, Pool& pool) {
   const D d;
   for (int i = 0; i < pool.walking; i += lanes()) {
@@ -173,17 +173,16 @@ void draw_moves(const WalkRules& rules, const Word* words, Pool& pool) {
   }
 }
 
-/// Every walk of the pool carries out the move it has drawn, or ends; with `last_time` all end.
-/// Walks that go on are put into places 0, 1, ... of `on` in their order, with the words they have
-/// not used
-/// (`next_word` to 3), so that registers stay full; walks that ended go to the back of `ended`.
+/// Carries out the drawn move of every walk in the pool, or ends the walk; with `last_time` all
+/// walks end. Walks that go on move to places 0, 1, ... of `on` in their order, with their unused
+/// words (`next_word` to 3), so registers stay full. Ended walks go to the back of `ended`.
 void carry_out_moves(const WalkRules& rules, int next_word, bool last_time, Pool& pool) {
   const D d;
   const V nibbles = hn::ShiftLeft<2>(hn::Iota(d, 0));
   int walking = 0, first_ended = pool.first_ended, i = 0;
   for (; i < pool.walking; i += lanes()) {
     V move = hn::Load(d, pool.on.move + i), cell = hn::Load(d, pool.on.cell + i);
-    // Outside of the field, and at an end, a half of `next` or of `corner - next` is negative.
+    // Outside the field, or at an end, a half of `next` or of `corner - next` is negative.
     const V next = hn::Sub(hn::Add(cell, hn::And(move, all(kShift))), all(kStay));
     const V signs =
         hn::And(hn::Or(next, hn::Sub(all(rules.corner), next)), all(0x80000000'80000000));
@@ -194,7 +193,7 @@ void carry_out_moves(const WalkRules& rules, int next_word, bool last_time, Pool
     }
     cell = hn::IfThenElse(goes_on, next, cell);
 
-    // Lanes behind the last walk never end, and are cut off below.
+    // Lanes behind the last walk never end; they are cut off below.
     const auto walks = hn::FirstN(d, static_cast<std::size_t>(pool.walking - i));
     const auto kept = hn::Or(goes_on, hn::Not(walks));
     std::uint8_t marks[8];
@@ -222,9 +221,9 @@ void carry_out_moves(const WalkRules& rules, int next_word, bool last_time, Pool
   pool.first_ended = first_ended;
 }
 
-/// Of those in `ended` the last cell, in order of rows, and the ending: the cell * kEach + Ending,
-/// into the first of the words. A number below 0, and a last column or row less one beyond it, have
-/// their top bit set.
+/// Finds the last cell, in order of rows, and the ending of each walk in `ended`, and writes cell *
+/// kEach + Ending into the first word. The top bit of a negative number is set; so is that of a
+/// last column or row minus a number beyond it.
 void find_endings(const WalkRules& rules, Pool& pool) {
   const D d;
   const V last_column = low_half(all(rules.corner)), last_row = high_half(all(rules.corner));
@@ -278,7 +277,7 @@ WalkTally& WalkTally::operator+=(const WalkTally& other) {
 
 namespace {
 
-/// The chains of all types as one: rows and outputs one type behind the other.
+/// Combines the chains of all types into one: rows and outputs of the types follow each other.
 Chain stacked(const FieldChain& field) {
   if (field.chains().size() == 1) return field.chains().front();
   std::vector<Eigen::Triplet<double>> entries;
@@ -298,8 +297,9 @@ Chain stacked(const FieldChain& field) {
 
 }  // namespace
 
-// A row of n entries gets n slots of 2^64 units. Entry j owns p_j n 2^64 units, and together they
-// fill the slots exactly: each slot takes a small entry whole and is topped up from one large one.
+// A row of n entries gets n slots of 2^64 units. Entry j owns p_j n 2^64 units, and together the
+// entries fill the slots exactly: each slot takes one small entry as a whole and is filled up by
+// one large entry.
 Walker::Walker(const FieldChain& chain)
     : chain_(stacked(chain)),
       keep_(static_cast<std::size_t>(chain_.matrix().nonZeros()) + 1,
@@ -325,7 +325,8 @@ Walker::Walker(const FieldChain& chain)
       sum += units[j];
     }
     const auto largest = std::max_element(units.begin(), units.end());
-    *largest += static_cast<Wide>(count) * kSlotUnits - sum;  // modulo 2^128: may be a decrease
+    // Modulo 2^128, so it may be a decrease.
+    *largest += static_cast<Wide>(count) * kSlotUnits - sum;
 
     const auto set = [&](int slot, Word keep, int first, int second) {
       const auto at = static_cast<std::size_t>(begin + slot);
@@ -362,7 +363,7 @@ Walker::Walker(const FieldChain& chain)
   moves_.reserve(outputs_.size());
   for (const int output : outputs_)
     moves_.push_back(packed(exits[static_cast<std::size_t>(output)]));
-  moves_.end()[-2] = kEndUnsampled;  // its slot keeps every word
+  moves_.end()[-2] = kEndUnsampled;  // its slot keeps every word for the first output
 }
 
 Word Walker::packed(const Exit& exit) const {
@@ -390,29 +391,29 @@ int Walker::draw(int row, Word word) const {
   return pick(row, word);
 }
 
-/// What one call of walk() asks for, or a part of it.
+/// The arguments of one call of walk(), or of a part of it.
 struct Walker::Job {
   static constexpr std::int64_t kMostWalks = std::numeric_limits<std::int32_t>::max();
 
   Field field;
   Start start;
   int limit;
-  bool limit_ends;  // of the field: it cuts walks off; else they are still walking there
+  bool limit_ends;  // true: the limit cuts walks off; false: they are still walking there
   Word seed;
-  WalkRange range;                   // of kMostWalks at most
+  WalkRange range;                   // at most kMostWalks walks
   std::int32_t* final_cell_of_walk;  // may be null
 
   [[nodiscard]] std::int64_t cells() const { return std::int64_t{field.columns} * field.rows; }
 };
 
-/// What one thread has counted.
+/// The counts of one thread.
 struct Walker::Counters {
   std::vector<std::int32_t> by_cell;  // (cells x kEach)
   std::int64_t still_walking = 0, steps = 0;
 
   explicit Counters(std::int64_t cells) : by_cell(static_cast<std::size_t>(cells) * kEach) {}
 
-  /// `place`: cell * kEach + Ending.
+  /// Counts a walk that ended; `place` is cell * kEach + Ending.
   void count(const Job& job, Word place, std::int64_t number) {
     const bool stopped = !job.limit_ends && place % kEach == static_cast<Word>(Ending::cut_off);
     if (stopped)
@@ -466,7 +467,7 @@ void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last
   Pool pool;
   for (int walks; first < last; first += walks) {
     walks = static_cast<int>(std::min<std::int64_t>(kPool, last - first));
-    // The lanes behind the last walk need a row to draw from, too.
+    // The lanes behind the last walk also need a row to draw from.
     for (int i = 0; i < walks + kMostLanes; ++i) {
       pool.on.move[i] = start_move;
       pool.on.cell[i] = start_cell;
@@ -485,7 +486,7 @@ void Walker::walk_in_lanes(const Job& job, std::int64_t first, std::int64_t last
     HWY_DYNAMIC_DISPATCH(find_endings)(rules, pool);
     for (int i = pool.first_ended; i < Pool::kRoom; ++i) {
       const Word place = pool.words[0][i];
-      // There is nothing to draw from.
+      // An unsampled row has nothing to draw from.
       counters.steps -= place % kEach == static_cast<Word>(Ending::unsampled);
       counters.count(job, place, static_cast<std::int64_t>(pool.ended.number[i]));
     }

@@ -38,7 +38,7 @@ const std::set<std::string> kOwnVariables = {
     "exit_next_input", "exit_di_x",    "exit_di_y",  "input_state", "nonzero",
     "output_state",    "state_name",   "name_length"};
 const std::set<std::string> kOwnDimensions = {"input_state", "output_state", "nonzero"};
-// A matrix of 10 000 states and 10^8 nonzeros has fewer.
+// Enough for a matrix of 10 000 states and 10^8 nonzeros.
 constexpr std::size_t kMostFileBytes = std::size_t{1} << 30;
 const std::string kTypeGroup = "type_";
 constexpr const char *kCodeValues = "flag_values", *kCodeWords = "flag_meanings";
@@ -51,14 +51,16 @@ std::string named_row(std::int64_t row) {
   return "row " + std::to_string(row) + " (counted from 0)";
 }
 
-// The dimension of an array; no variable may have its name (netCDF 4.9 stumbles over some such).
+// The dimension of an array. No variable may have its name, because netCDF 4.9 fails on some such
+// files.
 std::string dimension_of(const NamedArray& array) {
   return array.dimension.empty() ? array.name + "_length" : array.dimension;
 }
 
-// ---- Content: the same rules for what is written and what was read ----
+// ---- Content: the same rules for writing and reading ----
 
-// Letters, digits and underscores: legal for NetCDF, and a variable name in MATLAB, R and Python.
+// Accepts letters, digits and underscores: legal for NetCDF, and a variable name in MATLAB, R and
+// Python.
 void check_name(const std::string& name, const std::set<std::string>& taken) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -172,8 +174,9 @@ void check_content(const CountsFile& file) {
   }
 }
 
-// ---- The checksum: over every byte of the file, itself read as zeros ----
-// Checked before HDF5 sees the file: HDF5 1.10 crashes or hangs on some damaged bytes.
+// ---- The checksum: over every byte of the file, its own digits read as zeros ----
+// The checksum is tested before HDF5 reads the file: HDF5 1.10 crashes or hangs on some damaged
+// bytes.
 
 constexpr std::string_view kChecksumMark = "crc64-xz:";
 constexpr std::string_view kNoChecksum = "0000000000000000";
@@ -196,7 +199,7 @@ std::string hex(const Crc64& crc) {
   throw std::runtime_error("holds \"" + std::string(kChecksumMark) + "\" more than once");
 }
 
-// Puts the checksum of an image, which has zeros in its place, there.
+// Writes the checksum into an image that has zeros in its place.
 void seal(std::vector<char>& image) {
   const std::string_view bytes(image.data(), image.size());
   const std::size_t mark = bytes.find(kChecksumMark);
@@ -209,7 +212,7 @@ void seal(std::vector<char>& image) {
   std::copy(digits.begin(), digits.end(), image.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-// The counts of one type, into the file or a group of it.
+// Writes the counts of one type into the file or into a group of the file.
 void put_counts(int group, int input, const RowCounts& rows) {
   std::vector<std::int32_t> of_row, of_column;
   std::vector<std::int64_t> counts;
@@ -246,7 +249,7 @@ void put_array(int nc, int dimension, const NamedArray& array) {
   put_text(nc, variable, kCodeWords, words);
 }
 
-// Characters, padded with blanks: Octave reads no strings of NetCDF-4.
+// Writes text as characters padded with blanks, because Octave cannot read NetCDF-4 strings.
 void put_state_names(int nc, int output, const std::vector<std::string>& names) {
   if (names.empty()) return;
   std::size_t length = 0;
@@ -303,7 +306,7 @@ std::vector<char> encode(const CountsFile& file) {
   return image;
 }
 
-// ---- Reading: nothing is allocated before its size was held against the file's length ----
+// ---- Reading: every size is compared with the file's length before memory is allocated ----
 
 class Reader {
  public:
@@ -361,7 +364,7 @@ class Reader {
   }
 
   [[nodiscard]] std::size_t dimension_length(int group, int id, const std::string& name) {
-    // Deflate shrinks 1032-fold at the most, and a number has at least 4 bytes.
+    // Deflate compresses at most 1032-fold, and a number has at least 4 bytes.
     constexpr std::size_t kMostPerByte = 1032 / 4;
     std::size_t length = 0;
     check(nc_inq_dimlen(group, id, &length), "dimension " + name);
@@ -558,8 +561,8 @@ class Reader {
   throw std::runtime_error(what + ": " + std::strerror(errno));
 }
 
-// A regular file that is open for reading. Directories, pipes and devices are refused before they
-// are opened (a pipe would block), and what no matrix can be before it is read.
+// A regular file open for reading. Directories, pipes and devices are refused before they are
+// opened (a pipe would block).
 class InputFile {
  public:
   explicit InputFile(const std::string& path) {
@@ -577,7 +580,7 @@ class InputFile {
   InputFile& operator=(const InputFile&) = delete;
 
   [[nodiscard]] std::size_t size() const { return size_; }
-  // Fills `bytes` from `offset` on, as far as the file goes.
+  // Fills `bytes` from `offset` on, up to the end of the file.
   void read(std::size_t offset, std::vector<char>& bytes) const {
     bytes.resize(std::min(bytes.size(), size_ - std::min(size_, offset)));
     for (std::size_t done = 0; done < bytes.size();) {
@@ -601,7 +604,7 @@ void check_size(std::size_t bytes) {
                              std::to_string(kMostFileBytes) + " that a matrix may have");
 }
 
-// What begins as a NetCDF-4 file and is no larger than a matrix may be.
+// Refuses a file that does not begin as NetCDF-4, or is larger than a matrix may be.
 void check_kind(const InputFile& file) {
   constexpr std::string_view kHdf5Magic = "\x89HDF\r\n\x1a\n";
   std::vector<char> begin(kHdf5Magic.size());
@@ -613,13 +616,13 @@ void check_kind(const InputFile& file) {
 
 constexpr std::size_t kPiece = std::size_t{1} << 16;  // bytes
 
-// Where the digits of the checksum stand. Like the checksum, found piece by piece: a large file of
-// another kind never is in memory.
+// Finds the digits of the checksum. They are searched piece by piece, as the checksum is computed,
+// so a large file of another kind is never in memory.
 std::size_t place_of_checksum(const InputFile& file) {
   std::size_t place = 0, marks = 0;
   std::vector<char> piece;
   for (std::size_t begin = 0; begin < file.size(); begin += kPiece) {
-    piece.resize(kPiece + kChecksumMark.size() - 1);  // a mark may lie across two pieces
+    piece.resize(kPiece + kChecksumMark.size() - 1);  // a mark may cross two pieces
     file.read(begin, piece);
     const std::string_view bytes(piece.data(), piece.size());
     for (std::size_t at = 0; (at = bytes.find(kChecksumMark, at)) != bytes.npos; ++at) {

@@ -33,7 +33,7 @@ class FileDescriptor {
   FileDescriptor& operator=(const FileDescriptor&) = delete;
 
   [[nodiscard]] int get() const { return fd_; }
-  /// False, with errno, when the file system reports a late error.
+  /// Closes the file. Returns false, with errno set, if the file system reports a late error.
   [[nodiscard]] bool close() {
     if (fd_ < 0) return true;
     return ::close(std::exchange(fd_, -1)) == 0;
@@ -43,7 +43,7 @@ class FileDescriptor {
   int fd_;
 };
 
-// The temporary file under way, for a signal handler.
+// The temporary file in progress, for a signal handler.
 char unfinished_name[PATH_MAX];
 std::atomic<bool> is_unfinished{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "read in a signal handler");
@@ -54,12 +54,12 @@ std::string folder_of(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-/// A new file beside `path`. Gone at the end of its life, unless it was renamed to `path`.
+/// A temporary file beside `path`, which its destructor removes unless it was renamed to `path`.
 class Temporary {
  public:
   explicit Temporary(const std::string& path) {
-    // A short name of its own: the target's may already be as long as a name can be. One that
-    // exists was left by a process with our number that was killed; it is not ours to remove.
+    // The name is short, because the target's name may already have the largest length. A file of
+    // this name is left over from a killed process with our number; it is not ours to remove.
     static std::atomic<unsigned> counter{0};
     do {
       name_ = folder_of(path) + "/.gatewalk-" + std::to_string(::getpid()) + "-" +
@@ -74,7 +74,7 @@ class Temporary {
     if (fd_ < 0) fail_with_errno(path);
   }
   ~Temporary() {
-    ::unlink(name_.c_str());  // once it is renamed there is none
+    ::unlink(name_.c_str());  // fails after a rename, when the file is gone
     is_unfinished = false;
   }
   Temporary(const Temporary&) = delete;
@@ -89,10 +89,10 @@ class Temporary {
   int fd_ = -1;
 };
 
-/// What stands at a path that can be written.
+/// The kind of file at a writable path.
 struct Target {
   bool is_stream = false;             // a pipe or a character device
-  std::optional<mode_t> permissions;  // of a regular file
+  std::optional<mode_t> permissions;  // permissions of a regular file
 };
 
 Target target_at(const std::string& path) {
@@ -104,14 +104,14 @@ Target target_at(const std::string& path) {
     return {};
   }
   const bool is_link = S_ISLNK(old.st_mode);
-  if (is_link && ::stat(path.c_str(), &old) != 0) old.st_mode = S_IFREG;  // a link to nowhere
+  if (is_link && ::stat(path.c_str(), &old) != 0) old.st_mode = S_IFREG;  // a dangling link
   const bool is_stream = S_ISFIFO(old.st_mode) || S_ISCHR(old.st_mode);
   if (is_link && !is_stream) fail(path, "is a symbolic link; name the file itself");
   if (S_ISDIR(old.st_mode)) fail(path, "is a directory");
   if (!is_stream && !S_ISREG(old.st_mode)) fail(path, "is not a regular file");
   if (::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) fail_with_errno(path);
   if (is_stream) return {true, {}};
-  // In a folder such as /tmp a file is replaced only by its owner.
+  // In a sticky folder such as /tmp, only the owner may replace a file.
   struct stat folder = {};
   const uid_t self = ::geteuid();
   if (::stat(folder_of(path).c_str(), &folder) == 0 && (folder.st_mode & S_ISVTX) && self != 0 &&
@@ -167,7 +167,7 @@ void require_replaceable(const std::string& path) {
   if (::stat(folder.c_str(), &found) != 0)
     fail(path, "folder " + folder + ": " + std::strerror(errno));
   if (!S_ISDIR(found.st_mode)) fail(path, folder + " is no folder");
-  // What access() says is not the whole truth: read-only mounts, /proc.
+  // access() does not know all obstacles, such as read-only mounts and /proc.
   FileDescriptor(Temporary(path).open_file());
 }
 
@@ -189,7 +189,7 @@ void replace_file(const std::string& path, const MakeBytes& make) {
   if (::fsync(file.get()) != 0 || !file.close() ||
       ::rename(temporary.name().c_str(), path.c_str()) != 0)
     fail_with_errno(path);
-  // Some file systems cannot sync a folder and say EINVAL; nothing is lost there.
+  // Some file systems cannot sync a folder and report EINVAL; nothing is lost there.
   if (::fsync(directory.get()) != 0 && errno != EINVAL)
     throw std::runtime_error(
         path + ": is written, but its folder could not be synced: " + std::strerror(errno));

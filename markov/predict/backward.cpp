@@ -13,8 +13,8 @@
 namespace gatewalk::markov {
 namespace {
 
-/// What a draw in a state may end with, as columns of shares: ...; gone by the first move, by the
-/// second, ...
+/// The columns of the shares of a draw's results: trapped, unsampled, drawn; then moved by the
+/// first move, by the second, ...
 enum Share : int { kTrappedShare, kUnsampledShare, kDrawn, kMovedShare };
 
 }  // namespace
@@ -47,7 +47,7 @@ Backward::Sums::Sums(const Chain& chain) {
     }
     ends.push_back(static_cast<int>(terms.size()));
   }
-  terms.insert(terms.end(), kTermsAhead, {0.0, 0, 0});  // looked at ahead
+  terms.insert(terms.end(), kTermsAhead, {0.0, 0, 0});  // for prefetching
 }
 
 int Backward::Sums::shares_each() const { return kMovedShare + static_cast<int>(moves.size()); }
@@ -152,7 +152,7 @@ bool Backward::settle() {
                cells.push_back({column, row, renewed, {}});
              });
   for (Cell& cell : cells) look(cell, now_);
-  // Row by row from the far edge; all rows together where moves lead to a row below.
+  // Row by row from the far edge; all rows together if moves lead to a row below.
   const std::size_t together =
       lowest_ < 0 ? cells.size() : static_cast<std::size_t>(field_.columns);
   for (std::size_t end = cells.size(); end > 0; end -= together) {

@@ -94,7 +94,7 @@ bool BlockElimination::eliminate_row(const PassedOn& t, std::int64_t state, std:
 }
 
 void BlockElimination::take(std::int64_t i, std::int64_t to, double share) {
-  if (to == i) return;  // back to itself
+  if (to == i) return;  // a return to the same state
   const auto at = static_cast<std::size_t>(to);
   in_hand_[at] += share;
   if (std::exchange(is_in_hand_[at], 1)) return;
@@ -104,7 +104,8 @@ void BlockElimination::take(std::int64_t i, std::int64_t to, double share) {
     later_.push_back(to);
 }
 
-/// First visits in the order of elimination, then those that come back from later states.
+/// Forward pass: visits in the order of elimination. Backward pass: visits that return from later
+/// states.
 void BlockElimination::visits(const std::int64_t* first, std::vector<double>& x) const {
   const auto at = [&](std::int64_t i) -> double& { return x[static_cast<std::size_t>(first[i])]; };
   const std::int64_t n = std::ssize(pivots_);

@@ -21,9 +21,10 @@ std::vector<Move> sideways_only(std::vector<Move> moves) {
 }
 
 constexpr double kFewDigits = 1e-6;
-constexpr double kRoundingOnly = 1e-14;  // a residual that refinement makes no smaller
-// Measured: sweeps take 0.2 to 0.8 of the time that sums take, in rows of 9 and 101 cells of 87 to
-// 1793 states.
+// A residual at rounding error, which refinement cannot reduce.
+constexpr double kRoundingOnly = 1e-14;
+// Time of sweeps / time of sums; measured: 0.2 to 0.8 in rows of 9 and 101 cells of 87 to 1793
+// states.
 constexpr double kSweepsBySums = 0.5;
 
 [[noreturn]] void refuse() {
@@ -31,8 +32,8 @@ constexpr double kSweepsBySums = 0.5;
       "predict by rows: fewer than 6 digits hold: walks can circle (almost) for ever");
 }
 
-/// Without limit, one row of the field after the other, all starts side by side: the mass that
-/// enters a row from below, the visits it makes there, and what goes up from them.
+/// Prediction without a limit of cells, row by row, all starts side by side: the mass that enters a
+/// row from below, its visits within the row, and the mass that goes up from there.
 class PredictionRows {
  public:
   PredictionRows(const PredictionPlan& plan, const Field& field, const std::vector<Start>& starts,
@@ -80,8 +81,8 @@ class PredictionRows {
         solve(plan_.chains[type], ways_[type]);
       add(entering_.front(), visits_);
       count(row);
-      // On to the next row: entering_[k] is now of the row k above that one, so what goes up by k +
-      // 1 rows from this one is added there.
+      // Go on to the next row: entering_[k] now belongs to the row k above the next one, which
+      // receives the mass that goes up k + 1 rows from this row.
       entering_.front().clear();
       std::rotate(entering_.begin(), entering_.begin() + 1, entering_.end());
       for (const CellsOfType& cells : types_) {
@@ -93,9 +94,9 @@ class PredictionRows {
     return std::move(starts_);
   }
 
-  /// Sums of visits, in the row that took most.
+  /// The number of sums in the row that took the most.
   [[nodiscard]] int most_sums_taken(std::size_t j) const { return most_sums_taken_[j]; }
-  /// Mass that entered rows, over all rows.
+  /// The mass that entered rows, summed over all rows.
   [[nodiscard]] double passed(std::size_t j) const { return passed_[j]; }
 
  private:
@@ -161,7 +162,7 @@ class PredictionRows {
     for (const Range& r : whole_)
       accumulate(from.data(), to.data(), plan_.inputs, stride_, r.first, r.last);
   }
-  /// The tally's totals, per start.
+  /// The total of the tally for each start.
   [[nodiscard]] std::vector<double> totals() const {
     std::vector<double> sums;
     for (std::size_t j = 0; j < starts_.size(); ++j) {
@@ -182,8 +183,8 @@ class PredictionRows {
       std::fill_n(mass.data() + input * stride_ + first_of(j), field_.columns, 0.0);
   }
 
-  /// Starts in this row begin; those of which (almost) nothing is left are over. False when nothing
-  /// is left at all.
+  /// Begins the starts in this row, and closes starts with (almost) no mass left. Returns false if
+  /// no mass is left at all.
   bool enter(std::int64_t row) {
     entered_ = totals(plan_.arriving, entering_.front());
     std::vector<double> left = entered_;
@@ -216,7 +217,7 @@ class PredictionRows {
     return any;
   }
 
-  /// visits = within + Q within + Q Q within + ...
+  /// Computes visits = within + Q within + Q Q within + ...
   void sum(std::int64_t row) {
     std::swap(now_, within_);
     std::vector<char> done(starts_.size());
@@ -256,16 +257,16 @@ class PredictionRows {
     }
   }
 
-  /// How the visits of a row of one type are found: by elimination of columns, by sweeps, or (with
-  /// neither) by sums.
+  /// The method for the visits in a row of one type: elimination of columns, sweeps, or (with
+  /// neither) sums.
   struct RowWay {
     std::vector<const RowElimination::Column*> columns{};
     std::optional<RowSweeps> sweeps{};
   };
 
-  /// The same by elimination or sweeps: visits = (I - Q)^-1 within. The residual within + Q visits
-  /// - visits is mass of which the visits are not counted; as it would end once, its sum of
-  /// magnitudes bounds the error. While it shrinks, it is solved for in turn (iterative
+  /// Computes visits = (I - Q)^-1 within by elimination or sweeps. The residual, within + Q visits
+  /// - visits, is mass whose visits are not counted; it would end once, so the sum of its
+  /// magnitudes bounds the error. While the residual shrinks, it is solved for in turn (iterative
   /// refinement).
   void solve(const PreparedChain& chain, RowWay& way) {
     constexpr int kMostRounds = 4;
@@ -309,7 +310,8 @@ class PredictionRows {
       starts_[j].remainder += missing[j];
     }
   }
-  /// visits += (I - Q)^-1 from, of one start; by sweeps to `accuracy` of the largest number.
+  /// Computes visits += (I - Q)^-1 from for one start; by sweeps to `accuracy` of the largest
+  /// number.
   void add_visits(const PreparedChain& chain, RowWay& way, std::size_t j, const double* from,
                   double accuracy) {
     if (!way.sweeps) {
@@ -320,7 +322,7 @@ class PredictionRows {
     }
     const auto inputs = static_cast<std::size_t>(plan_.inputs);
     workspace_.resize(static_cast<std::size_t>(field_.columns) * inputs);
-    const auto each = [&](auto use) {  // place in the planes, in the workspace
+    const auto each = [&](auto use) {  // use(place in the planes, place in the workspace)
       std::ptrdiff_t plane = first_of(j);
       for (std::size_t input = 0; input < inputs; ++input, plane += stride_)
         for (std::size_t c = 0; c < static_cast<std::size_t>(field_.columns); ++c)
@@ -330,7 +332,7 @@ class PredictionRows {
     way.sweeps->solve(workspace_.data(), RowSweeps::Of::largest, accuracy);
     each([&](std::ptrdiff_t plane, std::size_t at) { visits_.data()[plane] += workspace_[at]; });
   }
-  /// Nothing more is found out from this start.
+  /// Gives up a start.
   void stop(std::size_t j) {
     starts_[j].stopped = starts_[j].over = true;
     erase(j, visits_);
@@ -347,12 +349,12 @@ class PredictionRows {
                          stride_);
   }
 
-  /// Per chain. Rows of several types are summed.
+  /// Chooses the method for each chain. Rows of several types are always summed.
   void choose(PredictOptions::RowMethod method) {
     using RowMethod = PredictOptions::RowMethod;
     ways_.resize(plan_.chains.size());
-    const double width = field_.columns, rows = field_.rows;  // whatever the starts: same bits in
-                                                              // any company
+    // Independent of the starts, for the same bits.
+    const double width = field_.columns, rows = field_.rows;
     for (std::size_t k = 0; k < plan_.chains.size() && method != RowMethod::sums; ++k) {
       const PreparedChain& chain = plan_.chains[k];
       const double stay = chain.stay->get(chain.sideways, plan_.inputs),
@@ -394,24 +396,25 @@ class PredictionRows {
   const PredictionPlan& plan_;
   Field field_;
   bool may_stop_;
-  double tolerance_;  // share that may be left walking: in a row, of the walks that entered it;
-                      // in the rows not yet entered together, of all walks
+  // In a row: share of the mass that entered which may be left; in all rows not entered yet: share
+  // of all walks.
+  double tolerance_;
   int most_sums_;
-  Layout layout_;                            // of one row
-  std::ptrdiff_t stride_, tallies_, masks_;  // masks: of types, none where rows are uniform
+  Layout layout_;                            // layout of one row
+  std::ptrdiff_t stride_, tallies_, masks_;  // masks_: of types; 0 if rows are uniform
   PlaneBuffer buffer_;
-  // Planes of a row, by input. With Q, one move within the row: within, what enters the row's
-  // states by a first move within it; visits = within + Q within + Q Q within + ...; now, next: two
-  // following terms of this sum.
+  // Planes of a row, by input, where Q is one move within the row. within_: mass that enters the
+  // row's states by its first move within the row. visits_ = within + Q within + Q Q within + ...
+  // now_, next_: two successive terms of this sum.
   Planes within_, visits_, now_, next_;
-  std::vector<Planes> entering_;  // from below: this row, the row above, ...
+  std::vector<Planes> entering_;  // mass from below: into this row, the row above, ...
   Planes tally_;                  // by Tally
-  Planes type_masks_;             // by type: 1 in cells of it, of the present row
+  Planes type_masks_;             // by type: 1 in the present row's cells of the type
   std::vector<Range> whole_;
-  std::vector<CellsOfType> types_;  // of the present row
-  std::int64_t first_ = 0;          // row
+  std::vector<CellsOfType> types_;  // types in the present row
+  std::int64_t first_ = 0;          // first row with a start
   std::vector<StartTally> starts_;
-  std::vector<double> entered_, passed_;  // per start: this row, rows until now
+  std::vector<double> entered_, passed_;  // per start: mass that entered this row, all rows so far
   std::vector<int> most_sums_taken_;      // per start
   std::vector<RowWay> ways_;              // per chain
   std::vector<double> workspace_;
@@ -436,7 +439,7 @@ MaybePredicted predict_by_rows(const PredictionPlan& plan, const Field& field,
   PredictionRows rows(plan, field, starts, options, may_stop);
   const std::vector<StartTally> tallies = rows.run();
   MaybePredicted results;
-  // A move is rounded twice: into a row's equations, and in what they still miss.
+  // A move is rounded twice: in a row's equations and in their residual.
   for (std::size_t j = 0; j < tallies.size(); ++j) {
     std::optional<FinalDistribution>& result = results.emplace_back();
     if (tallies[j].stopped) continue;

@@ -14,7 +14,7 @@ struct Window {
   }
 };
 
-/// Mass per cell and input of several starts, moved one step at a time.
+/// The mass in each cell and input, for several starts, moved one step at a time.
 class Steps {
  public:
   Steps(const PredictionPlan& plan, const Field& field, const std::vector<Start>& starts,
@@ -54,7 +54,7 @@ class Steps {
     may_stop_ = may_stop;
     const double tolerance = options.tolerance_of(PredictOptions::Solver::steps);
     if (layout_->colours() == 2) colour_ = 1 - colour_;
-    std::vector<std::ptrdiff_t> first_draws;  // where they put mass
+    std::vector<std::ptrdiff_t> first_draws;  // places where first draws put mass
     for (std::size_t j = 0; j < starts_.size(); ++j) {
       StartTally& w = starts_[j];
       if (max_cells == 0 && (max_steps == 0 || tolerance >= 1.0) &&
@@ -80,8 +80,8 @@ class Steps {
       for (const Range& r : window())
         accumulate(now_.data(), visits(), plan_.inputs, stride_, r.first, r.last);
       step();
-      // A step overwrites every plane that some move leads to, but the first draws may have put
-      // mass into others (an exit of the start's input alone): these are emptied by hand.
+      // A step overwrites every plane to which some move leads. The first draws may have put mass
+      // into other planes (an exit of the start's input alone), which are emptied here.
       for (const std::ptrdiff_t at : std::exchange(first_draws, {})) next_.data()[at] = 0.0;
     }
     for (colour_ = 0; colour_ < layout_->colours(); ++colour_) count(visits(), false);
@@ -93,7 +93,7 @@ class Steps {
                                     std::int64_t row) const {
     return layout_->place(start, column - box_.left, row - box_.bottom);
   }
-  /// Of the present colour.
+  /// The visits of cells of the present colour.
   [[nodiscard]] double* visits() { return visits_.data() + colour_ * plan_.inputs * stride_; }
   void grow() {
     Window w = window_;
@@ -112,12 +112,13 @@ class Steps {
     cover(window_.bottom, window_.top, ranges);
     return ranges;
   }
-  /// One stencil of each chain, applied in the cells of its type; `to` has `planes` planes.
+  /// Applies one stencil of each chain in the cells of its type; `to` has `planes` planes.
   void apply_by_type(Stencil PreparedChain::*stencil, const Shift* shifts, const double* from,
                      double* to, std::ptrdiff_t planes) {
     const Stencil& first = plan_.chains.front().*stencil;
     const bool single = plan_.chains.size() == 1;
-    const bool add = !single || first.passes.size() > 1;  // the first pass need not overwrite all
+    // The first pass may not overwrite all planes.
+    const bool add = !single || first.passes.size() > 1;
     if (add) std::fill_n(to, planes * stride_, 0.0);
     if (single) {
       apply_stencil(first, shifts, stride_, nullptr, window(), from, to, add);
@@ -149,7 +150,7 @@ class Steps {
     grow();
   }
 
-  /// A start's cells of the present colour, each given its place.
+  /// Calls act for a start's cells of the present colour, with their places.
   template <class Do>
   void each_cell(std::size_t j, Do act) const {
     for (std::int64_t row = window_.bottom; row <= window_.top; ++row) {
@@ -166,7 +167,7 @@ class Steps {
                   kTallyMoved + std::ssize(plan_.moves));
   }
 
-  /// Counts what visitors draw that are in cells of the present colour.
+  /// Counts the draws in cells of the present colour.
   void count(const double* visitors, bool is_last) {
     tally(&PreparedChain::ends, visitors);
     for (std::size_t j = 0; j < starts_.size(); ++j) {
@@ -177,7 +178,7 @@ class Steps {
     }
   }
 
-  /// Whether anybody walks on; starts from which nobody does are closed.
+  /// Whether any walks go on; starts without such walks are closed.
   bool any_left(int max_cells, double tolerance, int steps, bool stop) {
     bool any = false;
     if (max_cells == 0) tally(&PreparedChain::walking, now_.data());
@@ -204,7 +205,8 @@ class Steps {
   }
 
   [[nodiscard]] bool walks_on(std::size_t j) const {
-    constexpr double kNobody = 1e-30;  // of all walks, in a state of a cell: far below rounding
+    // Share of all walks in a state of a cell, far below rounding.
+    constexpr double kNobody = 1e-30;
     const double* const now = now_.data();
     bool any = false;
     each_cell(j, [&](std::int64_t column, std::int64_t row, std::ptrdiff_t at) {
@@ -215,7 +217,7 @@ class Steps {
     return any;
   }
 
-  /// What came into states never sampled has ended; what walks remains.
+  /// Mass in unsampled states has ended; the rest remains.
   void close(std::size_t j) {
     double* const now = now_.data();
     each_cell(j, [&](std::int64_t column, std::int64_t row, std::ptrdiff_t at) {
@@ -228,7 +230,7 @@ class Steps {
     });
   }
 
-  /// Which places and which rows have cells of a type.
+  /// Marks the places and the rows that have cells of each type.
   void mark_types(Planes masks) {
     type_masks_ = masks;
     const std::ptrdiff_t types = std::ssize(plan_.chains), colours = layout_->colours();
@@ -250,15 +252,15 @@ class Steps {
   Field field_;
   std::vector<StartTally> starts_;
   bool may_stop_ = false;
-  Window box_{}, window_{};  // cells that can be reached at all, until now
+  Window box_{}, window_{};  // cells that can be reached at all; so far
   std::optional<Layout> layout_;
-  int colour_ = 0;  // of the cells with mass
+  int colour_ = 0;  // colour of the cells with mass
   std::ptrdiff_t stride_ = 0;
   std::optional<PlaneBuffer> buffer_;
-  Planes now_, next_;  // by input: mass in cells of the present colour, of the next
+  Planes now_, next_;  // by input: mass now and after the next step
   Planes visits_;      // (colours x inputs)
   Planes tally_;       // by Tally
-  // Of fields with several types of cell:
+  // The next members are for fields with several types of cell.
   Planes type_masks_;            // (types x colours): 1 in cells of the type, else 0
   std::vector<char> is_in_row_;  // (types x rows)
 };

@@ -21,7 +21,7 @@ namespace gatewalk::markov {
 namespace {
 
 constexpr int kMostSweeps = 100'000;
-constexpr double kMostRounding = 1e-9;  // of the walks that end
+constexpr double kMostRounding = 1e-9;  // share of the walks
 
 std::vector<Moves> moves_by_type(const FieldChain& chain, Ending ending) {
   std::vector<Moves> moves;
@@ -42,7 +42,7 @@ bool goes_below(const FieldChain& chain) {
 }
 std::string name_of_row(int row) { return "row " + std::to_string(row) + " of the field"; }
 
-/// By type of cell, an exit for each move that there is.
+/// For each type of cell, one exit for each move.
 std::vector<std::vector<Exit>> exits_by_move(const FieldChain& chain) {
   std::vector<std::vector<Exit>> moves;
   for (const Chain& c : chain.chains()) {
@@ -73,7 +73,7 @@ class CommittorRows {
         sums_.emplace_back(m.within_row(), RowSweeps::Sums::led_to, field.columns, chain.inputs());
   }
 
-  /// None where walks circle in a row.
+  /// Returns nullopt if walks circle in a row.
   std::optional<Committor> solve() && {
     for (int row = field_.rows - 1; row >= 0; --row) {
       look_up(row);
@@ -103,7 +103,8 @@ class CommittorRows {
     return edge_before(field_, column, row) == ending_ ? 1.0 : 0.0;
   }
 
-  /// What ends at once and what the rows above give, of which all is known; and a first guess.
+  /// Sums the endings of the next draw and the contributions of the rows above, which are known;
+  /// also makes the first guess.
   void look_up(int row) {
     for (int column = 0; column < field_.columns; ++column) {
       const Moves& m = moves_of(column, row);
@@ -123,8 +124,8 @@ class CommittorRows {
     }
   }
 
-  /// All states of a cell, from those of its neighbours in the row. The largest change, as a part
-  /// of the number.
+  /// Updates all states of a cell from its neighbours in the row. Returns the largest relative
+  /// change.
   double renew(int column, int row) {
     const Moves& m = moves_of(column, row);
     const double* const sums = from_above_.data() + std::int64_t{column} * all_.inputs;
@@ -143,7 +144,7 @@ class CommittorRows {
     return change;
   }
 
-  /// What moves over the sides end in is known as well.
+  /// Solves a row in vector registers. Moves over the sides have known endings.
   void sum(int row) {
     const Moves& m = moves_of(0, row);
     for (int column = 0; column < field_.columns; ++column)
@@ -157,7 +158,7 @@ class CommittorRows {
     return !within(column - m.widest) || !within(column + m.widest);
   }
 
-  /// Whether it settles.
+  /// Solves a row by sweeps. Returns whether they converge.
   bool sweep(int row) {
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
       double change = 0.0;
@@ -173,12 +174,12 @@ class CommittorRows {
   const Ending ending_;
   const double tolerance_;
   std::vector<Moves> moves_;     // by type
-  std::vector<RowSweeps> sums_;  // by type; none where rows are of several
+  std::vector<RowSweeps> sums_;  // by type; empty if rows have several types
   Committor all_;
   std::vector<double> from_above_;  // (columns x inputs)
 };
 
-/// The states of all cells at once, whatever their moves.
+/// The committor of all cells at once, for any moves.
 class CommittorOfAll {
  public:
   CommittorOfAll(const FieldChain& chain, const Field& field, Ending ending)
@@ -189,7 +190,7 @@ class CommittorOfAll {
         states_(static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows) *
                 static_cast<std::size_t>(inputs_)),
         can_end_(states_, 0) {
-    std::vector<std::size_t> found;  // states that can end; then those that lead to one of them
+    std::vector<std::size_t> found;  // states that can end; then states that lead to them
     for (std::size_t state = 0; state < states_; ++state) {
       each_draw(state, [&](double p, std::size_t, bool ends, bool) {
         if (p > 0.0 && ends) can_end_[state] = 1;
@@ -207,23 +208,22 @@ class CommittorOfAll {
   }
   [[nodiscard]] std::size_t states() const { return states_; }
 
-  /// To some roundings of each value.
+  /// Solves by elimination, to some roundings of each value.
   [[nodiscard]] Committor by_elimination() const {
     Committor all{field_.columns, field_.rows, inputs_,
                   first_passages(chain_, field_, {.ending = ending_}, 0).chance};
     if (ending_ != Ending::unsampled) return all;
-    for (std::size_t state = 0; state < states_;
-         ++state)  // who is in a row never sampled has ended
+    for (std::size_t state = 0; state < states_; ++state)  // a walk in an unsampled state has ended
       each_draw(state, [&](double, std::size_t to, bool ends, bool so) {
         if (ends && so) all.values[to] = 1.0;
       });
     return all;
   }
 
-  /// None where walks circle for too long.
+  /// Solves by sweeps. Returns nullopt if walks circle for too long.
   [[nodiscard]] std::optional<Committor> by_sweeps(double tolerance) const {
     struct Value {
-      double so = 0.0, ended = 0.0;  // ended in this way; in any, or never
+      double so = 0.0, ended = 0.0;  // probability of this ending; of any ending, or of none ever
     };
     std::vector<Value> values(states_);
     for (std::size_t state = 0; state < states_; ++state)
@@ -243,7 +243,8 @@ class CommittorOfAll {
         ended = std::max(ended, sum.ended - values[state].ended);
         values[state] = sum;
       }
-      // Of long walks rounding may leave more than the tolerance, which then gets no less.
+      // For long walks, rounding may leave more than the tolerance, and the remainder then stops
+      // falling.
       const bool rounded =
           ended <= std::numeric_limits<double>::epsilon() && walking <= kMostRounding;
       if (change > tolerance || (walking > tolerance && !rounded)) continue;
@@ -255,11 +256,11 @@ class CommittorOfAll {
   }
 
  private:
-  /// A draw of `input` in a cell of a type, which goes on.
+  /// A draw of `input` in a cell of a type that does not end the walk.
   struct Way {
     int type, input, di_x, di_y;
   };
-  /// By the state they lead to.
+  /// The draws, by the state to which they lead.
   [[nodiscard]] std::vector<std::vector<Way>> ways_into() const {
     std::vector<std::vector<Way>> ways(static_cast<std::size_t>(inputs_));
     for (int type = 0; type < std::ssize(chain_.chains()); ++type) {
@@ -288,7 +289,8 @@ class CommittorOfAll {
                                      way.input));
     }
   }
-  /// Calls use(p, to, whether the walk ends, whether in this way) for each draw of a state.
+  /// Calls use(p, target state, whether the walk ends, whether it has this ending) for each draw of
+  /// a state.
   template <class Use>
   void each_draw(std::size_t state, Use use) const {
     const auto at = static_cast<std::int64_t>(state);
@@ -328,7 +330,7 @@ Committor committor(const FieldChain& chain, const Field& field, Ending ending, 
   const bool below = goes_below(chain);
   if (!below)
     if (auto rows = CommittorRows(chain, field, ending, tolerance).solve()) return *std::move(rows);
-  // Measured: of more states sweeps take a hundredth of what elimination takes, if they settle.
+  // Measured: with more states, sweeps that converge take a hundredth of the time of elimination.
   constexpr std::size_t kSoonEliminated = 1000;
   const CommittorOfAll all(chain, field, ending);
   if (below && all.states() > kSoonEliminated)
@@ -415,8 +417,8 @@ std::vector<double> row_chances(const FieldChain& chain, const Field& field, con
       if (e.di_y > 1) throw std::invalid_argument("committor: a move leads over a row");
   const auto inputs = static_cast<std::size_t>(chain.inputs());
   const auto at = [&](int column) { return static_cast<std::size_t>(column) * inputs; };
-  // (columns x inputs) of a row: shares of walks that have entered and not gone on yet; of the next
-  // row.
+  // (columns x inputs) shares of walks that have entered a row and not gone on yet: of this row, of
+  // the next row.
   std::vector<double> waiting(at(field.columns), 0.0), above(waiting.size()), here(inputs);
   waiting[at(start.column) + static_cast<std::size_t>(start.input)] = 1.0;
   std::vector<double> chances;

@@ -16,7 +16,7 @@ std::optional<ExpectedDraws> expected_draws(Transient& t, double most_operations
     for (std::int64_t i = blocks.begin[b]; i < blocks.begin[b + 1]; ++i)
       block_of[static_cast<std::size_t>(blocks.order[static_cast<std::size_t>(i)])] = b;
 
-  // First what enters a state from blocks before its own, then its visits.
+  // `draws` holds the inflow of a state from earlier blocks first, then its visits.
   ExpectedDraws found{std::vector<double>(t.states.size(), 0.0)};
   std::vector<double>& draws = found.by_state;
   draws.front() = 1.0;
@@ -26,7 +26,7 @@ std::optional<ExpectedDraws> expected_draws(Transient& t, double most_operations
   for (std::size_t b = blocks.begin.size() - 1; b-- > 0;) {
     const std::int64_t* const first = blocks.order.data() + blocks.begin[b];
     const std::int64_t* const last = blocks.order.data() + blocks.begin[b + 1];
-    if (!ends[static_cast<std::size_t>(*first)]) {  // nor does any other of its block
+    if (!ends[static_cast<std::size_t>(*first)]) {  // then no state of its block can
       for (const std::int64_t* s = first; s != last; ++s)
         endless += std::exchange(draws[static_cast<std::size_t>(*s)], 0.0);
       continue;
@@ -61,7 +61,7 @@ std::optional<FinalDistribution> solve_directly(const FieldChain& chain, const F
   if (!draws) return {};
   FinalDistribution result = t.ended(draws->by_state, chain, field);
   result.endless = result.remainder = draws->endless;
-  // Each answer is right to some n roundings of its own size (Grassmann, Taksar and Heyman 1985).
+  // The relative error of each number is about n roundings (Grassmann, Taksar and Heyman 1985).
   result.rounding = 1e-15 * static_cast<double>(t.states.size());
   result.operations = draws->operations;
   return result;

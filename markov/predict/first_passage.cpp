@@ -16,7 +16,7 @@
 namespace gatewalk::markov {
 namespace {
 
-/// Where a draw leads: to the target, to a pair of a cell and a state, or elsewhere.
+/// The result of a draw: the target, another (cell, state) pair, an unsampled row, or an end.
 enum class Lead : std::uint8_t { target, on, never_sampled, end };
 
 class Passing {
@@ -31,7 +31,8 @@ class Passing {
         inputs_(chain.inputs()),
         pairs_(static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows) *
                static_cast<std::size_t>(inputs_)),
-        // The chance, that of rows never sampled, draws, and the rewards' quantities.
+        // The probability of the target, that of unsampled rows, draws, and the quantities of the
+        // rewards.
         numbers_(3 + quantities_of(chain, rewards)) {
     constexpr double kMostNumbers = 4.0 * (1 << 30) / sizeof(double);
     double numbers = static_cast<double>(pairs_) * static_cast<double>(2 * numbers_ + 4);
@@ -79,7 +80,8 @@ class Passing {
       for (int column = 0; column < field_.columns; ++column)
         for (int input = 0; input < inputs_; ++input) use(pair++, column, row, input);
   }
-  /// Neither in the target nor never sampled: x of these is to be found.
+  /// Whether the numbers of a pair must be computed: the pair is neither in the target nor
+  /// unsampled.
   [[nodiscard]] bool walks(std::size_t pair) const {
     const auto cell = static_cast<std::int64_t>(pair) / inputs_;
     const auto input = static_cast<int>(static_cast<std::int64_t>(pair) % inputs_);
@@ -112,15 +114,15 @@ class Passing {
     }
   }
 
-  /// What a draw adds to quantity k.
+  /// The mean that a draw adds to quantity k.
   [[nodiscard]] double taken(std::size_t pair, std::size_t k, std::size_t nonzero) const {
     const auto cell = static_cast<std::int64_t>(pair) / inputs_;
     const int type = chain_.type_of(cell % field_.columns, cell / field_.columns);
     return rewards_[static_cast<std::size_t>(type)][k - kTotals].mean[nonzero];
   }
 
-  /// Numbers [from, to) of a pair, by those of the pairs that its draws lead to: next(number,
-  /// pair).
+  /// Updates the numbers [from, to) of a pair from those of the pairs to which its draws lead:
+  /// next(number, pair).
   template <class Next>
   void renew(std::size_t pair, std::size_t from, std::size_t to, bool last, Next next,
              double* x) const {
@@ -141,9 +143,9 @@ class Passing {
     });
   }
 
-  /// With a limit of cells: of the last draw first. Nobody enters anything after it.
+  /// With a limit of cells: backward recursion from the last draw, after which nothing is entered.
   void by_layers() {
-    std::vector<std::vector<double>> before = x_;  // of the draw after this one
+    std::vector<std::vector<double>> before = x_;  // numbers of the next draw
     for (int draw = max_cells_; draw >= 1; --draw) {
       x_.swap(before);
       const std::vector<std::vector<double>>& next = before;
@@ -172,7 +174,7 @@ class Passing {
                              std::to_string(kMostSteps) + " sweeps do not do");
   }
 
-  /// The pairs that walk, and what they pass on to each other.
+  /// Collects the pairs that walk, and what they pass on to each other.
   void pass_on() {
     number_.assign(pairs_, -1);
     for (std::size_t pair = 0; pair < pairs_; ++pair) {
@@ -180,7 +182,7 @@ class Passing {
       number_[pair] = std::ssize(pair_of_);
       pair_of_.push_back(pair);
     }
-    std::vector<std::int64_t> place(pair_of_.size(), -1);  // in the column under construction
+    std::vector<std::int64_t> place(pair_of_.size(), -1);  // index in the column under construction
     const auto add = [&](std::int64_t to, double share) {
       std::int64_t& at = place[static_cast<std::size_t>(to)];
       if (at < passed_.begin.back()) {
@@ -205,7 +207,7 @@ class Passing {
     can_end_ = can_end(passed_);
   }
 
-  /// False where it takes more.
+  /// Solves by elimination. Returns false if that takes more than `most_operations`.
   bool by_elimination(double most_operations) {
     const Blocks blocks = blocks_of(passed_);
     std::vector<std::size_t> block_of(pair_of_.size());
@@ -218,10 +220,11 @@ class Passing {
     for (std::size_t b = 0; b + 1 < blocks.begin.size(); ++b) {
       const std::int64_t* const first = blocks.order.data() + blocks.begin[b];
       const std::int64_t* const last = blocks.order.data() + blocks.begin[b + 1];
-      if (!can_end_[static_cast<std::size_t>(*first)]) continue;  // nor does any other of its block
+      // If one state of a block cannot end, no state of the block can.
+      if (!can_end_[static_cast<std::size_t>(*first)]) continue;
       if (!elimination.eliminate(passed_, first, last, left)) return false;
       for (std::size_t k = 0; k < numbers_; ++k) {
-        // What elimination is to find of the block's own pairs counts as nothing before.
+        // Numbers of the block's own pairs count as 0, because elimination is to find them.
         const auto outside = [&](std::size_t of, std::size_t then) {
           const auto to = static_cast<std::size_t>(number_[then]);
           return of == k && block_of[to] == b ? 0.0 : x_[of][then];
@@ -238,13 +241,13 @@ class Passing {
     return true;
   }
 
-  /// False where walks circle for too long.
+  /// Solves by sweeps. Returns false if walks circle for too long.
   bool by_sweeps() {
     bool below = false;
     for (const Chain& c : chain_.chains())
       for (const Exit& exit : c.exits())
         below = below || (exit.next_input != Exit::kTrapped && exit.di_y < 0);
-    std::vector<double> ended(pair_of_.size());  // share of the walks that have, or never will
+    std::vector<double> ended(pair_of_.size());  // share of walks that have ended or never will
     for (std::size_t s = 0; s < pair_of_.size(); ++s) {
       ended[s] = can_end_[s] != 0 ? 0.0 : 1.0;
       for (std::size_t k = 0; k < numbers_; ++k) x_[k][pair_of_[s]] = 0.0;
@@ -260,7 +263,8 @@ class Passing {
     return true;
   }
 
-  /// Of the pairs that walk.
+  /// Sweeps over the pairs [first, last) that walk until they converge. Returns false if they do
+  /// not.
   bool sweep(std::size_t first, std::size_t last, std::vector<double>& ended) {
     const auto known = [&](std::size_t k, std::size_t then) { return x_[k][then]; };
     std::vector<double> x(numbers_);
@@ -282,7 +286,8 @@ class Passing {
         on_their_way = std::max(on_their_way, 1.0 - sum);
         ended[s] = sum;
       }
-      // Of long walks rounding may leave more than the tolerance, which then gets no less.
+      // For long walks, rounding may leave more than the tolerance, and the remainder then stops
+      // falling.
       constexpr double kRoundingOfWalks = 1e-9;
       const bool rounded =
           more_ended <= std::numeric_limits<double>::epsilon() && on_their_way <= kRoundingOfWalks;
@@ -298,8 +303,10 @@ class Passing {
   const Rewards& rewards_;
   const int inputs_;
   const std::size_t pairs_, numbers_;
-  std::vector<std::vector<double>> x_;  // (numbers x pairs) over all walks, not those that arrive
-  // Without limit: numbers of the pairs that walk (-1: it does not), and these.
+  // (numbers x pairs) means over all walks, not only those that arrive.
+  std::vector<std::vector<double>> x_;
+  // Without a limit: the index of each pair among those that walk (-1: it does not), and the pair
+  // of each index.
   std::vector<std::int64_t> number_;
   std::vector<std::size_t> pair_of_;
   PassedOn passed_;

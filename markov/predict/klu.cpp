@@ -19,7 +19,7 @@ namespace {
 
 static_assert(sizeof(SuiteSparse_long) == sizeof(std::int64_t));
 
-// One factorisation by KLU, freed with the object.
+// A factorisation by KLU, freed with the object.
 class Klu {
  public:
   Klu(Transient& t, double most_numbers)
@@ -48,7 +48,7 @@ class Klu {
   [[nodiscard]] int status() const { return static_cast<int>(common_.status); }
   [[nodiscard]] double condition() const { return common_.condest; }
 
-  // x = A \ x
+  // Replaces x by A \ x.
   [[nodiscard]] bool solve(std::vector<double>& x) {
     return klu_l_solve(symbolic_, numeric_, n_, 1, x.data(), &common_) != 0;
   }
@@ -61,7 +61,7 @@ class Klu {
   klu_l_numeric* numeric_ = nullptr;
 };
 
-// Mean number of draws made in each transient state.
+// The expected number of draws in each transient state.
 std::vector<double> visits(Transient& t, double most_numbers) {
   constexpr double kWorstCondition = 1e-6 / std::numeric_limits<double>::epsilon();
   Klu klu(t, most_numbers);
@@ -90,7 +90,7 @@ std::vector<double> visits(Transient& t, double most_numbers) {
   return x;
 }
 
-// start - (I - Q)^T draws, in magnitude: what the draws do not account for and would walk on.
+// The sum of magnitudes of start - (I - Q)^T draws: the mass that the draws do not account for.
 double missing(const Transient& t, const std::vector<double>& draws) {
   std::vector<double> left(draws.size(), 0.0);
   left.front() = 1.0;
@@ -127,7 +127,7 @@ FinalDistribution solve_by_klu(const FieldChain& field_chain, const Field& field
   for (const Chain& chain : field_chain.chains()) n_out = std::max(n_out, chain.outputs());
   result.rounding = rounding_bound(
       result.mean_steps, 2.0 * static_cast<double>(field_chain.inputs() + n_out + 4), n_out + 8);
-  // A condition estimate does not see a closed loop of one state.
+  // The condition estimate does not detect a closed loop of one state.
   const double total =
       result.trapped() + result.left_field() + result.unsampled() + result.remainder;
   if (!(std::abs(total - 1.0) <= 1e-6) || !(result.rounding >= 0.0))

@@ -32,8 +32,8 @@ std::size_t quantities_of(const FieldChain& chain, const Rewards& rewards) {
 
 namespace {
 
-/// Visits and endings of large fields without limit of cells, rows of one type each: what enters a
-/// row is summed over all moves within it at once.
+/// Visits and endings in large fields without a limit of cells, whose rows have one type each: the
+/// mass that enters a row is summed over all moves within the row at once.
 class VisitsByRows {
  public:
   VisitsByRows(const FieldChain& chain, const Field& field) : chain_(chain), field_(field) {
@@ -49,14 +49,14 @@ class VisitsByRows {
            std::all_of(sums_.begin(), sums_.end(), [](const RowSweeps& s) { return s.suits(); });
   }
 
-  /// `out`: visits and endings are added. `each` is told of states that are passed by more than
-  /// `is_little(share, cell, input)`. Returns the means of all walks, draws first, then by
+  /// Adds visits and endings to `out` and calls `each` for states whose share is not
+  /// `is_little(share, cell, input)`. Returns the means over all walks: of draws, then of each
   /// quantity.
   template <class Little>
   std::vector<double> run(const Start& start, const Rewards& rewards, const EachState& each,
                           const Little& is_little, double tolerance, WalkTotals& out) {
     const std::int64_t inputs = chain_.inputs(), states = inputs * field_.columns;
-    std::vector<std::vector<double>> of_states(  // visits by type and state, in all cells
+    std::vector<std::vector<double>> of_states(  // visits by type and state, summed over cells
         sums_.size(), std::vector<double>(static_cast<std::size_t>(inputs), 0.0));
     std::vector<std::vector<double>> entering(static_cast<std::size_t>(highest_) + 1);
     for (auto& row : entering) row.assign(static_cast<std::size_t>(states), 0.0);
@@ -96,7 +96,7 @@ class VisitsByRows {
   }
 
  private:
-  /// Of what does not depend on the cell.
+  /// Adds up the sums that do not depend on the cell.
   std::vector<double> add_up(const std::vector<std::vector<double>>& of_states,
                              const Rewards& rewards, WalkTotals& out) const {
     std::vector<double> means(1 + quantities_of(chain_, rewards), 0.0);
@@ -127,15 +127,15 @@ class VisitsByRows {
   std::vector<RowSweeps> sums_;
 };
 
-/// "mom", version 1: the second key word of these walks' streams.
+/// The second key word of these walks' streams: "mom", version 1.
 constexpr std::uint64_t kMomentsStream = 0x006d6f6d'00000001;
 
-/// Numbers that walks add up: by ending, draws first.
+/// The sums of drawn walks by ending, draws first.
 struct DrawnMoments {
   std::vector<std::array<Moments, kEndings>> all;
 
   explicit DrawnMoments(std::size_t quantities) : all(1 + quantities) {}
-  /// A walk whose totals have these means and variances, draws first.
+  /// Adds a walk whose totals have these means and variances, draws first.
   void add(Ending ending, const std::vector<double>& mean, const std::vector<double>& variance) {
     for (std::size_t q = 0; q < all.size(); ++q) {
       Moments& m = all[q][static_cast<std::size_t>(ending)];
@@ -155,9 +155,9 @@ struct DrawnMoments {
   }
 };
 
-/// Walks without limit of cells, and what they add up: the mean of each draw's quantities, and
-/// their variance. Given `chance`, only walks that end so: a draw is as likely as it is times the
-/// chance from where it leads (Doob's transform).
+/// Draws walks without a limit of cells and sums the mean and the variance of each draw's
+/// quantities. With `chance`, all walks have its ending: the probability of a draw is multiplied by
+/// the probability of the ending from its target (Doob's transform).
 DrawnMoments drawn_moments(const FieldChain& chain, const Field& field, const Start& start,
                            const Rewards& rewards, const EndingChance* chance, std::int64_t count,
                            std::uint64_t seed) {
@@ -205,7 +205,7 @@ DrawnMoments drawn_moments(const FieldChain& chain, const Field& field, const St
           taken = nonzero;
           if ((rest -= p) < 0.0) break;
         }
-        if (!exit) break;  // nobody ends so from there
+        if (!exit) break;  // no walk from here has this ending
         mean[0] += 1.0;
         for (std::size_t q = 0; q < quantities; ++q) {
           const Reward& r = rewards[type][q];
@@ -250,7 +250,7 @@ std::optional<WalkTotals> totals_of_large(const FieldChain& chain, const Field& 
       tolerance.of_row, out);
   const double ended = std::accumulate(out.endings.begin(), out.endings.end(), 0.0);
   out.remainder = std::max(0.0, 1.0 - ended);
-  if (quantities == 0) {  // nobody asks for more
+  if (quantities == 0) {  // no more is asked for
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t e = 0; e < kEndings; ++e) out.draws[e] = {out.endings[e], kUnknown, kUnknown};
     return out;
@@ -258,7 +258,7 @@ std::optional<WalkTotals> totals_of_large(const FieldChain& chain, const Field& 
   out.drawn_walks = kWalks;
   out.totals.resize(quantities);
   DrawnMoments drawn = drawn_moments(chain, field, start, rewards, nullptr, kWalks, seed);
-  std::size_t target = kEndings;  // none: of that many walks are drawn anyway
+  std::size_t target = kEndings;  // none: enough of the walks have the ending
   if (at_start > 0.0 && at_start * kWalks < kThatEndSo) {
     target = static_cast<std::size_t>(chance->ending());
     const DrawnMoments so = drawn_moments(chain, field, start, rewards, chance, kThatEndSo, seed);
@@ -274,7 +274,7 @@ std::optional<WalkTotals> totals_of_large(const FieldChain& chain, const Field& 
       moments[e] = m;
       if (e != target) others += m.sum;
     }
-    // The mean of all walks is known: those that were drawn together are scaled to it.
+    // The mean over all walks is known, so the walks drawn together are scaled to it.
     const double known = means[q] - (target < kEndings ? moments[target].sum : 0.0);
     if (!(others > 0.0 && known > 0.0)) continue;
     const double scale = known / others;

@@ -14,7 +14,7 @@ void ask_for_large_pages([[maybe_unused]] double* first, [[maybe_unused]] std::p
              end = begin + static_cast<std::uintptr_t>(count) * sizeof(double);
   const std::uintptr_t from = (begin + kLargePage - 1) / kLargePage * kLargePage,
                        to = end / kLargePage * kLargePage;
-  // Where there are none the small ones do.
+  // Without large pages, small ones serve.
   if (from < to) (void)madvise(reinterpret_cast<void*>(from), to - from, MADV_HUGEPAGE);
 #endif
 }
@@ -34,7 +34,7 @@ Stencil::Stencil(const std::vector<Entry>& entries) {
   for (std::size_t k = 1; k < end.size(); ++k) end[k] += end[k - 1];
   terms.resize(entries.size());
   for (const Entry& e : entries) {
-    int& place = end[kind(e)];  // after the last: the beginning of the next kind
+    int& place = end[kind(e)];  // after the last entry: the beginning of the next kind
     terms[static_cast<std::size_t>(place++)] = {e.p, e.source};
   }
   for (int target = 0, begin = 0; target < targets; ++target) {
@@ -79,11 +79,10 @@ Layout::Layout(std::int64_t columns, std::int64_t rows, const std::vector<Move>&
   }
   origin_ = (lanes_up(-lowest) + kLanes) * colours;
   stride_ = lanes_up((origin_ + rows * pitch_ + highest) / colours) + 2 * kLanes;
-  // An odd number of registers: equal places of neighbouring planes do not share cache lines'
-  // sets.
+  // An odd number of registers keeps equal places of neighbouring planes in different cache sets.
   if (stride_ / kLanes % 2 == 0) stride_ += kLanes;
 
-  // A mask per move and one for staying, each for all colours of the cells gone to.
+  // One mask for each move and one for staying, each for all colours of the target cells.
   for (std::size_t m = 0; m <= moves.size(); ++m) {
     double* const mask = masks_.emplace_back(colours, stride_).take(colours).data();
     const std::int64_t di_x = m < moves.size() ? moves[m].di_x : 0;
@@ -100,7 +99,7 @@ Layout::Layout(std::int64_t columns, std::int64_t rows, const std::vector<Move>&
         identity_[k] = {0, mask + colour * stride_};
         continue;
       }
-      const std::ptrdiff_t to = colour + offset_of(moves[m]);  // from the colour's place 0
+      const std::ptrdiff_t to = colour + offset_of(moves[m]);  // relative to the colour's place 0
       const std::ptrdiff_t to_colour = (to % colours + colours) % colours;
       shifts_[k].push_back({(to - to_colour) / colours, mask + to_colour * stride_});
     }

@@ -20,7 +20,7 @@ namespace {
   throw std::runtime_error("outcomes: walks circle (almost) for ever");
 }
 
-/// Shares of the walks by draw (without limit: all draws together), cell and state.
+/// The shares of walks by draw (without a limit: all draws together), cell and state.
 class Passed {
  public:
   Passed(const FieldChain& chain, const Field& field, const Start& start, int max_cells)
@@ -34,7 +34,7 @@ class Passed {
                         shares_[layer][index(cell, input)] += share;
                       });
   }
-  /// Null where nobody passes at that draw.
+  /// The shares of a cell at a draw; null if no walk passes.
   [[nodiscard]] const double* at(int draw, std::int64_t cell) const {
     const auto layer = static_cast<std::size_t>(draw - 1);
     if (layer >= shares_.size() || shares_[layer].empty()) return nullptr;
@@ -59,7 +59,7 @@ void require_memory(std::int64_t cells, std::int64_t inputs, int layers) {
                                 " cells would take more than 4 GiB");
 }
 
-/// Where visits go next.
+/// Computes how visits continue.
 void add_next(Outcomes& out, const FieldChain& chain, const Field& field, const Passed& passed) {
   for (const Chain& c : chain.chains())
     for (const Exit& exit : c.exits()) {

@@ -18,7 +18,7 @@ namespace {
 
 using Solver = PredictOptions::Solver;
 
-constexpr int kFarthest = 10'000;  // cells; planes have room for a move beyond each end
+constexpr int kFarthest = 10'000;  // cells; planes have room for one such move beyond each end
 
 std::ptrdiff_t number_of(const std::vector<Move>& moves, const Exit& exit) {
   return std::find_if(moves.begin(), moves.end(),
@@ -26,7 +26,7 @@ std::ptrdiff_t number_of(const std::vector<Move>& moves, const Exit& exit) {
          moves.begin();
 }
 
-/// Prepares a chain; the plan knows what is entered already.
+/// Prepares a chain as stencils; the plan already lists the inputs that are entered.
 PreparedChain prepare(const PredictionPlan& plan, const Chain& chain,
                       const std::vector<char>& is_entered) {
   const auto is_in = [&](const std::vector<int>& inputs) {
@@ -38,12 +38,11 @@ PreparedChain prepare(const PredictionPlan& plan, const Chain& chain,
   PreparedChain prepared;
   std::vector<Entry> moves, first_sideways, further_sideways, ends, walking;
   std::vector<std::vector<Entry>> upwards(static_cast<std::size_t>(plan.highest));
-  std::vector<double> shares(kTallyMoved + plan.moves.size());  // of an input, by ending
+  std::vector<double> shares(kTallyMoved + plan.moves.size());  // shares of an input, by ending
   for (int input = 0; input < plan.inputs; ++input) {
     const auto i = static_cast<std::size_t>(input);
     std::fill(shares.begin(), shares.end(), 0.0);
-    if (!is_entered[i])
-      continue;  // no mass but that of a start, of which the first draw is made apart
+    if (!is_entered[i]) continue;  // only a start can be here, and its first draw is separate
     if (chain.is_sampled(input)) {
       prepared.walking_inputs.push_back(input);
       walking.push_back({kTallyTotal, 0, input, 1.0});
@@ -130,7 +129,7 @@ std::unique_ptr<const PredictionPlan> plan_of(FieldChain field_chain) {
   return plan;
 }
 
-/// Whether nothing is prepared for it.
+/// Whether the solver works without a prepared chain.
 bool is_unprepared(Solver solver) { return solver == Solver::klu || solver == Solver::direct; }
 
 void require_no_limit(const std::string& solver, const PredictOptions& options) {
@@ -140,7 +139,7 @@ void require_no_limit(const std::string& solver, const PredictOptions& options) 
                                 std::to_string(options.max_cells));
 }
 
-/// Starts side by side in groups of `size`, groups on all threads.
+/// Runs the starts in groups of `size` side by side, the groups on all threads.
 template <class Run>
 MaybePredicted in_groups(const std::vector<Start>& starts, std::int64_t size, Run run) {
   MaybePredicted all(starts.size());
@@ -159,12 +158,12 @@ std::optional<FinalDistribution> solve_circles(const FieldChain& chain, const Fi
                                                const Start& start, double most_operations) {
   if (!fits_pair_by_pair(chain, field)) return {};
   if (auto direct = solve_directly(chain, field, start, most_operations)) return direct;
-  constexpr double kMostNumbers = 2e8;  // some 3 GB, which several starts must not take at once
+  constexpr double kMostNumbers = 2e8;  // about 3 GB, so only one start at a time
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   try {
     return solve_by_klu(chain, field, start, kMostNumbers);
-  } catch (const std::runtime_error&) {  // too few digits, or too large
+  } catch (const std::runtime_error&) {  // too few digits, or the factors are too large
     return {};
   }
 }
@@ -194,7 +193,7 @@ std::vector<FinalDistribution> Predictor::predict_all(const Field& field,
           "predict: solver march goes from row to row upwards, and this chain has moves to a row "
           "below: solvers auto and klu take them");
   }
-  // Measured: a few small fields together leave fewer lanes empty, more of them leave the cache.
+  // Measured: a few small fields together leave fewer lanes empty; more of them exceed the cache.
   const std::int64_t cells = std::int64_t{field.columns} * field.rows,
                      together =
                          std::clamp<std::int64_t>(by_rows ? 40 / field.columns : 400 / cells, 1, 4);

@@ -17,7 +17,8 @@
 
 namespace gatewalk::markov {
 
-/// One row to solve. Vectors of a column: r's `r.height` numbers, l's `l.height`.
+/// The equations of one row. Vectors of a column have `r.height` numbers for r and `l.height` for
+/// l.
 struct RowSystem {
   const RowElimination::Column* const* columns;
   int count;
@@ -38,7 +39,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<double, kLanes>;
 
-/// Some registers of y = from + a x. Columns are summed in two chains, to wait less for each sum.
+/// Computes some registers of y = from + a x. Columns are summed in two chains, to reduce the wait
+/// for each sum.
 template <int Height>
 void multiply_some(const double* HWY_RESTRICT a, const Block& block, const double* HWY_RESTRICT x,
                    const double* from, double* y) {
@@ -63,7 +65,7 @@ void multiply_some(const double* HWY_RESTRICT a, const Block& block, const doubl
     hn::StoreU(hn::Add(hn::LoadU(d, from + i * n), hn::Add(even[i], odd[i])), d, y + i * n);
 }
 
-/// y = from + a x; `from` may be y.
+/// Computes y = from + a x; `from` may be y.
 void multiply(const Block& a, const double* HWY_RESTRICT x, const double* from, double* y) {
   const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(D()));
   for (std::ptrdiff_t i = 0; i < a.height;) {
@@ -87,13 +89,14 @@ void multiply(const Block& a, const double* HWY_RESTRICT x, const double* from, 
   }
 }
 
-/// c = from + a b
+/// Computes c = from + a b.
 void multiply_blocks(const Block& a, const Block& b, const Block& from, Block& c) {
   for (int j = 0; j < b.columns; ++j) multiply(a, b.column(j), from.column(j), c.column(j));
 }
 
-/// a = a^-1 by Gauss-Jordan; returns the least pivot. Without pivoting: a = I - Q with Q >= 0 whose
-/// columns sum to 1 at most (an M-matrix), of which all pivots are positive unless it is singular.
+/// Replaces a by its inverse (Gauss-Jordan) and returns the least pivot. No pivoting is needed: a =
+/// I - Q with Q >= 0 whose columns sum to at most 1 (an M-matrix), so all pivots are positive
+/// unless a is singular.
 double invert(Block& a) {
   const D d;
   const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(d));
@@ -120,8 +123,8 @@ double invert(Block& a) {
   return least;
 }
 
-/// r = N (arriving + G' Ll l) and l = entering + Lr r + Ll l of the column at the right, solved for
-/// all columns: `arriving` from the left first, then l from the right.
+/// Solves r = N (arriving + G' Ll l) and l = entering + Lr r + Ll l of the column to the right, for
+/// all columns: first `arriving` from the left, then l from the right.
 void solve_row(const RowSystem& s) {
   const std::ptrdiff_t r = s.rr->height, l = s.ll->height;
   std::copy_n(s.entering_r, r, s.arriving);
@@ -166,7 +169,7 @@ Block product(const Block& a, const Block& b) {
   return c;
 }
 
-/// Place of each input in `inputs`, -1 for those not in it.
+/// The index of each input in `inputs`; -1 for other inputs.
 std::vector<int> places(const std::vector<int>& inputs, int n_in) {
   std::vector<int> place(static_cast<std::size_t>(n_in), -1);
   for (std::size_t i = 0; i < inputs.size(); ++i)
@@ -294,8 +297,8 @@ void RowElimination::solve(const std::vector<const Column*>& columns, const doub
   double *const entering_r = take(count * r), *const entering_l = take(count * l),
                 *const visits_r = take(count * r), *const visits_l = take(count * l),
                 *const arriving = take(r);
-  std::fill(entering_r, visits_r, 0.0);  // both that enter
-  // A few columns at a time: they share what is read of the planes.
+  std::fill(entering_r, visits_r, 0.0);  // entering_r and entering_l
+  // A few columns at a time, because they share reads of the planes.
   constexpr std::ptrdiff_t kTogether = 2 * kLanes;
   for (std::ptrdiff_t first = 0; first < count; first += kTogether) {
     const std::ptrdiff_t end = std::min(first + kTogether, count);

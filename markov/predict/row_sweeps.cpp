@@ -77,7 +77,7 @@ RowSweeps::RowSweeps(const std::vector<Move>& moves, Sums sums, int columns, int
   }
 
   buffer_.reset((2 * length_ + 2 * widest_) * inputs + length_ + 1, kLanes);
-  (void)buffer_.take(1);  // before the first number
+  (void)buffer_.take(1);  // padding before the first number
   mask_ = buffer_.take(length_);
   b_ = buffer_.take(std::ptrdiff_t{length_} * inputs);
   x_ = buffer_.take(std::ptrdiff_t{length_ + 2 * widest_} * inputs);

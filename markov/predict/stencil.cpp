@@ -18,8 +18,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<double, kLanes>;
 
-/// `Width` registers share each p. Loads, one per product, lie on register boundaries where the
-/// planes do; only what is stored is shifted.
+/// `Width` registers share each p. Loads, one per product, are aligned where the planes are; only
+/// stores are shifted.
 template <int Width>
 void apply_block(const StencilPass& pass, const double* HWY_RESTRICT from, double* HWY_RESTRICT to,
                  bool add, std::ptrdiff_t c) {
@@ -51,13 +51,14 @@ void apply_block(const StencilPass& pass, const double* HWY_RESTRICT from, doubl
 template <int Width>
 using Registers = std::integral_constant<int, Width>;
 
-/// Calls block(Registers<Width>(), c) for the registers from `first` to `last`, some together.
+/// Calls block(Registers<Width>(), c) for the registers from `first` to `last`, several together.
 template <class Block>
 void in_blocks(std::ptrdiff_t first, std::ptrdiff_t last, Block block) {
   constexpr std::ptrdiff_t kWidest = 8;
   const auto n = static_cast<std::ptrdiff_t>(hn::Lanes(D()));
   const std::ptrdiff_t registers = (last - first) / n;
-  const std::ptrdiff_t blocks = (registers + kWidest - 1) / kWidest;  // of nearly the same width
+  // Blocks of nearly the same width.
+  const std::ptrdiff_t blocks = (registers + kWidest - 1) / kWidest;
   for (std::ptrdiff_t i = 0; i < blocks; ++i) {
     const std::ptrdiff_t begin = registers * i / blocks,
                          width = registers * (i + 1) / blocks - begin;
@@ -120,7 +121,7 @@ void gather_cells(const GatherPass& pass, const GatherCell* cells) {
 
 template <int Cells>
 void gather_near_or_far(const GatherPass& pass, const GatherCell* cells) {
-  constexpr int kNear = 8192;  // states, half a MiB a cell: from then on looking ahead is faster
+  constexpr int kNear = 8192;  // states, half a MiB per cell; beyond, prefetching is faster
   pass.states <= kNear ? gather_cells<Cells, false>(pass, cells)
                        : gather_cells<Cells, true>(pass, cells);
 }

@@ -22,8 +22,8 @@
 namespace gatewalk::markov {
 namespace {
 
-/// Shares of the walks that are about to draw in each state, with the sums of their totals so far
-/// and of the squares: numbers of one state side by side.
+/// The shares of the walks that are about to draw in each state, with the sums of their totals and
+/// of the squares so far. The numbers of one state are adjacent.
 class Wave {
  public:
   Wave(std::int64_t cells, int inputs, std::size_t quantities)
@@ -32,7 +32,7 @@ class Wave {
         numbers_(static_cast<std::size_t>(cells)),
         reached_(static_cast<std::size_t>(cells), false) {}
 
-  /// Of a cell that is reached.
+  /// The numbers of a state in a reached cell.
   [[nodiscard]] double* at(std::int64_t cell, int input) {
     return numbers_[static_cast<std::size_t>(cell)].data() +
            static_cast<std::size_t>(input) * stride_;
@@ -56,7 +56,7 @@ class Wave {
 
  private:
   std::size_t stride_, numbers_of_cell_;
-  std::vector<std::vector<double>> numbers_;  // by cell; of those ever reached
+  std::vector<std::vector<double>> numbers_;  // by cell; only of cells ever reached
   std::vector<bool> reached_;
 };
 
@@ -71,7 +71,7 @@ WalkTotals totals_by_steps(const FieldChain& chain, const Field& field, const St
   out.totals.resize(quantities);
   now.reach(std::int64_t{start.row} * field.columns + start.column, start.input)[0] = 1.0;
 
-  // A state's numbers: the share of the walks, then sum and square of each quantity.
+  // The numbers of a state: the share of walks, then sum and square of each quantity.
   std::vector<double> moved(1 + 2 * quantities);
   const int most = max_cells == 0 ? kMostSteps : max_cells;
   for (int draw = 1; draw <= most; ++draw) {
@@ -134,8 +134,8 @@ WalkTotals totals_by_steps(const FieldChain& chain, const Field& field, const St
   return out;
 }
 
-/// Without limit of cells, one row of the field after the other: what enters a row is moved on
-/// within it, by sweeps to both sides, until next to nothing is left to move.
+/// Totals without a limit of cells, row by row: the mass that enters a row is moved within the row
+/// by sweeps to both sides until next to nothing is left.
 class TotalsByRows {
  public:
   TotalsByRows(const FieldChain& chain, const Field& field, const Start& start,
@@ -185,8 +185,8 @@ class TotalsByRows {
   }
 
  private:
-  /// A nonzero: where it leads, its chance, and in `rewards_` its means and mean squares, draws
-  /// first.
+  /// A nonzero of the matrix: its probability and target. `Draws::rewards` holds its means and mean
+  /// squares, draws first.
   struct Draw {
     double p;
     int next, di_x, di_y;
@@ -218,8 +218,8 @@ class TotalsByRows {
   [[nodiscard]] std::size_t numbers_of_row() const {
     return static_cast<std::size_t>(field_.columns) * static_cast<std::size_t>(inputs_) * stride_;
   }
-  /// Numbers of walks that are about to draw: their share, sums of their totals so far, and of the
-  /// squares. In a row above the present one.
+  /// The numbers of walks that are about to draw in a row above the present one: their share, and
+  /// the sums of their totals and of the squares so far.
   [[nodiscard]] double* at(int above, std::int64_t column, std::int64_t input) {
     return waiting_[static_cast<std::size_t>(above)].data() +
            static_cast<std::size_t>(column * inputs_ + input) * stride_;
@@ -232,7 +232,8 @@ class TotalsByRows {
            (!tolerance_.chance || share * (*tolerance_.chance)(1, cell, input) <= least_to_target_);
   }
 
-  /// All that waits in the row moves on, but what is so little that all of it together is too.
+  /// Moves on all mass that waits in the row, except shares so small that they are negligible even
+  /// together.
   void leave(int row) {
     bool any = true;
     for (int sweep = 0; any && sweep < kMostSteps; ++sweep) {
@@ -244,7 +245,7 @@ class TotalsByRows {
       out_.remainder += waiting_.front()[static_cast<std::size_t>(state) * stride_];
   }
 
-  /// One draw of all walks in a cell. Whether there were any.
+  /// Makes one draw of all walks in a cell. Returns whether there were any.
   bool draw(int column, int row) {
     const std::int64_t cell = std::int64_t{row} * field_.columns + column;
     const auto type = static_cast<std::size_t>(chain_.type_of(column, row));
@@ -276,7 +277,7 @@ class TotalsByRows {
     }
     return any;
   }
-  /// Of the walks `from_` those that draw with chance p what takes so much.
+  /// Adds to `to` the walks of `from_` that take a draw of probability p with these rewards.
   void add(double p, const double* rewards, double* to) const {
     const double share = p * from_[0];
     const double *const sum = from_.data() + 1, *const square = sum + quantities_,
@@ -289,7 +290,7 @@ class TotalsByRows {
     }
   }
 
-  /// Visits of the row's states.
+  /// Counts the visits of the row's states.
   void count(int row) {
     for (std::int64_t column = 0; column < field_.columns; ++column) {
       const std::int64_t cell = row * field_.columns + column;
@@ -309,12 +310,12 @@ class TotalsByRows {
   const EachState& each_;
   const WalkTolerance& tolerance_;
   const std::int64_t inputs_;
-  const std::size_t quantities_, stride_;  // draws are the first quantity
+  const std::size_t quantities_, stride_;  // the first quantity is the number of draws
   int highest_ = 0;                        // di_y
   double least_ = 0.0, least_to_target_ = 0.0;
   std::vector<Draws> draws_;                  // by type
   std::vector<std::vector<double>> waiting_;  // this row, the row above, ...
-  std::vector<double> from_;                  // walks in hand
+  std::vector<double> from_;                  // the walks being moved
   std::vector<double> visits_;                // (columns x inputs) of the row
   std::vector<double> ended_;                 // (endings x stride)
   WalkTotals out_;
@@ -327,8 +328,8 @@ bool is_large(const FieldChain& chain, const Field& field, double large) {
   return static_cast<double>(field.columns) * field.rows * nonzeros > large;
 }
 
-/// Without limit, of few states, exactly, however long walks circle. None where some never end, or
-/// it takes too long.
+/// Exact totals without a limit for few states, however long walks circle. Returns nullopt if some
+/// walks never end, or if it takes too long.
 std::optional<WalkTotals> totals_by_elimination(const FieldChain& chain, const Field& field,
                                                 const Start& start, const Rewards& rewards,
                                                 const EachState& each) {
@@ -349,7 +350,8 @@ std::optional<WalkTotals> totals_by_elimination(const FieldChain& chain, const F
     const FirstPassages ends = first_passages(chain, field, {.ending = ending}, 0, rewards);
     out.endings[e] = ends.chance[ends.at(start)];
     if (out.endings[e] == 0.0) continue;
-    // Of the walks from a pair of a cell and a state: what those that end so take (none: draws).
+    // The expected total of the walks from a (cell, state) pair that have this ending; without q,
+    // of their draws.
     const auto taken = [&](std::optional<std::size_t> q, std::size_t pair) {
       if (!(ends.chance[pair] > 0.0)) return 0.0;
       return ends.chance[pair] * (q ? ends.totals[*q] : ends.draws)[pair];
@@ -396,7 +398,7 @@ bool goes_down(const FieldChain& chain) {
 
 }  // namespace
 
-double Moments::sd() const {  // NaN, of what nobody knows, passes std::max in this order
+double Moments::sd() const {  // in this order std::max returns NaN for unknown moments
   return std::sqrt(std::max(square / share - mean() * mean(), 0.0));
 }
 
@@ -428,7 +430,7 @@ WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start&
   const std::int64_t inputs = chain.inputs(),
                      states = std::int64_t{field.columns} * field.rows * inputs;
   if (states > kSoonEliminated) return summed(each);
-  std::vector<double> passed(static_cast<std::size_t>(states), 0.0);  // told when all is known
+  std::vector<double> passed(static_cast<std::size_t>(states), 0.0);  // reported once all is known
   WalkTotals out = summed([&](int, std::int64_t cell, int input, double share) {
     passed[static_cast<std::size_t>(cell * inputs + input)] += share;
   });
@@ -436,7 +438,7 @@ WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start&
     try {
       if (auto exact = totals_by_elimination(chain, field, start, rewards, each))
         return *std::move(exact);
-    } catch (const std::runtime_error&) {  // they circle too long: what was summed stands
+    } catch (const std::runtime_error&) {  // walks circle too long: the sums so far stand
     }
   }
   for (std::int64_t state = 0; each && state < states; ++state)
@@ -447,7 +449,7 @@ WalkTotals walk_totals(const FieldChain& chain, const Field& field, const Start&
 
 namespace {
 
-/// "time", version 1: the second key word of these walks' streams.
+/// The second key word of these walks' streams: "time", version 1.
 constexpr std::uint64_t kTimedStream = 0x74696d65'00000001;
 
 double gamma_quantile(double mean, double square, double u) {

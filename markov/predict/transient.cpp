@@ -8,7 +8,7 @@
 namespace gatewalk::markov {
 namespace {
 
-/// The state that an exit of a cell leads to, as its number; -1 where the walk ends.
+/// The number of the state to which an exit of a cell leads; -1 if the walk ends.
 std::int64_t next_state(const FieldChain& field_chain, const Field& field, std::int64_t cell,
                         const Exit& exit) {
   if (exit.next_input == Exit::kTrapped) return -1;
@@ -32,7 +32,7 @@ Transient::Transient(const FieldChain& field_chain, const Field& field, const St
   const std::int64_t cells = std::int64_t{field.columns} * field.rows;
   constexpr std::int64_t kUnknown = -1;
   std::vector<std::int64_t> number(static_cast<std::size_t>(cells * n_in), kUnknown);
-  // Where state t stands in the column under construction, if it stands there.
+  // The index of state t in the column under construction, if it is there.
   std::vector<std::int64_t> place;
   const auto visit = [&](std::int64_t state) {
     std::int64_t& known = number[static_cast<std::size_t>(state)];
