@@ -12,10 +12,10 @@ namespace {
 
 using namespace dynamics;
 
-constexpr int kAutoStates = 348;                            // four times Table III's
-constexpr std::int64_t kJudgingTrials = 200;                // of a pilot that only judges bins
-constexpr int kPilotGates = 30;                             // a pilot's trial visits no more
-constexpr std::int64_t kPilotsOwn = std::int64_t{1} << 40;  // number of a pilot's first trial
+constexpr int kAutoStates = 348;              // four times as many as Table III
+constexpr std::int64_t kJudgingTrials = 200;  // of a pilot that only judges bins
+constexpr int kPilotGates = 30;               // most gates that a pilot's trial visits
+constexpr std::int64_t kPilotsOwn = std::int64_t{1} << 40;  // number of the pilot's first trial
 
 }  // namespace
 
@@ -23,7 +23,7 @@ bool papers_field(const Scene& scene) {
   const GateParams paper;
   const GateParams& p = scene.gate;
   const Scale unit = scale_of(p);
-  // To rounding, which no other scene meets by chance.
+  // Within rounding; no other scene has these numbers by chance.
   const auto is = [](double own, double papers) {
     return std::abs(own - papers) <= 1e-12 * papers;
   };
@@ -99,7 +99,7 @@ SeenStates seen_states(const Scene& scene, const Pilot& pilot, double scale) {
 States states_of(const Scene& scene, const BinsChoice& choice, const std::vector<BodyState>& starts,
                  std::uint64_t seed, const Work& work) {
   using Kind = BinsChoice::Kind;
-  (void)table3_space(scene.gate);  // refuses gates too short for their beams
+  (void)table3_space(scene.gate);  // throws for gates too short for their beams
   if (choice.kind == Kind::tree)
     throw std::invalid_argument("bins: a tree is grown from runs (make_tree_chain)");
   Pilot pilot = run_pilot(scene, starts, choice.kind == Kind::paper ? kJudgingTrials : kPilotTrials,

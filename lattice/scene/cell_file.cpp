@@ -36,7 +36,7 @@ const Names kFieldKeys{"columns", "rows", "max_gates"};
 const Names kCellKeys{"width_m", "length_m",    "symmetric", "trapped_after_s",
                       "faces",   "coordinates", "costs",     "types"};
 
-/// "width_m, length_m and symmetric"
+/// Names as a list: "width_m, length_m and symmetric"
 std::string listed(const Names& names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -44,13 +44,13 @@ std::string listed(const Names& names) {
   return text;
 }
 
-/// " (did you mean width_m?)", or nothing.
+/// " (did you mean width_m?)", or empty.
 std::string guess(std::string_view given, const Names& names) {
   const std::string meant = meant_name(given, names);
   return meant.empty() ? "" : " (did you mean " + meant + "?)";
 }
 
-/// A table of the file. What it throws is a SceneError that names file, line and key.
+/// A table of the file. Its members throw a SceneError that names file, line and key.
 struct GivenTable {
   const toml::table& table;
   std::string name;  // "cell.faces"
@@ -114,7 +114,7 @@ struct GivenTable {
     return number_of({table.get(key), origin(table.get(key)->source().begin.line), key}, key,
                      permitted, name + "." + key);
   }
-  /// The tables [[name.key]], none or more.
+  /// The tables [[name.key]]; may be none.
   [[nodiscard]] std::vector<GivenTable> tables(const std::string& key) const {
     std::vector<GivenTable> all;
     if (!has(key)) return all;
@@ -144,8 +144,8 @@ int place_in(const Names& names, std::string_view name) {
 
 // ---- Units
 
-/// A unit in the letters of a key: "m_per_s" for "m s-1" and "m/s", nothing for "1". None for what
-/// is no unit.
+/// A unit as it is written in a key: "m_per_s" for "m s-1" and "m/s", nothing for "1". nullopt if
+/// `unit` is no unit.
 std::optional<std::string> unit_letters(std::string_view unit) {
   if (unit == "1") return "";
   std::string above, below;
@@ -194,7 +194,8 @@ std::string unit_in(const GivenTable& given, std::string& letters) {
 
 // ---- Table [cell]
 
-/// Coordinates and costs are columns of the table of runs, and keys of [start].
+/// Adds the name of a coordinate or cost to `taken`. Both are columns of the table of runs and keys
+/// of [start], so names must differ.
 void require_own_column(const GivenTable& given, const std::string& key, const std::string& name,
                         std::set<std::string>& taken) {
   if (name.starts_with("out_"))
@@ -312,7 +313,7 @@ std::string mirror_allowed(const std::vector<Face>& faces) {
   return "be the face by which mirror images enter, one of " + listed(all_names_of(faces));
 }
 
-/// The face named by `mirror`, if it is.
+/// The face named by `mirror`; kNoMirror without that key.
 int named_mirror(const GivenTable& given, const std::vector<Face>& faces) {
   if (!given.has("mirror")) return dynamics::kNoMirror;
   const int mirror = place_in(all_names_of(faces), given.text("mirror", ""));
@@ -320,7 +321,7 @@ int named_mirror(const GivenTable& given, const std::vector<Face>& faces) {
   return mirror;
 }
 
-/// Of symmetric cells, whose faces have mirror images.
+/// Checks the mirror image of a face of symmetric cells.
 void require_images(const GivenTable& given, const std::vector<Face>& faces, std::size_t own) {
   const Face &face = faces[own], &image = faces[static_cast<std::size_t>(face.mirror)];
   const auto refuse = [&](const std::string& why) {
@@ -340,7 +341,7 @@ void require_images(const GivenTable& given, const std::vector<Face>& faces, std
   if (image.odd != face.odd) refuse("both must have the same odd coordinates");
 }
 
-/// `symmetric`: some type of cell is.
+/// The faces of [cell]; `symmetric`: at least one type of cell is symmetric.
 std::vector<Face> faces_in(const GivenTable& cell, const Names& coordinates, bool symmetric) {
   cell.require("faces",
                "have the parts of a cell's border that bodies enter by, each a "
@@ -353,7 +354,7 @@ std::vector<Face> faces_in(const GivenTable& cell, const Names& coordinates, boo
   for (const GivenTable& given : tables) {
     given.require_keys({"name", "move", "mirror", "odd", "from", "usual"});
     Names taken = all_names_of(faces);
-    taken.insert(taken.end(), {"trapped", "lost"});  // which runs tell in place of a face
+    taken.insert(taken.end(), {"trapped", "lost"});  // what runs have in place of a face
     Face face;
     face.name = given.plain_name("name", "S", taken);
     const auto [di_x, di_y] = move_in(given);
@@ -383,7 +384,8 @@ void read_types(CellFile& file, const GivenTable& cell, bool symmetric) {
     if (file.types.size() == kMostCellTypes)
       throw SceneError(given.at(given.table) + "[[cell.types]]: more than " +
                        std::to_string(kMostCellTypes) + " are not permitted");
-    const bool is_own = file.types.empty() && given.text("name", "") == kOwnGate;  // of a scene
+    // the own gate of a scene
+    const bool is_own = file.types.empty() && given.text("name", "") == kOwnGate;
     file.types.push_back(is_own ? std::string(kOwnGate)
                                 : given.plain_name("name", "soft", file.types));
     file.map.types.push_back({given.truth("symmetric", symmetric)});
@@ -408,13 +410,13 @@ void require_tables(const toml::table& document, const Origin& origin) {
   }
 }
 
-/// Adds the keys of `document` that overrides may have too. `known`: all of these, whole.
+/// Adds the keys of `document` that overrides may have too. `known`: all these keys, in full.
 void add_settings(Settings& settings, const toml::table& document, const Origin& origin,
                   const Names& known) {
   require_tables(document, origin);
   for (const auto& [table_name, node] : document) {
     const std::string name(table_name.str());
-    if (name == kTerrainTable || name == kActionsTable) continue;  // read apart
+    if (name == kTerrainTable || name == kActionsTable) continue;  // read separately
     const GivenTable given{*node.as_table(), name, origin};
     Settings added;
     for (const auto& [key, value] : given.table) {
@@ -426,7 +428,7 @@ void add_settings(Settings& settings, const toml::table& document, const Origin&
         if (unit_of(spelled, k) && whole != spelled) whole = k;
         if (name != "cell") keys.push_back(k.substr(name.size() + 1));
       }
-      if (whole.empty() && place_in(keys, key.str()) >= 0) continue;  // a table, read apart
+      if (whole.empty() && place_in(keys, key.str()) >= 0) continue;  // a table, read separately
       if (whole.empty()) given.refuse_key(value, std::string(key.str()), keys);
       const Setting setting{&value, origin(value.source().begin.line), spelled};
       if (const auto [other, is_new] = added.try_emplace(whole, setting); !is_new)
@@ -437,7 +439,7 @@ void add_settings(Settings& settings, const toml::table& document, const Origin&
   }
 }
 
-/// The keys below it that only the file may have.
+/// Throws for keys below [cell] that only the file may have.
 void refuse_lists(const Override& given) {
   for (const char* key : {"faces", "coordinates", "costs", "types"})
     if (given.document["cell"][key])
@@ -495,7 +497,7 @@ void read_start(CellFile& file, const Settings& settings) {
   file.start = start;
 }
 
-/// The map alone: types of a file of cells have no keys of their own.
+/// Adds the map only: types of a cell file have no keys of their own.
 void add_map(TerrainSettings& settings, const toml::table& document, const Origin& origin,
              const std::string& folder) {
   if (const auto types = document[kTerrainTable]["types"])

@@ -14,8 +14,8 @@ namespace gatewalk::lattice {
 
 namespace {
 
-/// Whether a PNG has a gamma of its own, by which libpng would change its values: chunk gAMA,
-/// before the first of the picture's own, with another value than that of sRGB.
+/// True if a PNG has a gamma of its own, by which libpng would change its values: a gAMA chunk
+/// before the picture's first, with another value than sRGB's.
 bool has_gamma(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   file.ignore(8);
@@ -29,7 +29,8 @@ bool has_gamma(const std::string& path) {
     constexpr std::uint32_t kOfSrgb = 45455;
     if (name == "gAMA") return number(8) != kOfSrgb;
     if (name == "IDAT") return false;
-    file.seekg(std::int64_t{number(0)}, std::ios::cur);  // 4 of the content read, 4 of the checksum
+    // 4 bytes of the content are read, 4 belong to the checksum
+    file.seekg(std::int64_t{number(0)}, std::ios::cur);
   }
 }
 
@@ -58,7 +59,7 @@ GreyPicture read_grey_png(const std::string& path, int columns, int rows) {
                              " rows: a pixel is a gate");
   if ((image.format & PNG_FORMAT_FLAG_LINEAR) != 0)
     throw std::runtime_error("has 16 bits a pixel: must have 8 or fewer");
-  // Pixels of a palette are left as they are: libpng makes black of those beyond its end.
+  // Pixels of a palette are read unchanged: libpng turns those beyond its end black.
   const bool has_palette = (image.format & PNG_FORMAT_FLAG_COLORMAP) != 0;
   image.format = has_palette ? PNG_FORMAT_RGBA_COLORMAP : PNG_FORMAT_RGBA;
   std::vector<png_byte> pixels(PNG_IMAGE_SIZE(image));

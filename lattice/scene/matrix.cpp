@@ -97,7 +97,7 @@ SceneMatrix scene_matrix(std::shared_ptr<const MatrixFile> file, const Scene& ow
   };
   Scene scene = wanted();
   auto differences = physics_differences(scene, own);
-  // A matrix that was built with a method by name is not the one that "auto" stands for.
+  // "auto" does not stand for a matrix that was built with a named method.
   if (scene.gate.run.method == "auto" && file->text.count("method") == 0)
     differences.push_back("run.method: auto here, " + own.gate.run.method + " by name there");
   if (!differences.empty()) {
@@ -108,7 +108,7 @@ SceneMatrix scene_matrix(std::shared_ptr<const MatrixFile> file, const Scene& ow
         "\n(here: the scene given; there: the matrix). Build a matrix for this "
         "scene, or give the matrix alone to use its own scene.");
   }
-  scene.gate = own.gate;  // the same, or the method that "auto" was settled to
+  scene.gate = own.gate;  // equal, or with the method that "auto" chose
   return {std::move(file), std::move(scene)};
 }
 
@@ -171,7 +171,7 @@ std::string name_of(const RowMatrix& o) {
 
 std::string metres(double x) { return fmt::format("{:.3f}", x); }
 
-/// Throws std::invalid_argument unless gates of `other` can lie in the field of `base`.
+/// Throws std::invalid_argument unless gates of `other` fit into the field of `base`.
 void require_same_kind(const RowMatrix& other, const SceneMatrix& base,
                        const std::string& base_path) {
   const dynamics::GateParams &a = other.matrix.scene.gate, &b = base.scene.gate;
@@ -203,7 +203,7 @@ CountedField field_of(const SceneMatrix& base, const std::string& base_path,
   std::vector<int> type_of_row(static_cast<std::size_t>(rows), 0);
   std::vector<markov::Chain> chains{make_chain(base.file->transitions)};
   std::vector<markov::Counts> counts{base.file->transitions.counts()};
-  std::map<std::string, int> known;  // matrix files
+  std::map<std::string, int> known;  // index by matrix file
   for (const RowMatrix& o : others) {
     if (o.first > o.last) throw std::invalid_argument(name_of(o) + ": the lower row comes first");
     if (o.last >= rows)

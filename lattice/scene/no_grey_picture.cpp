@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Built in place of grey_picture.cpp by -DGATEWALK_VIDEO=OFF.
+// Replaces grey_picture.cpp in builds with -DGATEWALK_VIDEO=OFF.
 
 #include <stdexcept>
 

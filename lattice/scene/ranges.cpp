@@ -29,7 +29,7 @@ RangedScene::RangedScene(TomlFile file, std::vector<std::string> overrides,
                          const std::vector<std::string>& ranges, std::string option)
     : file_(std::move(file)), overrides_(std::move(overrides)), option_(std::move(option)) {
   for (const std::string& given : ranges) add(given);
-  // A key may be permitted at its ends and not between them: whole numbers.
+  // A key may be permitted at both ends, but not in between: whole numbers.
   constexpr double kWithin = 0.381966;
   (void)at(std::vector<double>(ranges_.size(), kWithin));
   for (std::size_t corner = 0; corner < std::size_t{1} << ranges_.size(); ++corner) {
@@ -76,7 +76,7 @@ Scene RangedScene::at(const std::vector<double>& point) const {
   }
   try {
     return read_scene(file_, all);
-  } catch (const SceneError& e) {  // it names overrides as --set gives them
+  } catch (const SceneError& e) {  // its message names overrides as --set gives them
     const std::string what = e.what();
     for (const NumberRange& r : ranges_)
       if (what.starts_with("--set " + r.key + "="))

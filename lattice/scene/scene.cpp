@@ -42,11 +42,11 @@ using Slot = std::variant<double*, int*, std::string*, Fidelity*>;
 struct SceneKey {
   std::string_view key;
   std::function<Slot(Scene&)> slot;
-  std::function<Interval(const Scene&)> permitted;  // may depend on keys that stand before this one
+  std::function<Interval(const Scene&)> permitted;  // may depend on keys before this one
   std::string_view meaning;
 };
 
-/// Every key of a scene in canonical order: those of GateParams, then field and start.
+/// Every key of a scene in canonical order: keys of GateParams, then field and start.
 const std::vector<SceneKey>& scene_keys() {
   static const std::vector<SceneKey> keys = [] {
     const auto fixed = [](Interval interval) {
@@ -66,7 +66,7 @@ const std::vector<SceneKey>& scene_keys() {
                      },
                      info.meaning});
     }
-    // Units away from the scene's own: far enough for anybody, near enough to compute with.
+    // In the scene's own units: far enough for any study, near enough to compute with.
     constexpr double kFar = 1e12;
     const auto speeds = [](const Scene& s) {
       const double most = kFar * dynamics::scale_of(s.gate).speed();
@@ -144,20 +144,20 @@ std::string_view closest_table(std::string_view name) {
                            });
 }
 
-/// The key nearest to `name`, by its whole length or by the part behind the table's name.
+/// The key nearest to `name`, by its whole length or by the part after the table's name.
 std::string_view closest_key(std::string_view name) {
   name = name.substr(0, kLongestCompared);
-  // Capitals are not small letters.
+  // Compares without case.
   const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
   for (const SceneKey& k : scene_keys())
     if (std::ranges::equal(name, k.key, {}, small, small)) return k.key;
-  // The unit is easily forgotten.
+  // Users often forget the unit.
   for (const SceneKey& k : scene_keys())
     if (!leaf_of(name).empty() && table_of(k.key) == table_of(name) &&
         leaf_of(k.key).starts_with(leaf_of(name)))
       return k.key;
-  // Words of an own make are meant for the table that they stand in; a key of another table is
-  // spelled as it is there.
+  // An unknown word is meant for the table that it stands in; a known key of another table keeps
+  // its spelling.
   const auto is_elsewhere = [&](const SceneKey& k) { return leaf_of(k.key) == leaf_of(name); };
   const bool in_table = is_table(table_of(name)) && name.find('.') != name.npos &&
                         std::none_of(scene_keys().begin(), scene_keys().end(), is_elsewhere);
@@ -175,7 +175,7 @@ std::string_view closest_key(std::string_view name) {
   return closest;
 }
 
-/// "the closest known key is body.mass_kg"; both of two beams where `name` does not say which.
+/// "the closest known key is body.mass_kg"; names both beams' keys if `name` does not say which.
 std::string closest_keys(std::string_view name) {
   const std::string key(closest_key(name));
   const auto other_side = [&](const std::string& side, const std::string& other) {
@@ -193,7 +193,7 @@ std::string closest_keys(std::string_view name) {
 
 // ---- From TOML to settings
 
-/// Every key that `document` sets. Refuses what is no key of a scene.
+/// All keys that `document` sets. Throws SceneError for a key that no scene has.
 Settings settings_of(const toml::table& document, const Origin& origin) {
   Settings settings;
   for (const auto& [table_key, table_node] : document) {
@@ -202,7 +202,7 @@ Settings settings_of(const toml::table& document, const Origin& origin) {
     const toml::table* table = table_node.as_table();
     if (table_name == kSweepTable || table_name == kBinsTable || table_name == kTerrainTable ||
         table_name == kActionsTable)
-      continue;  // read apart
+      continue;  // read separately
     if (!is_table(table_name)) {
       throw SceneError(table_origin + ": unknown " +
                        (table ? "table " + printable(table_name) + "; the closest known table is " +
@@ -226,7 +226,8 @@ Settings settings_of(const toml::table& document, const Origin& origin) {
   return settings;
 }
 
-/// Table [sweep]: keys of the scene with text "4:1:9" or "1,2", or an array of numbers or texts.
+/// Table [sweep]: keys of the scene, each with text "4:1:9" or "1,2", or an array of numbers or
+/// texts.
 std::vector<Variation> variations_of(const toml::table& document, const Origin& origin) {
   struct Found {
     toml::source_position place;
@@ -295,7 +296,8 @@ void apply_override(const std::string& given, std::deque<toml::table>& documents
 
 // ---- From settings to a scene
 
-/// `shown`: what a message calls the key; a number may be in the unit of the setting's spelling.
+/// Assigns a setting to its key. `shown` names the key in messages; a number may be in another
+/// unit.
 void assign(const SceneKey& key, const Setting& setting, Scene& scene, std::string_view shown) {
   const auto refusal = [&](const std::string& allowed) {
     return SceneError(refusal_of(setting, shown, allowed));
@@ -327,7 +329,7 @@ void assign(const SceneKey& key, const Setting& setting, Scene& scene) {
   assign(key, setting, scene, setting.spelled);
 }
 
-/// Distance from the start to the nearest point of the two beams at rest (both on y = joint_y).
+/// Distance from the start to the nearest point of the two beams at rest (both on y = joint_y), m.
 double distance_to_beams(const Scene& scene) {
   const dynamics::Beams beams = gates_of(scene).at(scene.field.start_column(), 0).beams;
   const auto to_beam = [&](double joint_x, double tip_x) {
@@ -339,8 +341,8 @@ double distance_to_beams(const Scene& scene) {
                   to_beam(beams.joint_x, beams.joint_x - beams.length));
 }
 
-/// Runs a check and blames what it refuses on the line of the key itself, else on that of a key
-/// which the message also names.
+/// Runs a check, and reports its refusal at the line of the refused key, else at that of another
+/// key that the message names.
 template <class Check>
 void check(const Scene& scene, const Settings& settings, Check checked) {
   try {
@@ -358,26 +360,27 @@ void check(const Scene& scene, const Settings& settings, Check checked) {
   }
 }
 
-/// Settings of the methods, which follow from all the rest unless they are given.
+/// True for settings of the methods, which follow from all other keys unless they are given.
 bool is_methods_own(std::string_view key) {
   return key == "run.step_s" || key == "run.event_tolerance_m" ||
          key == "contact.impulse_threshold_Ns";
 }
 
-/// Throws InvalidParameter for a gate that no method, or not its own, can run.
+/// Throws InvalidParameter for a gate that no method, or not its own method, can run.
 void require_runnable(const dynamics::GateParams& gate) {
   if (gate.run.method == "auto")
     dynamics::validate(gate);
   else
-    (void)dynamics::make_method(gate);  // validates, and asks the method what it can run
+    // validates, and asks the method whether it can run the gate
+    (void)dynamics::make_method(gate);
 }
 
-/// What depends on several keys of the gate at once.
+/// Checks that involve several keys of the gate.
 void check_gate(const Scene& scene, const Settings& settings) {
   check(scene, settings, [&] { require_runnable(scene.gate); });
 }
 
-/// The same for types of the terrain, or actions; `table` has them.
+/// Checks the types of the terrain, or the actions, in table `table`.
 void check_types(const Scene& scene, const std::vector<Terrain::Type>& types,
                  const std::string& table) {
   for (const Terrain::Type& type : types) try {
@@ -390,7 +393,7 @@ void check_types(const Scene& scene, const std::vector<Terrain::Type>& types,
     }
 }
 
-/// Tables [terrain] and [actions] of the file and of the overrides.
+/// Reads tables [terrain] and [actions] of the file and of the overrides.
 void read_terrain(Scene& scene, const toml::table& document, const Origin& origin,
                   const std::deque<toml::table>& override_documents,
                   const std::vector<std::string>& overrides) {
@@ -424,7 +427,7 @@ void read_terrain(Scene& scene, const toml::table& document, const Origin& origi
   }
 }
 
-/// What depends on gate, field and start.
+/// Checks that involve gate, field and start.
 void check_start(const Scene& scene, const Settings& settings) {
   check(scene, settings, [&] {
     validate(scene.gate, scene.field);
@@ -508,8 +511,8 @@ Scene read_scene(const TomlFile& file, const std::vector<std::string>& overrides
   const auto of_gate = [](const SceneKey& key) {
     return table_of(key.key) != "field" && table_of(key.key) != "start";
   };
-  // What the file leaves out follows from the file: an override changes its own key only, and the
-  // settings of the method. It may mend a value that the file should not have.
+  // Keys that the file leaves out follow from the file. An override changes only its own key and
+  // the settings of the method, and may correct a value that the file must not have.
   for (const SceneKey& key : scene_keys()) {
     const auto it = of_file.find(key.key);
     if (!of_gate(key) || it == of_file.end()) continue;
@@ -532,7 +535,7 @@ Scene read_scene(const TomlFile& file, const std::vector<std::string>& overrides
     derive([&](std::string_view key) { return scene.named.contains(key) || !is_methods_own(key); });
   });
   std::erase_if(scene.derived, [&](const std::string& key) { return scene.named.contains(key); });
-  check_gate(scene, settings);  // what a start may be depends on it
+  check_gate(scene, settings);  // the permitted starts depend on the gate
   for (const SceneKey& key : scene_keys())
     if (const auto it = settings.find(key.key); !of_gate(key) && it != settings.end())
       assign(key, it->second, scene);
@@ -554,7 +557,7 @@ Scene read_scene(const TomlFile& file, const std::vector<std::string>& overrides
 
 namespace {
 
-/// The value as TOML has it.
+/// The value of a key as TOML writes it.
 std::string value_text(const SceneKey& key, Scene& scene) {
   const Slot slot = key.slot(scene);
   if (auto* const* string = std::get_if<std::string*>(&slot)) return "\"" + **string + "\"";
@@ -568,7 +571,7 @@ std::string value_text(const SceneKey& key, Scene& scene) {
 
 namespace {
 
-/// The scene's keys of which `is_written(key)` says so.
+/// The keys of the scene for which is_written(key) is true, as TOML.
 template <class IsWritten>
 std::string toml_of(const Scene& scene, IsWritten is_written) {
   Scene copy = scene;  // slots point into a mutable scene
@@ -639,7 +642,7 @@ std::vector<KeyInfo> describe(const Scene& scene) {
 
 namespace {
 
-/// What differs between the types of two terrains, by name.
+/// The differences between the types of two terrains, by name.
 std::vector<std::string> type_differences(const Scene& here, const Scene& there) {
   const auto types_of = [](const Scene& s) {
     std::map<std::string, dynamics::GateParams> types;
@@ -673,10 +676,11 @@ std::vector<std::string> physics_differences(const Scene& here, const Scene& the
   };
   for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
     const double a = info.get(here.gate), b = info.get(there.gate);
-    // "auto" agrees with whatever was chosen.
+    // "auto" agrees with any method that was chosen.
     const bool chosen = info.key == "run.step_s" || info.key == "run.event_tolerance_m";
     if (here.gate.run.method == "auto" && chosen) continue;
-    // These shape nothing here: how "auto" chose, and the setting of another method.
+    // Keys without effect here: the tolerance once "auto" has chosen, and the setting of another
+    // method.
     if (info.key == "run.tolerance" && here.gate.run.method != "auto") continue;
     if (info.key == "run.event_tolerance_m" && there.gate.run.method != "event") continue;
     if (a != b) add(info.key, shortest(a), shortest(b));

@@ -29,8 +29,7 @@ std::string all_keys() {
   return names;
 }
 
-/// The shortest digits that read back the same, never a whole number: "0.2", "-1.0".
-
+/// Edges as TOML, with the shortest digits that read back the same, never as whole numbers.
 std::string text(const std::vector<double>& edges) {
   std::string list;
   for (const double e : edges) list += (list.empty() ? "[" : ", ") + toml_float(e);

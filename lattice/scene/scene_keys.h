@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What the rest of the program asks about a scene file and its keys.
+/// Questions about a scene file and its keys.
 
 #include <string>
 #include <string_view>
@@ -12,24 +12,24 @@ namespace gatewalk::lattice {
 
 class TomlFile;
 
-/// As read_scene(path, overrides), of a file that is open already.
+/// Reads a scene from a file that is already open, as read_scene(path, overrides).
 [[nodiscard]] Scene read_scene(const TomlFile& file, const std::vector<std::string>& overrides);
 
-/// The keys that the override `given` sets, however it is spelled. Throws SceneError.
+/// The keys that the override `given` sets, in any spelling. Throws SceneError.
 [[nodiscard]] std::vector<std::string> keys_set_by(const std::string& given);
 
-/// Throws SceneError unless `key` is one of a scene; `origin` begins the message.
+/// Throws SceneError unless `key` is a key of a scene; `origin` begins the message.
 void require_key(const std::string& key, const std::string& origin);
 
-/// Whether the scene's method looks at the key: "auto" chooses a step, "event" has none.
+/// True if the scene's method uses the key: "auto" chooses a step, "event" has none.
 [[nodiscard]] bool has_effect(const Scene& scene, std::string_view key);
-/// to_toml without keys that have no effect and that nobody gave: a file to go on with, whose
-/// reader need not warn of what no user wrote.
+/// The scene as TOML, as to_toml, without keys that have no effect and that the user did not give:
+/// a reader of the file then need not warn of them.
 [[nodiscard]] std::string scene_file(const Scene& scene);
 
-/// What differs between two scenes among the keys that shape a transition matrix (all of
-/// GateParams, [bins] and the types of [terrain]; neither field nor map nor start):
-/// "forces.random_N: 40 here, 20 there", empty if nothing.
+/// The differences between two scenes in keys that shape a transition matrix (all of GateParams,
+/// [bins] and the types of [terrain]; not field, map and start), one text each: "forces.random_N:
+/// 40 here, 20 there".
 [[nodiscard]] std::vector<std::string> physics_differences(const Scene& here, const Scene& there);
 
 }  // namespace gatewalk::lattice

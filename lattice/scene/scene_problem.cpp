@@ -36,7 +36,7 @@ Problem complete_problem(const Scene& scene, RunsFrom from) {
 }  // namespace
 
 Problem problem_without_cells(const Scene& scene, RunsFrom from) {
-  // Not within the braces: where one of several throws there, g++ 12 frees twice.
+  // Outside the braces: if one of several initialisers throws there, g++ 12 frees twice.
   dynamics::CellMap map = gates_of(scene, from).map();
   const dynamics::Entry start = own_start(scene);
   Problem problem{.cells = {std::move(map), {}},

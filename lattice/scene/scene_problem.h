@@ -8,21 +8,22 @@
 
 namespace gatewalk::lattice {
 
-/// Of chains: field.fidelity is "active". Throws InvalidParameter as FieldGates::cells, and
-/// std::invalid_argument as own_start.
+/// The problem of a scene, as chains see it: field.fidelity is "active". Throws InvalidParameter as
+/// FieldGates::cells, and std::invalid_argument as own_start.
 [[nodiscard]] Problem problem_of(const Scene& scene);
-/// The same of a scene that leaves its method to a pilot: what does not depend on the method, and
-/// what put_cells adds when the method is chosen. `from`: everywhere or all_types, as below.
+/// The parts of a scene's problem that do not depend on its method, for a scene that leaves the
+/// method to a pilot; put_cells() adds the cells once the method is chosen. `from`: everywhere or
+/// all_types.
 [[nodiscard]] Problem problem_without_cells(const Scene& scene,
                                             RunsFrom from = RunsFrom::everywhere);
 void put_cells(Problem& problem, const Scene& scene, RunsFrom from = RunsFrom::everywhere);
 
-/// The same with a type of cell for each of the terrain, also those that are alike: scenes that
-/// differ in gates alone have the same map.
+/// The problem of a scene with one cell type per type of the terrain, even if types are equal, so
+/// that scenes that differ only in gates have the same map.
 [[nodiscard]] Problem problem_with_all_types(const Scene& scene);
 
-/// The scene with as many rows of gates as there are before `row`, and no limit of gates. Throws
-/// std::invalid_argument where its terrain has fewer, and for a row below 1.
+/// The scene cut to the rows of gates before `row`, without a limit of gates. Throws
+/// std::invalid_argument if its terrain has fewer rows, and for a row below 1.
 [[nodiscard]] Scene up_to_row(const Scene& scene, int row);
 
 }  // namespace gatewalk::lattice

@@ -26,7 +26,7 @@ const toml::table& table_at(const toml::node& node, const std::string& name, con
                    " is not permitted: must be a table");
 }
 
-/// One row of a map, and how a message about it begins.
+/// One row of a map, and the beginning of messages about it.
 struct MapRow {
   std::string text, where;
 };
@@ -77,7 +77,7 @@ std::vector<MapRow> rows_of_file(const TerrainSetting& given, const std::string&
   return rows;
 }
 
-/// The names in a row: separated by commas, semicolons or tabs, or a letter each.
+/// The names in a row: separated by commas, semicolons or tabs, or one letter each.
 std::vector<std::string> names_in(const std::string& row, int columns) {
   const char separator = separator_in(row);
   if (columns > 1 && row.find(separator) == row.npos) {
@@ -96,7 +96,7 @@ std::string all_names(const Terrain& terrain) {
   return names;
 }
 
-/// Place of a type among the terrain's, from 1; 0: its own gate; -1: none.
+/// Index of a type in the terrain, from 1; 0: its own gate; -1: unknown.
 int type_named(const Terrain& terrain, std::string_view name) {
   if (name == terrain.own) return 0;
   for (std::size_t i = 0; i < terrain.types.size(); ++i)
@@ -129,7 +129,7 @@ std::vector<int> cells_of(const std::vector<MapRow>& rows, const std::string& wh
   return types;
 }
 
-/// Types by grey value, as terrain.grey says.
+/// The types by grey value, from terrain.grey.
 std::map<int, int> types_by_grey(const TerrainSettings& settings, const Terrain& terrain) {
   std::map<int, int> types;
   for (const auto& [key, given] : settings) {
@@ -203,7 +203,7 @@ std::map<std::string, double> type_shares(const TerrainSettings& settings, const
   return shares;
 }
 
-/// Gates that a table has by name, each with some keys otherwise than the scene.
+/// A group of named gates, each with some keys different from the scene.
 struct Group {
   std::string key, table;  // "types", "terrain.types"
   std::string one, other;  // for messages
@@ -220,7 +220,7 @@ const Group kActions{
     "a body cannot choose it; an action has forces and beams (but their joints) of its own",
     [](std::string_view key) { return may_differ(key) && !key.starts_with("contact."); }};
 
-/// Whether it names a number that a program may have: a word without blanks and '='.
+/// True for the name of a program's number: parameters. and a word without blanks and '='.
 bool is_parameter(std::string_view key) {
   constexpr unsigned char kDelete = 127;
   return key.starts_with(kParameters) && key.size() > kParameters.size() &&
@@ -261,7 +261,7 @@ void add_gate(TerrainSettings& settings, const Group& group, const std::string& 
   for (const auto& [table, keys] : table_at(node, shown, origin)) {
     const std::string of_table(table.str());
     if (!keys.is_table())
-      add_key(of_table, keys);  // a whole key in quotation marks, or none
+      add_key(of_table, keys);  // a whole key in quotation marks, or no key
     else
       for (const auto& [key, value] : *keys.as_table())
         add_key(of_table + "." + std::string(key.str()), value);
@@ -277,7 +277,7 @@ void add_gates(TerrainSettings& settings, const Group& group, const toml::node& 
 std::vector<Terrain::Type> gates_in(const TerrainSettings& settings, const Group& group,
                                     const TypeValue& value) {
   std::vector<Terrain::Type> gates;
-  for (const auto& [key, given] : settings) {  // a gate before its keys
+  for (const auto& [key, given] : settings) {  // a gate stands before its keys
     if (!key.starts_with(group.key)) continue;
     const std::size_t dot = key.find('.', group.key.size());
     if (dot == key.npos) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Many trials through a scene's field, whatever its start and fidelity.
+/// Runs many trials through a scene's field, for any start and fidelity.
 
 #include <cstdint>
 
@@ -10,14 +10,14 @@
 
 namespace gatewalk::lattice {
 
-/// Trials through the field from the scene's start; entries are counted by fixed_space(scene). A
-/// sample is run again by a better method (check_outcomes). `take` as in study/trials.h. Throws as
-/// run_field.
+/// Runs trials through the field from the scene's start; clamped entries refer to
+/// fixed_space(scene). A sample is run again by a better method (check_outcomes). `take`: see
+/// study/trials.h. Throws as run_field.
 [[nodiscard]] FieldTally field_trials(const Scene& scene, dynamics::TrialRange trials,
                                       std::uint64_t seed, const dynamics::Work& work = {},
                                       const TakeTrials& take = {});
 
-/// Durations of a gate's runs are kept to a thousandth of its time limit (s).
+/// Resolution of the durations of gate runs, s: a thousandth of the gate's time limit.
 [[nodiscard]] inline double bin_of_durations(const dynamics::GateParams& p) {
   return p.run.time_limit / 1000.0;
 }

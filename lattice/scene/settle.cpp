@@ -16,7 +16,7 @@
 namespace gatewalk::lattice {
 namespace {
 
-/// The scene's start, and the middles of eight bins spread over the state space.
+/// The scene's start, and the centres of eight bins spread over the state space.
 std::vector<dynamics::BodyState> pilot_starts(const Scene& scene, RunsFrom from) {
   std::vector<dynamics::BodyState> starts{scene.start};
   if (from == RunsFrom::start) return starts;
@@ -32,7 +32,7 @@ const dynamics::Setting& setting_of(const dynamics::Choice& choice) {
   return choice.met ? choice.tried.back().setting : choice.reference;
 }
 
-/// What was chosen takes; more than anything where nothing was good enough.
+/// The work of the chosen setting; infinite if no setting was good enough.
 double work_of(const dynamics::Choice& choice) {
   return choice.met ? choice.tried.back().work : std::numeric_limits<double>::infinity();
 }
@@ -70,7 +70,7 @@ bool of_the_method(std::string_view key) {
          key == "contact.impulse_threshold_Ns";
 }
 
-/// "forces.random_N = 0.08", six digits: gatewalk scene shows more.
+/// "forces.random_N = 0.08", with six digits; gatewalk scene shows more.
 std::string with_value(const KeyInfo& k) {
   return k.key + fmt::format(" = {:.6g}", number_of(k.value));
 }
@@ -93,8 +93,8 @@ std::string derived_keys(const Scene& scene) {
 
 namespace {
 
-/// Keys that the scene leaves out and that would be others in a file with another
-/// forces.propulsion_N. An override leaves them as they are. Not those of the method.
+/// Keys that the scene leaves out and that would differ in a file with another forces.propulsion_N,
+/// without keys of the method. An override does not change them.
 std::vector<std::string> keys_that_follow_the_push(const Scene& scene) {
   constexpr std::string_view kPush = "forces.propulsion_N";
   const auto filled = [&](double push) {
@@ -172,7 +172,7 @@ std::optional<Settled> settle_method(Scene& scene, RunsFrom from, std::uint64_t 
                     done, trials);
         });
   };
-  // One method for all types of gates: the one that takes most work of those chosen for each.
+  // One method for all types of gates: of the methods chosen for each, the one with the most work.
   const FieldGates gates = gates_for(scene, from);
   settled.choice = chosen_for(scene.gate);
   for (std::size_t type = 1; type < gates.types().size(); ++type)

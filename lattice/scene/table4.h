@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Where trials through the field of a scene start: its own start, or the four of the paper's
-/// Table IV.
+/// Starts of trials through a scene's field: the scene's own start, or the four starts of the
+/// paper's Table IV.
 
 #include <vector>
 
@@ -9,26 +9,26 @@
 
 namespace gatewalk::lattice {
 
-/// A start with what Table IV prints of it.
+/// A start of Table IV, with the corrcoef and RMSE printed there.
 struct PaperStart {
   dynamics::Entry start;
   double corrcoef = 0.0, rmse = 0.0;
 };
-/// The four starts of Table IV, in the scene's own units, where field and start are the paper's;
-/// none in other scenes.
+/// The four starts of Table IV, in the scene's own units, if field and start are the paper's; else
+/// empty.
 [[nodiscard]] std::vector<PaperStart> table_iv_starts(const Scene& scene);
-/// The scene's start. Throws std::invalid_argument for one inside the gate: a chain's states are
-/// entries.
+/// The scene's start as an entry. Throws std::invalid_argument for a start inside the gate, because
+/// a chain's states are entries.
 [[nodiscard]] dynamics::Entry own_start(const Scene& scene);
-/// That of a body that enters so from below.
+/// The body that enters the first gate from below by this entry.
 [[nodiscard]] dynamics::BodyState body_at(const dynamics::Entry& entry);
 [[nodiscard]] std::vector<dynamics::BodyState> bodies_at(
     const std::vector<dynamics::Entry>& entries);
-/// Throws std::invalid_argument unless all of them lie between the sides of the scene's gates.
+/// Throws std::invalid_argument unless all starts lie between the sides of the scene's gates.
 void require_inside(const std::vector<dynamics::Entry>& starts, const Scene& scene);
 
-/// Body, beams, drag and field of the paper's Table IV, whatever the forces (it does not print
-/// them): only then do its numbers belong beside these.
+/// True if body, beams, drag and field are those of the paper's Table IV, whatever the forces,
+/// which Table IV does not print: only then can its numbers be compared.
 [[nodiscard]] bool like_table4(const Scene& scene);
 
 }  // namespace gatewalk::lattice

@@ -21,7 +21,7 @@ bool alike(const GateParams& a, const GateParams& b) {
                      [&](const dynamics::ParamInfo& info) { return info.get(a) == info.get(b); });
 }
 
-/// The gates that differ, and which of them each type of the terrain is.
+/// The different gates, and which of them each type of the terrain is.
 std::pair<std::vector<GateParams>, std::vector<int>> sorted_out(const Scene& scene) {
   std::vector<GateParams> gates{scene.gate};
   std::vector<int> types;
@@ -35,7 +35,7 @@ std::pair<std::vector<GateParams>, std::vector<int>> sorted_out(const Scene& sce
   return {std::move(gates), std::move(types)};
 }
 
-/// As TOML has it, in quotation marks where a part of it is more than letters, digits, _ and -.
+/// A key as TOML writes it, in quotation marks if a part has more than letters, digits, _ and -.
 std::string key_toml(const std::string& key) {
   constexpr std::string_view kBare =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";

@@ -16,7 +16,7 @@ namespace gatewalk::lattice {
 
 struct TomlFile::Parsed {
   std::string name, bytes;
-  std::string unreadable{};  // why, or what else the file is
+  std::string unreadable{};  // why the file cannot be read, or what else it is
   bool is_matrix = false;
   toml::table document{};
   std::string mistake{};  // why the text is no TOML
@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::string_view kStandardInput = "standard input", kMatrix = "\x89HDF\r\n\x1a\n";
 
-/// One byte more than is allowed, so that a larger file is noticed. Throws SceneError.
+/// Reads a file; reads one byte more than allowed, to detect a larger file. Throws SceneError.
 std::string read_all(std::FILE* file, const std::string& name) {
   std::string text(kMatrix.size(), '\0');
   errno = 0;
@@ -47,7 +47,8 @@ std::string read_all(const std::string& path) {
   return read_all(file.get(), path);
 }
 
-/// It can be read but once, and a later command of the process may ask for it again.
+/// The text of standard input, kept because it can be read only once and a later command of the
+/// process may ask for it again.
 const std::string& standard_input() {
   static const std::string text = read_all(stdin, std::string(kStandardInput));
   return text;

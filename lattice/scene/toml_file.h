@@ -1,36 +1,36 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A scene or cell file, read once and parsed once, whatever is asked of it.
+/// A scene or cell file that is read and parsed only once.
 
 #include <memory>
 #include <string>
 
 namespace gatewalk::lattice {
 
-/// Copies share what was read.
+/// A TOML file in memory. Copies share its contents.
 class TomlFile {
  public:
   /// Text in memory; `name` stands for the file in messages.
   TomlFile(std::string text, std::string name);
-  /// Opens and reads `path` (-: standard input, which a process reads but once). A file that cannot
-  /// be read, and a matrix, are refused by whoever asks for the text.
+  /// Reads `path` (-: standard input, which a process reads only once). A file that cannot be read,
+  /// and a matrix, are refused only when the text is asked for.
   [[nodiscard]] static TomlFile read(const std::string& path);
 
-  /// The file as messages call it.
+  /// The file's name in messages.
   [[nodiscard]] const std::string& name() const;
-  /// Whether the file begins as a matrix does (HDF5). Then no more of it was read.
+  /// True if the file begins as a matrix does (HDF5); then only its beginning was read.
   [[nodiscard]] bool is_matrix() const;
-  /// What was read: of a matrix its first bytes, of a file that is too large for a scene what
-  /// shows that, nothing of a file that cannot be read.
+  /// The bytes that were read: the first ones of a matrix, one more than allowed of a file that is
+  /// too large, none of a file that cannot be read.
   [[nodiscard]] const std::string& bytes() const;
-  /// Whether that is the whole file.
+  /// True if bytes() is the whole file.
   [[nodiscard]] bool is_whole() const;
-  /// The terrain map that the file names, its path as seen from here. Empty when it names none, and
-  /// for text that is no TOML.
+  /// Path of the terrain map that the file names, relative to the working folder. Empty if there is
+  /// none, or if the text is not TOML.
   [[nodiscard]] std::string map_file() const;
 
   struct Parsed;
-  /// Throws SceneError where the file cannot be read, or is a matrix.
+  /// The parsed document. Throws SceneError if the file cannot be read, or is a matrix.
   [[nodiscard]] const Parsed& parsed() const;
 
  private:

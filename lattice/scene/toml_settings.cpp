@@ -12,8 +12,8 @@
 namespace gatewalk::lattice {
 namespace {
 
-// Every level of a dotted key costs a dot and, in the parser's destructors, stack. Brackets are
-// limited by the parser itself (256 deep).
+// Every level of a dotted key costs a dot and, in the parser's destructors, stack space. The parser
+// itself limits brackets (256 deep).
 constexpr int kMaxDots = 2000;
 
 void refuse_deep_nesting(std::string_view text, const Origin& origin) {
@@ -62,7 +62,7 @@ Override parse_override(const std::string& given,
   const std::string name(trimmed(std::string_view(given).substr(0, equals)));
   std::string value(trimmed(std::string_view(given).substr(equals + 1)));
 
-  // A bare word for a text key: quotes seldom survive a shell.
+  // A bare word for a text key: shells often remove quotes.
   if (is_text(name) && value.find_first_of("\"'") == value.npos) value = "\"" + value + "\"";
   return {begin, parse_toml(name + " = " + value, [&](std::size_t) { return begin; })};
 }
@@ -110,7 +110,7 @@ namespace {
 
 constexpr const char* kLine = "must be KEY = VALUE, as in body.mass_kg = 0.25";
 
-/// Everything before row `line`, and the row.
+/// The text before row `line`, and the row.
 struct Split {
   std::string_view before, row;
 };
@@ -129,12 +129,13 @@ std::optional<toml::table> parsed(std::string_view text) {
   }
 }
 
-/// The line in which `before` gives what `again` gives; 0: none.
+/// The line in which `before` gives a key that `again` gives too; 0: none.
 std::size_t first_given(const toml::table& before, const toml::table& again) {
   for (const auto& [key, node] : again) {
     const toml::node* const there = before.get(key.str());
     if (!there) continue;
-    if (node.is_array_of_tables() && there->is_array_of_tables()) {  // the last [[NAME]] of each
+    // compares the last [[NAME]] of each
+    if (node.is_array_of_tables() && there->is_array_of_tables()) {
       const toml::node &last = there->as_array()->back(), &own = node.as_array()->back();
       if (const std::size_t line = first_given(*last.as_table(), *own.as_table())) return line;
       continue;
@@ -146,7 +147,7 @@ std::size_t first_given(const toml::table& before, const toml::table& again) {
   return 0;
 }
 
-/// Of a row that is TOML by itself.
+/// The message that a row gives a key twice; the row is valid TOML on its own.
 std::string given_twice(const Split& split) {
   const std::size_t header = split.before.rfind("\n[");
   std::string_view table = split.before.starts_with('[') ? split.before : std::string_view();
@@ -161,8 +162,8 @@ std::string given_twice(const Split& split) {
                   : "does not fit what the lines before it give";
 }
 
-/// Whether `text` ends inside an inline table { }: not in an array within one, where lines may
-/// break. Strings and comments may have any brackets.
+/// True if `text` ends inside an inline table { }, but not in an array in it, where lines may
+/// break. Strings and comments may contain any brackets.
 bool ends_in_inline_table(std::string_view text) {
   std::string open;
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -187,7 +188,7 @@ std::string mistake_in_value(std::string_view value) {
   if (value.empty() || value[0] == '#') return "has no value";
   if (value[0] == '"' || value[0] == '\'')
     return "text must stand between two quotation marks, as in \"auto\"";
-  constexpr std::ptrdiff_t kDeep = 256;  // as deep as the parser goes
+  constexpr std::ptrdiff_t kDeep = 256;  // the parser's limit of depth
   if (std::count(value.begin(), value.end(), value[0]) >= kDeep) return "is nested too deeply";
   if (value[0] == '{') return "a table must be [NAME] on a line of its own, its keys below it";
   if (value[0] == '[') return "an array must stand in brackets, with commas between, as in [1, 2]";
@@ -214,7 +215,7 @@ std::string text_row(std::string_view text, std::size_t line) {
 std::string toml_mistake(std::string_view text, std::size_t line) {
   const Split split = split_at(text, line);
   const std::string_view row = trimmed(split.row);
-  // A comment may have any text but such.
+  // A comment may contain any text except this.
   if (!parsed("# " + std::string(row)))
     return "has letters that are not UTF-8, or control characters";
   if (ends_in_inline_table(text.substr(0, split.before.size() + split.row.size())))

@@ -13,11 +13,11 @@
 namespace gatewalk::lattice {
 namespace {
 
-/// How a key's own unit is written behind it, without its prefix, and how it is shown.
+/// How keys end with their unit, without its prefix, and how messages show the unit.
 struct UnitName {
   std::string_view prefix, written, shown;
 };
-// Longer ones before those that they end in.
+// Longer units before those that they end in.
 constexpr std::array<UnitName, 10> kUnitNames{{{"", "Nms_per_rad", "N m s/rad"},
                                                {"", "Nm_per_rad", "N m/rad"},
                                                {"", "Ns_per_m", "N s/m"},
@@ -43,7 +43,7 @@ std::string unit_text(std::string_view a, std::string_view b, std::string_view c
   return text;
 }
 
-/// A key without its unit and the '_' before it.
+/// A key split into its stem and its unit.
 struct UnitEnd {
   std::string_view stem;
   const UnitName* name;

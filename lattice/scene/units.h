@@ -8,29 +8,29 @@
 
 namespace gatewalk::lattice {
 
-/// The unit in which a value is given.
+/// The unit of a given value, relative to the key's own unit.
 struct KeyUnit {
-  int power = 0;      // the value in the key's own unit is the given one times 10^power
+  int power = 0;      // value in the key's own unit = given value times 10^power
   std::string shown;  // "cm", "mN m/rad"; empty for a pure number
 };
 
-/// The unit of `given`, a spelling of `key`: itself, or `key` with another prefix in front of its
-/// unit, k, c (lengths and speeds), m, u, n, or none. None where it is no spelling of `key`.
+/// The unit of `given`, which spells `key` as it is, or with another prefix of its unit: k, c
+/// (lengths and speeds), m, u, n, or none. nullopt if `given` is no spelling of `key`.
 [[nodiscard]] std::optional<KeyUnit> unit_of(std::string_view given, std::string_view key);
 
-/// What a value in `unit` is in the key's own: x as the decimal number of the fewest digits that
-/// reads as x, with another exponent. 6.1 cm is 0.061 m to the last bit; a number given with more
-/// than 15 digits is rounded twice.
+/// A value in `unit`, converted to the key's own unit: the shortest decimal number that reads as x,
+/// with another exponent. 6.1 cm is 0.061 m to the last bit; a number given with more than 15
+/// digits is rounded twice.
 [[nodiscard]] double in_own_unit(double x, const KeyUnit& unit);
-/// The other way.
+/// A value in the key's own unit, converted to `unit`.
 [[nodiscard]] double in_given_unit(double x, const KeyUnit& unit);
 
-/// "_km, _m, _cm, _mm, _um or _nm" where `given` is `key` with an unknown unit; else empty.
+/// "_km, _m, _cm, _mm, _um or _nm" if `given` is `key` with an unknown unit; else empty.
 [[nodiscard]] std::string units_instead(std::string_view given, std::string_view key);
 
-/// The key of a scene that `given` is, in whatever unit it is spelled: "body.radius_m" for
-/// "body.radius_cm" (scene.cpp has the table of keys). Throws SceneError for none; `origin` begins
-/// the message.
+/// The key of a scene that `given` spells in any unit: "body.radius_m" for "body.radius_cm"
+/// (scene.cpp has the table of keys). Throws SceneError for an unknown key; `origin` begins the
+/// message.
 [[nodiscard]] std::string known_key(const std::string& given, const std::string& origin);
 
 }  // namespace gatewalk::lattice

@@ -23,7 +23,7 @@ using dynamics::Work;
 
 double square(double x) { return x * x; }
 
-/// What is asked of every matrix.
+/// What every matrix has to predict.
 struct Questions {
   markov::Field field;
   int max_gates = 0;
@@ -36,13 +36,13 @@ struct Questions {
   }
 };
 
-/// What one matrix says about one start.
+/// The prediction of one matrix from one start.
 struct Said {
   CellProbabilities exact;
   ChainAnswer answer;
 };
 
-/// A matrix made ready for questions, and what that took.
+/// A matrix made ready for predictions, and the time that took.
 class Asked {
  public:
   explicit Asked(const Transitions& matrix) {
@@ -80,8 +80,8 @@ class Asked {
   double freezing_seconds_ = 0.0, table_seconds_ = 0.0;
 };
 
-/// By start: how far predictions from matrices drawn anew are from those of the matrices that they
-/// are drawn from, as mean total variation. `said` by matrix, then start.
+/// By start: the mean total variation between predictions of resampled matrices and of the matrices
+/// that they are resampled from. `said`: by matrix, then start.
 std::vector<double> sampling_of(const std::vector<Transitions>& matrices, const Questions& q,
                                 const std::vector<std::vector<Said>>& said, const Work& work) {
   std::vector<std::optional<markov::Predictor>> others(kMatricesDrawnAnew);
@@ -101,7 +101,7 @@ std::vector<double> sampling_of(const std::vector<Transitions>& matrices, const 
   return sampling;
 }
 
-/// Means over what the matrices say about one start; times are the first matrix's.
+/// The mean of the matrices' predictions from one start; times are those of the first matrix.
 ChainAnswer mean_answer(const std::vector<std::vector<Said>>& said, std::size_t start,
                         const FieldTruth& truth, double sampling) {
   const auto n = static_cast<double>(said.size());
@@ -121,7 +121,8 @@ ChainAnswer mean_answer(const std::vector<std::vector<Said>>& said, std::size_t 
   for (const auto& by_matrix : said)
     squares += square(by_matrix[start].answer.exact.total_variation - a.exact.total_variation);
   a.exact_sd = std::sqrt(squares / (n - 1.0));  // 0/0 for one matrix
-  // Independent errors add up in squares: the matrices', the truth's, and what is not chance.
+  // Squares of independent errors add up: those of the matrices, of the truth, and the systematic
+  // rest.
   a.bins = std::sqrt(std::max(0.0, square(total_variation(mean, truth.p)) - square(sampling) / n -
                                        square(truth.floor.total_variation)));
   return a;
@@ -171,7 +172,7 @@ ChainAnswers ask_matrices(const std::vector<Transitions>& matrices, const FieldP
   for (const FieldTruth& t : truths)
     q.starts.push_back(chain_start(matrices[0].space, field, t.start).start);
 
-  // The first one alone, for its times.
+  // The first matrix runs alone, so that its times are undisturbed.
   const std::int64_t count = std::ssize(matrices);
   std::vector<std::optional<Asked>> asked(count);
   asked[0].emplace(matrices[0]);

@@ -29,13 +29,13 @@ using dynamics::TrialRange;
 using dynamics::Work;
 
 constexpr std::int64_t kMostMatrices = 8;         // per point, of different trials
-constexpr double kTimingSeconds = 0.5;            // work that a cost per run is measured on
+constexpr double kTimingSeconds = 0.5;            // work on which a cost per run is measured
 constexpr std::int64_t kDirectDraws = 5'000'000;  // trials drawn per point of direct simulation
 
 // ---- Time ----
 
-/// Mean CPU seconds per item on one thread, from batches until they took kTimingSeconds or all of
-/// `most` are done; `batch` items at a time.
+/// Mean CPU seconds per item on one thread. Runs batches of `batch` items until they took
+/// kTimingSeconds, or all of `most` items are done.
 template <class Run>
 double seconds_per_item(const Work& work, std::int64_t most, std::int64_t batch, const Run& run) {
   const auto ms = [](double seconds) { return std::llround(1e3 * seconds); };
@@ -51,13 +51,13 @@ double seconds_per_item(const Work& work, std::int64_t most, std::int64_t batch,
   return seconds / static_cast<double>(items);
 }
 
-/// Work of several kinds, told as one by the time that each takes on one thread.
+/// Work of several kinds, reported as one in proportion to each kind's time on one thread.
 class TimedWork {
  public:
   TimedWork(const Work& work, double ms)
       : work_(work), total_(std::max<std::int64_t>(1, std::llround(ms))) {}
 
-  /// Items that take `each` ms.
+  /// Runs items that take `each` ms.
   void in_pieces(double each, std::int64_t items, const std::function<void(TrialRange)>& run) {
     const Work part{[&](std::string_view, std::int64_t done, std::int64_t) {
       tell(done_ + each * static_cast<double>(done));
@@ -65,7 +65,7 @@ class TimedWork {
     part.in_pieces("", items, run);
     done_ += each * static_cast<double>(items);
   }
-  /// What takes little beside the rest: told as no more, but may be stopped.
+  /// For short work: does not advance the report, but can be stopped.
   [[nodiscard]] Work beside() const {
     return {[this](std::string_view, std::int64_t, std::int64_t) { tell(done_); }};
   }
@@ -83,7 +83,7 @@ class TimedWork {
 
 // ---- The plan ----
 
-/// The pilot's states for each factor, or the usual ones refined.
+/// Curves with the pilot's states for each factor, or with the usual states refined.
 std::vector<ChainCurve> curves_of(const Scene& scene, const std::vector<double>& factors,
                                   const Pilot* pilot) {
   const StateSpace fixed = fixed_space(scene);
@@ -102,7 +102,7 @@ std::vector<ChainCurve> curves_of(const Scene& scene, const std::vector<double>&
 
 // ---- Carrying it out ----
 
-/// Begins the truths: as many trials as it takes to time one.
+/// Starts the truths: runs as many trials as are needed to time one.
 void begin_truths(ChainErrorChart& chart, const Scene& scene, const Work& work) {
   const StateSpace space = fixed_space(scene);
   for (const dynamics::Entry& start : chart.options.starts) {
@@ -116,7 +116,8 @@ void begin_truths(ChainErrorChart& chart, const Scene& scene, const Work& work) 
   }
 }
 
-/// Where rows of visited curves start, seen in trials of their own: they follow those of the truth.
+/// Fills in where the rows of visited curves start, from separate trials that follow those of the
+/// truth.
 void see_entries(ChainErrorChart& chart, const Scene& scene, const Work& work) {
   if (std::none_of(chart.curves.begin(), chart.curves.end(),
                    [](const ChainCurve& c) { return c.visited; }))
@@ -157,7 +158,7 @@ void time_gate_runs(ChainErrorChart& chart, const Scene& scene, const Work& work
   }
 }
 
-/// Of one thread, for truths and matrices.
+/// Milliseconds of one thread that truths and matrices still need.
 double milliseconds_left(const ChainErrorChart& chart) {
   double ms = 0.0;
   for (const ChainCurve& curve : chart.curves)
@@ -183,11 +184,12 @@ void finish_truths(ChainErrorChart& chart, const Scene& scene, TimedWork& work) 
   }
 }
 
-/// Transitions of consecutive ranges of trials, from which those of any longer range between their
-/// borders are put together.
+/// Transitions of consecutive ranges of trials, which can be merged to any longer range between
+/// their borders.
 class Ranges {
  public:
-  /// Borders for kMostMatrices matrices, as far as they go, of every number of trials in `wanted`.
+  /// Borders of kMostMatrices matrices, as far as the trials reach, for every number of trials in
+  /// `wanted`.
   explicit Ranges(const std::vector<std::int64_t>& wanted) {
     for (const std::int64_t n : wanted)
       for (std::int64_t k = 0; k <= kMostMatrices && k * n <= wanted.back(); ++k)
@@ -195,7 +197,7 @@ class Ranges {
   }
   [[nodiscard]] const std::set<std::int64_t>& borders() const { return borders_; }
   void add(Transitions part) { parts_.push_back(std::move(part)); }
-  /// Matrices of `trials` each, of different trials.
+  /// Matrices with `trials` trials each, all from different trials.
   [[nodiscard]] std::vector<Transitions> matrices(std::int64_t trials) const {
     std::vector<Transitions> all;
     auto part = parts_.begin();
@@ -212,7 +214,7 @@ class Ranges {
 
  private:
   std::set<std::int64_t> borders_;
-  std::vector<Transitions> parts_;  // between two borders each
+  std::vector<Transitions> parts_;  // one per pair of neighbouring borders
 };
 
 void add_points(ChainErrorChart& chart, std::size_t place, const Scene& scene, TimedWork& work) {
@@ -241,7 +243,7 @@ void add_points(ChainErrorChart& chart, std::size_t place, const Scene& scene, T
   }
 }
 
-/// Predictions until one would take more runs than the limit.
+/// Predictions by trees for each accuracy, until one would take more runs than the limit.
 std::vector<TreePoint> tree_points(const ChainErrorChart& chart, const Scene& scene,
                                    const FieldTruth& truth, dynamics::Health& health,
                                    const Work& work) {
@@ -277,7 +279,7 @@ std::vector<TreePoint> tree_points(const ChainErrorChart& chart, const Scene& sc
   return points;
 }
 
-/// Numbers of trials 1, 2, 5, 10, ... whose cost covers [low, high] seconds.
+/// Direct simulation with 1, 2, 5, 10, ... trials, over the costs [low, high] in seconds.
 std::vector<DirectSimulation> direct_simulation(const FieldTruth& truth, double low, double high,
                                                 std::uint64_t seed, const Work& work) {
   std::vector<DirectSimulation> curve;
@@ -288,7 +290,7 @@ std::vector<DirectSimulation> direct_simulation(const FieldTruth& truth, double 
     if (i > 0 && i % 3 == 0) decade *= 10.0;
     const auto trials = static_cast<std::int64_t>(kSteps[i % 3] * decade);
     const double seconds = truth.seconds_per_trial * static_cast<double>(trials);
-    if (2.5 * seconds < low) continue;  // the next one is below as well
+    if (2.5 * seconds < low) continue;  // the next number of trials is below as well
     work.tell("direct simulation", 0, 1);
     const std::int64_t n = truth.as_against_exact(trials);
     const std::int64_t draws = std::clamp<std::int64_t>(kDirectDraws / n, 10, 2000);
@@ -324,7 +326,7 @@ ChainErrorPlan plan_chain_error(const Scene& scene, const ChainErrorOptions& opt
   plan.pilot_trials = options.visited.value_or(from_pilot ? kPilotTrials : 0);
   if (from_pilot) {
     for (const double factor : options.factors)
-      (void)states_for(factor);  // refused before the pilot
+      (void)states_for(factor);  // throws before the pilot runs
     const Pilot pilot = run_pilot(scene, bodies, plan.pilot_trials, options.seed, work);
     plan.health = pilot.health;
     plan.curves = curves_of(scene, options.factors, &pilot);
@@ -347,7 +349,7 @@ ChainErrorChart chart_chain_error(const Scene& scene, ChainErrorPlan plan, const
   if (plan.empty())
     throw std::invalid_argument("chart_chain_error: no matrix within the limit of runs");
   ChainErrorChart chart{std::move(plan)};
-  // Costs first: they say how long the rest will take.
+  // First measures costs, which predict how long the rest will take.
   begin_truths(chart, scene, work);
   see_entries(chart, scene, work);
   time_gate_runs(chart, scene, work);
@@ -355,7 +357,7 @@ ChainErrorChart chart_chain_error(const Scene& scene, ChainErrorPlan plan, const
   TimedWork rest(work, milliseconds_left(chart));
   finish_truths(chart, scene, rest);
   for (std::size_t c = 0; c < chart.curves.size(); ++c) add_points(chart, c, scene, rest);
-  for (const FieldTruth& truth : chart.truths)  // tells of its own runs
+  for (const FieldTruth& truth : chart.truths)  // tree_points reports its own runs
     chart.trees.push_back(tree_points(chart, scene, truth, chart.health, work));
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
     const auto [low, high] = std::minmax_element(
@@ -372,7 +374,7 @@ ChainSummary summary_of(const ChainErrorChart& chart, std::size_t start) {
   ChainSummary s;
   const auto& points = chart.points;
   const auto visited = [&](std::size_t i) { return chart.curves[points[i].curve].visited; };
-  // The first point is of uniform starts: those curves come first.
+  // The first point has uniform starts, because those curves come first.
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!visited(i) && points[i].error(start) < points[s.best].error(start)) s.best = i;
     if (visited(i) &&

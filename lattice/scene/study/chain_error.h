@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The chain's error against its cost: matrices of coarser and finer bins and of few or many trials
-/// a row, and trees, against the full dynamics, beside direct simulation at the same cost. All
-/// seconds are CPU time of one thread.
+/// The chain's error against its cost: matrices with coarser and finer bins and with few or many
+/// trials per row, and trees, compared with the full dynamics and with direct simulation at the
+/// same cost. All times are CPU seconds of one thread.
 
 #include <array>
 #include <cstdint>
@@ -18,30 +18,30 @@
 
 namespace gatewalk::lattice {
 
-/// One space of states, and one way to start the trials of its rows.
+/// One state space, and one way to choose where the runs of its rows start.
 struct ChainCurve {
   double factor = 1.0;  // bins per axis, as a multiple of the usual ones
   dynamics::StateSpace space;
-  bool visited = false;                // charted beside a curve of uniform starts
-  dynamics::Entries entries{};         // where rows start, as bodies were seen to enter; empty:
-                                       // uniform
-  std::vector<std::int64_t> trials{};  // per row, those within the limit
-  double pilot_seconds = 0.0;          // of the full trials that saw the entries
+  bool visited = false;  // starts as bodies enter, besides a curve with uniform starts
+  /// where the runs of the rows start, as bodies entered; empty: uniform
+  dynamics::Entries entries{};
+  std::vector<std::int64_t> trials{};  // per row, within the limit of runs
+  double pilot_seconds = 0.0;          // of the full trials that gave the entries
   double seconds_per_run = 0.0;
 
-  /// Of one trial of every row.
+  /// Time for one trial of every row, s.
   [[nodiscard]] double seconds_per_trial() const {
     return seconds_per_run * static_cast<double>(dynamics::runs_per_trial(space));
   }
 };
 
-/// One way to make a matrix, bins and trials per row, and what matrices made so say.
+/// One kind of matrix, with its bins and trials per row, and the predictions of such matrices.
 struct ChainPoint : ChainAnswers {
   std::size_t curve = 0;
   std::int64_t trials = 0;     // per row
-  double build_seconds = 0.0;  // one matrix, with the trials that saw where its rows start
+  double build_seconds = 0.0;  // one matrix, including the trials that show where rows start
 
-  /// One matrix and one prediction.
+  /// Time of one matrix and one prediction from start number `start`, s.
   [[nodiscard]] double seconds(std::size_t start) const {
     return build_seconds + answers[start].exact_seconds;
   }
@@ -50,7 +50,7 @@ struct ChainPoint : ChainAnswers {
   }
 };
 
-/// Direct simulation with n trials, drawn from the truth; errors as_against_exact(n).
+/// Direct simulation with n trials, drawn from the truth; errors are those of as_against_exact(n).
 struct DirectSimulation {
   std::int64_t trials = 0;
   double seconds = 0.0;
@@ -58,82 +58,83 @@ struct DirectSimulation {
   FinalGateError formula;  // expected_total_variation and the noise floor
 };
 
-/// Predictions of one start by trees, each with trials of its own, to an accuracy asked for; means
-/// over kTreePredictions.
+/// Predictions from one start by trees, each from its own trials, with an accuracy asked for; means
+/// over kTreePredictions predictions.
 struct TreePoint {
   double accuracy = 0.0, gate_runs = 0.0, states = 0.0;
   double seconds = 0.0;  // of runs, chain and error bar
   FinalGateError error;
-  double error_95 = 0.0;  // what they said: total variation
+  double error_95 = 0.0;  // the error bar of the predictions: total variation
 };
 
 // ---- The chart ----
 
-/// What trees are asked for, as far as the limit of runs allows, and how often.
+/// The accuracies asked of trees, within the limit of runs, and the number of predictions for each.
 inline constexpr std::array<double, 4> kTreeAccuracies{0.1, 0.05, 0.02, 0.01};
 inline constexpr std::int64_t kTreePredictions = 4;
 
-/// Trials per row that are charted, as far as the limit of runs allows.
+/// Trials per row that are charted, within the limit of runs.
 inline constexpr std::array<std::int64_t, 10> kChainTrials{10,  20,   50,   100,  200,
                                                            500, 1000, 2000, 5000, 10'000};
 
+/// What is to be charted.
 struct ChainErrorOptions {
   std::vector<dynamics::Entry> starts;
   std::vector<double> factors{0.5, 1.0, 2.0,
-                              4.0};     // bins per axis, as a multiple of the usual ones
+                              4.0};     // bins per axis, as a multiple of the usual number
   std::int64_t truth_trials = 100'000;  // of the full dynamics, per start
-  std::int64_t runs_limit = 1'000'000;  // gate runs that one matrix or tree may take
-  /// Full trials per start whose entries rows start from, on curves of their own. Rows of bins that
-  /// are made from what is seen always start so; without a number, from kPilotTrials.
+  std::int64_t runs_limit = 1'000'000;  // most gate runs for one matrix or tree
+  /// Full trials per start whose entries give the starts of rows, on additional curves. Bins made
+  /// from entries always start so, by default from kPilotTrials.
   std::optional<std::int64_t> visited{};
   std::uint64_t seed = 1;
 };
 
-/// What is to be charted.
+/// The curves to be charted.
 struct ChainErrorPlan {
   ChainErrorOptions options;
   BinsChoice bins{};
-  std::int64_t pilot_trials = 0;  // per start; 0: none
+  std::int64_t pilot_trials = 0;  // per start; 0: no pilot
   std::vector<ChainCurve> curves{};
   dynamics::Health health{};  // of the pilot that bins were made from
 
-  /// Not a single matrix within the limit of runs.
+  /// True if not a single matrix is within the limit of runs.
   [[nodiscard]] bool empty() const;
 };
-/// Curves by their factor, those of uniform starts first. Runs the pilot that bins are made from,
-/// if they are. Throws std::invalid_argument for a start inside the gate and for a factor that
-/// makes no state or too many; InvalidParameter as dynamics::table3_space.
+/// Plans the curves by factor, those with uniform starts first. Runs the pilot if bins are made
+/// from one. Throws std::invalid_argument for a start inside the gate, and for a factor that gives
+/// no state or too many; InvalidParameter as dynamics::table3_space.
 [[nodiscard]] ChainErrorPlan plan_chain_error(const Scene& scene, const ChainErrorOptions& options,
                                               const dynamics::Work& work = {});
 
-/// A plan carried out. Its health is that of all runs.
+/// The results of a plan, with the health of all runs.
 struct ChainErrorChart : ChainErrorPlan {
   std::vector<FieldTruth> truths{};                     // by start
   std::vector<ChainPoint> points{};                     // by curve, then trials
   std::vector<std::vector<TreePoint>> trees{};          // by start, then accuracy
   std::vector<std::vector<DirectSimulation>> direct{};  // by start
 };
-/// All but the times is the same on any number of threads. Throws std::invalid_argument for an
-/// empty plan, and std::runtime_error when a run broke.
+/// Carries out a plan. Only the times depend on the number of threads. Throws std::invalid_argument
+/// for an empty plan, and std::runtime_error if a run broke.
 [[nodiscard]] ChainErrorChart chart_chain_error(const Scene& scene, ChainErrorPlan plan,
                                                 const dynamics::Work& work = {});
 
 // ---- What it comes to ----
 
-/// Points this near to the smallest error, as a multiple of it, are as good.
+/// Points with at most this multiple of the smallest error count as equally good.
 inline constexpr double kNearBest = 1.5;
 
-/// For one start; points by their place in the chart. The chain is the one of uniform starts (or of
-/// bins that are made from what is seen).
+/// Summary for one start; points are indices in the chart. "The chain" is the one with uniform
+/// starts (or with bins made from entries).
 struct ChainSummary {
   static constexpr double kNever = std::numeric_limits<double>::infinity();
-  std::size_t best = 0;           // smallest error
-  std::size_t cheapest = 0;       // cheapest within kNearBest of it
-  double pays_from = kNever;      // s, the first cost at which no direct simulation is as good
-  double pays_until = 0.0;        // s, from here on direct simulation is better than any point
-  double starts_to_pay = kNever;  // predictions for which `cheapest` costs less than direct
-                                  // simulation
-  std::optional<std::size_t> best_visited{};  // smallest error with rows started as bodies enter
+  std::size_t best = 0;       // smallest error
+  std::size_t cheapest = 0;   // the cheapest point within kNearBest of the smallest error
+  double pays_from = kNever;  // s, the lowest cost at which no direct simulation is as good
+  double pays_until = 0.0;    // s, from this cost on direct simulation is better than any point
+  /// Number of predictions from which on `cheapest` costs less than direct simulation.
+  double starts_to_pay = kNever;
+  std::optional<std::size_t> best_visited{};  // smallest error with rows that start as bodies enter
 };
 [[nodiscard]] ChainSummary summary_of(const ChainErrorChart& chart, std::size_t start);
 

@@ -26,8 +26,8 @@ PairedChange change_of(const FidelityRun& variant, const FidelityRun& base, std:
                        {base.final_gates, base.tally.final_cells}, seed);
 }
 
-/// Seconds per trial of every variant. The same trials by every one in turn, so that a busy moment
-/// of the machine hits them alike.
+/// Seconds per trial of every variant. The variants run the same trials in turn, so that other load
+/// on the machine affects all alike.
 std::vector<double> time_trials(const std::vector<FidelityVariant>& variants,
                                 const dynamics::BodyState& start, const dynamics::StateSpace& space,
                                 const FidelityOptions& options, const dynamics::Work& work) {
@@ -88,12 +88,12 @@ std::vector<FidelityVariant> fidelity_variants(const Scene& scene) {
     s.gate.run.method = method;
     if (!s.named.contains("run.step_s")) s.gate.run.step = dynamics::default_step(s.gate);
     validate(s.gate, s.field);
-    (void)dynamics::make_method(s.gate);  // refuses gates that it cannot run
+    (void)dynamics::make_method(s.gate);  // throws for gates that the method cannot run
     all.push_back({std::move(s)});
   };
   for (const Fidelity f : {Fidelity::active, Fidelity::remember, Fidelity::all}) add(f, "moreau");
   add(Fidelity::active, dynamics::GateParams{}.run.method);
-  (void)dynamics::table3_space(scene.gate);  // refuses gates too short for their beams
+  (void)dynamics::table3_space(scene.gate);  // throws for gates too short for their beams
   return all;
 }
 

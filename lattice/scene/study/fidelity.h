@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What beams that remember, and beams of neighbouring gates, change in the final gates, and what
-/// they cost: the full dynamics at every fidelity under the same noise.
+/// The effect of beams that keep moving, and of the beams of neighbouring gates, on the final
+/// gates, and their cost: the full dynamics at every fidelity under the same noise.
 
 #include <algorithm>
 #include <cstdint>
@@ -16,44 +16,47 @@
 
 namespace gatewalk::lattice {
 
-/// What is run.
+/// A scene with one fidelity and method.
 struct FidelityVariant {
   Scene scene;
 
   [[nodiscard]] std::string name() const;  // "active (moreau)"
 };
 /// The scene at fidelity active, remember and all by method moreau, and at active by the default
-/// method, which shows what another integrator changes. The first one is what the others are
-/// compared with. Their step is the scene's if it names run.step_s, else the method's default.
-/// Throws InvalidParameter when one of them cannot be run.
+/// method, which shows the effect of another integrator. The first variant is the reference. The
+/// step is run.step_s if the scene gives it, else the method's default. Throws InvalidParameter if
+/// a variant cannot be run.
 [[nodiscard]] std::vector<FidelityVariant> fidelity_variants(const Scene& scene);
 
-/// One variant from one start.
+/// The trials of one variant from one start.
 struct FidelityRun {
   FieldTally tally;
-  std::vector<std::int32_t> final_gates{};  // of each trial, as FieldTrials has them
+  std::vector<std::int32_t> final_gates{};  // (trials) row * columns + column
   double seconds_per_trial = 0.0;           // wall clock
-  std::optional<PairedChange> change{};     // against the first variant, which has none
+  std::optional<PairedChange> change{};     // against the first variant, which itself has none
 };
 
+/// The trials of all variants from one start.
 struct FidelityOfStart {
   dynamics::BodyState start;
-  std::vector<FidelityRun> runs;  // as the variants
+  std::vector<FidelityRun> runs;  // one per variant
 
-  /// Whether active is enough from here: the worse of what remember and all say.
+  /// Whether fidelity active is enough from this start: the worse of the verdicts of remember and
+  /// all.
   [[nodiscard]] Sufficiency active_is() const {
     return std::max(runs[1].change->without_is(), runs[2].change->without_is());
   }
 };
 
+/// The results of compare_fidelities().
 struct FidelityStudy {
   std::vector<FidelityVariant> variants;
   std::int64_t trials = 0;              // per start and variant
-  int threads = 0;                      // that seconds_per_trial had
-  std::vector<FidelityOfStart> starts;  // as the options'
+  int threads = 0;                      // while seconds_per_trial was measured
+  std::vector<FidelityOfStart> starts;  // one per start of the options
 
   [[nodiscard]] dynamics::Health health(std::size_t variant) const;  // over all starts
-  [[nodiscard]] bool clean() const;                                  // of every variant
+  [[nodiscard]] bool clean() const;  // true if all variants are clean
 };
 
 struct FidelityOptions {
@@ -61,11 +64,11 @@ struct FidelityOptions {
   std::int64_t trials = 100;  // per start and variant
   std::uint64_t seed = 1;
 };
-/// A time per trial is the least of so many repeats, the variants' in turn.
+/// The time per trial is the least of this number of repeats; the variants take turns.
 inline constexpr std::int64_t kFidelityRepeats = 5;
 
-/// Runs the variants (fidelity_variants) from every start, and times them. All but the times is the
-/// same for any number of threads.
+/// Runs the variants (fidelity_variants) from every start, and times them. Only the times depend on
+/// the number of threads.
 [[nodiscard]] FidelityStudy compare_fidelities(const std::vector<FidelityVariant>& variants,
                                                const FidelityOptions& options,
                                                const dynamics::Work& work = {});

@@ -15,14 +15,14 @@
 namespace gatewalk::lattice {
 namespace {
 
-/// At least so many trials are looked at by a better method: the few that are kept would show
-/// nothing of one.
+/// The least size of the sample that is run again by a better method: the few recorded trials alone
+/// would show nothing of it.
 constexpr std::int64_t kCheckedAs = 500;
 
-/// The word for who is out of the field, whichever way.
+/// The word for all endings outside the field.
 constexpr std::string_view kDeparted = "departed";
 
-/// The end of a trial that was not finite has no name in the tables.
+/// The name of an ending; a trial that became non-finite has none in the tables.
 std::string field_ending(std::optional<markov::Ending> ending) {
   if (!ending) return "not finite";
   for (const EndingName& e : kEndingNames)
@@ -34,8 +34,8 @@ bool has_departed(std::string_view ending) {
   return ending == "crossed" || ending == "left side" || ending == "right side";
 }
 
-/// Energies of the trial when those of this gate are `now`, and what was done before it is
-/// `before`.
+/// The energies of the whole trial, from those of the current gate, `now`, and those of the gates
+/// before, `before`.
 dynamics::Energies together(const dynamics::Energies& before, dynamics::Energies now) {
   now.propulsion_work += before.propulsion_work;
   now.random_work += before.random_work;
@@ -51,7 +51,8 @@ void append(Recording& r, const dynamics::GateTrace& trace, int i_x, int i_y, in
     const Moment& last = r.moments.back();
     before = last.energy;
     clock = last.time;
-    // The old gate's beams stay behind with what they had; the new ones are at rest.
+    // The beams of the old gate stay behind with their energy; the beams of the new gate are at
+    // rest.
     before.lost += last.energy.mechanical() - trace.samples.front().energy.mechanical();
   }
   for (const dynamics::TraceSample& s : trace.samples)
@@ -62,7 +63,7 @@ std::string named(std::int64_t first, std::int64_t last) {
   return "trials " + std::to_string(first) + " to " + std::to_string(last);
 }
 
-/// `fit`: so many trials can be recorded together; 0: the first one cannot.
+/// `fit`: number of trials that can be recorded together; 0: not even the first one.
 std::invalid_argument too_long(const std::string& what, const Scene& scene, bool across_field,
                                std::int64_t fit) {
   std::vector<std::string> ways;

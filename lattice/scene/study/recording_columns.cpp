@@ -48,7 +48,7 @@ double landscape_beside(const Line& l, Side side) {
                                {side == kLeft, side == kRight});
 }
 
-/// When, where and how fast.
+/// Time, place and velocity.
 Columns motion() {
   return {
       {"trial", kCounted, "number of the trial",
@@ -77,7 +77,7 @@ Columns motion() {
   };
 }
 
-/// Who pushes, and what touches.
+/// Forces, and the contacts of the body.
 Columns forces_and_contacts() {
   const std::vector<std::string_view> modes{"free", "hit", "held"}, parts{"side", "tip", "joint"};
   return {
@@ -103,7 +103,7 @@ Columns forces_and_contacts() {
   };
 }
 
-/// Where the energy is, and the landscape at that place.
+/// Energies, and the landscape at the body's place.
 Columns energies() {
   return {
       {"kinetic_body_J", "J", "kinetic energy of the body", energy(&Energies::body)},

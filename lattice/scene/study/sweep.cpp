@@ -36,7 +36,8 @@ double number_in(const std::string& text, const Variation& v) {
   return x;
 }
 
-/// "4:1:9": 4, 5, ... 9; "4:9" in steps of 1, as in MATLAB; or values between commas.
+/// The values of a variation: "4:1:9" is 4, 5, ... 9; "4:9" has steps of 1, as in MATLAB; or values
+/// between commas.
 SweepAxis axis_of(const Variation& v) {
   SweepAxis axis{v.key, {}};
   const auto ends = split(v.values, ':');
@@ -61,7 +62,7 @@ SweepAxis axis_of(const Variation& v) {
                      std::to_string(kMostPoints) + " values");
   for (int i = 0; i < static_cast<int>(count); ++i) {
     const double value = from + i * step;
-    axis.values.push_back(  // 0.1 * 3 is 0.3
+    axis.values.push_back(  // so that 0.1 * 3 becomes 0.3
         fmt::format("{:.15g}", std::abs(value) < 1e-9 * std::abs(step) ? 0.0 : value));
   }
   return axis;
@@ -123,7 +124,7 @@ std::vector<SweepPoint> sweep_points(const SweepPlan& plan) {
       overrides.push_back(plan.axes[i].key + "=" + p.values[i]);
     try {
       p.scene = read_scene(plan.file, overrides);
-    } catch (const SceneError& e) {  // it names overrides as --set gives them
+    } catch (const SceneError& e) {  // its message names overrides as --set gives them
       const std::string what = e.what();
       for (std::size_t i = 0; i < plan.axes.size(); ++i)
         if (const std::string set = "--set " + plan.axes[i].key + "=" + p.values[i] + ":";
@@ -131,7 +132,7 @@ std::vector<SweepPoint> sweep_points(const SweepPlan& plan) {
           throw SceneError(plan.axes[i].origin + what.substr(set.size() - 1));
       throw;
     }
-    p.scene.sweep.clear();  // this is one of its points
+    p.scene.sweep.clear();  // the scene is one point of the sweep
   }
   return points;
 }
