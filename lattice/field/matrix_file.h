@@ -20,7 +20,7 @@ struct MatrixFile {
   dynamics::Transitions transitions;
   std::map<std::string, std::string> text{};
   std::vector<markov::NamedArray> arrays{};  // other than those of the state space
-  /// matrices of the field's other gate types, by name
+  /// Matrices of the field's other gate types, by name.
   std::map<std::string, dynamics::Transitions> types{};
   std::vector<std::string> state_names{};  // (n + 1), of an imported chain; else empty
 };

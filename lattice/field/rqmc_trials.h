@@ -35,7 +35,7 @@ class FirstPoints {
 struct RqmcTrials {
   std::int64_t first = 0;     // number of the first trial of all arrays
   std::int64_t of_array = 0;  // trials per array
-  /// first array and number of arrays; trial first + kArrays j + a is the j-th of array a
+  /// First array and number of arrays; trial first + kArrays j + a is the j-th of array a.
   int array = 0, arrays = kArrays;
   std::int64_t numbers = 0;             // added to a trial's number to name the trial's stream
   const FirstPoints* points = nullptr;  // for first passages, if all trials start alike

@@ -45,7 +45,7 @@ class FieldStepper {
   /// 0, as dynamics::Method::advance.
   double advance(double force_x, double duration, dynamics::Watch& watch);
 
-  /// in the frame of the body's gate
+  /// In the frame of the body's gate.
   [[nodiscard]] const dynamics::BodyState& body() const { return body_; }
   [[nodiscard]] int column() const { return gates_[current_].column; }
   [[nodiscard]] int row() const { return gates_[current_].row; }

@@ -30,14 +30,14 @@ struct ChainWithRewards {
 /// A chain ready for analysis, with its groups for error bars.
 struct AnalysedChain {
   ChainWithRewards chain;
-  /// of the chain's states; with trees, without the start, whose row comes after the states
+  /// Of the chain's states; with trees, without the start, whose row comes after the states.
   dynamics::StateSpace space;
   /// Draws an entry into a gate that belongs to the state: with trees, one that was seen in a gate
   /// of any type; with bins, any place in the bin.
   std::function<dynamics::Entry(int state, dynamics::Random& random)> entry;
   std::vector<AnalysedChain> groups{};  // kTrialGroups chains from groups of the trials; or none
   std::vector<std::int64_t> runs{};     // runs by state, in gates of the start's type
-  /// bodies behind the chain, for trees with groups; each group has its part of them
+  /// Bodies behind the chain, for trees with groups; each group has its part of them.
   std::int64_t bodies = 0;
 };
 /// The chain of trees from the pool's runs, with groups for error bars unless fewer than

@@ -25,7 +25,7 @@ namespace gatewalk::lattice {
 struct OwnRuns {
   dynamics::Entry start{};
   FieldTrials full{.final_gates = {}, .keep_passages = true};
-  /// trials that ran through one gate only
+  /// Trials that ran through one gate only.
   FieldTrials first{.final_gates = {}, .keep_passages = true};
 
   /// Number of runs through the first gate.

@@ -30,7 +30,7 @@ struct TreeChain {
   /// By gate type; the first one has the health of all runs.
   std::vector<dynamics::Transitions> transitions;
   int per_leaf = dynamics::kEntriesPerLeaf;
-  /// for the starts, before the number of states was limited
+  /// For the starts, before the number of states was limited.
   std::optional<PooledPrediction> prediction;
   std::optional<PooledRange> range;
   /// Total variation of the final gates caused by the limit of states; 0 without one.

@@ -21,7 +21,7 @@ struct CutOptions {
   double fastest = 0.0;  // m/s; a faster step is a jump to another place, or another body
   std::string window{};  // of the local fits: "15" (frames) or "0.125s"; empty: chosen by noise_of
   int bridge = 0;        // most missing frames in a row that are bridged
-  /// of the lattice, counted from its origin; 0: the field of the cell file
+  /// Of the lattice, counted from its origin; 0: the field of the cell file.
   int columns = 0, rows = 0;
   bool endless = false;  // the lattice extends without end to all sides
 };
@@ -58,7 +58,7 @@ struct CutTracks {
   std::int64_t trials = 0, crossings = 0;
   std::int64_t uncounted = 0;    // crossings back and forth within the hysteresis
   std::int64_t first_stays = 0;  // stays in cells that nobody saw entered
-  /// outside the lattice; bodies never seen inside
+  /// Outside the lattice; bodies never seen inside.
   std::int64_t places_outside = 0, bodies_outside = 0;
   std::int64_t came_back = 0;   // trials that begin where a body comes back into the lattice
   std::int64_t moved_ends = 0;  // places beyond the end of their face, by at most the hysteresis

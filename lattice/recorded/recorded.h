@@ -27,7 +27,7 @@ struct RecordedRuns {
   std::vector<std::string> bodies;    // names, in the order of first occurrence
   std::vector<RecordedTrial> trials;  // in the order of the file
   PassageTable passages;              // of all trials, one trial after the other
-  /// passages that ended so; in all others the body left its cell
+  /// Passages that ended so; in all others the body left its cell.
   std::int64_t trapped = 0, lost = 0;
   /// By Section::costs: passages that were not lost, but whose cost is unknown (NaN).
   std::array<std::int64_t, dynamics::kMostCosts> unknown{};

@@ -19,7 +19,7 @@ struct TrackOptions {
   /// body per set of columns whose names have a * for the body's: "frame=f,x=x*,y=y*".
   std::string columns{};
   std::optional<double> fps{};  // frames per second
-  /// unit of the file's x and y in m; if missing, the file must state it
+  /// Unit of the file's x and y in m; if missing, the file must state it.
   std::optional<double> metres_per_unit{};
   std::optional<double> confidence{};     // places with less confidence are ignored
   std::string key_point{};                // for bodies with several key points

@@ -41,7 +41,7 @@ struct BinsChoice {
 struct Pilot {
   std::int64_t trials = 0;
   std::vector<dynamics::Entry> starts;  // starts on the lower edge of the gate; all different
-  /// entries into gates after the first, in the order of the trials
+  /// Entries into gates after the first, in the order of the trials.
   std::vector<dynamics::Entry> entries;
   dynamics::Health health;
 };
@@ -68,7 +68,7 @@ struct SeenStates {
 /// The states of a scene's chain, and how well they resolve the entries of its bodies.
 struct States {
   BinsChoice choice;
-  /// auto replaced Table III, which nobody asked for and which does not resolve the scene
+  /// Auto replaced Table III, which nobody asked for and which does not resolve the scene.
   bool replaced = false;
   dynamics::StateSpace space;
   dynamics::Entries entries;  // where the runs of the rows start; empty: uniform in the bins

@@ -20,7 +20,7 @@ class TomlFile;
 struct CellFile {
   std::string source;     // the file's name
   dynamics::CellMap map;  // section, types, and which type stands where
-  /// names, by map.types; without a map the first one stands everywhere
+  /// Names, by map.types; without a map the first one stands everywhere.
   std::vector<std::string> types;
   /// By coordinate: true if the file gives a scale. Other coordinates get the scale of the entries
   /// seen (1 until then).

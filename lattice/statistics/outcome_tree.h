@@ -15,7 +15,7 @@ namespace gatewalk::lattice {
 struct OutcomeTreeOptions {
   int most_degree = 4;
   double most_parameters = 1200.0;  // per leaf; degree 1 may have more
-  /// parameters of a model that is split: larger models take too long
+  /// Parameters of a model that is split: larger models take too long.
   Eigen::Index most_divided = 150;
   double lack_of_fit = 0.0;  // nats per trial: a model with no more than this is not split
 };

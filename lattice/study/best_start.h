@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Where, and how fast, a body should enter a field, so that it crosses it as often as it can.
+/// The place and velocity of entry with which a body crosses a field most often.
 
 #include <cstdint>
 #include <vector>
@@ -15,47 +15,48 @@
 
 namespace gatewalk::lattice {
 
-/// Of one number of the entry, by Section::coordinates.
+/// The range of one coordinate of the entry, by Section::coordinates.
 struct CoordinateRange {
   std::size_t coordinate = 0;
   double low = 0.0, high = 0.0;
 };
 
+/// Which starts to search, and with how many runs.
 struct BestStartOptions {
   std::vector<CoordinateRange>
-      ranges{};                // at least one; other numbers are those of the problem's start
-  std::vector<int> columns{};  // of the first row; empty: that of the field's start
-  double accuracy = 0.02;      // half of the widest interval that a chance to cross may have
-  std::int64_t most_runs = 20'000'000;  // gate runs to choose by, about
+      ranges{};                // at least one; other coordinates stay as in the problem's start
+  std::vector<int> columns{};  // columns of the first row; empty: that of the field's start
+  double accuracy = 0.02;      // half of the widest interval of a probability to cross
+  std::int64_t most_runs = 20'000'000;  // gate runs to choose with, about
   int per_leaf = dynamics::kEntriesPerLeaf;
   std::uint64_t seed = 1;
 };
 
-/// Chances to cross by a chain, of what bodies enter.
+/// A chain's probabilities to cross the field, by entry.
 struct StartChances {
   dynamics::StateSpace space;
   markov::Decisions chances;
 
-  /// From there.
+  /// The probability to cross from this start.
   [[nodiscard]] double chance(const TrialStart& start) const;
 };
 
-/// With the chances by the chain that it was chosen by last.
+/// The best start, with the probabilities of the last chain that it was chosen with.
 struct BestStart : ChoiceSummary, StartChances {
-  TrialStart best;  // the problem's own unless another is better by more than a standard error
+  TrialStart best;  // the problem's own, unless another is better by more than a standard error
   bool own = false;
-  /// New trials in full, by which nothing was chosen: from the best start, and from the problem's.
+  /// Held-out trials, not used in the search: from the best start, and from the problem's own.
   Crossings crossings{}, crossings_of_own{};
   Gain gain{};
 };
 
-/// Trials from starts anywhere in the ranges make a chain of trees; a first passage says what it
-/// would lead to in any column. The best leaves of trees with leaves of three sizes are carried out
-/// in full beside the best so far; more trials start where the best of four drawn starts is, and so
-/// on until a round gains little or there are no more runs. The same on any number of threads.
-/// Throws std::invalid_argument for no ranges, ranges that are none, other columns than the field
-/// has, an accuracy outside [0.001, 0.5); std::runtime_error when a run broke and where values do
-/// not fit into memory.
+/// Finds the best start. Trials from anywhere in the ranges form a chain of trees, and a first
+/// passage gives the probability to cross from any column. The best leaves of chains with three
+/// leaf sizes run as full trials, beside the best start so far; further trials start from the best
+/// of four random starts. Rounds go on until one gains little or the runs are used up. The result
+/// is the same on any number of threads. Throws std::invalid_argument for missing or invalid
+/// ranges, columns outside the field, and an accuracy outside [0.001, 0.5); std::runtime_error if a
+/// run broke or values do not fit into memory.
 [[nodiscard]] BestStart best_start(const Problem& problem, const BestStartOptions& options,
                                    const dynamics::Work& work = {});
 

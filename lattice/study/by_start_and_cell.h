@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What a chain says of every start and of every cell: how bodies end that start in each of its
-/// states, and how those end that come to each cell.
+/// Endings by start and by cell: how bodies end that start in each state of a chain, and how bodies
+/// end that come to each cell.
 
 #include <array>
 #include <cstdint>
@@ -16,47 +16,50 @@
 
 namespace gatewalk::lattice {
 
-/// How walks of a chain end, and of the groups of its trials.
+/// The outcomes of a chain's walks, and of its groups.
 struct ChainOutcomes {
   markov::Outcomes whole;
   std::vector<markov::Outcomes> groups;
 };
-/// Throws as markov::outcomes.
+/// Computes the outcomes. Throws as markov::outcomes.
 [[nodiscard]] ChainOutcomes chain_outcomes(const AnalysedChain& chain, const FieldParams& field,
                                            const dynamics::Work& work = {});
 
-/// Bodies that start in one state, or in one of several neighbouring ones.
+/// Bodies that start in one state, or in one of several neighbouring states.
 struct StartState {
   int first_leaf = 0;
-  std::int64_t runs = 0;  // of the first gate's type that entered so
+  std::int64_t runs = 0;  // runs that entered so, in gates of the first gate's type
   EndingShares endings{std::array<double, markov::kEndings>{}};
   markov::CellProbabilities gates;
-  std::array<markov::CellProbabilities, 2> gates_95;  // low, high
+  std::array<markov::CellProbabilities, 2> gates_95;  // lower and upper bounds
 };
+/// The endings from each start state.
 struct StartStates {
-  std::vector<int> of_leaf;  // by leaf, number of its state; -1: not asked for, or no run
+  std::vector<int> of_leaf;  // by leaf: index of its state; -1: not asked for, or no run
   std::vector<StartState> states;
-  std::int64_t least_runs = 1;  // that states were joined for
+  std::int64_t least_runs = 1;  // least number of runs for which states were joined
 };
 
-/// Of trees: every state by which bodies enter through these faces, as if they started so in the
-/// field's first cell, by the runs of that state alone. Error bars count that these are few (by
-/// their spread, Student's t), the later gates' runs, and what larger states would change (by
-/// kTrialGroups groups); without groups there are none (NaN). Where the states would have more
-/// than `most` numbers together (cells x states), neighbours are joined.
+/// Endings by start state of a chain of trees: for each state by which bodies enter through these
+/// faces, as if they started so in the field's first cell, from the runs of that state alone. Error
+/// bars include the spread of these few runs (Student's t), the sampling error of later gates, and
+/// the bias of coarser states (kTrialGroups groups); NaN without groups. If cells times states
+/// exceed `most`, neighbouring states are joined.
 [[nodiscard]] StartStates start_states(const Problem& problem, const RunPool& pool,
                                        const AnalysedChain& chain, const ChainOutcomes& outcomes,
                                        const std::vector<int>& faces, int per_leaf,
                                        std::int64_t most);
 
-/// Bodies from the chain's start that come to a cell, by visits.
+/// Bodies from the chain's start that come to a cell, weighted by visits.
 struct CellAhead {
-  Mean95 visits;  // of a body; the others per visit; nothing else where there are next to none
+  /// Per body; all other numbers are per visit, and missing if there are hardly any visits.
+  Mean95 visits;
   EndingShares endings{std::array<double, markov::kEndings>{}};
-  markov::CellProbabilities gates;  // where they end
-  std::vector<Mean95> next;         // by Outcomes::moves, then trapped here
+  markov::CellProbabilities gates;  // where these bodies end
+  std::vector<Mean95> next;         // by Outcomes::moves, then trapped in this cell
 };
-/// `bodies` behind the chain and their `gate_runs`. Intervals where every group's bodies come.
+/// Endings by cell. `bodies` and `gate_runs`: numbers behind the chain. A cell has intervals if
+/// bodies of every group come there.
 [[nodiscard]] std::vector<CellAhead> cells_ahead(const ChainOutcomes& outcomes,
                                                  const FieldParams& field, std::int64_t bodies,
                                                  std::int64_t gate_runs);

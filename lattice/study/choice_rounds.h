@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What plans, best starts and designs of fields have in common: rounds of choosing by a chain.
-/// Trials in which the type of each cell is chosen when a body enters it fill a pool of runs. What
-/// a chain of these runs thinks best is carried out in full beside the best so far, all with the
-/// same trials. The trials of the winner are added to the pool, further trials try something else,
-/// and so on until a round gains little or there are no more runs.
+/// Rounds of choosing by a chain, which plans, best starts and designs of fields share. Trials in
+/// which each cell's type is chosen on entry fill a pool of runs. The best candidates by a chain of
+/// these runs are run as full trials beside the best so far, all with the same trial numbers. The
+/// winner's trials join the pool, further trials explore alternatives, and so on until a round
+/// gains little or the runs are used up.
 
 #include <algorithm>
 #include <array>
@@ -25,54 +25,54 @@
 
 namespace gatewalk::lattice {
 
-/// Trials of `first` in cells of these types, and from these starts; with the noise that
-/// field_trials of these numbers have.
+/// Runs trials of the problem `first` in cells of these types, from these starts; trials have the
+/// noise that field_trials gives to their numbers.
 [[nodiscard]] FieldTally chosen_trials(const dynamics::CellField& cells, const Problem& first,
                                        const TypeChoice& choice, std::uint64_t seed,
                                        dynamics::TrialRange range, FieldTrials& each);
 
-/// Sizes of leaves to choose by, in those asked for: small ones tell ways to enter apart, large
-/// ones know better what comes of each.
+/// Leaf sizes of the chains, in multiples of the size asked for: small leaves separate ways of
+/// entering, large leaves have less sampling error.
 inline constexpr std::array<int, 3> kLeafSizes{1, 8, 64};
-/// Bytes that decisions of all cells, states and gates may take.
+/// Limit of memory for the decisions of all cells, states and gates, in bytes.
 inline constexpr double kMostDecisionBytes = 8.0e9;
 
-/// What a trial is worth: 1 if it crosses the field (`rarely`: -1), less what it takes of a cost at
-/// a price of each unit.
+/// The worth of a trial: 1 if it crosses the field (`rarely`: -1), minus `price` times its cost.
 struct ChoiceAim {
   bool rarely = false;
   double price = 0.0;
   std::size_t cost = 0;  // by Section::costs
 
-  /// Of all trials together.
+  /// Sum over all trials.
   [[nodiscard]] double worth(const FieldTrials& trials) const;
-  /// Sum of the squares of what each is worth.
+  /// Sum of the squares over all trials.
   [[nodiscard]] double squares(const FieldTrials& trials) const;
 };
 
-/// The last round of choosing: what was carried out, all with the same trials.
+/// The last round of choosing: the candidates, all run with the same trial numbers.
 template <class Candidate>
 struct ChoiceRound {
   std::vector<Candidate> candidates;
   std::vector<RangeRuns> trials{};
   std::size_t winner = 0;
-  bool settled = false;  // it gained little over the best before
+  bool settled = false;  // the gain over the best before was small
 };
 
-/// The trials of a study one behind the other, with numbers that trials of a field do not have, and
-/// the pool of those that it chooses by.
+/// Runs the trials of a study in sequence, with numbers that trials of a field do not have, and
+/// keeps the pool that the study chooses with.
 class ChoiceRounds {
  public:
-  /// What is given outlives it. `study`: its name, for messages and kept pieces. `purpose`: of the
-  /// stream that word() draws from. Other arguments as PlanOptions has them.
+  /// All references must outlive the object. `study`: name for messages and kept pieces; `purpose`:
+  /// of the stream of word(). Other arguments are as in PlanOptions.
   ChoiceRounds(std::string study, dynamics::Purpose purpose, const dynamics::CellField& cells,
                const Problem& first, double accuracy, std::int64_t most_runs, std::uint64_t seed,
                const dynamics::Work& work);
 
-  /// `choose()`: the candidates, by chains of the pool or without. `carry_out(candidate)`: the next
-  /// count() trials of one. `explore(winner)`: trials that try something else beside it, for the
-  /// next round. `known`: more candidates of the first round, the best before it last; without
-  /// any, one round alone never settles. Of several that are worth the same the first wins.
+  /// Runs rounds until one gains little or the runs are used up. `choose()` returns candidates,
+  /// from chains of the pool or without; `carry_out(candidate)` runs its next count() trials;
+  /// `explore(winner)` runs trials of alternatives for the next round. `known`: more candidates for
+  /// the first round, the best before in last place; without any, a single round never settles.
+  /// Among equals the first candidate wins.
   template <class Candidate>
   [[nodiscard]] ChoiceRound<Candidate> choose_best(const ChoiceAim& aim, const auto& choose,
                                                    const auto& carry_out, const auto& explore,
@@ -102,30 +102,31 @@ class ChoiceRounds {
     }
   }
 
-  /// The next `count` trials. Throws std::runtime_error when a run broke.
+  /// Runs the next `count` trials. Throws std::runtime_error if a run broke.
   [[nodiscard]] RangeRuns run(const TypeChoice& choice, std::int64_t count);
-  /// Trials of a candidate: so many that a chance of one half has an interval of twice the
+  /// Number of trials per candidate, so that a probability of 1/2 has an interval of twice the
   /// accuracy.
   [[nodiscard]] std::int64_t count() const { return count_; }
   [[nodiscard]] std::int64_t next() const { return next_; }
-  /// The trials from that number on once more.
+  /// Repeats the trial numbers from `next` on.
   void go_back_to(std::int64_t next) { next_ = next; }
 
-  /// Into the pool. Of several runs of the same trials one only: a run that is twice in a leaf says
-  /// nothing new.
+  /// Adds trials to the pool. Of runs that several candidates share, only one is added: a run that
+  /// is twice in a leaf adds no information.
   void add(const RangeRuns& trials);
   [[nodiscard]] const RunPool& pool() const { return pool_; }
 
-  /// Chance that the noise of the trials knows nothing of.
+  /// Random word that is independent of the trials' noise.
   [[nodiscard]] std::uint64_t word(const Place& at, std::uint64_t what) const;
-  /// Bodies do what is best, but something else in one of four cells.
+  /// The best choice, except in one of four cells, where bodies choose otherwise.
   [[nodiscard]] CellChoice mostly(CellChoice best, CellChoice other) const;
 
-  /// Whether a gain in count() trials is small beside the accuracy and beside chance, `squares` of
-  /// an ChoiceAim. Rare crossings gain little of all trials, but much beside chance.
+  /// True if a gain in count() trials is small compared with the accuracy and with sampling error;
+  /// `squares` as in ChoiceAim. Gains of rare crossings are small in number, but large compared
+  /// with sampling error.
   [[nodiscard]] bool is_little(double gain, double squares) const;
   [[nodiscard]] bool has_runs_left() const { return summary_.gate_runs < most_runs_; }
-  /// Of all trials and rounds so far.
+  /// Summary of all trials and rounds so far.
   [[nodiscard]] ChoiceSummary summary(bool settled) const {
     return {summary_.rounds, settled, summary_.gate_runs, summary_.health};
   }
@@ -145,17 +146,17 @@ class ChoiceRounds {
   ChoiceSummary summary_;
 };
 
-/// Of all trials together.
+/// A cost summed over all trials.
 [[nodiscard]] double total_of(const FieldTrials& trials, std::size_t cost);
-/// Numbers that values for each cell, state and number of cells passed take.
+/// Number of values for each cell, state and number of cells passed.
 [[nodiscard]] double numbers_of(const FieldParams& field, const dynamics::StateSpace& space);
-/// By type of cell.
+/// The kernel's chains, by type of cell.
 [[nodiscard]] std::vector<markov::Chain> chains_of(const Kernel& kernel);
-/// A walk that crosses the field gains 1.
+/// Gains of walks: crossing the field gains 1.
 [[nodiscard]] markov::Gains gain_of_crossing();
-/// That what is named, such as "plan: values of", does not fit into memory.
+/// The error that something, such as "plan: values of", does not fit into memory.
 [[nodiscard]] std::runtime_error too_large(const std::string& what);
-/// Throws std::invalid_argument, whose message begins with the study's name.
+/// Throws std::invalid_argument for invalid options; the message begins with the study's name.
 void require_choice_options(const std::string& study, double accuracy, int per_leaf);
 
 }  // namespace gatewalk::lattice

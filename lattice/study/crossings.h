@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How many trials crossed the field, and how many more than others under the same noise; and how a
-/// search for what crosses most went.
+/// Numbers of trials that crossed the field, gains over other trials under the same noise, and the
+/// summary of a search for most crossings.
 
 #include <array>
 #include <cmath>
@@ -12,45 +12,49 @@
 
 namespace gatewalk::lattice {
 
-/// Trials that crossed the field, of so many.
+/// Number of trials that crossed the field, and of all trials.
 struct Crossings {
   std::int64_t crossed = 0, trials = 0;
   [[nodiscard]] double share() const {
     return static_cast<double>(crossed) / static_cast<double>(trials);
   }
-  [[nodiscard]] std::array<double, 2> interval_95() const;  // Jeffreys'
+  [[nodiscard]] std::array<double, 2> interval_95() const;  // Jeffreys interval
 };
+/// Counts the trials that crossed.
 [[nodiscard]] Crossings crossings_of(const FieldTrials& trials);
 
-/// By how much one chance is above another, of the same trials in both.
+/// Difference of two probabilities to cross, from the same trial numbers in both.
 struct Gain {
   double difference = 0.0;
   std::array<double, 2> interval_95{};  // Bonett and Price 2012; NaN: none
 
-  /// What is compared with itself gains nothing, and that is no estimate.
+  /// The gain over itself: 0, without an interval, because nothing is estimated.
   [[nodiscard]] static Gain over_itself() { return {0.0, {std::nan(""), std::nan("")}}; }
 };
+/// The gain of trials `with` a change over the same trials `without`.
 [[nodiscard]] Gain gain_over(const FieldTrials& with, const FieldTrials& without);
 
-/// What trials take of one cost, with 95 % intervals: a trial's mean, however it ends (NaN: of
-/// fewer than kLeastRunsOfMean); and that of
-/// all trials for each that crossed, which is what it takes to try until a body crosses (Fieller's
-/// interval, whose end is infinite where too few crossed; NaN where none did).
+/// One cost of trials, with 95 % intervals. `mean`: per trial, however it ends (no interval, NaN,
+/// for fewer than kLeastRunsOfMean trials). `per_crossing`: cost of all trials per crossing, which
+/// is the cost of trying until a body crosses (Fieller's interval, infinite upper end if too few
+/// crossed; NaN if none did).
 struct Spent {
   double mean = 0.0;
   std::array<double, 2> mean_95{};
   double per_crossing = 0.0;
   std::array<double, 2> per_crossing_95{};
 };
-/// `cost`: by Section::costs. Throws std::invalid_argument for fewer than two trials.
+/// Computes the cost `cost` of Section::costs. Throws std::invalid_argument for fewer than two
+/// trials.
 [[nodiscard]] Spent spent_by(const FieldTrials& trials, std::size_t cost);
 
-/// How a search for the best of something went: rounds of trials, and of choosing again.
+/// Summary of a search: its rounds of choosing, and their trials.
 struct ChoiceSummary {
   int rounds = 0;
-  bool settled = false;  // the last round gained less than half of the accuracy, and than chance
+  /// The last round gained less than half the accuracy, and less than sampling error.
+  bool settled = false;
   std::int64_t gate_runs = 0;  // of all trials
-  dynamics::Health health{};   // of the same
+  dynamics::Health health{};   // of all trials
 };
 
 }  // namespace gatewalk::lattice

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Where many bodies end together that enter a field anywhere, at any number of cells visited, by
-/// the field's chain.
+/// Where bodies end that enter a field in any cells, after any number of cells visited, by the
+/// field's chain.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -13,26 +13,27 @@
 
 namespace gatewalk::lattice {
 
-/// A body that is about to walk from here, in the field's cell `cell`.
+/// A body that enters cell `cell` of the field, and continues from there.
 struct Entering {
   std::int64_t cell = 0;
   dynamics::Entry entry{};
-  int gates = 0;  // visited before
+  int gates = 0;  // number of gates visited before
 };
 
 /// Where bodies ended.
 struct Walked {
   Eigen::VectorXd ends;                 // final gates, then endings
-  double gates = 0.0, remainder = 0.0;  // visited; left walking
+  double gates = 0.0, remainder = 0.0;  // gates visited, and bodies still walking, by weight
 };
 [[nodiscard]] markov::FinalDistribution distribution_of(const Walked& walked,
                                                         const FieldParams& field);
 
-/// Carries all bodies at once until they end in the field. markov::Predictor has one start at a
-/// time, whose weight is 1 and which has visited no cell.
+/// Carries many bodies at once until they end in the field. (markov::Predictor takes one start at a
+/// time, with weight 1 and no cells visited.)
 class FieldWalk {
  public:
-  /// What is given outlives it. Throws std::invalid_argument where cells times states are too many.
+  /// The arguments must outlive the object. Throws std::invalid_argument if cells times states are
+  /// too many.
   FieldWalk(const FieldParams& field, const dynamics::StateSpace& space);
 
   [[nodiscard]] std::int64_t cells() const { return std::int64_t{field_.columns} * field_.rows; }
@@ -44,10 +45,10 @@ class FieldWalk {
     ends[cells() + static_cast<Eigen::Index>(ending)] += weight;
   }
 
-  /// `weights`: of each body.
+  /// Walks bodies with one weight each.
   [[nodiscard]] Walked walk(const markov::FieldChain& chain, const std::vector<Entering>& entering,
                             const std::vector<double>& weights) const;
-  /// All with the same weight.
+  /// Walks bodies that all have the same weight.
   [[nodiscard]] Walked walk(const markov::FieldChain& chain, const std::vector<Entering>& entering,
                             double weight) const {
     return walk(chain, entering, std::vector<double>(entering.size(), weight));

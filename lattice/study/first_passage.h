@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How likely bodies are to reach a cell, a state or an ending, and how long those that do are on
-/// their way: from the start with intervals, and from every state of every cell.
+/// First passage: the probability to reach a cell, a state or an ending, and the time to get there;
+/// from the start with intervals, and from every state of every cell.
 
 #include <vector>
 
@@ -12,16 +12,16 @@
 
 namespace gatewalk::lattice {
 
-/// Means are over the bodies that get there. Intervals are those of groups of the trials: none
-/// (NaN) without groups, of a state, as groups have states of their own, and where the start is
-/// there.
+/// First passage from a start. Means are over the bodies that reach the target. Intervals come from
+/// groups of the trials; NaN without groups, for a target that is a state, because groups have
+/// other states, and if the start is in the target.
 struct FirstPassage {
-  Mean95 chance;              // at the start
-  Mean95OfRuns gates;         // visited before
-  Mean95OfRuns time;          // of the section's first cost, s; NaN where nobody measured it
+  Mean95 chance;              // from the start
+  Mean95OfRuns gates;         // gates visited before
+  Mean95OfRuns time;          // first cost of the section, s; NaN if it was not measured
   markov::FirstPassages all;  // of the chain; the total is the time
 };
-/// Throws as markov::first_passages.
+/// Computes the first passage. Throws as markov::first_passages.
 [[nodiscard]] FirstPassage first_passage(const FieldParams& field, const AnalysedChain& chain,
                                          const markov::PassageTarget& target);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What a posterior is made from: how trials of an experiment ended, or recorded passages, and how
-/// to make the like of them.
+/// The data of a fit: how trials of an experiment ended, or recorded passages, and how to simulate
+/// such data.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,53 +19,54 @@
 
 namespace gatewalk::lattice {
 
-/// How trials end: gates where gates were counted (row * columns + column), endings where endings
-/// were, and for lines of trials with both, each ending's gates: ending * gates + gate. Passages:
-/// from entries that are alike to a face, or trapped, begin * (faces + 1) + face. Where times were
-/// measured each of these has parts, by when a body left: way * parts + part.
+/// The kinds of outcomes, numbered. Trials: gates (row * columns + column), or endings, or for
+/// lines of trials with both: ending * gates + gate. Passages: from beginnings that are alike to a
+/// face, or trapped: begin * (faces + 1) + face. With measured times each of these has parts, by
+/// the time at which a body left: way * parts + part.
 struct FittedOutcomes {
-  std::size_t gates = 0;  // 0: endings alone
+  std::size_t gates = 0;  // 0: endings only
   bool endings = false;
-  std::vector<double> times{};  // s, rising: between the parts; none: one part
-  /// In words, of passages: how they begin, as leaves of a tree for each type of cell; and faces.
+  std::vector<double> times{};  // s, ascending: limits between the parts; empty: a single part
+  /// Names for passages: beginnings (leaves of a tree for each type of cell), and faces.
   std::vector<std::string> begins{}, faces{};
 
   [[nodiscard]] bool is_of_passages() const { return !begins.empty(); }
   [[nodiscard]] std::size_t parts() const { return times.size() + 1; }
   [[nodiscard]] std::size_t size() const;
-  /// So many, one behind the other, are of the same ending, or of passages that begin alike.
+  /// Number of consecutive outcomes that belong to one ending, or to passages that begin alike.
   [[nodiscard]] std::size_t together() const;
 };
 
+/// Observed counts of outcomes, and a simulation of them.
 struct FitData {
   FittedOutcomes outcomes;
   std::vector<std::int64_t> seen;  // (outcomes.size())
-  std::vector<std::size_t> order;  // of outcomes, in which neighbours are alike
-  /// Runs these trials, or passages, in a field: the outcome of each; -1 where a run broke.
+  std::vector<std::size_t> order;  // of outcomes, so that neighbours are alike
+  /// Runs these trials, or passages, in a field, and writes the outcome of each; -1 if a run broke.
   using Run =
       std::function<dynamics::Health(const Problem& problem, std::uint64_t seed,
                                      dynamics::TrialRange range, std::span<std::int32_t> ended)>;
   Run run;
-  /// Passages that begin well inside an obstacle: places are wrong, or obstacles.
+  /// Passages that begin well inside an obstacle, which shows that places or obstacles are wrong.
   std::int64_t inside = 0;
 };
 
-/// Of a model of degree 2: so many are fitted in a second.
+/// Most parameters of a model of degree 2, which is fitted in a second.
 inline constexpr double kMostParameters = 600.0;
-/// The share of all trials that a group of outcomes has at least: a hundredth; more where there are
-/// many numbers; and so much that by chance in the model of all groups the likelihood of what was
-/// observed seems to tell a fourth of what the range does, or less.
+/// The least share of all trials in a group of outcomes: a hundredth; more for many numbers; and
+/// large enough that sampling error in the model of all groups changes the likelihood of the
+/// observations by at most a fourth of what the range does.
 [[nodiscard]] double least_share(int numbers, double trials, double observed);
 
-/// Trials from the problem's start. Throws std::invalid_argument for counts of another field, of
-/// both gates and endings without saying which belong together, and of none.
+/// Fits trials from the problem's start. Throws std::invalid_argument for counts of another field,
+/// gates and endings without knowing which belong together, and no counts.
 [[nodiscard]] FitData trials_to_fit(const Observed& observed, const Problem& problem);
 
-/// Passages through the types of cells of these problems, each from where it was seen to begin, by
-/// bodies that remember nothing; those that broke are left out. They are told apart by where and
-/// how they begin as finely as so many trials of a fit permit, mirror images not where all cells
-/// are symmetric. Throws std::invalid_argument where none is left, and for costs of a passage that
-/// left that are not finite.
+/// Fits passages through the types of cells of these problems, each from where it was seen to
+/// begin, by bodies without memory; broken passages are left out. Beginnings are distinguished as
+/// finely as the number of trials of a fit permits, mirror images only if some cell is not
+/// symmetric. Throws std::invalid_argument if no passage is left, and if the cost of a passage that
+/// left is not finite.
 [[nodiscard]] FitData passages_to_fit(const std::vector<EnteredPassage>& seen, int numbers,
                                       const ProblemAt& problem_at, std::int64_t trials);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How the chance of an ending answers to the numbers of a scene.
+/// The sensitivity of an ending's probability to the numbers of a scene.
 
 #include <cstdint>
 #include <string>
@@ -15,51 +15,55 @@
 
 namespace gatewalk::lattice {
 
+/// The effect of one number.
 struct ParameterEffect {
-  std::string key;     // dynamics::Cell::Number's
-  double value = 0.0;  // NaN where types differ in it
-  /// Per cent that the chance changes for one per cent of the value in gates of all types: (P+ -
-  /// P-) / (2 P step). What the number does at each gate is taken to first order; over the gates of
-  /// a way to the target these changes multiply. The interval counts chance in these gate runs and
-  /// the chain's own error: of its groups. None where few runs make it: one of them a tenth of it,
-  /// none in one of the groups, or more than one in twenty left out.
+  std::string key;     // key of dynamics::Cell::Number
+  double value = 0.0;  // NaN if types differ in it
+  /// Per cent change of the probability per per cent of the value, in gates of all types: (P+ - P-)
+  /// / (2 P step). The effect in each gate is taken to first order; effects in the gates along a
+  /// way to the target multiply. The interval includes the sampling error of these gate runs and
+  /// the error of the chain (by its groups). NaN if few runs dominate: one makes a tenth of the
+  /// effect, a group has none, or more than one in twenty is left out.
   Mean95 elasticity;
-  std::vector<Mean95> of_type;    // the same, in gates of one type alone
-  double more = 0.0, less = 0.0;  // the same to one side each, with more and with less of the
-                                  // number; NaN where the cell does not permit it
-  bool bends = false;             // these differ by more than chance: no single number says it
-  /// Share of the places where bodies cannot enter a gate that is changed so, or where runs broke.
+  std::vector<Mean95> of_type;  // elasticity of gates of one type alone
+  /// Elasticity to one side each, with more and with less of the number; NaN if the cell does not
+  /// permit it.
+  double more = 0.0, less = 0.0;
+  bool bends = false;  // more and less differ significantly: no single number describes the effect
+  /// Share of the places where bodies cannot enter the changed gate, or where runs broke.
   double left_out = 0.0;
 };
 
+/// How the numbers are changed.
 struct ParameterOptions {
-  std::int64_t runs = 20'000;   // gate runs to each side of a number, and as many for its interval
-  double relative_step = 0.02;  // of the number, to each side
+  std::int64_t runs = 20'000;   // gate runs on each side of a number, and as many for its interval
+  double relative_step = 0.02;  // change of a number on each side
   std::uint64_t seed = 1;
 };
 
+/// The effects of all numbers on the target's probability.
 struct ParameterEffects {
-  double chance = 0.0;                   // of the target, by this chain
-  std::vector<ParameterEffect> effects;  // of the numbers that can be changed; none where the
-                                         // chance is zero
-  std::int64_t added_runs = 0;           // to the pool
-  std::int64_t pool_runs = 0;            // in it then
-  dynamics::Health health;               // of the runs behind them
+  double chance = 0.0;  // of the target, by this chain
+  /// Of the numbers that can be changed; empty if the probability is 0.
+  std::vector<ParameterEffect> effects;
+  std::int64_t added_runs = 0;  // new runs in the pool
+  std::int64_t pool_runs = 0;   // all runs in the pool
+  dynamics::Health health;      // of the runs behind the effects
   double seconds = 0.0;
 };
 
-/// In the places that bodies pass on their way to the target: gate runs with a little more and a
-/// little less of each number under the same noise, and what the chain says of where they lead. The
-/// same with each of the chain's groups, for the interval. What runs take is not used.
+/// Runs gates at the places that bodies pass on their way to the target, with a little more and a
+/// little less of each number under the same noise; the chain gives the probability of the target
+/// afterwards. The chain's groups give the interval. Costs are not used.
 [[nodiscard]] ParameterEffects parameter_effects(const Problem& problem, const AnalysedChain& chain,
                                                  markov::Ending target,
                                                  const ParameterOptions& options,
                                                  const dynamics::Work& work = {});
 
-/// The same of the chain of a pool, from its runs of the start. So that the chain's error
-/// is no more than chance makes in the runs for parameters, full trials are added until it has 25
-/// times as many, `most_runs` new gate runs at most, about; its states grow with the square root of
-/// that. Throws as predict_pooled.
+/// The effects by the chain of a pool, from its runs of the start. Full trials are added until the
+/// chain has 25 times as many runs as the parameters (about `most_runs` new gate runs at most), so
+/// that its error does not exceed their sampling error; the number of states grows with the square
+/// root of the runs. Throws as predict_pooled.
 [[nodiscard]] ParameterEffects parameter_effects(const Problem& problem, RunPool& pool,
                                                  markov::Ending target,
                                                  const ParameterOptions& options,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Many trials through the field, and many walks, watched and checked.
+/// Runs many trials through the field, and many walks, with progress reports and checks.
 
 #include <cstdint>
 #include <functional>
@@ -14,24 +14,25 @@
 
 namespace gatewalk::lattice {
 
-/// Carries out a range of trials through the field, and says what each did.
+/// Runs a range of trials through the field; `each` gets what each trial did.
 using RunTrialRange = std::function<FieldTally(dynamics::TrialRange range, FieldTrials& each)>;
-/// Takes trials in the order of their numbers, a piece at a time.
+/// Takes trials in the order of their numbers, one piece at a time.
 using TakeTrials = std::function<void(const FieldTrials& each)>;
-/// Adds what they took to `costs`, which outlive it.
+/// A function that adds the costs of trials to `costs`, which must outlive it.
 [[nodiscard]] TakeTrials added_to(FieldCosts& costs);
 
-/// Trials through the field, each of which `take` is handed, if given. Pieces can be kept. Throws
-/// as `run`.
+/// Runs trials through the field, and hands each to `take`, if given. Pieces of work can be kept.
+/// Throws as `run`.
 [[nodiscard]] FieldTally field_trials(const FieldParams& field, dynamics::TrialRange trials,
                                       const RunTrialRange& run, const dynamics::Work& work = {},
                                       const TakeTrials& take = {});
-/// Of a problem's cells, from its start; a sample is run again by a better method, if there is one.
+/// Runs trials through a problem's cells, from its start; a sample is run again by a better method,
+/// if there is one.
 [[nodiscard]] FieldTally field_trials(const Problem& problem, dynamics::TrialRange trials,
                                       std::uint64_t seed, const dynamics::Work& work = {},
                                       const TakeTrials& take = {}, bool keep_passages = false);
 
-/// Walks 0, 1, ... of the chain. Throws as markov::Walker::walk.
+/// Runs walks 0, 1, ... of the chain. Throws as markov::Walker::walk.
 [[nodiscard]] markov::WalkTally walks(const markov::FieldChain& chain, const FieldParams& field,
                                       const markov::Start& start, std::int64_t count,
                                       std::uint64_t seed, const dynamics::Work& work = {});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How much of the variance of a chance, over ranges of a field's numbers, each of them makes.
+/// The share of each number of a field in the variance of a probability, if the numbers vary over
+/// ranges.
 
 #include <cstdint>
 #include <functional>
@@ -18,12 +19,13 @@ struct VarianceSharesOptions {
   std::int64_t trials = 200'000;  // through the field, all points together: no more than that
   std::uint64_t seed = 1;
 };
-/// Fewer trials than this make no indices of so many numbers.
+/// Least number of trials for indices of `numbers` numbers.
 [[nodiscard]] std::int64_t least_trials_of_shares(int numbers);
 
+/// The results of variance_shares().
 struct VarianceShares {
-  SobolIndices indices;                            // of the chance that a trial ends in the target
-  std::int64_t points = 0, trials = 0, ended = 0;  // so many of the trials in the target
+  SobolIndices indices;  // of the probability that a trial ends in the target
+  std::int64_t points = 0, trials = 0, ended = 0;  // ended: number of trials in the target
   dynamics::Health health;
   double seconds = 0.0;
 };
@@ -31,10 +33,10 @@ struct VarianceShares {
 /// The field at a point of the unit cube, whose coordinates are the numbers, each in its range.
 using ProblemAt = std::function<Problem(const std::vector<double>& point)>;
 
-/// By full trials, 16 for each of a point's two answers, under the same noise at the points of a
-/// row as far as bodies take the same ways. No chain is made: what trials say has no error but
-/// chance, and the indices leave that out. Throws std::invalid_argument for too few trials, and as
-/// IndexDesign.
+/// Computes the indices from full trials: 16 for each of a point's two answers, under the same
+/// noise at the points of a row as long as bodies take the same ways. No chain is used, so the only
+/// error is sampling error, which the indices leave out. Throws std::invalid_argument for too few
+/// trials, and as IndexDesign.
 [[nodiscard]] VarianceShares variance_shares(int numbers, const ProblemAt& problem_at,
                                              markov::Ending target,
                                              const VarianceSharesOptions& options,

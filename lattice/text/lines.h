@@ -26,7 +26,7 @@ class Lines {
 
   /// The next line, without its end; valid until the next call. Returns false after the last line.
   [[nodiscard]] bool next(std::string_view& line);
-  /// number of the current line, from 1
+  /// Number of the current line, from 1.
   [[nodiscard]] std::int64_t number() const { return number_; }
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] bool end_in_cr() const { return end_ == '\r'; }

@@ -81,7 +81,7 @@ class Table {
   bool has_header_ = false, is_first_row_ = true, begins_quoted_ = false;
   char separator_ = ',', decimal_ = '\0';
   std::int64_t decimal_line_ = 0, headers_ = 0, comments_ = 0;
-  /// of the previous row, if a column without a name has row numbers
+  /// Of the previous row, if a column without a name has row numbers.
   std::optional<std::int64_t> row_number_;
   std::string record_, unquoted_;  // a row over several lines; fields in quotation marks
   Names columns_;

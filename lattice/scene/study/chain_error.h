@@ -23,7 +23,7 @@ struct ChainCurve {
   double factor = 1.0;  // bins per axis, as a multiple of the usual ones
   dynamics::StateSpace space;
   bool visited = false;  // starts as bodies enter, besides a curve with uniform starts
-  /// where the runs of the rows start, as bodies entered; empty: uniform
+  /// Where the runs of the rows start, as bodies entered; empty: uniform.
   dynamics::Entries entries{};
   std::vector<std::int64_t> trials{};  // per row, within the limit of runs
   double pilot_seconds = 0.0;          // of the full trials that gave the entries
