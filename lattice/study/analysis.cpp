@@ -25,8 +25,8 @@ namespace {
 
 using namespace dynamics;
 
-/// Pairs of a draw and a cell that walks from the first row can come to, at most; by how far a move
-/// leads.
+/// The largest number of pairs of a draw and a cell that walks from the first row can reach, from
+/// the lengths of moves.
 double places_reached(const Section& section, const FieldParams& field) {
   std::int64_t side = 0, up = 0;
   bool chequered = true;
@@ -44,7 +44,7 @@ double places_reached(const Section& section, const FieldParams& field) {
   return places;
 }
 
-/// Throws where the states of all cells take too much memory.
+/// Throws if the states of all cells take too much memory.
 void require_memory(const Problem& problem, int states) {
   if (states > most_analysed_states(problem))
     throw std::invalid_argument(
@@ -53,7 +53,7 @@ void require_memory(const Problem& problem, int states) {
         " gates take more than 8 GiB; ask for fewer states (--accuracy, build --states) or gates");
 }
 
-/// Whether a mirror image of the field is the field itself.
+/// True if the field is its own mirror image.
 bool same_in_mirror(const CellMap& map, const FieldParams& field) {
   for (int row = 0; row < field.rows; ++row)
     for (int column = 0; column < field.columns; ++column)
@@ -68,7 +68,7 @@ markov::Ending mirrored(markov::Ending ending) {
   return ending == markov::Ending::right_edge ? markov::Ending::left_edge : ending;
 }
 
-/// What both hold, along so many coordinates; none if that is nothing.
+/// The overlap of two ranges in the first `coordinates` coordinates; nullopt if it is empty.
 std::optional<StateRange> common_part(const StateRange& a, const StateRange& b,
                                       std::size_t coordinates) {
   StateRange both = a;
@@ -80,7 +80,7 @@ std::optional<StateRange> common_part(const StateRange& a, const StateRange& b,
   return both;
 }
 
-/// Finds the states of one face that have something of a range inside.
+/// Finds the states of one face that overlap a range.
 class StatesMeeting {
  public:
   StatesMeeting(const StateSpace& space, int face) : space_(space), face_(face) {
@@ -89,7 +89,7 @@ class StatesMeeting {
     (void)read(0);
   }
 
-  /// Ascending. In a time that grows with the states found, not with all.
+  /// The states, in ascending order. The time grows with the number found, not with all states.
   [[nodiscard]] std::vector<int> operator()(const StateRange& range) const {
     std::vector<int> states;
     if (space_.has_trees())
@@ -103,7 +103,7 @@ class StatesMeeting {
   [[nodiscard]] const std::vector<Tree::Node>& nodes() const {
     return space_.trees()[static_cast<std::size_t>(face_)].nodes;
   }
-  /// Reads the part of a tree that begins with this node; where the next part begins.
+  /// Reads the part of a tree that begins with this node. Returns where the next part begins.
   std::size_t read(std::size_t at) {
     if (nodes()[at].axis == Tree::kLeaf) {
       above_[at] = static_cast<std::size_t>(space_.first(face_) + leaves_++);
@@ -122,8 +122,8 @@ class StatesMeeting {
     if (low < cut) add_leaves(at + 1, range, states);
     if (high > cut) add_leaves(above_[at], range, states);
   }
-  /// States by the first coordinate, then the next: `before` counts those of the coordinates so
-  /// far.
+  /// Adds bins by the first coordinate, then the next; `before` counts the states of the
+  /// coordinates so far.
   void add_bins(std::size_t axis, int before, const StateRange& range,
                 std::vector<int>& states) const {
     if (axis == space_.section().coordinates.size()) {
@@ -140,11 +140,13 @@ class StatesMeeting {
 
   const StateSpace& space_;
   int face_, leaves_ = 0;
-  std::vector<std::size_t> above_;  // by node: where the part above its cut begins; a leaf's state
+  // by node: where the part above its cut begins; of a leaf: its state
+  std::vector<std::size_t> above_;
 };
 
-/// The chance of the target by start. In a field that is its own mirror image, a start is as likely
-/// to end so as its image to end so in the mirror: the mean of both, where their states overlap.
+/// The probability of the target by start. In a field that is its own mirror image, a start ends in
+/// the target as often as its mirror image ends in the target's: the mean of both, where their
+/// states overlap.
 std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const CellMap& map,
                                            const FieldParams& field, int start_face,
                                            const ReactiveVisits& passages,
@@ -160,7 +162,7 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Cel
   struct Chances {
     const StateSpace& space;
     const markov::EndingChance& of_target;
-    std::optional<markov::EndingChance> of_image{};  // where it is another
+    std::optional<markov::EndingChance> of_image{};  // if the mirror image's target is another one
   };
   std::vector<Chances> all{{space, passages.chance()}};
   for (std::size_t g = 0; g < groups.size(); ++g)
@@ -232,12 +234,12 @@ double most_analysed_states(const Problem& problem) {
   const Section& section = problem.map().section;
   const FieldParams& field = problem.field;
   const double cells = static_cast<double>(field.columns) * field.rows;
-  // Walks about to draw, before and behind a draw, with what they took and its squares.
+  // Walks before and after a draw, with their costs and the squares of these.
   const double walks = 2.0 * cells * (1.0 + 2.0 * static_cast<double>(section.costs.size()));
   const bool by_steps =
       field.max_gates > 0 || std::any_of(section.faces.begin(), section.faces.end(),
                                          [](const Face& f) { return f.di_y < 0; });
-  // Chances and passages, and the chances of all groups, which have as many states together.
+  // Probabilities and passages, and those of all groups, which together have as many states.
   const double numbers =
       (field.max_gates > 0 ? 3.0 * places_reached(section, field) : 4.0 * cells) +
       (by_steps ? 2.0 * walks : 0.0);
@@ -245,7 +247,7 @@ double most_analysed_states(const Problem& problem) {
 }
 
 int leaf_of_analysis(const Problem& problem, const RunPool& pool, int per_leaf, int states) {
-  constexpr double kOthers = 100.0;  // the start's, and faces where little was seen
+  constexpr double kOthers = 100.0;  // of the start, and of faces with few entries
   const double most = most_analysed_states(problem) - kOthers;
   if (states <= most) return per_leaf;
   const double runs = 2.0 * static_cast<double>(pool.gate_runs());  // with mirror images
@@ -263,7 +265,7 @@ namespace {
 
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
-/// Of sums that were stopped: what the walks left would add may be any number.
+/// After sums that were stopped: the walks still under way may add any number.
 markov::WalkTotals not_known(markov::WalkTotals t) {
   t.endings.fill(kNotKnown);
   t.visits.setConstant(kNotKnown);
@@ -284,7 +286,7 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
   const markov::Field cells{field.columns, field.rows};
 
   require_memory(problem, c.chain.inputs());
-  // The groups together take as long as the whole.
+  // All groups together take as long as the whole.
   constexpr std::int64_t kParts = 1000;
   std::mutex telling;
   double done = 0.0;
@@ -320,7 +322,7 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
                .lumping = options.lumping,
                .lumped = lumped};
 
-  // Of the bodies that end so, or however they end.
+  // Over the bodies with this ending, or over all bodies.
   const auto of_totals = [&](std::optional<std::size_t> ending, const auto& value) {
     const auto share = [&](const markov::WalkTotals& t) {
       return ending ? t.endings[*ending] : 1.0;
@@ -386,7 +388,7 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
     if (!is_reached) return;
     const double part = visits * passages.chance(place) / out.target_chance;
     out.passed.data()[place.cell] += part;
-    if (of_trapped || trapped >= 1.0) return;  // nobody goes on from there
+    if (of_trapped || trapped >= 1.0) return;  // no body continues from there
     const double effect = part * trapped / (1.0 - trapped);
     out.trapping.data()[place.cell] += effect;
     out.type_trapping[type] += effect;

@@ -41,11 +41,12 @@ class Starter {
   }
 
  private:
-  static constexpr std::int64_t kSpread = 8;  // trials of the first round, by those of a start
-  static constexpr int kTournament = 4;       // drawn starts, of which the best is taken
-  static constexpr std::size_t kOwn = kLeafSizes.size();  // behind those of each size of leaves
+  // trials of the first round, as a multiple of those of a start
+  static constexpr std::int64_t kSpread = 8;
+  static constexpr int kTournament = 4;  // number of drawn starts of which the best is taken
+  static constexpr std::size_t kOwn = kLeafSizes.size();  // index after those of the leaf sizes
 
-  /// Another start is taken if it is better by more than a standard error.
+  /// True if one start is better than another by more than a standard error.
   [[nodiscard]] static bool clearly_more(const Crossings& one, const Crossings& other) {
     const auto variance = [](const Crossings& c) {
       const double n = static_cast<double>(c.trials), k = static_cast<double>(c.crossed);
@@ -60,7 +61,7 @@ class Starter {
                        rounds_.count());
   }
 
-  /// Trials from starts anywhere, or where a chain says that they do better.
+  /// Trials from starts anywhere, or where a chain gives a higher probability.
   [[nodiscard]] RangeRuns explore(std::int64_t count) {
     const StartOfTrial start = [&](std::int64_t trial) {
       Random random(Purpose::plan, {options_.seed, 0, static_cast<std::uint64_t>(trial)});
@@ -104,11 +105,11 @@ class Starter {
     markov::Decisions chances = markov::decide({field_chain(problem_.map(), chains_of(kernel))},
                                                {field.columns, field.rows}, gain_of_crossing(),
                                                {.max_cells = field.max_gates});
-    chances.action.clear();  // there is one action
+    chances.action.clear();  // there is only one action
     return {std::move(kernel.space), std::move(chances)};
   }
 
-  /// The middle of the drawn starts in the best leaf that has any.
+  /// The middle one of the drawn starts in the best leaf that has any.
   [[nodiscard]] TrialStart best_of(const StartChances& chances) const {
     TrialStart best{columns_.front(), drawn_.front()};
     int leaf = chances.space.index_of(best.entry).state;
@@ -133,7 +134,7 @@ class Starter {
     return best;
   }
 
-  /// By trials that nothing was chosen by.
+  /// Judges a start by held-out trials.
   [[nodiscard]] BestStart judged(const TrialStart& best, bool own, bool settled) {
     const std::int64_t first = rounds_.next();
     const FieldTrials with = run(best).each;

@@ -20,7 +20,7 @@ using markov::EndTable;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr auto kEndCount = static_cast<Eigen::Index>(markov::kEndings);
 
-/// Means over the runs of each state (rows) of what follows their outputs.
+/// Means over the runs of each state (rows) of the values of their outputs.
 EndTable means_of(const markov::Counts& counts, const std::vector<std::int64_t>& runs,
                   const EndTable& by_output) {
   EndTable means = (counts.cast<double>() * by_output.matrix()).array();
@@ -29,7 +29,7 @@ EndTable means_of(const markov::Counts& counts, const std::vector<std::int64_t>&
   return means;
 }
 
-/// Half of the 95 % interval of means of so many numbers.
+/// Half-width of the 95 % interval of a mean of runs.
 class MeanOfRuns {
  public:
   explicit MeanOfRuns(double runs)
@@ -43,7 +43,8 @@ class MeanOfRuns {
   double runs_, quantile_;
 };
 
-/// Whether a range is its own mirror image in part: its runs then are counted with their images.
+/// True if a range contains mirror images of its own entries: its runs then are counted with their
+/// images.
 bool holds_mirror_images(const Section& section, const StateRange& range) {
   const Face& face = section.faces[static_cast<std::size_t>(range.face)];
   if (face.mirror != range.face) return false;
@@ -104,7 +105,7 @@ StartStates start_states(const Problem& problem, const RunPool& pool, const Anal
   std::vector<std::int64_t> runs_of_leaf;
   for (int leaf = 0; leaf < space.size(); ++leaf) runs_of_leaf.push_back(own.row(leaf).sum());
 
-  // Of several types the chain joins leaves itself, where few runs went through one.
+  // With several types, the chain itself joins leaves through which few runs of a type went.
   std::int64_t least = map.types.size() == 1 ? 1 : per_leaf;
   Joined states = joined(space, runs_of_leaf, faces, least);
   while (std::ssize(states.first_leaf) > 1 && std::ssize(states.first_leaf) * cells > most) {
@@ -142,7 +143,8 @@ StartStates start_states(const Problem& problem, const RunPool& pool, const Anal
                             const MeanOfRuns& first) -> std::array<double, 2> {
     if (kernels.empty()) return {kUnknown, kUnknown};
     const double share = means(state, end);
-    // A run more may go another way, and then end so: of less than one run's worth nothing is seen.
+    // Another run may go another way, and then end so: shares below one run's worth may stay
+    // unseen.
     const double more = no_run * most_of_end(end);
     if (share <= kShareRounding) return {0.0, std::min(1.0, more + no_body)};
     std::vector<double> groups;
@@ -152,7 +154,7 @@ StartStates start_states(const Problem& problem, const RunPool& pool, const Anal
     if (share * n < 1.0) high = std::max(high, std::min(1.0, share + more));
     return {low, high};
   };
-  for (int& state : out.of_leaf)  // where nobody ever entered
+  for (int& state : out.of_leaf)  // no body entered there
     if (state >= 0 && runs[static_cast<std::size_t>(state)] == 0) state = -1;
   out.states.resize(runs.size());
   tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t s) {
@@ -183,7 +185,7 @@ StartStates start_states(const Problem& problem, const RunPool& pool, const Anal
 
 std::vector<CellAhead> cells_ahead(const ChainOutcomes& outcomes, const FieldParams& field,
                                    std::int64_t bodies, std::int64_t gate_runs) {
-  constexpr double kNextToNone = 1e-9;  // visits of a body
+  constexpr double kNextToNone = 1e-9;  // visits per body
   const markov::Outcomes& whole = outcomes.whole;
   std::vector<CellAhead> ahead;
   for (Eigen::Index cell = 0; cell < whole.by_cell.rows(); ++cell) {
@@ -195,7 +197,7 @@ std::vector<CellAhead> cells_ahead(const ChainOutcomes& outcomes, const FieldPar
     const auto n = static_cast<double>(bodies);
     a.visits = mean_95(visits, of_groups, {n, std::vector(of_groups.size(), n / kTrialGroups)});
     if (visits < kNextToNone) continue;
-    if (a.visits.interval[0] < 0.0) a.visits.interval[0] = 0.0;  // else it may be NaN
+    if (a.visits.interval[0] < 0.0) a.visits.interval[0] = 0.0;  // NaN stays NaN
     const bool known =
         !of_groups.empty() && *std::min_element(of_groups.begin(), of_groups.end()) > 0.0;
     const Evidence from{static_cast<double>(bodies) * visits, static_cast<double>(gate_runs)};

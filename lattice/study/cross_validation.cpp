@@ -28,15 +28,15 @@ using markov::kEndings;
 
 constexpr std::uint64_t kDealing = 0x68616c76'65730001, kSigns = 0x68616c76'65730002;  // "halves"
 
-/// What a trial was seen to do in the field.
+/// The observed part of a trial in the field.
 struct SeenTrial {
   std::int32_t body = 0;
   Entering start{};
-  std::optional<Ending> ending{};  // none: not seen
-  Entering last{};                 // without an ending: where watching ended; else its cell alone
+  std::optional<Ending> ending{};  // nullopt: not seen
+  Entering last{};  // without an ending: the last entry seen; with one: only the cell counts
 };
 
-/// The trials of some bodies, which are numbered anew; those without a number are left out.
+/// The trials of some bodies, which get new numbers; bodies without a number are left out.
 RunPool pool_of_bodies(const RunPool& pool, const Section& section,
                        const std::vector<std::int32_t>& number) {
   RunPool half;
@@ -52,7 +52,7 @@ RunPool pool_of_bodies(const RunPool& pool, const Section& section,
   return half;
 }
 
-/// As far as they were seen, from the field's start cell.
+/// The observed trials of a half, from the field's start cell.
 std::vector<SeenTrial> seen_trials(const Problem& problem, const RunPool& half, Watched& watched) {
   const FieldParams& field = problem.field;
   const FieldTrials& trials = half.scattered.each;
@@ -93,7 +93,7 @@ struct BodyCounts {
     int type, row, column;
   };
   std::vector<std::vector<Count>> of_body;
-  std::vector<Eigen::VectorXd> runs;  // by type: of each row
+  std::vector<Eigen::VectorXd> runs;  // by type: number in each row
 };
 
 BodyCounts body_counts(const Problem& problem, const RunPool& half, const Kernel& kernel) {
@@ -136,11 +136,11 @@ void each_leaf(const Kernel& kernel, int type, int row, Use use) {
     use(leaf);
 }
 
-/// The chain of both halves with the states of one.
+/// The chain of the runs of both halves, with the states of one half's chain.
 struct BothHalves {
   markov::FieldChain chain;
-  std::vector<Eigen::VectorXd> runs;  // by type: of each row
-  double fitted = 0.0;                // rows over runs: so much of a run's own chance is in its row
+  std::vector<Eigen::VectorXd> runs;  // by type: number in each row
+  double fitted = 0.0;  // rows / runs: the part of a run's own sampling error that its row contains
 };
 
 BothHalves both_halves(const Problem& problem, const Kernel& kernel, const BodyCounts& a,
@@ -166,10 +166,10 @@ BothHalves both_halves(const Problem& problem, const Kernel& kernel, const BodyC
   return {field_chain(problem.map(), std::move(chains)), std::move(runs), rows / all};
 }
 
-/// The chain of both halves, moved as the chain of one half moves with the weight of one of its
-/// bodies: each row by kStep of what the body did less what all did, over the half's runs. More
-/// where the body has a large part in the row, as that was fitted to it too (HC2 of MacKinnon and
-/// White, J. Econometrics 29, 1985).
+/// The chain of both halves, changed as one half's chain changes with the weight of one body: each
+/// row moves by kStep times the body's runs minus the mean of all, over the half's runs. The step
+/// is larger if the body has a large part in the row, because the row was fitted to the body too
+/// (HC2 of MacKinnon and White, J. Econometrics 29, 1985).
 constexpr double kStep = 1e-5;
 markov::FieldChain with_more_of(const std::vector<BodyCounts::Count>& body, const BodyCounts& half,
                                 const Kernel& kernel, const BothHalves& both) {
@@ -180,7 +180,7 @@ markov::FieldChain with_more_of(const std::vector<BodyCounts::Count>& body, cons
     Eigen::VectorXd own = Eigen::VectorXd::Zero(all.size());
     for (const auto& c : body)
       if (c.type == type) own[c.row] += 1.0;
-    const auto step = [&](Eigen::Index row) {  // none where all runs are its own: nothing changes
+    const auto step = [&](Eigen::Index row) {  // 0 if the body made all runs: then nothing changes
       return own[row] < all[row] ? kStep / (runs[row] * std::sqrt(1.0 - own[row] / all[row])) : 0.0;
     };
     const markov::Chain& chain = both.chain.chains()[static_cast<std::size_t>(type)];
@@ -200,12 +200,12 @@ markov::FieldChain with_more_of(const std::vector<BodyCounts::Count>& body, cons
   return both.chain.with(std::move(chains));
 }
 
-/// One half as the bodies behind a chain, and as those who are predicted.
+/// One half: the bodies behind a chain, and the bodies to predict.
 struct Half {
   RunPool pool;
   Watched watched{};
   std::vector<SeenTrial> trials{};
-  int parts = 0;  // of bodies that share a sign
+  int parts = 0;  // number of sets of bodies that share a sign
   [[nodiscard]] std::size_t part_of(std::size_t body) const {
     return body % static_cast<std::size_t>(parts);
   }
@@ -236,7 +236,7 @@ std::array<Half, 2> dealt_out(const Problem& problem, const RunPool& pool, std::
   return halves;
 }
 
-/// Shares of all trials with what chance in the bodies makes, as those of so many independent ones.
+/// Shares of all trials, with the sampling error over bodies, as an effective number of trials.
 EndingShares shares_by_bodies(const Eigen::MatrixXd& by_body, const Eigen::VectorXd& trials,
                               std::int64_t passages) {
   const auto bodies = static_cast<double>(by_body.cols());
@@ -258,8 +258,8 @@ EndingShares shares_by_bodies(const Eigen::MatrixXd& by_body, const Eigen::Vecto
   return result;
 }
 
-/// What a body was seen to do: where its trials started, and where they were when watching ended;
-/// of those that were seen to end where and how, as shares of all trials of the half.
+/// The observations of a body: starts of its trials, last entries of the trials that were not seen
+/// to end, and for all others where and how they ended, as shares of the half's trials.
 struct SeenBody {
   std::vector<Entering> starts, last;
   Eigen::VectorXd ended;
@@ -281,9 +281,9 @@ std::vector<SeenBody> seen_bodies(const Half& half, const FieldWalk& walk) {
 
 /// Where and how the bodies of a half end: (numbers x bodies).
 struct EndsByBody {
-  Eigen::MatrixXd seen;       // as seen, and from there by the chain of the other half
-  Eigen::MatrixXd predicted;  // by that chain from the same starts
-  Eigen::MatrixXd excess;     // seen less predicted, both by the chain of both halves
+  Eigen::MatrixXd seen;       // observed, continued by the chain of the other half
+  Eigen::MatrixXd predicted;  // by that chain, from the same starts
+  Eigen::MatrixXd excess;     // observed minus predicted, both by the chain of both halves
   std::vector<double> gates;  // visited, as predicted
 };
 
@@ -304,10 +304,10 @@ EndsByBody ends_by_body(const std::vector<SeenBody>& bodies, double share, const
   return ends;
 }
 
-/// The parts that bodies of both halves have in the difference of a fold: (numbers x parts).
+/// The contributions of the bodies of both halves to the difference of a fold: (numbers x parts).
 struct Difference {
   Eigen::VectorXd seen_less_chain;
-  Eigen::MatrixXd seen;   // of the half as seen: that half's less the chain's
+  Eigen::MatrixXd seen;   // of the observed half: observed minus predicted
   Eigen::MatrixXd chain;  // of the chain's half
 };
 
@@ -319,7 +319,7 @@ Eigen::MatrixXd parts_of_seen(const Eigen::MatrixXd& excess, const Half& half, d
   return parts;
 }
 
-/// How the difference changes with the weight of each part of the chain's half, `counts`.
+/// Change of the difference with the weight of each part of the chain's half, `counts`.
 Eigen::MatrixXd parts_of_chain(const std::vector<SeenBody>& bodies, double share,
                                const FieldWalk& walk, const Half& chain_half,
                                const BodyCounts& counts, const Kernel& kernel,
@@ -346,7 +346,7 @@ Eigen::MatrixXd parts_of_chain(const std::vector<SeenBody>& bodies, double share
   return parts;
 }
 
-/// By the chain of each group of the chain's half, from the starts of the half as seen.
+/// Predictions of the groups of the chain's half, from the starts of the observed half.
 std::vector<markov::FinalDistribution> group_predictions(const Problem& problem, const Half& half,
                                                          const Half& chain_half, int per_leaf) {
   std::vector<Entering> starts;
@@ -362,7 +362,7 @@ std::vector<markov::FinalDistribution> group_predictions(const Problem& problem,
   return groups;
 }
 
-/// What the half was seen to do; intervals: chance in its bodies.
+/// Adds the observations of a half; intervals include the sampling error over its bodies.
 void add_seen(Fold& fold, const Half& half, const Eigen::MatrixXd& seen, const FieldParams& field) {
   const Eigen::VectorXd all = seen.rowwise().sum();
   Eigen::VectorXd trials = Eigen::VectorXd::Zero(seen.cols());
@@ -372,7 +372,7 @@ void add_seen(Fold& fold, const Half& half, const Eigen::MatrixXd& seen, const F
                   .with_limit(field.max_gates);
 }
 
-/// What the chain says of the same starts, with its own error bars, as any prediction's.
+/// Adds the chain's prediction from the same starts, with its own error bars.
 void add_prediction(Fold& fold, const EndsByBody& ends,
                     const std::vector<markov::FinalDistribution>& groups, std::uint64_t seed,
                     const FieldParams& field) {
@@ -384,7 +384,7 @@ void add_prediction(Fold& fold, const EndsByBody& ends,
   fold.chain_endings = spread.endings_95(fold.chain_bodies).with_limit(field.max_gates);
 }
 
-/// `half` as seen against the chain of `chain_half`.
+/// `half` as observed, against the chain of `chain_half`.
 Fold fold_of(const Problem& problem, const Half& half, const Half& chain_half,
              const CrossValidationOptions& options, Difference& difference) {
   const Kernel kernel = kernel_of(problem.map(), chain_half.pool, options.per_leaf);
@@ -412,9 +412,9 @@ Fold fold_of(const Problem& problem, const Half& half, const Half& chain_half,
   return fold;
 }
 
-constexpr std::size_t kOfOneFold = 1 + kEndings;  // statistics
+constexpr std::size_t kOfOneFold = 1 + kEndings;  // number of statistics
 
-/// Total variation of the final gates, then each ending's difference.
+/// Total variation of the final gates, then the difference of each ending.
 void add_statistics(std::vector<double>& all, const Eigen::VectorXd& difference) {
   const auto exact = [](double x) { return x > kShareRounding ? x : 0.0; };
   const auto endings = static_cast<Eigen::Index>(kEndings);
@@ -423,21 +423,21 @@ void add_statistics(std::vector<double>& all, const Eigen::VectorXd& difference)
     all.push_back(exact(std::abs(difference[difference.size() - endings + e])));
 }
 
-/// Endings of which a half has, by what was seen and by the chain, hardly any trial, or all but a
-/// few: bodies that end so are too few to tell what chance makes. Counts of both halves are drawn
-/// instead, as if every trial were independent.
+/// Endings that hardly any trial of a half has, or nearly all, both in the observations and by the
+/// chain: too few bodies show their sampling error. The null draws counts of both halves instead,
+/// as if all trials were independent.
 struct RareEnding {
   Eigen::Index ending;
   double share;
 };
 
 std::vector<RareEnding> rare_endings(const std::array<Half, 2>& halves, const CrossValidation& v) {
-  constexpr double kFewTrials = 5.0;  // trials of a half
+  constexpr double kFewTrials = 5.0;  // trials per half
   const auto n = static_cast<double>(halves[0].trials.size() + halves[1].trials.size());
   std::vector<RareEnding> rare;
   for (std::size_t e = 0; e < kEndings; ++e) {
     double count = 0.0;
-    for (std::size_t h = 0; h < 2; ++h)  // fold f is of half 1 - f as seen
+    for (std::size_t h = 0; h < 2; ++h)  // fold f has half 1 - f as observed
       count += 0.5 * (v.folds[1 - h].seen.share[e] + v.folds[1 - h].chain.endings[e]) *
                static_cast<double>(halves[h].trials.size());
     if (count > kShareRounding && n - count > kShareRounding &&
@@ -447,7 +447,7 @@ std::vector<RareEnding> rare_endings(const std::array<Half, 2>& halves, const Cr
   return rare;
 }
 
-/// The difference of an ending's shares in fold 0, and less that in fold 1.
+/// A null draw of the difference of an ending's shares in fold 0, which is minus that in fold 1.
 double drawn_difference(const RareEnding& rare, const std::array<Half, 2>& halves, Random& random) {
   std::array<double, 2> seen{};
   for (std::size_t h = 0; h < 2; ++h) {
@@ -458,13 +458,13 @@ double drawn_difference(const RareEnding& rare, const std::array<Half, 2>& halve
   return seen[1] - seen[0];
 }
 
-/// What chance makes: the statistics of both folds of each draw, and each fold's comparisons.
+/// Null draws: statistics of both folds for each draw, and each fold's comparisons.
 struct Chance {
   std::vector<double> statistics{};  // (draws x 2 kOfOneFold)
   std::array<std::vector<double>, 2> corrcoefs{}, rmses{};
 };
 
-/// Parts of bodies keep their signs or change them.
+/// Draws the null: multiplies each part by +1 or -1 at random.
 Chance chance_in(const CrossValidation& v, const std::array<Half, 2>& halves,
                  const std::array<Difference, 2>& differences, std::uint64_t seed) {
   Chance chance;

@@ -55,12 +55,12 @@ class FieldDesigner {
   }
 
  private:
-  static constexpr double kMostBytes = 2.0e9;  // of values, as markov::design has them
+  static constexpr double kMostBytes = 2.0e9;  // for the values of markov::design
 
   [[nodiscard]] std::size_t cell_of(const Place& at) const {
     return static_cast<std::size_t>(at.row * problem_.field.columns + at.column);
   }
-  /// One of those that may stand there.
+  /// A random one of the permitted types, or the cell's own.
   [[nodiscard]] int any(const Place& at) const {
     const auto drawn = rounds_.word(at, 0) % (become_.size() + 1);
     return drawn < become_.size() ? become_[drawn] : own_[cell_of(at)];
@@ -85,8 +85,8 @@ class FieldDesigner {
     return maps;
   }
 
-  /// The field as it is, and what chains with leaves of each size choose. Of several that cross as
-  /// often the first wins: no change without a gain.
+  /// The unchanged field, and the choices of chains with leaves of each size. Among equals the
+  /// first wins: no change without a gain.
   [[nodiscard]] std::vector<DesignedField> choose() {
     std::vector<DesignedField> fields(1);
     for (const int size : kLeafSizes)
@@ -97,13 +97,13 @@ class FieldDesigner {
     return fields;
   }
 
-  /// None where it does not fit into memory.
+  /// nullopt if the values do not fit into memory.
   [[nodiscard]] std::optional<DesignedField> choose_by(int leaf_size) {
     const Kernel kernel = kernel_of(problem_.map(), rounds_.pool(), leaf_size * options_.per_leaf);
     if (8.0 * numbers_of(problem_.field, kernel.space) > kMostBytes) return {};
     const FieldParams& field = problem_.field;
     markov::Gains gains = gain_of_crossing();
-    // What is not known is no reason to choose a type.
+    // Unknown outcomes must not speak for a type.
     gains.ending[static_cast<std::size_t>(markov::Ending::unsampled)] = options_.least ? 1.0 : 0.0;
     const markov::Field size{field.columns, field.rows};
     const markov::Start start = chain_start(kernel.space, field, problem_.start).start;
@@ -122,7 +122,7 @@ class FieldDesigner {
                                      std::ssize(maps) + 1);
                         }});
     solves_ += designed.by_chain.solves;
-    // What is told is the chance to cross alone.
+    // The reported value is the probability to cross only.
     const auto crosses = [&](const Map& map) {
       return markov::predict(markov::FieldChain::by_cell(chain.chains(), field.columns, map), size,
                              {start}, {.max_cells = field.max_gates})[0]
@@ -137,7 +137,7 @@ class FieldDesigner {
     return designed;
   }
 
-  /// By trials that nothing was chosen by.
+  /// Judges a field by held-out trials.
   void judge(DesignedField& best, bool settled) {
     const std::int64_t first = rounds_.next();
     const FieldTrials with = run(types_of(best.type_of_cell)).each;

@@ -13,12 +13,12 @@ namespace {
 
 using Trials = std::optional<std::int64_t>;
 
-/// The level of one ending where so many are looked at (Bonferroni).
+/// The level of each ending if `endings` endings are tested (Bonferroni).
 PowerGoal of_all(const PowerGoal& goal, std::size_t endings) {
   return {goal.power, goal.level / static_cast<double>(endings)};
 }
 
-/// The larger; none where one of them is none: that is more than any.
+/// The larger number; nullopt, which is more than any number, if one of them is.
 Trials larger(const Trials& a, const Trials& b) {
   return a && b ? Trials(std::max(*a, *b)) : std::nullopt;
 }
@@ -27,13 +27,13 @@ double share_of(const StartAnswer& a, const EndingName& e) {
   return std::clamp(a.final.endings[static_cast<std::size_t>(e.ending)], 0.0, 1.0);
 }
 
-/// Half of the interval, on its longer side.
+/// The longer side of an ending's interval.
 double error_of(const StartAnswer& a, const EndingName& e) {
   const auto [low, high] = a.endings.interval[static_cast<std::size_t>(e.ending)];
   return std::max(high - share_of(a, e), share_of(a, e) - low);
 }
 
-/// Shares that are so much more and less, if there are such.
+/// The shares that are larger and smaller by `difference`, as far as they exist.
 std::vector<double> shares_off_by(double difference, double share) {
   std::vector<double> shares;
   if (share + difference <= 1.0) shares.push_back(share + difference);

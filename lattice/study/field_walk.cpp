@@ -38,7 +38,7 @@ Walked FieldWalk::walk(const markov::FieldChain& chain, const std::vector<Enteri
   const bool limited = field_.max_gates > 0;
   std::vector<std::size_t> order(entering.size());
   std::iota(order.begin(), order.end(), 0);
-  if (limited)  // without a limit it does not matter how many were visited
+  if (limited)  // without a limit, the number of gates visited does not matter
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return entering[a].gates < entering[b].gates;
     });

@@ -14,7 +14,8 @@
 namespace gatewalk::lattice {
 namespace {
 
-/// The time alone; nothing where nobody measured it: who is there already would need 0 s.
+/// The time only. Empty if it was not measured, because a body already in the target would need 0
+/// seconds.
 markov::Rewards times_of(const markov::Rewards& rewards) {
   markov::Rewards times;
   bool known = false;

@@ -30,25 +30,26 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kPoints = 128;  // of a round; twice as many anywhere, of several parts, and last
-constexpr int kRounds = 13;     // at most, before the last
-constexpr int kParts = 16;      // of the trials: one a round, what is left in the last
-constexpr int kLooks = 3;       // rounds at most of a look at what was cut off
-constexpr std::int64_t kLeastTrials = 12'288;  // for each number
-constexpr std::int64_t kOfEachObserved = 3;    // trials of a round, for each observed one
+// per round; twice as many in the whole ranges, with several parts, and in the last round
+constexpr Index kPoints = 128;
+constexpr int kRounds = 13;                    // at most, before the last one
+constexpr int kParts = 16;                     // of the trials: one per round, the rest in the last
+constexpr int kLooks = 3;                      // most rounds that check what was cut off
+constexpr std::int64_t kLeastTrials = 12'288;  // per number
+constexpr std::int64_t kOfEachObserved = 3;    // trials of a round, per observed one
 constexpr std::int64_t kFirstTrial = std::int64_t{1} << 51;  // numbers that no other trials have
-constexpr std::int64_t kFewestAlone = 50;  // trials of a group that is an ending's last
+constexpr std::int64_t kFewestAlone = 50;  // trials of a group that is the last of its ending
 constexpr int kMostDegree = 4;
-constexpr Index kWalkers = 32;   // of a walk
-constexpr Index kWalks = 16;     // each with coefficients of its own
+constexpr Index kWalkers = 32;   // per walk
+constexpr Index kWalks = 16;     // each with its own coefficients
 constexpr Index kCloud = 2048;   // pairs of points without trials, for a single number
-constexpr int kCloudSteps = 20;  // that spread those that stand for others
+constexpr int kCloudSteps = 20;  // steps that spread copied points
 constexpr int kSteps = 400, kFirstSteps = 200, kEvery = 50;
-constexpr int kBoundsOfEach = 8;    // coefficients of a bound beside the best
-constexpr Index kMostNarrowed = 8;  // a round leaves one point in so many at least
-constexpr double kOutside = 1e-4;   // of the posterior, that a round's points may leave out
+constexpr int kBoundsOfEach = 8;    // coefficients of a bound besides the best ones
+constexpr Index kMostNarrowed = 8;  // a round keeps at least one point in this number
+constexpr double kOutside = 1e-4;   // of the posterior, which a round's points may leave out
 
-/// The outcome of each trial at some points, one point behind the other. -1: a run broke.
+/// The outcomes of all trials at some points, point by point. -1: a run broke.
 struct PointOutcomes {
   std::vector<double> points;
   std::vector<std::int32_t> outcomes;
@@ -74,7 +75,7 @@ class Fitter {
     cloud_ = even_points(2 * (kCloud / numbers_)).transpose();
     for (fit_.rounds = 1;; ++fit_.rounds) {
       learn();
-      // Where half of the points stay another round would be hardly nearer.
+      // If half of the points stay, another round would hardly help.
       const bool is_near = narrow() > 0.5 && fit_.misfit <= Fit::kPermittedMisfit;
       if ((is_near || fit_.rounds + kLooks >= kRounds) && look_outside()) break;
       if (fit_.rounds >= kRounds) break;
@@ -92,12 +93,12 @@ class Fitter {
   }
 
  private:
-  /// Groups, one behind the other, of which it is given how many there are in all: trials, or
-  /// passages that begin alike.
+  /// Consecutive groups whose total number is given by the experiment: trials, or passages that
+  /// begin alike.
   struct Given {
     Index first = 0, count = 0;
   };
-  /// The log of it, of a model and what was observed.
+  /// The log likelihood of the observations under a model.
   struct Likelihood {
     std::shared_ptr<const OutcomeTree> model;
     std::vector<Given> given;
@@ -121,13 +122,15 @@ class Fitter {
       return sum;
     }
   };
-  /// Where the likelihood of a round's model is not small, whichever of these coefficients it has.
+  /// The region where the likelihood of a round's model is not small, for any of these
+  /// coefficients.
   struct Bound {
     Likelihood likelihood;
-    std::vector<std::pair<OutcomeTree::Coefficients, double>> greatest;  // log likelihood of each
-    double below = HUGE_VAL;  // so far it may fall before the point is outside
+    // with the greatest log likelihood of each
+    std::vector<std::pair<OutcomeTree::Coefficients, double>> greatest;
+    double below = HUGE_VAL;  // a point is outside if the log likelihood falls further than this
 
-    /// How far it may still fall.
+    /// How much further the log likelihood may fall at this point.
     [[nodiscard]] double margin(const VectorXd& point) const {
       double most = -HUGE_VAL;
       for (const auto& [coefficients, top] : greatest)
@@ -150,7 +153,7 @@ class Fitter {
     return {Purpose::fit, {options_.seed, what, static_cast<std::uint64_t>(fit_.rounds)}};
   }
 
-  /// So many points, even in the whole ranges.
+  /// Evenly spread points in the whole ranges.
   [[nodiscard]] MatrixXd even_points(Index count) const {
     Random chance = random(0);
     const ScrambledPoints points(chance);
@@ -161,8 +164,8 @@ class Fitter {
     }
     return all;
   }
-  /// Of even points outside of the bounds those where trials of the nearest points, taken together,
-  /// explain best what was observed: hills that lie between points have such neighbours.
+  /// Of the evenly spread points outside the bounds, those whose nearest points' trials, taken
+  /// together, explain the observations best. Maxima between points have such neighbours.
   [[nodiscard]] MatrixXd points_outside(const std::vector<Bound>& bounds) const {
     std::vector<Index> all(static_cast<std::size_t>(points_.rows()));
     std::iota(all.begin(), all.end(), Index{0});
@@ -187,13 +190,13 @@ class Fitter {
       best.row(i) = even.row(found[static_cast<std::size_t>(i)].second);
     return best;
   }
-  /// Uniform where all bounds hold. The first of the cloud, as few of Sobol's points are even only
-  /// if they follow each other.
+  /// Points that are uniform where all bounds hold: the first ones of the cloud. (A few Sobol
+  /// points are evenly spread only if they are consecutive.)
   [[nodiscard]] MatrixXd new_points(Index count) const {
     return cloud_.leftCols(count).transpose();
   }
 
-  /// With this many parts of the trials; 0: with what is left.
+  /// Runs trials at points: `parts` parts of all trials; 0: the remaining trials.
   void run(const MatrixXd& points, int parts) {
     const std::int64_t each =
         (parts > 0 ? parts * options_.trials / kParts : options_.trials - fit_.trials) /
@@ -228,8 +231,8 @@ class Fitter {
     for (const Health& h : health) all.health += h;
     return all;
   }
-  /// Points of later rounds follow from earlier ones, by logarithms that other machines may round
-  /// otherwise: what was kept there is not mixed with what is asked here.
+  /// The points of later rounds depend on earlier ones through logarithms, which other machines may
+  /// round differently. Kept results of other points are not mixed with those asked for here.
   void take(const PointOutcomes& done, std::int64_t each) {
     const auto trials = static_cast<std::size_t>(each);
     const std::size_t count = done.outcomes.size() / trials, first = ends_.size();
@@ -253,7 +256,7 @@ class Fitter {
     fit_.health += done.health;
   }
 
-  /// Of a point's trials.
+  /// Calls count(outcome) for the trials of a point.
   template <class Count>
   void each_outcome(Index point, const Count& count) const {
     for (std::size_t i = point == 0 ? 0 : ends_[static_cast<std::size_t>(point) - 1];
@@ -261,7 +264,7 @@ class Fitter {
       count(static_cast<std::size_t>(ended_[i]));
   }
 
-  /// The best model of the points where all bounds hold.
+  /// Fits the best model to the points where all bounds hold.
   void learn() {
     std::vector<Index> at;
     for (Index i = 0; i < points_.rows(); ++i)
@@ -292,7 +295,7 @@ class Fitter {
     fit_.parts = model_->leaves();
   }
 
-  /// (points x groups), of some points.
+  /// Counts by group at some points (points x groups).
   [[nodiscard]] MatrixXd counts_of(const std::vector<Index>& points) const {
     MatrixXd counts = MatrixXd::Zero(std::ssize(points), observed_.size());
     for (Index i = 0; i < counts.rows(); ++i)
@@ -301,8 +304,8 @@ class Fitter {
     return counts;
   }
 
-  /// Neighbours go together until they are enough; trials of different endings only where so few
-  /// end so that nothing could be learnt from them alone.
+  /// Merges neighbouring outcomes until they are enough. Trials of different endings are merged
+  /// only if an ending has too few to learn from.
   void group(const std::vector<std::int64_t>& all) {
     const std::int64_t trials = std::accumulate(all.begin(), all.end(), std::int64_t{0});
     const double share =
@@ -310,11 +313,11 @@ class Fitter {
     const auto enough = std::max(
         kFewestAlone, static_cast<std::int64_t>(std::ceil(share * static_cast<double>(trials))));
     const std::size_t of_ending = fit_.outcomes.together();
-    std::int64_t size = 0;   // of the last group
-    std::size_t ending = 0;  // its last one
+    std::int64_t size = 0;   // trials of the last group
+    std::size_t ending = 0;  // ending of the last group
     fit_.groups.clear();
     fit_.never = 0;
-    // Alone where the experiment saw it.
+    // An ending that the experiment showed keeps its own group.
     const auto is_enough = [&](bool whole_ending) {
       if (!whole_ending) return size >= enough;
       return size >= kFewestAlone || (size > 0 && fit_.groups.back().observed > 0);
@@ -357,8 +360,8 @@ class Fitter {
     return given;
   }
 
-  /// From walkers that stand where the cloud has them by this likelihood: as often on each hill as
-  /// is right, though none walks from one to the other.
+  /// An ensemble that starts at walkers drawn from the cloud by this likelihood. Each maximum gets
+  /// its right share of walkers, although none walks from one to another.
   [[nodiscard]] Ensemble walk_of(const OutcomeTree::Coefficients& coefficients,
                                  Random& chance) const {
     const Index cloud = cloud_.cols();
@@ -384,7 +387,7 @@ class Fitter {
             std::move(from)};
   }
 
-  /// A bound more. How many of the points keep it.
+  /// Adds a bound. Returns the share of the points inside.
   [[nodiscard]] double narrow() {
     Random chance = random(2);
     Bound bound{likelihood_, {{model_->best(), -HUGE_VAL}}};
@@ -399,7 +402,7 @@ class Fitter {
       }
     double below =
         2.0 * fit_.misfit + 0.5 * chi_squared_exceeded(static_cast<double>(numbers_), kOutside);
-    // But no fewer points than these are kept: what is wrong far from the best is seen later.
+    // At least this number of points is kept: a later round detects errors far from the maximum.
     std::sort(falls.begin(), falls.end());
     below = std::max(below, bound.greatest.front().second +
                                 falls[static_cast<std::size_t>(used_.rows() / kMostNarrowed)]);
@@ -409,7 +412,7 @@ class Fitter {
     for (Index i = 0; i < used_.rows(); ++i) in += inside(used_.row(i).transpose());
     return static_cast<double>(in) / static_cast<double>(used_.rows());
   }
-  /// The cloud to where the last bound holds, in steps that leave enough of it.
+  /// Moves the cloud to where the last bound holds, in steps that keep enough of its points.
   void shrink(Bound& bound, double below, Random& chance) {
     const Index cloud = cloud_.cols();
     VectorXd falls(cloud);
@@ -439,9 +442,9 @@ class Fitter {
     }
   }
 
-  /// What earlier rounds cut off: whether the posterior, by all points, lies there too, of which
-  /// some are new, anywhere at first, then where it seems to lie. If it does the bounds are made
-  /// anew.
+  /// Checks whether the posterior, by all points, reaches into the region that earlier rounds cut
+  /// off. New points lie anywhere in that region at first, then where the posterior seems to lie.
+  /// If it does, the bounds are made anew.
   [[nodiscard]] bool look_outside() {
     const std::vector<Bound> bounds = bounds_;
     const MatrixXd within = cloud_;
@@ -466,7 +469,7 @@ class Fitter {
       weights = (weights.array() - weights.maxCoeff()).exp();
       fit_.outside = weights.dot(out) / weights.sum();
       if (fit_.outside <= Fit::kPermittedOutside && look == 0 && fit_.parts > 1) {
-        outside = points_outside(bounds);  // among parts a narrow hill may lie: once more
+        outside = points_outside(bounds);  // a narrow maximum may lie between parts: once more
         continue;
       }
       if (fit_.outside <= Fit::kPermittedOutside) {
@@ -482,7 +485,7 @@ class Fitter {
     return false;
   }
 
-  /// From the posterior, each walk with coefficients that are drawn.
+  /// Draws from the posterior, each walk with its own drawn coefficients.
   void draw() {
     std::vector<MatrixXd> walked(static_cast<std::size_t>(kWalks));
     coefficients_.resize(walked.size());
@@ -536,16 +539,16 @@ class Fitter {
       FittedNumber number{.mean = mean[k], .sd = sd[k], .median = at(0.5)};
       number.interval = {at(0.025), at(0.975)};
       number.best = fit_.draws(fit_.best, k);
-      double from_flat = 0.0;  // Kolmogorov's distance of the posterior from the range alone
+      double from_flat = 0.0;  // Kolmogorov distance of the posterior from the uniform prior
       for (std::size_t i = 0; i < sorted.size(); ++i)
         from_flat = std::max(
             from_flat, std::abs(sorted[i] - static_cast<double>(i) / static_cast<double>(draws)));
-      // A slope of the log likelihood by chance in the trials, which moves means of flat draws by
-      // so much, makes a distance of 1.5 times that.
+      // Sampling error of the trials may give the log likelihood a slope. If the slope moves the
+      // mean of uniform draws by x, the distance is 1.5 x.
       walks_of(k, number);
       constexpr double kHardlyMore = 0.15, kByChance = 2.0 * 1.5;
       number.told = from_flat > kHardlyMore + kByChance * number.sd * std::sqrt(number.by_runs);
-      constexpr double kEdge = 0.02, kOften = 0.05;  // flat draws: 0.02 of all
+      constexpr double kEdge = 0.02, kOften = 0.05;  // uniform draws: 0.02 of all
       const auto often = [&](auto count) {
         return number.told && static_cast<double>(count) > kOften * static_cast<double>(draws);
       };
@@ -557,7 +560,8 @@ class Fitter {
     predict();
   }
 
-  /// What differs from walk to walk beyond what their length makes, their coefficients make.
+  /// Variance between walks, beyond what their finite length explains, comes from their
+  /// coefficients.
   void walks_of(Index k, FittedNumber& number) {
     const Index of_each = fit_.draws.rows() / kWalks, half = of_each / 2;
     VectorXd means(kWalks), differences(kWalks);
@@ -573,12 +577,12 @@ class Fitter {
     const double between = (means.array() - means.mean()).square().sum() / (kWalks - 1.0);
     if (number.sd > 0.0)
       number.by_runs = std::clamp((between - by_length) / (number.sd * number.sd), 0.0, 1.0);
-    // Gelman and Rubin's, of the halves of walks.
+    // Gelman and Rubin's R, from the halves of the walks.
     if (within > 0.0)
       fit_.mixing = std::max(fit_.mixing, std::sqrt(1.0 + 2.0 * by_length / within));
   }
 
-  /// Experiments like this one, at each draw.
+  /// Simulates an experiment like this one at each draw.
   void predict() {
     const Index draws = fit_.draws.rows(), groups = observed_.size();
     fit_.predicted.resize(draws, groups);
@@ -626,16 +630,16 @@ class Fitter {
   const FitData& data_;
   const FitOptions& options_;
   const Work& work_;
-  MatrixXd points_;                  // (points x numbers), all
-  std::vector<std::int32_t> ended_;  // outcomes of their trials, one point behind the other
-  std::vector<std::size_t> ends_;    // of each point's among these
+  MatrixXd points_;                  // (points x numbers) all points
+  std::vector<std::int32_t> ended_;  // outcomes of all trials, point by point
+  std::vector<std::size_t> ends_;    // by point: end of its outcomes in ended_
   std::vector<Bound> bounds_;
   MatrixXd used_;                // points of the model
   VectorXd observed_;            // (groups)
   std::vector<Index> group_of_;  // by outcome
-  Likelihood likelihood_;        // of these
+  Likelihood likelihood_;        // of the observations, under the model
   std::shared_ptr<const OutcomeTree> model_;
-  MatrixXd cloud_;  // (numbers x points), even where all bounds hold
+  MatrixXd cloud_;  // (numbers x points) uniform where all bounds hold
   std::vector<OutcomeTree::Coefficients> coefficients_;  // by walk
   Fit fit_;
 };

@@ -19,16 +19,16 @@ namespace {
 
 using namespace dynamics;
 
-constexpr std::size_t kTimeParts = 8;       // of the observed times: by quantiles
-constexpr double kLeastShare = 0.01;        // of all trials, in a group, ...
-constexpr double kMostShare = 0.2;          // ... which is not larger because much was observed
+constexpr std::size_t kTimeParts = 8;       // of the observed times, by quantiles
+constexpr double kLeastShare = 0.01;        // least share of all trials in a group
+constexpr double kMostShare = 0.2;          // limit of that share, however much was observed
 constexpr double kByChance = 4.0;           // see least_share
 constexpr double kLastRound = 6.0;          // the last round has a sixth of all trials
-constexpr double kGroupsOfBeginning = 6.0;  // of passages that begin alike
+constexpr double kGroupsOfBeginning = 6.0;  // per beginning of passages
 constexpr double kWellInside = 0.01;        // of a face's length
 
-/// Outcomes in an order in which neighbours are alike: by ending, and gates row by row, there and
-/// back again; by face.
+/// The outcomes in an order in which neighbours are alike: by ending, with gates row by row, in
+/// alternating directions; or by face.
 std::vector<std::size_t> neighbours(const FittedOutcomes& of, const FieldParams& field) {
   std::vector<std::size_t> order;
   const auto columns = static_cast<std::size_t>(field.columns);
@@ -44,7 +44,7 @@ std::vector<std::size_t> neighbours(const FittedOutcomes& of, const FieldParams&
   return order;
 }
 
-/// Between parts with as many of the observed times each, as far as these differ.
+/// Limits between parts with equal numbers of observed times, as far as the times differ.
 std::vector<double> time_parts(std::vector<double> times) {
   std::sort(times.begin(), times.end());
   std::vector<double> between;
@@ -64,7 +64,7 @@ std::size_t time_cost(const Section& section) {
   return static_cast<std::size_t>(at - section.costs.begin());
 }
 
-/// Which part of `way` it is; `seconds`: of who left.
+/// The number of an outcome: `way`, and its part by time; `seconds`: of a body that left.
 std::int32_t outcome(const FittedOutcomes& of, std::size_t way, bool left, double seconds) {
   const auto part =
       left ? std::upper_bound(of.times.begin(), of.times.end(), seconds) - of.times.begin() : 0;
@@ -82,11 +82,11 @@ std::int32_t of_trial(const FittedOutcomes& of, std::size_t ending, std::size_t 
                  left, seconds);
 }
 
-/// A passage that was seen to its end, and which of the outcomes' beginnings it has.
+/// A passage that was seen to its end, with the index of its beginning.
 struct Begun {
   Entry from;
   std::uint8_t type = 0;
-  bool mirrored = false;  // its mirror image is told of
+  bool mirrored = false;  // its mirror image is used instead
   std::size_t begin = 0;
 };
 
@@ -98,13 +98,13 @@ std::int32_t of_passage(const FittedOutcomes& of, const Section& section, const 
   return outcome(of, begun.begin * (of.faces.size() + 1) + to, left, seconds);
 }
 
-/// Of an entry and its mirror image one is told of.
+/// True for the one of an entry and its mirror image that is used.
 bool is_told_of(const Section& section, const Entry& entry) {
   const Entry other = mirrored(section, entry);
   return std::pair(entry.face, other.at) <= std::pair(other.face, entry.at);
 }
 
-/// Puts those that begin alike together: leaves of a tree over all entries into a type of cell.
+/// Groups beginnings that are alike: leaves of a tree over all entries into a type of cell.
 void put_beginnings(std::vector<Begun>& begun, FittedOutcomes& of, const Problem& problem,
                     std::size_t beginnings) {
   const Section& section = problem.map().section;
@@ -129,8 +129,8 @@ void put_beginnings(std::vector<Begun>& begun, FittedOutcomes& of, const Problem
   }
 }
 
-/// Carries out passages that begin as some did: evenly among these, which stand in the order of
-/// their beginnings, so that of each there are as many; from a place by chance.
+/// Runs passages with the beginnings of recorded ones, taken evenly from a random place in their
+/// order, so that each beginning gets its share.
 Health carry_out_again(
     const std::vector<Begun>& seen, const CellField& cells, std::uint64_t seed, TrialRange range,
     const std::function<void(std::size_t i, const Begun&, const Passage&)>& take) {
@@ -244,7 +244,7 @@ FitData trials_to_fit(const Observed& observed, const Problem& problem) {
 
 FitData passages_to_fit(const std::vector<EnteredPassage>& seen, int numbers,
                         const ProblemAt& problem_at, std::int64_t trials) {
-  std::vector<double> point;  // where what is symmetric is so by no chance
+  std::vector<double> point;  // a point where no symmetry is accidental
   for (int k = 1; k <= numbers; ++k) point.push_back(std::fmod(0.381966 * k, 1.0));
   const Problem problem = problem_at(point);
   const Section& section = problem.map().section;
@@ -257,7 +257,7 @@ FitData passages_to_fit(const std::vector<EnteredPassage>& seen, int numbers,
   for (const Face& face : section.faces) of.faces.push_back(face.name);
   std::vector<double> times;
   std::vector<Begun> begun;
-  std::vector<std::size_t> whole;  // those seen to their end
+  std::vector<std::size_t> whole;  // indices of those seen to their end
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const auto& [from, passage] = seen[i];
     if (passage.fate == Fate::broken) continue;
@@ -273,7 +273,7 @@ FitData passages_to_fit(const std::vector<EnteredPassage>& seen, int numbers,
   }
   require(!begun.empty(), "no passage was seen to its end");
   of.times = time_parts(std::move(times));
-  // As many of the last round's trials as there are, in groups, a few of each beginning.
+  // As many groups as the last round's trials permit, with a few per beginning.
   const double groups = 1.0 / least_share(numbers, static_cast<double>(trials) / kLastRound,
                                           static_cast<double>(begun.size()));
   put_beginnings(begun, of, problem,

@@ -18,14 +18,14 @@ namespace {
 using dynamics::Section;
 using dynamics::StateSpace;
 
-/// Of bodies that enter by this face, in its right half or not.
+/// The origin of bodies that enter by this face, in its right half or not.
 std::string origin_name(const Section& section, int face, bool right) {
   const dynamics::Face& f = section.faces[face];
   if (f.mirror != face || !f.is_odd(0)) return f.origin;
   return f.origin + (right ? " in the right half" : " in the left half");
 }
 
-/// Of a state, its place among the origins.
+/// The index of a state's origin in `origins`.
 int origin_of(const StateSpace& space, int state, const std::vector<std::string>& origins) {
   const dynamics::StateRange range = space.range(state);
   const auto& [from, to] = range.at[0];
@@ -33,7 +33,7 @@ int origin_of(const StateSpace& space, int state, const std::vector<std::string>
   return static_cast<int>(std::find(origins.begin(), origins.end(), name) - origins.begin());
 }
 
-/// The runs with each kind of label. Those of a walk's first gate have no gate before.
+/// The runs with each kind of label. Runs of a walk's first gate have no gate before.
 struct Labelled {
   std::vector<LabelledRun> gate_before, visit, row;
 };
@@ -103,7 +103,8 @@ void add_walks(StateWalks& walks, const StateSpace& space, int first, const Fiel
 }
 
 double MemoryStudy::p_adjusted(Question q) const {
-  // Holm: the k-th smallest p times the number of those not smaller, never less than one before.
+  // Holm: the k-th smallest p times the number of those not smaller, and never below an earlier
+  // value.
   double adjusted = 0.0;
   for (int other = 0; other < kQuestions; ++other) {
     const double p_other = p(static_cast<Question>(other));
@@ -160,7 +161,7 @@ Independence body_memory(const Problem& problem, const RunPool& pool, int per_le
   const StateSpace space = kernel_of(problem.map(), pool, per_leaf).space;
   const FieldTrials& trials = pool.scattered.each;
   const int faces = static_cast<int>(problem.map().section.faces.size());
-  std::vector<LabelledRun> runs;  // but those of trials' first cells
+  std::vector<LabelledRun> runs;  // without those in the trials' first cells
   for (std::size_t i = 0; i < trials.passed.size(); ++i) {
     int before = -1;
     dynamics::Entry entry = pool.scattered.starts[i];

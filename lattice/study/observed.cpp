@@ -28,12 +28,12 @@ std::string quoted(const std::string& text) {
   return shown.append(printable(text)).append("\"");
 }
 
-/// A table as its file has it, with the names of its columns in small letters.
+/// A table as in its file, with column names in lower case.
 struct CountTable {
   struct Row {
     std::int64_t line;
     Fields fields;
-    std::optional<double> time{};  // where it is a number; NaN: nothing
+    std::optional<double> time{};  // NaN: empty; nullopt: no number
   };
   std::string path;
   Fields columns;
@@ -49,7 +49,7 @@ struct CountTable {
     const auto found = std::find(columns.begin(), columns.end(), column);
     return row.fields[static_cast<std::size_t>(found - columns.begin())];
   }
-  /// A whole number in [low, high]; `because` says why.
+  /// A whole number in [low, high]; `because` explains the limits in the message.
   [[nodiscard]] std::int64_t whole(const Row& row, std::string_view column, std::int64_t low,
                                    std::int64_t high, const std::string& because) const {
     const std::string& text = at(row, column);
@@ -86,7 +86,7 @@ void require_columns(const CountTable& table, const Table& file) {
 
 CountTable read_table(const std::string& path, std::vector<std::string>& remarks) {
   constexpr std::uintmax_t kMostBytes = 100'000'000;
-  std::error_code none;  // of pipes and the like
+  std::error_code none;  // pipes and the like have no size
   if (const auto size = std::filesystem::file_size(path, none); !none && size > kMostBytes)
     throw std::invalid_argument(path + ": has " + std::to_string(size) +
                                 " bytes, more than a table of counts");
@@ -131,7 +131,7 @@ void require_trials(const CountTable& table, std::int64_t trials, std::int64_t w
                                 (table.has("count") ? ": its counts add up to 0" : ""));
 }
 
-/// The gate of a row: line and column of the field.
+/// The gate of a row, as row and column of the field.
 std::array<std::int64_t, 2> counted_gate(const CountTable& table, const CountTable::Row& row,
                                          const FieldParams& field) {
   const auto x =
@@ -145,7 +145,7 @@ std::array<std::int64_t, 2> counted_gate(const CountTable& table, const CountTab
 void add_gates(Observed& observed, const CountTable& table, const FieldParams& field) {
   CellCounts& gates = observed.seen.final_gates;
   gates = CellCounts::Zero(field.rows, field.columns);
-  markov::CellCounts given = gates;  // by which line
+  markov::CellCounts given = gates;  // line that gave each gate
   for (const CountTable::Row& row : table.rows) {
     const auto [y, column] = counted_gate(table, row, field);
     if (given(y, column) > 0)
@@ -158,7 +158,7 @@ void add_gates(Observed& observed, const CountTable& table, const FieldParams& f
   require_trials(table, gates.sum(), 0);
 }
 
-/// Of a row; none: it went back.
+/// The ending in a row; nullopt: the body went back.
 std::optional<std::size_t> ending_of(const CountTable& table, const CountTable::Row& row) {
   const std::string& name = table.at(row, "ending");
   if (const auto ending = ending_named(name)) {
@@ -171,7 +171,7 @@ std::optional<std::size_t> ending_of(const CountTable& table, const CountTable::
                              all + "or went back");
 }
 
-/// Nobody is cut off where a body may go through any number of gates.
+/// Throws for a trial that was cut off although the field has no limit of gates.
 void require_limit(const CountTable& table, const CountTable::Row& row, std::size_t ending,
                    const FieldParams& field) {
   if (static_cast<markov::Ending>(ending) != markov::Ending::cut_off || field.max_gates > 0) return;
@@ -194,8 +194,8 @@ void add_endings(Observed& observed, const CountTable& table, const FieldParams&
   require_trials(table, SeenEndings{{}, observed.seen.endings}.trials(), observed.went_back);
 }
 
-/// A body leaves the field from a gate at the side that it leaves by; it may be trapped or cut off
-/// in any.
+/// Throws unless the final gate of a body that left the field lies on the side that it left by.
+/// Bodies may be trapped or cut off in any gate.
 void require_at_side(const CountTable& table, const CountTable::Row& row, std::size_t ending,
                      const std::array<std::int64_t, 2>& gate, const FieldParams& field) {
   const std::int64_t gate_y = gate[0], gate_x = gate[1] - field.start_column();
@@ -221,7 +221,7 @@ void require_at_side(const CountTable& table, const CountTable::Row& row, std::s
   }
 }
 
-/// When a body left the field.
+/// The time at which a body left the field, s; 0 if it did not.
 double time_of(const CountTable& table, const CountTable::Row& row, std::size_t ending) {
   const auto e = static_cast<markov::Ending>(ending);
   const bool stayed = e == markov::Ending::trapped || e == markov::Ending::cut_off;
@@ -242,7 +242,7 @@ void add_lines(Observed& observed, const CountTable& table, const FieldParams& f
   CellCounts& gates = observed.seen.final_gates;
   if (has_gates) gates = CellCounts::Zero(field.rows, field.columns);
   if (has_gates && has_endings) observed.gates_by_ending.fill(gates);
-  if (has_endings)  // those that nobody had were not had, but cutting off must be looked for, ...
+  if (has_endings)  // an ending without trials occurred 0 times; cut_off counts only if it occurs
     for (const EndingName& e : kEndingNames)
       observed.listed[static_cast<std::size_t>(e.ending)] = e.ending != markov::Ending::cut_off;
   std::map<std::string, std::int64_t, std::less<>> lines;
@@ -305,7 +305,7 @@ Observed read_observed(const std::vector<std::string>& paths, const FieldParams&
   Observed observed;
   struct Recordings {
     std::string files;
-    std::vector<bool> columns;  // of all of them
+    std::vector<bool> columns;  // of all files of this kind
   } of_gates, of_endings;
   for (const std::string& path : paths) {
     const CountTable table = read_table(path, observed.remarks);
@@ -379,7 +379,7 @@ ObservedComparison compare_observed(const SeenEndings& seen, int max_gates,
   }
   c.against_dynamics = joint_test(seen, {dynamics.final_cells, dynamics.endings}, null_draws, seed);
   c.against_chain = joint_test(seen, chain, replicates, runs, null_draws, seed);
-  // Where chance changes nothing, everything else is a finding: at any level.
+  // A test without random variation finds any difference, at any level.
   const double single_level = std::min(c.against_dynamics.single_level, JointTest::kLevel);
   c.least = least_differences(seen, chain, single_level, seed);
   return c;

@@ -16,7 +16,7 @@ namespace {
 
 using namespace dynamics;
 
-/// A mean.
+/// The terms of a mean.
 struct Terms {
   std::int64_t n = 0;
   double sum = 0.0, sizes = 0.0, largest = 0.0;
@@ -27,15 +27,15 @@ struct Terms {
     largest = std::max(largest, std::abs(x));
   }
   [[nodiscard]] double mean() const { return sum / static_cast<double>(n); }
-  /// One of them makes a tenth of the sum: rarer ones may be larger still, and the mean is not to
-  /// be trusted.
+  /// True if one term makes at least a tenth of the sum. Rarer terms may then be larger still, and
+  /// the mean is not reliable.
   [[nodiscard]] bool few_make_it() const {
     constexpr double kMostOfOne = 0.1;
     return !(largest < kMostOfOne * sizes);
   }
 };
 
-/// What runs through changed cells gave, by sample; empty where the cells cannot be changed so.
+/// The values after runs through changed cells, by sample; empty if the cells cannot be changed so.
 struct ChangedRuns {
   std::vector<double> above, below;
   Health health;
@@ -45,7 +45,7 @@ void each_part(Archive& archive, ChangedRuns& runs) {
   archive(runs.above, runs.below, runs.health);
 }
 
-/// Of what passages take for a chain and for its groups, 8 GiB hold so many states.
+/// Number of states for which the passages of a chain and of its groups take 8 GiB.
 double most_states(const FieldParams& field) {
   constexpr double kMostBytes = 8.0 * (1 << 30), kNumbers = 2.0 * 4.0;
   return kMostBytes /
@@ -62,8 +62,8 @@ class Parameters {
       add_samples(chain.groups[g], groups[g], options.runs / std::ssize(groups));
   }
 
-  /// Runs item `item`: 0 through the cells as they are (`above`), k through those with number k - 1
-  /// changed.
+  /// Runs item `item`: 0 through the unchanged cells (result in `above`), k through cells with
+  /// number k - 1 changed.
   [[nodiscard]] ChangedRuns run(std::int64_t item) const {
     ChangedRuns runs;
     if (item == 0) {
@@ -82,8 +82,8 @@ class Parameters {
     return runs;
   }
 
-  /// Takes what run(item) gave, in the order of the items. An effect, where the number is not zero
-  /// and can be changed.
+  /// Takes the results of run(item), in the order of the items. Returns an effect if the number is
+  /// not zero and can be changed.
   [[nodiscard]] std::optional<ParameterEffect> take(std::int64_t item, ChangedRuns runs) {
     health_ += runs.health;
     if (item == 0) {
@@ -140,12 +140,12 @@ class Parameters {
     const Mean95 bend = of_parts(changes.both.front().few_make_it(), [&](std::size_t part) {
       return more(changes, part) - less(changes, part);
     });
-    constexpr double kSure = 1.5;  // half widths of 95 %: 9 in 1000 by chance
+    constexpr double kSure = 1.5;  // in half-widths of 95 %: 9 in 1000 by chance
     e.bends = up && down && std::abs(bend.mean) > kSure * (bend.mean - bend.interval[0]);
     return e;
   }
 
-  /// Samples of one chain: that of all trials, or of a group of them.
+  /// The samples of one chain: of all trials, or of a group of them.
   struct Part {
     const StateSpace& space;
     const ReactiveVisits& passages;
@@ -155,11 +155,11 @@ class Parameters {
     ReactiveVisits::Place place;
     int type;
     Entry entry;
-    double weight;  // of walks there
-    double room;    // in the gate as it is
+    double weight;  // importance weight of the sample
+    double room;    // clearance in the unchanged gate
   };
 
-  /// A random number of the analysis: of the samples' places and of their runs' noise.
+  /// Random numbers of the analysis: for the samples' places, and for the noise of their runs.
   enum class Draw : std::uint64_t { place, noise };
   [[nodiscard]] Random drawn(Draw what, std::size_t sample) const {
     return {Purpose::sensitivity,
@@ -168,9 +168,9 @@ class Parameters {
 
   void add_samples(const AnalysedChain& chain, const ReactiveVisits& passages, std::int64_t count) {
     parts_.push_back({chain.space, passages});
-    if (!(passages.at_start() > 0.0)) return;  // of a group: nothing is known
+    if (!(passages.at_start() > 0.0)) return;  // for a group: nothing is known
     const ReactiveVisits::Draws draws(passages);
-    for (std::int64_t i = 0; i < count; ++i) {  // one from each of so many equal parts
+    for (std::int64_t i = 0; i < count; ++i) {  // one from each of equal parts
       Random random = drawn(Draw::place, samples_.size());
       const ReactiveVisits::Place place =
           draws.place((static_cast<double>(i) + random.uniform()) / static_cast<double>(count));
@@ -183,11 +183,11 @@ class Parameters {
     }
   }
 
-  /// By part: relative changes of the chance, to first order, of which these are the terms.
+  /// By part: terms of the relative changes of the probability, to first order.
   struct Sides {
     std::vector<Terms> more, less, both;
   };
-  /// Of the samples in question, the others being zero.
+  /// Terms of the samples for which used(sample) holds; all other samples add zero.
   template <class Used, class Counted, class Change>
   [[nodiscard]] std::vector<Terms> terms(Used used, Counted counted, Change change) const {
     std::vector<Terms> terms(parts_.size());
@@ -200,15 +200,15 @@ class Parameters {
     return terms;
   }
 
-  /// Changes of the gates on the way multiply: of the sum of n small ones, what n equal ones do
-  /// together.
+  /// Changes in the gates along a way multiply: n equal small changes with the sum `sum`,
+  /// compounded.
   [[nodiscard]] double compounded(double sum, std::size_t part) const {
     const double gates = parts_[part].passages.draws_to_target();
     return std::pow(std::max(0.0, 1.0 + sum / gates), gates) - 1.0;
   }
 
-  /// `value(part)`: of the whole, 0, and of each group. The groups' spread has the chance of as
-  /// many runs in it as the whole has.
+  /// The mean of `value(part)`: part 0 is the whole, the others are the groups. The spread of the
+  /// groups contains the sampling error of as many runs as the whole has.
   template <class Value>
   [[nodiscard]] Mean95 of_parts(bool few_make_it, Value value) const {
     std::vector<double> groups;
@@ -219,7 +219,8 @@ class Parameters {
 
   using Cells = std::vector<std::shared_ptr<const Cell>>;  // by type
 
-  /// With so many times the number in cells of all types; none where one does not permit it.
+  /// The cells of all types with the number multiplied by `times`; empty if a type does not permit
+  /// it.
   [[nodiscard]] Cells changed(std::size_t number, double times) const {
     Cells cells;
     for (const auto& cell : cells_.cells) {
@@ -229,8 +230,8 @@ class Parameters {
     return cells;
   }
 
-  /// The chance of the target behind a passage of each sample through these cells; NaN where it
-  /// broke, and where a changed cell is in the way of the entry, which bodies then make otherwise.
+  /// The probability of the target after a passage of each sample through these cells. NaN if the
+  /// run broke, or if a changed cell blocks the entry, so that bodies would enter otherwise.
   [[nodiscard]] std::vector<double> values(const Cells& cells, Health& health) const {
     std::vector<double> out(samples_.size());
     for (int type = 0; type < std::ssize(cells); ++type) {
@@ -279,9 +280,9 @@ class Parameters {
   const FieldParams& field_;
   const CellField& cells_;
   const ParameterOptions& options_;
-  std::vector<Part> parts_;  // that of all trials, and of the groups
+  std::vector<Part> parts_;  // of all trials, then of the groups
   std::vector<Sample> samples_;
-  std::vector<double> as_it_is_;  // values of the scene
+  std::vector<double> as_it_is_;  // values in the unchanged cells
   Health health_;
 };
 
@@ -334,7 +335,7 @@ ParameterEffects parameter_effects(const Problem& problem, RunPool& pool, markov
   const auto lacking = [&] {
     return static_cast<double>(std::min(kPoolOfRuns * options.runs - pool.gate_runs(),
                                         most_runs - runner.gate_runs)) /
-           runner.gates_per_trial();  // of which the first trials tell
+           runner.gates_per_trial();  // known from the first trials
   };
   if (lacking() > 0.0) {
     do

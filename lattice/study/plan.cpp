@@ -25,7 +25,7 @@ namespace {
 
 using namespace dynamics;
 
-/// Where nothing is known to be the least, as passages may cost nothing.
+/// Passages may cost nothing, so that no least cost can be found.
 struct FreePassages : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -61,7 +61,7 @@ void require_actions(const std::vector<Action>& actions) {
           "more than 256 pairs of an action and a type of cell");
 }
 
-/// Each action's types of cells behind each other, as cells_of says. `choice`: of an action.
+/// The types of each action's cells, numbered as in cells_of. `choice`: of an action.
 CellChoice types_of(const Problem& first, int actions, const CellChoice& choice) {
   return [&first, actions, choice](const Place& at, const Entry& entry) {
     return first.map().type_of(at.column, at.row) * actions + choice(at, entry);
@@ -99,11 +99,11 @@ class Planner {
   }
 
  private:
-  static constexpr double kMostBytesByCell = 2.0e9;  // of values, as markov::design has them
-  static constexpr double kMostSearched = 1.0e9;     // values by draws, of all maps: some seconds
+  static constexpr double kMostBytesByCell = 2.0e9;  // for the values of markov::design
+  static constexpr double kMostSearched = 1.0e9;  // values times draws, over all maps: some seconds
 
   [[nodiscard]] int actions() const { return static_cast<int>(actions_.size()); }
-  /// Any action with the same chance.
+  /// A random action, all with equal probability.
   [[nodiscard]] CellChoice any() const {
     return [this](const Place& at, const Entry&) {
       return static_cast<int>(rounds_.word(at, 0) % static_cast<std::uint64_t>(actions()));
@@ -113,7 +113,7 @@ class Planner {
     return [&policy](const Place& at, const Entry& entry) { return policy.action(at, entry); };
   }
 
-  /// A plan, the price that it was chosen for, and what trials say that it was chosen by.
+  /// A plan, the price that it was chosen for, and the results of the trials that it was chosen by.
   struct Tried {
     Plan plan;
     double price = 0.0;
@@ -121,7 +121,7 @@ class Planner {
     double spent = 0.0;
     bool worth_little = false;  // at this price
   };
-  /// `known`: plans to begin with.
+  /// The best plan at a price; `known`: plans to begin with.
   [[nodiscard]] Tried best_for(double price, std::vector<Plan> known) {
     const ChoiceAim aim{.price = price, .cost = options_.thrift ? options_.thrift->cost : 0};
     auto round = rounds_.choose_best(
@@ -137,10 +137,10 @@ class Planner {
     return best;
   }
 
-  /// The policies whose chance to cross less a price for each unit of the cost is the largest, for
-  /// prices from 0 to that at which nothing is gained any more: there it is least what each
-  /// crossing takes (Dinkelbach 1967). Between two of them lies one for the price at which both are
-  /// worth the same, or none. `front` begins with the plan.
+  /// The policies that maximise P(cross) - price * cost, for prices from 0 to the price at which
+  /// nothing is gained: there the cost per crossing is least (Dinkelbach 1967). Between two
+  /// policies lies at most one for the price at which both are worth the same. `front` begins with
+  /// the plan.
   void find_front(std::vector<Tried>& front) {
     const ThriftOptions& thrift = *options_.thrift;
     const auto has_room = [&] {
@@ -179,8 +179,8 @@ class Planner {
     }
   }
 
-  /// The first of the two neighbours that are to have one between them: those of the chance asked
-  /// for, or those whose chances differ most.
+  /// Index of the first of the two neighbours between which to search next: those around the
+  /// probability asked for, or those whose probabilities differ most.
   [[nodiscard]] std::optional<std::size_t> widest(const std::vector<Tried>& front,
                                                   const std::vector<char>& closed) const {
     const double asked = options_.thrift->chance * static_cast<double>(rounds_.count());
@@ -202,8 +202,8 @@ class Planner {
   }
   [[nodiscard]] RangeRuns run(const CellChoice& choice) { return run(choice, rounds_.count()); }
 
-  /// To cross gains 1, less what passages take at this price. A state that an action was never
-  /// tried in is worth less than any that it was tried in.
+  /// Gains: 1 for crossing, minus the costs of passages at this price. In a state, an action that
+  /// was never tried is worth less than any that was.
   [[nodiscard]] markov::Gains gains_of(const Kernel& kernel, double price) const {
     markov::Gains gains = gain_of_crossing();
     if (price == 0.0) return gains;
@@ -237,8 +237,8 @@ class Planner {
     return gains;
   }
 
-  /// Each action all the time, first, so that of several plans that are as good the simplest wins;
-  /// then what chains with leaves of each size choose.
+  /// Each action alone first, so that the simplest of equally good plans wins; then the choices of
+  /// chains with leaves of each size.
   [[nodiscard]] std::vector<Plan> choose(double price) const {
     std::vector<Plan> chosen, plans;
     for (const int size : kLeafSizes) chosen.push_back(choose_by(size, price));
@@ -254,7 +254,7 @@ class Planner {
     Kernel kernel = kernel_with(leaf_size);
     const int kept = options_.thrift ? options_.thrift->points : 1;
     if ((3.0 + kept) * 2.0 * numbers_of(first_.field, kernel.space) > kMostDecisionBytes)
-      throw too_large("plan: decisions for");  // of three sizes of leaves, and those kept
+      throw too_large("plan: decisions for");  // for three sizes of leaves, and those kept
     std::vector<std::size_t> every_action(actions_.size());
     std::iota(every_action.begin(), every_action.end(), 0);
     markov::Decisions best = decide_among(every_action, kernel, gains_of(kernel, price));
@@ -264,8 +264,8 @@ class Planner {
     return plan;
   }
 
-  /// What an action all the time is worth in the worst case. Small leaves doubt all, large ones
-  /// forget too much.
+  /// The worst-case worth of a single action, by leaves of the middle size: small leaves are too
+  /// uncertain, large ones too coarse.
   [[nodiscard]] double worst_alone(std::size_t action) const {
     const Kernel kernel = kernel_with(kLeafSizes[1]);
     return at_start(decide_among({action}, kernel, gain_of_crossing()), kernel.space);
@@ -296,7 +296,7 @@ class Planner {
                           {.max_cells = first_.field.max_gates, .doubt = std::move(doubt)});
   }
 
-  /// By row. A row may have counted a run and its mirror image, which is no other run.
+  /// Runs by row. A row may count a run and its mirror image, which is not another run.
   [[nodiscard]] static std::vector<double> runs_of(const markov::Counts& counts, bool symmetric) {
     std::vector<double> runs(static_cast<std::size_t>(counts.rows()), 0.0);
     for (int row = 0; row < counts.rows(); ++row)
@@ -306,7 +306,8 @@ class Planner {
     return runs;
   }
 
-  /// Of what the chain finds and each action everywhere, the one that crosses oftest in new trials.
+  /// Of the chain's policies by cell and each action everywhere, the one that crosses most often in
+  /// new trials.
   [[nodiscard]] std::optional<Plan::ByCell> best_by_cell() {
     const auto cells = static_cast<std::size_t>(first_.field.columns) *
                        static_cast<std::size_t>(first_.field.rows);
@@ -330,8 +331,8 @@ class Planner {
     return Plan::ByCell{.policy = std::move(*best), .searched = finished};
   }
 
-  /// By cell: the action of a map of types, all of them with all actions; searched for from each
-  /// action everywhere. None where there is no memory or time for it.
+  /// The best action by cell, as a map of types among all types under all actions; the search
+  /// begins with each action everywhere. nullopt if memory or time do not suffice.
   [[nodiscard]] std::optional<std::vector<int>> search_by_cell(bool& finished) const {
     const FieldParams& field = first_.field;
     const Kernel kernel = kernel_with(kLeafSizes[1]);
@@ -366,7 +367,7 @@ class Planner {
     return action;
   }
 
-  /// The same action however a body enters, and whenever.
+  /// The policy that takes the map's action, whatever a body's entry and number of cells passed.
   [[nodiscard]] Policy by_cell(const std::vector<int>& map) const {
     const Section& section = first_.map().section;
     StateSpace space(section, std::vector<Tree>(section.faces.size()), {});  // a leaf for each face
@@ -389,7 +390,7 @@ class Planner {
             std::nan("")};
   }
 
-  /// Whether the policy takes `action_in(column, row)` in every cell, however a body enters.
+  /// True if the policy takes `action_in(column, row)` in every cell, for all entries.
   template <class ActionIn>
   [[nodiscard]] static bool always_takes(const Policy& policy, ActionIn action_in) {
     const markov::Decisions& d = policy.decisions;
@@ -404,7 +405,7 @@ class Planner {
     return true;
   }
 
-  /// By trials that nothing was chosen by.
+  /// Judges the plan by held-out trials.
   void judge(Plan& plan, std::vector<Tried> front) {
     const std::int64_t first = rounds_.next();
     const FieldTrials own = run(choice_of(plan.policy)).each;
@@ -433,7 +434,7 @@ class Planner {
       plan.front.push_back({point.price, std::move(point.plan.policy), crossings_of(trials),
                             spent_by(trials, options_.thrift->cost)});
     }
-    // What another one beats in both was chosen by chance.
+    // Removes points that another point beats in both numbers: they were chosen by chance.
     for (std::size_t i = plan.front.size(); i-- > 1;)
       if (std::any_of(plan.front.begin(), plan.front.end(), [&, i](const FrontPoint& other) {
             const FrontPoint& point = plan.front[i];

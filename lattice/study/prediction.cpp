@@ -6,19 +6,19 @@
 namespace gatewalk::lattice {
 namespace {
 
-/// What resampled matrices predict for one start.
+/// Predictions from resampled matrices, for one start.
 struct Resampled {
   MatrixNoise noise;
   std::vector<ExitShares> exits{};
 };
 
-/// 200 of them; as many as 999 where these are made in a fraction of a second, so that the ends of
-/// intervals hardly depend on the seed. That is asked of one start, so that the intervals of a
-/// start are the same beside others.
+/// The number of replicates: 200, or up to 999 if they take a fraction of a second, so that the
+/// ends of intervals hardly depend on the seed. The decision is made per start, so that a start has
+/// the same intervals with or without others.
 std::int64_t replicates_for(const CountedField& gates, const markov::Field& field,
                             const std::vector<markov::FinalDistribution>& own, int max_cells) {
   constexpr std::int64_t kUsual = 200, kMost = 999, kQuick = 16;
-  constexpr double kOperations = 2e10, kQuickly = 3e8;  // of direct solves, some 3 ns each
+  constexpr double kOperations = 2e10, kQuickly = 3e8;  // of direct solves, about 3 ns each
   double operations = 0.0, most_of_one = 0.0;
   int steps = max_cells;
   for (const markov::FinalDistribution& f : own) {
@@ -36,8 +36,7 @@ std::int64_t replicates_for(const CountedField& gates, const markov::Field& fiel
   return replicates < kLeastReplicates ? 0 : replicates;
 }
 
-/// Replicates' spread around the predictions, one per start; none where too few can be predicted
-/// from.
+/// The replicates' spread around the predictions, one per start; empty if too few can be predicted.
 std::vector<Resampled> resampled_predictions(const CountedField& gates, const markov::Field& field,
                                              const std::vector<markov::Start>& starts,
                                              Prediction& prediction, int max_cells,

@@ -23,17 +23,17 @@ namespace {
 
 using namespace dynamics;
 
-// A body whose weight is within this factor of what it should be goes on as it is.
+// A body whose weight is within this factor of its intended weight stays as it is.
 constexpr double kWindow = 2.0;
-constexpr double kAbove95 = 0.025;  // of a two-sided 95 % interval, beyond either end
+constexpr double kAbove95 = 0.025;  // probability beyond each end of a two-sided 95 % interval
 
-constexpr int kMostCopies = 100;  // that one entry is split into
-/// Bodies that one trial is split into; from then on none is split, which costs accuracy only.
+constexpr int kMostCopies = 100;  // most bodies that one entry is split into
+/// Most bodies per trial; beyond, none is split, which only costs accuracy.
 constexpr std::uint64_t kMostOfTrial = std::uint64_t{1} << 20;
 
-/// A body and what it stands for.
+/// A body with its weight.
 struct Weighted {
-  std::int64_t trial = 0;  // of the block
+  std::int64_t trial = 0;  // index in the block
   int column = 0, row = 0;
   double weight = 1.0;
   Body body;
@@ -48,7 +48,7 @@ struct Aim {
   std::uint64_t seed, row;  // of the streams
 };
 
-/// What becomes of one trial's bodies.
+/// The bodies of one trial.
 class SplitTrial {
  public:
   SplitTrial(const Aim& aim, std::int64_t number)
@@ -63,7 +63,7 @@ class SplitTrial {
   /// Weight that entered rows 1, 2, ..., (target).
   [[nodiscard]] const std::vector<double>& entered() const { return entered_; }
 
-  /// Takes a body's passage, and adds to `next` the bodies that go on from it.
+  /// Takes a body's passage, and adds to `next` the bodies that continue from it.
   void take(const Weighted& before, const Passage& passage, std::vector<Weighted>& next) {
     if (passage.fate != Fate::left) return;
     const Entry& entry = passage.next;
@@ -98,11 +98,11 @@ class SplitTrial {
  private:
   const Aim& aim_;
   std::uint64_t number_, streams_ = 0;
-  Random chance_;  // of rounding numbers of bodies
+  Random chance_;  // for rounding numbers of bodies
   std::vector<double> entered_;
 };
 
-/// What becomes of some trials, one behind the other.
+/// The results of some trials, one trial after the other.
 struct SplitPiece {
   std::vector<double> entered{};  // (trials x rows) weight that entered rows 1, 2, ...
   Health health{};
@@ -112,7 +112,7 @@ void each_part(Archive& archive, SplitPiece& piece) {
   archive(piece.entered, piece.health);
 }
 
-/// Sums over trials, in their order.
+/// Sums over trials, in the order of the trials.
 struct Sums {
   std::vector<double> sum, squares;
   std::int64_t trials = 0;
@@ -137,11 +137,12 @@ struct Sums {
   }
 
  private:
-  /// What the chance of a row is at most that no body entered; 2.5 % may lie above. None of m
-  /// independent trials did what happens with chance g: g <= 1 - 0.025^(1/m). Rows are entered one
-  /// after the other, so the chance is at most that of the last row seen times g, where m trials
-  /// got to that row: as many as their weights count for, (sum w)^2 / sum w^2 (Kish, Survey
-  /// Sampling, 1965), as bodies of a trial are not independent. Half of the 2.5 % for each factor.
+  /// Upper bound on the probability of a row that no body entered; 2.5 % may lie above. If none of
+  /// m independent trials shows an event of probability g, then g <= 1 - 0.025^(1/m). Rows are
+  /// entered one after the other, so the probability is at most that of the last row seen times g.
+  /// For m use the effective number of trials that reached that row, (sum w)^2 / sum w^2 (Kish,
+  /// Survey Sampling, 1965), because the bodies of a trial are not independent. Each factor gets
+  /// half of the 2.5 %.
   [[nodiscard]] double none_seen(std::size_t r) const {
     const auto at_most = [](double above, double m) { return -std::expm1(std::log(above) / m); };
     while (r > 0 && !(sum[r - 1] > 0.0)) --r;
@@ -208,7 +209,7 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
   Sums sums(options.row);
   const Aim aim{cells,        deep.field.columns,         options.row, start_value, value,
                 options.seed, first.stream_of(deep.start)};
-  /// Each body's passage through its cell; those in cells of one type together.
+  /// Runs each body's passage through its cell, those in cells of one type together.
   const auto run_all = [&](std::vector<Weighted>& bodies, Health& health) {
     std::vector<Passage> passages(bodies.size());
     std::vector<std::vector<std::size_t>> of_type(cells.cells.size());
@@ -236,7 +237,7 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
     return passages;
   };
   Stage stage{"split trials", {}};
-  // Gate by gate: all bodies of a block run through one gate, so that many are in flight at a time.
+  // All bodies of a block run through one gate at a time, so that many run together.
   const auto run_block = [&](TrialRange range) {
     SplitPiece piece;
     std::vector<SplitTrial> trials;
@@ -267,7 +268,8 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
          at += static_cast<std::ptrdiff_t>(rows))
       sums.add({at, at + static_cast<std::ptrdiff_t>(rows)});
   };
-  // Rounds: each as many trials as the last ones say are wanted, at most eight times those so far.
+  // Each round has as many trials as the rounds before suggest, at most eight times the trials so
+  // far.
   constexpr std::int64_t kFirst = 1000;
   for (std::int64_t more = options.trials.value_or(kFirst); more > 0;) {
     stage = {"split trials", {sums.trials, more}, 0, more};
@@ -298,18 +300,18 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
 
 namespace {
 
-// Entries in a leaf: few enough for the chain's answer; many, so that no leaf is far off by chance,
-// for the value of entries.
+// Entries per leaf for the values of entries: many, so that no leaf is far off by chance. (The
+// chain's own answer has leaves of fewer entries.)
 constexpr int kPerLeafOfValues = 40;
-// A value is at least this part of the largest of its row: bodies that the chain thinks lost are
-// given some chance.
+// The least value, relative to the largest of its row: bodies that the chain considers lost keep
+// some chance.
 constexpr double kLeastValue = 0.02;
 
-/// Trials for the chain, in a field of one type fewer where so many of them get to the target: of
-/// a way that bodies often go an eighth of the trials tells enough.
+/// Trials for the chain; fewer if kAtTarget of them reach the target: for a way that bodies often
+/// take, an eighth of the trials suffices.
 constexpr std::int64_t kPoolTrials = 60'000, kFewestPoolTrials = kPoolTrials / 8, kAtTarget = 200;
 
-/// The pool of a field: full trials from its start, no more than take so many gate runs, about.
+/// The pool of a field: full trials from its start, with about `most_runs` gate runs at most.
 class Pool {
  public:
   Pool(const Problem& problem, std::int64_t most_runs, std::uint64_t seed, const Work& work)
@@ -334,11 +336,11 @@ class Pool {
     if (problem.check) problem.check(std::ssize(start().full.passed), seed, health_, work);
   }
 
-  /// Leaves of so many entries at least.
+  /// The kernel with at least `per_leaf` entries per leaf.
   [[nodiscard]] Kernel kernel(const CellMap& map, int per_leaf) const {
     return kernel_of(map, pool_, per_leaf);
   }
-  /// In that field, which has the same types of cells.
+  /// The chain in the field of `problem`, which has the same types of cells.
   [[nodiscard]] markov::FieldChain chain(const Kernel& kernel, const Problem& problem) const {
     const CellMap& map = problem.map();
     return chain_of(kernel, map, problem.field,
@@ -350,7 +352,8 @@ class Pool {
  private:
   [[nodiscard]] const OwnRuns& start() const { return pool_.starts.front(); }
 
-  static constexpr std::int64_t kFirst = 100;  // then a runner knows how many gates a trial takes
+  // trials from which a runner knows the gates per trial
+  static constexpr std::int64_t kFirst = 100;
 
   void run_in(const Problem& problem, std::int64_t trials, std::int64_t most_runs) {
     PoolRunner runner(problem, seed_, most_runs, work_);
@@ -358,8 +361,8 @@ class Pool {
     if (runner.may_go_on()) runner.run_full(pool_.starts.front(), trials - kFirst);
     add(runner);
   }
-  /// Twice as many trials again and again, until the way to the target is known; fewer also where
-  /// nobody leaves the first gate.
+  /// Doubles the number of trials until the way to the target is known; stops earlier if no body
+  /// leaves the first gate.
   void run_until_known(const Problem& problem, std::int64_t most_runs) {
     PoolRunner runner(problem, seed_, most_runs, work_);
     const auto& endings = start().full.endings;
@@ -403,8 +406,8 @@ RareEvent rare_event(const Problem& problem, const SplittingOptions& options, co
   event.chain_seconds = watch.seconds();
   work.tell("chain", 1, 2);
 
-  // Values of entries are those of a chain with larger leaves: it has a way to every row to which
-  // the fine chain has one. All entries into rows behind these are worth the same.
+  // The values of entries come from a chain with larger leaves, which reaches every row that the
+  // fine chain reaches. Entries into rows beyond all have the same value.
   const Kernel kernel = pool.kernel(map, kPerLeafOfValues);
   const auto known = static_cast<int>(std::find(event.chain.begin(), event.chain.end(), 0.0) -
                                       event.chain.begin());
@@ -440,7 +443,8 @@ DirectRows direct_rows(const Problem& problem, std::int64_t trials, std::uint64_
   const int rows = problem.field.rows;
   direct.entered.assign(static_cast<std::size_t>(rows),
                         tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)]);
-  std::int64_t behind = 0;  // last gates; those of bodies over the far edge are among them
+  // final gates in later rows, including those of bodies that left over the far edge
+  std::int64_t behind = 0;
   for (int row = rows - 1; row > 0; --row) {
     behind += tally.final_cells.row(row).sum();
     direct.entered[static_cast<std::size_t>(row) - 1] = behind;

@@ -23,11 +23,11 @@ namespace {
 using dynamics::Stopwatch;
 using dynamics::TrialRange;
 
-/// Fills a PaperSized from final gates in the order of the trials, handed over in any pieces; keeps
-/// no more than a block.
+/// Fills a PaperSized from final gates in the order of the trials, which arrive in pieces of any
+/// size; keeps at most one block.
 class BlocksOf100 {
  public:
-  /// `walks_of(first, count)`: final cells of those walks.
+  /// `walks_of(first, count)` returns the final cells of these walks.
   using Walks = std::function<std::vector<std::int32_t>(std::int64_t first, std::int64_t count)>;
   BlocksOf100(const markov::CellProbabilities& exact, std::int64_t walks, Walks walks_of)
       : exact_(exact), walks_(walks), walks_of_(std::move(walks_of)) {}
@@ -64,7 +64,7 @@ class BlocksOf100 {
   }
 
   const markov::CellProbabilities& exact_;
-  std::int64_t walks_, done_ = 0;  // done_: trials in finished blocks
+  std::int64_t walks_, done_ = 0;  // done_: number of trials in finished blocks
   Walks walks_of_;
   std::vector<std::int32_t> waiting_;
   PaperSized result_;
@@ -74,7 +74,7 @@ class BlocksOf100 {
 struct Setup {
   const Problem& problem;
   const dynamics::StateSpace& space;
-  const std::vector<int> same;  // states of all types: which are one
+  const std::vector<int> same;  // by state of all types: the first state with the same runs
   const ValidationOptions& options;
   std::int64_t walks;
   CountedField gates;
@@ -85,7 +85,7 @@ struct Setup {
   [[nodiscard]] markov::Field field() const { return {problem.field.columns, problem.field.rows}; }
 };
 
-/// Predictions from resampled matrices, (starts x replicates): fewer for large fields, which cost
+/// Predictions from resampled matrices, (starts x replicates); fewer for large fields, which take
 /// time and memory.
 Replicates resampled_predictions(const Setup& setup, const std::vector<markov::Start>& starts) {
   constexpr std::int64_t kMost = 999, kTogether = 8, kMostNumbers = 25'000'000;
@@ -131,12 +131,12 @@ TimedWalks walk(const Setup& setup, const markov::Start& start) {
 }
 
 struct TimedTrials {
-  RunTrials trials;  // `each` only for a study of the force
+  RunTrials trials;  // `each` only for the study of the force
   PaperSized paper_sized{};
   double seconds = 0.0;
 };
 
-/// Their walks through the states are added to `remembered`.
+/// Runs the full trials; adds their walks through the states to `remembered`.
 TimedTrials run_trials(const Setup& setup, const dynamics::Entry& start, const markov::Start& place,
                        const markov::FinalDistribution& exact, StateWalks& remembered) {
   TimedTrials seen{{FieldTally(setup.problem.field), {}}};
@@ -173,7 +173,7 @@ TimedTrials run_trials(const Setup& setup, const dynamics::Entry& start, const m
   return seen;
 }
 
-/// The same trials with the force drawn anew at crossings, against these.
+/// Runs the same trials with the force drawn anew at crossings, and compares.
 ForceMemory run_anew(const Setup& setup, const dynamics::Entry& start, const RunTrials& held) {
   RunTrials anew{FieldTally(setup.problem.field), {}};
   in_kept_pieces(
@@ -194,7 +194,7 @@ ForceMemory run_anew(const Setup& setup, const dynamics::Entry& start, const Run
   return force_memory(held, anew, setup.options.seed);
 }
 
-/// As many as fit a fixed amount of work, 999 to 9999: each draw deals out the trials and
+/// As many draws as fit a fixed amount of work, 999 to 9999: each draw permutes the trials and
 /// multiplies with a matrix of gates x gates.
 std::int64_t null_draws_for(const Setup& setup) {
   const std::int64_t cells = std::int64_t{setup.problem.field.columns} * setup.problem.field.rows;
@@ -203,7 +203,7 @@ std::int64_t null_draws_for(const Setup& setup) {
       100'000'000 / (setup.options.trials + setup.walks + gates * gates / 8), 999, 9999));
 }
 
-/// The trials of a part of a run, and no more.
+/// Runs only the trials that belong to a part of a run.
 void run_part(const Setup& setup, const std::vector<dynamics::Entry>& starts,
               StateWalks& remembered) {
   for (const dynamics::Entry& start : starts) {
@@ -276,7 +276,7 @@ StartValidation validate_start(const Setup& setup, const dynamics::Entry& start,
                       : nullptr};
 }
 
-/// By state, those of all types one behind the other: the first of those with the same runs.
+/// By state, with those of all types numbered consecutively: the first state with the same runs.
 std::vector<int> same_states(const std::vector<dynamics::Transitions>& matrices) {
   std::vector<int> same;
   for (const dynamics::Transitions& t : matrices)

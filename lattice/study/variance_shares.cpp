@@ -17,12 +17,12 @@ namespace {
 
 using namespace dynamics;
 
-constexpr std::int64_t kTrials = 16;    // of an answer
-constexpr std::int64_t kLeastRows = 4;  // of a scramble
+constexpr std::int64_t kTrials = 16;    // per answer
+constexpr std::int64_t kLeastRows = 4;  // per scramble
 
 std::int64_t trials_of_row(int numbers) { return (numbers + 2) * 2 * kTrials; }
 
-/// Trials that ended in the target, of each point.
+/// Numbers of trials that ended in the target, by point.
 struct Answers {
   std::vector<std::int64_t> one, other;
   Health health;
