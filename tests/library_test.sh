@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# A project of its own finds the installed libraries, and compiles and runs the READMEs' examples with nothing added.
-# Each installed header is in one of them; and a cell that is not ours (tests/library) goes all the way.
+# A project of its own finds the installed libraries, and compiles and runs the examples of cli/site/guides/library.md
+# with nothing added. Each installed header is in one of them. The page's examples for programs inside the source tree
+# find the root's headers too. A cell that is not ours (tests/library) goes all the way.
 #   library_test.sh BUILD ROOT CXX
 set -euo pipefail
 build=$1 root=$(realpath "$2") compiler=$3
@@ -11,27 +12,33 @@ cmake --install "$build" --component dev --prefix "$work/prefix" >/dev/null
 mkdir "$work/project"
 cp "$root"/tests/library/* "$work/project"
 
-# Name, README, which of its examples that begin with #include, what holds behind it (CHECK).
+page=$root/cli/site/guides/library.md
+# The page's examples in its order: name, what holds behind it (CHECK). inside_*: needs headers that are not installed.
 examples=(
-  'prediction|README.md|1|answer.error.total_variation < 0.06'
-  'room|dynamics/README.md|1|wrong.empty() && low > 0.03 && high < 0.07 && counts.totals().runs == 10000'
-  'chain|markov/README.md|1|std::abs(exact[Ending::far_edge] - double(walked[Ending::far_edge]) / 1e5) < 0.01'
-  'counts|markov/README.md|2|std::abs(ten_rows[Ending::far_edge] - std::pow(0.9, 10)) < 1e-12'
-  'source|lattice/README.md|1|prediction.reached'
-  'trials|lattice/README.md|2|tally.trials == 1000 && each.passed.size() == 1000'
-  'validation|lattice/README.md|3|chance < 0.02 && v.starts[0].dynamics.final_cells.sum() == 1000 && !forgets && (v.starts[0].exact_against.total_variation < 0.2 || wrong)'
-  'own_cell|lattice/README.md|4|low < std::pow(0.9, 5) && std::pow(0.9, 5) < high'
-  'scene|lattice/README.md|5|scene.gate.forces.random == 20.0'
+  'prediction|answer.error.total_variation < 0.06'
+  'source|prediction.reached'
+  'scene|scene.gate.forces.random == 20.0'
+  'trials|tally.trials == 1000 && each.passed.size() == 1000'
+  'validation|chance < 0.02 && v.starts[0].dynamics.final_cells.sum() == 1000 && !forgets && (v.starts[0].exact_against.total_variation < 0.2 || wrong)'
+  'room|wrong.empty() && low > 0.03 && high < 0.07 && counts.totals().runs == 10000'
+  'own_cell|low < std::pow(0.9, 5) && std::pow(0.9, 5) < high'
+  'chain|std::abs(exact[Ending::far_edge] - double(walked[Ending::far_edge]) / 1e5) < 0.01'
+  'counts|std::abs(ten_rows[Ending::far_edge] - std::pow(0.9, 10)) < 1e-12'
+  'inside_passages|f.chance[start] > 0.1 && f.chance[start] < 0.3 && f.draws[start] > 4.0'
+  'inside_decisions|robust.value[start] < best.value[start] && found.optima.front().gain > found.before'
+  'inside_plan|(first == 0 || first == 1) && low > 0.1 && again.trials == 1000'
+  'inside_design|best.crossings.share() > best.before.share()'
+  'inside_fit|0.0 < low && low < high && high < 1.0'
 )
+[ "$(grep -c '^```cpp' "$page")" = ${#examples[@]} ] || { echo "$page has other examples than ${examples[*]%%|*}"; exit 1; }
 # An example's includes stay in front, its statements become main(), which returns 0 where CHECK holds.
-program() {  # README NUMBER CHECK
-  awk -v wanted="$2" '/^```cpp/ { first = 1; next } /^```/ { inside = 0 }
-    first { first = 0; if (/^#include/) inside = ++number == wanted } inside' "$1" >"$work/example"
+program() {  # NUMBER CHECK
+  awk -v wanted="$1" '/^```cpp/ { inside = ++number == wanted; next } /^```/ { inside = 0 } inside' "$page" >"$work/example"
   grep '^#include' "$work/example"
   echo '#include <cmath>'
   echo 'int main() {'
   grep -v '^#include' "$work/example"
-  echo "  return $3 ? 0 : 1;"
+  echo "  return ($2) ? 0 : 1;"
   echo '}'
 }
 cat >"$work/project/CMakeLists.txt" <<'END'
@@ -43,11 +50,14 @@ foreach(program ${programs})
   cmake_path(GET program STEM name)
   add_executable(${name} ${program})
   target_link_libraries(${name} PRIVATE gatewalk::lattice)
+  if(name MATCHES "^inside_")
+    target_include_directories(${name} PRIVATE ${INSIDE})
+  endif()
 endforeach()
 END
-for example in "${examples[@]}"; do
-  IFS='|' read -r name readme number check <<<"$example"
-  program "$root/$readme" "$number" "$check" >"$work/project/$name.cpp"
+for number in "${!examples[@]}"; do
+  example=${examples[number]}
+  program $((number + 1)) "${example#*|}" >"$work/project/${example%%|*}.cpp"
 done
 (cd "$work/prefix/include/gatewalk" && find . -name '*.h' | sed 's|^\./||') | while read -r header; do
   grep -qxF "#include \"$header\"" "$work"/project/*.cpp || { echo "$header is installed, and in no example"; exit 1; }
@@ -63,12 +73,12 @@ if command -v pkg-config >/dev/null; then
 fi
 
 cmake -S "$work/project" -B "$work/project/build" -DCMAKE_PREFIX_PATH="$work/prefix" \
-  -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release >/dev/null
+  -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release -DINSIDE="$root" >/dev/null
 cmake --build "$work/project/build" --parallel >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-cd "$root"  # examples name scenes/field.toml
+ln -s "$root/scenes" "$work/scenes"  # examples name scenes/field.toml
+cd "$work"                           # and two write a file
 for example in "${examples[@]}"; do
   name=${example%%|*}
-  case $name in counts) cd "$work" ;; *) cd "$root" ;; esac  # it writes a file
   "$work/project/build/$name" >"$work/$name.out" || { echo "$name: $example"; cat "$work/$name.out"; exit 1; }
 done
 cd "$root"
