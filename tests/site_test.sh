@@ -12,7 +12,7 @@ web=$root/tests/web
 export PYTHONPATH=$modules PYTHONDONTWRITEBYTECODE=1
 check() { /usr/bin/python3 "$root/cli/site/check.py" "$1" "$root" "$program"; }
 check "$out/html"
-(cd "$root" && sed -n '/^```python$/,/^```$/{/^```/d;p}' cli/site/markov_modeller.md | /usr/bin/python3 -)
+(cd "$root" && sed -n '/^```python$/,/^```$/{/^```/d;p}' cli/site/guides/markov.md | /usr/bin/python3 -)
 node "$web/site_test.mjs" "$out/html"
 
 failures=0
@@ -25,7 +25,7 @@ must_find() {  # WHAT FILE SED-SCRIPT: what check.py must say of a site whose FI
   check "$broken" >"$out/broken.log" && { echo "FAILED: not found: $1"; failures=1; }
   grep -qF -- "$1" "$out/broken.log" || { echo "FAILED: no word of: $1"; cat "$out/broken.log"; failures=1; }
 }
-must_find 'which is not there' glossary.html 's|href="markov_modeller.html"|href="markov_modeler.html"|'
+must_find 'which is not there' glossary.html 's|href="guides/markov.html"|href="guides/markow.html"|'
 must_find 'which has no such anchor' lattice/index.html 's|id="the-comparison"|id="comparison"|'
 must_find 'loads https://example.org/a.png' index.html 's|<h1>|<img src="https://example.org/a.png">&|'
 must_find 'loads //example.org/a.css' _static/site.css '$ a @import url(//example.org/a.css);'
