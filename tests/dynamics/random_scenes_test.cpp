@@ -176,7 +176,7 @@ TEST(RandomScenes, FastBeamsAndSmallForces) {
 }
 
 // The other methods: what is off says so. `moreau` at its default step may be off by some per cent
-// (dynamics/README.md).
+// (cli/site/explain/methods.md).
 TEST(RandomScenes, WhatIsOffSaysSo) {
   const int scenes = usual_or_full(15, 10'000);
   int clean = 0, off = 0, said = 0;

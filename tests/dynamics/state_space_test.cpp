@@ -204,7 +204,7 @@ TEST(StateSpace, HasTheEdgesOfTableIII) {
   EXPECT_EQ(of(Boundary::enter), (AllEdges{fives, fives, Edges{10, 20}}));
   EXPECT_EQ(of(Boundary::right_deflect), (AllEdges{{{10, 20, 30}, {-30, -20, -10, 0}, sideways}}));
   EXPECT_EQ(of(Boundary::left_deflect), (AllEdges{{{10, 20, 30}, {0, 10, 20, 30}, sideways}}));
-  // One state each; the bin is that of dynamics/README.md: y in [40, 60].
+  // One state each; the bin is that of cli/site/explain/model.md: y in [40, 60].
   EXPECT_EQ(of(Boundary::right_traverse), (AllEdges{{{10, 30}, {-30, 0}, {-20, 30}}}));
   EXPECT_EQ(of(Boundary::left_traverse), (AllEdges{{{10, 30}, {0, 30}, {-20, 30}}}));
 }
