@@ -429,7 +429,7 @@ TEST_F(Recorded, WhatCouldNotBeReadIsNotWritten) {
 
 /// The text between two lines of three backticks, the first of which goes on with `kind`.
 std::string example_of(const std::string& kind) {
-  std::ifstream file(kRoot / "lattice" / "recorded" / "README.md");
+  std::ifstream file(kRoot / "cli" / "site" / "reference" / "files.md");
   std::string text, line;
   while (std::getline(file, line) && line != "```" + kind) continue;
   while (std::getline(file, line) && line != "```") text += line + "\n";
@@ -437,7 +437,7 @@ std::string example_of(const std::string& kind) {
 }
 
 TEST_F(Recorded, TheExamplesOfTheDocumentationAreRead) {
-  const CellFile documented = parse_cell_file(example_of("toml"), "README.md");
+  const CellFile documented = parse_cell_file(example_of("toml"), "files.md");
   EXPECT_EQ(documented.types, (std::vector<std::string>{"soft", "hard"}));
   EXPECT_EQ(documented.map.type_of_cell, (std::vector<int>{0, 0, 0, 0, 0, 1}));
   EXPECT_EQ(documented.map.section.costs.size(), 2u);
