@@ -216,8 +216,8 @@ AskedProgram add_cell_program(Options& options) {
   const TextOption command = options.add_text(
       "cell-program", "COMMAND",
       "SCENE is a cell file (cell.toml), and this command carries bodies through its "
-      "cells (cli/cells/PROGRAM.md); --set parameters.KEY=VALUE changes a parameter "
-      "of it");
+      "cells (cli/site/reference/cell_program.md); --set parameters.KEY=VALUE changes a "
+      "parameter of it");
   return {command,
           options.add_number("cell-timeout", "S",
                              "seconds that the program may be silent while an answer is awaited "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The first line that a cell program writes: what its cell looks like (PROGRAM.md).
+/// The first line that a cell program writes: what its cell looks like (cli/site/reference/cell_program.md).
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A cell that another program simulates, a line per passage: PROGRAM.md has what it reads and
-/// writes.
+/// A cell that another program simulates, a line per passage. What the program reads and writes:
+/// cli/site/reference/cell_program.md.
 
 #include <cstdint>
 #include <memory>

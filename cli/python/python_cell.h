@@ -12,7 +12,7 @@
 
 namespace gatewalk::python {
 
-/// `cell` has _hello(), the first line of a cell program (cli/cells/PROGRAM.md), and
+/// `cell` has _hello(), the first line of a cell program (cli/site/reference/cell_program.md), and
 /// _passes(face, at, seed, noise, memory) -> (out, at, costs, memory), all arrays with a row per
 /// body: face (int32) and out (int64) number faces, out is -1 for trapped, -2 for broken. Both are
 /// called with the GIL held; what they raise ends the run.

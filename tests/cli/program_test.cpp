@@ -268,7 +268,7 @@ TEST(ProgramCell, ParametersAreSet) {
   EXPECT_NE(refused({"speed", std::nan("")}), "");
 }
 
-// The rule of cell files (lattice/recorded/README.md#mirror-images).
+// The rule of cell files (cli/site/reference/files.md#mirror-images).
 TEST(ProgramCell, MirrorsFollowFromMoves) {
   const auto mirrors = [](const std::string& faces, const std::string& more = "") {
     const Hello hello = read_hello(
