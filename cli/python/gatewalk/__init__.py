@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Locomotion through cluttered obstacles: short runs of single gates, chained over a field.
+"""Locomotion through cluttered obstacles: simulates single gates, and predicts fields of gates with a Markov chain.
 
-Commands of the program ``gatewalk`` as functions, with the same numbers to the last bit and the same errors. Options of a
-command are keyword arguments (``--gate-runs 1e5`` is ``gate_runs=1e5``); ``help(gatewalk.predict)`` names the usual
-ones, ``gatewalk.options("predict")`` all of them. Numbers and booleans may be numpy's, lists may be arrays, paths pathlib's.
+The functions run the commands of the program ``gatewalk``, and give the same numbers to the last bit and the same errors.
+Options of a command are keyword arguments: ``--gate-runs 1e5`` is ``gate_runs=1e5``. ``help(gatewalk.predict)`` explains
+the usual options, ``gatewalk.options("predict")`` prints all. Numbers, lists and paths may be those of numpy and pathlib.
 
-Errors: `UsageError` for an argument, `SceneError` for a scene or a cell file, `BadFile` for a matrix file, all of them
-ValueErrors; RuntimeError where something could not be finished; OSError by `Matrix.save`.
+Errors: `UsageError` (an argument), `SceneError` (a scene or a cell file) and `BadFile` (a matrix file) are ValueErrors. A
+RuntimeError says that work could not be finished. `Matrix.save` raises OSError.
 
 >>> import gatewalk as gw
 >>> scene = gw.Scene({"body": {"radius_cm": 4.0, "mass_g": 250.0}, "forces": {"propulsion_N": 1.2}})
@@ -43,11 +43,11 @@ __all__ = ["Analysis", "BROKEN", "BadFile", "Cell", "FirstPassage", "GatewalkWar
 
 
 class GatewalkWarning(UserWarning):
-    """What a result must not be taken at face value for; the program's own words."""
+    """A warning of the program: why a result must not be taken at face value."""
 
 
 def _as_called(value: _t.Any, key: str = "") -> _t.Any:
-    """A result in which files that only this package knows are called as in errors, and in commands by their names."""
+    """A result in which temporary files of this package have the names that errors give them."""
     if isinstance(value, str):
         return _without_folders(value if key == "command" else _renamed(value))
     if isinstance(value, dict):
@@ -58,7 +58,7 @@ def _as_called(value: _t.Any, key: str = "") -> _t.Any:
 
 
 class _Bars:
-    """Bars of tqdm, one at a time."""
+    """Progress bars of tqdm, one at a time."""
 
     def __init__(self, tqdm: _t.Any) -> None:
         self._tqdm, self._what = tqdm, ""
@@ -78,7 +78,7 @@ class _Bars:
 
 
 def _bars(wanted: bool | None) -> _Bars | None:
-    """tqdm's, where it is installed and somebody looks (or progress=True)."""
+    """Progress bars, if tqdm is installed and standard error is a terminal (or progress=True)."""
     wanted = _plain(wanted)
     if wanted is not None and not isinstance(wanted, bool):
         _refuse("progress", "True or False", wanted)
@@ -92,7 +92,7 @@ def _bars(wanted: bool | None) -> _Bars | None:
 
 
 def _outside() -> int:
-    """How many calls up the one is that is not in this package: where a warning belongs."""
+    """How many calls up the first caller outside of this package is: the place that a warning names."""
     here = _os.path.dirname(__file__)
     level, frame = 1, _sys._getframe(1)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(here):
@@ -102,7 +102,7 @@ def _outside() -> int:
 
 def _run(command: str, subjects: dict[str, _t.Any], given: dict[str, _t.Any], extra: list[str] | None = None,
          gives_json: bool = True) -> dict[str, _t.Any]:
-    """Runs a command about these subjects, by the names of their parameters; raises what the program would say, in Python's words."""
+    """Runs a command with these subjects, by the names of their parameters. Raises the program's errors in Python's words."""
     cell = given.pop("cell", None)
     bars = _bars(given.pop("progress", None))
     if cell is not None and command in ("gate", "sweep", "trace", "walk", "export", "passages"):
@@ -147,28 +147,28 @@ def _run(command: str, subjects: dict[str, _t.Any], given: dict[str, _t.Any], ex
 
 
 def threads(n: int) -> None:
-    """How many threads to use from now on.
+    """Sets the number of threads for all commands that follow. It never changes a result.
 
     Parameters
     ----------
     n : int
-        0: all.
+        The number of threads; 0 for all.
 
     Raises
     ------
     UsageError
-        Where it is no whole number from 0 to 1024.
+        If n is not a whole number from 0 to 1024.
     """
     _core.threads(_whole(n, "threads: n", 0, 1024))
 
 
 def options(command: str) -> str:
-    """The help page of a command, by name: all options that its function here takes.
+    """Returns the help page of a command: all options that its function takes as keyword arguments.
 
     Parameters
     ----------
     command : str
-        "predict", "build", ...
+        The name of a command: "predict", "build", ...
 
     Returns
     -------
@@ -177,7 +177,7 @@ def options(command: str) -> str:
     Raises
     ------
     UsageError
-        Where there is no such command.
+        If there is no such command.
     """
     import subprocess
 
@@ -192,26 +192,26 @@ def options(command: str) -> str:
 
 def predict(subject: _t.Any, scene: _t.Any = None, *, accuracy: float | None = None, start: _t.Any = None, seed: int | None = None, cell: Cell | None = None,
             progress: bool | None = None, **more: _t.Any) -> Prediction:
-    """Where bodies end in a field, and how, with error bars.
+    """Predicts where bodies end in a field, and how, with 95 % intervals.
 
     Parameters
     ----------
     subject : Scene, Matrix, path, text or dict
-        A scene: trials are run until the bar keeps `accuracy`. A matrix of trees: the same with its runs.
+        A scene, for which trials are run until the prediction has the `accuracy`. Or a matrix, whose runs are used first.
     scene : Scene, path, text or dict, optional
-        Of a matrix: another scene with the same physics, such as another field; without it the matrix's own.
+        With a matrix: another scene with the same physics, such as another field. Default: the scene of the matrix.
     accuracy : float, optional
-        Of all shares together (total variation, 95 %); 0.02 without it.
+        Largest error of the final gates (total variation, 95 %). Default 0.02.
     start : tuple or list of tuples, optional
-        (d, vx, vy) in m and m/s, of each start: where and how fast a body enters the field. Of a cell with several faces
-        (face, ...), the name of the face and then its coordinates. Of a chain from elsewhere the number or name of a state, or
-        a list of these.
+        Where and how fast bodies enter the field: (d, vx, vy) in m and m/s. For cells with several faces: the name of the face,
+        then its coordinates. For a chain from elsewhere: the number or the name of a state. A list gives several starts.
     seed : int, optional
-        Of all trials; 1 without it.
+        Seed of all random numbers. Default 1.
     cell : Cell, optional
-        Who carries bodies through the cells of `subject`, which is a cell file then.
+        A cell of your own, which simulates the passages; `subject` is a cell file then.
     progress : bool, optional
-        A bar of tqdm (which must not call gatewalk); without it, where one is installed and standard error is a terminal.
+        True shows a progress bar of tqdm (which must not call gatewalk). Default: if tqdm is installed and standard error is a
+        terminal.
     **more
         Any option of ``gatewalk predict``, "-" written "_".
 
@@ -222,21 +222,21 @@ def predict(subject: _t.Any, scene: _t.Any = None, *, accuracy: float | None = N
     Raises
     ------
     SceneError, UsageError, BadFile
-        All of them ValueErrors: the key, and what is allowed.
+        ValueErrors that name the key or the argument, and what is allowed.
     """
     return Prediction(_run("predict", {"subject": subject} if scene is None else {"subject": subject, "scene": scene}, dict(accuracy=accuracy, start=start, seed=seed, cell=cell, progress=progress, **more)))
 
 
 def lattice(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
             **more: _t.Any) -> Prediction:
-    """The full dynamics through the field: how many bodies end where, and how.
+    """Simulates bodies through the whole field (full dynamics, no chain), and counts where and how they end.
 
     Parameters
     ----------
     subject : Scene, path, text or dict
         A scene, or with `cell` a cell file.
     trials : int, optional
-        Bodies; 100 without it.
+        Number of bodies. Default 100.
     seed, cell, progress, **more
         See `predict`.
 
@@ -253,24 +253,24 @@ def lattice(subject: _t.Any, *, trials: int | None = None, seed: int | None = No
     return Prediction(_run("lattice", {"subject": subject}, dict(trials=trials, seed=seed, cell=cell, progress=progress, **more)))
 
 
-simulate = lattice  #: what it does, by its plain name
+simulate = lattice  #: Another name of `lattice`.
 
 
 def gate(scene: _t.Any, *, trials: int | None = None, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Result:
-    """Runs of one gate: how many traverse it, leave by its sides, are trapped.
+    """Simulates runs through one gate, and counts how many traverse it, leave by its sides, or are trapped.
 
     Parameters
     ----------
     scene : Scene, path, text or dict
     trials : int, optional
-        Runs; 100 without it.
+        Number of runs. Default 100.
     seed, progress, **more
         See `predict`; ``**more`` is any option of ``gatewalk gate``.
 
     Returns
     -------
     Result
-        `trials`, and the number of each outcome.
+        `trials`, and the number of runs with each outcome.
 
     Raises
     ------
@@ -282,15 +282,15 @@ def gate(scene: _t.Any, *, trials: int | None = None, seed: int | None = None, p
 
 def sweep(scene: _t.Any, vary: dict[str, _t.Any], *, trials: int | None = None, seed: int | None = None, progress: bool | None = None,
           **more: _t.Any) -> Sweep:
-    """`gate` over a grid of scene keys.
+    """Runs `gate` over a grid of values of scene keys.
 
     Parameters
     ----------
     scene : Scene, path, text or dict
     vary : dict
-        Values of each key, a list or a text such as "5:1:8": ``{"forces.propulsion_N": [5, 6, 7]}``.
+        The values of each key, as a list or as a text "from:step:to": ``{"forces.propulsion_N": [5, 6, 7]}``.
     trials : int, optional
-        Runs at each point.
+        Number of runs at each point.
     seed, progress, **more
         See `predict`; ``**more`` is any option of ``gatewalk sweep``.
 
@@ -307,16 +307,16 @@ def sweep(scene: _t.Any, vary: dict[str, _t.Any], *, trials: int | None = None, 
 
 
 def trace(scene: _t.Any, *, trials: int | None = None, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Trace:
-    """Single runs in full: every step with places, velocities, beams, forces and energies.
+    """Records single runs: place, velocity, beams, forces and energies at every step.
 
     Parameters
     ----------
     scene : Scene, path, text or dict
     trials : int, optional
-        Runs, from number 0 on.
+        Number of runs; they are numbered from 0.
     seed, progress, **more
         See `predict`; ``**more`` is any option of ``gatewalk trace``: ``field=True`` follows bodies across the field,
-        ``trial=7`` is that run alone, ``only="trapped"`` leaves out others.
+        ``trial=7`` records run 7 alone, ``only="trapped"`` keeps only runs with this outcome.
 
     Returns
     -------
@@ -332,24 +332,24 @@ def trace(scene: _t.Any, *, trials: int | None = None, seed: int | None = None, 
 
 def validate(subject: _t.Any, *, observed: _t.Any = None, trials: int | None = None, seed: int | None = None, cell: Cell | None = None,
              progress: bool | None = None, **more: _t.Any) -> Result:
-    """Compares the chain with the full dynamics, or with counts of yours; is the chain Markov?
+    """Compares the chain with the full dynamics, and both with your experiment; tests whether the chain is Markov.
 
     Parameters
     ----------
     subject : Scene, Matrix, path, text or dict
-        A scene. A matrix of recorded runs: one half of the bodies against the other.
+        A scene. Or a matrix of recorded runs: then one half of the bodies is compared with the chain of the other half.
     observed : dict, DataFrame, path, or list of these, optional
-        What an experiment saw: numbers of bodies by ending, ``{"crossed": 3, "trapped": 17}``; or a table with columns
+        Counts of an experiment: numbers of bodies by ending, ``{"crossed": 3, "trapped": 17}``; or a table with the columns
         trial,ending; ending,count; or gate_x,gate_y,count.
     trials : int, optional
-        Bodies of the full dynamics from each start; 100 without it, which shows no error of the chain: take 10 000.
+        Number of bodies of the full dynamics from each start. Default 100, too few to show an error of the chain: use 10 000.
     seed, cell, progress, **more
         See `predict`; ``**more`` is any option of ``gatewalk validate``: ``matrix=MATRIX``.
 
     Returns
     -------
     Result
-        `starts`: verdict, endings, p-values of each; `markov`: what the states forget.
+        `starts`: the verdict, endings and p-values for each start; `markov`: what the states of the chain forget.
 
     Raises
     ------
@@ -364,16 +364,16 @@ def validate(subject: _t.Any, *, observed: _t.Any = None, trials: int | None = N
 
 def analyze(subject: _t.Any, *, accuracy: float | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
             **more: _t.Any) -> Analysis:
-    """Times, work, paths, other starts; what would change a field's outcome most.
+    """Computes times, work, paths and other starts of a field, and which number of the scene changes the outcome most.
 
     Parameters
     ----------
     subject : Scene, Matrix, path, text or dict
     accuracy : float, optional
-        Of the final gates (total variation, 95 %); 0.02 without it.
+        Largest error of the final gates (total variation, 95 %). Default 0.02.
     seed, cell, progress, **more
-        See `predict`; ``**more`` is any option of ``gatewalk analyze``: ``target="left_side"``, ``runs=0`` (no
-        derivatives, which take most of the time), ``first_passage=(0, 4)`` (see `Matrix.first_passage`).
+        See `predict`; ``**more`` is any option of ``gatewalk analyze``: ``target="left_side"``; ``runs=0`` leaves out the
+        derivatives, which take most of the time; ``first_passage=(0, 4)`` (see `Matrix.first_passage`).
 
     Returns
     -------
@@ -390,15 +390,15 @@ def analyze(subject: _t.Any, *, accuracy: float | None = None, seed: int | None 
 
 def rare(subject: _t.Any, *, row: int | None = None, accuracy: float | None = None, seed: int | None = None, cell: Cell | None = None,
          progress: bool | None = None, **more: _t.Any) -> Result:
-    """How likely far rows are, where trials never get (importance splitting).
+    """Estimates the chance that a body reaches a far row, where plain trials never get (importance splitting).
 
     Parameters
     ----------
     subject : Scene, path, text or dict
     row : int, optional
-        The row to reach, of a field without limit of gates.
+        The row to reach, in a field without a limit of gates.
     accuracy : float, optional
-        Of the chance: its standard error as a part of it.
+        Largest standard error of the chance, as a share of the chance.
     seed, cell, progress, **more
         See `predict`; ``**more`` is any option of ``gatewalk rare``.
 
@@ -415,23 +415,23 @@ def rare(subject: _t.Any, *, row: int | None = None, accuracy: float | None = No
 
 
 def plan(subject: _t.Any, *, accuracy: float | None = None, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Result:
-    """What a body should do in each gate, by how it enters, to cross the field as often as it can.
+    """Finds which action a body should take in each gate, by how it enters, to cross the field as often as possible.
 
     Parameters
     ----------
     subject : Scene, path, text or dict
-        With two tables ``[actions.NAME]`` at least: keys of forces and beams as they are while a body takes the action. With
-        ``cell_program="COMMAND"`` a cell file, whose actions are numbers of that program, ``parameters.KEY``. A scene without
-        any: the start is planned, over the ranges of ``over`` (``["start.x_m=-5:5"]``).
+        A scene with at least two tables ``[actions.NAME]``: values of forces and beams while a body takes the action. With
+        ``cell_program="COMMAND"`` a cell file, whose actions are parameters of that program, ``parameters.KEY``. For a scene
+        without actions `plan` finds the best start, in the ranges of ``over`` (``["start.x_m=-5:5"]``).
     accuracy : float, optional
-        Half of the interval that a chance to cross may have.
+        Largest half width of the 95 % interval of the chance to cross.
     seed, progress, **more
         See `predict`; ``**more`` is any option of ``gatewalk plan``.
 
     Returns
     -------
     Result
-        ``crossed``, ``actions``, ``most_taken`` (or ``start``, ``starts``) and more of ``gatewalk plan --json``.
+        The result of ``gatewalk plan --json``: ``crossed``, ``actions``, ``most_taken`` (or ``start``, ``starts``) and more.
 
     Raises
     ------
@@ -443,25 +443,25 @@ def plan(subject: _t.Any, *, accuracy: float | None = None, seed: int | None = N
 
 def design(subject: _t.Any, *, changes: int | None = None, types: _t.Any = None, accuracy: float | None = None, seed: int | None = None,
            progress: bool | None = None, **more: _t.Any) -> Result:
-    """Which gates of a field to change, so that bodies cross it as often, or as rarely, as they can.
+    """Finds which gates of a field to change, so that bodies cross it as often, or as rarely, as possible.
 
     Parameters
     ----------
     subject : Scene, path, text or dict
-        With a table ``[terrain]`` of several types of gates.
+        A scene with a table ``[terrain]`` of several types of gates.
     changes : int, optional
-        Gates that may be changed; 1.
+        How many gates may be changed. Default 1.
     types : str, optional
-        Names of types that they may become, ``"s,."``; all.
+        Names of the types that gates may become, ``"s,."``. Default: all types.
     accuracy : float, optional
-        Half of the interval that a chance to cross may have.
+        Largest half width of the 95 % interval of the chance to cross.
     seed, progress, **more
         See `predict`; ``**more`` is any option of ``gatewalk design``, such as ``least=True``.
 
     Returns
     -------
     Result
-        ``crossed``, ``before``, ``gain``, ``changes``, ``map`` and more of ``gatewalk design --json``.
+        The result of ``gatewalk design --json``: ``crossed``, ``before``, ``gain``, ``changes``, ``map`` and more.
 
     Raises
     ------
@@ -473,25 +473,27 @@ def design(subject: _t.Any, *, changes: int | None = None, types: _t.Any = None,
 
 def fit(subject: _t.Any, observed: _t.Any, *, free: _t.Any, trials: int | None = None, seed: int | None = None,
         progress: bool | None = None, **more: _t.Any) -> Result:
-    """Which numbers of a scene an experiment speaks for: their posterior.
+    """Estimates numbers of a scene from an experiment: their posterior distribution.
 
     Parameters
     ----------
     subject : Scene, path, text or dict
-        A scene of gates; with ``cell_program`` a file of cells.
+        A scene, or with ``cell_program`` a cell file.
     observed : dict, DataFrame, path, or list of these
-        What an experiment saw, as in `validate`; with columns trial,ending,gate_x,gate_y too; or passages, as in `from_passages`.
+        Counts of an experiment, as in `validate`, also with the columns trial,ending,gate_x,gate_y; or passages, as in
+        `from_passages`.
     free : dict
-        Numbers of the scene and their ranges, ``{"forces.propulsion_N": (5, 9)}``, or a program's (``"parameters.KEY"``); six at most.
+        At most six numbers of the scene with their ranges, ``{"forces.propulsion_N": (5, 9)}``, or parameters of the program,
+        ``"parameters.KEY"``.
     trials : int, optional
-        Bodies of the full dynamics, or passages, at all points of the ranges together; 400 000.
+        Number of simulated trials (or passages) at all points of the ranges together. Default 400 000.
     seed, progress, **more
         See `predict`; ``**more`` is any option of ``gatewalk fit``, such as ``inference_data="posterior.nc"``, which ArviZ reads.
 
     Returns
     -------
     Result
-        ``numbers`` with their intervals, ``correlation``, ``p`` and more of ``gatewalk fit --json``.
+        The result of ``gatewalk fit --json``: ``numbers`` with their intervals, ``correlation``, ``p`` and more.
 
     Raises
     ------
@@ -505,21 +507,21 @@ def fit(subject: _t.Any, observed: _t.Any, *, free: _t.Any, trials: int | None =
 
 def power(subject: _t.Any, *, trials: int | None = None, seed: int | None = None, cell: Cell | None = None, progress: bool | None = None,
           **more: _t.Any) -> Result:
-    """How many trials an experiment needs to show a difference.
+    """Computes how many trials an experiment needs to show a difference.
 
     Parameters
     ----------
     subject : Scene, Matrix, path, text or dict
     trials : int, optional
-        Trials of the experiment that is planned.
+        Number of trials in the planned experiment.
     seed, cell, progress, **more
-        See `predict`; ``**more`` is any option of ``gatewalk power``: ``versus={"forces.random_N": 30.0}`` is the other
-        scene, ``versus=MATRIX`` the other group of recorded runs.
+        See `predict`; ``**more`` is any option of ``gatewalk power``: ``versus={"forces.random_N": 30.0}`` compares with the
+        scene that has these keys, ``versus=MATRIX`` with another group of recorded runs.
 
     Returns
     -------
     Result
-        `summary` in words, `from_prediction`, `two_groups` and `versus` by ending.
+        `summary` in words; `from_prediction`, `two_groups` and `versus`: numbers of trials by ending.
 
     Raises
     ------
@@ -531,16 +533,23 @@ def power(subject: _t.Any, *, trials: int | None = None, seed: int | None = None
 
 def landscape(scene: _t.Any, *, spacing: float | None = None, beam: str | None = None, trials: int | None = None, seed: int | None = None,
               progress: bool | None = None, **more: _t.Any) -> Landscape:
-    """The potential energy of body and beams over a gate, and the way through whose highest point is lowest.
+    """Computes the potential energy of body and beams over a gate, and the path through it whose highest point is lowest.
 
     Parameters
     ----------
+    scene : Scene, path, text or dict
     spacing : float, optional
-        Of the grid, in m; a twentieth of the body's radius without it.
+        Spacing of the grid, in m. Default: a twentieth of the body's radius.
     beam : str, optional
-        Beams that resist: "both", "left" or "right".
+        Which beams resist: "both", "left" or "right".
     trials : int, optional
-        Also run the gate so often.
+        Number of runs through the gate that are simulated too.
+    seed, progress, **more
+        See `predict`; ``**more`` is any option of ``gatewalk landscape``.
+
+    Returns
+    -------
+    Landscape
     """
     import csv
     import tempfile
@@ -557,7 +566,7 @@ def landscape(scene: _t.Any, *, spacing: float | None = None, beam: str | None =
 
 
 def merge(parts: _t.Sequence[_t.Any], *, progress: bool | None = None) -> Result | Matrix:
-    """One run of the parts that ``gatewalk ... --part FILE`` wrote on several machines: the same bits as of one machine.
+    """Joins the parts that ``gatewalk ... --part FILE`` wrote on several machines. The result has the bits of a single run.
 
     Parameters
     ----------
@@ -567,7 +576,7 @@ def merge(parts: _t.Sequence[_t.Any], *, progress: bool | None = None) -> Result
     Returns
     -------
     Result
-        What its command gives; of ``build`` a Matrix.
+        The result of the command that wrote the parts; for ``build`` a Matrix.
     """
     if not isinstance(parts, (list, tuple)) or not parts:
         _refuse("parts", "a list of paths: merge takes a list of all parts", parts)
@@ -582,12 +591,17 @@ def merge(parts: _t.Sequence[_t.Any], *, progress: bool | None = None) -> Result
 
 
 def sample(name: str | None = None) -> str:
-    """The text of a sample: a scene, "tracks" with its "cell", "runs", "observed"; without a name what there is.
+    """Returns the text of a sample file: a scene, "tracks" and its "cell", "runs", or "observed".
+
+    Parameters
+    ----------
+    name : str, optional
+        The name of the sample. Without a name `sample` returns a list of all samples.
 
     Raises
     ------
     UsageError
-        Where there is none of that name.
+        If there is no sample of that name.
 
     Examples
     --------
@@ -603,7 +617,7 @@ def sample(name: str | None = None) -> str:
 
 
 def walk(matrix: _t.Any, *, seed: int | None = None, progress: bool | None = None, **more: _t.Any) -> Result:
-    """Walks the field by drawing from a matrix, one outcome a gate.
+    """Simulates random walks through the field with a transition matrix, one draw for each gate.
 
     Parameters
     ----------
@@ -614,8 +628,8 @@ def walk(matrix: _t.Any, *, seed: int | None = None, progress: bool | None = Non
     Returns
     -------
     Result
-        `endings`, and `final_gates` of shape (rows, columns), in numbers of walks; `never_sampled` and `still_walking`, which the
-        endings leave out. Walks that are still walking have no final gate.
+        Numbers of walks: `endings`, and `final_gates` of shape (rows, columns). `never_sampled` and `still_walking` count walks
+        without an ending. A walk that is still under way has no final gate.
 
     Raises
     ------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Cells of one's own, in numpy."""
+"""Cells of your own, in numpy."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from ._words import refuse, whole
 if t.TYPE_CHECKING:
     Array = np.ndarray[t.Any, t.Any]
 
-#: What `Cell.pass_` gives as the face of a body that stays, and of one of which nothing is known.
+#: Faces that `Cell.pass_` gives for a body that stays in the cell, and for one whose simulation failed.
 TRAPPED, BROKEN = -1, -2
 
 
 def _numbers(value: t.Any, what: str, kinds: str = "iuf") -> Array:
-    """An array of numbers as they are: what would have to be cast, or is masked, is none."""
+    """The value as an array of numbers. Raises UsageError for other types and for masked entries."""
     if np.ma.is_masked(value):  # type: ignore[no-untyped-call]
         raise _core.UsageError(f"cell: pass_ gave {what} with masked entries; of a body of which nothing is known the face is BROKEN")
     array = np.asarray(value)
@@ -39,7 +39,7 @@ def _number(value: t.Any, what: str) -> float:
 
 
 def _plain(value: t.Any) -> t.Any:
-    """Of numpy, what JSON knows."""
+    """A value of numpy as JSON can store it. Raises UsageError for any other value."""
     if isinstance(value, (np.generic, np.ndarray)):
         return value.tolist()
     raise _core.UsageError(f"cell: {value!r} is neither a number nor a word, nor a list or dict of them")
@@ -55,28 +55,29 @@ def _names(items: t.Any, what: str, name: str = "name") -> list[str]:
 
 
 class Cell:
-    """A cell that bodies are carried through. Derive from it, say what it looks like, and write `pass_`.
+    """A cell that you simulate yourself. Derive a class, describe the cell by the attributes, and write `pass_`.
 
     Attributes
     ----------
     faces : list of dict
-        Where bodies enter: ``{"name": "S", "move": [0, 1]}``, the move from cell to cell (columns, rows). Of symmetric
-        cells also ``"odd"``, the coordinates that change their sign in the mirror (left for right), and ``"mirror"``, the
-        face that images enter by, where several faces have the mirrored move.
+        Faces by which bodies enter: ``{"name": "S", "move": [0, 1]}``, with the move into the cell (columns, rows). In
+        symmetric cells a face also has ``"odd"``, the coordinates that change sign in the mirror (left for right), and
+        ``"mirror"``, the face by which mirror images enter, if several faces have the mirrored move.
     coordinates : list of dict
-        What is told of every entry: ``{"name": "s", "unit": "m", "scale": 0.1}``.
+        Coordinates of an entry: ``{"name": "s", "unit": "m", "scale": 0.1}``; ``scale`` is a distance that matters.
     costs : list of dict
-        What a passage takes, its time first: ``{"key": "time_s", "unit": "s"}``.
+        Costs of a passage, the time first: ``{"key": "time_s", "unit": "s"}``.
     symmetric : bool
-        Mirror images of passages are as likely.
+        True if the mirror image of a passage is as likely as the passage.
     normals, uniforms : int
-        So many numbers of noise come with each passage, from gatewalk's own streams; one of both is 0.
+        How many numbers of noise each passage gets from gatewalk's random streams; one of both must be 0.
     memory : int
-        So many numbers that a body carries from cell to cell, and that no coordinate shows (up to 60; 0 at first).
+        How many numbers a body carries from cell to cell that no coordinate shows (at most 60; each is 0 at first).
     parameters : dict
-        Numbers that ``analyze`` may change: ``self.parameters["radius_m"]``. Another value: another object with its own.
+        Numbers that ``analyze`` may change, read as ``self.parameters["radius_m"]``. For another value, make another
+        object with its own parameters.
     limits : dict
-        The least and the most that a parameter may be: ``{"radius_m": (0.0, 0.5)}``.
+        The smallest and the largest value of a parameter: ``{"radius_m": (0.0, 0.5)}``.
     """
 
     faces: list[dict[str, t.Any]] = []
@@ -90,21 +91,23 @@ class Cell:
     limits: dict[str, tuple[float, float]] = {}
 
     def pass_(self, entries: dict[str, Array], random: types.SimpleNamespace) -> dict[str, Array]:
-        """Carries bodies through, all at once.
+        """Simulates one passage for each of n bodies.
 
         Parameters
         ----------
         entries : dict of arrays, shape (n,)
-            "face" (number of the face) and each coordinate by its name; "memory", shape (n, memory).
+            How the bodies enter: "face" (the number of the face), each coordinate by its name, and "memory" of shape
+            (n, memory).
         random : namespace
-            seed, shape (n,), uint64, another one for each passage; normals (n, normals), uniforms (n, uniforms).
+            Noise: ``seed`` of shape (n,), uint64, different for each passage; ``normals`` of shape (n, normals);
+            ``uniforms`` of shape (n, uniforms).
 
         Returns
         -------
         dict of arrays, shape (n,)
-            "face" that each body leaves by, into the next cell (TRAPPED, BROKEN: none); each coordinate there; each cost
-            by its key; "memory". What becomes of a body must depend on its own row alone: then the bits are the same for
-            any number of threads.
+            "face", the number of the face by which each body enters the next cell, or TRAPPED or BROKEN; each coordinate of
+            that entry; each cost by its key; "memory". A row may depend on the same row of the arguments alone, so that the
+            bits are the same for any number of threads.
         """
         raise NotImplementedError("derive from gatewalk.Cell and write pass_(entries, random)")
 
@@ -173,32 +176,35 @@ class Cell:
 
 def check_cell(cell: Cell, starts: t.Sequence[t.Mapping[str, t.Any]] | None = None, *, trials: int = 200, cells: int = 8,
                seed: int = 1) -> list[str]:
-    """What is wrong with a cell, in words: a test for cells of your own.
+    """Tests a cell of your own, and returns in words what is wrong.
 
-    Trials are carried out several times, on one and on four threads, in batches of any size, alone and in reverse order, and by a
-    copy with the same parameters: all bits must be the same. Entries must be finite and by known faces, costs finite, the time
-    above 0, no body may break, and a symmetric cell must send mirror images to the mirrored faces as often.
+    `check_cell` runs the same trials several times: on one and on four threads, in batches of several sizes, alone, in reverse
+    order, and by a copy with the same parameters. All bits must be the same. Entries must be finite and use known faces, costs
+    must be finite, the time must be above 0, and no body may be BROKEN. A symmetric cell must send mirror images to the mirrored
+    faces as often.
 
     Parameters
     ----------
     cell : Cell
     starts : list of dict, optional
-        How bodies enter: ``{"face": "S", "s": 0.05}``, every coordinate; without it by each face, all coordinates 0.
+        How bodies enter: a face and every coordinate, ``{"face": "S", "s": 0.05}``. Default: by each face, with all
+        coordinates 0.
     trials : int, optional
-        From the starts in turn.
+        Number of trials; they take the starts in turn.
     cells : int, optional
-        That a trial passes at most.
+        The largest number of cells that a trial passes.
     seed : int, optional
+        Seed of all random numbers.
 
     Returns
     -------
     list of str
-        Empty where nothing was found.
+        A sentence for each fault; empty if there is none.
 
     Raises
     ------
     UsageError
-        Where `cell` is no cell, or a start none of its entries; where a number is none, or out of range.
+        If `cell` is not a cell, if a start is not an entry of it, or if a number is out of range.
 
     Examples
     --------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Matrices: built, saved, read, and asked."""
+"""Matrices: building, saving, reading and asking them."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ def _unlink(path: str, owner: int | None = None) -> None:
 
 
 class Matrix:
-    """A transition matrix: what short runs gave, as a file of NetCDF-4 that the program reads too.
+    """The transition matrix of one cell, counted from short runs, with everything that predictions from it need.
 
-    `build`, `from_passages` and `load` make one. States count from 0.
+    `build`, `from_passages`, `from_counts` and `load` make one; `save` writes it for the program. States count from 0.
     """
 
     def __init__(self, path: t.Any, _owned: bool = False) -> None:
@@ -56,23 +56,26 @@ class Matrix:
 
     @property
     def _path(self) -> str:
-        """Its file, which still is what was loaded: commands, copies and `save` must not speak of another one."""
+        """The path of the matrix file. Raises BadFile if the file has changed since it was loaded."""
         if self._stamp() != self._loaded:
             raise _core.BadFile(f"{self._file}: was changed or removed since it was loaded; gatewalk.load(...) reads it again")
         return self._file
 
     def _is_of_states(self) -> bool:
-        """Whether it is a chain from elsewhere, whose states have numbers and no places."""
+        """Whether the chain comes from elsewhere, so that its states have numbers and no places."""
         return list(self._core.states())[-3:] == ["face", "state_low", "state_high"]
 
     @property
     def matrix(self) -> t.Any:
-        """Probabilities, a scipy.sparse.csr_matrix of shape (states, states + 1): rows are ways in, columns ways into the
-        next gate, the last one trapped. Not copied."""
+        """Transition probabilities, a scipy.sparse.csr_matrix of shape (states, states + 1), without a copy.
+
+        Each row is a state in which a gate is entered. Each column is the state in which the next gate is entered; the last column
+        is *trapped*.
+        """
         return self.probabilities()
 
     def probabilities(self, type: str = "") -> t.Any:  # noqa: A002
-        """Probabilities as in `matrix`, of a type of gates.
+        """Transition probabilities of one type of gates, in the form of `matrix`.
 
         Parameters
         ----------
@@ -82,9 +85,9 @@ class Matrix:
         return self._csr(type, True)
 
     def counts(self, type: str = "") -> t.Any:  # noqa: A002
-        """Numbers of runs as in `matrix`, int64.
+        """Counts of runs in the form of `matrix`, int64.
 
-        A tree's hold mirror images too: a posterior from them is too narrow by sqrt(2).
+        Counts of a matrix of trees include mirror images. A posterior computed from them is too narrow by sqrt(2).
 
         Parameters
         ----------
@@ -103,14 +106,15 @@ class Matrix:
 
     @property
     def types(self) -> list[str]:
-        """Types of gates; "" is the scene's own."""
+        """Names of the types of gates; "" is the gate of the scene itself."""
         return self._core.types
 
     @property
     def states(self) -> t.Any:
-        """A pandas.DataFrame: face, and low and high of each coordinate (m, m/s), of every state; of `from_counts` also its name.
+        """A pandas.DataFrame with a line for each state: its face, and low and high of each coordinate (m, m/s).
 
-        Its index is what ``start=`` takes of `from_counts`' states, and the order of rows and columns of `matrix` and `counts`.
+        The lines stand in the order of the rows and columns of `matrix` and `counts`. For a chain of `from_counts` each state also
+        has its name, and the index is what ``start=`` takes.
         """
         import pandas
 
@@ -118,16 +122,16 @@ class Matrix:
 
     @property
     def moves(self) -> dict[str, tuple[int, int]]:
-        """By face: the move (columns, rows) that enters by it."""
+        """For each face the move (columns, rows) into the cell that is entered by it."""
         return {name: (x, y) for name, x, y in self._core.faces()}
 
     @property
     def made_by(self) -> dict[str, str]:
-        """Where it comes from: scene, seed, version, command."""
+        """Where the matrix comes from: scene, seed, version, command."""
         return {key: without_folders(text) for key, text in self._core.text.items()}
 
     def save(self, path: t.Any) -> None:
-        """Writes it to `path` as NetCDF-4, as a whole or not at all. Raises OSError where that fails."""
+        """Writes the matrix to `path` as NetCDF-4. Raises OSError if it fails; then no half-written file is left."""
         path = path_of(path, "path")
         try:
             handle, name = tempfile.mkstemp(dir=os.path.dirname(path) or ".", prefix=".gatewalk-")
@@ -145,29 +149,30 @@ class Matrix:
             raise
 
     def predict(self, **more: t.Any) -> Prediction:
-        """See `gatewalk.predict`."""
+        """Where bodies end in a field of these cells: `gatewalk.predict`."""
         from . import predict
 
         return predict(self, **more)
 
     def export(self, path: t.Any, **more: t.Any) -> Result:
-        """Writes the chain for other programs, by the ending of `path`.
+        """Writes the chain for other programs, in the format that the ending of `path` names.
 
         Parameters
         ----------
         path : path
-            Of the whole field: .umb (PRISM, Storm), .drn (Storm), .tra (PRISM), .mtx, .csv, .npz; with ``gate=True`` (and
-            ``counts=True``) .mtx, .csv, .npz of one gate; .dtrajs or .dtrajs.npz: the states that each trial went through.
+            For the chain of the whole field: .umb (PRISM, Storm), .drn (Storm), .tra (PRISM), .mtx, .csv, .npz. For the matrix
+            of one gate: .mtx, .csv, .npz with ``gate=True``, its counts with ``counts=True`` too. For the states that each trial
+            went through: .dtrajs, .dtrajs.npz.
 
         Returns
         -------
         Result
-            states, transitions, and `endings`, the state of each.
+            Numbers of states and transitions, and `endings`, the state of each ending.
         """
         return Result(_run("export", {"self": self}, dict(more), [f"--output={path_of(path, 'path')}"]))
 
     def analyze(self, **more: t.Any) -> Analysis:
-        """See `gatewalk.analyze`."""
+        """Times, costs and paths of bodies in a field of these cells: `gatewalk.analyze`."""
         from . import analyze
 
         return analyze(self, **more)
@@ -178,7 +183,7 @@ class Matrix:
         Parameters
         ----------
         target : str, tuple or int
-            What is to be reached: an ending ("crossed"), a gate ((i_x, i_y), bodies start in (0, 0)), a state in any gate (its
+            What bodies must reach: an ending ("crossed"), a gate (i_x, i_y) (bodies start in (0, 0)), a state in any gate (its
             name or number), or a state of one gate (i_x, i_y, state).
         **more
             Options of ``gatewalk analyze``: ``set={"field.max_gates": 0}``, ``start``.
@@ -190,7 +195,7 @@ class Matrix:
         Raises
         ------
         UsageError
-            What the target must be.
+            If there is no such target; the message lists what is allowed.
 
         Examples
         --------
@@ -209,20 +214,20 @@ class Matrix:
         return FirstPassage(analyze(self, first_passage=target, **more)["first_passage"])
 
     def walk(self, **more: t.Any) -> Result:
-        """See `gatewalk.walk`."""
+        """Random walks through a field of these cells: `gatewalk.walk`."""
         from . import walk
 
         return walk(self, **more)
 
     def validate(self, **more: t.Any) -> Result:
-        """See `gatewalk.validate`: recorded runs, one half of the bodies against the other; else against full trials."""
+        """Compares the chain with full trials (`gatewalk.validate`). For recorded runs: one half of the bodies with the other."""
         from . import validate
 
         text = self.made_by.get("scene")
         return validate(self, **more) if text is None else validate(text + "\n", matrix=self, **more)
 
     def plot(self, axes: t.Any = None) -> t.Any:
-        """The matrix, from states downwards to states at the right, by matplotlib."""
+        """Draws the matrix with matplotlib: rows are the states before, columns the states after. Returns the axes."""
         import matplotlib.pyplot as plt
         import numpy as np
         from matplotlib.colors import LogNorm
@@ -280,7 +285,7 @@ def load(path: t.Any) -> Matrix:
     Parameters
     ----------
     path : path
-        A file of ``gatewalk build`` or `Matrix.save`.
+        A file that ``gatewalk build`` or `Matrix.save` wrote.
 
     Returns
     -------
@@ -289,13 +294,13 @@ def load(path: t.Any) -> Matrix:
     Raises
     ------
     BadFile
-        Where it is no matrix file, or damaged.
+        If it is not a matrix file, or is damaged.
     """
     return Matrix(path)
 
 
 def _made(command: str, subjects: dict[str, t.Any], given: dict[str, t.Any], words: t.Sequence[str] = ()) -> Matrix:
-    """What a command writes, as a matrix."""
+    """Runs a command that writes a matrix file, and returns the matrix."""
     name = _temporary()
     try:
         with called(name, "the matrix"):
@@ -308,15 +313,17 @@ def _made(command: str, subjects: dict[str, t.Any], given: dict[str, t.Any], wor
 
 def build(subject: t.Any, *, accuracy: float | None = None, starts: t.Any = None, seed: int | None = None, cell: Cell | None = None,
           progress: bool | None = None, **more: t.Any) -> Matrix:
-    """Makes the transition matrix of a scene's gates.
+    """Builds the transition matrix of a scene's gates from short runs.
 
     Parameters
     ----------
     subject : Scene, path, text or dict
+        A scene, or with `cell` a cell file.
     accuracy : float, optional
-        Of predictions from it; 0.02 without it. bins="paper", trials=100: the paper's 87 states instead.
+        Largest error of predictions from the matrix (total variation of the final gates, 95 %). Default 0.02. With ``bins="paper",
+        trials=100`` the states are the 87 of the paper instead, with 100 runs each.
     starts : str, optional
-        "all", or a range of starts: the matrix then serves any of them.
+        "all", or a range of starts. The matrix then serves every start of the range.
     seed, cell, progress, **more
         See `predict`.
 
@@ -332,7 +339,7 @@ def build(subject: t.Any, *, accuracy: float | None = None, starts: t.Any = None
     return _made("build", {"subject": subject}, dict(accuracy=accuracy, starts=starts, seed=seed, cell=cell, progress=progress, **more))
 
 
-#: What `_table_file` takes.
+#: What `_table_file` accepts as a table.
 _TABLES = "a path, a DataFrame, or a dict of lists"
 _OF_LINES = "pandas.DataFrame(lines) makes a table of a list of lines"
 
@@ -342,12 +349,12 @@ def _is_column(value: t.Any) -> bool:
 
 
 def _heading(name: t.Any) -> str:
-    """A column's name on one line, without blanks at its ends."""
+    """The name of a column on one line, without blanks at its ends."""
     return " ".join(str(name).split())
 
 
 def _csv_of_columns(columns: t.Mapping[t.Any, t.Any], parameter: str) -> str:
-    """A dict of lists or arrays as CSV, every digit; what is missing as nothing."""
+    """A dict of lists or arrays as CSV with all digits. Missing values are empty fields."""
     for name, column in columns.items():
         if not _is_column(column):
             of_lines = "" if any(map(_is_column, columns.values())) else f" ({_OF_LINES})"
@@ -370,7 +377,7 @@ def _csv_of_columns(columns: t.Mapping[t.Any, t.Any], parameter: str) -> str:
 
 
 def _csv_of_frame(frame: t.Any, parameter: str) -> str:
-    """A DataFrame as CSV, every digit; numbers that are none as nothing. Levels of the index that have a name are columns."""
+    """A DataFrame as CSV with all digits. NaN is an empty field. Named levels of the index are columns."""
     levels = frame.columns.nlevels
     poses = ["scorer", *(["individuals"] if levels == 4 or "individuals" in frame.columns.names else []), "bodyparts", "coords"]  # DeepLabCut's
     out = io.StringIO()
@@ -420,7 +427,7 @@ def _csv_of(table: t.Any, parameter: str) -> str:
 
 @contextlib.contextmanager
 def _table_file(table: t.Any, parameter: str, number: str = "") -> t.Iterator[str]:
-    """A file with the table, or with counts by ending; a path as it is. `number`: which one of several."""
+    """A file with the table, or with counts by ending. A path stays as it is. `number`: which one of several tables."""
     if isinstance(table, (str, os.PathLike)):
         yield input_of(table, parameter)
         return
@@ -437,7 +444,7 @@ def _table_file(table: t.Any, parameter: str, number: str = "") -> t.Iterator[st
 
 
 def _table_files(stack: contextlib.ExitStack, tables: t.Any, parameter: str) -> dict[str, str]:
-    """The files of one table, or of a list of some."""
+    """Files of one table, or of a list of tables."""
     several = list(tables) if isinstance(tables, (list, tuple)) else [tables]
     if not several:
         raise _core.UsageError(f"{parameter}: is empty; must be {_TABLES}, or a list of these")
@@ -450,12 +457,13 @@ def _table_files(stack: contextlib.ExitStack, tables: t.Any, parameter: str) -> 
 
 
 def from_passages(table: t.Any, cell: t.Any, **more: t.Any) -> Matrix:
-    """Makes a matrix of recorded passages.
+    """Builds a matrix from recorded passages.
 
     Parameters
     ----------
     table : pandas.DataFrame, dict of lists, or path
-        A line a passage: ``body``, ``trial``, ``in``, each coordinate, ``out``, each coordinate as ``out_...``, ``time_s``.
+        A line for each passage, with the columns ``body``, ``trial``, ``in``, each coordinate, ``out``, each coordinate as
+        ``out_...``, ``time_s``.
     cell : path, text or dict
         The cell file: faces, coordinates, field.
     **more
@@ -468,7 +476,7 @@ def from_passages(table: t.Any, cell: t.Any, **more: t.Any) -> Matrix:
     Raises
     ------
     SceneError, UsageError, BadFile
-        The line and column of a table that is wrong, and what is allowed.
+        If the table or the cell file is wrong: the line and column, and what is allowed.
     """
     with _table_file(table, "table") as name, file_of(cell, "cell") as (path, _):
         return _made("build", {"table": name}, dict(more), [f"--cell={path}"])
@@ -479,7 +487,7 @@ def _first(bad: t.Any) -> int:
 
 
 def _states_of(one: t.Any, which: int) -> list[int]:
-    """The states of a trajectory. Raises UsageError for what is no whole number from 0, naming the step."""
+    """The states of a trajectory. Raises UsageError, with the step, for a value that is not a whole number from 0."""
     import numpy as np
 
     def bad_step(step: int, what: str) -> t.NoReturn:
@@ -516,7 +524,7 @@ def _states_of(one: t.Any, which: int) -> list[int]:
 
 
 def _require_matrix(chain: t.Any) -> None:
-    """Raises UsageError for entries of which a number would have to be guessed."""
+    """Raises UsageError for masked entries, for types that are no numbers, and for counts above 2^63 - 1."""
     import numpy as np
 
     if np.ma.is_masked(chain):  # type: ignore[no-untyped-call]
@@ -531,7 +539,7 @@ def _require_matrix(chain: t.Any) -> None:
 
 @contextlib.contextmanager
 def _chain_file(chain: t.Any) -> t.Iterator[str]:
-    """A file with a sparse or dense matrix, or with trajectories; a path as it is."""
+    """A file with a sparse or dense matrix, or with trajectories. A path stays as it is."""
     if isinstance(chain, (str, os.PathLike)):
         yield input_of(chain, "chain")
         return
@@ -567,20 +575,21 @@ def _chain_file(chain: t.Any) -> t.Iterator[str]:
 
 
 def from_counts(chain: t.Any, states: t.Any, *, start: int | None = None, **more: t.Any) -> Matrix:
-    """Makes a matrix of a Markov chain from elsewhere.
+    """Makes a matrix of a Markov chain of your own, from counts, probabilities or trajectories.
 
     Parameters
     ----------
     chain : scipy.sparse matrix, numpy array of shape (n, n) or (n, n + 1), list of trajectories, or path
-        Of one cell: whole numbers are counts, floats too unless no row has more than a single 1.0; others are probabilities.
-        The last of n + 1 columns is trapped. Of a list each element is a trajectory, a sequence of states, whose last may be
-        n: trapped; -1 is a gap, where it is cut. A list of n lists of n or n + 1 numbers may be either and is refused: make
-        it a numpy array, or a list of 1-D arrays. Effective counts, which are not whole: round them, or divide each row by
-        its sum, which makes probabilities, without intervals.
+        The chain of one cell. A matrix of whole numbers holds counts, also as floats unless no row has more than a single 1.0;
+        a matrix of other numbers holds probabilities. The last of n + 1 columns is *trapped*. A list holds trajectories: each is a
+        sequence of states, whose last may be n (trapped); -1 is a gap, at which the trajectory is cut. A list of n lists of n or
+        n + 1 numbers may be either, and is refused: make it a numpy array, or a list of 1-D arrays. Effective counts that are not
+        whole must be rounded, or divided by the sum of their row; they are probabilities then, and have no intervals.
     states : pandas.DataFrame, dict of lists, or path
-        ``state`` (0, 1, ...), ``move_x``, ``move_y``: by which move from cell to cell each is entered; ``name``, ``face``.
+        A line for each state, with the columns ``state`` (0, 1, ...), ``move_x`` and ``move_y``, the move into the cell that
+        enters this state; optional: ``name``, ``face``.
     start : int, optional
-        The state in which walks start.
+        The state in which bodies start.
     **more
         Any option of ``gatewalk import``, "-" written "_".
 
@@ -591,8 +600,8 @@ def from_counts(chain: t.Any, states: t.Any, *, start: int | None = None, **more
     Raises
     ------
     UsageError
-        What is wrong in the chain or the states, and where: states that are no whole numbers, NaN and masked entries too, by
-        trajectory and step; trajectories without a single step.
+        If the chain or the states are wrong: what, and where. States must be whole numbers; NaN and masked entries are refused with
+        trajectory and step. At least one trajectory must have a step.
 
     Examples
     --------
@@ -611,7 +620,7 @@ def passages(tracks: t.Any, cell: t.Any, **more: t.Any) -> t.Any:
     Parameters
     ----------
     tracks : pandas.DataFrame, dict of lists, xarray.Dataset or path
-        Places by body and frame (columns={"x": "POSITION_X", ...}), DeepLabCut's or movement's poses.
+        Places by body and frame (name the columns: ``columns={"x": "POSITION_X", ...}``), or poses of DeepLabCut or movement.
     cell : path, text or dict
         The cell file.
     **more
@@ -620,13 +629,13 @@ def passages(tracks: t.Any, cell: t.Any, **more: t.Any) -> t.Any:
     Returns
     -------
     pandas.DataFrame
-        A line a passage, as `from_passages` takes it; ``attrs`` has what ``gatewalk passages --json`` says: what lies outside
-        the lattice, units that the file states, what was left out.
+        A line for each passage, as `from_passages` takes it. ``attrs`` has the result of ``gatewalk passages --json``: what lies
+        outside the lattice, units that the file states, what was left out.
 
     Raises
     ------
     SceneError, UsageError, BadFile
-        What is missing or wrong in the tracks, and where.
+        If something is missing or wrong in the tracks: what, and where.
     """
     import pandas
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What commands give: the program's JSON, with numpy arrays, tables and pictures."""
+"""Results of commands: the program's JSON, with numpy arrays, tables and pictures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ._words import refuse, whole
 
 
 def require_axes(axes: t.Any, number: int = 1) -> t.Any:
-    """The axes given to plot. Raises UsageError for anything else."""
+    """Returns the axes that were given to `plot`. Raises UsageError if they are not axes of matplotlib."""
     given = [axes] if number == 1 else axes
     if not hasattr(given, "__len__") or len(given) < number or not all(hasattr(one, "imshow") for one in given):
         refuse("axes", "axes of matplotlib" if number == 1 else f"{number} axes of matplotlib, as plt.subplots(1, {number}) gives them", axes)
@@ -35,16 +35,18 @@ def _same(a: t.Any, b: t.Any) -> bool:
 
 
 def _first_column(columns: int) -> int:
-    """i_x of the leftmost of so many columns, as the program has it: bodies start in the column i_x = 0."""
+    """i_x of the leftmost column. Bodies start in the column i_x = 0, as in the program."""
     return -(columns // 2)
 
 
 class Result(collections.abc.Mapping):  # type: ignore[type-arg]
-    """A command's result: its JSON as a mapping, keys as attributes too. Equal where all but times and origin is.
+    """The result of a command: its JSON as a mapping, whose keys are attributes too.
 
-    Tables of numbers are numpy arrays. The 95 % interval of `x` is `x_95`, a tuple (low, high) in the unit of x, or None. Of a
-    list or table x it is an array with one more axis, the last: low and high, NaN where there is none. A table without any
-    interval has None. The docstring of the function that gives the result says what each key means.
+    Tables of numbers are numpy arrays. The 95 % interval of `x` is `x_95`: a tuple (low, high) in the unit of x, or None. If x
+    is a list or a table, `x_95` is an array with one more axis at the end: low and high, NaN where there is no interval. If a
+    table has no interval at all, `x_95` is None. The docstring of the function that returns the result explains each key.
+
+    Two results are equal if everything but computing times and `made_by` is equal.
     """
 
     def __init__(self, data: dict[str, t.Any]) -> None:
@@ -96,10 +98,10 @@ class Result(collections.abc.Mapping):  # type: ignore[type-arg]
 
 
 class Prediction(Result):
-    """Where bodies end, and how. Of several starts, `starts` has one for each; of one, all is here.
+    """Where bodies end, and how.
 
-    Of `lattice`: what was seen. Endings, gates and the limits of their intervals are numbers of bodies there, where a
-    prediction has shares.
+    With several starts, `starts` has a prediction for each. With one start, its keys are attributes of this object too. A
+    result of `lattice` has numbers of bodies where a prediction has shares: in endings, in gates and in their intervals.
     """
 
     def __getattr__(self, name: str) -> t.Any:
@@ -110,7 +112,7 @@ class Prediction(Result):
 
     @property
     def starts(self) -> list[Prediction]:
-        """One prediction for each start."""
+        """A list with a prediction for each start."""
         rows = self._data.get("starts")
         return [Prediction(row) for row in rows] if rows else [self]
 
@@ -123,19 +125,20 @@ class Prediction(Result):
 
     @staticmethod
     def _all(first: dict[str, t.Any]) -> dict[str, float]:
-        """The endings, and what they leave out where that counts: together all bodies."""
+        """The endings, and beside them what endings leave out if it exceeds 1e-6; together all bodies."""
         rest = {k: first.get(k) or 0.0 for k in ("never_sampled", "still_walking")}
         return {**first["endings"], **{k: v for k, v in rest.items() if v > 1e-6}}
 
     def _limits(self, first: dict[str, t.Any]) -> dict[str, tuple[float, float]]:
-        """95 % intervals of all of these; (NaN, NaN): none."""
+        """The 95 % interval of each item of `_all`; (NaN, NaN) where there is none."""
         limits = first.get("endings_95", {})
         return {k: limits.get(k) or (float("nan"), float("nan")) for k in self._all(first)}
 
     def to_xarray(self) -> t.Any:
-        """An xarray.Dataset: final, trapped and departed gates by i_y and i_x (bodies start in i_x = 0), endings by ending.
+        """The prediction as an xarray.Dataset.
 
-        Intervals have the dimensions of their numbers, and `bound`: "low", "high".
+        Final, trapped and departed gates have the dimensions i_y and i_x; bodies start in i_x = 0. Endings have the dimension
+        `ending`. Intervals have one more dimension, `bound`: "low", "high".
         """
         import xarray
 
@@ -161,7 +164,7 @@ class Prediction(Result):
         return xarray.Dataset(data, coordinates, {"title": "gatewalk", "scene": self._data.get("made_by", {}).get("scene", "")})
 
     def to_frame(self) -> t.Any:
-        """A pandas.DataFrame: a line per ending, its share (lattice: number) and 95 % interval."""
+        """A pandas.DataFrame with a line for each ending: its share (of `lattice` its number) and the 95 % interval."""
         import pandas
 
         first = self._only()
@@ -171,7 +174,7 @@ class Prediction(Result):
                                 index=pandas.Index(list(ends), name="ending"))
 
     def plot(self, axes: t.Any = None) -> t.Any:
-        """Final gates as a map and endings as bars, by matplotlib; returns both axes."""
+        """Draws final gates as a map and endings as bars, with matplotlib. Returns both axes."""
         import matplotlib.pyplot as plt
 
         if axes is None:
@@ -211,31 +214,32 @@ class Prediction(Result):
 
 
 class Analysis(Result):
-    """Times (s), work (J), other starts and influences of a field.
+    """Times (s), work (J), other starts, and which numbers of the scene change the outcome most.
     """
 
 
 class FirstPassage(Result):
-    """How likely bodies are to reach a gate, a state or an ending, and how long those that do are on their way.
+    """How likely bodies are to reach a target (a gate, a state or an ending), and how long they take.
 
     Attributes
     ----------
     target : str
-        As it was asked for.
+        The target, as you gave it.
     probability, mean_gates, mean_time_s : float
-        Of bodies from the start: how many get there; means over these, until they enter the target or have ended so. With
-        ``_95`` their intervals by groups of the trials, None for a state, and for matrices of bins and from elsewhere.
+        The share of bodies from the start that reach the target, and how many gates and seconds those bodies take on average.
+        ``probability_95`` and so on are their intervals, from groups of the trials; None for the target of a state, for matrices
+        of bins, and for chains from elsewhere.
     states : list of str
-        Names of the states; `Matrix.states` of trees has the start's own besides, the last.
+        Names of the states. `Matrix.states` of a matrix of trees has one more at its end: the start's own state.
     of_states : dict of arrays, shape (rows, columns, states)
-        ``probability``, the committor, of bodies that enter that gate in that state, with all of ``field.max_gates`` before
-        them; ``never_sampled``, how many reach a state whose row was never sampled instead; ``mean_gates`` and
-        ``mean_time_s``, the mean first passage times, NaN where nobody gets there. In the target 1, and 0. Row 0 is the one
-        bodies enter by.
+        Values for bodies that enter each gate in each state and may still visit ``field.max_gates`` gates. ``probability`` is
+        the committor. ``never_sampled`` is the share that reaches a state whose row was never sampled. ``mean_gates`` and
+        ``mean_time_s`` are mean first passage times, NaN where no body reaches the target. In the target itself the probability
+        is 1 and the means are 0. Bodies enter the field in row 0.
     """
 
     def to_frame(self) -> t.Any:
-        """A pandas.DataFrame: a line per gate and state, i_x (bodies start in i_x = 0), i_y and the state's name its index."""
+        """A pandas.DataFrame with a line for each gate and state. Its index is i_y, i_x (bodies start in i_x = 0) and the state's name."""
         import pandas
 
         tables = self._data["of_states"]
@@ -248,11 +252,11 @@ class FirstPassage(Result):
 
 
 class Sweep(Result):
-    """Outcomes over a grid of keys.
+    """Outcomes of a gate over a grid of scene keys.
     """
 
     def to_frame(self) -> t.Any:
-        """A pandas.DataFrame: a line per point, the keys first, then the numbers of each outcome."""
+        """A pandas.DataFrame with a line for each point: first the keys, then the number of runs with each outcome."""
         import pandas
 
         return pandas.DataFrame([{**p["at"], **{k: v for k, v in p.items() if isinstance(v, int) and not isinstance(v, bool)}}
@@ -260,16 +264,16 @@ class Sweep(Result):
 
 
 class Landscape(Result):
-    """Potential energy over a gate: `passes` with the lowest ways, `table` with a column each of x_m, y_m, elastic_J, total_J."""
+    """Potential energy over a gate: `passes` has the lowest ways; `table` has the columns x_m, y_m, elastic_J and total_J."""
 
     def to_frame(self) -> t.Any:
-        """A pandas.DataFrame: a line per point of the grid."""
+        """A pandas.DataFrame with a line for each point of the grid."""
         import pandas
 
         return pandas.DataFrame(self._data["table"])
 
     def plot(self, axes: t.Any = None) -> t.Any:
-        """The total energy as a map with the lowest way, by matplotlib."""
+        """Draws the total energy as a map, with the lowest way, with matplotlib. Returns the axes."""
         import matplotlib.pyplot as plt
 
         if axes is None:
@@ -289,11 +293,11 @@ class Landscape(Result):
 
 
 class Trace(Result):
-    """Runs in full.
+    """Single runs, with every step.
     """
 
     def to_frame(self, run: int = 0) -> t.Any:
-        """A pandas.DataFrame of one run, a line per step."""
+        """A pandas.DataFrame of one run (counted from 0), with a line for each step."""
         import pandas
 
         runs = self._data["runs"]
@@ -303,7 +307,7 @@ class Trace(Result):
         return pandas.DataFrame({k: v for k, v in runs[run].items() if isinstance(v, np.ndarray)})
 
     def plot(self, axes: t.Any = None) -> t.Any:
-        """The ways of all runs, by matplotlib."""
+        """Draws the paths of all runs with matplotlib. Returns the axes."""
         import matplotlib.pyplot as plt
 
         if axes is None:
@@ -319,7 +323,7 @@ class Trace(Result):
 
 
 def document(what: t.Any, command: str) -> None:
-    """Adds to the docstring what each key of the command's results means: of a class or a function that gives them."""
+    """Adds to the docstring of a class or function the meaning of each key of the command's result."""
     text = (what.__doc__ or "").rstrip() + "\n\n    Keys of the result\n    ------------------\n"
     for name, keys in _core.result_keys(command):
         for key, kind, unit, meaning, is_always_there in keys:

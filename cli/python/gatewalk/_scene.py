@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scenes: a file, a text or a dict, and keys that are set."""
+"""Scenes: a file, a text or a dict, with keys that are set to other values."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ import typing as t
 from . import _core
 from ._words import input_of, plain, refuse
 
-#: What the program says; a cell's own errors come out as they are.
+#: Errors of the program. Errors that a cell of the user raises are passed on unchanged.
 OWN_ERRORS = (_core.SceneError, _core.UsageError, _core.BadFile)
 
 
 class NoSuchKey(_core.UsageError, KeyError):
-    """A UsageError where Python expects a KeyError too."""
+    """A UsageError that is a KeyError too, as Python expects of a mapping."""
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -50,7 +50,7 @@ def _toml_value(value: t.Any, key: str) -> str:
 
 
 def _quoted(text: str) -> str:
-    """A string of TOML; JSON's escapes are among its own."""
+    """A text as a string of TOML, whose escapes include those of JSON."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
@@ -81,20 +81,21 @@ def _list_html(rows: t.Iterable[str]) -> str:
 
 
 class Scene:
-    """A scene of gates, with every key.
+    """A scene: one gate, the body, the forces, the field and the start, with a value for every key.
 
     Parameters
     ----------
     source : path, str or dict
-        A scene file; its text; or tables as a dict (errors call both scene.toml; a map_file in them has a whole path).
-        Keys may have other units: ``radius_cm``.
+        A scene file, its text, or a dict of its tables. Keys may have other units: ``radius_cm``. Errors call a text or a dict
+        ``scene.toml``, and a ``map_file`` in it needs an absolute path.
     set : dict, optional
-        Keys with other values, ``{"forces.propulsion_N": 1.2}``.
+        Keys to change, ``{"forces.propulsion_N": 1.2}``.
 
     Raises
     ------
     SceneError, UsageError
-        ValueErrors naming the key, or the parameter, and what is allowed. ``scene["no.key"]`` is a UsageError and a KeyError.
+        Both are ValueErrors. They name the key or the parameter, and what is allowed. ``scene["no.key"]`` raises a UsageError that
+        is a KeyError too.
 
     Examples
     --------
@@ -127,12 +128,12 @@ class Scene:
         shown = _run("scene", {"source": self}, {})
         self._keys: list[dict[str, t.Any]] = shown["keys"]
         self._toml: str = shown["scene"]
-        #: What its numbers mean, and where they are far from what walks; sentences.
+        #: Sentences: what the numbers mean, and which are far from those of walking animals and robots.
         self.remarks: list[str] = shown["remarks"]
 
     @property
     def keys(self) -> dict[str, t.Any]:
-        """All keys with their values, in the units of their names (n values)."""
+        """A dict of all keys and their values, in the units that end the keys."""
         return {row["key"]: self._value(row) for row in self._keys}
 
     @staticmethod
@@ -156,7 +157,7 @@ class Scene:
         return key in self.keys
 
     def with_set(self, set: t.Mapping[str, t.Any]) -> Scene:  # noqa: A002
-        """The scene with these keys too; this one stays as it is."""
+        """Returns a new scene with these keys changed too. This scene stays as it is."""
         return Scene(self, set)
 
     def __eq__(self, other: object) -> bool:
@@ -174,7 +175,7 @@ class Scene:
                            ("key", "value", "unit", "meaning", "from")) + _list_html(self.remarks)
 
 
-#: What is a scene, or a file of cells.
+#: What may be given as a scene, or as a file of cells.
 SUBJECTS = "a Scene, a path, a text of several lines, or a dict of tables"
 
 
@@ -194,7 +195,7 @@ _names: contextvars.ContextVar[tuple[tuple[str, str], ...]] = contextvars.Contex
 
 @contextlib.contextmanager
 def called(name: str, words: str) -> t.Iterator[None]:
-    """Errors and warnings about a file that means nothing to anybody call it so."""
+    """Within this context, errors and warnings call the file `name` by `words`, because users do not know temporary files."""
     before = _names.set(((name, words), *_names.get()))
     try:
         yield
@@ -203,26 +204,26 @@ def called(name: str, words: str) -> t.Iterator[None]:
 
 
 def renamed(text: str) -> str:
-    """A text of the program with its files as they are called."""
+    """A text of the program in which temporary files have the names of `called`."""
     for name, words in _names.get():
         text = text.replace(name, words)
     return text
 
 
-#: How folders and files begin that nobody but this package knows.
+#: Temporary folders and files of this package begin so.
 TEMPORARY = "gatewalk-in-python-"
 _TEMPORARY_PATH = re.compile(rf"[^\s'\"]*/{TEMPORARY}\w{{8}}(?:/(?:[0-9a-f]{{16}}/)?|(?P<matrix>\.nc))")
 
 
 def without_folders(text: str) -> str:
-    """A text in which such files have their names alone."""
+    """A text in which temporary files have names without folders."""
     return _TEMPORARY_PATH.sub(lambda match: "matrix.nc" if match["matrix"] else "", text)
 
 
 @contextlib.contextmanager
 def file_of(subject: t.Any, parameter: str) -> t.Iterator[tuple[str, dict[str, t.Any]]]:
-    """A file that a command can read, and the keys set on top of it; a text is written to a folder of its own. Raises UsageError for an
-    argument that is none of these."""
+    """A file that a command can read, and the keys that are set on top of it. A text is written to a temporary folder. Raises
+    UsageError for an argument that is no scene, matrix, path, text or dict."""
     from ._matrix import Matrix
 
     if isinstance(subject, Matrix):
@@ -241,11 +242,11 @@ def file_of(subject: t.Any, parameter: str) -> t.Iterator[tuple[str, dict[str, t
         yield name, getattr(subject, "_set", {})
 
 
-_folders: dict[int, str] = {}  # by process: a forked one makes its own
+_folders: dict[int, str] = {}  # by process id: a forked process makes its own folder
 
 
 def _file_of_text(text: str, base: str) -> str:
-    """A file of that name with that text, the same one for the same text until the process ends."""
+    """A temporary file of that name with that text. The same text gives the same file until the process ends."""
     folder = _folders.get(os.getpid())
     if folder is None:
         folder = _folders[os.getpid()] = tempfile.mkdtemp(prefix=TEMPORARY)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Arguments of Python as the words of a command, and what a command says about its options in Python's words."""
+"""Arguments of Python as words of a command line, and messages of a command in Python's words."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ import typing as t
 
 from . import _core
 
-#: Options that a process has no use for, and those that the module itself gives.
+#: Options that have no use in Python, and options that the module sets itself.
 _NOT_HERE = {"quiet", "json", "checkpoint", "resume", "max-time", "shard", "part", "output", "help"}
-#: Commands by the function that runs them, where it has another name.
+#: The function for each command, by the name of the command.
 _FUNCTIONS = {"import": "from_counts", "export": "Matrix.export", "scene": "Scene", **{name: name for name in (
     "analyze", "build", "design", "fit", "gate", "landscape", "lattice", "merge", "passages", "plan", "power", "predict", "rare", "sample",
     "simulate", "sweep", "trace", "validate", "walk")}}
@@ -38,12 +38,12 @@ def options_of(command: str) -> dict[str, Option]:
 
 
 def refuse(parameter: str, allowed: str, value: t.Any) -> t.NoReturn:
-    """Raises the UsageError of an argument of the wrong kind."""
+    """Raises a UsageError: the argument is of the wrong kind, and what is allowed."""
     raise _core.UsageError(f"{parameter}: must be {allowed}, not {reprlib.repr(value)}")
 
 
 def path_of(value: t.Any, parameter: str, allowed: str = "a path") -> str:
-    """A path as the program takes it. Raises UsageError for anything else."""
+    """A path as the program takes it. Raises UsageError if the value is no path."""
     if not isinstance(value, (str, os.PathLike)):
         refuse(parameter, allowed, value)
     path = os.fsdecode(value)
@@ -53,7 +53,7 @@ def path_of(value: t.Any, parameter: str, allowed: str = "a path") -> str:
 
 
 def input_of(value: t.Any, parameter: str, error: type[ValueError] = _core.UsageError, allowed: str = "a path") -> str:
-    """The path of a file that is there. Raises UsageError for what is no path, `error` where there is nothing."""
+    """The path of an existing file. Raises UsageError if the value is no path, and `error` if there is no such file."""
     path = path_of(value, parameter, allowed)
     if not os.path.exists(path):
         text = "; a text has several lines, a line break at its end will do" if isinstance(value, str) and re.search(r"[=\[{]", value) else ""
@@ -62,7 +62,7 @@ def input_of(value: t.Any, parameter: str, error: type[ValueError] = _core.Usage
 
 
 def whole(value: t.Any, what: str, least: int, most: int) -> int:
-    """A whole number, of numpy too. Raises UsageError for anything else."""
+    """A whole number of Python or numpy. Raises UsageError for anything else, and for a number out of range."""
     try:
         number = None if isinstance(value, bool) else operator.index(value)
     except TypeError:
@@ -73,7 +73,7 @@ def whole(value: t.Any, what: str, least: int, most: int) -> int:
 
 
 def plain(value: t.Any) -> t.Any:
-    """A value without numpy and pandas: booleans, numbers, texts, lists and dicts of them; others as they are."""
+    """A value of numpy or pandas as plain Python: booleans, numbers, texts, lists and dicts. Other values stay as they are."""
     if isinstance(value, os.PathLike):
         return os.fsdecode(value)
     if hasattr(value, "tolist"):
@@ -92,7 +92,7 @@ def _is_number(value: t.Any) -> bool:
 
 
 def _word(value: t.Any) -> str:
-    """A plain value as the command line has it. Raises TypeError for what has no words."""
+    """A plain value as it stands on the command line. Raises TypeError if it has no such form."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, list):
@@ -105,12 +105,12 @@ def _word(value: t.Any) -> str:
 
 
 def _setting(value: t.Any) -> str:
-    """The value of a scene's key."""
+    """The value of a scene key, as it stands on the command line."""
     return f"[{', '.join(map(_setting, value))}]" if isinstance(value, list) else _word(value)
 
 
 def _range(value: t.Any) -> str:
-    """(low, high)."""
+    """A range (low, high), as it stands on the command line."""
     if isinstance(value, str) and re.fullmatch(rf"{_NUMBER}:{_NUMBER}", value):
         value = [float(end) for end in value.split(":")]
     if not isinstance(value, list) or len(value) != 2 or not all(map(_is_number, value)) or not value[0] < value[1]:
@@ -119,7 +119,7 @@ def _range(value: t.Any) -> str:
 
 
 def _start(value: t.Any) -> str:
-    """A place, behind a face or not, or a state."""
+    """A start as it stands on the command line: coordinates, with or without a face in front, or a state."""
     def is_number(one: t.Any) -> bool:  # numpy makes texts of numbers beside a text
         return _is_number(one) or isinstance(one, str) and re.fullmatch(_NUMBER, one) is not None
 
@@ -128,7 +128,7 @@ def _start(value: t.Any) -> str:
     return _word(value)
 
 
-#: Options with a dict for a value: of an item the text behind "=", and an example.
+#: Options whose value is a dict: how an item is written behind "=", and an example.
 _DICTS: dict[str, tuple[t.Callable[[t.Any], str], str]] = {
     "set": (_setting, '{"forces.random_N": 20}'),
     "versus": (_setting, '{"forces.random_N": 20}'),
@@ -137,7 +137,7 @@ _DICTS: dict[str, tuple[t.Callable[[t.Any], str], str]] = {
     "free": (_range, '{"forces.random_N": (10, 30)}, the low one first'),
     "columns": (_word, '{"x": "POSITION_X", "y": "POSITION_Y"}'),
 }
-#: What others take, where the help page has no word for it.
+#: What other options take, where the help page does not say it.
 _OTHERS = {"matrix": "a Matrix or the path of one", "starts": "'all', or a (low, high) each of d, vx and vy",
            "start": '(d, vx, vy), (face, s, vx, vy), the number or name of a state, or a list or array of these (of a DataFrame .to_numpy())',
            "versus": f"a dict such as {_DICTS['versus'][1]}, or of recorded runs another Matrix or the path of one",
@@ -170,7 +170,7 @@ def _of_dict(name: str, key: str, value: dict[t.Any, t.Any]) -> list[str]:
 
 
 def _values_of(name: str, key: str, option: Option, given: t.Any) -> list[str]:
-    """What stands behind "=", each time that the option is given."""
+    """The texts behind "=", one for each time that the option is given."""
     from ._matrix import Matrix
 
     value = given._path if isinstance(given, Matrix) and name in ("matrix", "versus") else plain(given)
@@ -194,7 +194,7 @@ def _values_of(name: str, key: str, option: Option, given: t.Any) -> list[str]:
 
 
 def words_of(command: str, given: dict[str, t.Any]) -> list[str]:
-    """Keyword arguments as options. Raises UsageError for one that there is not, and for a value of the wrong kind."""
+    """Keyword arguments as options. Raises UsageError for an unknown keyword, and for a value of the wrong kind."""
     offered = options_of(command)
     words: list[str] = []
     for key, value in given.items():
@@ -221,11 +221,11 @@ def words_of(command: str, given: dict[str, t.Any]) -> list[str]:
     return words
 
 
-# ---- What a command says ----
+# ---- Messages of a command ----
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _PLACEHOLDER = r"[A-Z][A-Z0-9/|]*(?:\.[a-z|0-9]+)?"
-#: A word that is the value of the option in front of it, though nobody gave it.
+#: A word that is the value of the option in front of it, such as KEY=VALUE in a message.
 _VALUE = re.compile(rf"{_NUMBER}(?:[,:]{_NUMBER})*|[A-Z]+(?:,[A-Z]+)+|{_PLACEHOLDER}|[\w.]+=\S+|all|auto|seen|[\w./~-]+\.(?:toml|nc|csv|json)")
 _NEXT = r"""(?:'[^']*'|"[^"]*"|[^\s'"]+)"""
 _OPTION = rf"(?<![\w./-])--(?P<name>[a-z][a-z0-9]*(?:-[a-z0-9]+)*)(?:(?P<mark>[ =])(?P<next>{_NEXT}))?"
@@ -233,7 +233,7 @@ _CALL = re.compile(rf"\bgatewalk (?P<command>[a-z-]+)(?P<rest>(?: (?:[A-Z][A-Z|]
 
 
 def _literal(text: str) -> str:
-    """A value of the command line as one of Python."""
+    """A value of the command line, written as in Python."""
     if re.fullmatch(rf"{_NUMBER}|{_PLACEHOLDER}|\.\.\.|\[.*\]", text):
         return text
     if re.fullmatch(rf"{_NUMBER}(?:,{_NUMBER})+|[A-Z]+(?:,[A-Z]+)+", text):
@@ -242,7 +242,7 @@ def _literal(text: str) -> str:
 
 
 def _spelled(name: str, text: str) -> str:
-    """An option with its value as a keyword argument."""
+    """An option and its value, written as a keyword argument."""
     key = name.replace("-", "_")
     if name == "start" and (place := re.fullmatch(rf"([^:]+):({_NUMBER}(?:,{_NUMBER})*)", text)):
         return f"start=({place[1]!r}, {place[2].replace(',', ', ')})"
@@ -297,7 +297,7 @@ def _face_in_front(match: re.Match[str]) -> str:
     return f"numbers {names} ({units}), with a face in front unless it is the first: ({faces.split(' or ')[0]!r}, {names.replace(',', ', ')}), of {faces}"
 
 
-#: What is written otherwise in Python, beside options.
+#: Other phrases that differ in Python.
 _SENTENCES: list[tuple[str, str | t.Callable[[re.Match[str]], str]]] = [
     ("two numbers with a comma between", "two numbers, (X, Y)"),
     (r"\bIX,IY(,STATE)?\b", lambda m: "(IX, IY, STATE)" if m[1] else "(IX, IY)"),
@@ -306,12 +306,12 @@ _SENTENCES: list[tuple[str, str | t.Callable[[re.Match[str]], str]]] = [
     (r"must be seen, or", "must be 'seen', or"),
     (r"numbers (\S+) \(([^)]*)\), behind a face (.+) and a colon unless it is the first", _face_in_front),
 ]
-#: A column's meaning, outside of --columns.
+#: The meaning of a column, where a message names it outside of --columns.
 _MEANING = r"(?P<option>--columns[ =]\S+)|(?<![\w-])(?P<name>body|frame|time|x|y|confidence)=(?P<column>\.\.\.|[\w ]*\*\w*|(?=[ )]))(?P<comma>,(?=\w+=))?"
 
 
 def in_python(text: str, command: str, words: t.Sequence[str] = ()) -> str:
-    """What a command says, with options as keyword arguments and commands as functions. `words`: what it was given."""
+    """A message of a command, with options as keyword arguments and commands as functions. `words`: the command line."""
     for word in sorted((w for w in words if w.startswith("--") and "=" in w), key=len, reverse=True):
         name, _, value = word[2:].partition("=")
         if value and name not in _NOT_HERE:
