@@ -3,10 +3,10 @@
 /// Exact answers of a small absorbing chain over any kind of number: double, long double, exact
 /// fractions (boost::multiprecision::cpp_rational), bounds (enclosure.h).
 ///
-/// One state is eliminated after the other as in Grassmann, Taksar and Heyman (Operations Research
-/// 33, 1985): nothing is subtracted, and what leaves a state, 1 - q_kk, is the sum of where it
-/// goes. So every answer is right to some n roundings of its own size, however unlikely it is to
-/// end.
+/// States are eliminated one by one, as in Grassmann, Taksar and Heyman (Operations Research 33,
+/// 1985). Nothing is subtracted: the probability 1 - q_kk of leaving a state is the sum of its
+/// moves. Every answer is therefore exact to about n roundings of its own size, however unlikely an
+/// ending is.
 
 #include <algorithm>
 #include <cstddef>
@@ -32,7 +32,7 @@ class Dense {
   [[nodiscard]] Number& operator()(Index i, Index j) { return row(i)[j]; }
   [[nodiscard]] const Number& operator()(Index i, Index j) const { return row(i)[j]; }
 
-  /// `rows` x `columns` of it, from column `first` on.
+  /// The part of `rows` x `columns` numbers from column `first` on.
   [[nodiscard]] Dense part(Index rows, Index first, Index columns) const {
     Dense some(rows, columns);
     for (Index i = 0; i < rows; ++i) std::copy_n(row(i) + first, columns, some.row(i));
@@ -44,8 +44,8 @@ class Dense {
   std::vector<Number> values_;
 };
 
-/// n states and m ends. Rows of both tables together sum to 1. What a state keeps (the diagonal) is
-/// not read but in that sum: it is what its other moves leave.
+/// An absorbing chain of n states and m ends. The rows of both tables together sum to 1. The
+/// diagonal (what a state keeps) only counts in that sum: it is 1 minus the state's other moves.
 template <class Number>
 struct AbsorbingChain {
   Dense<Number> moves;  // (n x n) from state to state
@@ -57,13 +57,14 @@ struct AbsorbingChain {
 
 template <class Number>
 struct Absorption {
-  Dense<Number> ends;    // (n x m) chance of each end, from each state
-  Dense<Number> visits;  // (n x n) expected visits of each state, from each; its own start is one
+  Dense<Number> ends;  // (n x m) probability of each end, from each state
+  /// (n x n) expected visits of each state, from each; the start counts as one
+  Dense<Number> visits;
   std::vector<Number> steps;  // (n) expected draws until the end
 };
 
-/// Throws std::invalid_argument naming the state (counted from 0) unless all chances are >= 0, each
-/// row sums to 1 within 1e-12, and every state can reach an end.
+/// Throws std::invalid_argument naming the state (counted from 0) unless all probabilities are >=
+/// 0, each row sums to 1 within 1e-12, and every state can reach an end.
 template <class Number>
 void validate(const AbsorbingChain<Number>& chain) {
   const std::ptrdiff_t n = chain.moves.rows(), m = chain.ends.cols();
@@ -78,7 +79,7 @@ void validate(const AbsorbingChain<Number>& chain) {
   };
   const Number none(0), least(1.0 - 1e-12), most(1.0 + 1e-12);
   std::vector<char> can_end(static_cast<std::size_t>(n));
-  std::vector<std::ptrdiff_t> found;  // states that can end, in the order they are found
+  std::vector<std::ptrdiff_t> found;  // states that can end, in the order of discovery
   for (std::ptrdiff_t k = 0; k < n; ++k) {
     Number sum(0);
     const auto add = [&](const Number& p) {
@@ -104,9 +105,9 @@ void validate(const AbsorbingChain<Number>& chain) {
     if (!can_end[static_cast<std::size_t>(k)]) refuse(k, "never ends");
 }
 
-/// x = moves x + b for the first `wanted` states; b: the ends, with visits also the unit matrix
-/// (wanted x m, or m + n). Throws as validate(); std::runtime_error where what leaves a state is
-/// too little for the kind of number (a double: below 1e-308).
+/// Solves x = moves x + b for the first `wanted` states. b: the ends, and with visits also the unit
+/// matrix (wanted x m, or m + n). Throws as validate(), and std::runtime_error if the probability
+/// of leaving a state is too small for the kind of number (a double: below 1e-308).
 template <class Number>
 [[nodiscard]] Dense<Number> eliminate(const AbsorbingChain<Number>& chain, std::ptrdiff_t wanted,
                                       bool with_visits) {
@@ -120,7 +121,7 @@ template <class Number>
     for (std::ptrdiff_t j = 0; j < n; ++j) all(k, right + j) = chain.moves(k, j);
     if (with_visits) all(k, m + k) = Number(1);
   }
-  // What i sends to k goes on from there.
+  // Adds the moves of k to those of i, in proportion to the move from i to k.
   const auto pass_on = [&](std::ptrdiff_t k, std::ptrdiff_t i) {
     const Number* const from = all.row(k);
     Number* const to = all.row(i);
@@ -138,7 +139,8 @@ template <class Number>
                                " (counted from 0) is too little for this kind of number");
     for (std::ptrdiff_t j = 0; j < right + k; ++j) from[j] /= leaves;
   };
-  // From the last state to the first, some rows at a time: they share what is read of those behind.
+  // From the last state to the first, several rows at a time, which share reading the rows after
+  // them.
   constexpr std::ptrdiff_t kTogether = 16;
   for (std::ptrdiff_t end = n, begin; end > 0; end = begin) {
     begin = end > kTogether ? end - kTogether : 0;
@@ -160,7 +162,7 @@ template <class Number>
   return all.part(wanted, 0, right);
 }
 
-/// All of it. Throws as validate().
+/// All answers. Throws as validate().
 template <class Number>
 [[nodiscard]] Absorption<Number> absorption(const AbsorbingChain<Number>& chain) {
   const std::ptrdiff_t n = chain.moves.rows(), m = chain.ends.cols();
@@ -174,7 +176,7 @@ template <class Number>
   return a;
 }
 
-/// The chances of the ends from the first `wanted` states alone (wanted x m), in less time.
+/// The probabilities of the ends from the first `wanted` states only (wanted x m), in less time.
 template <class Number>
 [[nodiscard]] Dense<Number> end_chances(const AbsorbingChain<Number>& chain,
                                         std::ptrdiff_t wanted) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What every method owes, and how exactly: one row a method, each number with its reason. The laws
-/// themselves are tests/dynamics/laws_test.cpp and limits_test.cpp; what only one method has is in
-/// the tests of that method.
+/// The laws that every numerical method must keep, and how exactly: one row per method, each number
+/// with its reason. The tests of the laws are tests/dynamics/laws_test.cpp and limits_test.cpp;
+/// properties of a single method are in the tests of that method.
 
 #include <gtest/gtest.h>
 
@@ -20,18 +20,19 @@
 
 namespace gatewalk::test {
 
-/// Energy that `trials` noisy trials may create, J, in a study with this step and force (N).
+/// The most energy that `trials` noisy trials may create, J, in a study with this step and force
+/// (N).
 struct CreatedEnergy {
   double step, random, most;
   int trials;
   double event_tolerance = 1e-2;  // m
 };
 
-/// How the energy that noisy trials create falls with the step.
+/// How the energy created by noisy trials falls with the step.
 struct EnergyOrder {
   double least = 0.0, most = 0.0, random = 10.0;
   int trials = 300;
-  bool one_restitution = true;    // tips have that of the sides
+  bool one_restitution = true;    // tips have the restitution of the sides
   std::array<double, 3> worst{};  // J at steps of 0.004, 0.002 and 0.001 s
 };
 
@@ -48,29 +49,29 @@ struct MethodLaws {
   double step = 0.004;  // s
 
   // ---- Free motion ----
-  /// Error of the free beam after 2 s, as hypot(theta, omega / w0), and how well that is known; the
-  /// order in which it falls, 0 where it is rounding.
+  /// Error of the free beam after 2 s, as hypot(theta, omega / w0), the accuracy to which it is
+  /// known, and the order in which it falls (0: rounding).
   double beam_error = 0.0, beam_digits = 0.0;
   int beam_order = 0;
-  /// What a free body keeps of its speed in a step in which drag takes g of it, and of the way that
-  /// it would go at the speed it had before.
+  /// In a step in which drag takes the fraction g of a free body's speed: the fraction of the speed
+  /// that remains, and the fraction of the way at the old speed.
   double (*kept)(double g) = [](double g) { return std::exp(-g); };
   double (*way)(double g) = [](double) { return 1.0; };
   double flight = 500 * 32 * kEps;  // m, m/s; 500 steps, numbers up to 24
-  /// Where and when a disc leaves at 10 m/s: 126 steps round x by eps 25 m / 2.
+  /// Place and time at which a disc leaves at 10 m/s: 126 steps round x by eps 25 m / 2.
   double exit_time = 126 * 12.5 * kEps / 10;  // s
   double exit_place = 50 * kEps;              // m
 
   // ---- Single hits ----
-  bool at_mid_step = false;  // the impulse acts there, in overlap, not where the gap is zero
-  double place = 0.0;        // m, how exactly the hit's place is known
+  bool at_mid_step = false;  // the impulse acts at mid-step, in overlap, not where the gap is zero
+  double place = 0.0;        // m, accuracy of the hit's place
 
   // ---- Many hits ----
   double reversed = 0.0;  // m, m/s, rad; distance from the start on return
   std::vector<CreatedEnergy> created{};
   double overlap_m = 0.0;  // in these trials
-  bool clean = true;       // and Health has nothing to say of them
-  bool reported = false;   // it says that energy was created
+  bool clean = true;       // Health reports nothing about these trials
+  bool reported = false;   // Health reports created energy
   EnergyOrder order{};
   Trials mirrored{};
   bool same_work = true;  // gaps are evaluated in an order that a mirror image does not change
@@ -82,22 +83,22 @@ struct MethodLaws {
   // ---- Limits ----
   std::vector<Wall> walls{};
   double wall_overlap = 0.0;  // m
-  double fastest = 0.0;       // rad/s or e-folds a second of a beam, beyond which it is refused
+  double fastest = 0.0;       // rad/s or e-folds per second of a beam; faster beams are refused
   std::string_view fastest_key{};
-  double near_overlap = std::numeric_limits<double>::infinity();  // m, from near-singular starts
+  double near_overlap = std::numeric_limits<double>::infinity();  // m, after near-singular starts
   Trials near_starts{};
-  double graze = 0.0;        // least distance from R, in R, that grazing discs are tried at
-  double graze_slack = 0.0;  // m, gaps that are contact
+  double graze = 0.0;  // least distance from R, in units of R, at which grazing discs are tried
+  double graze_slack = 0.0;  // m, gaps that count as contact
   Trials scenes{};
 };
 
-/// The name makes the test's, `Methods/AnyMethod.Law/event`.
+/// The name of the method, which becomes part of the test's name: `Methods/AnyMethod.Law/event`.
 inline void PrintTo(const MethodLaws& m, std::ostream* out) { *out << m.name; }
 
 inline std::vector<MethodLaws> all_methods() {
   return {
-      // Free motion is exact, 100 or 600 steps of 0.02 s round so often; hits are found where the
-      // gap is 1e-10 R or less, mostly 1e-12 R, and each stretches the errors before it.
+      // Free motion is exact, except for the rounding of 100 or 600 steps of 0.02 s. A hit is found
+      // where the gap is at most 1e-10 R, mostly 1e-12 R, and each hit amplifies earlier errors.
       {.name = "stable",
        .step = 0.02,
        .beam_digits = 100 * kEps,
@@ -105,8 +106,8 @@ inline std::vector<MethodLaws> all_methods() {
        .place = 1e-9,
        .reversed = 1e-10,  // measured 2.4e-12
        // The midpoint rule's error in constrained motion. It grows with the speed at which the disc
-       // slides along the beams, and so with Rm. Of a disc that has up to 430, 920 and 1370 J,
-       // limits about four times what was measured:
+       // slides along the beams, and so with Rm. The limits are about four times the values
+       // measured for a disc that has up to 430, 920 and 1370 J:
        //     0.004 s: 9e-6, 3e-5, 6e-5 J    0.02 s: 1.3e-3, 4.7e-3, 8e-3 J
        .created = {{0.004, 10.0, 4e-5, 10'000},
                    {0.004, 40.0, 1.2e-4, 10'000},
@@ -115,35 +116,36 @@ inline std::vector<MethodLaws> all_methods() {
                    {0.02, 40.0, 2e-2, 10'000},
                    {0.02, 60.0, 3e-2, 10'000}},
        .overlap_m = 1e-8,
-       // Measured 3.0; the midpoint rule's second order is the least. Worst 1.9e-5, 2.4e-6 and
-       // 3e-7 J.
+       // Measured order 3.0; the midpoint rule guarantees 2. Worst: 1.9e-5, 2.4e-6 and 3e-7 J.
        .order = {2.0, 5.0, 40.0, 2000, false, {8e-5, 1e-5, 1.2e-6}},
        .mirrored = {10'000, 100'000},
        .holds = true,
-       // Forces only push, but whether there is one is asked at mid-step: at the end a contact may
-       // be held half a step too long, by what its force falls in that time. Measured 24 N.
+       // Forces only push, but the method checks for a force at mid-step. At the end of a step a
+       // contact may be held half a step too long, with a pull of the change of its force.
+       // Measured: 24 N.
        .pull_N = 40.0,
        .walls = {{1e9, 0.1}, {1e12, 1e4}},
        .wall_overlap = 1e-8,
-       // 1024 pieces of a step of 0.02 s may turn a beam's phase by 0.5 each.
+       // 1024 pieces of a step of 0.02 s may each turn a beam's phase by 0.5.
        .fastest = 1024 * 0.5 / 0.02,
        .fastest_key = "run.step_s",
-       .near_overlap = 1e-8,  // up to 1e-10 R the method calls contact
+       .near_overlap = 1e-8,  // the method treats gaps up to 1e-10 R as contact
        .near_starts = {25'000, 200'000},
-       .graze = 1e-6,  // a chord that is shorter than a step is not seen
+       .graze = 1e-6,  // chords shorter than a step are not detected
        .graze_slack = 1e-9,
        .scenes = {6000, 100'000}},
-      // As stable without steps: 100 holds round; a hit is where the gap is 1e-13 m or less.
+      // Like stable, without steps: rounding of 100 holds; a hit is found where the gap is at most
+      // 1e-13 m.
       {.name = "event",
        .step = 0.02,
        .beam_digits = 100 * 4 * kEps,
        .flight = 100 * 16 * kEps,
-       .exit_time = 8 * 25 * kEps / 10,  // one spell: x is rounded once or twice
+       .exit_time = 8 * 25 * kEps / 10,  // one free flight: x is rounded once or twice
        .place = 2e-13,
        .reversed = 1e-10,  // measured 2e-12
        // Measured over 10^4 trials of a disc that has up to 430 and 1370 J: 3e-6 and 5.6e-3 J by
-       // default, 1e-11 J at a tolerance of 1e-6 m. The overlap, up to 1e-7 m, is where the body
-       // leaves: that state is interpolated.
+       // default, 1e-11 J at a tolerance of 1e-6 m. The overlap of up to 1e-7 m occurs where the
+       // body leaves, because that state is interpolated.
        .created = {{0.02, 10.0, 2e-2, 1000},
                    {0.02, 60.0, 2e-2, 1000},
                    {0.02, 10.0, 1e-9, 200, 1e-6},
@@ -162,8 +164,8 @@ inline std::vector<MethodLaws> all_methods() {
        .graze = 1e-15,
        .graze_slack = 1e-13 + 2e-14,  // gaps up to 1e-14 R are contact; round-off of 10 m
        .scenes = {2000, 100'000}},
-      // The midpoint rule: its phase lags by (w0 h)^2 / 12 of w0 t. Its impulse acts in mid-step to
-      // round-off, its elastic steps are their own inverse, its overlap is what moves in a step.
+      // The midpoint rule: its phase lags by (w0 h)^2 / 12 of w0 t. The impulse acts at mid-step,
+      // to round-off; elastic steps are their own inverse; the overlap is the motion within a step.
       {.name = "moreau",
        .beam_error = 1.14e-5,
        .beam_digits = 1e-7,
@@ -176,30 +178,30 @@ inline std::vector<MethodLaws> all_methods() {
        .created = {{0.004, 10.0, 0.01, 300}, {0.004, 40.0, 0.01, 300}},
        .overlap_m = 1.0,
        .clean = false,
-       // A closing force on an opening contact gains (h F)^2 in steps that are rare in proportion
-       // to h. Measured means 8.2e-6, 1.2e-6, 1.1e-7 J, worst 7.9e-4, 1.9e-4,
-       // 1.9e-5 J.
+       // A closing force on an opening contact gains (h F)^2, in steps whose frequency is
+       // proportional to h. Measured means 8.2e-6, 1.2e-6, 1.1e-7 J, worst 7.9e-4, 1.9e-4, 1.9e-5
+       // J.
        .order = {1.0, 5.0, 10.0, 300, true, {1.6e-3, 8e-4, 4e-4}},
        .mirrored = {2000, 100'000},
        .walls = {{1e12, 0.1}},                              // far beyond what a step resolves
-       .wall_overlap = 0.004 * std::sqrt(2 * 7.0 * 10.1)},  // what the disc moves in a step
-      // Semi-implicit Euler against springs: of first order in all. It rounds no worse.
+       .wall_overlap = 0.004 * std::sqrt(2 * 7.0 * 10.1)},  // the disc's motion within a step
+      // Semi-implicit Euler against springs: of first order throughout, with the same rounding.
       {.name = "penalty",
        .beam_error = 1.3e-3,  // the printed digits
        .beam_digits = 5e-5,
        .beam_order = 1,
        .kept = [](double g) { return 1 - g; },
        .way = [](double g) { return 1 - g; },  // at the new speed
-       // Elastic tips create more than the springs of one restitution. Measured worst 20 J.
+       // Elastic tips create more energy than springs of a single restitution. Measured worst: 20
+       // J.
        .created = {{0.004, 40.0, 30.0, 300}},
        .overlap_m = 10.0,
        .clean = false,
        .reported = true,
-       // With the contacts' springs counted: means 0.26, 0.12 and 0.05 J, worst 1.4, 1.3 and
-       // 0.3 J.
+       // Including the contacts' springs: means 0.26, 0.12 and 0.05 J, worst 1.4, 1.3 and 0.3 J.
        .order = {0.75, 1.25, 10.0, 300, true, {3.0, 3.0, 1.0}},
        .mirrored = {2000, 100'000}},
-      // Explicit Euler, that moves by the old speed and leaves at the end of a step.
+      // Explicit Euler, which moves with the old speed, and leaves at the end of a step.
       {.name = "paper",
        .beam_error = 3.3e-3,  // the printed digits
        .beam_digits = 5e-5,
@@ -210,10 +212,10 @@ inline std::vector<MethodLaws> all_methods() {
   };
 }
 
-/// A law that all methods keep; others are kept by some, which derive from it.
+/// Fixture for a law that all methods keep; laws of some methods derive from it.
 class AnyMethod : public testing::TestWithParam<MethodLaws> {
  protected:
-  /// `p` by this method, at the step of its row or another.
+  /// `p` with this method, at the step of its row or another one.
   [[nodiscard]] static dynamics::GateParams by(dynamics::GateParams p, double step = 0.0) {
     p.run.method = GetParam().name;
     p.run.step = step > 0.0 ? step : GetParam().step;
@@ -227,7 +229,7 @@ class AnyMethod : public testing::TestWithParam<MethodLaws> {
   }
 };
 
-/// Those whose rows say so.
+/// The methods whose rows fit.
 inline auto methods_that(bool (*fits)(const MethodLaws&)) {
   std::vector<MethodLaws> fitting;
   for (const MethodLaws& m : all_methods())
@@ -235,7 +237,8 @@ inline auto methods_that(bool (*fits)(const MethodLaws&)) {
   return testing::ValuesIn(fitting);
 }
 
-/// `exact`: of hits; `held`: contacts become constraints; `alike`: both beams are treated at once.
+/// `exact`: finds hits exactly; `held`: contacts become constraints; `alike`: treats both beams at
+/// once.
 inline bool exact(const MethodLaws& m) { return m.place > 0.0; }
 inline bool held(const MethodLaws& m) { return m.holds; }
 inline bool alike(const MethodLaws& m) { return m.mirrored.usual > 0; }

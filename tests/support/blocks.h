@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Blocks of cells as the cells of a coarser field: a chain over blocks that is as exact as the one
-/// over cells, and that all solvers take as it is. A second route to every prediction without
-/// limit.
+/// Blocks of cells as the cells of a coarser field. The chain over blocks is as exact as the chain
+/// over cells, and all solvers accept it: a second route to every prediction without a limit.
 
 #include <gtest/gtest.h>
 
@@ -21,18 +20,18 @@
 
 namespace gatewalk::markov {
 
-/// An input of a block is a cell of it and the state in which a walk enters that cell from outside;
-/// its outputs lead to the inputs of other blocks, or it is trapped in one of its cells. Walks
-/// without limit of cells end over the same edges and as often trapped as over cells; a final cell
-/// becomes its block, and a step a visit of a block.
+/// A field in blocks. An input of a block is one of its cells with the state in which a walk enters
+/// that cell from outside. Its outputs lead to inputs of other blocks, or the walk is trapped in
+/// one of the block's cells. Without a limit of cells, walks leave over the same edges and are
+/// trapped as often as over cells; a final cell becomes its block, and a step a visit of a block.
 struct BlockField {
   FieldChain chain;            // of blocks
-  Field block;                 // cells of one
+  Field block;                 // cells of one block
   std::vector<Start> entries;  // by input of a block: cell in the block, and state
 
   /// The field in blocks. Throws std::invalid_argument unless `cells` are whole blocks.
   [[nodiscard]] Field field(const Field& cells) const;
-  /// A start in blocks. Throws std::invalid_argument if it is none of the entries.
+  /// A start in blocks. Throws std::invalid_argument if it is not one of the entries.
   [[nodiscard]] Start start(const Start& in_cells) const;
 };
 
@@ -46,7 +45,7 @@ inline std::string size_of(const Field& f) {
   return std::to_string(f.columns) + " x " + std::to_string(f.rows);
 }
 
-/// The block that a cell is in, and its place there.
+/// The block that contains a cell, and the cell's index in the block.
 struct Place {
   int block, cell;
 };
@@ -61,7 +60,7 @@ inline Key key(const Field& block, const Start& s) {
   return {place(s.row, block.rows).cell, place(s.column, block.columns).cell, s.input};
 }
 
-/// All ways into a block, of all types together: from the cells of a block over its border.
+/// All ways of entering a block, for all types together: from the cells of a block over its border.
 inline std::vector<Start> entries_of(const FieldChain& chain, const Field& block,
                                      const std::vector<Start>& starts) {
   std::set<Key> moves;  // di_y, di_x, state
@@ -84,7 +83,7 @@ inline std::vector<Start> entries_of(const FieldChain& chain, const Field& block
   return entries;
 }
 
-/// One block as a cell: its chances of each way out, from each way in.
+/// A block as a cell: the probability of each exit, by entry.
 inline Chain block_chain(const std::vector<Chain>& chains, const Field& block,
                          const std::vector<int>& types, const std::vector<Start>& entries,
                          const std::map<Key, int>& input_of) {
@@ -92,8 +91,8 @@ inline Chain block_chain(const std::vector<Chain>& chains, const Field& block,
   const FieldStates f = field_states(cells, block, entries);
   const Dense<double> chances = end_chances(absorbing_chain<double>(f), std::ssize(entries));
   std::vector<Exit> exits{Exit{}};  // trapped
-  std::map<Key, int> known;         // an exit's number, by what it is
-  std::vector<int> output_of;       // of each end; -1: never sampled
+  std::map<Key, int> known;         // an exit's number, by its properties
+  std::vector<int> output_of;       // by end; -1: never sampled
   for (const FieldStates::End& end : f.ends) {
     if (end.why == Ending::trapped || end.why == Ending::unsampled) {
       output_of.push_back(end.why == Ending::trapped ? 0 : -1);
@@ -110,7 +109,8 @@ inline Chain block_chain(const std::vector<Chain>& chains, const Field& block,
   std::vector<Eigen::Triplet<double>> p;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const Start& entry = entries[i];
-    if (!cells.at(entry.column, entry.row).is_sampled(entry.input)) continue;  // nor is the block
+    /// then the block is not sampled either
+    if (!cells.at(entry.column, entry.row).is_sampled(entry.input)) continue;
     for (std::size_t e = 0; e < f.ends.size(); ++e) {
       const double chance = chances(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(e));
       if (chance == 0.0) continue;
@@ -147,12 +147,13 @@ inline Start BlockField::start(const Start& in_cells) const {
   return {column.block, row.block, static_cast<int>(entry - entries.begin())};
 }
 
-/// Each pattern of types that fills a block is solved once by dense elimination
-/// (tests/support/absorbing.h), so a terrain that repeats itself costs one pattern. `starts`, in
-/// cells, become entries too: walks may begin within blocks and in states that no exit leads to.
-/// Blocks of blocks: call it again with the chain of blocks. Throws std::invalid_argument if cells
-/// of several types do not fill whole blocks, more than kMostDenseStates (field_states.h) states of
-/// a block are reached, some walk in a block never ends, or one gets into a state never sampled.
+/// Builds the field in blocks. Each pattern of types that fills a block is solved once by dense
+/// elimination (tests/support/absorbing.h), so a periodic terrain costs one pattern. `starts`, in
+/// cells, become entries too, so that walks may begin within blocks and in states that no exit
+/// leads to. For blocks of blocks, call it again with the chain of blocks. Throws
+/// std::invalid_argument if cells of several types do not fill whole blocks, if more than
+/// kMostDenseStates (field_states.h) states of a block are reached, or if some walk in a block
+/// never ends or enters a state that was never sampled.
 inline BlockField block_field(const FieldChain& chain, const Field& block,
                               const std::vector<Start>& starts = {}) {
   if (block.columns < 1 || block.rows < 1)
@@ -179,7 +180,7 @@ inline BlockField block_field(const FieldChain& chain, const Field& block,
 
   std::vector<Chain> chains;
   std::map<std::vector<int>, int> known;  // by the types of a block's cells
-  std::vector<int> types;                 // of blocks
+  std::vector<int> types;                 // by block
   const std::int64_t columns = std::max<std::int64_t>(1, chain.columns() / block.columns);
   const std::int64_t rows = std::max<std::int64_t>(1, chain.rows() / block.rows);
   for (std::int64_t block_row = 0; block_row < rows; ++block_row)
@@ -206,7 +207,7 @@ inline BlockField block_field(const FieldChain& chain, const Field& block,
 
 namespace test {
 
-/// A field of `cells` filled with one pattern of types, `block.columns` wide and `block.rows` high.
+/// A field of `cells` filled with a pattern of types, `block.columns` wide and `block.rows` high.
 inline FieldChain repeated(std::vector<Chain> chains, const Field& block,
                            const std::vector<int>& pattern, const Field& cells) {
   std::vector<int> types;
@@ -217,7 +218,7 @@ inline FieldChain repeated(std::vector<Chain> chains, const Field& block,
   return FieldChain::by_cell(std::move(chains), cells.columns, std::move(types));
 }
 
-/// Endings, and shares of cells added by block.
+/// Compares endings, and the shares of cells summed by block.
 inline void expect_same_in_blocks(const FinalDistribution& fine, const FinalDistribution& coarse,
                                   const Field& block, double bound) {
   for (std::size_t e = 0; e < kEndings; ++e)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Fields of our own gates, for tests of what takes any cells.
+/// Fields of gates, for tests of functions that take any cells.
 
 #include "lattice/gates/disc_field.h"
 #include "lattice/scene/matrix.h"

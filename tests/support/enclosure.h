@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A number that lies between two doubles, with sums, products and quotients rounded outwards.
+/// A number bounded by two doubles, with sums, products and quotients rounded outwards.
 
 #include <cmath>
 #include <limits>
 
 namespace gatewalk::markov {
 
-/// Not negative, as chances and visits are. The bounds hold whatever the compiler does: a sum,
-/// product or quotient rounded to the nearest double is less than one double away from the exact
-/// one, so its two neighbours enclose it. (Boost's interval switches the processor's rounding mode
-/// instead, which optimising compilers do not respect without -frounding-math.)
+/// A non-negative number, such as a probability or visits. The bounds hold with any compiler: a
+/// sum, product or quotient rounded to the nearest double is less than one double away from the
+/// exact value, so its two neighbours enclose that value. (Boost's interval switches the
+/// processor's rounding mode instead, which optimising compilers ignore without -frounding-math.)
 struct Enclosure {
   double lo = 0.0, hi = 0.0;
 
@@ -35,7 +35,7 @@ struct Enclosure {
   Enclosure& operator+=(const Enclosure& b) { return *this = *this + b; }
   Enclosure& operator/=(const Enclosure& b) { return *this = *this / b; }
 
-  /// Comparisons are true when they certainly hold.
+  /// Comparisons are true if they hold for certain.
   friend bool operator==(const Enclosure&, const Enclosure&) = default;
   friend bool operator>(const Enclosure& a, const Enclosure& b) { return a.lo > b.hi; }
   friend bool operator>=(const Enclosure& a, const Enclosure& b) { return a.lo >= b.hi; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The walks over a small field, state by state: (cell, input) pairs as one absorbing chain, for
-/// exact answers without limit of cells (absorbing.h).
+/// The walks over a small field as one absorbing chain of (cell, input) pairs, for exact answers
+/// without a limit of cells (absorbing.h).
 
 #include <array>
 #include <cstddef>
@@ -19,28 +19,29 @@
 namespace gatewalk::markov {
 
 struct FieldStates {
-  /// A way to end.
+  /// A way in which walks end.
   struct End {
     Ending why = Ending::trapped;
     int column = 0, row = 0;  // the final cell
-    Start beyond{};  // of a move over an edge: where it leads, a cell outside and the state there
+    Start beyond{};           // after a move over an edge: the cell outside, and the state there
   };
-  /// An entry of a cell's chain.
+  /// A draw from a cell's chain.
   struct Draw {
     static constexpr int kNone = -1;
-    int from = 0;         // of `states`
-    bool is_end = false;  // whether `to` counts ends, not states
+    int from = 0;         // index into `states`
+    bool is_end = false;  // whether `to` is an index of ends, not of states
     int to = 0;
-    int output = kNone;  // drawn; kNone in a state never sampled
+    int output = kNone;  // the output drawn; kNone in a state that was never sampled
     double p = 1.0;
   };
   Field field;
-  std::vector<Start> states;  // reached from the starts, which are the first, each once
+  std::vector<Start> states;  // reached from the starts; these come first, each once
   std::vector<End> ends;
   std::vector<Draw> draws;
 };
 
-/// The n states of a dense chain at most: n x (n + ends) numbers, some n^3 / 3 operations.
+/// The largest number n of states of a dense chain: n x (n + ends) numbers, about n^3 / 3
+/// operations.
 inline constexpr int kMostDenseStates = 4000;
 
 namespace states_of_fields {
@@ -63,7 +64,7 @@ class Reached {
     return chain_.at(s.column, s.row).is_sampled(s.input);
   }
 
-  /// The number of a state, a new one if it is reached for the first time.
+  /// The index of a state; adds the state if it is reached for the first time.
   int state(const Start& s) {
     const std::int64_t cell = std::int64_t{s.row} * f_.field.columns + s.column;
     const auto [it, is_new] =
@@ -118,13 +119,13 @@ class Reached {
   const int most_states_;
   FieldStates f_;
   std::unordered_map<std::int64_t, int> states_;  // by cell * inputs + input
-  std::map<std::array<int, 6>, int> ends_;        // by all that tells them apart
+  std::map<std::array<int, 6>, int> ends_;        // by all properties of an end
 };
 
 }  // namespace states_of_fields
 
-/// Throws std::invalid_argument when chain, field and starts cannot belong together, or more than
-/// `most_states` are reached.
+/// Collects the states. Throws std::invalid_argument if chain, field and starts do not belong
+/// together, or if more than `most_states` are reached.
 [[nodiscard]] inline FieldStates field_states(const FieldChain& chain, const Field& field,
                                               const std::vector<Start>& starts,
                                               int most_states = kMostDenseStates) {
@@ -132,8 +133,8 @@ class Reached {
   return states_of_fields::Reached(chain, field, most_states).from(starts);
 }
 
-/// `chance(state, draw)` says how likely the draw is, as a Number: an exact fraction of counts,
-/// say.
+/// The absorbing chain. `chance(state, draw)` returns the probability of the draw as a Number, for
+/// example an exact fraction of counts.
 template <class Number, class Chance>
 [[nodiscard]] AbsorbingChain<Number> absorbing_chain(const FieldStates& f, Chance chance) {
   AbsorbingChain<Number> chain(std::ssize(f.states), std::ssize(f.ends));
@@ -147,21 +148,22 @@ template <class Number, class Chance>
   return chain;
 }
 
-/// The same with the chain's own numbers.
+/// The absorbing chain with the probabilities of the field's own chain.
 template <class Number>
 [[nodiscard]] AbsorbingChain<Number> absorbing_chain(const FieldStates& f) {
   return absorbing_chain<Number>(
       f, [](const Start&, const FieldStates::Draw& draw) { return Number(draw.p); });
 }
 
-/// What FinalDistribution says, as any kind of number.
+/// The contents of a FinalDistribution, as any kind of number.
 template <class Number>
 struct FieldAnswer {
   std::array<Number, kEndings> endings;  // by Ending
   Dense<Number> final_cells;             // (rows x columns)
 };
 
-/// From the start that is state `from`, by the chances of all ends (absorption, end_chances).
+/// The answer from the start that is state `from`, by the probabilities of all ends (absorption,
+/// end_chances).
 template <class Number>
 [[nodiscard]] FieldAnswer<Number> field_answer(const FieldStates& f, const Dense<Number>& chances,
                                                Eigen::Index from = 0) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Runs by whatever carries them out, compared to the last bit.
+/// Compares runs from any source, to the last bit.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 namespace gatewalk::test {
 
-/// Trials 0 .. n - 1 of run_gate_trial's streams; `carry_out(next)` is told where they come from.
+/// Runs trials 0 .. n - 1 of run_gate_trial's streams; `carry_out(next)` gets their source.
 template <class CarryOut>
 std::vector<dynamics::GateRun> trials_by(CarryOut carry_out, const dynamics::GateParams& p,
                                          const dynamics::BodyState& start, int n) {
@@ -29,7 +29,7 @@ std::vector<dynamics::GateRun> trials_by(CarryOut carry_out, const dynamics::Gat
   return runs;
 }
 
-/// Numbers that are none are the same, whatever their bits.
+/// True for equal bits; NaNs are equal whatever their bits.
 inline bool same_number(double a, double b) { return same_bits(a, b) || (a != a && b != b); }
 
 inline void expect_same_bits(const dynamics::GateRun& a, const dynamics::GateRun& b) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A body in free flight under the held random force, exactly.
+/// The exact distribution of a body in free flight under the held random force.
 ///
 /// From M x'' = F_k - D x' (MODEL: M a = F_rand - D v), with F_k = Rm N(0,1) held from t_k = k tau
 /// to t_(k+1), the last hold cut at T, and g = D/M (1/s):
@@ -10,8 +10,8 @@
 ///     b_k = (t_(k+1) - t_k - (e_(k+1) - e_k)/g)/D
 /// so that v and x are normal, with
 ///     var v = Rm^2 sum a_k^2,   var x = Rm^2 sum b_k^2,   cov = Rm^2 sum a_k b_k.
-/// A force does work F_k v(t_k) rise + F_k^2 fall/M in its hold; the first has the mean 0, for the
-/// velocity knows nothing of the force to come:
+/// In its hold, a force does the work F_k v(t_k) rise + F_k^2 fall/M. The first term has the mean
+/// 0, because the velocity is independent of later forces:
 ///     mean work = Rm^2 sum f_k/M,   f_k = (g dt - 1 + e^(-g dt))/g^2,   dt = t_(k+1) - t_k.
 /// Without drag, T = n tau:  var v = n (Rm tau/M)^2,  var x = (Rm tau^2/M)^2 n (4 n^2 - 1)/12,
 /// cov = Rm^2 tau^3 n^2/(2 M^2),  mean work = n (Rm tau)^2/(2 M), the mean kinetic energy.
@@ -29,7 +29,7 @@ struct FreeFlight {
   double mean_work = 0.0;                      // J, of the random force
 };
 
-/// After T seconds, from place x (m) and velocity v (m/s).
+/// The distribution after T seconds, from place x (m) and velocity v (m/s).
 inline FreeFlight free_flight(const dynamics::GateParams& p, double x, double v, double T) {
   const double mass = p.body.mass, g = p.forces.drag / mass, tau = 1.0 / p.forces.random_rate;
   const double power = p.forces.random * p.forces.random;  // N^2
@@ -51,8 +51,8 @@ inline FreeFlight free_flight(const dynamics::GateParams& p, double x, double v,
   return f;
 }
 
-/// When a body in free flight has risen by `way` (m): the time (s) at which
-/// F/D t + (v - F/D) (1 - e^(-g t))/g, without drag v t + F t^2/(2 M), is that.
+/// The time (s) at which a body in free flight has risen by `way` (m): F/D t + (v - F/D) (1 - e^(-g
+/// t))/g, without drag v t + F t^2/(2 M).
 inline double rise_time(const dynamics::GateParams& p, double v, double way) {
   const double mass = p.body.mass, g = p.forces.drag / mass, force = p.forces.propulsion;
   const auto risen = [&](double t) {
@@ -68,7 +68,7 @@ inline double rise_time(const dynamics::GateParams& p, double v, double way) {
   return high;
 }
 
-/// `p` with a gate so wide that nobody meets beams or sides: free flight, ended by the far end.
+/// `p` with a gate so wide that no body meets beams or sides: free flight, ended by the far end.
 inline dynamics::GateParams without_beams(dynamics::GateParams p) {
   p.beams.joint_x = 1e5 * p.body.radius;
   return p;

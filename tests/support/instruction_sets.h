@@ -8,7 +8,7 @@
 
 namespace gatewalk::test {
 
-/// Calls `body` with each instruction set that was compiled and that this machine has.
+/// Calls `body` with each instruction set that was compiled and that this machine supports.
 template <class Body>
 void on_every_instruction_set(Body body) {
   const auto targets = hwy::SupportedAndGeneratedTargets();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A field whose answers are known: cells that let a body through by a chance of their type.
+/// A field with known answers: cells that let a body through with a probability by type.
 
 #include <memory>
 #include <string>
@@ -12,7 +12,8 @@
 
 namespace gatewalk::test {
 
-/// One column of cells of these types, each with its chance; bodies enter the next one anywhere.
+/// One column of cells of these types, each with its probability; bodies enter the next cell
+/// anywhere.
 inline lattice::Problem lane(const std::vector<double>& chances, std::vector<int> type_of_cell) {
   using namespace dynamics;
   Section section;

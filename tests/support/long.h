@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The full counts of the requirements take minutes. GATEWALK_LONG=1 asks for them:
+/// The full counts of the requirements take minutes; GATEWALK_LONG=1 enables them:
 ///     GATEWALK_LONG=1 build/tests/dynamics_tests --gtest_filter='*HeldContacts*'
 
 #include <cstdlib>

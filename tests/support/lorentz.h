@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What is known of the periodic Lorentz gas (tests/library/lorentz_cell.h), and its direct
-/// simulation by code of its own.
+/// Known results for the periodic Lorentz gas (tests/library/lorentz_cell.h), and a direct
+/// simulation with independent code.
 
 #include <tbb/parallel_for.h>
 
@@ -17,10 +17,10 @@
 
 namespace gatewalk::test {
 
-/// Mean stay in a polygon of this free area whose gaps are `open` wide together: pi A / P
+/// Mean stay in a polygon of this free area whose gaps have the total width `open`: pi A / P
 /// (Santalo).
 inline double mean_stay(double area, double open) { return std::numbers::pi * area / open; }
-/// Of the triangle between three discs, and of two of them, which are a cell.
+/// Free area of the triangle between three discs; a cell consists of two triangles.
 inline double area_of_triangle(double gap) {
   return std::sqrt(3.0) / 4.0 * (2.0 + gap) * (2.0 + gap) - std::numbers::pi / 2.0;
 }
@@ -31,13 +31,14 @@ inline double mean_stay_in_cell(double gap) {
   return mean_stay(2.0 * area_of_triangle(gap), 4.0 * gap);
 }
 
-/// D of hops between triangles that forget everything (Machta and Zwanzig, PRL 50:1959, 1983).
+/// Diffusion coefficient of hops between triangles without memory (Machta and Zwanzig, PRL 50:1959,
+/// 1983).
 inline double machta_zwanzig(double gap) {
   const double a = 2.0 + gap;
   return gap * a * a / (std::numbers::pi * (std::sqrt(3.0) * a * a - 2.0 * std::numbers::pi));
 }
-/// The same with one step of memory, for this chance to hop straight back (Klages and Dellago, J.
-/// Stat. Phys. 101:145, 2000; Gilbert and Sanders, PRE 80:041121, 2009).
+/// Diffusion coefficient with one step of memory, for this probability of hopping straight back
+/// (Klages and Dellago, J. Stat. Phys. 101:145, 2000; Gilbert and Sanders, PRE 80:041121, 2009).
 inline double one_step(double gap, double back) {
   return machta_zwanzig(gap) * 3.0 * (1.0 - back) / (1.0 + 3.0 * back);
 }
@@ -53,8 +54,8 @@ inline Estimate estimate(const std::vector<double>& samples) {
   return {mean, std::sqrt(squares / (n * (n - 1.0)))};
 }
 
-/// Passages through the triangle from entries in the long run: how often they leave where they came
-/// in, and how long they stay.
+/// Passages through the triangle from entries in the long run: the probability of leaving by the
+/// entry, and the mean stay.
 struct Triangle {
   Estimate back, stay;
 };
@@ -72,14 +73,15 @@ inline Triangle triangle(double gap, std::int64_t passages, std::uint64_t seed) 
   return {estimate(back), estimate(stay)};
 }
 
-/// D by trajectories in the plane, from anywhere into any direction, of `steps` times `step` each.
-/// With r(t) the way gone in time t: (<r(2 step)^2> - <r(step)^2>) / (4 step), from all steps that
-/// follow each other; what there is of memory after a step is left out.
+/// Diffusion coefficient from trajectories in the plane, from random places and directions, of
+/// `steps` times `step` each. With r(t) the displacement in time t: (<r(2 step)^2> - <r(step)^2>) /
+/// (4 step), over all pairs of consecutive steps; memory beyond a step is neglected.
 inline Estimate direct_diffusion(double gap, std::int64_t trajectories, int steps, double step,
                                  std::uint64_t seed) {
   const double a = 2.0 + gap;
   const lorentz::Point a1(a, 0.0), a2(a / 2.0, std::sqrt(3.0) / 2.0 * a);
-  std::vector<lorentz::Point> discs;  // about the one hit last, which is at the origin; near to far
+  /// around the disc hit last, which is at the origin; sorted by distance
+  std::vector<lorentz::Point> discs;
   for (int i = -4; i <= 4; ++i)
     for (int j = -4; j <= 4; ++j)
       if (const lorentz::Point centre = i * a1 + j * a2; centre.norm() < 3.7 * a)
@@ -91,7 +93,7 @@ inline Estimate direct_diffusion(double gap, std::int64_t trajectories, int step
   std::vector<double> d(static_cast<std::size_t>(trajectories));
   tbb::parallel_for(std::size_t{0}, d.size(), [&](std::size_t trajectory) {
     dynamics::Random random(dynamics::Purpose::gate, {seed, 1, trajectory});
-    lorentz::Point x;  // from the disc hit last
+    lorentz::Point x;  // relative to the disc hit last
     const auto is_free = [&] {
       return std::all_of(discs.begin(), discs.end(),
                          [&](const lorentz::Point& c) { return (x - c).squaredNorm() >= 1.0; });
@@ -106,7 +108,7 @@ inline Estimate direct_diffusion(double gap, std::int64_t trajectories, int step
     for (int done = 0; done < steps;) {
       double soonest = INFINITY;
       lorentz::Point hit(0.0, 0.0);
-      const double reach = x.norm() + 1.0;  // to a disc it takes no less than far - reach
+      const double reach = x.norm() + 1.0;  // reaching a disc takes at least far - reach
       for (std::size_t i = 0; i < discs.size() && far[i] - reach < soonest; ++i) {
         const lorentz::Point& c = discs[i];
         const lorentz::Point from = x - c;
@@ -134,14 +136,14 @@ inline Estimate direct_diffusion(double gap, std::int64_t trajectories, int step
   return estimate(d);
 }
 
-/// Shares of draws in 4 x 4 boxes of every face, in which an exact chain would make 1/64 of them
-/// each: half the sum of all differences.
+/// Deviation from the invariant measure: half the sum of all differences between the shares of
+/// draws in 4 x 4 boxes of every face, and 1/64, which an exact chain would give.
 inline double off_invariant(const lorentz::TreeDiffusion& chain, double gap) {
   constexpr int kBoxes = 4;
   std::vector<double> boxes(4 * kBoxes * kBoxes, 0.0);
   for (int state = 0; state < chain.space.size(); ++state) {
     const dynamics::StateRange range = chain.space.range(state);
-    // The part of a range from `from` to `to`, both as parts of the whole axis, that is in box k.
+    // The part of a range that is in box k; `from` and `to` are fractions of the whole axis.
     const auto part = [](double from, double to, int k) {
       const double low = std::max(from, static_cast<double>(k) / kBoxes),
                    high = std::min(to, static_cast<double>(k + 1) / kBoxes);

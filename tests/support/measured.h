@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What a test measured of a requirement, with the bound that the requirement sets. It goes into
-/// the test's entry of --gtest_output=json, from where results/requirements/run.sh makes its table.
+/// A figure that a test measured for a requirement, with the requirement's limit. The figure goes
+/// into the test's entry of --gtest_output=json, from which results/requirements/run.sh makes its
+/// table.
 
 #include <gtest/gtest.h>
 
@@ -22,16 +23,17 @@ namespace gatewalk::test {
 struct Figure {
   int requirement = 0;
   std::string_view method;  // "contact" for what all methods share
-  std::string_view what;    // the same words from several tests make one line of the table
-  double figure = std::numeric_limits<double>::quiet_NaN();  // the worst seen; NaN meets no limit
+  std::string_view what;    // equal words from several tests give one line of the table
+  double figure = std::numeric_limits<double>::quiet_NaN();  // the worst value; NaN meets no limit
   std::string_view unit = "-";
-  /// What the requirement asks; NaN: it only asks for the figure.
+  /// The limit of the requirement; NaN: only the figure is asked for.
   double limit = std::numeric_limits<double>::quiet_NaN();
-  bool at_least = false;              // the limit is the least, not the most
-  std::int64_t cases = 1, asked = 1;  // looked at, and asked for by the requirement
+  bool at_least = false;              // the limit is a minimum, not a maximum
+  std::int64_t cases = 1, asked = 1;  // number of cases tested, and asked for by the requirement
 };
 
-/// Not from within parallel loops. Words without quotation marks or backslashes.
+/// Records a figure; not from within parallel loops. Texts must not contain quotation marks or
+/// backslashes.
 inline void measured(const Figure& f) {
   const auto number = [](double x) {
     char text[32];
@@ -41,7 +43,7 @@ inline void measured(const Figure& f) {
   const bool within = f.at_least ? f.figure >= f.limit : f.figure <= f.limit;
   const auto quoted = [](std::string_view s) { return '"' + std::string(s) + '"'; };
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  // A key of its own for each: a second record under one key replaces the first.
+  // Each record has its own key, because a second record under one key replaces the first.
   testing::Test::RecordProperty(
       "figure_" + std::to_string(test->result()->test_property_count()),
       "{\"requirement\":" + std::to_string(f.requirement) + ",\"method\":" + quoted(f.method) +
@@ -54,7 +56,7 @@ inline void measured(const Figure& f) {
           ",\"cases\":" + std::to_string(f.cases) + ",\"asked\":" + std::to_string(f.asked) + "}");
 }
 
-/// S5: the speeds after the symmetric double hit.
+/// Scenario S5: the speeds after the symmetric double hit.
 inline void measured_double_hit(std::string_view method, double vy, double left, double right) {
   const double error =
       std::max({std::abs(vy - 10.78125), std::abs(left - 1.51875), std::abs(right - 1.51875)});
@@ -72,7 +74,7 @@ inline void measured_double_hit(std::string_view method, double vy, double left,
             .limit = 1e-13});
 }
 
-/// Requirement 6: `gap` in radii, `pull` in N, the worst of `held` looks.
+/// Requirement 6: `gap` in radii, `pull` in N, the worst of `held` checks.
 inline void measured_held(std::string_view method, double gap, double pull, std::int64_t held) {
   measured({.requirement = 6,
             .method = method,
@@ -90,7 +92,7 @@ inline void measured_held(std::string_view method, double gap, double pull, std:
             .cases = held});
 }
 
-/// Requirement 8, after the comparison: it stops at the first trial that differs.
+/// Requirement 8. Call it after the comparison, which stops at the first trial that differs.
 inline void measured_mirror(std::string_view method, std::int64_t trials, std::int64_t asked) {
   measured({.requirement = 8,
             .method = method,
@@ -130,7 +132,7 @@ inline void measured_trouble(std::string_view method, const dynamics::GateParams
             .asked = 200'000});
 }
 
-/// Requirement 12, and 4's longest time.
+/// Requirement 12, and the longest time for requirement 4.
 struct AnyScenes {
   int scenes, refused, broken, escaped, hung;
   double slowest;  // s of CPU
@@ -160,7 +162,7 @@ inline void measured_scenes(std::string_view method, const AnyScenes& s) {
             .cases = s.scenes});
 }
 
-/// CPU seconds of this thread: how long a scene took, whatever else the machine does.
+/// CPU seconds of this thread, independent of the machine's other work.
 inline double thread_seconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

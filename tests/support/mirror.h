@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Whole runs of a scene and of its mirror image, to be compared bit for bit.
+/// Compares whole runs of a scene and of its mirror image, bit for bit.
 
 #include <gtest/gtest.h>
 

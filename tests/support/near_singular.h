@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Starts beside a beam at which a formula of contact is close to singular.
+/// Starts beside a beam at which a contact formula is nearly singular.
 
 #include <array>
 #include <cmath>
@@ -11,18 +11,19 @@
 namespace gatewalk::test {
 
 enum class Near {
-  joint,     // the disc touches the joint pin, or nearly
-  lever,     // it touches the beam's side so close to the joint that the lever is nearly zero
-  tip,       // it touches the free end, the normal nearly through the joint: (13) divides by zero
-  handover,  // it touches where tangential and tip contact meet
-  grazing,   // it touches any point, or nearly, at almost no speed across
+  joint,  // the disc touches the joint pin, or nearly
+  lever,  // the disc touches the beam's side so close to the joint that the lever is nearly zero
+  /// the disc touches the free end, with the normal nearly through the joint: (13) divides by zero
+  tip,
+  handover,  // the disc touches where tangential and tip contact meet
+  grazing,   // the disc touches any point, or nearly, with almost no speed across
 };
 
 /// 1 + delta for delta from 1e-15 to 1e-3.
 inline double just_above_one(Draw& draw) { return 1.0 + draw.log_uniform(1e-15, 1e-3); }
 
-/// Centre `dist` from the point `r` along the beam, n turned by `turn` from the beam, in the beam's
-/// own frame.
+/// The disc's centre at distance `dist` from the point `r` along the beam, with n turned by `turn`
+/// from the beam, in the beam's own frame.
 inline dynamics::BodyState beside(const dynamics::BeamState& b, double r, double turn, double dist,
                                   Draw& draw) {
   const double angle = b.theta + turn;
@@ -51,7 +52,7 @@ inline dynamics::BodyState placed(Near near, const dynamics::GateParams& p,
   const double r = tip ? length : draw.uniform(0.0, length);
   const double turn = draw.sign() * (tip ? draw.uniform(0.0, kPi / 2) : kPi / 2);
   dynamics::BodyState s = beside(b, r, turn, dist, draw);
-  // Any speed along, next to none across: n.v = l omega + u.
+  // Any speed along the beam, almost none across: n.v = l omega + u.
   const double nx = std::cos(b.theta + turn), ny = std::sin(b.theta + turn);
   const double across = r * std::sin(turn) * b.omega + draw.sign() * draw.log_uniform(1e-15, 1e-3);
   const double along = draw.uniform(-15, 15);
@@ -60,7 +61,7 @@ inline dynamics::BodyState placed(Near near, const dynamics::GateParams& p,
   return s;
 }
 
-/// Both beams anywhere and moving, the disc placed beside one of them and overlapping none.
+/// Both beams anywhere and in motion, with the disc beside one of them and overlapping neither.
 inline dynamics::GateState near_singular(Near near, const dynamics::GateParams& p, Draw& draw) {
   using namespace dynamics;
   for (;;) {
@@ -78,14 +79,14 @@ inline dynamics::GateState near_singular(Near near, const dynamics::GateParams& 
   }
 }
 
-/// What a method did with one of them.
+/// What a method did with one such start.
 struct Trouble {
   int not_finite = 0;
   double overlap = 0.0;  // m
   std::int64_t evaluations = 0;
 };
 
-/// Rides `start` for three holds of random force and looks five times in each.
+/// Runs `start` for three holds of random force, with five checks in each.
 inline Trouble trouble(const dynamics::GateParams& p, const dynamics::Method& method,
                        const dynamics::GateState& start, Draw& draw) {
   using namespace dynamics;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Numbers that several tests need: round-off, and test data that is the same everywhere.
+/// Numbers for several tests: round-off, and reproducible test data.
 
 #include <bit>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace gatewalk::test {
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kPi = 3.14159265358979323846;
 
-/// SplitMix64 with the draws that tests ask for. Test data only: no result depends on its quality.
+/// SplitMix64 with the draws that tests need. Only for test data: no result depends on its quality.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : state_(seed) {}
@@ -36,7 +36,7 @@ class Draw {
   std::uint64_t state_;
 };
 
-/// The same bits: tells 0 from -0, and a NaN equals itself.
+/// True for equal bits: distinguishes 0 from -0; a NaN equals itself.
 inline bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }

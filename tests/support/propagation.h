@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The plain reference of all predictions.
+/// The plain reference implementation of all predictions.
 
 #include <array>
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace gatewalk::markov::test {
 
-/// P_after = P_before M, Eq. (16), for the shares of walks in every state of every cell, with
-/// digits to spare. With a limit of cells exact. Without, until at most the tolerance still walks,
-/// or max_steps are done.
+/// P_after = P_before M, Eq. (16), for the shares of walks in every state of every cell, with extra
+/// digits. Exact with a limit of cells. Without one, stops when at most the tolerance still walks,
+/// or after max_steps.
 inline FinalDistribution propagate(const FieldChain& chain, const Field& field, const Start& start,
                                    const PredictOptions& options = {}) {
   validate(chain, field, start, options.max_cells);

@@ -8,7 +8,8 @@
 
 namespace gatewalk::test {
 
-/// What a scene of this text is refused with, "bad.toml:2: ..."; "(accepted)" if it is not.
+/// The message with which a scene of this text is refused, "bad.toml:2: ..."; "(accepted)" if it is
+/// not.
 inline std::string scene_refusal(const std::string& text,
                                  const std::vector<std::string>& overrides = {}) {
   try {

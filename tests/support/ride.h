@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// One gate's state carried by a method, with everything that a test looks at afterwards.
+/// Advances the state of one gate by a method, and keeps what tests check afterwards.
 
 #include <tbb/parallel_for.h>
 
@@ -14,16 +14,16 @@
 
 namespace gatewalk::test {
 
-constexpr double kHold = 0.02;  // s, how long the random force is held
+constexpr double kHold = 0.02;  // s, duration of a hold of the random force
 
-/// A body among two beams at rest.
+/// A body between two beams at rest.
 inline dynamics::GateState at_rest(double x, double y, double vx = 0.0, double vy = 0.0) {
   dynamics::GateState s;
   s.body = {x, y, vx, vy};
   return s;
 }
 
-/// The disc far away at rest, the left beam let go.
+/// The disc far away at rest, the left beam released at angle theta.
 inline dynamics::GateState let_go(double theta = 0.5) {
   dynamics::GateState s;
   s.beams[dynamics::kLeft].theta = theta;
@@ -61,7 +61,7 @@ inline void go_in_holds(Ride& ride, double seconds, double force_x = 0.0) {
   for (int i = 0; i < std::lround(seconds / kHold); ++i) ride.go(kHold, force_x);
 }
 
-/// In any of body and beams: m, m/s, rad, rad/s.
+/// The largest difference in any component of body and beams: m, m/s, rad, rad/s.
 inline double largest_difference(const dynamics::GateState& a, const dynamics::GateState& b) {
   double d = std::max({std::abs(a.body.x - b.body.x), std::abs(a.body.y - b.body.y),
                        std::abs(a.body.vx - b.body.vx), std::abs(a.body.vy - b.body.vy)});
@@ -71,7 +71,7 @@ inline double largest_difference(const dynamics::GateState& a, const dynamics::G
   return d;
 }
 
-/// Energy created (J) in noisy runs from the default start: their mean, and the worst.
+/// Energy created (J) in noisy runs from the default start: mean and worst.
 inline std::array<double, 2> energy_created(const dynamics::GateParams& p, int trials) {
   const auto method = dynamics::make_method(p);
   std::vector<double> created(trials);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Work on a given number of threads, more than the machine has if need be.
+/// Runs work on a given number of threads, even if the machine has fewer.
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>

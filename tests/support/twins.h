@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Scenes rescaled by powers of 4: no rounding changes, so every number of theirs must be that of
-/// the scene they come from, times the power of its unit.
+/// Scenes rescaled by powers of 4, which causes no rounding: each number must equal that of the
+/// original scene, times the power of its unit.
 
 #include <array>
 #include <cmath>
@@ -17,11 +17,11 @@ namespace gatewalk::test {
 struct Twin {
   int length = 0, time = 0, mass = 0;
 
-  /// The factor of length^l time^t mass^m.
+  /// The factor of a quantity with unit length^l time^t mass^m.
   [[nodiscard]] double of(int l, int t, int m) const {
     return std::ldexp(1.0, 2 * (l * length + t * time + m * mass));
   }
-  /// The factor of a name that ends in its unit, as "run.step_s" does; 1 for a pure number.
+  /// The factor of a name that ends in its unit, such as "run.step_s"; 1 for a pure number.
   [[nodiscard]] double of(std::string_view name) const {
     struct Unit {
       std::string_view suffix;
