@@ -29,7 +29,7 @@ namespace {
 using namespace dynamics;
 using markov::Ending;
 
-/// Some 3 of 10 bodies cross three rows of it.
+/// About 3 of 10 bodies cross the three rows of this field.
 Scene open_scene() {
   Scene scene;
   scene.gate.forces.propulsion = 9.0;
@@ -54,7 +54,7 @@ RunPool pool_of_trials(const Scene& scene, std::int64_t n) {
   return pool;
 }
 
-// ---- What runs and trials take ----
+// ---- Costs of runs and trials ----
 
 TEST(Costs, OfARunAreThoseOfItsTrace) {
   for (const char* method : {"stable", "moreau", "event", "paper"}) {
@@ -67,7 +67,7 @@ TEST(Costs, OfARunAreThoseOfItsTrace) {
     RandomForce force = gate_force(scene.gate, 3, 0);
     const GateTrace trace = trace_gate(scene.gate, *made, scene.start, force);
     const Energies& end = trace.samples.back().energy;
-    const double left = end.mechanical() - end.body;  // in the beams, which a run counts as lost
+    const double left = end.mechanical() - end.body;  // in the beams; a run counts it as lost
     EXPECT_EQ(trace.run.forward, trace.run.exit.y - scene.start.y) << method;
     EXPECT_NEAR(trace.run.propulsion_work, end.propulsion_work, 1e-9) << method;
     EXPECT_NEAR(trace.run.random_work, end.random_work, 1e-9) << method;
@@ -76,7 +76,7 @@ TEST(Costs, OfARunAreThoseOfItsTrace) {
   }
 }
 
-// In lanes to the last bit (stable), or the last digits (moreau).
+// Equal to the last bit for stable, to the last digits for moreau.
 TEST(Costs, OfLanesAreThoseOfThePlainMethod) {
   for (const char* method : {"stable", "moreau"}) {
     Scene scene = open_scene();
@@ -139,10 +139,10 @@ TEST(Costs, OfTrialsDoNotDependOnPiecesOrThreads) {
 
 // ---- The chain ----
 
-// With a leaf for each run nothing is pooled: the chain repeats the trials, with what they took.
+// With one run per leaf nothing is pooled: the chain repeats the trials, with their costs.
 TEST(Analysis, LeavesOfOneRunTakeWhatTheTrialsTook) {
   Scene scene = open_scene();
-  scene.gate.beams.stiffness_left = 300.0;  // no mirror images
+  scene.gate.beams.stiffness_left = 300.0;  // so that there are no mirror images
   const RunPool pool = pool_of_trials(scene, 300);
   const FieldGates gates = gates_of(scene);
   const Kernel kernel = kernel_of(gates.map(), pool, 1);
@@ -164,7 +164,7 @@ TEST(Analysis, LeavesOfOneRunTakeWhatTheTrialsTook) {
   }
 }
 
-// Mirror images count twice, and leaves share rows where there are several types.
+// Mirror images count twice, and with several types leaves share rows.
 TEST(Analysis, CostsAreThoseOfAllRunsBehindACount) {
   for (const bool mixed : {false, true}) {
     Scene scene = open_scene();
@@ -185,7 +185,7 @@ TEST(Analysis, CostsAreThoseOfAllRunsBehindACount) {
       const markov::Counts& counts = kernel.counts[type];
       ASSERT_EQ(std::ssize(sums[type]), counts.nonZeros());
       for (Eigen::Index i = 0; i < counts.nonZeros(); ++i) {
-        // A trapped run lasts as long as it may; nobody is longer in a gate.
+        // A trapped run lasts for the time limit; no body stays longer in a gate.
         const bool trapped = counts.innerIndexPtr()[i] == kernel.space.trapped();
         const auto n = static_cast<double>(counts.valuePtr()[i]);
         const double seconds = sums[type][static_cast<std::size_t>(i)].sum[0] / n;
@@ -212,7 +212,7 @@ TEST(Analysis, CostsComeBackFromAFile) {
   for (std::size_t i = 0; i < pool.starts[0].full.passages.size(); ++i)
     EXPECT_EQ(back.starts[0].full.passages[i].costs, pool.starts[0].full.passages[i].costs);
   EXPECT_EQ(back.starts[0].full.costs, pool.starts[0].full.costs);
-  // An older file has none: not a number, which is no answer.
+  // Older files have no costs: they become NaN, and give no answer.
   std::erase_if(file.arrays, [](const auto& a) { return a.name == "run_time_s"; });
   const RunPool older = pool_of(file, problem_of(scene), "file");
   EXPECT_TRUE(std::isnan(older.starts[0].full.passages[0].costs[0]));
@@ -247,9 +247,9 @@ TEST(Analysis, BinsKeepWhatTheirRunsTook) {
   FieldTrials each;
   (void)run_field(scene.gate, scene.field, scene.start, 777, {0, 4000}, &each, &space);
   costs.add(each);
-  EXPECT_NEAR(a.costs[0].mean / costs.all().mean(0), 1.0, 0.25);  // the bins' own error
+  EXPECT_NEAR(a.costs[0].mean / costs.all().mean(0), 1.0, 0.25);  // error of the bins
   EXPECT_TRUE(std::isnan(a.costs[0].interval[0]));
-  // Without the runs' costs there is no answer, rather than a wrong one.
+  // Without the runs' costs, the analysis gives no answer instead of a wrong one.
   whole.costs.assign(whole.costs.size(), {});
   const Analysis b =
       analyze(problem_of(scene), analysed_chain(problem_of(scene), {whole}, start.start), {});
@@ -278,17 +278,17 @@ TEST(Analysis, AgreesWithTheFullDynamics) {
   for (const markov::CellPath& path : a.paths.paths) sum += path.share;
   EXPECT_GT(sum, 0.3 * a.target_chance);
   EXPECT_LT(sum, a.target_chance);
-  // Those who cross pass each row.
+  // A body that crosses passes each row.
   for (Eigen::Index row = 0; row < 3; ++row) EXPECT_GE(a.passed.row(row).sum(), 1.0 - 1e-9);
   ASSERT_TRUE(a.endless);
   EXPECT_GT(a.endless->survival, a.endless->second);
 }
 
-// In a field that is its own mirror image, starts and their images have the same chance, of the
-// target and of its image; in no other.
+// Only in a field that is its own mirror image do a start and its mirror image have the same
+// probabilities, of the target and of the target's mirror image.
 TEST(Analysis, ChancesOfStartsAreThoseOfTheMirror) {
   Scene scene = open_scene();
-  RunPool pool = pool_of_trials(scene, 200);  // all starts are told
+  RunPool pool = pool_of_trials(scene, 200);  // so few that all starts are listed
   const auto starts_of = [&](Ending target) {
     return analyze(problem_of(scene), analysed_chain(problem_of(scene), pool, &pool.starts.front()),
                    {.target = target})
@@ -327,11 +327,11 @@ TEST(Analysis, ChancesOfStartsAreThoseOfTheMirror) {
   const auto even = starts_of(Ending::far_edge);
   scene.field.columns = 4;
   const auto uneven = starts_of(Ending::far_edge);
-  EXPECT_LT(uneven.size(), even.size());  // the leaves themselves
+  EXPECT_LT(uneven.size(), even.size());  // one start per leaf
 }
 
-// In a field that is its own mirror image a start is what a state and the image of one have in
-// common: all pairs of them, tried out. Those entered most come first and have intervals.
+// In a field that is its own mirror image, a start is the overlap of a state with the mirror image
+// of a state: checks all pairs. Starts with most entries come first, and have intervals.
 TEST(Analysis, StartsAreThePartsOfStatesAndImages) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 2000);
@@ -373,7 +373,7 @@ TEST(Analysis, StartsAreThePartsOfStatesAndImages) {
   EXPECT_EQ(found, tried);
 }
 
-// The same of bins, whose states are counted by coordinate.
+// The same check for bins, whose states are numbered by coordinate.
 TEST(Analysis, StartsOfBinsAreThePartsOfBinsAndImages) {
   const Scene scene = open_scene();
   const StateSpace space(
@@ -385,12 +385,12 @@ TEST(Analysis, StartsOfBinsAreThePartsOfBinsAndImages) {
   const ChainStart start = chain_start(space, scene.field, entry_of(scene.start));
   const Analysis a =
       analyze(problem_of(scene), analysed_chain(problem_of(scene), {counted}, start.start), {});
-  // d: [-3, -1], [-1, 2] and images [1, 3], [-2, 1]; vx: [-2, 1], [1, 2] and [-1, 2], [-2, -1].
-  // In common along d: (0, 1), (1, 0), (1, 1); along vx: (0, 0), (0, 1), (1, 0); along vy: 2.
+  // d: [-3, -1], [-1, 2] and mirror images [1, 3], [-2, 1]; vx: [-2, 1], [1, 2] and [-1, 2], [-2,
+  // -1]. Overlaps along d: (0, 1), (1, 0), (1, 1); along vx: (0, 0), (0, 1), (1, 0); along vy: 2.
   EXPECT_EQ(a.starts.size(), 18U);
 }
 
-// d ln(crossed) / d ln(value) against trials with a twentieth more and less of it.
+// d ln(crossed) / d ln(value), compared with trials with 5 % more and less of the value.
 TEST(Analysis, ParametersDoWhatTheFullDynamicsSays) {
   const Scene scene = open_scene();
   RunPool pool = pool_of_trials(scene, 10'000);
@@ -412,7 +412,7 @@ TEST(Analysis, ParametersDoWhatTheFullDynamicsSays) {
     if (!asked) continue;
     ++seen;
     const std::string key(e.key);
-    // Both under the same noise: what counts is who crosses with one of them only.
+    // Both runs have the same noise: only bodies that cross in one of them count.
     const auto up = endings(key.c_str(), 1.05), down = endings(key.c_str(), 0.95);
     std::int64_t more = 0, fewer = 0;
     for (std::size_t i = 0; i < up.size(); ++i) {
@@ -430,7 +430,7 @@ TEST(Analysis, ParametersDoWhatTheFullDynamicsSays) {
   EXPECT_GE(a.effects.size(), 12u);
 }
 
-// What a number does in gates of one type adds up to what it does in all, for a small change.
+// For a small change, the effects of the number in gates of one type add up to its effect in all.
 TEST(Analysis, PartsOfTypesAddUp) {
   Scene scene = parse_scene(
       "[field]\ncolumns = 5\nrows = 3\nmax_gates = 8\n[forces]\npropulsion_N = 9.0\nrandom_N = "
@@ -451,7 +451,7 @@ TEST(Analysis, PartsOfTypesAddUp) {
   }
 }
 
-// Over several gates changes multiply: much less of a number takes no more than there is.
+// Changes multiply over several gates: a much smaller number never takes away more than everything.
 TEST(Analysis, ALargeChangeTakesNoMoreThanThereIs) {
   const Scene scene = open_scene();
   RunPool pool = pool_of_trials(scene, 2000);
@@ -523,7 +523,7 @@ TEST(Analysis, PlacesTellWhereWalksEnd) {
   }
 }
 
-// Down to a part for each state, about, which loses nothing.
+// With about one part per state, nothing is lost.
 TEST(Analysis, MorePartsLoseLess) {
   const Scene scene = open_scene();
   const RunPool pool = pool_of_trials(scene, 2000);
@@ -536,7 +536,7 @@ TEST(Analysis, MorePartsLoseLess) {
   EXPECT_EQ(boundaries.states, kBoundaries + 1);
   EXPECT_EQ(some.states, 6 * kBoundaries + 1);
   EXPECT_LT(some.final_gates, boundaries.final_gates);
-  EXPECT_GT(all.states, chain.space.size() - 20);  // those that nobody visits stay together
+  EXPECT_GT(all.states, chain.space.size() - 20);  // states that no body visits stay together
   EXPECT_LT(all.final_gates, 0.01 * some.final_gates);
 }
 

@@ -17,8 +17,8 @@ using namespace dynamics;
 constexpr double kSlopeTop = 0.35, kSlopeHeight = 0.9, kBeyond = 0.8;
 constexpr int kSlopeRows = 3;
 
-/// Who enters at x with speed v gets through a cell with a chance of its own, then enters the next
-/// one at a place outside the ranges, through which it gets by kBeyond.
+/// A body that enters at x with speed v passes a cell with a probability of (x, v). It enters the
+/// next cell outside the ranges, and passes all later cells with probability kBeyond.
 std::shared_ptr<const Cell> slope(double share) {
   Section section;
   section.faces = {{"S", 0, 1, 0, 1, "from below", {}}};
@@ -60,7 +60,7 @@ TEST(BestStart, IsFoundAndHeldByItsInterval) {
   EXPECT_TRUE(lies_in(found.crossings.interval_95(), exact)) << exact;
   EXPECT_TRUE(lies_in(found.crossings_of_own.interval_95(), own)) << own;
   EXPECT_TRUE(lies_in(found.gain.interval_95, exact - own));
-  // The map, on the whole range.
+  // The map over the whole range.
   for (const double at : {-0.5, -0.4, 0.1, 0.3, 0.8})
     EXPECT_NEAR(found.chance({0, {0, {at, 1.0}}}),
                 (kSlopeHeight - std::abs(at - kSlopeTop)) * later, 0.1)
@@ -86,7 +86,7 @@ TEST(BestStart, IsInTheColumnThatLetsBodiesThrough) {
   EXPECT_LT(found.crossings_of_own.share(), 0.05);
 }
 
-/// As slope_lane, but one chance everywhere, and other luck at every place.
+/// As slope_lane, but every place has the same mean probability, and its own random results.
 Problem lucky_lane() {
   Problem problem = slope_lane();
   const Section section = problem.map().section;
@@ -98,8 +98,8 @@ Problem lucky_lane() {
   return problem;
 }
 
-// The luckiest of four starts is the own one in a quarter of all cases; it is kept in more, as
-// nothing is better by more than chance.
+// By chance, the own start is best of four in a quarter of all cases. It is kept more often,
+// because no other start is better by more than sampling error.
 TEST(BestStart, IsTheOwnOneWhereAllAreAlike) {
   constexpr int kCases = 24;
   int own = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files of cells: read, refused by line and key, and written so that they read back the same.
+// Cell files: reading, refusals by line and key, and writing text that reads back the same.
 #include "lattice/scene/cell_file.h"
 
 #include <gtest/gtest.h>
@@ -76,7 +76,7 @@ std::string refused_as(const std::string& text, const std::vector<std::string>& 
   return "(accepted)";
 }
 
-/// The file with another text in place of the first `from` of its own.
+/// `text` with `to` instead of the first `from`.
 std::string with(const std::string& from, const std::string& to, std::string text = kTracks) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, text.npos) << from;
@@ -260,7 +260,7 @@ const std::string kActions =
     "\"a.b \\u0022\" = -1e-3\n[actions.as_it_is]\n";
 
 TEST(CellFile, ActionsAreNumbersOfAProgramByName) {
-  // A blank is no part of what a program calls its numbers.
+  // A blank is not part of the name of a program's number.
   const std::string text = with(" \\u0022", "\\u0022", kTracks + kActions);
   const CellFile file = parse(text, {"actions.slow.parameters.push=2"});
   ASSERT_EQ(file.actions.size(), 3u);
@@ -321,7 +321,8 @@ TEST(CellFile, ACellThatIsNotSymmetricNeedsNoOddCoordinates) {
             "sign in the mirror, [] for none, as a type of cell is symmetric");
 }
 
-// `mirror` is a rule of symmetric cells: whatever others say of it, and of odd coordinates, fits.
+// Only symmetric cells use `mirror`: for other cells any value, and any odd coordinates, are
+// accepted.
 TEST(CellFile, ACellThatIsNotSymmetricNeedsNoMirror) {
   const std::string text = with("symmetric = true", "symmetric = false");
   const auto mirrors = [](const std::string& file) {
@@ -339,8 +340,8 @@ TEST(CellFile, ACellThatIsNotSymmetricNeedsNoMirror) {
             (std::vector<int>{0, kNoMirror, kNoMirror}));
 }
 
-// Every line of a file with all keys: its key misspelled, given twice, of another type, left out.
-// The message names file, line and key, and what is allowed.
+// For every line of a file with all keys: the key misspelled, given twice, of another type, left
+// out. The message names file, line and key, and what is allowed.
 TEST(CellFile, EveryKeyIsRefusedByFileLineAndKey) {
   const std::string text = kTracks + "[[cell.costs]]\nkey = \"work_J\"\nunit = \"J\"\n" + kTypes +
                            with("s_cm = 1", "s_m = 0.01", kStart) +
@@ -483,7 +484,7 @@ TEST(CellFile, RefusesByFileLineAndKey) {
        "as columns of runs do that tell how bodies left"},
       {"scale = 0.1", "scale = 0",
        "x.toml:26: cell.coordinates.scale = 0 is not permitted: must lie in (0, 1e+300]"},
-      {"[field]", more_coordinates(6) + "[field]",  // beside three
+      {"[field]", more_coordinates(6) + "[field]",  // besides three others
        "x.toml:49: [[cell.coordinates]]: more than 8 are not permitted"},
       {"[field]", "[[cell.costs]]\nkey = \"work\"\nunit = \"J\"\n[field]",
        "x.toml:35: cell.costs.key = \"work\" is not permitted: must end in its unit, _J"},

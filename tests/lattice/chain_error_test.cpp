@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The chain's error against its cost: truths, answers and summaries by hand, and what is charted.
+// The chain's error against its cost: truths, answers and summaries by hand, and a chart.
 #include "lattice/scene/study/chain_error.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using dynamics::Transitions;
 
 constexpr double kNever = ChainSummary::kNever;
 
-/// A truth of so many trials, one number of them per gate of a field of 3 x 3.
+/// A truth with these numbers of trials per gate of a field of 3 x 3.
 FieldTruth truth_of(const std::array<std::int64_t, 9>& trials, double seconds_per_trial = 1.0) {
   FieldTally tally({.columns = 3, .rows = 3});
   for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -38,7 +38,7 @@ TEST(FieldTruth, IsToldFromAsTwoSamplesAreFromEachOther) {
   EXPECT_EQ(t.as_against_exact(250), 200);
   EXPECT_EQ(t.as_against_exact(1'000'000'000), 1000);
   EXPECT_EQ(t.as_against_exact(0), 1);
-  // As good as 199 trials against an exact truth: n = 199 * 1000 / (1000 - 199).
+  // As precise as 199 trials against an exact truth: n = 199 * 1000 / (1000 - 199).
   EXPECT_DOUBLE_EQ(t.seconds_for(expected_total_variation(t.p, 199)), 199'000.0 / 801);
   EXPECT_EQ(t.seconds_for(0.5 * t.floor.total_variation), kNever);
   EXPECT_EQ(t.floor.total_variation, expected_total_variation(t.p, 1000));
@@ -50,11 +50,11 @@ TEST(FieldTruth, IsNoneOfBrokenTrials) {
   EXPECT_THROW((void)field_truth({}, tally, 1.0), std::runtime_error);
 }
 
-/// One state per boundary: EN, RD, LD, RT, LT.
+/// One state per face: EN, RD, LD, RT, LT.
 StateSpace five_states() { return dynamics::refined(dynamics::table3_space({}), 0.01); }
 
-/// Of 1000 runs that enter from below so many go on upwards, and so many to the left, where no run
-/// was made; the others are trapped.
+/// Of 1000 runs that enter from below, `up` go on upwards, and `left` to the left, where no run was
+/// made; the others are trapped.
 Transitions matrix(std::int64_t up, std::int64_t left) {
   Transitions t(five_states());
   t.trials[0] = 1000;
@@ -71,8 +71,8 @@ constexpr FieldParams kField{.columns = 3, .rows = 3, .max_gates = 0};
 TEST(AskMatrices, GivesTheErrorsOfOne) {
   Transitions t = matrix(500, 250);
   t.clamped[0] = 75;  // of 750 that left
-  // The middle column: 1/4 is trapped in each row that is reached, and 1/8 leaves above; as many
-  // end left of it.
+  // The middle column: in each row reached, 1/4 is trapped; 1/8 leaves at the top; as many end to
+  // the left of it.
   const FieldTruth right = truth_of({16, 16, 0, 8, 8, 0, 4, 12, 0}), wrong = truth_of({0, 64});
   const ChainAnswers p = ask_matrices({t}, kField, {right, wrong}, 1);
   EXPECT_EQ(p.matrices, 1);
@@ -86,10 +86,10 @@ TEST(AskMatrices, GivesTheErrorsOfOne) {
   EXPECT_TRUE(std::isnan(good.exact_sd));
   EXPECT_EQ(good.bins, 0.0);
   EXPECT_NEAR(bad.exact.total_variation, 0.75, 1e-15);
-  // A million walks differ from the prediction by less than 1/2 sqrt(2/pi 9/1e6) on average.
+  // The walks' mean distance from the prediction is below 1/2 sqrt(2/pi 9/1e6) for a million walks.
   EXPECT_LT(good.walks[1].total_variation, 0.003);
   EXPECT_LT(good.walks[1].total_variation, good.walks[0].total_variation);
-  // Shares of 1000 runs vary by some 1.5 %.
+  // Shares of 1000 runs vary by about 1.5 %.
   EXPECT_GT(bad.sampling, 0.002);
   EXPECT_LT(bad.sampling, 0.05);
   EXPECT_EQ(wrong.floor.total_variation, 0.0);
@@ -97,7 +97,7 @@ TEST(AskMatrices, GivesTheErrorsOfOne) {
 }
 
 TEST(AskMatrices, GivesMeansOverSeveral) {
-  // One traps all in the first gate, as the truth does; of the other half go on.
+  // One matrix traps all bodies in the first gate, as the truth does; in the other half go on.
   const std::vector<Transitions> both{matrix(0, 0), matrix(500, 0)};
   const std::vector<FieldTruth> truths{truth_of({0, 8})};
   const ChainAnswers p = ask_matrices(both, kField, truths, 1);
@@ -107,7 +107,8 @@ TEST(AskMatrices, GivesMeansOverSeveral) {
   EXPECT_NEAR(a.exact.total_variation, (0.0 + 0.5) / 2, 1e-15);
   EXPECT_NEAR(a.exact_sd, std::sqrt(2 * 0.25 * 0.25), 1e-15);
   EXPECT_NEAR(a.bins, std::sqrt(0.25 * 0.25 - a.sampling * a.sampling / 2), 1e-15);
-  // The first one drawn anew is itself: all of the spread is the second one's.
+  // A resampled copy of the first matrix is the matrix itself: all of the spread comes from the
+  // second.
   EXPECT_NEAR(ask_matrices({both[0]}, kField, truths, 1).answers[0].sampling, 0.0, 1e-15);
   EXPECT_GT(a.sampling, 0.0);
 }
@@ -119,8 +120,8 @@ TEST(AskMatrices, CanBeStopped) {
                Stop);
 }
 
-/// A chart of one start, whose full trials end in two gates and take a second each; by point: what
-/// it costs and how far off it is.
+/// A chart of one start, whose full trials end in two gates and take a second each. Each point is
+/// given by its cost and its error.
 ChainErrorChart chart_of(const std::vector<std::array<double, 2>>& uniform,
                          const std::vector<std::array<double, 2>>& visited,
                          double seconds_per_trial = 1.0) {
@@ -137,7 +138,8 @@ ChainErrorChart chart_of(const std::vector<std::array<double, 2>>& uniform,
 }
 
 TEST(ChainSummary, WeighsErrorsAgainstDirectSimulation) {
-  // Direct simulation is off by 0.1 after some 16 s, by 0.05 after 64 s, by 0.04 after 100 s.
+  // Direct simulation has an error of 0.1 after about 16 s, of 0.05 after 64 s, of 0.04 after 100
+  // s.
   const ChainErrorChart chart =
       chart_of({{1, 0.10}, {200, 0.05}, {1000, 0.04}}, {{5, 0.03}, {6, 0.01}});
   const ChainSummary s = summary_of(chart, 0);
@@ -147,7 +149,7 @@ TEST(ChainSummary, WeighsErrorsAgainstDirectSimulation) {
   EXPECT_EQ(s.pays_from, 1.1);  // only the first point costs less than 16 s
   EXPECT_EQ(s.pays_until, chart.truths[0].seconds_for(0.10));
   EXPECT_NEAR(s.pays_until, 16.0, 1.0);
-  EXPECT_EQ(s.starts_to_pay, 4.0);  // 200 s of runs, some 64 s saved per start
+  EXPECT_EQ(s.starts_to_pay, 4.0);  // 200 s of runs, about 64 s saved per start
 }
 
 TEST(ChainSummary, SaysThatAChainNeverPays) {
@@ -213,16 +215,16 @@ TEST(ChainErrorChart, ChartsMatricesOfTheSameTrials) {
   const FieldTally truth =
       run_field(scene.gate, scene.field, body_at(kStarts[0]), 5, {0, 100}, nullptr, &fixed);
   EXPECT_TRUE((chart.truths[0].tally.final_cells == truth.final_cells).all());
-  // 20 trials in one go: the same matrix as from the pieces that those of 10 trials need.
+  // 20 trials at once give the same matrix as the pieces that matrices of 10 trials need.
   Transitions whole(space);
   dynamics::add_trials(whole, scene.gate, 5, {0, 20});
   const ChainAnswer again = ask_matrices({whole}, scene.field, chart.truths, 5).answers[0];
   EXPECT_EQ(chart.points[1].answers[0].exact.total_variation, again.exact.total_variation);
   EXPECT_EQ(chart.points[1].answers[0].walks[0].corrcoef, again.walks[0].corrcoef);
   EXPECT_EQ(chart.points[1].answers[0].sampling, again.sampling);
-  EXPECT_GT(chart.health.runs, truth.health.runs + 460);  // and those of trees
+  EXPECT_GT(chart.health.runs, truth.health.runs + 460);  // includes the runs of trees
   EXPECT_EQ(chart.trees.size(), 1u);
-  // Direct simulation covers what the matrices cost.
+  // Direct simulation covers the costs of the matrices.
   EXPECT_LT(chart.direct[0].front().seconds, chart.points[0].seconds(0));
   EXPECT_GE(chart.direct[0].back().seconds, chart.points[1].seconds(0));
 }

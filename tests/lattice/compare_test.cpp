@@ -46,7 +46,7 @@ TEST(Statistics, BySmallNumbers) {
 }
 
 TEST(Statistics, CountEmptyGatesToo) {
-  // Sec. III-C: n = 81 in RMSE, not the gates that were reached.
+  // Sec. III-C: RMSE divides by n = 81, not by the number of gates reached.
   CellProbabilities a = CellProbabilities::Zero(9, 9), b = a;
   a(0, 0) = 1.0;
   b(8, 8) = 1.0;
@@ -76,19 +76,19 @@ TEST(Statistics, CorrcoefOfAConstantIsUndefined) {
   EXPECT_TRUE(std::isnan(corrcoef(other, flat)));
 }
 
-// Two points d apart: 2 E|X-Y| - 0 - 0 = 2 d; 3, 4 and 5 gates.
+// Two points at distance d: 2 E|X-Y| - 0 - 0 = 2 d, for 3, 4 and 5 gates.
 TEST(Statistics, EnergyDistanceIsEuclidean) {
   CellProbabilities at = CellProbabilities::Zero(9, 9), right = at, up = at, both = at;
   at(1, 2) = right(1, 5) = up(5, 2) = both(5, 5) = 1.0;
   EXPECT_NEAR(energy_distance(at, right), 6.0, 8 * kEps * 6);
   EXPECT_NEAR(energy_distance(at, up), 8.0, 8 * kEps * 8);
   EXPECT_NEAR(energy_distance(at, both), 10.0, 8 * kEps * 10);
-  // Half of it moved: a quarter of that.
+  // If half of the mass moves: a quarter of that.
   const CellProbabilities half = 0.5 * (at + both);
   EXPECT_NEAR(energy_distance(at, half), 2.5, 8 * kEps * 5);
 }
 
-// Second route: 2 E|X-Y| - E|X-X'| - E|Y-Y'| as a sum over all pairs.
+// Second route: the definition 2 E|X-Y| - E|X-X'| - E|Y-Y'|, as a sum over all pairs.
 TEST(Statistics, EnergyDistanceIsItsDefinition) {
   Draw draw(2);
   CellProbabilities a(4, 6), b(4, 6);
@@ -130,7 +130,7 @@ TEST(NoiseFloor, FiguresOfTheModel) {
   EXPECT_NEAR(two.corrcoef, 0.83, 6e-3);  // 0.8352; simulated means print as 0.83
   EXPECT_NEAR(exact.rmse_per_100, 1.08, 5e-3);
   EXPECT_NEAR(exact.corrcoef, 0.91, 5e-3);
-  // The same, from the formulas.
+  // The same values from the formulas.
   const double v = (0.06 - 1.0 / 81) / 81, e = 0.94 / 8100;
   EXPECT_NEAR(two.rmse_per_100, 100 * std::sqrt(0.94 * 2 / 8100), 16 * kEps);
   EXPECT_NEAR(two.corrcoef, v / (v + e), 8 * kEps);
@@ -143,12 +143,12 @@ TEST(NoiseFloor, FallsWithTheRootOfTheTrials) {
   EXPECT_NEAR(few.rmse_per_100 / many.rmse_per_100, 20.0, 1e-13);
   EXPECT_LT(few.corrcoef, many.corrcoef);
   EXPECT_LT(many.corrcoef, 1.0);
-  // An exact second one is the limit of many trials.
+  // An exact second distribution is the limit of many trials.
   EXPECT_NEAR(noise_floor(0.06, 81, 100, 1'000'000'000'000).rmse_per_100,
               noise_floor(0.06, 81, 100, 0).rmse_per_100, 1e-9);
 }
 
-/// Falls off from the middle of the first row; `spread` in gates.
+/// Shares that fall off from the middle of the first row; `spread` in gates.
 CellProbabilities hill(double spread) {
   CellProbabilities p(9, 9);
   for (int row = 0; row < 9; ++row)
@@ -173,7 +173,8 @@ CellProbabilities shares(const CellCounts& c) {
   return c.cast<double>() / static_cast<double>(c.sum());
 }
 
-// CHECKS.md: the formula holds within 2 % in simulation. 4000 repeats know the means to some 0.3 %.
+// CHECKS.md: the formula holds within 2 % in simulation. 4000 repeats give the means to about 0.3
+// %.
 TEST(NoiseFloor, AgreesWithSimulation) {
   double low = 0.5, high = 5.0;  // sum p^2 = 0.06 by bisection
   for (int i = 0; i < 60; ++i) {
@@ -199,12 +200,12 @@ TEST(NoiseFloor, AgreesWithSimulation) {
 }
 
 // sum c(c-1) / N(N-1): (3, 2, 0, 1) has (6 + 2) / 30.
-// By hand: one trial of (p, 1-p) is off by p(1-p) + (1-p)p in both gates, half of that summed:
-// 2p(1-p). Two trials of (1/2, 1/2): off by 1/2 half the time.
+// By hand: one trial of (p, 1-p) differs by p(1-p) + (1-p)p in both gates; half of the sum is
+// 2p(1-p). Two trials of (1/2, 1/2) differ by 1/2 half of the time.
 TEST(ExpectedTotalVariation, BySmallNumbers) {
   EXPECT_NEAR(expected_total_variation(grid(1, 2, {0.3, 0.7}), 1), 0.42, 16 * kEps);
   EXPECT_NEAR(expected_total_variation(grid(1, 2, {0.5, 0.5}), 2), 0.25, 16 * kEps);
-  // Four equal gates, one trial: 3/4 whatever the outcome.
+  // Four equal gates, one trial: 3/4 for every outcome.
   EXPECT_NEAR(expected_total_variation(grid(2, 2, {0.25, 0.25, 0.25, 0.25}), 1), 0.75, 16 * kEps);
   EXPECT_EQ(expected_total_variation(grid(1, 2, {0.0, 1.0}), 7), 0.0);
 }
@@ -217,7 +218,7 @@ TEST(ExpectedTotalVariation, BecomesTheNormalOne) {
     normal += 0.5 * std::sqrt(2 / test::kPi * share * (1 - share));
   for (const std::int64_t n : {100'000LL, 10'000'000LL, 1'000'000'000LL}) {
     const auto root = std::sqrt(static_cast<double>(n));
-    // The next term is of relative size 1/n; logarithms of n! lose n log n eps.
+    // The next term has the relative size 1/n; logarithms of n! lose n log n eps.
     EXPECT_NEAR(expected_total_variation(p, n) * root / normal, 1.0,
                 2.0 / static_cast<double>(n) + 40 * kEps * root * root);
   }
@@ -312,7 +313,7 @@ TEST(Compare, EqualSamplesDifferByNothing) {
   EXPECT_EQ(c.p_energy, 1.0);
 }
 
-// Two trials in two gates, dealt out anew: half of all deals look as different as these.
+// Two trials in two gates: half of all permutations differ as much as these samples.
 TEST(Compare, PermutationsOfAHandfulAreExact) {
   // {2, 0} against {0, 2}: of the 6 ways to choose 2 of 4, 2 are as extreme.
   const Comparison c = compare(counts(1, 2, {2, 0}), counts(1, 2, {0, 2}), 9999, 1);
@@ -324,7 +325,7 @@ TEST(Compare, PermutationsOfAHandfulAreExact) {
   EXPECT_NEAR(c.floor_total_variation, p, tolerance);
 }
 
-// Exact (1/2, 1/2) and a sample of 4 trials, all in one gate: 2/16 of all samples.
+// The exact distribution (1/2, 1/2) and a sample of 4 trials, all in one gate: 2/16 of all samples.
 TEST(Compare, DrawsFromTheExactDistributionAreExact) {
   const Comparison c = compare(counts(1, 2, {4, 0}), grid(1, 2, {0.5, 0.5}), 9999, 1);
   const double p = 2.0 / 16, tolerance = 4 * std::sqrt(p * (1 - p) / 9999);
@@ -335,8 +336,8 @@ TEST(Compare, DrawsFromTheExactDistributionAreExact) {
   EXPECT_NEAR(c.floor_total_variation, 3.0 / 16, 4 * 0.25 / 100);
 }
 
-// Requirement 28: under the null p-values are uniform. 300 splits; Kolmogorov's 0.1 % point, and
-// the steps of 1/200 that 199 draws make. TV has ties, which only make p larger.
+// Requirement 28: under the null, p-values are uniform. 300 splits; Kolmogorov's 0.1 % point, plus
+// the steps of 1/200 that 199 draws cause. TV has ties, which only make p larger.
 TEST(Compare, PValuesAreUniformUnderTheNull) {
   const CellProbabilities p = hill(1.5);
   Draw draw(5);
@@ -381,7 +382,7 @@ TEST(Compare, SeesAShift) {
   for (const Comparison& c : {compare(a, b, 999, 1), compare(b, p, 999, 1)}) {
     EXPECT_LE(c.p_chi_squared, 0.01);
     EXPECT_LE(c.p_total_variation, 0.01);
-    EXPECT_EQ(c.p_energy, 1.0 / 1000);  // none of the 999
+    EXPECT_EQ(c.p_energy, 1.0 / 1000);  // no draw of the 999 is as large
     EXPECT_GT(c.total_variation, c.floor_total_variation);
     EXPECT_GT(c.rmse_per_100, c.floor.rmse_per_100);
   }
@@ -393,8 +394,8 @@ TEST(Compare, SampleWhereTheExactHasNothingIsImpossible) {
   EXPECT_EQ(c.p_chi_squared, 0.01);
 }
 
-// 10 of 10 000 trials are expected in 100 gates of 1e-5 each. Gate by gate, ten in one of them
-// would be beyond all chance; taken together nothing differs.
+// 10 of 10 000 trials are expected in 100 gates of 1e-5 each. Tested gate by gate, ten in one gate
+// would be significant; merged, the gates do not differ.
 TEST(Compare, RareGatesCountAsOneInChiSquared) {
   CellProbabilities exact = CellProbabilities::Constant(1, 102, 1e-5);
   exact(0, 0) = 0.5;
@@ -404,14 +405,15 @@ TEST(Compare, RareGatesCountAsOneInChiSquared) {
   seen(0, 1) = 4990;
   seen(0, 50) = 10;
   EXPECT_GT(compare(seen, exact, 199, 1).p_chi_squared, 0.9);
-  // But 60 instead of 10 are too many wherever they are.
+  // But 60 trials instead of 10 are too many, wherever they are.
   seen(0, 0) = 4950;
   for (int i = 52; i < 102; ++i) seen(0, i) = 1;
   EXPECT_EQ(seen.sum(), 10'000);
   EXPECT_EQ(compare(seen, exact, 199, 1).p_chi_squared, 1.0 / 200);
 }
 
-// Its cost is the square of the gates reached: left out above 1000, never silently zero.
+// The cost grows with the square of the gates reached: above 1000 the energy is left out, and never
+// silently zero.
 TEST(Compare, EnergyIsLeftOutOfLargeFields) {
   for (const int gates : {kMostEnergyGates, kMostEnergyGates + 1}) {
     const CellCounts one = CellCounts::Ones(1, gates);
@@ -442,7 +444,7 @@ TEST(Compare, SameSeedSameBitsOnAnyNumberOfThreads) {
   }
 }
 
-// The order of the two samples changes nothing but which draws are made.
+// The order of the two samples only changes which draws are made.
 TEST(Compare, IsSymmetric) {
   Draw draw(8);
   const CellProbabilities p = hill(1.5);
@@ -450,14 +452,14 @@ TEST(Compare, IsSymmetric) {
   const Comparison c = compare(a, b, 999, 1), d = compare(b, a, 999, 1);
   EXPECT_EQ(c.corrcoef, d.corrcoef);
   EXPECT_EQ(c.floor.corrcoef, d.floor.corrcoef);
-  // The smaller hand is dealt from the same pool by the same words: the same null.
+  // The smaller sample is dealt from the same pool with the same random words: the same null.
   EXPECT_EQ(c.p_chi_squared, d.p_chi_squared);
   EXPECT_EQ(c.p_energy, d.p_energy);
 }
 
-// Four pairs differ, all in one direction: of the 16 ways to swap them, 2 are as extreme. TV is
-// |4 - 2k|/N with k swapped: mean (2*4 + 8*2)/16 = 1.5 of N = 20 trials. 4 comes in 1 of 8, so it
-// is the 95 % quantile; of six pairs 6 comes in 1 of 32 and 4 in 6 of 32: 4 is.
+// Four pairs differ, all in one direction: of the 16 ways to swap them, 2 are as extreme. TV is |4
+// - 2k|/N with k swapped: mean (2*4 + 8*2)/16 = 1.5 for N = 20 trials. 4 occurs in 1 of 8 cases, so
+// it is the 95 % quantile. With six pairs, 6 occurs in 1 of 32 cases and 4 in 6 of 32, so 4 is.
 TEST(ComparePairs, SwapsOfAHandfulAreExact) {
   std::vector<std::int32_t> first(20, 0), second(20, 0);
   for (int i = 3; i < 7; ++i) second[i] = 1;
@@ -473,9 +475,10 @@ TEST(ComparePairs, SwapsOfAHandfulAreExact) {
   EXPECT_DOUBLE_EQ(compare_pairs(first, second, 1, 2, 9999, 1).floor_total_variation_95, 4.0 / 20);
 }
 
-// Two pairs that differ alike: a null draw is as far apart as seen when its two coins, the lowest
-// bits of its first word, fall alike, and p counts these draws. No other use of Purpose::comparison
-// (rows 0, 1, 2: deals, draws from an exact distribution, samples) may throw the same coins.
+// Two pairs differ in the same way. A null draw is as far apart as the data if its two coins, the
+// lowest bits of its first word, are equal; p counts these draws. No other use of
+// Purpose::comparison (rows 0, 1, 2: deals, draws from an exact distribution, samples) may draw the
+// same coins.
 TEST(ComparePairs, ThrowsCoinsOfItsOwn) {
   constexpr std::int64_t kDraws = 64;
   const auto alike_up_to = [](std::int64_t draws) {
@@ -495,7 +498,7 @@ TEST(ComparePairs, ThrowsCoinsOfItsOwn) {
   for (const auto& other : of_row) EXPECT_NE(seen, other);
 }
 
-// The same statistics as without pairs, and another null: pairs that agree add no noise.
+// The same statistics as without pairs, with another null: pairs that agree add no noise.
 TEST(ComparePairs, SeesWhatIndependentSamplesCannot) {
   Draw draw(9);
   std::vector<std::int32_t> first, second;
@@ -511,7 +514,7 @@ TEST(ComparePairs, SeesWhatIndependentSamplesCannot) {
   EXPECT_EQ(pairs.total_variation, apart.total_variation);
   EXPECT_EQ(pairs.corrcoef, apart.corrcoef);
   EXPECT_EQ(pairs.rmse_per_100, apart.rmse_per_100);
-  EXPECT_EQ(pairs.p_total_variation, 0.001);  // the least that 999 draws can give
+  EXPECT_EQ(pairs.p_total_variation, 0.001);  // the smallest value that 999 draws can give
   EXPECT_LT(pairs.floor_total_variation, apart.floor_total_variation / 4);
   EXPECT_TRUE(std::isnan(pairs.floor.rmse_per_100));
   const Comparison same = compare_pairs(first, first, 3, 3, 99, 1);
@@ -519,7 +522,7 @@ TEST(ComparePairs, SeesWhatIndependentSamplesCannot) {
   EXPECT_EQ(same.floor_total_variation, 0.0);
 }
 
-// Kolmogorov's 0.1 % point and the steps of 1/100, as above; ties only make p larger.
+// Kolmogorov's 0.1 % point, plus the steps of 1/100; ties only make p larger.
 TEST(ComparePairs, PValuesAreUniformUnderTheNull) {
   Draw draw(10);
   constexpr int kRuns = 300;

@@ -20,8 +20,8 @@ struct Contacts {
   Eigen::VectorXd b;
 };
 
-/// As a disc makes it: W = N N^T / M + diag(l^2 / I), b from velocities of disc and beams, so that
-/// an answer exists whatever the pins do.
+/// Contacts as a disc has them: W = N N^T / M + diag(l^2 / I), b from velocities of disc and beams,
+/// so that a solution exists with any pins.
 Contacts contacts(Draw& draw, int n, bool with_pins) {
   const double mass = draw.log_uniform(0.1, 10.0), inertia = draw.log_uniform(1.0, 100.0);
   const double vx = draw.uniform(-20, 20), vy = draw.uniform(-20, 20);
@@ -32,7 +32,8 @@ Contacts contacts(Draw& draw, int n, bool with_pins) {
     const double angle = draw.uniform(0.0, 2.0 * std::numbers::pi);
     normals.row(i) << std::cos(angle), std::sin(angle);
     const bool pin = with_pins && draw.coin();
-    if (pin && i > 0 && draw.coin()) normals.row(i) = normals.row(draw.below(i));  // one place
+    // at the same place
+    if (pin && i > 0 && draw.coin()) normals.row(i) = normals.row(draw.below(i));
     const double lever = pin ? 0.0 : draw.sign() * draw.log_uniform(1e-3, 25.0);
     own[i] = lever * lever / inertia;
     p.b[i] =
@@ -43,7 +44,8 @@ Contacts contacts(Draw& draw, int n, bool with_pins) {
   return p;
 }
 
-/// Every set of contacts in turn: the plain, slow way. The first that fulfils all conditions.
+/// Tries every set of contacts, and returns the first solution that fulfils all conditions: plain
+/// and slow.
 Eigen::VectorXd by_enumeration(const Contacts& p) {
   const auto n = static_cast<int>(p.b.size());
   const double scale = p.b.cwiseAbs().maxCoeff();
@@ -59,7 +61,7 @@ Eigen::VectorXd by_enumeration(const Contacts& p) {
       for (Eigen::Index j = 0; j < m; ++j) w(i, j) = p.w(in[i], in[j]);
     }
     Eigen::VectorXd z = Eigen::VectorXd::Zero(n);
-    if (m > 0) {  // of an empty matrix there is no decomposition
+    if (m > 0) {  // an empty matrix has no decomposition
       const Eigen::FullPivLU<Eigen::MatrixXd> lu(w);
       if (!lu.isInvertible()) continue;
       const Eigen::VectorXd part = lu.solve(-b);
@@ -72,8 +74,8 @@ Eigen::VectorXd by_enumeration(const Contacts& p) {
   return Eigen::VectorXd::Zero(n);
 }
 
-// W = I + ones/2 and b = (-1, -1, 1): with the first two, 1.5 z + 0.5 z = 1, z = 1/2; the third
-// then opens at 1 + 1/2.
+// W = I + ones/2 and b = (-1, -1, 1): with the first two contacts, 1.5 z + 0.5 z = 1, z = 1/2; the
+// third then opens at 1 + 1/2.
 TEST(PushOnly, ThreeByHand) {
   Eigen::MatrixXd w = Eigen::MatrixXd::Identity(3, 3) + Eigen::MatrixXd::Constant(3, 3, 0.5);
   const Eigen::VectorXd z = solve_lcp(w, Eigen::Vector3d(-1, -1, 1));
@@ -84,8 +86,8 @@ TEST(PushOnly, ThreeByHand) {
   EXPECT_EQ(solve_lcp(Eigen::MatrixXd(0, 0), Eigen::VectorXd(0)).size(), 0);
 }
 
-// The fastest closing contact joins first and has to leave again: alone it is in the way of nobody,
-// but the two others push the body away from it.
+// The fastest closing contact joins first and must leave again: alone it is no obstacle, but the
+// two others push the body away from it.
 TEST(PushOnly, AContactMayHaveToLeave) {
   Eigen::MatrixXd normals(3, 2);
   normals << 0.0, 1.0, 0.8, 0.6, -0.8, 0.6;
@@ -114,7 +116,7 @@ TEST(PushOnly, OneAndTwoAreThoseOfTheGate) {
   }
 }
 
-// Second route, with pins in one place too, where impulses are not unique but rates are.
+// Second route, also with several pins at one place, where impulses are not unique but rates are.
 TEST(PushOnly, AgreesWithEnumeration) {
   Draw draw(2);
   int many = 0;
@@ -124,8 +126,8 @@ TEST(PushOnly, AgreesWithEnumeration) {
     const Eigen::VectorXd z = solve_lcp(p.w, p.b), slow = by_enumeration(p);
     const Eigen::VectorXd after = p.w * z + p.b;
     const double scale = p.b.cwiseAbs().maxCoeff();
-    // unilateral_impulses leaves open what closes slower than 1e-12 of the fastest; solving W z =
-    // -b by Cholesky leaves a residual of some n eps |W| |z|.
+    // unilateral_impulses ignores contacts that close more slowly than 1e-12 of the fastest;
+    // solving W z = -b by Cholesky leaves a residual of about n eps |W| |z|.
     const double rounding =
         1.01e-12 * scale + 20 * n * test::kEps * (p.w.cwiseAbs() * z).maxCoeff();
     EXPECT_GE(z.minCoeff(), 0.0);
@@ -141,7 +143,7 @@ TEST(PushOnly, AgreesWithEnumeration) {
   EXPECT_GT(many, 500);
 }
 
-// Eight equal pins in one place act as one.
+// Eight equal pins at one place act as one.
 TEST(PushOnly, PinsInOnePlaceActAsOne) {
   const Eigen::MatrixXd w = Eigen::MatrixXd::Constant(8, 8, 2.0);
   const Eigen::VectorXd z = solve_lcp(w, Eigen::VectorXd::Constant(8, -3.0));

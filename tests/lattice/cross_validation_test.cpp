@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One half of the bodies against the other: no finding where nothing is amiss, however trials are
-// watched; planted differences and memories are found.
+// One half of the bodies against the other: no finding without a difference, however trials are
+// observed; planted differences and memories are found.
 #include "lattice/study/cross_validation.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ field = { columns = 5, rows = 4, max_gates = 8 }
 }
 constexpr int kS = 0, kN = 1, kW = 2, kE = 3;
 
-/// What a body that entered so does next: the face by which it leaves, or -1: trapped.
+/// The next move of a body that entered so: the face by which it leaves, or -1: trapped.
 struct Walker {
   std::int32_t body;
   Entry at;
@@ -51,8 +51,8 @@ int plainly(const Walker& w, Random& random) {
   return u < 0.9 ? kE : kN;
 }
 
-/// Trials that are watched within a view of so many columns and rows and lost in 3 of 100 cells, as
-/// many of each body as its number says: 1 to 4.
+/// Trials observed within a view of these columns and rows, and lost in 3 of 100 cells. A body has
+/// 1 to 4 trials, by its number.
 RecordedRuns walked(int bodies, std::uint64_t seed, const Rule& rule, int columns = 3,
                     int rows = 3) {
   RecordedRuns runs;
@@ -88,14 +88,14 @@ RecordedRuns walked(int bodies, std::uint64_t seed, const Rule& rule, int column
   return runs;
 }
 
-/// By which half of the bodies a walker turns left, the other half right.
+/// One half of the bodies turns left, the other half right.
 int left_or_right_handed(const Walker& w, Random& random) {
   const double u = random.uniform();
   if (u < 0.4) return u < 0.06 ? -1 : kS;
   return (u < 0.92) == (w.body / 4 % 2 == 0) ? kW : kE;
 }
 
-/// On as it came, more often than not.
+/// Bodies mostly go straight on.
 int straight_on(const Walker& w, Random& random) {
   const double u = random.uniform();
   if (u < 0.06) return -1;
@@ -114,13 +114,13 @@ Found found_in(const RecordedRuns& runs, std::uint64_t seed) {
           body_memory(problem, pool, kEntriesPerLeaf, 499, seed)};
 }
 
-/// The least and the most that 99.9 % of counts of so many have.
+/// Range of 99.9 % of the counts with this share.
 std::array<int, 2> expected_999(int of, double share) {
   const double mean = of * share, half = 3.29 * std::sqrt(mean * (1.0 - share));
   return {static_cast<int>(std::floor(mean - half)), static_cast<int>(std::ceil(mean + half))};
 }
 
-// However trials are watched: most of these leave the view, or are lost, before they end.
+// Most of these trials leave the view, or are lost, before they end.
 TEST(CrossValidation, ChanceIsFoundAsOftenAsItIsAskedFor) {
   constexpr int kSeeds = 300;
   std::array<int, 4> halves{}, memory{};  // p in each quarter
@@ -151,7 +151,7 @@ TEST(CrossValidation, ChanceIsFoundAsOftenAsItIsAskedFor) {
   EXPECT_LE(held, 2 * kSeeds * 97 / 100);
 }
 
-/// Nearly all are trapped: endings that a half of the bodies sees once or not at all.
+/// Nearly all bodies are trapped: half of the bodies shows the other endings once or not at all.
 int hardly_on(const Walker&, Random& random) {
   const double u = random.uniform();
   if (u < 0.75) return -1;
@@ -192,14 +192,14 @@ TEST(CrossValidation, AMemoryIsFound) {
   EXPECT_GE(remember, 19);
 }
 
-// Nothing is guessed of what was not seen: trials of which no passage ends cannot differ.
+// Unobserved parts are not guessed: trials without a finished passage cannot differ.
 TEST(CrossValidation, WhatWasNotSeenDoesNotDiffer) {
   RecordedRuns runs;
   runs.passages.begin(cells().map.section);
   for (std::int32_t body = 0; body < 40; ++body) {
     runs.bodies.push_back(std::to_string(body));
     const auto begin = std::ssize(runs.passages);
-    // One passage each, all alike, and where it leads nobody looked.
+    // One passage each, all equal; nobody observed the next cell.
     runs.passages.push_back({.fate = Fate::left, .entry = {kS, {0.01 * body, 0.0, 0.0}}});
     runs.trials.push_back({{kS, {0.01 * body, 0.0, 0.0}}, body, begin, 1});
     runs.passages.push_back({.fate = Fate::broken});

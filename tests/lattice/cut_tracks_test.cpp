@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tracks of known ways, cut at the borders of cells.
+// Tracks with known paths, cut at the borders of cells.
 #include "lattice/recorded/cut_tracks.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace {
 constexpr double kFps = 120.0, kSize = 0.1;  // 1/s, m
 constexpr int kFaceS = 0, kFaceN = 1, kFaceW = 2, kFaceE = 3;
 
-/// Squares of kSize with the coordinates s, vx, vy.
+/// Squares of size kSize with the coordinates s, vx, vy.
 CellFile squares() {
   CellFile cell;
   cell.source = "cell.toml";
@@ -72,7 +72,7 @@ Way circle(Place middle, double radius, double speed, double phase = 0.0) {
     return Place{middle.x + radius * std::cos(a), middle.y + radius * std::sin(a)};
   };
 }
-/// Takes frames first to last - 1 of the first track out.
+/// Removes frames first to last - 1 from the first track.
 void hide(TrackFile& file, int first, int last) {
   Track& t = file.tracks[0];
   for (auto* values : {&t.time, &t.x, &t.y})
@@ -101,7 +101,7 @@ std::string refusal(const TrackFile& file, const CellFile& cell, const CutOption
     EXPECT_NE(said.find(words), std::string::npos) << said; \
   } while (false)
 
-// A parabola is fitted to the last bit or so by any window, at its ends too.
+// Every window fits a parabola to about the last bit, also at its ends.
 TEST(LocalFit, ParabolasAreExact) {
   const TrackFile file = file_of({[](double t) {
                                    return Place{1.0 + 2.0 * t - 3.0 * t * t, -0.5 + t * t};
@@ -119,8 +119,8 @@ TEST(LocalFit, ParabolasAreExact) {
   }
 }
 
-// Savitzky and Golay's weights for places amid 5 frames: -3, 12, 17, 12, -3 by 35; for slopes -2 to
-// 2 by 10.
+// Savitzky and Golay's weights in the middle of 5 frames: for places -3, 12, 17, 12, -3 over 35;
+// for slopes -2 to 2 over 10.
 TEST(LocalFit, WeightsAreThoseOfSavitzkyAndGolay) {
   const std::vector<double> place{-3.0, 12.0, 17.0, 12.0, -3.0}, slope{-2.0, -1.0, 0.0, 1.0, 2.0};
   for (std::size_t k = 0; k < 5; ++k) {
@@ -136,8 +136,8 @@ TEST(LocalFit, WeightsAreThoseOfSavitzkyAndGolay) {
 }
 
 TEST(CutTracks, AStraightLineIsCutWhereItCrosses) {
-  // From (0.03, 0.05) with (0.1, 0.4) m/s: rows at y = 0.1, 0.2, ... after 0.125 s, 0.375 s, ...;
-  // x = 0.1 after 0.7 s.
+  // From (0.03, 0.05) with (0.1, 0.4) m/s: rows at y = 0.1, 0.2, ... after 0.125 s, 0.375 s, ...; x
+  // = 0.1 after 0.7 s.
   const TrackFile file = file_of({straight({0.03, 0.05}, 0.1, 0.4)}, 121);
   const CutTracks cut = cut_tracks(file, squares(), fast());
   ASSERT_EQ(cut.passages.size(), 5U);  // rows entered at .125, .375, .625, .875 s, a column at .7
@@ -176,9 +176,9 @@ TEST(CutTracks, OtherCoordinates) {
   EXPECT_EQ(cut.passages[0].in.at[2], 0.0);
 }
 
-// Places and velocities of a circle where it crosses the lines: the fits of 7 frames are off by no
-// more than theory says, a tenth of the third derivative times the square of half a window for
-// velocities, for places 3/280 of the fourth derivative times its fourth power.
+// Places and velocities where a circle crosses the lines. The errors of fits of 7 frames stay
+// within the theory: for velocities a tenth of the third derivative times the square of half a
+// window, for places 3/280 of the fourth derivative times its fourth power.
 TEST(CutTracks, ACircleIsCutWhereItCrosses) {
   const double radius = 0.07, speed = 0.5, omega = speed / radius, h = 3.0 / kFps;
   const Place middle{0.11, 0.12};
@@ -193,13 +193,13 @@ TEST(CutTracks, ACircleIsCutWhereItCrosses) {
     const double border =
         upright ? std::round(p.from[1] / kSize) * kSize : std::round(p.from[0] / kSize) * kSize;
     EXPECT_NEAR(upright ? p.from[1] : p.from[0], border, 1e-12);
-    // The place on the circle with that x or y which is on the side where it crossed.
+    // The place on the circle with this x or y, on the side where the body crossed.
     const double away = upright ? border - middle.y : border - middle.x;
     const double along = std::sqrt(radius * radius - away * away);
     const double other = upright ? p.from[0] - middle.x : p.from[1] - middle.y;
     const double x = upright ? std::copysign(along, other) : away;
     const double y = upright ? away : std::copysign(along, other);
-    // Off along a border by as much as the path is off across it, times the slope.
+    // The error along a border is the error across it times the slope.
     const double slope = 1.0 + std::abs(away / along);
     EXPECT_NEAR(std::abs(other), along, slope * off_x);
     EXPECT_NEAR(p.in.at[1], -omega * y, off_v + omega * slope * off_x);
@@ -209,13 +209,13 @@ TEST(CutTracks, ACircleIsCutWhereItCrosses) {
                         : middle.y + y - (std::floor(p.from[1] / kSize) + 0.5) * kSize,
                 slope * off_x);
   }
-  // The whole lap takes what it takes.
+  // The sum of the times is that of the lap.
   double lap = 0.0;
   for (std::size_t i = 1; i <= 4; ++i) lap += cut.passages[i].time;
   EXPECT_NEAR(lap, 2.0 * std::numbers::pi / omega, 1e-3 / omega);
 }
 
-/// Twenty bodies on circles of their own.
+/// Twenty bodies on different circles.
 std::vector<Way> circles() {
   std::vector<Way> ways;
   for (int b = 0; b < 20; ++b)
@@ -231,7 +231,7 @@ TEST(CutTracks, NoiseIsFoundAndWhatItMakesOfVelocities) {
     EXPECT_EQ(cut.trials, 20);
     double square = 0.0;
     for (const CutPassage& p : cut.passages) {
-      // The true velocity is at right angles to the way from the circle's middle.
+      // The true velocity is perpendicular to the line from the circle's centre.
       const double b = static_cast<double>(p.track);
       const double dx = p.from[0] - 0.013 * b, dy = p.from[1] - (0.3 - 0.017 * b);
       const double omega = 0.4 / (0.12 + 0.004 * b);
@@ -240,7 +240,7 @@ TEST(CutTracks, NoiseIsFoundAndWhatItMakesOfVelocities) {
     const double found = std::sqrt(square / (2.0 * static_cast<double>(cut.passages.size())));
     const double said = std::hypot(cut.crossing_velocity_noise, cut.noise.velocity_bias);
     EXPECT_NEAR(found, said, 0.15 * said) << noise << " window " << cut.noise.window;
-    // The window that was found is at most a little worse than the best of all.
+    // The window that was chosen is at most slightly worse than the best one.
     double best = HUGE_VAL;
     for (int w = 5; w <= 61; w += 4) {
       const CutTracks other = cut_tracks(file, squares(), with_window(std::to_string(w)));
@@ -250,19 +250,19 @@ TEST(CutTracks, NoiseIsFoundAndWhatItMakesOfVelocities) {
   }
 }
 
-// All crossings are found, and no more, with as much noise: those of the circles themselves.
+// With this much noise, the crossings are exactly those of the circles themselves.
 TEST(CutTracks, NoiseMakesNoCrossings) {
   const CutTracks clean = cut_tracks(file_of(circles(), 600), squares(), with_window("9"));
   const CutTracks noisy = cut_tracks(file_of(circles(), 600, 0.001), squares(), fast());
   EXPECT_GT(clean.passages.size(), 200U);
-  // Where a circle just touches a border noise decides.
+  // Where a circle barely touches a border, noise decides.
   EXPECT_NEAR(static_cast<double>(noisy.passages.size()),
               static_cast<double>(clean.passages.size()),
               0.02 * static_cast<double>(clean.passages.size()));
 }
 
 TEST(CutTracks, WhoDithersOnABorderCrossesItOnce) {
-  // Creeps over y = 0.1 within 100 frames, with noise: 30 s on this side, 30 s on that.
+  // Creeps over y = 0.1 within 100 frames, with noise: 30 s on each side.
   const auto creeps = [](double t) { return Place{0.05, 0.1 + 0.002 * (t - 2.0)}; };
   const TrackFile file = file_of({creeps}, 600, 0.001);
   const CutTracks cut = cut_tracks(file, squares(), with_window("5"));
@@ -271,7 +271,7 @@ TEST(CutTracks, WhoDithersOnABorderCrossesItOnce) {
   EXPECT_GT(cut.hysteresis, 0.002);
   EXPECT_LT(cut.hysteresis, 0.005);
   EXPECT_EQ(cut.passages[0].in.face, kFaceS);
-  EXPECT_GT(cut.passages[0].in.at[2], -0.05);  // it went over, there
+  EXPECT_GT(cut.passages[0].in.at[2], -0.05);  // there the body crossed
 }
 
 TEST(CutTracks, ThroughACornerAreTwoCrossings) {
@@ -293,13 +293,13 @@ TEST(CutTracks, GapsAreLostAndBeginANewTrial) {
   EXPECT_EQ(cut.passages[1].end, CutEnd::lost);
   EXPECT_EQ(cut.passages[1].lost_by, LostBy::gap);
   EXPECT_NEAR(cut.passages[1].time, 49.0 / kFps - 0.375, 1e-9);
-  // The rest of that row is not a passage: the trial begins with the fourth.
+  // The rest of that row is not a passage: the next trial begins with the fourth row.
   EXPECT_EQ(cut.passages[2].trial, 2);
   EXPECT_NEAR(cut.passages[2].in.at[0], 0.0, 1e-9);
   EXPECT_NEAR(cut.passages[2].time, 0.25, 1e-9);
   EXPECT_EQ(cut.lost(LostBy::gap), 1);
   EXPECT_EQ(cut.lost(LostBy::end), 1);
-  // A frame that may be missing is none.
+  // A frame that may be missing is no gap.
   CutOptions bridged = fast();
   bridged.bridge = 1;
   const CutTracks whole = cut_tracks(file, squares(), bridged);
@@ -324,7 +324,8 @@ TEST(CutTracks, SwapsOfIdentityAreLost) {
     EXPECT_TRUE(p.end == CutEnd::lost || p.out.face == kFaceS);
 }
 
-// One place far off is a jump away and one back; what lies between is too short for a fit.
+// A single place far away is a jump there and a jump back; the frame in between is too short for a
+// fit.
 TEST(CutTracks, OutliersAreJumps) {
   TrackFile file = file_of({straight({0.05, 0.05}, 0.0, 0.4)}, 121);
   file.tracks[0].x[50] = 3.0;
@@ -338,7 +339,7 @@ TEST(CutTracks, OutliersAreJumps) {
 TEST(CutTracks, WhoStaysTooLongIsTrapped) {
   CellFile cell = squares();
   cell.trapped_after = 1.0;
-  // Enters the second row at 0.125 s, is there until 2.125 s, then goes on.
+  // Enters the second row at 0.125 s, stays there until 2.125 s, then goes on.
   const auto rests = [](double t) {
     return Place{0.05, t < 0.25 ? 0.05 + 0.4 * t : t < 2.0 ? 0.15 : 0.15 + 0.4 * (t - 2.0)};
   };
@@ -347,9 +348,10 @@ TEST(CutTracks, WhoStaysTooLongIsTrapped) {
   ASSERT_EQ(cut.passages.size(), 3U);
   EXPECT_EQ(cut.passages[0].end, CutEnd::trapped);
   EXPECT_EQ(cut.passages[0].time, 1.0);
-  EXPECT_EQ(cut.passages[1].trial, 2);  // begins where it is seen to enter the next
+  EXPECT_EQ(cut.passages[1].trial, 2);  // begins where the body is seen to enter the next cell
   EXPECT_EQ(cut.passages[1].in.face, kFaceS);
-  // So is who is still there at the end, and who was longer there before being lost.
+  // A body that is still there at the end is trapped, and so is one that was there for longer
+  // before it was lost.
   EXPECT_EQ(cut_tracks(file_of({rests}, 200), cell, with_window("5")).count(CutEnd::trapped), 1);
   TrackFile gone = file_of({rests}, 300);
   hide(gone, 170, 180);
@@ -363,7 +365,7 @@ TEST(CutTracks, ALatticeHasAnEnd) {
   CutOptions options = fast();
   options.columns = 1;
   options.rows = 3;
-  // Comes from below, crosses three rows, leaves, comes back by the side.
+  // Comes from below, crosses three rows, leaves, and comes back by the side.
   const auto loop = [](double t) {
     return t < 1.0 ? Place{0.05, -0.05 + 0.4 * t} : Place{0.05 + 0.4 * (t - 1.0), 0.35};
   };
@@ -375,9 +377,9 @@ TEST(CutTracks, ALatticeHasAnEnd) {
   EXPECT_EQ(cut.passages[2].out.face, kFaceS);
 }
 
-// A chain of known law: in each of four rows a fifth of those who enter it stays. Of 625 bodies
-// 125, 100, 80 and 64 stay, 256 cross: 0.8^4. Before the first row there are four rows' lengths of
-// open ground, behind the last one two; on them nobody ever stays.
+// A chain with a known law: in each of four rows, a fifth of the bodies that enter stay. Of 625
+// bodies 125, 100, 80 and 64 stay, and 256 cross: 0.8^4. Before the first row lie four row lengths
+// of open ground, after the last row two; no body stays there.
 TEST(CutTracks, OpenGroundBeforeAndBehindTheFieldIsNoCell) {
   CellFile cell = squares();
   cell.trapped_after = 1.0;
@@ -399,16 +401,17 @@ TEST(CutTracks, OpenGroundBeforeAndBehindTheFieldIsNoCell) {
   EXPECT_EQ(cut.rows, 4);
   EXPECT_EQ(cut.trials, 625);
   EXPECT_EQ(cut.passages.size(), 625U + 500U + 400U + 320U);
-  EXPECT_EQ(cut.count(CutEnd::trapped), 125 + 100 + 80 + 64);  // a fifth
+  EXPECT_EQ(cut.count(CutEnd::trapped), 125 + 100 + 80 + 64);  // a fifth of each row
   EXPECT_EQ(cut.count(CutEnd::lost), 0);
   EXPECT_EQ(cut.first_stays, 0);
   EXPECT_EQ(cut.bodies_outside, 0);
   EXPECT_EQ(cut.came_back, 0);
-  // Below y = 0 all are for 0.7 s, frames 0 to 83 (that of 84 is on the border, or a bit beside
-  // it); above y = 0.4 the last ones are from 1.5 s on, frames 180 to 299.
+  // Below y = 0, all bodies are seen for 0.7 s, in frames 0 to 83 (frame 84 is on the border, or
+  // slightly beside it); above y = 0.4 the last ones from 1.5 s on, in frames 180 to 299.
   const double outside = 625.0 * 84.0 + 256.0 * 120.0;
   EXPECT_NEAR(static_cast<double>(cut.places_outside), outside, 625.0 + 256.0);
-  // The same as with the option; without an end the open ground counts, and nobody stays there.
+  // The same result with the option. Without an end, the open ground counts, and no body stays
+  // there.
   CutOptions given{.fastest = 100.0, .window = "5"};
   given.columns = 1;
   given.rows = 4;
@@ -420,7 +423,7 @@ TEST(CutTracks, OpenGroundBeforeAndBehindTheFieldIsNoCell) {
   EXPECT_EQ(endless.places_outside, 0);
 }
 
-// One that begins inside, one that goes out by a side and comes back, one that is never in.
+// One body begins inside, one leaves by a side and comes back, one is never inside.
 TEST(CutTracks, WhatComesBackBeginsAnotherTrial) {
   CellFile cell = squares();
   cell.field.columns = cell.field.rows = 2;
@@ -429,7 +432,7 @@ TEST(CutTracks, WhatComesBackBeginsAnotherTrial) {
   const CutTracks cut = cut_tracks(
       file_of({straight({0.05, 0.05}, 0.0, 0.4), turns, straight({0.5, 0.5}, 0.1, 0.1)}, 121), cell,
       {.fastest = 100.0, .window = "5"});
-  // In rows 0 and 1 until 0.375 s; in column 1 until 0.125 s, again from 0.875 s on.
+  // In rows 0 and 1 until 0.375 s; in column 1 until 0.125 s, and again from 0.875 s on.
   EXPECT_EQ(cut.first_stays, 2);
   EXPECT_EQ(cut.trials, 2);
   EXPECT_EQ(cut.came_back, 1);
@@ -440,7 +443,7 @@ TEST(CutTracks, WhatComesBackBeginsAnotherTrial) {
   EXPECT_EQ(cut.passages[1].in.face, kFaceE);
   EXPECT_EQ(cut.passages[1].end, CutEnd::lost);
   EXPECT_NEAR(cut.passages[1].time, 0.125, 1e-6);
-  // 75 frames of the first, 0.375 to 1 s; 90 of the second; all of the third.
+  // 75 frames of the first body, 0.375 to 1 s; 90 of the second; all of the third.
   EXPECT_NEAR(static_cast<double>(cut.places_outside), 75.0 + 90.0 + 121.0, 3.0);
 }
 
@@ -462,7 +465,7 @@ TEST(CutTracks, TypesAreThoseOfTheMap) {
   EXPECT_REFUSED("--lattice: the map of cell.toml has 2 columns and 2 rows", file, cell, options);
 }
 
-// What is written is what was cut, and keeps the format's rules.
+// The file contains what was cut, and follows the rules of the format.
 TEST(CutTracks, RunsReadBack) {
   CellFile cell = squares();
   cell.trapped_after = 0.5;
@@ -530,7 +533,7 @@ TEST(CutTracks, CellsThatTracksDoNotHave) {
   EXPECT_EQ(refusal([&] { require_measurable(lopsided); }), "nothing refused");
 }
 
-// Windows in which a body stands still exactly tell nothing of its noise.
+// Windows in which a body stands exactly still say nothing about noise.
 TEST(LocalFit, PlacesThatAreTheSameAreNoNoise) {
   TrackFile file = file_of({straight({0.05, 0.05}, 0.0, 0.4)}, 600, 1e-4);
   const auto noise = [&] {
@@ -543,14 +546,14 @@ TEST(LocalFit, PlacesThatAreTheSameAreNoNoise) {
     t.x.push_back(t.x.back());
     t.y.push_back(t.y.back());
   }
-  EXPECT_NEAR(noise(), before, 0.1 * before);  // half of it, if they counted
+  EXPECT_NEAR(noise(), before, 0.1 * before);  // half of it, if these windows counted
 }
 
 TEST(CutTracks, SaysWhatIsLikelyToBeWrong) {
   const Way up = straight({0.05, 0.05}, 0.0, 0.4), down = straight({0.05, 5.0}, 0.0, -0.4);
   EXPECT_TRUE(cut_tracks(file_of({up}, 600), squares(), fast()).doubts.empty());
   EXPECT_TRUE(cut_tracks(file_of({up, down}, 600), squares(), fast()).doubts.empty());
-  // One that turns round tells nothing of which way is up.
+  // A body that turns round does not show which way is up.
   const Way turning = [](double t) { return Place{0.05, 0.05 + 0.4 * std::abs(t - 4.5)}; };
   EXPECT_NE(cut_tracks(file_of({down, down, down, down, down, down, down, down, turning}, 600),
                        squares(), fast())
@@ -589,7 +592,7 @@ TEST(CutTracks, TracksThatMakeNoSense) {
       "no body was seen in 5 frames in a row, without a gap or a jump: most steps are faster than "
       "--fastest 0.1 m/s (median 0.4 m/s)",
       up, squares(), fast(0.1));
-  // Tracks of 120 frames per second, where 240 were said.
+  // Tracks of 120 frames per second, declared as 240.
   TrackFile every_second = up;
   every_second.interval = 1.0 / 240.0;
   EXPECT_REFUSED(

@@ -36,10 +36,10 @@ TEST(FieldDesign, ChangesTheCellsThatHelpMost) {
   EXPECT_EQ(best.crossings.trials, 9604);
   EXPECT_NEAR(best.by_chain.before, before, 0.01);
   EXPECT_NEAR(best.by_chain.optima[0].gain, after, 0.02);
-  // Bodies pass each cell once: the gradient is what a change does.
+  // Bodies pass each cell once, so the gradient is the effect of a change.
   ASSERT_EQ(best.by_chain.gradient.size(), 15U);
   EXPECT_NEAR(best.by_chain.gradient[1 * 3 + 1], before * (kGood / kBad - 1.0), 0.02);
-  EXPECT_EQ(best.by_chain.gradient[1 * 3 + 2], 0.0);  // it is that
+  EXPECT_EQ(best.by_chain.gradient[1 * 3 + 2], 0.0);  // the cell already has that type
   EXPECT_NEAR(best.by_chain.gradient[0 * 3 + 2], before * (kBad / kFair - 1.0), 0.01);
 }
 
@@ -59,7 +59,7 @@ TEST(FieldDesign, ChangesOnlyWhatItMay) {
   const DesignedField none =
       design_field(lane(), {.most_changes = 5, .become = {2}, .accuracy = 0.02, .seed = 7});
   EXPECT_EQ(none.type_of_cell, kOwn);
-  EXPECT_EQ(none.gain.difference, 0.0);  // it is the same field, which is no estimate
+  EXPECT_EQ(none.gain.difference, 0.0);  // it is the same field, so nothing is estimated
   EXPECT_TRUE(std::isnan(none.gain.interval_95[0]));
 }
 

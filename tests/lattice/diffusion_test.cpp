@@ -16,12 +16,11 @@ namespace {
 using namespace lorentz;
 using test::matrix;
 
-// Rounding of sums over states, and the solve's 1e-12.
+// Rounding of sums over states, and the tolerance 1e-12 of the solve.
 constexpr double kExact = 1e-10;
 
-/// The same by the Green-Kubo sum as it is written, with dense matrices: the sum over P^k is the
-/// fundamental matrix (I - P + 1 pi)^-1 (Kemeny and Snell, Finite Markov Chains, 1960,
-/// section 4.3).
+/// The Green-Kubo sum as written, with dense matrices: the sum over P^k is the fundamental matrix
+/// (I - P + 1 pi)^-1 (Kemeny and Snell, Finite Markov Chains, 1960, section 4.3).
 Diffusion diffusion_plainly(const Chain& chain, const Eigen::Matrix2d& lattice,
                             const Reward& time) {
   const int n = chain.inputs();
@@ -50,7 +49,7 @@ Diffusion diffusion_plainly(const Chain& chain, const Eigen::Matrix2d& lattice,
     out.mean_time += pi[i] * q * t;
   });
   out.drift = move / out.mean_time;
-  Eigen::MatrixXd f = Eigen::MatrixXd::Zero(n, 2);  // expected in each state
+  Eigen::MatrixXd f = Eigen::MatrixXd::Zero(n, 2);  // expectation in each state
   each([&](int i, int, double q, const Eigen::Vector2d& l, double t, double) {
     f.row(i) += q * (l - out.drift * t).transpose();
   });
@@ -74,7 +73,7 @@ void expect_same(const Diffusion& a, const Diffusion& b, double bound = kExact) 
   EXPECT_LE((a.tensor - b.tensor).norm(), bound);
 }
 
-/// A walk that draws each of these moves with the same chance.
+/// A walk that draws each of these moves with equal probability.
 Chain moves_alike(const std::vector<std::array<int, 2>>& moves) {
   std::vector<Exit> exits;
   std::vector<test::Entry> entries;
@@ -85,11 +84,11 @@ Chain moves_alike(const std::vector<std::array<int, 2>>& moves) {
   return Chain::from_probabilities(matrix(1, static_cast<int>(moves.size()), entries), exits);
 }
 
-/// Hops between the sites of a honeycomb, each a unit long and in unit time: straight back with
-/// chance `back`, else to either of the other neighbours.
+/// Hops between the sites of a honeycomb, of unit length in unit time: straight back with
+/// probability `back`, else to either of the other neighbours.
 Chain honeycomb(double back) {
-  // Moves from sites of one kind: e0, e1, -e0 - e1; from those of the other kind back. A state is
-  // the move made last.
+  // Moves from sites of one kind: e0, e1, -e0 - e1; from sites of the other kind the reverse. A
+  // state is the last move.
   constexpr int kMoves[3][2] = {{1, 0}, {0, 1}, {-1, -1}};
   std::vector<Exit> exits;
   std::vector<test::Entry> entries;
@@ -108,8 +107,8 @@ Eigen::Matrix2d honeycomb_lattice() {
   return lattice;
 }
 
-/// Every state leads to every other one, at random; outputs as for markov::test's chains, but none
-/// traps.
+/// Every state leads to every other one, at random. The outputs are as in markov::test's chains,
+/// but none traps.
 Chain some_chain(int states, std::uint64_t seed) {
   test::Words words(seed);
   Counts counts(states, 2 * states);
@@ -136,11 +135,11 @@ TEST(Diffusion, OfSimpleRandomWalks) {
   EXPECT_NEAR(square.coefficient(), 0.25, kExact);
   EXPECT_NEAR(square.tensor(0, 1), 0.0, kExact);
   EXPECT_EQ(square.mean_time, 1.0);
-  // Only up and down: D along y is 1/2, none along x.
+  // Only up and down: D is 1/2 along y, 0 along x.
   const Diffusion line = diffusion(moves_alike({{0, 1}, {0, -1}}));
   EXPECT_NEAR(line.tensor(1, 1), 0.5, kExact);
   EXPECT_EQ(line.tensor(0, 0), 0.0);
-  // All six neighbours on a triangular lattice whose sides are 2 long.
+  // All six neighbours on a triangular lattice with sides of length 2.
   Eigen::Matrix2d triangles;
   triangles << 2.0, 1.0, 0.0, std::sqrt(3.0);
   const Diffusion six =
@@ -163,12 +162,12 @@ TEST(Diffusion, OfPersistentWalks) {
   EXPECT_THROW((void)diffusion(honeycomb(1.0)), std::invalid_argument) << "goes to and fro";
 }
 
-// One state, moves up by 1 or down by 2 that take times of their own: a renewal process, for which
-// D = var(l - v T) / (2 <T>), v = <l> / <T>.
+// One state with moves up by 1 or down by 2, which take different times: a renewal process with D =
+// var(l - v T) / (2 <T>), v = <l> / <T>.
 TEST(Diffusion, TimesAndDriftOfARenewalProcess) {
   const Chain chain = Chain::from_probabilities(matrix(1, 2, {{0, 0, 0.75}, {0, 1, 0.25}}),
                                                 {{0, 0, 1}, {0, 0, -2}});
-  // Up takes 2 or 4, each half of the times, down always 1.
+  // Up takes 2 or 4, each half of the time, down always 1.
   const Diffusion d = diffusion(chain, Eigen::Matrix2d::Identity(), {{3.0, 1.0}, {10.0, 1.0}});
   const double v = (0.75 - 0.5) / (0.75 * 3.0 + 0.25);
   EXPECT_NEAR(d.mean_time, 2.5, kExact);
@@ -190,7 +189,7 @@ TEST(Diffusion, IsThePlainGreenKuboSum) {
     }
 }
 
-// What no iteration settles: walks that go round and round.
+// Walks that go round and round, which no iteration settles.
 TEST(Diffusion, OfWalksInCircles) {
   constexpr int kStates = 401;
   std::vector<test::Entry> entries, hesitant;
@@ -207,11 +206,11 @@ TEST(Diffusion, OfWalksInCircles) {
   EXPECT_NEAR(d.drift[1], 200.0 / kStates, kExact);
   EXPECT_LE(d.tensor.norm(), kExact) << "nothing is random";
   const Chain jumps = Chain::from_probabilities(matrix(kStates, kStates, hesitant), exits);
-  // Walks forget within a million draws: so many times as much is lost to rounding.
+  // Walks forget within a million draws: rounding errors grow by that factor.
   expect_same(diffusion(jumps), diffusion_plainly(jumps, Eigen::Matrix2d::Identity(), {}), 1e-8);
 }
 
-// Many copies of each state, between which walks choose at random, are the same walk.
+// Many copies of each state, between which walks choose at random, give the same walk.
 TEST(Diffusion, OfManyStates) {
   constexpr int kCopies = 3000, kOfARow = 6;
   const Chain base = some_chain(6, 3);
@@ -254,10 +253,10 @@ TEST(Diffusion, IsRefusedWhereThereIsNone) {
   const auto refused = [](const Chain& chain, const Reward& time = {}) {
     EXPECT_THROW((void)diffusion(chain, Eigen::Matrix2d::Identity(), time), std::invalid_argument);
   };
-  refused(test::nearly_closed(0.1));  // trapped
+  refused(test::nearly_closed(0.1));  // bodies are trapped
   refused(Chain::from_probabilities(matrix(2, 2, {{0, 1, 1.0}}), {{0, 1, 0}, {1, 1, 0}}));
   refused(Chain::from_probabilities(matrix(2, 2, {{0, 0, 1.0}, {1, 1, 1.0}}),
-                                    {{0, 1, 0}, {1, -1, 0}}));  // goes left or right for ever
+                                    {{0, 1, 0}, {1, -1, 0}}));  // walks left or right for ever
   const Chain walk = moves_alike({{1, 0}, {-1, 0}});
   refused(walk, {{1.0}, {1.0}});
   refused(walk, {{1.0, 1.0}, {1.0}});

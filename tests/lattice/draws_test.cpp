@@ -21,8 +21,8 @@ using dynamics::Random;
 Random random(std::uint64_t trial) { return {Purpose::resampling, {7, 3, trial}}; }
 
 // Kolmogorov's distance between 20 000 draws and the exact distribution function, at its 0.1 %
-// point; for a discrete distribution the true level is lower. Both samplers, either side of p =
-// 1/2, counts from a few to 10^12.
+// point (for a discrete distribution the true level is lower). Covers both samplers, both sides of
+// p = 1/2, and counts from a few to 10^12.
 TEST(Binomial, HasItsDistribution) {
   constexpr int kDraws = 20'000;
   struct Case {
@@ -69,7 +69,7 @@ TEST(Binomial, HasItsDistribution) {
                          std::abs((i + 1.0) / kDraws - cdf(exact, static_cast<double>(drawn[i]))));
     EXPECT_LT(worst, 1.95 / std::sqrt(kDraws));
     EXPECT_LT(std::abs(sum), 5 * std::sqrt(kDraws));
-    const double fourth = 2.0 + 1.0 / variance;  // of z, less 1: at most
+    const double fourth = 2.0 + 1.0 / variance;  // upper bound of the fourth moment of z, minus 1
     EXPECT_NEAR(squares / kDraws, 1.0, 5 * std::sqrt(fourth / kDraws));
   }
 }
@@ -97,7 +97,7 @@ TEST(Binomial, SameStreamSameDraws) {
   EXPECT_TRUE(differs);
 }
 
-// The covariance of two counts is -n p q, and together they are all.
+// The covariance of two counts is -n p q, and all counts sum to the number of trials.
 TEST(Multinomial, SharesOutAllTrials) {
   const std::array<double, 5> weights{3.0, 0.0, 1.0, 2.0, 0.0};
   constexpr int kDraws = 20'000;

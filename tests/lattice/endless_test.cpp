@@ -22,7 +22,8 @@ Section square_section() {
   return section;
 }
 
-/// Goes on as it came with chance `on`, else through any of the other three sides; anywhere there.
+/// A body goes straight on with probability `on`, else through any of the other three sides, at any
+/// place.
 FunctionCell persistent(double on, double time = 0.0) {
   Section section = square_section();
   if (time > 0.0) section.costs = {{"time_s", "s", "duration"}};
@@ -55,7 +56,7 @@ TEST(Endless, TrialsGoOnFromCellToCell) {
   EXPECT_THROW((void)endless_trials(cell, anywhere, 6, 0, 3, health), std::invalid_argument);
 }
 
-// D = (1 + c) / (1 - c) / 4 per passage, c = on - (1 - on) / 3 the mean cosine of two moves.
+// D = (1 + c) / (1 - c) / 4 per passage; c = on - (1 - on) / 3 is the mean cosine of two moves.
 TEST(Endless, DiffusionOfAPersistentWalk) {
   for (const auto& [on, time] : {std::pair{0.25, 0.0}, {0.7, 0.0}, {0.7, 2.5}}) {
     const FunctionCell cell = persistent(on, time);

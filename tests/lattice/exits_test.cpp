@@ -23,7 +23,7 @@ auto sum_of(const Numbers& numbers) {
   return std::accumulate(numbers.begin(), numbers.end(), typename Numbers::value_type{});
 }
 
-/// A small field that many leave over every side.
+/// A small field that many bodies leave over every side.
 Scene leaving_scene() {
   Scene scene;
   scene.gate.forces.propulsion = 9.0;
@@ -56,7 +56,7 @@ TEST(Exits, PlacesAreTheGatesInMetres) {
             exit_bounds(p.gate_width(), p.gate_length(), field, 1));
 }
 
-// Two places of one side: the first is less certain alone than the side is, the second more.
+// Two places on one side: alone, the first is less certain than the side, the second more.
 TEST(Exits, APartOfASideIsNoMoreThanTheSide) {
   std::array<double, markov::kEndings> shares{};
   shares[static_cast<std::size_t>(Ending::left_edge)] = 0.3;
@@ -64,7 +64,7 @@ TEST(Exits, APartOfASideIsNoMoreThanTheSide) {
   endings.interval[static_cast<std::size_t>(Ending::left_edge)] = {0.2, 0.4};
   FieldExits exits;
   exits[1] = {{0.25, 0.05, 0.0}, {{{0.22, 0.45}, {0.01, 0.1}, {0.0, 0.5}}}};
-  exits[2] = {{0.0}, {{{0.0, 0.7}}}};  // of a side without interval nothing follows
+  exits[2] = {{0.0}, {{{0.0, 0.7}}}};  // a side without an interval gives no bound
   const FieldExits within = within_sides(exits, endings);
   EXPECT_EQ(within[1].interval,
             (std::vector<std::array<double, 2>>{{0.2, 0.4}, {0.01, 0.1}, {0.0, 0.2}}));
@@ -90,7 +90,7 @@ TEST(Exits, OfTrialsAreThoseOfTheirLastGates) {
     EXPECT_EQ(sum_of(counts[side]), tally[kSides[side]]);
   }
   const markov::CellCounts departed = departed_cells(tally);
-  // Of the first row nobody crosses, and of a column in the middle nobody leaves over a side.
+  // No body crosses from the first row, and none leaves over a side from a column in the middle.
   EXPECT_EQ(counts[1][0], departed(0, 0));
   EXPECT_EQ(counts[2][0], departed(0, 2));
   EXPECT_EQ(counts[kFarSide][1], departed(1, 1));
@@ -103,8 +103,8 @@ TEST(Exits, OfTrialsAreThoseOfTheirLastGates) {
     }
 }
 
-// Walks and the exact chain tell by gate and side alike who leaves the field,
-// also from the corners, from where some cross and some leave over a side.
+// Walks and the exact chain agree on who leaves, by gate and by side, also in the corners, where
+// bodies cross or leave over a side.
 TEST(Exits, OfPredictionsAddUpToTheEndingsByEitherWay) {
   Scene scene = leaving_scene();
   const RunPool pool = pool_of_runs(scene, 2000);
@@ -143,7 +143,7 @@ TEST(Exits, IntervalsOfGroupsAndOfResampledMatrices) {
       share_95(0.1, {0.065, 0.075, 0.085, 0.095, 0.105, 0.115, 0.125, 0.135}, from);
   for (std::size_t end : {0, 1}) EXPECT_NEAR(groups[0].interval[0][end], expected[end], 1e-12);
   EXPECT_LT(groups[0].interval[0][1] - groups[0].interval[0][0], 0.09);
-  // Nobody was seen there, and nothing varies: what 1000 trials can rule out.
+  // No body was seen there, and nothing varies: the bound is what 1000 trials can rule out.
   EXPECT_EQ(groups[0].interval[1], dynamics::interval_of_share(0.0, 1000.0));
   EXPECT_GT(groups[1].interval[0][1] - groups[1].interval[0][0], 0.02);
   const FieldExits resampled = exits_of(own, others, {1000, 0});
@@ -160,9 +160,8 @@ TEST(Resampled95, LeavesOutTheOutermost) {
   EXPECT_EQ(resampled_95(drawn, 0.1, {}), (std::array{0.005, 0.195}));
 }
 
-// A share that lies beyond the middle 95 % of what was drawn gets Jeffreys' interval of as many
-// trials as vary so: p (1 - p) over the mean square of
-// what was drawn less the share.
+// A share outside the middle 95 % of the draws gets the Jeffreys interval of an effective number of
+// trials: p (1 - p) over the mean square of the draws minus the share.
 TEST(Resampled95, ContainsTheShareByConstruction) {
   const std::vector<double> drawn{0.08, 0.08, 0.08, 0.079};
   const auto skewed = resampled_95(drawn, 0.1, {});

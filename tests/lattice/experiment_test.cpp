@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How many trials an experiment needs, of a prediction made by hand.
+// How many trials an experiment needs, for predictions made by hand.
 #include "lattice/study/experiment.h"
 
 #include <gtest/gtest.h>
@@ -12,9 +12,9 @@
 namespace gatewalk::lattice {
 namespace {
 
-constexpr std::size_t kCrossed = 0, kLeft = 1, kTrapped = 3;  // of kEndingNames
+constexpr std::size_t kCrossed = 0, kLeft = 1, kTrapped = 3;  // indices in kEndingNames
 
-/// Crosses with this chance, is trapped otherwise; +- `error` in all shares.
+/// A body crosses with this probability, else it is trapped; +- `error` in all shares.
 StartAnswer crossing(double chance, double error) {
   StartAnswer a;
   a.final.final_cells = CellProbabilities::Zero(2, 2);
@@ -41,11 +41,11 @@ TEST(ExperimentPlan, TakesTheWorseOfMoreAndFewer) {
   EXPECT_EQ(ten.trials_of_all, std::max(trials_for_share(0.3, 0.4, {0.8, 0.01}),
                                         trials_for_share(0.3, 0.2, {0.8, 0.01})));
   EXPECT_GT(*ten.trials_of_all, *ten.trials);
-  // Nobody leaves to the left: 1 - .95^n is 0.8 with n = 32.
+  // No body leaves to the left: 1 - .95^n is 0.8 with n = 32.
   EXPECT_EQ(plan.endings[kLeft].effects[1].trials, 32);
   EXPECT_EQ(plan.endings[kTrapped].least.more, smallest_difference(60, 0.7, options.goal).more);
   EXPECT_FALSE(plan.endings[kLeft].least.fewer);
-  // 0.05 is harder to see than 0.2, and needs more than 60 trials.
+  // 0.05 is harder to detect than 0.2, and needs more than 60 trials.
   EXPECT_GT(*plan.final_gates[0].trials, 4 * *plan.final_gates[2].trials);
   EXPECT_LT(*plan.final_gates[0].power, 0.5);
   EXPECT_GT(*plan.least_total_variation, 0.05);
@@ -61,7 +61,7 @@ TEST(ExperimentPlan, SaysWhereThePredictionIsTooUncertain) {
   EXPECT_FALSE(plan.endings[kCrossed].effects[0].power);
 }
 
-// Then four are looked at, not five, unless the other scene has a limit.
+// Then four endings are tested instead of five, unless the other scene has a limit.
 TEST(ExperimentPlan, WithoutALimitOfGatesCuttingOffIsNotLookedAt) {
   const ExperimentOptions options{.goal = {}, .trials = 60};
   const StartAnswer limited = crossing(0.3, 0.01);
@@ -86,10 +86,10 @@ TEST(TellApart, TwoScenes) {
   EXPECT_EQ(crossed.trials, trials_for_two_shares(0.3, 0.5, options.goal));
   EXPECT_EQ(crossed.power, power_of_two_shares(60, 0.3, 0.5, 0.05));
   EXPECT_FALSE(crossed.within_error);
-  EXPECT_FALSE(plan.endings[kLeft].trials);  // alike
+  EXPECT_FALSE(plan.endings[kLeft].trials);  // equal in both
   EXPECT_TRUE(plan.endings[kLeft].within_error);
   EXPECT_NEAR(plan.final_gates.difference, 0.2, 1e-15);
-  // Of four gates that differ as the two endings do: a little harder to see than in these.
+  // Four gates that differ as the two endings do: slightly harder to detect than in the endings.
   EXPECT_GT(*plan.final_gates.trials, 0.8 * static_cast<double>(*crossed.trials));
   EXPECT_LT(*plan.final_gates.trials, 2.0 * static_cast<double>(*crossed.trials));
   EXPECT_TRUE(tell_apart(crossing(0.3, 0.2), crossing(0.5, 0.2), {}).final_gates.within_error);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What memory and neighbours change: counts and verdicts by hand, and the trials that are compared.
+// The effect of memory and neighbours: counts and verdicts by hand, and the trials that are
+// compared.
 #include "lattice/scene/study/fidelity.h"
 #include "tests/support/disc_fields.h"
 
@@ -26,7 +27,7 @@ TEST(FidelityVariants, AreMoreauAtEveryFidelityAndTheDefaultMethod) {
     EXPECT_EQ(v.scene.gate.run.step, 0.001) << v.name();
 }
 
-/// Trials of a field of 3 x 3 gates that end in these.
+/// Trials of a field of 3 x 3 gates that end in these gates.
 FidelityRun ending_in(const std::vector<std::int32_t>& gates) {
   FidelityRun run{FieldTally({.columns = 3, .rows = 3}), gates};
   run.tally.count(gates, std::vector(gates.size(), std::optional(markov::Ending::trapped)));
@@ -39,21 +40,21 @@ PairedChange change_of(const FidelityRun& after, const FidelityRun& before) {
 }
 
 TEST(PairedChange, CountsTrialsAndDistributionsApart) {
-  // One of four trials ends elsewhere, whichever of the two a draw of the null takes.
+  // One of four trials ends elsewhere, whichever of the two samples the null assigns it to.
   const PairedChange one = change_of(ending_in({0, 1, 2, 8}), ending_in({0, 1, 2, 3}));
   EXPECT_EQ(one.changed, 0.25);
   EXPECT_EQ(one.apart.total_variation, 0.25);
   EXPECT_EQ(one.in_pairs.total_variation, 0.25);
   EXPECT_EQ(one.in_pairs.floor_total_variation_95, 0.25);
   EXPECT_EQ(one.uncertainty(), 0.25 + 3.0 / 4);
-  // Two trials change places: every trial is another one, the distribution is the same.
+  // Two trials change places: every trial ends elsewhere, but the distribution is the same.
   const PairedChange swapped = change_of(ending_in({1, 0}), ending_in({0, 1}));
   EXPECT_EQ(swapped.changed, 1.0);
   EXPECT_EQ(swapped.apart.total_variation, 0.0);
-  EXPECT_EQ(swapped.in_pairs.floor_total_variation_95, 1.0);  // half of the draws
+  EXPECT_EQ(swapped.in_pairs.floor_total_variation_95, 1.0);  // in half of the draws
 }
 
-/// 1000 trials, of which chance makes 0.01: uncertain by 0.013.
+/// 1000 trials with a sampling error of 0.01: the uncertainty is 0.013.
 PairedChange seen(double total_variation) {
   PairedChange c{.trials = 1000};
   c.apart.total_variation = total_variation;
@@ -66,7 +67,7 @@ TEST(PairedChange, IsJudgedWithItsUncertainty) {
   EXPECT_EQ(seen(0.0171).without_is(), Sufficiency::cannot_tell);
   EXPECT_EQ(seen(0.0429).without_is(), Sufficiency::cannot_tell);
   EXPECT_EQ(seen(0.0431).without_is(), Sufficiency::not_enough);
-  // Where no trial changed, a hundred are the fewest that can tell.
+  // If no trial changed, a hundred trials are the fewest that suffice.
   EXPECT_EQ(PairedChange{.trials = 100}.without_is(), Sufficiency::enough);
   EXPECT_EQ(PairedChange{.trials = 99}.without_is(), Sufficiency::cannot_tell);
 }
@@ -74,7 +75,7 @@ TEST(PairedChange, IsJudgedWithItsUncertainty) {
 TEST(FidelityOfStart, IsWhatTheWorseOfMemoryAndNeighboursSays) {
   const auto of = [](double remember, double all) {
     FidelityOfStart s;
-    for (const double tv : {0.0, remember, all, 1.0})  // another integrator has no say
+    for (const double tv : {0.0, remember, all, 1.0})  // the other integrator does not count
       s.runs.push_back({ending_in({}).tally, {}, 0.0, seen(tv)});
     return s.active_is();
   };
@@ -118,7 +119,7 @@ TEST(FidelityStudy, RunsTheTrialsOfTheFullDynamics) {
   EXPECT_EQ(told, wanted);
 }
 
-// In a single gate there is nothing to remember and no neighbour.
+// In a single gate there is nothing to remember, and no neighbour.
 TEST(FidelityStudy, SeesNoChangeInASingleGate) {
   const FidelityStudy study = compare_fidelities(
       fidelity_variants(parse_scene("field = { rows = 1, columns = 1 }", "scene")),

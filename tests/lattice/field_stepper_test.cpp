@@ -32,7 +32,7 @@ bool same(const BodyState& a, const BodyState& b) {
          test::same_bits(a.vy, b.vy);
 }
 
-/// Free damped beam after t seconds, underdamped, written out (scene S1).
+/// A free, damped, underdamped beam after t seconds, in closed form (scene S1).
 BeamState swung(double k, double d, double inertia, const BeamState& s, double t) {
   const double a = d / (2 * inertia), w = std::sqrt(k / inertia - a * a);
   const double c = (s.omega + a * s.theta) / w;
@@ -43,7 +43,8 @@ BeamState swung(double k, double d, double inertia, const BeamState& s, double t
 
 // ---- Free motion
 
-// Beams so short that the body never meets one: a parabola, which the midpoint rule has exactly.
+// Beams so short that the body never meets one: a parabola, which the midpoint rule follows
+// exactly.
 TEST(FieldStepper, PassesGatesWithoutContactOnAParabola) {
   GateParams p = moreau();
   p.beams.length = 1.0;
@@ -60,7 +61,7 @@ TEST(FieldStepper, PassesGatesWithoutContactOnAParabola) {
       impacts += static_cast<double>(run.watch.impacts);
       stepper.go_on(run.outcome);
       const double t = stepper.seconds();
-      // Some 5000 steps of round-off in numbers up to 240.
+      // Round-off of about 5000 steps in numbers up to 240.
       EXPECT_NEAR(60.0 * stepper.row() + stepper.body().y, 15 * t + 4 * t * t, 1e-9);
       EXPECT_NEAR(stepper.body().x, 3 + 2 * t, 1e-9);
       EXPECT_EQ(stepper.row(), gate + 1);
@@ -85,8 +86,9 @@ TEST(FieldStepper, DragIsOfSecondOrder) {
 
 // ---- Contact
 
-/// Disc near the joint place that its gate shares with the right neighbour, beams of three gates
-/// turned towards it and in motion; most overlap the disc, so several contacts act at once.
+/// A disc near the joint place that its gate shares with the right neighbour, with the beams of
+/// three gates turned towards it and in motion. Most beams overlap the disc, so several contacts
+/// act at once.
 FieldStepper scramble(const GateParams& p, Fidelity f, Draw& draw) {
   FieldStepper stepper(
       p, field(f),
@@ -104,8 +106,8 @@ FieldStepper scramble(const GateParams& p, Fidelity f, Draw& draw) {
   return stepper;
 }
 
-// e = 1, no damping, no drag: the midpoint rule keeps the energy of the springs, u+ = -u- that of
-// body and beams, at any step and for any number of contacts.
+// e = 1, no damping, no drag: the midpoint rule keeps the energy of the springs, and u+ = -u- that
+// of body and beams, at any step and for any number of contacts.
 TEST(FieldStepper, KeepsEnergyOverAllBeams) {
   Draw draw(3);
   GateParams p = moreau();
@@ -117,7 +119,7 @@ TEST(FieldStepper, KeepsEnergyOverAllBeams) {
     for (int scene = 0; scene < 200; ++scene) {
       FieldStepper stepper = scramble(p, f, draw);
       const double start = stepper.energy();
-      // Some 300 steps, each a few roundings of the energy.
+      // About 300 steps, with a few roundings of the energy each.
       const double rounding = 300 * 8 * test::kEps * start;
       Watch watch;
       for (int step = 0; step < 300; ++step) {
@@ -134,17 +136,17 @@ TEST(FieldStepper, KeepsEnergyOverAllBeams) {
     }
     EXPECT_GT(one, 100);
     EXPECT_GT(two, 20);
-    EXPECT_GT(more, f == Fidelity::all ? 3 : -1);  // `remember` has two beams here
+    EXPECT_GT(more, f == Fidelity::all ? 3 : -1);  // with `remember` there are two beams here
   }
 }
 
-// Rods without springs: contacts with beams that hinge on one joint place, of two gates, keep the
-// angular momentum about it. The midpoint's lever is exact: the disc's displacement over the step
-// differs from the predicted one along the sum of the impulses only.
+// Rods without springs: contacts with beams of two gates on one joint place keep the angular
+// momentum about it. The midpoint's lever is exact: the disc's displacement over the step differs
+// from the predicted one only along the sum of the impulses.
 TEST(FieldStepper, KeepsAngularMomentumAboutASharedJoint) {
   Draw draw(4);
   GateParams p = moreau(test::free_rods());
-  p.contact.restitution = 0.8;  // not only for elastic ones
+  p.contact.restitution = 0.8;  // not only for elastic contacts
   int neighbours = 0, own = 0;
   for (int scene = 0; scene < 400; ++scene) {
     // Above the joint (25, 30), between the gate's right beam and the neighbour's left beam.
@@ -182,9 +184,9 @@ TEST(FieldStepper, KeepsAngularMomentumAboutASharedJoint) {
   EXPECT_GT(neighbours, 100);
 }
 
-// Against MODEL.md's converged figures of Sec. III-B's study (F 7, Rm 10, k 300/500, d 50): 5.5 %
-// traversed left, 53.4 % exited, 41.0 % trapped. Four standard deviations of 1500 trials, and 1 %
-// for the step, which at 4 ms costs `stable` half of that.
+// MODEL.md's converged figures of the study in Sec. III-B (F 7, Rm 10, k 300/500, d 50): 5.5 %
+// traversed left, 53.4 % exited, 41.0 % trapped. The tolerance is four standard deviations of 1500
+// trials, plus 1 % for the step; at 4 ms the step costs `stable` half of that.
 TEST(FieldStepper, OneGateHasTheConvergedOutcomes) {
   const GateParams p = moreau(test::study(50.0), 0.004);
   constexpr int kTrials = 1500;
@@ -204,8 +206,8 @@ TEST(FieldStepper, OneGateHasTheConvergedOutcomes) {
   expect_share(of(Outcome::trapped), 0.410);
 }
 
-// The same law written for two beams: method moreau, run by run. Round-off grows with every hit, so
-// states are compared early (up to some dozen steps of contact), endings as shares.
+// Method moreau has the same law for two beams: compares run by run. Round-off grows with every
+// hit, so states are compared early (up to a few dozen steps of contact), and endings as shares.
 TEST(FieldStepper, OneGateIsMethodMoreau) {
   const GateParams p = moreau();
   const auto method = make_method(p);
@@ -239,7 +241,7 @@ TEST(FieldStepper, OneGateIsMethodMoreau) {
   EXPECT_GT(touched, kTrials / 2);
   EXPECT_GE(close, kTrials * 97 / 100);  // near grazing, round-off may decide
   for (std::size_t i = 0; i < ours.size(); ++i) {
-    // Four standard deviations of the difference of two shares, though the noise is shared.
+    // Four standard deviations of the difference of two shares, although the noise is shared.
     const double n = ours[i] + theirs[i];
     EXPECT_LE(std::abs(ours[i] - theirs[i]), 4 * std::sqrt(n) + 1) << i;
   }
@@ -247,14 +249,15 @@ TEST(FieldStepper, OneGateIsMethodMoreau) {
 
 // ---- Memory
 
-// A gate left behind goes on in closed form, is met again where it is by then, and not before its
-// beams are within reach. The beams ahead are stiff: the body bounces off them and comes back.
+// The beams of a gate left behind swing on in closed form, and are met again where they are by
+// then, but not before they are within reach. The beams ahead are stiff: the body bounces off them
+// and comes back.
 TEST(FieldStepper, RememberedBeamsSwingOnInClosedForm) {
   GateParams p = moreau();
   p.forces = {.propulsion = 0.0, .random = 0.0, .random_rate = 50.0, .drag = 0.0};
   p.beams.stiffness_left = 4e4;
   p.beams.stiffness_right = 3e4;
-  p.beams.damping = 4.0;  // so that something is left after seconds
+  p.beams.damping = 4.0;  // so that the beams still move after seconds
   FieldStepper stepper(p, field(Fidelity::remember), {-20, 50, 0, 25});
   stepper.set_beams(kMiddle, 0, {BeamState{0.4, -3.0}, {-0.2, 1.0}});
   Watch watch;
@@ -263,11 +266,11 @@ TEST(FieldStepper, RememberedBeamsSwingOnInClosedForm) {
     if (outside(p, stepper.body())) stepper.go_on(Outcome::traversed_even);
   };
   while (stepper.row() == 0) step();
-  EXPECT_EQ(stepper.awake(), 1U);  // the last choice was made before the step out
+  EXPECT_EQ(stepper.awake(), 1U);  // gates were last chosen before the step out
   step();
   EXPECT_EQ(stepper.awake(), 2U);
   while (stepper.awake() == 2U) step();
-  // Reach is a circle of 35 m about the joint at (-25, -30), plus what one step travels.
+  // The reach is a circle of 35 m about the joint at (-25, -30), plus the travel of one step.
   EXPECT_NEAR(stepper.body().y, std::sqrt(35.0 * 35.0 - 5.0 * 5.0) - 30.0, 3 * 25 * p.run.step);
   const auto left = stepper.beams(kMiddle, 0);
   const double then = stepper.seconds();
@@ -280,20 +283,20 @@ TEST(FieldStepper, RememberedBeamsSwingOnInClosedForm) {
       const BeamState s =
           swung(k, p.beams.damping, p.beams.inertia(), left[side], stepper.seconds() - then);
       EXPECT_NEAR(now[side].theta, s.theta, tolerance);
-      EXPECT_NEAR(now[side].omega, s.omega, 50 * tolerance);  // rates are some 40 1/s
+      EXPECT_NEAR(now[side].omega, s.omega, 50 * tolerance);  // rates are about 40 1/s
     }
   };
   int steps = 0;
   while (stepper.awake() == 1U) {
     ASSERT_LT(++steps, 5000);
     step();
-    // A phase of some 100 rad, each with a rounding or two.
+    // A phase of about 100 rad, with a rounding or two each.
     if (stepper.awake() == 1U) expect_swung(1e-12);
   }
   EXPECT_GT(stepper.seconds() - then, 1.0);
   EXPECT_LT(stepper.body().vy, 0.0);
   EXPECT_EQ(stepper.row(), 1);  // below its lower edge a body still counts in its gate
-  // One step of the midpoint rule since: h^3 w^3 theta / 12.
+  // Since then, one step of the midpoint rule: h^3 w^3 theta / 12.
   expect_swung(std::pow(p.run.step * 44.0, 3) * 0.4 / 12);
   while (stepper.body().y > 0.0) step();
   EXPECT_EQ(stepper.row(), 1);
@@ -303,7 +306,7 @@ TEST(FieldStepper, RememberedBeamsSwingOnInClosedForm) {
 TEST(FieldStepper, TheGateJustLeftStillPushes) {
   GateParams p = moreau();
   p.beams.stiffness_left = p.beams.stiffness_right = p.beams.damping =
-      1.0;  // beams that keep swinging
+      1.0;  // so that beams keep swinging
   const auto pushed = [&](Fidelity f) {
     FieldStepper stepper(p, field(f), {-20, 59.9, 0, 8});
     stepper.set_beams(kMiddle, 0, {BeamState{0.9, 2.0}, {}});
@@ -314,24 +317,25 @@ TEST(FieldStepper, TheGateJustLeftStillPushes) {
     for (int i = 0; i < 150; ++i) (void)stepper.advance(0.0, p.run.step, after);
     EXPECT_GT(after.impacts, 0);
     EXPECT_EQ(stepper.row(), 1);
-    EXPECT_LT(after.max_penetration, 0.1);  // seen by the watch, though of another gate
+    // the watch records it, although it belongs to another gate
+    EXPECT_LT(after.max_penetration, 0.1);
     EXPECT_GT(after.max_penetration, 0.0);
     return stepper.body();
   };
   const BodyState b = pushed(Fidelity::remember);
   EXPECT_GT(b.vy, 11.4);  // 8 m/s and 0.3 s of 8 N alone: 10.4
-  // Nothing else is near: every gate's beams are the same as the last gate's.
+  // Nothing else is near: the beams of all gates give the same result as those of the last gate.
   EXPECT_TRUE(same(b, pushed(Fidelity::all)));
 }
 
-// A body on its way out through a side goes on touching the beam it has been leaning on.
+// A body on its way out through a side still touches the beam that it has been leaning on.
 TEST(FieldStepper, ASideLeftBehindStillPushes) {
   GateParams p = moreau();
   p.forces.propulsion = 0.0;
   p.beams.stiffness_left = p.beams.stiffness_right = p.beams.damping =
-      1.0;  // beams that keep swinging
+      1.0;  // so that beams keep swinging
   FieldStepper stepper(p, field(Fidelity::remember), {24.9, 45, 6, 0});
-  // The right beam stands beside the disc, left of it, and swings after it.
+  // The right beam stands beside the disc, to its left, and swings after it.
   stepper.set_beams(kMiddle, 0, {BeamState{}, {0.7, 2.0}});
   Watch watch;
   while (!outside(p, stepper.body())) (void)stepper.advance(0.0, p.run.step, watch);
@@ -342,12 +346,12 @@ TEST(FieldStepper, ASideLeftBehindStillPushes) {
   EXPECT_GT(stepper.body().vx, before + 1.0);
 }
 
-// Only `all` has the beams of a gate that the body has never been in.
+// Only `all` includes the beams of a gate that the body has never been in.
 TEST(FieldStepper, NeighboursPushInAllOnly) {
   GateParams p = moreau();
   p.forces.propulsion = 0.0;
   p.beams.stiffness_left = p.beams.stiffness_right = p.beams.damping =
-      1.0;  // beams that keep swinging
+      1.0;  // so that beams keep swinging
   for (const Fidelity f : {Fidelity::remember, Fidelity::all}) {
     FieldStepper stepper(p, field(f), {15, 46, 0, 0});
     stepper.set_beams(kMiddle + 1, 0, {BeamState{1.2, 3.0}, {}});  // swings over from the right
@@ -358,15 +362,15 @@ TEST(FieldStepper, NeighboursPushInAllOnly) {
   }
 }
 
-// Gates outside the field do not exist, those inside are awake where their joints are within reach:
-// at most four, in the paper's field.
+// Gates outside the field do not exist. Gates inside are awake if their joints are within reach: at
+// most four in the paper's field.
 TEST(FieldStepper, FourGatesAtMostAreWithinReach) {
   const GateParams p = moreau();
   Watch watch;
   FieldStepper alone(p, field(Fidelity::all, 1, 1), {24, 10, 0, 0});
   (void)alone.advance(0.0, 0.02, watch);
   EXPECT_EQ(alone.awake(), 1U);
-  // (24, 2): within 35 m of the joint at (25, 30), in row 1 also of the one at (25, -30).
+  // (24, 2): within 35 m of the joint at (25, 30), in row 1 also of that at (25, -30).
   FieldStepper first(p, field(Fidelity::all), {24, 2, 0, 0});
   (void)first.advance(0.0, 0.02, watch);
   EXPECT_EQ(first.awake(), 2U);
@@ -394,7 +398,8 @@ TEST(FieldStepper, FourGatesAtMostAreWithinReach) {
 
 // ---- Whole runs
 
-// To the last bit, with crowded contacts: gates so narrow that beams of four gates overlap.
+// Mirror images agree to the last bit, with crowded contacts: gates so narrow that beams of four
+// gates overlap.
 TEST(FieldStepper, MirroredFieldsGiveMirroredTrials) {
   GateParams wide = moreau();
   GateParams narrow = wide;
@@ -435,17 +440,17 @@ TEST(FieldStepper, MirroredFieldsGiveMirroredTrials) {
       }
       EXPECT_GT(moved, 12);
       if (f == Fidelity::all && p.beams.joint_x < 20.0) {
-        EXPECT_GT(crowded, 10);  // three contacts and more in one step
+        EXPECT_GT(crowded, 10);  // three or more contacts in one step
       }
     }
   }
 }
 
-// 12 s count from the entry into a gate, not from the start.
+// The limit of 12 s counts from the entry into a gate, not from the start.
 TEST(FieldStepper, TheTimeLimitIsThatOfAGate) {
   GateParams p = moreau();
   p.forces.random = 0.0;
-  p.beams.stiffness_left = p.beams.stiffness_right = 1e5;  // nothing gets through
+  p.beams.stiffness_left = p.beams.stiffness_right = 1e5;  // no body passes
   FieldStepper stepper(p, field(Fidelity::all), {0, 45, 0, 5});
   RandomForce force(p.forces, Random(Purpose::field, {}));
   const GateRun out = stepper.run_gate(force);
@@ -457,8 +462,8 @@ TEST(FieldStepper, TheTimeLimitIsThatOfAGate) {
   EXPECT_NEAR(stepper.seconds(), out.seconds + held.seconds, 1e-9);
 }
 
-// The ledger sees all beams: damping and impacts take energy, nothing adds any, and a step too long
-// is said to be one.
+// The energy balance includes all beams: damping and impacts take energy, nothing adds any, and
+// Health reports a step that is too long.
 TEST(FieldStepper, HealthIsKept) {
   for (const double step : {0.001, 0.02}) {
     const GateParams p = moreau({}, step);
@@ -484,7 +489,7 @@ TEST(FieldStepper, HealthIsKept) {
   }
 }
 
-// Broken numbers end a run and are called so.
+// Non-finite numbers end a run, which is reported as broken.
 TEST(FieldStepper, BrokenRunsAreCalledBroken) {
   const GateParams p = moreau();
   FieldStepper stepper(p, field(Fidelity::all), {0, 0, 0, 15});

@@ -82,7 +82,7 @@ void expect_adds_up(const Ran& t, const FieldParams& field) {
   EXPECT_EQ(trapped_cells(t).sum(), t.trapped());
   EXPECT_EQ(departed_cells(t).sum(), t.left_field());
   EXPECT_TRUE((trapped_cells(t) + departed_cells(t) <= t.final_cells).all());
-  // Nobody leaves over a side but from its column, or over the far edge but from the last row.
+  // Bodies leave over a side only from its column, and over the far edge only from the last row.
   if (field.rows > 2 && field.columns > 2) {
     EXPECT_EQ(departed_cells(t).block(0, 1, field.rows - 1, field.columns - 2).sum(), 0);
   }
@@ -91,7 +91,7 @@ void expect_adds_up(const Ran& t, const FieldParams& field) {
   for (const std::int32_t gate : t.each.final_gates)
     ++again(gate / field.columns, gate % field.columns);
   EXPECT_TRUE((again == t.final_cells).all());
-  // One run per trial and one more per crossing between gates.
+  // One run per trial, plus one per crossing between gates.
   EXPECT_EQ(t.health.runs,
             t.trials + std::accumulate(t.entries.begin(), t.entries.end(), std::int64_t{0}));
   for (int b = 0; b < kBoundaries; ++b) {
@@ -148,7 +148,7 @@ TEST(RunField, FieldOfOneGateIsLeftOrKept) {
   EXPECT_EQ(t.left_field() + t.trapped(), 200);
   EXPECT_GT(t.left_field(), 100);
   EXPECT_EQ(t.health.runs, 200);
-  // The same trials as those cut off after one gate: who would go on there leaves here.
+  // The same trials as those cut off after one gate: bodies that would go on there leave here.
   EXPECT_EQ(t.left_field(), run(GateParams(), {9, 9, 1}, {0, 200}).cut_off());
 }
 
@@ -161,7 +161,7 @@ TEST(StreamRow, NamesAStart) {
   EXPECT_LT(stream_row(p, a), std::uint64_t{1} << 56);  // the purpose stands above
 }
 
-// Second route: the trial gate by gate with the indices and shifts of MODEL.md written out.
+// Second route: the trial gate by gate, with the indices and shifts of MODEL.md written out.
 TEST(RunField, TrialsCanBeReplayedAlone) {
   const GateParams p;
   const FieldParams field;
@@ -195,7 +195,8 @@ TEST(RunField, TrialsCanBeReplayedAlone) {
   EXPECT_EQ(t.entries, entries);
 }
 
-// Second route: gate by gate, the hold dropped at every crossing. Lanes (moreau) round differently.
+// Second route: gate by gate, with the hold dropped at every crossing. Lanes (moreau) round
+// differently.
 TEST(RunField, DrawsTheForceAnewWhenAsked) {
   for (const char* const name : {"stable", "moreau"}) {
     GateParams p;
@@ -282,15 +283,15 @@ TEST(RunField, TalliesAddInAnyOrderAndNoTrialTwice) {
   EXPECT_EQ(tally.trials, 50);
 }
 
-// Gates of two types: the reference is one run_gate after the other, each by its own gate's
-// parameters, under one force that goes on.
+// Gates of three types. The reference is one run_gate after another, each with the parameters of
+// its own gate, under one force that continues.
 TEST(RunField, GatesOfSeveralTypes) {
   GateParams soft, strong, slow;
   soft.beams.stiffness_left = soft.beams.stiffness_right = 150.0;
   strong.forces.propulsion = 14.0;
   strong.forces.random = 60.0;
-  strong.run.method = "event";     // each by its own method
-  slow.forces.random_rate = 25.0;  // each by its own rate
+  strong.run.method = "event";     // each with its own method
+  slow.forces.random_rate = 25.0;  // each with its own rate
   const FieldParams field{5, 6, 13};
   std::vector<int> types(30);
   for (int row = 0; row < 6; ++row)
@@ -326,13 +327,13 @@ TEST(RunField, GatesOfSeveralTypes) {
   EXPECT_GT(sideways, 10);
   EXPECT_TRUE(each.entries() == crossings);  // to the last bit
   const Ran whole = run(gates, field, {0, 60}, 4);
-  // The names of the types do not matter.
+  // The order of the types does not matter.
   std::vector<int> others = types;
   for (int& type : others) type = (type + 1) % 3;
   expect_same(run(FieldGates::by_cell({slow, soft, strong}, 5, others), field, {0, 60}, 4), whole);
   const auto on_four = test::on_threads(4, [&] { return run(gates, field, {0, 60}, 4); });
   expect_same(on_four, whole);
-  // The same gates under two names are the gates of one type.
+  // Equal gates under several names are gates of one type.
   expect_same(run(FieldGates::by_cell({soft, soft, soft}, 5, types), field, {0, 60}, 4),
               run(soft, field, {0, 60}, 4));
   EXPECT_THROW((void)run(gates, {9, 9, 13}, {0, 1}), std::invalid_argument);
@@ -344,7 +345,7 @@ TEST(RunField, OtherSeedOtherTrials) {
             run(GateParams(), {}, {0, 100}, 2).each.final_gates);
 }
 
-// A mirrored start with mirrored beams: the field is symmetric, so without noise is the path.
+// A mirrored start with mirrored beams: the field is symmetric, so the path without noise is, too.
 TEST(RunField, QuietFieldsAreMirrorSymmetric) {
   GateParams p;
   p.forces.random = 0.0;
@@ -366,13 +367,13 @@ TEST(RunField, QuietFieldsAreMirrorSymmetric) {
   EXPECT_GT(moved_sideways, 0);
 }
 
-// Without noise all trials are one, and a chain made of that one path walks to the same gate.
+// Without noise all trials are equal, and a chain made of that one path walks to the same gate.
 TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
   GateParams p;
   p.forces.random = 0.0;
   p.beams.stiffness_left = p.beams.stiffness_right = 60.0;
   const FieldParams field;
-  // Bins so fine that no gate of a path has the state of another one.
+  // Bins so fine that no two gates of a path have the same state.
   auto bins = table3_space(p).bins();
   bins[0].edges[kEntryVx] = {-30, 30};
   bins[0].edges[kEntryVy].clear();
@@ -386,7 +387,7 @@ TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
     const int gate = t.each.final_gates[0];
     EXPECT_EQ(t.final_cells(gate / 9, gate % 9), 5);
 
-    // The path's states, one transition each.
+    // The path's states, with one transition each.
     Transitions path(space);
     const auto method = make_method(p);
     RandomForce quiet(p.forces, Random(Purpose::field, {}));
@@ -407,7 +408,7 @@ TEST(RunField, QuietTrialsAreAllAlikeAndTheChainFollowsThem) {
       state = next;
       ++moves;
     }
-    if (revisited) continue;  // one state, two ways on: no chain can follow that
+    if (revisited) continue;  // one state with two successors, which no chain can follow
     ++followed;
     const auto walked = markov::predict(make_chain(path), {field.columns, field.rows},
                                         {first.start}, {.max_cells = field.max_gates})
@@ -430,7 +431,7 @@ GateParams moreau(double step = 0.004) {
   return p;
 }
 
-// `active` is this loop, whatever else there is: every gate fresh, to the last bit.
+// `active` is exactly this loop, whatever else there is: a fresh gate each time, to the last bit.
 TEST(Fidelity, ActiveIsGateByGate) {
   const FieldParams field;
   for (const char* name : {"stable", "paper"}) {
@@ -486,7 +487,7 @@ TEST(Fidelity, TalliesAddUp) {
     }
 }
 
-// Without neighbours there is nothing to remember and nobody else to meet.
+// Without neighbours there is nothing to remember, and no other gate to meet.
 TEST(Fidelity, OneGateHasNoMemory) {
   GateParams p = moreau();
   p.forces.propulsion = 7.0;
@@ -496,13 +497,14 @@ TEST(Fidelity, OneGateHasNoMemory) {
   expect_same(tally(Fidelity::all), remember);
   EXPECT_GT(remember.trapped(), 0);
   EXPECT_GT(remember.left_field(), 0);
-  // Two ways to write one stepper: round-off may part a few trials near grazing.
+  // Two implementations of one stepper: round-off may separate a few trials near grazing.
   const Ran active = tally(Fidelity::active);
   EXPECT_LE(std::abs(active.trapped() - remember.trapped()), 5);
   EXPECT_LE(std::abs(active.left_field() - remember.left_field()), 5);
 }
 
-// The three share the noise: most trials end in the same gate, which those of another seed do not.
+// The three fidelities share the noise: most trials end in the same gate, unlike those of another
+// seed.
 TEST(Fidelity, SharesTheNoise) {
   const GateParams p = moreau();
   const auto gates = [&](Fidelity f, std::uint64_t seed) {
@@ -581,7 +583,7 @@ TEST(Fidelity, NeedsMethodMoreau) {
   GateParams p = moreau();
   p.beams.length = 141.0;
   EXPECT_THROW(validate(p, {9, 9, 13, Fidelity::all}), InvalidParameter);
-  p.beams.length = 140.0;  // 3 times 50 m, less the radius
+  p.beams.length = 140.0;  // 3 times 50 m, minus the radius
   EXPECT_NO_THROW(validate(p, {9, 9, 13, Fidelity::all}));
   EXPECT_NO_THROW(validate({}, FieldParams{}));
 }
