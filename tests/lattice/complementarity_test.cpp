@@ -32,7 +32,7 @@ Contacts contacts(Draw& draw, int n, bool with_pins) {
     const double angle = draw.uniform(0.0, 2.0 * std::numbers::pi);
     normals.row(i) << std::cos(angle), std::sin(angle);
     const bool pin = with_pins && draw.coin();
-    // at the same place
+    // At the same place.
     if (pin && i > 0 && draw.coin()) normals.row(i) = normals.row(draw.below(i));
     const double lever = pin ? 0.0 : draw.sign() * draw.log_uniform(1e-3, 25.0);
     own[i] = lever * lever / inertia;

@@ -317,7 +317,7 @@ TEST(FieldStepper, TheGateJustLeftStillPushes) {
     for (int i = 0; i < 150; ++i) (void)stepper.advance(0.0, p.run.step, after);
     EXPECT_GT(after.impacts, 0);
     EXPECT_EQ(stepper.row(), 1);
-    // the watch records it, although it belongs to another gate
+    // The watch records it, although it belongs to another gate.
     EXPECT_LT(after.max_penetration, 0.1);
     EXPECT_GT(after.max_penetration, 0.0);
     return stepper.body();

@@ -32,14 +32,14 @@ Fit fit_trials(int numbers, const ProblemAt& problem_at, const Observed& observe
   return fit(numbers, problem_at, trials_to_fit(observed, middle), options);
 }
 
-/// Cells of even rows let bodies through by one chance, those of odd rows by another.
+/// Cells of even rows let bodies through with one probability, cells of odd rows with another.
 Problem two_lane(double even, double odd) {
   std::vector<int> types;
   for (int row = 0; row < kLaneRows; ++row) types.push_back(row % 2);
   return test::lane({even, odd}, std::move(types));
 }
 
-/// Of trials in that lane.
+/// The observed endings and gates of trials in that lane.
 Observed experiment(const Problem& problem, std::int64_t trials, std::uint64_t seed) {
   FieldTrials each;
   const FieldTally tally =
@@ -106,7 +106,7 @@ Problem waiting_lane(double rate) {
   return problem;
 }
 
-// Endings say nothing of the rate, the times of who crossed all.
+// Endings say nothing about the rate; the times of bodies that crossed say everything.
 TEST(Fit, TimesTellWhatEndingsDoNot) {
   const Problem truth = waiting_lane(1.1);
   FieldTrials each;
@@ -130,7 +130,7 @@ TEST(Fit, TimesTellWhatEndingsDoNot) {
   EXPECT_EQ(timed.observed, 300);
   const double shape = crossed * kLaneRows + 1.0, mean = shape / sum, sd = std::sqrt(shape) / sum;
   EXPECT_NEAR(0.5 + 1.5 * timed.numbers[0].mean, mean, sd);
-  EXPECT_NEAR(1.5 * timed.numbers[0].sd, sd, 0.25 * sd);  // the parts know a little less
+  EXPECT_NEAR(1.5 * timed.numbers[0].sd, sd, 0.25 * sd);  // the parts of the times lose a little
   EXPECT_TRUE(timed.numbers[0].told);
   o.timed.clear();
   EXPECT_FALSE(fit_trials(1, problem_at, o, {.trials = 200'000, .seed = 2}).numbers[0].told);
@@ -149,7 +149,7 @@ TEST(Fit, PartsOfTimesLieBetweenThoseThatDiffer) {
             std::vector<double>{7.5});
 }
 
-// By simulation: 60 experiments whose rates are drawn from the range.
+// By simulation: 60 experiments with rates drawn from the range.
 TEST(Fit, IntervalsOfTimesHoldWhatTheyShould) {
   int held = 0;
   constexpr int kExperiments = 60;
@@ -171,7 +171,7 @@ TEST(Fit, IntervalsOfTimesHoldWhatTheyShould) {
     const Fit f = fit_trials(1, problem_at, o, {.trials = 60'000, .seed = 2});
     held += f.numbers[0].interval[0] <= at && at <= f.numbers[0].interval[1];
   }
-  // 95 % but for chance (p > 0.001 by the binomial distribution).
+  // 95 % within sampling error (p > 0.001 by the binomial distribution).
   EXPECT_GE(held, 51);
 }
 
@@ -193,7 +193,7 @@ TEST(Fit, TellsTwoNumbersApart) {
   EXPECT_LT(std::abs(f.correlation(0, 1)), 0.15);
 }
 
-/// Each passage of such trials, with the entry by which it began.
+/// Each passage of these trials, with the entry by which it began.
 std::vector<EnteredPassage> passages_of(const Problem& problem, std::int64_t trials,
                                         std::uint64_t seed) {
   FieldTrials each{.keep_passages = true};
@@ -210,7 +210,7 @@ std::vector<EnteredPassage> passages_of(const Problem& problem, std::int64_t tri
   return all;
 }
 
-// Each of its own type: what trials can tell only of where they end.
+// Each type has its own posterior from passages; trials tell only where bodies end.
 TEST(Fit, PassagesAreTheExactPosteriorOfEachType) {
   const std::vector<EnteredPassage> seen = passages_of(two_lane(0.7, 0.9), 120, 8);
   const auto problem_at = [](const std::vector<double>& x) {
@@ -238,7 +238,7 @@ TEST(Fit, PassagesAreTheExactPosteriorOfEachType) {
     const FittedNumber& number = f.numbers[static_cast<std::size_t>(type)];
     EXPECT_NEAR(chance_at(number.mean), boost::math::mean(exact), 0.25 * sd);
     EXPECT_NEAR((kHigh - kLow) * number.sd, sd, 0.1 * sd);
-    // An experiment like it has as many passages through this type.
+    // A simulated experiment has as many passages through this type.
     for (Eigen::Index g = 0; g < std::ssize(f.groups); ++g)
       if (data.outcomes.begins[f.groups[static_cast<std::size_t>(g)].outcomes.front() / 2]
               .starts_with(problem_at({0.5, 0.5}).types[static_cast<std::size_t>(type)] + ":"))
@@ -263,12 +263,12 @@ TEST(Fit, TimesOfPassagesTellWhatTheirEndsDoNot) {
   EXPECT_EQ(data.outcomes.times.size(), 7U);
   const Fit f = fit(1, problem_at, data, {.trials = 200'000, .seed = 2});
   const double mean = (left + 1.0) / sum, sd = std::sqrt(left + 1.0) / sum;
-  EXPECT_NEAR(0.5 + 1.5 * f.numbers[0].mean, mean, sd);  // only quantiles of them are known
+  EXPECT_NEAR(0.5 + 1.5 * f.numbers[0].mean, mean, sd);  // only quantiles of the times are known
   EXPECT_NEAR(1.5 * f.numbers[0].sd, sd, 0.2 * sd);
 }
 
-// Much was seen, and the number changes nothing: chance in the trials is not taken for what it
-// does.
+// With many observations of a number without any effect, the fit does not take sampling error of
+// the trials for an effect.
 TEST(Fit, MuchThatWasSeenTellsNothingOfWhatChangesNothing) {
   const std::vector<EnteredPassage> seen = passages_of(waiting_lane(1.1), 300, 9);
   const ProblemAt at = [](const std::vector<double>&) { return waiting_lane(1.1); };
@@ -298,7 +298,7 @@ TEST(Fit, PassagesMayStandInAnyOrder) {
   EXPECT_EQ(draws(), in_order);
 }
 
-// By simulation: 60 experiments whose rates are drawn from the range.
+// By simulation: 60 experiments with rates drawn from the range.
 TEST(Fit, IntervalsOfPassagesHoldWhatTheyShould) {
   int held = 0;
   constexpr int kExperiments = 60;
@@ -313,7 +313,7 @@ TEST(Fit, IntervalsOfPassagesHoldWhatTheyShould) {
     const Fit f = fit(1, problem_at, data, {.trials = 60'000, .seed = 2});
     held += f.numbers[0].interval[0] <= at && at <= f.numbers[0].interval[1];
   }
-  EXPECT_GE(held, 51);  // 95 % but for chance (p > 0.001 by the binomial distribution)
+  EXPECT_GE(held, 51);  // 95 % within sampling error (p > 0.001 by the binomial distribution)
 }
 
 TEST(Fit, PassagesThatWereLostAreLeftOut) {
@@ -331,8 +331,8 @@ TEST(Fit, SaysWhatTheDataCannotTell) {
       2, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[0])); }, o,
       {.trials = 200'000, .seed = 4});
   EXPECT_TRUE(f.numbers[0].told);
-  EXPECT_FALSE(f.numbers[1].told);  // it changes nothing
-  // Only the product of these is seen.
+  EXPECT_FALSE(f.numbers[1].told);  // this number changes nothing
+  // Only the product of the two numbers has an effect.
   const Fit product = fit_trials(2,
                                  [](const std::vector<double>& x) {
                                    const double both = chance_at(x[0]) * (0.8 + 0.4 * x[1]) / 1.2;
@@ -388,14 +388,14 @@ TEST(Fit, RanksOfTheTruthAreUniform) {  // simulation-based calibration (Talts e
     double chi_squared = 0.0;
     for (const int n : of_number)
       chi_squared += std::pow(n - kExperiments / kBins, 2.0) / (double(kExperiments) / kBins);
-    EXPECT_LT(chi_squared, 18.5);  // p = 0.001 of four degrees of freedom
+    EXPECT_LT(chi_squared, 18.5);  // p = 0.001 with four degrees of freedom
   }
 }
 
-/// Shares of a posterior of one number among parts of its range, by Simpson's rule.
+/// The posterior's shares of equal parts of the range of one number, by Simpson's rule.
 template <class LogLikelihood>
 std::vector<double> shares_of(const LogLikelihood& log_likelihood, int parts) {
-  constexpr int kSteps = 2000;  // of a part
+  constexpr int kSteps = 2000;  // per part
   std::vector<double> shares(static_cast<std::size_t>(parts));
   const double most = log_likelihood(0.8);
   for (int i = 0; i < parts; ++i)
@@ -411,8 +411,8 @@ std::vector<double> shares_of(const LogLikelihood& log_likelihood, int parts) {
   return shares;
 }
 
-// The chance goes up and down over the range, so that five values explain the counts alike; where
-// it is steeper the hill is narrower.
+// The probability goes up and down over the range, so that five values explain the counts equally
+// well. Where it is steeper, the maximum is narrower.
 TEST(Fit, KeepsEachHillOfOneNumber) {
   const auto chance = [](double x) { return 0.72 + 0.2 * std::sin(20.0 * x * x - 1.0); };
   const auto problem_at = [&](const std::vector<double>& x) {
@@ -437,9 +437,9 @@ TEST(Fit, KeepsEachHillOfOneNumber) {
   }
 }
 
-// A field that is its own mirror image, and as many left as right: soft beams on the left explain
-// that as well as soft ones on the right do. On a grid of 4 Nm/rad with 4000 trials at each point
-// 95 % of either number lie in [298, 406]; the hills are at (306, 399) and (399, 306).
+// The field is its own mirror image, and as many bodies leave left as right: soft beams on the left
+// explain the data as well as soft beams on the right. On a grid of 4 Nm/rad with 4000 trials per
+// point, 95 % of either number lie in [298, 406]; the maxima are at (306, 399) and (399, 306).
 TEST(Fit, AFieldThatIsItsMirrorImageHasBothHills) {
   const RangedScene scene(
       TomlFile("forces = { propulsion_N = 7.0, random_N = 4.0 }\n"
@@ -472,7 +472,7 @@ TEST(Fit, AFieldThatIsItsMirrorImageHasBothHills) {
     }
     same += apart < 20.0;
   }
-  EXPECT_GE(same, 4);  // with so few trials others are wider on one side
+  EXPECT_GE(same, 4);  // with so few trials, the others are wider on one side
 }
 
 TEST(Fit, IsTheSameOnOneThread) {
@@ -496,7 +496,7 @@ TEST(Fit, RefusesWhatItCannotUse) {
   EXPECT_THROW((void)fit(7, at, data, {}), std::invalid_argument);
   EXPECT_THROW((void)fit_trials(1, at, o, {.trials = 100}), std::invalid_argument);
   EXPECT_THROW((void)fit_trials(1, at, {}, {}), std::invalid_argument);
-  o.gates_by_ending = {};  // which belong together?
+  o.gates_by_ending = {};  // which gates and endings belong together is unknown
   EXPECT_THROW((void)fit_trials(1, at, o, {}), std::invalid_argument);
   o.seen.endings = {};
   o.seen.final_gates = CellCounts::Zero(3, 1);

@@ -28,7 +28,7 @@ using namespace dynamics;
 
 StateSpace paper() { return table3_space(GateParams{}); }
 
-/// Counts without physics: every third row, a few columns each.
+/// Counts without physics: every third row, with a few columns each.
 Transitions made_up() {
   Transitions t(paper());
   test::Draw draw(1);
@@ -49,7 +49,7 @@ TEST(Exits, LeadToTheirStateInTheNeighbour) {
   const auto exits = exits_of(paper());
   ASSERT_EQ(exits.size(), 88u);
   for (int state = 0; state < 87; ++state) {
-    EXPECT_EQ(exits[state].next_input, state);  // O_j is I_j of the next gate
+    EXPECT_EQ(exits[state].next_input, state);  // output O_j is input I_j of the next gate
     const int di_x = state < 25 ? 0 : state < 55 || state == 85 ? -1 : 1;  // EN | RD, RT | LD, LT
     EXPECT_EQ(exits[state].di_x, di_x) << state;
     EXPECT_EQ(exits[state].di_y, state < 25 ? 1 : 0) << state;
@@ -82,7 +82,7 @@ TEST(GateChain, HasTheSharesOfTheCounts) {
 
 // ---- Resampling ----
 
-/// Shares of a row.
+/// The shares of a row.
 std::map<int, double> shares_of(const markov::Counts& counts, int row) {
   std::map<int, double> shares;
   double all = 0.0;
@@ -94,7 +94,8 @@ std::map<int, double> shares_of(const markov::Counts& counts, int row) {
   return shares;
 }
 
-// Around its own shares, as rows of so many runs vary: also one of three runs, and of two.
+// Resampled rows vary around the row's own shares as rows of that many runs do; also with two or
+// three runs.
 TEST(Resampled, HasItsOwnSharesForMeanAndVariesAsSoManyRuns) {
   Transitions t = made_up();
   t.rows[1] = {{3, 2}, {7, 1}};
@@ -108,7 +109,7 @@ TEST(Resampled, HasItsOwnSharesForMeanAndVariesAsSoManyRuns) {
     for (int row = 0; row < t.space.size(); ++row) {
       const std::map<int, double> shares = shares_of(drawn, row);
       ASSERT_EQ(shares.size(),
-                t.rows[row].size());  // nothing is lost, and nothing comes of nothing
+                t.rows[row].size());  // no outcome is lost, and none is added
       for (const auto& [column, share] : shares) {
         ASSERT_TRUE(t.rows[row].contains(column));
         ASSERT_GT(share, 0.0);
@@ -122,17 +123,17 @@ TEST(Resampled, HasItsOwnSharesForMeanAndVariesAsSoManyRuns) {
       const auto trials = static_cast<double>(t.trials[row]);
       const double mean = static_cast<double>(n) / trials;
       const double variance = mean * (1.0 - mean) / trials;
-      // Five standard errors, for some 100 entries.
+      // Five standard errors, for about 100 entries.
       EXPECT_NEAR(sum[row][column] / kReplicates, mean,
                   5 * std::sqrt(variance / kReplicates) + 1e-12);
       const double m = sum[row][column] / kReplicates;
-      if (variance == 0.0 || n == 1) continue;  // of a single run fourth moments are large
+      if (variance == 0.0 || n == 1) continue;  // the fourth moments of a single run are large
       EXPECT_NEAR((squares[row][column] / kReplicates - m * m) / variance, 1.0, 0.15);
     }
   }
 }
 
-// A run that makes two counts, its own and its mirror image's, is one run.
+// A run with two counts, its own and its mirror image's, is one run.
 TEST(Resampled, CountsMirrorImagesOnce) {
   markov::Counts counts(1, 2);
   counts.insert(0, 0) = 60;
@@ -153,8 +154,9 @@ TEST(Resampled, CountsMirrorImagesOnce) {
   EXPECT_NEAR(variance({2}) / (0.75 * 0.25 / 40.0), 1.0, 0.12);
 }
 
-// Trees of a symmetric gate count every run with its image: twice in each leaf, and in the row of a
-// start in the middle; not of a start beside it, nor where the gate is not symmetric.
+// Trees of a symmetric gate count every run with its mirror image: twice in each leaf, and in the
+// row of a start in the middle. A start beside the middle counts once, and so does every run if the
+// gate is not symmetric.
 TEST(CountedField, KnowsWhichRowsHoldMirrorImages) {
   GateParams even;
   even.beams.stiffness_right = even.beams.stiffness_left;
@@ -174,7 +176,7 @@ TEST(CountedField, KnowsWhichRowsHoldMirrorImages) {
   EXPECT_EQ(runs(counted_field(FieldGates(even).map(), {t})), (Runs{20, 20, 20, 20, 20, 20, 40}));
   EXPECT_EQ(runs(counted_field(FieldGates(uneven).map(), {t})), (Runs{40, 40, 40, 40, 40, 40, 40}));
   EXPECT_EQ(counted_field(FieldGates(even).map(), {made_up()}).images.size(),
-            0U);  // bins count none
+            0U);  // bins count no mirror images
 }
 
 TEST(Resampled, IsNamedBySeedAndReplicate) {
@@ -190,7 +192,7 @@ TEST(Resampled, IsNamedBySeedAndReplicate) {
 TEST(ChainStart, IsTheStateOfTheBody) {
   const StateSpace space = paper();
   const FieldParams field;
-  // Sec. III-C: the origin, 15 m/s forward: the middle of EN, in gate (0, 0).
+  // Sec. III-C: the origin, 15 m/s forward, is the middle of EN, in gate (0, 0).
   const ChainStart s = chain_start(space, field, {0, {0, 0, 15}});
   EXPECT_EQ(s.start.column, 4);
   EXPECT_EQ(s.start.row, 0);
@@ -202,7 +204,7 @@ TEST(ChainStart, IsTheStateOfTheBody) {
 }
 
 TEST(ChainStart, SaysWhenItWasClamped) {
-  const ChainStart s = chain_start(paper(), {}, {0, {0, 0, 5}});  // slower than every bin
+  const ChainStart s = chain_start(paper(), {}, {0, {0, 0, 5}});  // slower than all bins
   EXPECT_EQ(s.start.input, 2 * 5 + 2);
   EXPECT_TRUE(s.clamped);
 }
@@ -232,7 +234,7 @@ class MatrixOnDisk : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
   [[nodiscard]] std::string path() const { return (folder_ / "matrix.nc").string(); }
 
-  /// Writes a good matrix, lets `spoil` change it under a good checksum, and tries to read it.
+  /// Writes a good matrix, lets `spoil` change it under a valid checksum, and tries to read it.
   [[nodiscard]] std::string refusal(const std::function<void(markov::CountsFile&)>& spoil) const {
     write_matrix(path(), {made_up(), {}});
     markov::CountsFile file = markov::read_counts(path());
@@ -313,8 +315,8 @@ TEST_F(MatrixOnDisk, KeepsOpenBinsAndSingleEntries) {
   EXPECT_THROW((void)read_matrix(path()), markov::BadFile);
 }
 
-// Build, write, read, chain, for spaces other than the paper's: the exact prediction is the same
-// before and after, and a distribution.
+// Builds, writes and reads matrices with spaces other than the paper's: the exact prediction is the
+// same before and after, and a distribution.
 TEST_F(MatrixOnDisk, CarriesRefinedSpacesToThePrediction) {
   GateParams p;
   p.forces.propulsion = 7.0;
@@ -340,12 +342,11 @@ TEST_F(MatrixOnDisk, CarriesRefinedSpacesToThePrediction) {
     EXPECT_FALSE(start.clamped);
     const auto f =
         markov::predict(chain, cells, {start.start}, {.max_cells = field.max_gates}).front();
-    // markov/predict/reference.h: nothing is normalised, and some 1e-16 a row over 13 steps is what
-    // is lost.
+    // markov/predict.h: nothing is normalised; 13 steps lose about 1e-16 per row.
     EXPECT_NEAR(f.final_cells.sum() + f.remainder, 1.0, 1e-12);
     EXPECT_NEAR(f.trapped() + f.left_field() + f.cut_off() + f.unsampled() + f.remainder, 1.0,
                 1e-12);
-    EXPECT_GT((f.final_cells > 0.0).count(), 3);  // it went somewhere
+    EXPECT_GT((f.final_cells > 0.0).count(), 3);  // walks reached other gates
     const auto direct =
         markov::predict(make_chain(t), cells, {start.start}, {.max_cells = field.max_gates})
             .front();

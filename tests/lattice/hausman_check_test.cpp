@@ -24,7 +24,7 @@ Scene unlike_beams() {
   return scene;
 }
 
-/// Trials of a field of two gates side by side: so many trapped in either.
+/// Trials of a field of two gates side by side: these numbers of them trapped in each gate.
 FieldTrials trapped_in(std::int64_t left, std::int64_t right) {
   FieldTrials t;
   for (std::int64_t i = 0; i < left + right; ++i) {
@@ -49,7 +49,7 @@ TEST(HausmanCheck, ByHand) {
     const FieldTrials trials = trapped_in(left, 100 - left);
     return hausman_check({{trials, half}}, field, 1).value();
   };
-  // 45 of 100 where 50 are said: |45 - 50| or more of Binomial(100, 1/2) has the chance 0.3682.
+  // 45 of 100 where the chain says 50: |X - 50| >= 5 has probability 0.3682 for Binomial(100, 1/2).
   const HausmanCheck alike = of(45);
   EXPECT_EQ(alike.trials, 100);
   EXPECT_NEAR(alike.total_variation, 0.05, 1e-12);
@@ -61,7 +61,8 @@ TEST(HausmanCheck, ByHand) {
   EXPECT_TRUE(of(34).differs());
 }
 
-// 40 trials of which a quarter is said to end left, 60 of which three quarters are: 55 in all.
+// 40 trials of which the chain says that a quarter ends left, and 60 of which three quarters do: 55
+// in all.
 TEST(HausmanCheck, OfSeveralStartsTogether) {
   const FieldParams field{.columns = 2, .rows = 1};
   const FieldTrials few = trapped_in(10, 30), many = trapped_in(45, 15), none;
@@ -101,7 +102,7 @@ TEST(HausmanCheck, TrialsThatAreTheAnswerAreNotCheckedByThemselves) {
   EXPECT_FALSE(p.hausman_check.has_value());
 }
 
-// Beams of unlike stiffness, counted as if they were mirror images of each other.
+// Beams of different stiffness, counted as if they were mirror images of each other.
 TEST(HausmanCheck, AMirrorThatIsNoneIsFoundOut) {
   const Problem problem = problem_of(unlike_beams());
   RunPool pool;
@@ -122,7 +123,8 @@ TEST(HausmanCheck, AMirrorThatIsNoneIsFoundOut) {
   EXPECT_TRUE(hausman_check({{s.full, wrong}}, problem.field, 1)->differs());
 }
 
-// One state for each face cannot be right; the trials say so, from a range of starts and from one.
+// One state per face cannot be right; the trials show that, from a range of starts and from one
+// start.
 TEST(HausmanCheck, StatesThatAreTooFewAreFoundOut) {
   const Problem problem = problem_of(unlike_beams());
   for (const bool all : {true, false}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A cell that is not ours: the periodic Lorentz gas.
+// A cell that is not a gate: the periodic Lorentz gas.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -71,7 +71,8 @@ TEST(Lorentz, TheCellKeepsWhatCellsPromise) {
   EXPECT_EQ(cell().pass(body).fate, dynamics::Fate::broken);
 }
 
-// Backwards a point goes the same way: what left with (s, v) at a side enters there with (s, -v).
+// Motion is reversible: a body that left with (s, v) at a side enters there with (s, -v), and
+// returns.
 TEST(Lorentz, PassagesCanBeReversed) {
   const double a = 2.0 + kGap;
   const std::array<lorentz::Point, 3> corners{lorentz::Point(0, 0), lorentz::Point(a, 0),
@@ -89,7 +90,7 @@ TEST(Lorentz, PassagesCanBeReversed) {
     reversed += at.face == in.face && std::abs(there - back) < 1e-3 &&
                 std::abs(at.at[0] - in.at[0]) < 1e-3 && std::abs(at.at[1] + in.at[1]) < 1e-3;
   }
-  // A rounding grows some tenfold with each hit: of a passage with more than ten nothing is left.
+  // Round-off grows about tenfold with each hit: after more than ten hits nothing is left.
   EXPECT_GE(reversed, 0.98 * kMany);
 }
 
@@ -102,13 +103,13 @@ dynamics::Passage passed(double s, double v) {
 
 TEST(Lorentz, PassagesByHand) {
   constexpr double kFewEps = 1e-14;
-  // Straight up, back from the disc above, and out where it came in.
+  // Straight up, back from the disc above, and out through the entry.
   const dynamics::Passage back = passed(0.0, 0.0);
   EXPECT_EQ(back.next.face, 2);
   EXPECT_NEAR(back.next.at[0], 0.0, kFewEps);
   EXPECT_NEAR(back.next.at[1], 0.0, kFewEps);
   EXPECT_NEAR(back.costs[0], 2.0 * (std::sqrt(3.0) / 2.0 * (2.0 + kGap) - 1.0), kFewEps);
-  // Past the disc in the corner, at 1.19 from its middle on both sides and hitting nothing.
+  // Past the disc in the corner, at distance 1.19 from its middle on both sides, without a hit.
   const dynamics::Passage past = passed(0.09, -0.5);
   EXPECT_EQ(past.next.face, 1);
   EXPECT_NEAR(past.next.at[0], 0.09, kFewEps);
@@ -126,7 +127,7 @@ TEST(Lorentz, MeanStaysAreThoseOfTheFreeArea) {
               (2.0 + kGap) * (2.0 + kGap) / 3.0 / 4.0 / test::mean_stay_in_triangle(kGap), 1e-14);
 }
 
-// Whatever the start, in the long run bodies enter by each gap alike, anywhere in it, at angles
+// From any start, in the long run bodies enter by each gap equally often, anywhere in it, at angles
 // with density cos / 2.
 TEST(Lorentz, EntriesInTheLongRunAreThoseOfTheInvariantMeasure) {
   static constexpr int kBoxes = 5;
@@ -139,7 +140,8 @@ TEST(Lorentz, EntriesInTheLongRunAreThoseOfTheInvariantMeasure) {
           return dynamics::Entry{0, {kGap * 0.2 * random.uniform(), 0.2 * random.uniform()}};
         },
         kMany, passages, 5, health);
-    std::array<std::array<std::array<double, kBoxes>, kBoxes>, 4> seen{};  // by gap, place, angle
+    // By gap, place and angle.
+    std::array<std::array<std::array<double, kBoxes>, kBoxes>, 4> seen{};
     const auto box_of = [](double part) {
       return std::clamp(static_cast<int>(kBoxes * part), 0, kBoxes - 1);
     };
@@ -158,13 +160,13 @@ TEST(Lorentz, EntriesInTheLongRunAreThoseOfTheInvariantMeasure) {
         }
     return chi_squared;
   };
-  // 99 degrees of freedom: more than 161 once in 10 000 times.
+  // 99 degrees of freedom: above 161 once in 10 000 times.
   EXPECT_LE(chi_squared_after(kPassages), 161.0);
   EXPECT_GT(chi_squared_after(1), 1000.0);
 }
 
-// The chain keeps the invariant measure: it is off by what sampling makes, which is larger in a
-// group of an eighth of the trials.
+// The chain keeps the invariant measure within sampling error, which is larger for a group of an
+// eighth of the trials.
 TEST(Lorentz, TheChainKeepsTheInvariantMeasure) {
   const double whole = test::off_invariant(diffusion().whole, kGap);
   const test::Estimate group =
@@ -173,8 +175,8 @@ TEST(Lorentz, TheChainKeepsTheInvariantMeasure) {
   EXPECT_LE(whole, 0.03);
 }
 
-// Beside the full dynamics: no further off than the error bar says, and direct simulation's own
-// three standard errors.
+// Compared with direct simulation: the difference is within the error bar plus three standard
+// errors of direct simulation.
 TEST(Lorentz, DiffusionIsThatOfDirectSimulation) {
   const test::Estimate direct = test::direct_diffusion(kGap, 20'000, 10, 20.0, 1);
   const auto& [d, interval] = diffusion().coefficient;
@@ -182,11 +184,11 @@ TEST(Lorentz, DiffusionIsThatOfDirectSimulation) {
   EXPECT_NEAR(d, direct.mean, half + 3.0 * direct.error);
   EXPECT_LE(half, 0.04 * d);
   EXPECT_LE(direct.error, 0.005 * direct.mean);
-  // A chain without memory, or with one step of it, is further off than that.
+  // A chain without memory, or with one step of memory, differs by more than that.
   EXPECT_GT(direct.mean - test::machta_zwanzig(kGap), 10.0 * direct.error);
   EXPECT_GT(direct.mean - test::one_step(kGap, test::triangle(kGap, 200'000, 2).back.mean),
             10.0 * direct.error);
-  // All directions are alike, and nobody drifts.
+  // All directions are alike, and there is no drift.
   const Eigen::Matrix2d& tensor = diffusion().whole.walk.tensor;
   EXPECT_NEAR(tensor(0, 0), tensor(1, 1), 0.1 * d);
   EXPECT_NEAR(tensor(0, 1), 0.0, 0.05 * d);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the sampling of a matrix does: intervals that cover, and one test of trials and matrix
-// together.
+// The sampling error of a matrix: coverage of intervals, and the joint test of trials and matrix.
 #include "lattice/statistics/matrix_noise.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +33,7 @@ constexpr markov::Field kField{5, 4};
 constexpr int kMaxGates = 8;
 constexpr markov::Start kStart{2, 0, 0};
 
-/// One state per boundary: EN, RD, LD, RT, LT; and trapped.
+/// One state per face: EN, RD, LD, RT, LT; and trapped.
 StateSpace five_states() { return dynamics::refined(dynamics::table3_space({}), 0.01); }
 
 /// The true chain, in thousandths, row by row.
@@ -53,7 +52,7 @@ Transitions truth() {
   return t;
 }
 
-/// A matrix of `trials` runs a row of the true chain.
+/// A matrix with `trials` runs of the true chain per row.
 Transitions simulated(std::int64_t trials, std::uint64_t number) {
   Transitions t(five_states());
   for (int row = 0; row < 5; ++row) {
@@ -80,8 +79,8 @@ std::vector<FinalDistribution> replicates(const Transitions& t, std::uint64_t se
 constexpr std::array<Ending, 5> kAll{Ending::far_edge, Ending::left_edge, Ending::right_edge,
                                      Ending::trapped, Ending::cut_off};
 
-// 400 matrices of 100 runs a row: of each ending, 92 to 98 % of the intervals hold the truth (95 %
-// and a standard error of 1.1 %).
+// 400 matrices with 100 runs per row: for each ending, 92 to 98 % of the intervals contain the
+// truth (95 %, with a standard error of 1.1 %).
 TEST(MatrixNoise, IntervalsCoverTheTruth) {
   constexpr int kMatrices = 400;
   const FinalDistribution right = predicted(truth());
@@ -103,14 +102,14 @@ TEST(MatrixNoise, IntervalsCoverTheTruth) {
   }
 }
 
-// Resampled rows hold nothing of what no run showed.
+// Resampled rows contain no new outcomes, but intervals allow for them.
 TEST(MatrixNoise, RowsLeaveOpenWhatTheirRunsMayHaveMissed) {
   FinalDistribution p = predicted(truth());
   const auto trapped = static_cast<std::size_t>(Ending::trapped),
              crossed = static_cast<std::size_t>(Ending::far_edge);
   p.endings[trapped] = 0.8;
   p.endings[crossed] = 1e-6;
-  MatrixNoise bins(p, {100, 0}), trees(p, {100, 10'000});  // without a word of gate runs, and with
+  MatrixNoise bins(p, {100, 0}), trees(p, {100, 10'000});  // without and with a number of gate runs
   for (const double factor : {0.9, 1.1}) {
     FinalDistribution other = p;
     for (double& e : other.endings) e *= factor;
@@ -118,25 +117,26 @@ TEST(MatrixNoise, RowsLeaveOpenWhatTheirRunsMayHaveMissed) {
     trees.add(other);
   }
   const EndingShares of_bins(p, bins, 5), of_trees(p, trees, 5);
-  EXPECT_EQ(of_trees.interval[trapped], of_bins.interval[trapped]);  // wider than that of all runs
+  // The interval of `trapped` is wider than that of all gate runs, which therefore do not matter.
+  EXPECT_EQ(of_trees.interval[trapped], of_bins.interval[trapped]);
   EXPECT_LT(of_bins.interval[crossed][1], 2e-6);
   EXPECT_EQ(of_trees.interval[crossed], dynamics::interval_of_share(1e-6, 10'000));
 
   const CountedField field = counted_field(truth());
   const Evidence from = field.evidence_at(kStart, kField, kMaxGates);
   EXPECT_EQ(from.trials, 1000);
-  EXPECT_EQ(from.gate_runs, 5000);  // 1000 a row
+  EXPECT_EQ(from.gate_runs, 5000);  // 1000 per row
   EXPECT_EQ(from.hidden, 0.0);      // each row has several outcomes
 }
 
-// Half of the walks pass a row of few runs, which all had one outcome: none of these runs excludes
-// another, however many runs other rows have. Its interval is that of `runs` trials without a
+// Half of the walks pass a row of few runs, which all had one outcome: these runs exclude no other
+// outcome, however many runs other rows have. The row's interval is that of `runs` trials without a
 // success.
 TEST(MatrixNoise, KnowsWhatARowOfOneOutcomeHides) {
   for (const std::int64_t runs : {1, 5, 1'000'000}) {
     markov::Counts counts(3, 4);
     const std::vector<Eigen::Triplet<std::int64_t>> entries{
-        {0, 1, 50'000}, {0, 3, 50'000}, {1, 0, runs}, {2, 0, 1'000'000}};  // nobody enters row 2
+        {0, 1, 50'000}, {0, 3, 50'000}, {1, 0, runs}, {2, 0, 1'000'000}};  // no walk enters row 2
     counts.setFromTriplets(entries.begin(), entries.end());
     const std::vector<markov::Exit> exits{{0, 0, 1}, {1, 1, 0}, {2, -1, 0}, {}};
     const CountedField field{markov::Chain::from_counts(counts, exits), {counts}};
@@ -152,7 +152,7 @@ TEST(MatrixNoise, KnowsWhatARowOfOneOutcomeHides) {
   }
 }
 
-// The spread is that of matrices really drawn anew.
+// The spread equals that of matrices counted from new runs.
 TEST(MatrixNoise, IsTheSpreadOfOtherMatrices) {
   const Transitions t = truth();
   const FinalDistribution p = predicted(t);
@@ -171,7 +171,7 @@ TEST(MatrixNoise, IsTheSpreadOfOtherMatrices) {
     noise.add(made[i]);
     drawn.add(others[i]);
   }
-  // Two estimates of a standard deviation from 400: 5 standard errors of their ratio.
+  // Two estimates of a standard deviation from 400 values: 5 standard errors of their ratio.
   for (const Ending e : kAll)
     EXPECT_NEAR(sd(made, e) / sd(others, e), 1.0, 5 * std::sqrt(1.0 / 400));
   EXPECT_NEAR(noise.mean_total_variation() / drawn.mean_total_variation(), 1.0, 0.1);
@@ -185,7 +185,7 @@ TEST(MatrixNoise, IsTheSpreadOfOtherMatrices) {
   EXPECT_EQ(noise.interval_95(Ending::unsampled), dynamics::interval_of_share(0.0, 1000));
 }
 
-/// Mean of the replicates' shares less the prediction's, in standard errors.
+/// Mean of the replicates' shares minus the prediction's, in standard errors.
 double off_centre(const std::vector<FinalDistribution>& all, const FinalDistribution& own,
                   Ending e) {
   const auto at = static_cast<std::size_t>(e);
@@ -196,7 +196,7 @@ double off_centre(const std::vector<FinalDistribution>& all, const FinalDistribu
   return (mean - own.endings[at]) / std::sqrt(squares / (n * (n - 1.0)));
 }
 
-// Bins of many runs; rows of few, whose neighbours are the same runs, and which count mirror
+// Bins have many runs; trees have rows of few runs, share runs with neighbours, and count mirror
 // images.
 TEST(Replicates, AverageToThePrediction) {
   const Transitions t = simulated(1000, 7);
@@ -211,9 +211,9 @@ TEST(Replicates, AverageToThePrediction) {
   }
 }
 
-// ---- Rows of few runs, as trajectories through many states give them ----
+// ---- Rows of few runs, as trajectories through many states have them ----
 
-/// A chain of 300 states, entered from below, from the left and from the right by turns.
+/// A chain of 300 states, entered from below, from the left and from the right in turn.
 class ManyStates {
  public:
   static constexpr int kStates = 300;
@@ -233,7 +233,7 @@ class ManyStates {
   [[nodiscard]] const std::vector<markov::Exit>& exits() const { return exits_; }
   [[nodiscard]] markov::Counts truth() const { return table(rows_); }
 
-  /// The steps of so many walks, counted.
+  /// Counts the steps of this many walks.
   [[nodiscard]] markov::Counts walked(int walks, std::uint64_t number) const {
     std::vector<std::map<int, std::int64_t>> seen(kStates);
     for (int w = 0; w < walks; ++w) {
@@ -269,8 +269,9 @@ class ManyStates {
   std::vector<std::map<int, std::int64_t>> rows_;
 };
 
-// 400 walks, some five runs a row, most rows fewer: over 100 sets of walks the intervals of an
-// ending hold in 95 % (one standard error: 2.2 %), and replicates average to the prediction.
+// 400 walks give about five runs per row, most rows fewer. Over 100 sets of walks, 95 % of the
+// intervals of an ending contain the truth (one standard error: 2.2 %), and replicates average to
+// the prediction.
 TEST(Replicates, OfFewRunsARowHoldTheirCoverage) {
   constexpr int kSets = 100, kReplicates = 99;
   const ManyStates chain;
@@ -323,7 +324,7 @@ TEST(Replicates, SameBitsForAnyThreadsAndAnySplit) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole[s][4 + k].endings, part[s][k].endings);
     EXPECT_NE(whole[s][0].endings, whole[s][1].endings);
   }
-  // A second matrix has draws of its own, though it may hold the same counts.
+  // A second matrix has its own draws, even if it holds the same counts.
   rows = {markov::FieldChain::by_row({make_chain(t), make_chain(t)}, {0, 1, 1, 0}),
           {t.counts(), t.counts()}};
   const auto first_of = [](const CountedField& gates) {
@@ -339,12 +340,12 @@ TEST(Replicates, FewerInLargeFields) {
   EXPECT_EQ(affordable_replicates({1001, 1001}, 0, 300, 200), 99);
   EXPECT_EQ(affordable_replicates({1001, 1001}, 1446, 300, 200), 0);
   EXPECT_EQ(affordable_replicates({9, 9}, 13, 2000, 49), 0);
-  EXPECT_LT(affordable_replicates({9, 9}, 13, 60'000, 999), 999);  // too few to say anything
+  EXPECT_LT(affordable_replicates({9, 9}, 13, 60'000, 999), 999);  // too few for an interval
 }
 
 // ---- One test of trials and matrix ----
 
-/// `trials` of the true chain, in full.
+/// `trials` complete trials of the true chain.
 SeenEndings trials_of(const FinalDistribution& p, std::int64_t trials, std::uint64_t number) {
   std::vector<double> weights;
   std::vector<std::pair<std::int64_t, std::size_t>> what;
@@ -372,12 +373,12 @@ SeenEndings trials_of(const FinalDistribution& p, std::int64_t trials, std::uint
   return seen;
 }
 
-// Under the null - the dynamics is the chain, the matrix a sample of it - the p-value of all
-// together is uniform, whether chance lies in the trials, in the matrix or in both: 400 repeats
-// each, at most 9 % below 0.05. The bootstrap of a matrix is exact only for many runs a row: with
-// 100, where matrix noise rules, 7.4 % of 2000 repeats lay below 0.05 and the distribution's excess
-// of small values was 0.06 (Kolmogorov's 1 % point is 0.08 for 400 repeats, 0.04 for 2000); that of
-// each statistic alone at most 0.033.
+// Under the null (the dynamics is the chain, the matrix a sample of it) the joint p-value is
+// uniform, whether the sampling error lies in the trials, in the matrix or in both: 400 repeats
+// each, at most 9 % below 0.05. The bootstrap of a matrix is exact only for many runs per row. With
+// 100 runs, where matrix noise dominates, 7.4 % of 2000 repeats were below 0.05, and the excess of
+// small values in the distribution was 0.06 (Kolmogorov's 1 % point is 0.08 for 400 repeats, 0.04
+// for 2000); for each single statistic at most 0.033.
 TEST(Judge, PValuesAreUniformUnderTheNull) {
   struct Case {
     std::int64_t runs, trials;
@@ -414,8 +415,8 @@ TEST(Judge, PValuesAreUniformUnderTheNull) {
   }
 }
 
-// Trials of a chain whose walks cross more often: seen, and by which ending; not seen with too
-// coarse a matrix.
+// Trials of a chain whose walks cross more often: the test detects the difference and the ending,
+// but not with too coarse a matrix.
 TEST(Judge, NamesTheEndingThatDiffers) {
   Transitions other = truth();
   for (int row = 0; row < 5; ++row) {
@@ -438,7 +439,7 @@ TEST(Judge, NamesTheEndingThatDiffers) {
   EXPECT_GT(with_coarse.p, j.p);
 }
 
-// No verdict without an adjusted p-value that says so, and none against one.
+// The verdict agrees with the smallest adjusted p-value.
 TEST(Judge, IsTheSmallestAdjustedPValue) {
   const FinalDistribution right = predicted(truth());
   for (std::uint64_t i = 0; i < 40; ++i) {
@@ -456,7 +457,7 @@ TEST(Judge, IsTheSmallestAdjustedPValue) {
   }
 }
 
-/// So many trials of the shares of three gates; in the last one bodies have left by the right side.
+/// Trials from the shares of three gates; in the last gate, bodies have left by the right side.
 FinalDistribution shares_of_trials(const CellProbabilities& p, std::int64_t trials,
                                    std::uint64_t seed, std::uint64_t number) {
   FinalDistribution d;
@@ -469,8 +470,8 @@ FinalDistribution shares_of_trials(const CellProbabilities& p, std::int64_t tria
   return d;
 }
 
-// The chain is 160 trials, the experiment 60 more of the same. An ending of half a per cent is
-// missed by the first 45 times in 100: then it is news in 26 of 100 experiments, but no difference.
+// The chain has 160 trials, the experiment 60 more of the same kind. The first miss an ending of
+// 0.5 % in 45 of 100 cases; it is then new in 26 of 100 experiments, but not a difference.
 TEST(Judge, WhatNoRunShowedIsNoDifferenceByItself) {
   constexpr std::int64_t kRuns = 160, kTrials = 60;
   constexpr std::uint64_t kRepeats = 300, kMatrices = 50;
@@ -492,7 +493,7 @@ TEST(Judge, WhatNoRunShowedIsNoDifferenceByItself) {
   };
   EXPECT_LE(at_most(0.05), 0.09 * kRepeats);  // 5 % and three standard errors
   EXPECT_LE(at_most(0.01), 0.027 * kRepeats);
-  EXPECT_GE(at_most(0.2), 0.05 * kRepeats);  // and it does tell
+  EXPECT_GE(at_most(0.2), 0.05 * kRepeats);  // the test still detects something
 }
 
 TEST(Judge, SameBitsForAnyThreadsAndRefusals) {

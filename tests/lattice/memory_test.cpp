@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Is it Markov? Tests of independence and of gates ahead on synthetic chains: by hand, how often
-// they raise a false alarm, and how small a memory they find.
+// Is the chain Markov? Tests of independence and of gates ahead on synthetic chains: by hand, their
+// rate of false alarms, and the smallest memory that they detect.
 #include "lattice/study/memory.h"
 #include "lattice/field/running_trial.h"
 
@@ -22,23 +22,23 @@ namespace {
 
 // ---- Synthetic chains ----
 
-/// A chain like a gate's: five ways of entering, `per_way` states each, walks of some five gates
-/// through a field of 9 x 9, at most 13. With `memory`, what follows the one half of coarse states
-/// before differs from what follows the other by this total variation.
+/// A chain like that of a gate: five ways of entering, `per_way` states each, walks of about five
+/// gates through a field of 9 x 9, at most 13. With `memory`, the outcomes after one half of the
+/// coarse states before differ from those after the other half by this total variation.
 struct Synthetic {
   int per_way = 6;
   double memory = 0.0;
-  std::uint64_t number = 1;  // other chains
+  std::uint64_t number = 1;  // different numbers give different chains
 
   static constexpr int kWays = 5, kTrapped = 5;
   [[nodiscard]] int states() const { return kWays * per_way; }
   [[nodiscard]] int way(int state) const { return state / per_way; }
-  /// Of four: from below in one half or the other, from either side.
+  /// One of four origins: from below in either half, or from either side.
   [[nodiscard]] int origin(int state) const {
     const int w = way(state);
     return w == 0 ? state % 2 : w % 2 == 1 ? 2 : 3;
   }
-  /// Chances of the outcomes in a state, (ways + trapped).
+  /// Probabilities of the outcomes in a state, (ways + trapped).
   [[nodiscard]] std::array<double, 6> row(int state) const {
     dynamics::Random random(dynamics::Purpose::row, {number, static_cast<std::uint64_t>(state), 0});
     constexpr std::array<double, 6> kUsual{0.35, 0.17, 0.17, 0.06, 0.06, 0.19};
@@ -48,7 +48,7 @@ struct Synthetic {
     for (double& x : p) x /= sum;
     return p;
   }
-  /// Moves chances of a row as what came before says; -1: nothing came.
+  /// Shifts the probabilities of a row by the state before; -1: there was none.
   void remember(std::array<double, 6>& row, int before) const {
     if (before < 0) return;
     const double shift = (origin(before) % 2 == 0 ? 0.5 : -0.5) * memory;
@@ -111,7 +111,7 @@ std::vector<LabelledRun> by_visit(const Synthetic& chain, const StateWalks& w) {
   return runs;
 }
 
-/// Shares of data sets in which each was found.
+/// Shares of data sets in which each test found something.
 struct Found {
   double together = 0.0, pooled = 0.0, chi_squared = 0.0, strongest = 0.0, state_by_state = 0.0,
          visit = 0.0, ahead = 0.0, covered = 0.0, bar = 0.0;
@@ -159,26 +159,27 @@ TEST(Memory, PooledStatisticByHand) {
     runs.push_back({7, 0, i < 3 ? 0 : 1});
     runs.push_back({7, 1, i < 3 ? 1 : 0});
   }
-  runs.push_back({2, 0, 0});  // a state that cannot tell
+  runs.push_back({2, 0, 0});  // a state without information
   const Independence i = test_independence(runs, {.null_draws = 9999});
   EXPECT_EQ(i.runs, 8);
   EXPECT_EQ(i.states, 1);
   EXPECT_EQ(i.degrees, 1);
   EXPECT_NEAR(i.pooled.seen, 7.0 / 4.0, 1e-12);
-  // Fisher's exact test: of 70 tables, 2 * (1 + 16) are as far off.
+  // Fisher's exact test: of 70 tables, 2 * (1 + 16) are at least as far off.
   EXPECT_NEAR(i.pooled.p, 34.0 / 70.0, 0.02);
-  EXPECT_EQ(i.label, -1);  // too few for a strongest one
+  EXPECT_EQ(i.label, -1);  // too few counts for a strongest one
 }
 
-// The same table of clusters: each run's part in a count is 1/4 or -1/4, six parts have one sign
-// and two the other. Of 8 clusters the variance of their sum is 8 / 16 * 8 / 7, and 74 of 256 signs
-// make at least as much; of 4 clusters of two like runs 10 of 16; of one cluster all do.
+// The same table with clusters: each run contributes 1/4 or -1/4 to a count, six contributions have
+// one sign and two the other. With 8 clusters the variance of their sum is 8 / 16 * 8 / 7, and 74
+// of 256 sign patterns give at least as much; with 4 clusters of two equal runs 10 of 16; with one
+// cluster all.
 TEST(Memory, SignsOfClustersByHand) {
   for (const int clusters : {8, 4, 1}) {
     std::vector<LabelledRun> runs;
     for (int i = 0; i < 8; ++i)
       runs.push_back({7, i % 2, i < 6 ? i % 2 : 1 - i % 2, i * clusters / 8});
-    runs.push_back({2, 0, 0, 0});  // a state that cannot tell
+    runs.push_back({2, 0, 0, 0});  // a state without information
     const Independence i = test_independence(
         runs, {.null_draws = 9999, .clusters = clusters, .labels = 3, .outcomes = 4});
     EXPECT_EQ(i.runs, 8);
@@ -202,7 +203,8 @@ TEST(Memory, NothingToTellIsNoMemory) {
   EXPECT_TRUE(std::isinf(i.seen_at_90));
 }
 
-// Two states; what follows 1 is what came before it: two gates ahead the kernel is off by 1/2.
+// After state 1, walks that came from 0 are trapped, and walks that came from 2 enter 0: two gates
+// ahead the kernel is off by 1/2.
 TEST(Memory, GatesAheadByHand) {
   StateWalks w;
   w.ways = 3;
@@ -215,8 +217,8 @@ TEST(Memory, GatesAheadByHand) {
   ASSERT_EQ(g.steps.size(), 1u);
   const GatesAhead::Step& s = g.steps[0];
   EXPECT_EQ(g.runs, 400);
-  // From way 0: all trapped, by the kernel half; from way 2 none; shares of all 400 runs. Walks
-  // that were stopped in 0 go on to 1.
+  // From way 0 all walks are trapped, by the kernel half of them; from way 2 none; as shares of all
+  // 400 runs. Walks that were stopped in 0 continue to 1.
   EXPECT_DOUBLE_EQ(s.seen[3], 0.25);
   EXPECT_DOUBLE_EQ(s.predicted[3], 0.125);
   EXPECT_DOUBLE_EQ(s.seen[2 * 4 + 0], 0.25);
@@ -226,9 +228,10 @@ TEST(Memory, GatesAheadByHand) {
   EXPECT_GT(s.excess_95[3][0], 0.0);
 }
 
-// Two ways, each left for the other by 1 of 4, 1 of 10 trapped: eigenvalues 0.9 and 0.9 (1 - 2/4),
-// of k gates their k-th powers, so that time scales are the same at every lag. A chain that is seen
-// as often as it says, without memory: walks of one run each.
+// Two ways, each left for the other by 1 of 4 walks, with 1 of 10 trapped: eigenvalues 0.9 and 0.9
+// (1 - 2/4). For k gates these are their k-th powers, so that time scales are the same at every
+// lag. The data are those of a memoryless chain with exactly its probabilities: walks of one run
+// each.
 TEST(Memory, TimeScalesOfTwoWaysByHand) {
   StateWalks w;
   w.ways = 2;
@@ -243,7 +246,7 @@ TEST(Memory, TimeScalesOfTwoWaysByHand) {
     ASSERT_EQ(s.predicted_scales.size(), 2u);
     EXPECT_NEAR(s.predicted_scales[0], -1.0 / std::log(0.9), 1e-10);
     EXPECT_NEAR(s.predicted_scales[1], -1.0 / std::log(0.45), 1e-10);
-    // Every walk goes on by the kernel after its only run.
+    // Every walk continues by the kernel after its only run.
     for (const int k : {0, 1}) {
       EXPECT_NEAR(s.seen_scales[k], s.predicted_scales[k], 1e-10);
       EXPECT_LE(s.scales_95[k][0], s.predicted_scales[k] + 1e-10);
@@ -252,8 +255,8 @@ TEST(Memory, TimeScalesOfTwoWaysByHand) {
   }
 }
 
-// Bodies that come back to where they were two gates before, always: the kernel says 1/2, and its
-// second time scale is 0, the seen one is endless.
+// Bodies always return to where they were two gates before: the kernel says 1/2, and its second
+// time scale is 0; the observed one is infinite.
 TEST(Memory, TimeScalesShowMemory) {
   StateWalks w;
   w.ways = 2;
@@ -343,7 +346,7 @@ TEST(Memory, WalksAreTheTrialsInStates) {
   EXPECT_EQ(std::ssize(w.state), tally.health.runs);
   EXPECT_EQ(std::count(w.next.begin(), w.next.end(), StateWalks::kTrapped), tally.trapped());
   for (std::int64_t walk = 0; walk < 50; ++walk) EXPECT_EQ(w.state[w.begin(walk)], first);
-  // A run that broke is left out, and what would come after it.
+  // A run that broke is left out, and so is what would come after it.
   PassageTable broken(space.section());
   for (CellPassage passage : each.passages.rows()) {
     if (broken.empty()) passage.fate = dynamics::Fate::broken;
@@ -360,7 +363,7 @@ TEST(Memory, WalksAreTheTrialsInStates) {
   EXPECT_THROW((void)study_memory(no_walks(space), space, {}), std::invalid_argument);
 }
 
-// Without hold the two are the same trials; a force that is held for long shows.
+// Without a hold, both sets are the same trials; a force that is held for long makes a difference.
 TEST(Memory, OfTheForceIsWhatItsHoldDoes) {
   const auto memory_of = [&](const std::string& text) {
     const Scene scene = parse_scene(text, "scene");
@@ -383,7 +386,7 @@ TEST(Memory, OfTheForceIsWhatItsHoldDoes) {
 
 // ---- On many data sets ----
 
-// Five in a hundred, within what so many data sets can tell: 4 to 6 % of 1000 and more.
+// Five in a hundred, within the precision of this many data sets: 4 to 6 % of 1000 and more.
 TEST(Memory, RaisesFalseAlarmsAsOftenAsItSays) {
   const int sets = test::usual_or_full(100, 2000);
   for (const int per_way :
@@ -393,7 +396,8 @@ TEST(Memory, RaisesFalseAlarmsAsOftenAsItSays) {
     std::cout << per_way << " states a way, " << sets << " sets: " << f << "\n";
     const double slack = test::usual_or_full(1, 0) == 1 ? 0.065 : 0.01;
     for (const double share : {f.together, f.visit}) EXPECT_NEAR(share, 0.05, slack);
-    // Somewhat fewer gates ahead: where the field stops walks, dealt ones get less far apart.
+    // Slightly fewer with gates ahead: where the field stops walks, permuted walks get less far
+    // apart.
     EXPECT_NEAR(f.ahead, 0.045, 1.5 * slack);
     EXPECT_GE(f.covered, 0.95 - slack);
   }
@@ -401,7 +405,7 @@ TEST(Memory, RaisesFalseAlarmsAsOftenAsItSays) {
 
 TEST(Memory, FindsAsSmallAMemoryAsItSays) {
   const bool full = test::usual_or_full(0, 1) == 1;
-  // 1000: some ten runs in a state, as a fine tree has.
+  // 1000: about ten runs per state, as in a fine tree.
   for (const int per_way : full ? std::vector{6, 60, 1000} : std::vector{6, 120}) {
     const double memory = full ? 0.02 : 0.07;
     const Found f = found({.per_way = per_way, .memory = memory}, full ? 10'000 : 1200,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An experiment's counts: read, refused, and held against the model.
+// An experiment's counts: reading, refusals, and comparison with the model.
 #include "lattice/study/observed.h"
 
 #include <gtest/gtest.h>
@@ -24,10 +24,10 @@ namespace {
 
 using Fields = std::vector<std::string>;
 
-// A file whose reading fails is not one that ends there.
+// A read error is not the end of a file.
 TEST(Lines, WhatCannotBeReadIsNoEnd) {
   try {
-    (void)lines_of("/proc/self/mem");  // its first byte is nobody's
+    (void)lines_of("/proc/self/mem");  // the first byte of memory cannot be read
     FAIL();
   } catch (const std::invalid_argument& e) {
     EXPECT_STREQ(e.what(), "/proc/self/mem: cannot be read: Input/output error");
@@ -142,7 +142,7 @@ TEST_F(CountsFile, RecordingsOfOneExperimentAreAddedUp) {
   EXPECT_EQ(o.seen.final_gates(0, kField.start_column()), 12);
   EXPECT_EQ(message({one, gates, two}),
             "c.csv has 10 trials, a.csv, b.csv 15: both must be of the same trials");
-  // Trials are those of their file, whatever their names.
+  // Trials belong to their file, whatever their names.
   const std::string first = file("e.csv", "trial,ending,gate_x,gate_y,time_s\n1,trapped,0,0,\n"),
                     second = file("f.csv", "trial,ending,gate_x,gate_y,time_s\n1,trapped,0,1,\n");
   const Observed lines = read_observed({first, second}, kField);
@@ -336,11 +336,11 @@ TEST(CompareObserved, EqualCountsDifferByNothingAndSayWhatWouldStayUnseen) {
   EXPECT_FALSE(c.against_chain.differs());
   EXPECT_EQ(c.dynamics_gates->total_variation, 0.0);
   EXPECT_EQ(c.chain_gates->total_variation, 0.0);
-  // All cross: one that does not is a finding, and 1 - (1 - d)^60 is 0.8 for d = 0.0265.
+  // All trials cross: one that does not is significant, and 1 - (1 - d)^60 is 0.8 for d = 0.0265.
   const auto& crossed = c.least.by_ending[static_cast<std::size_t>(markov::Ending::far_edge)];
   EXPECT_NEAR(crossed.fewer.value(), 1.0 - std::pow(0.2, 1.0 / 60), 1e-9);
   EXPECT_FALSE(crossed.more);
-  EXPECT_FALSE(c.least.final_gates);  // a single gate has nothing that could be spread
+  EXPECT_FALSE(c.least.final_gates);  // a single gate has no shares to shift
 }
 
 TEST(CompareObserved, AFewThatDoNotCrossAreSeenInEitherTable) {
@@ -398,14 +398,14 @@ TEST(JudgeTwoSamples, PermutationsOfAHandfulAreExact) {
   EXPECT_NEAR(j.total_variation.p, 0.1, four_errors);
   EXPECT_NEAR(j.endings[0].p, 0.1, four_errors);
   EXPECT_EQ(j.endings[2].p, 1.0);
-  // Tables are dealt out each for itself: one of them is as far apart in 1 - 0.9^2 of all deals.
+  // Tables are permuted independently: one of them is as far apart in 1 - 0.9^2 of all cases.
   EXPECT_GE(j.p, 0.1 - four_errors);
   EXPECT_LE(j.p, 0.19 + four_errors);
 }
 
-// Gates and endings that go together completely are the worst case of dealing them out apart: even
-// then no more than 5 % are found where nothing differs, nor where they have nothing to do with
-// each other.
+// Gates and endings that determine each other are the worst case of independent permutations: even
+// then the test finds at most 5 % without a difference, and also if gates and endings are
+// independent.
 TEST(JudgeTwoSamples, FindsNoMoreThanTheLevelWhereNothingDiffers) {
   constexpr std::uint64_t kRepeats = 600;
   CellProbabilities p(1, 5);

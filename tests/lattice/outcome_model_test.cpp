@@ -19,7 +19,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Chances of three outcomes at a point (x, y): their logs are polynomials of the second degree.
+/// Probabilities of three outcomes at a point (x, y); their logs are polynomials of degree 2.
 VectorXd true_chances(const VectorXd& at, double third_degree = 0.0) {
   const double x = at[0], y = at[1];
   VectorXd chances{{std::exp(1.0 - 2.0 * x + y * y), std::exp(0.5 * x * y - y),
@@ -40,7 +40,7 @@ OutcomeCounts counted(Index points, std::int64_t trials, double third_degree, Ra
   return seen;
 }
 
-// Bits of Eigen's own product of so many rows depend on the processor's caches.
+// With this many rows, the bits of Eigen's own product depend on the processor's caches.
 TEST(OutcomeModel, SumsOverRowsHaveTheOrderOfTheRows) {
   const Eigen::MatrixXd a = Eigen::MatrixXd::Random(20000, 3);
   const Eigen::MatrixXd product = over_rows(a, a);
@@ -62,7 +62,7 @@ TEST(OutcomeModel, FindsChancesThatItCanSay) {
   const VectorXd chances = true_chances(at);
   EXPECT_NEAR(logs.array().exp().sum(), 1.0, 1e-14);
   // Drawn coefficients are as far from the estimated ones as these are from the truth: the squared
-  // distance by the spread of each chance is 1 on average.
+  // distance, relative to the variance of each probability, is 1 on average.
   constexpr int kDraws = 400;
   MatrixXd drawn(kDraws, 3);
   for (Index i = 0; i < kDraws; ++i) {
@@ -76,7 +76,7 @@ TEST(OutcomeModel, FindsChancesThatItCanSay) {
     EXPECT_LT(sd, 0.003);
     EXPECT_LT(std::abs(std::exp(logs[k]) - chances[k]), 3.5 * sd) << k;
   }
-  // Chi-squared of 60 * 2 - 12 degrees of freedom less these has a spread of 15.
+  // Chi-squared has 60 * 2 - 12 degrees of freedom; minus these, its standard deviation is 15.
   EXPECT_LT(model.lack_of_fit() * 2.0 * 60 * 20'000, 60.0);
 }
 
@@ -123,7 +123,7 @@ TEST(OutcomeModel, RefusesWhatItCannotLearnFrom) {
 }
 
 TEST(Ensemble, DrawsFromTheDensity) {
-  // Normal, with correlation 0.9 and a wall at x > 0.
+  // Normal, with correlation 0.9 and a wall: x > 0.
   const auto density = [](const VectorXd& at) {
     const double x = at[0], y = at[1];
     return x <= 0.0 ? -HUGE_VAL : -(x * x - 2.0 * 0.9 * x * y + y * y) / (2.0 * (1.0 - 0.81));
@@ -144,7 +144,7 @@ TEST(Ensemble, DrawsFromTheDensity) {
       n += 1.0;
     }
   }
-  // Of half a normal: mean sqrt(2 / pi), mean square 1.
+  // Half a normal distribution: mean sqrt(2 / pi), mean square 1.
   EXPECT_NEAR(sum_x / n, 0.7979, 0.02);
   EXPECT_NEAR(sum_y / n, 0.9 * 0.7979, 0.03);
   EXPECT_NEAR(sum_xx / n, 1.0, 0.04);

@@ -23,8 +23,8 @@ using namespace dynamics;
 constexpr double kGood = 0.95, kBad = 0.2;
 constexpr int kRows = 5;
 
-/// A lane of cells: a body enters at a place in [-1, 1], and gets through by chance: `left` where
-/// the place is below 0, else `right`. Anywhere in the next one.
+/// A lane of cells. A body enters at a place in [-1, 1], and passes with probability `left` if the
+/// place is below 0, else `right`; its place in the next cell is random.
 Action lane(std::string name, double left, double right, FieldParams field = {1, kRows, 0}) {
   Section section;
   section.faces = {{"S", 0, 1, 0, 1, "from below", {}}};
@@ -81,7 +81,7 @@ TEST(Plan, EachBodyTakesTheActionThatItsEntryAsksFor) {
       for (const double x : {-0.9, -0.5, -0.1, 0.1, 0.9}) {
         EXPECT_EQ(plan.policy.action({0, row, row}, {0, {x}}), x < 0.0 ? 0 : 1) << row << ' ' << x;
       }
-    // Who does not know the way in gets through a cell by chance, but the first.
+    // A body that does not know its entry passes each cell but the first at random.
     ASSERT_TRUE(plan.by_cell);
     const double blind = kGood * std::pow(either, kRows - 1);
     EXPECT_TRUE(holds(plan.by_cell->crossings.interval_95(), blind));
@@ -98,7 +98,7 @@ TEST(Plan, EachBodyTakesTheActionThatItsEntryAsksFor) {
   }
 }
 
-/// A lane whose cells let a body through by chance, and take so long.
+/// A lane whose cells let a body through with probability `chance`, and take this time.
 Action toll(std::string name, double chance, double time, int rows) {
   Action action = lane(std::move(name), chance, chance, {1, rows, 0});
   Section section = action.problem.map().section;
@@ -112,7 +112,7 @@ Action toll(std::string name, double chance, double time, int rows) {
 }
 
 TEST(Plan, TheFrontIsThatOfAllPoliciesAndEndsWhereACrossingTakesLeast) {
-  // Slow is sure, fast is not: of three rows all eight policies by row, in closed form.
+  // Slow is certain, fast is not: all eight policies by row for three rows, in closed form.
   constexpr int kThree = 3;
   constexpr double kChance[] = {0.95, 0.75}, kTime[] = {4.0, 1.0};
   const auto exact = [&](int policy) {
@@ -166,7 +166,7 @@ TEST(Plan, IsNotLostWherePassagesMayTakeNothing) {
   EXPECT_GT(plan.crossings.share(), 0.75);
 }
 
-// By simulation: 2000 sets of trials, whose means are known.
+// By simulation: 2000 sets of trials with known means.
 TEST(Plan, WhatTrialsTakeIsHeldByItsIntervals) {
   int mean = 0, ratio = 0;
   for (int set = 0; set < 2000; ++set) {
@@ -186,7 +186,7 @@ TEST(Plan, WhatTrialsTakeIsHeldByItsIntervals) {
   none.endings.assign(2, markov::Ending::trapped);
   none.costs.assign(2, {1.0});
   EXPECT_TRUE(std::isnan(spent_by(none, 0).per_crossing));
-  EXPECT_TRUE(std::isnan(spent_by(none, 0).mean_95[0]));  // of fewer than 100 trials
+  EXPECT_TRUE(std::isnan(spent_by(none, 0).mean_95[0]));  // for fewer than 100 trials
   none.endings[0] = markov::Ending::far_edge;
   EXPECT_TRUE(std::isinf(spent_by(none, 0).per_crossing_95[1]));
   EXPECT_GT(spent_by(none, 0).per_crossing_95[0], 0.0);
@@ -198,16 +198,16 @@ TEST(Plan, WhatTrialsTakeIsHeldByItsIntervals) {
 TEST(Plan, WhereAllActionsAreAlikeNothingIsGained) {
   const Plan plan = make_plan({lane("one", 0.9, 0.9), lane("other", 0.9, 0.9)}, {.seed = 5});
   for (const Gain& gain : plan.gains) {
-    EXPECT_EQ(gain.difference, 0.0);  // the same noise
-    // Over the one that it takes all the time itself, which is no estimate.
+    EXPECT_EQ(gain.difference, 0.0);  // under the same noise
+    // The gain over the action that the policy always takes is not an estimate.
     const auto taken = static_cast<std::size_t>(plan.policy.always.value());
     EXPECT_EQ(std::isnan(gain.interval_95[0]), &gain == &plan.gains[taken]);
     EXPECT_EQ(holds(gain.interval_95, 0.0), &gain != &plan.gains[taken]);
   }
 }
 
-// It takes what is known to be good, and what it promises is kept: less than the truth, and more
-// than an action all the time could.
+// A robust policy takes what is known to be good, and keeps its promise: less than the truth, and
+// more than any single action could achieve.
 TEST(Plan, RobustPoliciesKeepWhatTheyPromise) {
   const double best = std::pow(kGood, kRows), alone = kGood * std::pow(0.5 * (kGood + kBad), 4);
   for (const int limit : {0, kRows + 1}) {
@@ -222,7 +222,7 @@ TEST(Plan, RobustPoliciesKeepWhatTheyPromise) {
     for (const double x : {-0.9, -0.5, 0.5, 0.9})
       EXPECT_EQ(plan.policy.action({0, 2, 2}, {0, {x}}), x < 0.0 ? 0 : 1) << x;
   }
-  // One action all the time has its own worst case, a row of all runs of each cell.
+  // A single action has its own worst case, a row of all runs of each cell.
   const Plan same = make_plan({lane("good", kGood, kGood), lane("none", 0.0, 0.0)},
                               {.accuracy = 0.01, .seed = 4, .robust = true});
   EXPECT_EQ(same.policy.always, 0);
@@ -232,12 +232,12 @@ TEST(Plan, RobustPoliciesKeepWhatTheyPromise) {
   EXPECT_FALSE(make_plan(two_ways(), {.seed = 3}).worst_case);
 }
 
-// In every other row what is left is right.
+// In every other row, left and right are exchanged.
 TEST(Plan, TypesOfCellsAreToldApart) {
   const std::vector<Action> actions =
       in_turn(two_ways(), {lane("", kBad, kGood), lane("", kGood, kBad)});
   const Plan plan = make_plan(actions, {.seed = 6});
-  // The best within the accuracy, and as much again by chance.
+  // The best one within the accuracy, and as much again by sampling error.
   EXPECT_NEAR(plan.crossings.share(), std::pow(kGood, kRows), 0.04);
   for (int row = 0; row < kRows; ++row)
     for (const double x : {-0.5, 0.5})
@@ -247,7 +247,7 @@ TEST(Plan, TypesOfCellsAreToldApart) {
   EXPECT_THROW((void)plan.policy.action({0, 0, 0}, {1, {0.5}}), std::out_of_range);
 }
 
-// Where the way in tells nothing, to know the cell is enough.
+// If the entry tells nothing, knowing the cell is enough.
 TEST(Plan, KnowsTheCellAlone) {
   const std::vector<Action> actions = in_turn({lane("even", kGood, kGood), lane("odd", kBad, kBad)},
                                               {lane("", kBad, kBad), lane("", kGood, kGood)});
@@ -259,7 +259,7 @@ TEST(Plan, KnowsTheCellAlone) {
     EXPECT_EQ(plan.by_cell->policy.action({0, row, row}, {0, {0.5}}), row % 2) << row;
 }
 
-// To try again until the last cell, and there to rush.
+// The best policy tries again until the last cell, and rushes there.
 TEST(Plan, KnowsHowManyCellsAreLeft) {
   const auto action = [](std::string name, double ahead, Fate else_) {
     Section section;
@@ -287,7 +287,7 @@ TEST(Plan, KnowsHowManyCellsAreLeft) {
   EXPECT_EQ(plan.policy.action({6, 0, 2}, {1, {0.5}}), 1);
 }
 
-/// The paper's field: push hard, or gently.
+/// The paper's field, with two actions: push hard, or gently.
 std::vector<Action> pushes() {
   std::vector<Action> actions;
   for (const auto& [name, push] : {std::pair{"gently", 6.0}, {"hard", 8.0}}) {
@@ -333,7 +333,7 @@ TEST(Plan, AnActionAloneIsThatField) {
   }
 }
 
-// In the full dynamics the policy is worth what the plan says.
+// In the full dynamics the policy achieves what the plan says.
 TEST(Plan, APolicyRunsWithTheNoiseOfFieldTrials) {
   const std::vector<Action> actions = pushes();
   const Plan plan = make_plan(actions, {.accuracy = 0.1, .seed = 2});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Powers by hand, by enumeration, and by the very tests that they are of.
+// Power by hand, by enumeration, and by running the tests themselves.
 #include "lattice/statistics/power.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,8 @@ using Pairs = std::vector<std::pair<double, double>>;
 
 constexpr PowerGoal kGoal{.power = 0.8, .level = 0.05};
 
-/// Into the test's entry of --gtest_output=json: how often so many trials found something.
+/// Records in the test's entry of --gtest_output=json how often this number of trials found
+/// something.
 void record(const std::string& name, std::int64_t trials, double seen, double without) {
   testing::Test::RecordProperty(
       "found_" + name, std::to_string(seen) + " with " + std::to_string(trials) + " trials, " +
@@ -42,7 +43,8 @@ double binomial_chance(int n, double p, int k) {
   return choose(n, k) * std::pow(p, k) * std::pow(1.0 - p, n - k);
 }
 
-// Ten coins: none or one, nine or ten heads are 22 of 1024 cases; two or eight would make 112.
+// Ten coins: none or one, nine or ten heads are 22 of 1024 cases; adding two and eight would make
+// 112.
 TEST(PowerOfShare, ByHand) {
   EXPECT_NEAR(power_of_share(10, 0.5, 0.5, 0.05), 22.0 / 1024, 1e-14);
   EXPECT_NEAR(power_of_share(10, 0.5, 0.8, 0.05),
@@ -50,10 +52,10 @@ TEST(PowerOfShare, ByHand) {
                   10 * 0.8 * std::pow(0.2, 9),
               1e-14);
   EXPECT_NEAR(power_of_share(10, 0.5, 0.5, 0.11), 112.0 / 1024, 1e-14);
-  EXPECT_EQ(power_of_share(4, 0.5, 1.0, 0.05), 0.0);  // even 4 of 4 are 2 of 16 cases
+  EXPECT_EQ(power_of_share(4, 0.5, 1.0, 0.05), 0.0);  // even 4 of 4 has probability 2/16
 }
 
-// What never happens is seen by one case of it: 1 - .98^n reaches 0.8 with n = 80.
+// An outcome that never happens is detected by a single case: 1 - .98^n reaches 0.8 at n = 80.
 TEST(PowerOfShare, OfWhatShouldNeverHappen) {
   EXPECT_NEAR(power_of_share(60, 0.0, 0.02, 0.05), 1.0 - std::pow(0.98, 60), 1e-13);
   EXPECT_EQ(trials_for_share(0.0, 0.02, kGoal), 80);
@@ -63,7 +65,7 @@ TEST(PowerOfShare, OfWhatShouldNeverHappen) {
   EXPECT_FALSE(d.fewer);
 }
 
-// By the definition: p of a count is the chance of all counts as far from the mean.
+// By definition: p of a count is the probability of all counts at least as far from the mean.
 double power_by_definition(int n, double expected, double truth, double level) {
   double power = 0.0;
   for (int seen = 0; seen <= n; ++seen) {
@@ -105,8 +107,8 @@ TEST(TrialsForShare, AreTheLeastThatStayEnough) {
   EXPECT_THROW((void)trials_for_share(0.3, 1.1, kGoal), std::invalid_argument);
 }
 
-// The experiment itself, 2000 times: found in 80 % at the number that is recommended, and in no
-// more than 5 % where nothing differs. Four standard errors.
+// Runs the experiment 2000 times: 80 % find the difference at the recommended number of trials, and
+// at most 5 % find one where there is none. Four standard errors.
 TEST(TrialsForShare, KeepWhatTheyPromise) {
   constexpr int kRepeats = 2000;
   std::uint64_t row = 0;
@@ -210,8 +212,8 @@ TEST(HardestToSee, HasTheTotalVariationAndTheLeastChiSquared) {
   EXPECT_FALSE(hardest_to_see(Eigen::VectorXd::Ones(1), 0.1));
 }
 
-// At the number of trials that is recommended joint_test() itself finds 80 % of such experiments,
-// and without a difference no more than 5 %.
+// At the recommended number of trials, joint_test() itself finds 80 % of such experiments, and at
+// most 5 % without a difference.
 TEST(TrialsForTotalVariation, KeepWhatTheyPromise) {
   constexpr std::uint64_t kRepeats = 400;
   const CellProbabilities base = some_gates();
@@ -230,7 +232,7 @@ TEST(TrialsForTotalVariation, KeepWhatTheyPromise) {
   EXPECT_NEAR(seen, 0.8, 4 * error);
   EXPECT_LE(without, 0.05 + 4 * std::sqrt(0.05 * 0.95 / kRepeats));
   record("gates", n, seen, without);
-  // The least that so many trials show is what they were asked for.
+  // The smallest difference that this number detects is the one asked for.
   EXPECT_NEAR(smallest_total_variation(gates, n, kGoal, 1).value(), 0.2, 0.01);
 }
 
@@ -256,7 +258,7 @@ TEST(TrialsForTwo, KeepWhatTheyPromise) {
   EXPECT_FALSE(trials_for_two(first, first.shares, kGoal, 1));
 }
 
-// Endings: the largest difference of one of them decides; of two endings, that of both.
+// Endings: the largest difference of a single ending decides; with two endings, both have it.
 TEST(SimulatedTest, OfTwoEndingsIsTheBinomial) {
   std::array<double, markov::kEndings> endings{};
   endings[0] = 0.7;
@@ -266,7 +268,7 @@ TEST(SimulatedTest, OfTwoEndingsIsTheBinomial) {
   truth[0] = 0.55;
   truth[1] = 0.45;
   const SimulatedTest test(two, 60, 0.05, 3);
-  // 4000 draws decide which counts are critical: one of those beside may be among them.
+  // 4000 draws decide which counts are significant: a neighbouring count may be among them.
   const double low = power_of_share(60, 0.3, 0.45, 0.035),
                high = power_of_share(60, 0.3, 0.45, 0.065),
                error = 4 * std::sqrt(0.25 / static_cast<double>(two.draws));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Predictions from matrices of two outcomes, by hand.
+// Predictions from matrices with two outcomes, by hand.
 #include "lattice/study/prediction.h"
 #include "tests/support/disc_fields.h"
 
@@ -16,8 +16,7 @@ namespace {
 using dynamics::Boundary;
 using markov::Ending;
 
-/// From every entry so many of 1000 runs go on upwards, into the same state; the others are
-/// trapped.
+/// From every entry, `up` of 1000 runs go on upwards, into the same state; the others are trapped.
 SceneMatrix matrix(std::int64_t up, const std::string& keys = "") {
   Scene scene = parse_scene("field = { columns = 3, rows = 3, max_gates = 9 }\n" + keys, "scene");
   dynamics::Transitions t(dynamics::table3_space(scene.gate));
@@ -46,7 +45,8 @@ TEST(Prediction, OfThreeRowsIsAPower) {
   EXPECT_NEAR(share(p, Ending::trapped), 37.0 / 64, 1e-15);
   EXPECT_NEAR(p.starts[0].final.final_cells(1, 1), 0.75 * 0.25, 1e-15);
   EXPECT_EQ(p.left_out.matrices, 0);
-  // 1000 runs a row, all rows alike but resampled each on its own: the walk uses one of them.
+  // 1000 runs per row; all rows are equal but resampled independently, and the walk uses one of
+  // them.
   EXPECT_EQ(p.starts[0].replicates, 999);
   const auto [low, high] = p.starts[0].shares.interval[static_cast<std::size_t>(Ending::far_edge)];
   const double sd = 3.0 * 0.75 * 0.75 * std::sqrt(0.75 * 0.25 / 1000);  // of q^3
@@ -108,7 +108,8 @@ TEST(Prediction, OfManyStartsIsOneEach) {
   for (const StartPrediction& s : p.starts) EXPECT_NEAR(s.final.trapped(), 1 - 0.216, 1e-14);
 }
 
-/// Of rows of few runs, by the face that bodies came through; without a limit of gates.
+/// Prediction from rows of few runs, by the face that bodies came through; without a limit of
+/// gates.
 Prediction of_few_runs(const std::function<std::map<int, std::int64_t>(int face)>& row_of) {
   SceneMatrix m = matrix(1000);
   m.scene.field.max_gates = 0;
@@ -126,8 +127,8 @@ Prediction of_few_runs(const std::function<std::map<int, std::int64_t>(int face)
   return predict(gates, m.scene.field, {start}, {}, 1);
 }
 
-// Bodies move to and fro between two gates until one of few runs traps them, or the only one. No
-// resampled matrix loses that way out.
+// Bodies move back and forth between two gates until one of few runs, or the only one, traps them.
+// No resampled matrix loses that way out.
 TEST(Prediction, NoResampledMatrixLosesTheOnlyWayOut) {
   const dynamics::StateSpace space = matrix(1000).file->transitions.space;
   const int right = space.first(Boundary::right_deflect),
@@ -147,7 +148,7 @@ TEST(Prediction, NoResampledMatrixLosesTheOnlyWayOut) {
   }
 }
 
-// One half is trapped, the other never ends: each share may be larger by so much.
+// One half is trapped, the other never ends: each share may be larger by that half.
 TEST(Prediction, WhatNeverEndsWidensEachInterval) {
   const dynamics::StateSpace space = matrix(1000).file->transitions.space;
   const int right = space.first(Boundary::right_deflect),

@@ -22,7 +22,7 @@ namespace {
 
 using dynamics::Entry;
 
-/// The paper's field: some 4 % of the bodies enter row 3.
+/// The paper's field: about 4 % of the bodies enter row 3.
 Scene fast_scene() {
   Scene scene;
   scene.gate.forces.propulsion = 7.0;
@@ -32,7 +32,7 @@ Scene fast_scene() {
   return scene;
 }
 
-/// Four types, one of which stands far from the start only: some 2 % of the bodies get behind it.
+/// Four types, one of which stands far from the start only: about 2 % of the bodies get beyond it.
 Scene mixed_scene() {
   return parse_scene(R"(
 forces = { propulsion_N = 7.0, random_N = 50.0 }
@@ -60,13 +60,13 @@ forces.propulsion_N = 8.0
 
 double equal_worth(int, int, const Entry&) { return 1.0; }
 
-/// Has nothing to do with where bodies get: it doubles to the right, and jumps with the speed.
+/// A value unrelated to where bodies get: it doubles to the right, and jumps with the speed.
 double wrong_worth(int column, int row, const Entry& entry) {
   return std::exp2(column % 3 - row +
                    (std::fmod(std::abs(entry.at[dynamics::kEntryVx]), 2.0) > 1.0 ? 2.0 : 0.0));
 }
 
-/// The shares of full trials that enter rows 1, 2, ..., `rows`; nobody moves back.
+/// The shares of full trials that enter rows 1, 2, ..., `rows`; bodies do not move back.
 std::vector<RowChance> direct(const Scene& scene, int rows, std::int64_t trials) {
   const FieldTally tally = field_trials(problem_of(up_to_row(scene, rows)), {0, trials}, 77);
   const auto share = [&](std::int64_t entered) {
@@ -83,7 +83,7 @@ std::vector<RowChance> direct(const Scene& scene, int rows, std::int64_t trials)
   return shares;
 }
 
-/// Those that several tests ask for.
+/// Shares that several tests use.
 RowChance fast_truth(int row) {
   static const std::vector<RowChance> shares = direct(fast_scene(), 5, 100'000);
   return shares.at(static_cast<std::size_t>(row) - 1);
@@ -104,7 +104,7 @@ TEST(Splitting, WithoutValuesIsPlainTrials) {
   const Splitting s = split(problem_of(scene), 1.0, equal_worth, {.row = 2, .accuracy = 0.02});
   for (const RowChance& c : s.rows) {
     const double n = static_cast<double>(s.trials);
-    EXPECT_NEAR(c.probability * n, std::round(c.probability * n), 1e-6);  // nobody was split
+    EXPECT_NEAR(c.probability * n, std::round(c.probability * n), 1e-6);  // no body was split
     EXPECT_NEAR(c.relative_standard_error, std::sqrt((1 / c.probability - 1) / (n - 1)), 1e-12);
   }
   expect_agree(s.rows[1], fast_truth(2), 4.0);
@@ -117,7 +117,7 @@ TEST(Splitting, IntervalOfASmallChanceIsThatOfTheLogarithm) {
   EXPECT_NEAR(high, 1e-3 * std::exp(0.196), 1e-8);
 }
 
-// Where all trials came, some may still not.
+// Even if all trials succeeded, some bodies may fail.
 TEST(Splitting, IntervalOfALargeChanceIsNoNarrowerThanThatOfTheTrials) {
   const auto interval = [](double p, double error) {
     return RowChance{.probability = p, .relative_standard_error = error, .trials = 1000}
@@ -125,17 +125,17 @@ TEST(Splitting, IntervalOfALargeChanceIsNoNarrowerThanThatOfTheTrials) {
   };
   const auto all = dynamics::share_interval(1000, 1000);
   EXPECT_EQ(interval(1.0, 0.0), all);
-  EXPECT_EQ(interval(1.0 + 1e-9, 0.0), all);  // weights may add up to more
+  EXPECT_EQ(interval(1.0 + 1e-9, 0.0), all);  // weights may sum to more than 1
   EXPECT_NEAR(interval(std::nextafter(1.0, 0.0), 0.0)[0], all[0], 1e-9);
   const auto plain = interval(0.998, std::sqrt(0.002 / 0.998 / 1000));
   EXPECT_EQ(plain[0], dynamics::share_interval(998, 1000)[0]);
   EXPECT_EQ(plain[1], 1.0);
-  // Bodies of different weights make more chance than trials of one each.
+  // Bodies of different weights give more sampling error than trials of weight 1.
   for (const double p : {0.9, 0.9999, 1.003})
     EXPECT_NEAR(interval(p, 0.05)[0], p * std::exp(-0.05 * dynamics::kNormal95), 1e-12) << p;
 }
 
-// As many trials at once as the last ones say are wanted.
+// Each round has as many trials as the last rounds suggest.
 TEST(Splitting, FewRoundsReachTheAccuracy) {
   dynamics::Work work;
   int rounds = 0;
@@ -184,7 +184,7 @@ TEST(Splitting, IsTheSameOnAnyNumberOfThreads) {
   }
 }
 
-// A type that stands nowhere changes nothing.
+// A type without any cell changes nothing.
 TEST(Splitting, IsThatOfThePlainFieldWhereAllGatesAreAlike) {
   const Scene scene = fast_scene();
   Scene typed = scene;
@@ -204,7 +204,7 @@ TEST(Splitting, RefusesWhatMakesNoSense) {
   EXPECT_THROW((void)split(problem_of(scene), 1.0, zero, {.row = 2}), std::invalid_argument);
 }
 
-// A map has its size; of one that is drawn the scene may ask for more rows.
+// A given map has its size; a scene may ask for more rows of a map drawn at random.
 TEST(Splitting, EndsWithTheTerrain) {
   const Scene scene = mixed_scene();
   EXPECT_EQ(up_to_row(scene, 2).terrain->type_of_cell,
@@ -242,13 +242,14 @@ TEST(Splitting, RareEventAgreesWithDirectTrialsInAMixedField) {
   const RareEvent e = rare_event(problem_of(scene), {.row = 6, .accuracy = 0.1});
   const RowChance d = mixed_truth(6);
   EXPECT_NEAR(d.probability, 0.018, 0.003);
-  EXPECT_GE(e.pool_runs, 60'000);  // all of its trials, one gate each at the least
+  EXPECT_GE(e.pool_runs, 60'000);  // all of its trials, with at least one gate each
   EXPECT_TRUE(e.splitting.reached);
   expect_agree(e.splitting.rows[5], d, 4.0);
   EXPECT_NEAR(e.chain[5] / d.probability, 1.0, 0.4);
 }
 
-// Rows that nobody gets behind: the chain knows no way, and those before are as certain as ever.
+// Rows that no body gets beyond: the chain knows no way, and the rows before are as precise as
+// ever.
 TEST(Splitting, RareEventEndsWhereNobodyGetsThrough) {
   Scene scene = mixed_scene();
   Terrain& terrain = *scene.terrain;
@@ -264,8 +265,8 @@ TEST(Splitting, RareEventEndsWhereNobodyGetsThrough) {
   expect_agree(e.splitting.rows[0], direct(scene, 1, 100'000).front(), 4.0);
 }
 
-// Of trials without anybody: that of a share, and behind a row that bodies entered no more than
-// what is known of that row.
+// Bounds without any body: the interval of a share; beyond a row that bodies entered, at most what
+// is known of that row.
 TEST(Splitting, SaysHowLikelyItIsAtMostWhereNobodyCame) {
   Scene stuck = fast_scene();
   stuck.gate.forces.propulsion = stuck.gate.forces.random = 0.0;
@@ -281,8 +282,8 @@ TEST(Splitting, SaysHowLikelyItIsAtMostWhereNobodyCame) {
   }
 }
 
-// In repeats of so few trials that most see nobody in the last row: above the truth but for 2.5 %
-// of them, and no larger than it need be.
+// Repeats with so few trials that most see no body in the last row: the bound is above the truth
+// except in 2.5 % of them, and not larger than necessary.
 TEST(Splitting, ABoundWhereNobodyCameHoldsAsOftenAsItSays) {
   Scene scene = fast_scene();
   scene.gate.forces.propulsion = 6.6;
@@ -303,7 +304,7 @@ TEST(Splitting, ABoundWhereNobodyCameHoldsAsOftenAsItSays) {
   EXPECT_EQ(large, 0);
 }
 
-// Few full trials for the chain do where many of them get to the row; all of them where few do.
+// Few full trials suffice for the chain if many of them reach the row; otherwise all are needed.
 TEST(Splitting, RareEventRunsFewTrialsForTheChainOfACommonEvent) {
   const Scene scene = fast_scene();
   const RareEvent common = rare_event(problem_of(scene), {.row = 2}),
@@ -313,8 +314,8 @@ TEST(Splitting, RareEventRunsFewTrialsForTheChainOfACommonEvent) {
   expect_agree(common.splitting.rows[1], fast_truth(2), 4.0);
 }
 
-// 95 % intervals hold in 93 to 97 % of 1000 repeats, of a chance of some 0.001; in the usual 40, of
-// a larger one, at least 34 times.
+// 95 % intervals hold in 93 to 97 % of 1000 repeats, for a probability of about 0.001; in the usual
+// 40 repeats, for a larger one, at least 34 times.
 TEST(Splitting, IntervalsHoldAsOftenAsTheySay) {
   const Scene scene = fast_scene();
   const auto by_row = [](int, int row, const Entry&) { return std::pow(2.4, row); };
@@ -335,12 +336,12 @@ TEST(Splitting, IntervalsHoldAsOftenAsTheySay) {
   }
   RecordProperty("truth", std::to_string(truth.probability));
   RecordProperty("holds", holds);
-  RecordProperty("below", below);  // the truth: those intervals
+  RecordProperty("below", below);  // intervals below the truth
   EXPECT_GE(holds, test::usual_or_full(34, 930));
   EXPECT_LE(holds, test::usual_or_full(40, 970));
 }
 
-// Most enter row 2, after walls that give them weights by values without sense.
+// Most bodies enter row 2, after walls that give them weights by unrelated values.
 TEST(Splitting, IntervalsOfLargeChancesHold) {
   Scene scene = fast_scene();
   scene.gate.forces.propulsion = 20.0;

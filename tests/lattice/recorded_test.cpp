@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tables of recorded runs: read, refused by line and column, written so that they read back the
-// same, and fast.
+// Tables of recorded runs: reading, refusals by line and column, writing text that reads back the
+// same, and speed.
 #include "lattice/recorded/recorded.h"
 
 #include <gtest/gtest.h>
@@ -81,7 +81,7 @@ class Recorded : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// The text with `to` in place of the first `from`.
+/// `text` with `to` instead of the first `from`.
 std::string instead(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, text.npos) << from;
@@ -121,7 +121,7 @@ TEST_F(Recorded, ReadsEveryPassage) {
   EXPECT_EQ(runs.trapped, 1);
   EXPECT_EQ(runs.lost, 1);
   EXPECT_EQ(runs.unknown[0], 0);
-  EXPECT_EQ(runs.unknown[1], 1);  // the lost one's is not asked for
+  EXPECT_EQ(runs.unknown[1], 1);  // the lost passage's cost does not count
   ASSERT_EQ(runs.trials.size(), 3u);
   EXPECT_EQ(runs.trials[0].start, (Entry{0, {0.012, -0.05, 0.21}}));
   EXPECT_EQ(runs.trials[1].start, (Entry{2, {0.0, 0.0, 1.0}}));
@@ -144,7 +144,7 @@ TEST_F(Recorded, ReadsEveryPassage) {
   EXPECT_TRUE(std::signbit(runs.passages[2].entry.at[1]));
 }
 
-// As spreadsheets and other programs write it.
+// Tables as spreadsheets and other programs write them.
 TEST_F(Recorded, ColumnsStandInAnyOrderAndFieldsMayBeQuoted) {
   const RecordedRuns plain = read(kHeader +
                                   "b 1,x,S,1,2,3,W,4,5,6,7,8\n"
@@ -173,7 +173,7 @@ TEST_F(Recorded, TypesAreThoseOfTheFileOfCells) {
             "x.csv:1: column type is missing: the columns must be "
             "body,trial,type,in,s,vx,vy,out,out_s,out_vx,out_vy,time_s,work_J; there are body, "
             "trial, in, s, vx, vy, out, out_s, out_vx, out_vy, time_s, work_J");
-  EXPECT_EQ(read(header + ".," + line).passages[0].type, 0);  // the only one's name
+  EXPECT_EQ(read(header + ".," + line).passages[0].type, 0);  // the name of the only type
 }
 
 TEST_F(Recorded, ScalesAreTheSpreadOfWhatWasSeen) {
@@ -181,8 +181,8 @@ TEST_F(Recorded, ScalesAreTheSpreadOfWhatWasSeen) {
   std::ofstream(path()) << kHeader << "p,1,S,1,2,7,S,3,4,7,1,\np,1,S,3,4,7,S,100,100,100,1,\n"
                         << "p,2,S,1,9,7,lost,,,,,\n";
   (void)read_runs(path(), own);
-  EXPECT_EQ(own.map.section.coordinates[0].scale, 0.1);  // given
-  // Of 2, 4 and 9, entries into cells; where bodies went last they entered none.
+  EXPECT_EQ(own.map.section.coordinates[0].scale, 0.1);  // given in the file
+  // From 2, 4 and 9, entries into cells; the last moves of bodies are no entries.
   EXPECT_NEAR(own.map.section.coordinates[1].scale, std::sqrt(26.0 / 3.0), 1e-14);
   EXPECT_EQ(own.map.section.coordinates[2].scale, 1.0);
   EXPECT_EQ(own.has_scale, cells.has_scale);
@@ -301,7 +301,7 @@ TEST_F(Recorded, RefusesByFileLineAndColumn) {
   EXPECT_THROW((void)read_runs(folder_.string(), of), std::invalid_argument);
 }
 
-// The clock of who recorded it may be off in its last digits.
+// Recorded times may differ from the limit in their last digits.
 TEST_F(Recorded, TimesMayBeOffTheLimitByRounding) {
   const std::string line = "p,1,S,1,2,3,";
   EXPECT_EQ(refused_as(kHeader + line + "S,1,2,3,10.000000001,\n"), "(accepted)");
@@ -324,7 +324,7 @@ TEST_F(Recorded, TrialsThatAreNamedAlikeAreNotTheSame) {
             "stand one behind the other");
 }
 
-/// Some trials of any numbers; a third of the times is not known where bodies were lost.
+/// Trials with random numbers; a third of the times of lost bodies is unknown.
 RecordedRuns any_runs(const CellFile& cells, std::int64_t passages, std::int64_t bodies) {
   RecordedRuns runs;
   runs.passages.begin(cells.map.section);
@@ -349,7 +349,7 @@ RecordedRuns any_runs(const CellFile& cells, std::int64_t passages, std::int64_t
       passage.fate = what < 0.02   ? dynamics::Fate::trapped
                      : what < 0.05 ? dynamics::Fate::broken
                                    : dynamics::Fate::left;
-      goes_on = what >= 0.1;  // may leave the field
+      goes_on = what >= 0.1;  // the body may leave the field
       if (what >= 0.05) passage.entry = entry();
       if (what < 0.01) passage.costs[1] = std::numeric_limits<double>::quiet_NaN();
       if (what >= 0.04 && what < 0.05) passage.costs[0] = std::numeric_limits<double>::quiet_NaN();
@@ -379,7 +379,7 @@ TEST_F(Recorded, WhatIsWrittenReadsBackToTheLastBit) {
   runs.bodies[5] = " 5";
   write_runs(path(), typed, runs);
   expect_same(read_runs(path(), typed), runs);
-  // Extremes of what a number may be, and a table without types.
+  // Extreme numbers, and a table without types.
   RecordedRuns few = read(kHeader +
                           "p,1,S,5e-324,-1.7976931348623157e308,-0,S,2.2250738585072014e-308,"
                           "0.1,1e22,0.30000000000000004,\n");
@@ -418,16 +418,17 @@ TEST_F(Recorded, WhatCouldNotBeReadIsNotWritten) {
   EXPECT_TRUE(refused([](RecordedRuns& r) { r.bodies[0] = ""; }));
   EXPECT_TRUE(refused([](RecordedRuns& r) { r.bodies[0] = "two\nlines"; }));
   EXPECT_TRUE(refused([](RecordedRuns& r) { r.trials[0].start.at[1] = NAN; }));
-  EXPECT_TRUE(refused([](RecordedRuns& r) { r.trials[0].count = 3; }));  // goes on when trapped
+  // Continues after it was trapped.
+  EXPECT_TRUE(refused([](RecordedRuns& r) { r.trials[0].count = 3; }));
   EXPECT_TRUE(refused([&](RecordedRuns& r) {
     r.passages = PassageTable(cells.map.section);
     r.trials = {{{}, 0, 0, 1}};
-    r.passages.push_back({dynamics::Fate::left, 0, {}, {}});  // in no time
+    r.passages.push_back({dynamics::Fate::left, 0, {}, {}});  // takes no time
   }));
   EXPECT_FALSE(refused([](RecordedRuns&) {}));
 }
 
-/// The text between two lines of three backticks, the first of which goes on with `kind`.
+/// The text between two lines of three backticks, the first of which continues with `kind`.
 std::string example_of(const std::string& kind) {
   std::ifstream file(kRoot / "cli" / "site" / "reference" / "files.md");
   std::string text, line;
@@ -454,7 +455,7 @@ TEST_F(Recorded, TheExamplesOfTheDocumentationAreRead) {
   EXPECT_EQ(made_up.lost, 2);
 }
 
-// Of a million passages: in CPU time, next to a program that does no more than find the lines.
+// A million passages, in CPU time relative to a program that only finds the lines.
 TEST_F(Recorded, AMillionLinesAreReadInABoundedTime) {
   CellFile typed = two_types();
   const RecordedRuns runs = any_runs(typed, 1'000'000, 200);

@@ -27,7 +27,7 @@ Scene scene(const std::string& more = "") {
       "soft.toml");
 }
 
-// The endings are those that `gate` counts.
+// The endings agree with those that `gate` counts.
 TEST(Recording, EndsAsTheRunThatIsCounted) {
   const Scene s = scene();
   dynamics::GateTally counted = dynamics::run_gate_trials(s.gate, s.start, 5, {10, 12});
@@ -43,7 +43,7 @@ TEST(Recording, EndsAsTheRunThatIsCounted) {
     EXPECT_NE(std::find(known.begin(), known.end(), ending), known.end());
 }
 
-// Gate after gate: time and losses go on, the field's frame has no jumps.
+// From gate to gate, time and losses continue, and the position in the field has no jumps.
 TEST(Recording, GoesOnFromGateToGate) {
   const Scene s = parse_scene("", "field.toml");
   for (int trial = 0; trial < 5; ++trial) {
@@ -78,7 +78,7 @@ TEST(Recording, WhatItsEndIsCalled) {
   EXPECT_FALSE(ends_so("left side", "left field"));
 }
 
-// Kept are the trials that end so, in their order, each as it is alone.
+// Keeps the trials with this ending, in their order, each as it is alone.
 TEST(Recording, KeepsTheTrialsThatEndSo) {
   const Scene s = scene();
   const Recordings all = record_trials(s, {.seed = 5, .first = 10, .trials = 12});
@@ -99,7 +99,8 @@ TEST(Recording, KeepsTheTrialsThatEndSo) {
   EXPECT_THROW((void)record_trials(s, {.only = "stuck"}), std::invalid_argument);
 }
 
-// Where a body chooses the types of its gates its trials are those that are counted so.
+// If a body chooses the types of its gates, its recorded trials are those that policy_trials
+// counts.
 TEST(Recording, DoesWhatAPolicySays) {
   const Scene s = parse_scene(
       "[run]\nmethod = \"moreau\"\n[field]\nrows = 3\nmax_gates = 9\n"

@@ -23,7 +23,7 @@ namespace {
 using namespace dynamics;
 using test::on_threads;
 
-/// Little noise, where much is to be gained.
+/// A scene with little noise, where evenly spread points gain most.
 Scene calm_scene() {
   Scene scene;
   scene.gate.run.method = "moreau";
@@ -77,8 +77,8 @@ TEST(RqmcTrials, AreTheSameInAnyCompanyOnAnyThreads) {
   EXPECT_EQ(together.tally.trials, 1600);
 }
 
-// The law of a trial does not know of the others: means of arrays, which are independent, lie about
-// the shares of plain trials.
+// Each trial alone has the usual distribution: the means of arrays, which are independent, lie
+// around the shares of plain trials.
 TEST(RqmcTrials, EndAsPlainOnesDo) {
   const lattice::Problem problem = problem_of(calm_scene());
   constexpr std::int64_t kPlain = 40'000, kOfArray = 64, kSets = 25;
@@ -105,7 +105,7 @@ TEST(RqmcTrials, EndAsPlainOnesDo) {
   }
 }
 
-/// Sum of the standard deviations of the shares of final gates, squared.
+/// Squared sum of the standard deviations of the final gates' shares.
 double spread(const std::vector<CellProbabilities>& replicates) {
   const auto n = static_cast<double>(replicates.size());
   CellProbabilities mean = CellProbabilities::Zero(9, 9), squares = mean;
@@ -115,7 +115,7 @@ double spread(const std::vector<CellProbabilities>& replicates) {
   return sum * sum;
 }
 
-// Binomial noise makes the same sum 1 of as many plain trials.
+// Binomial noise gives this sum the value 1 for as many plain trials.
 TEST(RqmcTrials, HaveLessChanceTogether) {
   Scene scene = calm_scene();
   scene.start = {23, 0, -11, 16};
@@ -138,13 +138,13 @@ TEST(RqmcTrials, FirstPointsGoOnWhereTheyWere) {
   const FirstPoints points(1, 2, 0);
   EXPECT_EQ(points(3), points(3));
   EXPECT_NE(points(3), points(4));   // another array
-  EXPECT_NE(points(3), points(11));  // its next point
+  EXPECT_NE(points(3), points(11));  // the next point of the same array
   EXPECT_NE(points(3), FirstPoints(2, 2, 0)(3));
   EXPECT_NE(points(3), FirstPoints(1, 3, 0)(3));
   EXPECT_NE(points(3), FirstPoints(1, 2, std::int64_t{1} << 41)(3));
 }
 
-/// Lets no more than three items be done at once.
+/// Permits at most three items at once.
 class InThrees : public KeptPieces {
  public:
   void begin(const Stage& stage) override { end_ = stage.items.count; }
@@ -168,9 +168,9 @@ TEST(RqmcTrials, OfARunnerAreTheSameInPieces) {
     OwnRuns s;
     s.start = problem.start;
     PoolRunner runner(problem, 4, 1 << 30, work);
-    runner.run_full(s, 100);                     // plain
-    runner.run_full(s, PoolRunner::kLeastEven);  // arrays, from a number that no array begins at
-    runner.run_full(s, PoolRunner::kLeastEven + 17);  // as many as arrays have, at least
+    runner.run_full(s, 100);                     // plain trials
+    runner.run_full(s, PoolRunner::kLeastEven);  // arrays, from a number at which no array begins
+    runner.run_full(s, PoolRunner::kLeastEven + 17);  // arrays of at least this many trials
     return s.full;
   };
   const FieldTrials whole = trials_of({});

@@ -43,10 +43,10 @@ OwnRuns some_trials(const Scene& scene, std::int64_t n, BodyState from = kStart)
   return s;
 }
 
-// With a leaf for each run nothing is pooled: the chain repeats the trials.
+// With one run per leaf nothing is pooled: the chain repeats the trials.
 TEST(RunPool, LeavesOfOneRunGiveTheTrialsThemselves) {
   Scene scene = fast_scene();
-  scene.gate.beams.stiffness_left = 300.0;  // no mirror images
+  scene.gate.beams.stiffness_left = 300.0;  // so that there are no mirror images
   RunPool pool;
   pool.starts.push_back(some_trials(scene, 200));
   const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool, 1);
@@ -59,7 +59,7 @@ TEST(RunPool, LeavesOfOneRunGiveTheTrialsThemselves) {
     EXPECT_NEAR(p[0].endings[e], own.endings[e], 1e-12) << e;
 }
 
-// Rows and columns counted by index_of, run by run.
+// Rows and columns counted with index_of, run by run.
 TEST(RunPool, CountsAreThoseOfTheRuns) {
   for (const double left : {400.0, 300.0}) {
     Scene scene = fast_scene();
@@ -137,7 +137,7 @@ TEST(RunPool, AStartWithoutRunsHasThoseOfItsLeaf) {
 
 TEST(RunPool, CostsOfRunsThatTheKernelHasNotAreRefused) {
   Scene scene = fast_scene();
-  scene.gate.beams.stiffness_left = 300.0;  // no mirror images
+  scene.gate.beams.stiffness_left = 300.0;  // so that there are no mirror images
   const CellMap map = FieldGates(scene.gate).map();
   RunPool few, more;
   few.starts.push_back(some_trials(scene, 3));
@@ -145,7 +145,7 @@ TEST(RunPool, CostsOfRunsThatTheKernelHasNotAreRefused) {
   const Kernel kernel = kernel_of(map, few, 1);
   EXPECT_NO_THROW((void)cost_sums(kernel, map, few));
   EXPECT_THROW((void)cost_sums(kernel, map, more), std::invalid_argument);
-  // Trial by trial: wherever in a row what it adds would be.
+  // Trial by trial: each trial's contribution must be somewhere in its row.
   const auto is_there = [&](const Entry& from, const CellPassage& to) {
     const int column =
         to.fate == Fate::trapped ? kernel.space.trapped() : kernel.space.index_of(to.entry).state;
@@ -182,7 +182,7 @@ TEST(RunPool, OnlyGatesInWhichNotAllAreTrappedListTheirEndings) {
   EXPECT_LT(listed, (own.final_cells > 0.0).count());
 }
 
-// Row by row what chain_of divides, trapped bodies among them.
+// Row by row, the counts that chain_of divides, trapped bodies included.
 TEST(RunPool, TransitionsAreTheCounts) {
   const Scene scene = fast_scene();
   const CellMap map = FieldGates(scene.gate).map();
@@ -238,13 +238,13 @@ TEST(GroupSpread, SamplingAndBiasByHand) {
   const auto whole = of_shares(0.5, 0.5);
   const std::vector<markov::FinalDistribution> same(8, whole);
   EXPECT_NEAR(GroupSpread(whole, same).error(1'000'000, 1).total_variation, 3e-6, 1e-8);
-  // All groups alike but off: a bias alone, three quarters of which the whole one is thought to
-  // have.
+  // All groups agree but are off: a pure bias, of which the whole prediction is taken to have three
+  // quarters.
   const std::vector<markov::FinalDistribution> biased(8, of_shares(0.4, 0.6));
   EXPECT_NEAR(GroupSpread(whole, biased).error(1000, 1).total_variation, 0.075, 1e-12);
   EXPECT_NEAR(GroupSpread(whole, biased).endings_95(100).interval[0][0], 0.425, 0.002);
-  // +-0.1 in turn: a standard error of 0.1 / sqrt(7), as eight groups tell it of two gates that
-  // vary as one: Student's t with 7 degrees of freedom.
+  // +-0.1 alternating: a standard error of 0.1 / sqrt(7), estimated from eight groups of two gates
+  // that vary together: Student's t with 7 degrees of freedom.
   std::vector<markov::FinalDistribution> spread;
   for (int k = 0; k < 8; ++k) spread.push_back(of_shares(k % 2 ? 0.4 : 0.6, k % 2 ? 0.6 : 0.4));
   double mean = 0.0;
@@ -254,7 +254,7 @@ TEST(GroupSpread, SamplingAndBiasByHand) {
   EXPECT_THROW(GroupSpread(whole, {whole}), std::invalid_argument);
 }
 
-// Many gates that vary by themselves tell together how much: as if it were known.
+// Many gates that vary independently show together how much: as if the variance were known.
 TEST(GroupSpread, ManyGatesMakeManyDegreesOfFreedom) {
   constexpr Eigen::Index kGates = 400;
   markov::FinalDistribution whole;
@@ -266,16 +266,16 @@ TEST(GroupSpread, ManyGatesMakeManyDegreesOfFreedom) {
     std::vector<markov::FinalDistribution> groups(8, whole);
     for (auto& g : groups)
       for (Eigen::Index i = 0; i < kGates; ++i) g.final_cells.data()[i] += 1e-4 * random.normal();
-    const double spread = 1e-4 / std::sqrt(8.0);  // of the mean of eight
+    const double spread = 1e-4 / std::sqrt(8.0);  // of the mean of eight groups
     told.push_back(GroupSpread(whole, groups).error(1'000'000, k).total_variation /
                    (0.5 * kGates * spread * std::sqrt(2.0 / std::numbers::pi)));
   }
-  // The groups' mean is off by as much again, of which the bar has three quarters.
+  // The groups' mean is off by as much again, of which the bar includes three quarters.
   const double all = std::hypot(1.0, 0.75);
   for (const double t : told) EXPECT_NEAR(t, all, 0.2 * all);
 }
 
-// 1.0 less rounding is all of them: 160 trials cannot tell 100 % from 99 %.
+// 1.0 minus rounding counts as all trials: 160 trials cannot distinguish 100 % from 99 %.
 TEST(GroupSpread, NoneAndAllSeenAreAsManyTrialsSay) {
   const auto whole = of_shares(0.0, 1.0 - 1e-16);
   std::vector<markov::FinalDistribution> groups(8, of_shares(0.0, 1.0));
@@ -321,7 +321,7 @@ TEST(GroupSpread, RmseAndCorrcoefHoldForAnyGateThatWasMissed) {
   EXPECT_LT(e.corrcoef, 1.0);
 }
 
-// One trial of 160 in one of the groups, which pooling makes twice as many of: it may be chance.
+// One trial of 160 in one of the groups, which pooling doubles: it may be chance.
 TEST(GroupSpread, OneTrialSeenLeavesAWideInterval) {
   std::vector<markov::FinalDistribution> groups(8, of_shares(0.0, 1.0));
   groups[2] = of_shares(0.05, 0.95);
@@ -334,7 +334,8 @@ TEST(GroupSpread, OneTrialSeenLeavesAWideInterval) {
   EXPECT_NEAR(all[1], 1.0 - low, 1e-9);
 }
 
-// However alike the groups are, so few gate runs tell a rare share no better.
+// However alike the groups are, a rare share is not known better than this number of gate runs
+// permits.
 TEST(GroupSpread, NoNarrowerThanTheGateRuns) {
   const auto whole = of_shares(1e-4, 1.0 - 1e-4);
   std::vector<markov::FinalDistribution> groups;
@@ -344,8 +345,8 @@ TEST(GroupSpread, NoNarrowerThanTheGateRuns) {
   EXPECT_LT(low, 2e-6);
 }
 
-// Trials that are not pooled at all: 95 % of the intervals hold, at least 93 of 100 (and two
-// standard errors), also where most of the eight groups see none.
+// Trials that are not pooled: 95 % of the intervals hold, at least 93 of 100 (minus two standard
+// errors), even if most of the eight groups see no such trial.
 TEST(GroupSpread, IntervalsOfSharesHold) {
   constexpr int kRepeats = 500;
   for (const double p : {0.0008, 0.006, 0.02, 0.1, 0.4, 0.985}) {
@@ -372,7 +373,7 @@ TEST(GroupSpread, AMeanOfWhatIsAlwaysAlikeHasNoInterval) {
   EXPECT_NEAR(m.interval[1] - 5.0, 2.3646 / std::sqrt(7.0), 1e-9);
 }
 
-// A mean of few runs has no interval: groups that have none of the rare long ones are alike.
+// A mean of few runs has no interval: groups without the rare long runs agree by chance.
 TEST(Means, OfFewRunsHaveNoInterval) {
   const std::vector<double> groups{4, 6, 4, 6, 4, 6, 4, 6};
   const std::vector<double> some(8, 12.5);
@@ -415,7 +416,7 @@ TEST(PooledPrediction, IsAsAccurateAsItSaysAndTheSameOnAnyThreads) {
   EXPECT_LT(one.gate_runs, 20'000);
 }
 
-// All trials end in the same gate: that is not certain, only likely.
+// All trials end in the same gate, which is likely but not certain.
 TEST(PooledPrediction, WhatWasNeverSeenIsInTheBar) {
   Scene scene = fast_scene();
   scene.gate.forces.random = 0.0;
@@ -431,7 +432,7 @@ TEST(PooledPrediction, WhatWasNeverSeenIsInTheBar) {
   for (const auto& [low, high] : p.starts[0].endings.interval) EXPECT_GT(high - low, 1e-3);
 }
 
-// The pool knows slow bodies only: of a fast one it cannot say how it goes on.
+// The pool has slow bodies only: it cannot tell how a fast body continues.
 TEST(PooledPrediction, EntriesWhereNoRunEnteredAreInTheBar) {
   const Scene scene = fast_scene();
   const BodyState fast{0, 0, 0, 45};
@@ -484,7 +485,7 @@ TEST(PassageTable, HasAsManyColumnsAsItsSection) {
     table.push_back({dynamics::Fate::left, 0, {Boundary::enter, {x, -x, 9}}, {x, 9}});
   EXPECT_EQ(table[1].entry, (Entry{Boundary::enter, {2, -2, 0}}));
   EXPECT_EQ(table[1].costs, (dynamics::Costs{2}));
-  table.begin(disc_section());  // it has passages: stays as it is
+  table.begin(disc_section());  // the table has passages, so that it keeps its section
   EXPECT_EQ(table[0].entry, (Entry{Boundary::enter, {1, -1, 0}}));
   EXPECT_THROW(PassageTable().push_back({}), std::logic_error);
 }
@@ -494,7 +495,7 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   RunPool pool;
   pool.starts.push_back(some_trials(scene, 4000));
   const Kernel kernel = kernel_of(FieldGates(scene.gate).map(), pool);
-  // Other trials of the same start, through the first gate only.
+  // Other trials from the same start, through the first gate only.
   FieldParams one_gate = scene.field;
   one_gate.max_gates = 1;
   OwnRuns again;
@@ -515,7 +516,7 @@ TEST(RunPool, EntriesLikeThoseOfOthersAreSeen) {
   EXPECT_NEAR(missing_mass(kernel, FieldGates(scene.gate).map(), scene.field, again),
               static_cast<double>(go_on) / 1000, 0.1);
   FieldParams last_row = scene.field;
-  last_row.rows = 1;  // who leaves upwards has crossed: nothing more is to be known of that
+  last_row.rows = 1;  // bodies that leave upwards have crossed, and nothing more is needed
   EXPECT_EQ(missing_mass(kernel, FieldGates(scene.gate).map(), last_row, again), 0.0);
 }
 
@@ -594,7 +595,7 @@ TEST(PoolChains, ManyStartsByTheAdjointAreAnsweredAsOneByOne) {
   ASSERT_TRUE(chains.by_adjoint(pool, all.size()));
   ASSERT_FALSE(chains.by_adjoint(pool, few.size()));
   const PoolAnswers many = chains.ask(pool, asked(all));
-  // Few starts are asked one by one; many have leaves of twice the size.
+  // Few starts are asked one by one; with many starts, leaves are twice as large.
   const PoolAnswers two = PoolChains(FieldGates(scene.gate).map(), scene.field, 10, few.size(), 1)
                               .ask(pool, asked(few));
   EXPECT_EQ(many.states, two.states);
@@ -631,7 +632,7 @@ TEST(PooledPrediction, OfManyStartsSharesTheirRuns) {
         predict_pooled(problem_of(scene), pool, {many_starts()[k]}, {.accuracy = 0.2, .seed = 2})
             .gate_runs;
   }
-  EXPECT_LT(one.gate_runs, 6 * alone);  // of four starts: together they take less
+  EXPECT_LT(one.gate_runs, 6 * alone);  // four starts together take less
 }
 
 TEST(PooledPrediction, OfARangeHasTheTrialsThatWereAsked) {
@@ -679,7 +680,7 @@ TEST(TreeChain, AFileGivesBackMatrixRunsAndAnswer) {
   ASSERT_TRUE(has_runs(file));
   RunPool pool = pool_of(file, problem_of(scene), path);
   EXPECT_EQ(pool.gate_runs(), chain.pool.gate_runs());
-  // Extending a pool from a file is extending the one in memory.
+  // Extending a pool from a file equals extending the pool in memory.
   RunPool here = chain.pool;
   const auto more = predict_pooled(problem_of(scene), here, {entry_of(kStart)}, {.accuracy = 0.03});
   RunPool there = pool;
@@ -757,7 +758,7 @@ TEST(TreeChain, DamagedRunsAreRefused) {
     for (const double x : {0.5, -1.0, 1e6})
       refused(name, [x](std::vector<double>& values) { values[0] = x; });
   refused("run_boundary", [](std::vector<double>& values) { values[0] = 7.0; });
-  // More runs than there are: known before any is looked at.
+  // More runs than the file has: detected before any run is read.
   std::size_t trials = 0;
   const std::string said = refused("trial_runs", [&](std::vector<double>& values) {
     values.back() += 1.0;
@@ -766,7 +767,8 @@ TEST(TreeChain, DamagedRunsAreRefused) {
   EXPECT_EQ(said, "x.nc: its gate runs do not add up: trial " + std::to_string(trials));
 }
 
-// What a range took is not taken from its starts: bodies from this one enter as no others do.
+// Runs of a range do not replace those of other starts: bodies from this start enter as no others
+// do.
 TEST(TreeChain, StartsBesideARangeGetTrialsOfTheirOwn) {
   const Problem problem = problem_of(fast_scene());
   const TreeChain chain = make_tree_chain(problem, {.accuracy = {.accuracy = 0.1},

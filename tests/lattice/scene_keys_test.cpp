@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every key of a scene, from the table that the reader itself has: what it refuses, and that the
-// message names file, line, key and what is allowed. A new key is tested as it is.
+// Every key of a scene, from the reader's own table: what the reader refuses, and that the message
+// names file, line, key and what is allowed. A new key is tested automatically.
 
 #include <gtest/gtest.h>
 
@@ -32,11 +32,11 @@ class SceneKeys : public testing::TestWithParam<KeyInfo> {
   [[nodiscard]] static bool is_whole() {
     return !is_text() && GetParam().value.find_first_of(".e") == std::string::npos;
   }
-  /// "[0, 1e+100] N"; of a key of text nothing.
+  /// "[0, 1e+100] N"; empty for a key of text.
   [[nodiscard]] static std::string allowed() {
     return GetParam().range + (GetParam().unit.empty() ? "" : " " + GetParam().unit);
   }
-  /// The lowest and the highest number, and whether they are themselves permitted.
+  /// The lowest and the highest number, and whether they are permitted.
   struct Range {
     double low, high;
     bool low_open, high_open;
@@ -57,12 +57,12 @@ std::string test_name_of(const testing::TestParamInfo<KeyInfo>& k) {
 
 INSTANTIATE_TEST_SUITE_P(Of, SceneKeys, testing::ValuesIn(describe(Scene{})), test_name_of);
 
-/// A value as TOML has it, and as a message shows it.
+/// A value in TOML, and as messages show it.
 struct GivenValue {
   std::string toml, shown;
 };
 
-// In a file, in a file by its whole name, by --set.
+// In a file, in a file by its full name, and by --set.
 void expect_refused_value(const std::string& table, const std::string& leaf,
                           const GivenValue& value, const std::string& reason) {
   const std::string key = table + "." + leaf;
@@ -120,7 +120,7 @@ TEST_P(SceneKeys, RefusesOtherTypes) {
     other.push_back({"\"20\"", " = \"20\""});
   }
   for (const GivenValue& value : other) {
-    // On the command line text stands without quotes.
+    // On the command line, text may stand without quotes.
     if (is_text() && value.toml.find('"') == std::string::npos) {
       EXPECT_EQ(scene_refusal("[" + table() + "]\n" + leaf() + " = " + value.toml),
                 "bad.toml:2: " + key() + value.shown + " is not permitted: must " + reason);
@@ -164,7 +164,7 @@ TEST_P(SceneKeys, IsNamedWhereItIsMisspelled) {
   expect_named(upper);
 }
 
-// Types of gates, and actions, have some of these keys too.
+// Types of gates, and actions, also have some of these keys.
 TEST_P(SceneKeys, MayBelongToATypeOfGateOrAnAction) {
   const auto expect = [](const std::string& of, const std::string& begin, bool has) {
     const std::string what = scene_refusal(begin + "\n[" + of + "]\n" + key() + " = nan\n");
@@ -181,8 +181,8 @@ TEST_P(SceneKeys, MayBelongToATypeOfGateOrAnAction) {
          beams || forces || table() == "contact");
 }
 
-// A key's unit may have another prefix, c only of lengths and speeds; the range is then said in
-// that unit. Other units are refused.
+// A key's unit may have another prefix, c only for lengths and speeds; messages then give the range
+// in that unit. Other units are refused.
 TEST_P(SceneKeys, TakesUnitsWithAPrefixAndNoOthers) {
   const std::string& own_unit = GetParam().unit;
   if (own_unit.empty()) return;
@@ -190,7 +190,7 @@ TEST_P(SceneKeys, TakesUnitsWithAPrefixAndNoOthers) {
   std::string stem;
   int taken = 0;
   for (const std::string prefix : {"k", "c", "m", "u", "n", ""}) {
-    // The prefix stands before the unit, which is all that follows the name.
+    // The prefix stands before the unit, which is everything after the name.
     for (std::size_t at = leaf().find('_'); at != std::string::npos;
          at = leaf().find('_', at + 1)) {
       std::string other = leaf();

@@ -27,7 +27,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// A folder of its own, removed with what is in it.
+/// A temporary folder, removed with its contents.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -104,9 +104,9 @@ TEST(Scene, TheStepSuitsTheMethodUnlessItIsNamed) {
   EXPECT_EQ(step("", {"run.method=moreau"}), 0.004);
   EXPECT_EQ(step("run.step_s = 0.01", {"run.method=paper"}), 0.01);
   EXPECT_EQ(step("", {"run.method=paper", "run.step_s=0.02"}), 0.02);
-  // Fitted into the hold.
+  // Steps that divide the hold evenly.
   EXPECT_EQ(step("forces.random_rate_Hz = 30"), 1.0 / 30);  // the unit of time is 5/3 s
-  EXPECT_EQ(step("forces.random_rate_Hz = 5"), 0.04);       // 2 s, what the forces allow
+  EXPECT_EQ(step("forces.random_rate_Hz = 5"), 0.04);       // 2 s is what the forces allow
   EXPECT_EQ(step("forces.random_rate_Hz = 1000"), 0.001);
   EXPECT_EQ(step("forces.random_rate_Hz = 30", {"run.method=paper"}), 1.0 / 150);
 }
@@ -241,8 +241,8 @@ struct Malformed {
   const char* name;
   std::string text;
   int line;
-  const char* key;     // named in the message
-  const char* reason;  // also in the message
+  const char* key;     // appears in the message
+  const char* reason;  // also appears in the message
 };
 
 class MalformedScene : public testing::TestWithParam<Malformed> {};
@@ -272,7 +272,7 @@ std::string dotted(int depth) {
 }
 
 const Malformed kMalformed[] = {
-    // Not TOML
+    // Text that is not TOML
     {"NoEquals", "[forces]\nrandom_N 20\n", 2, "random_N", "must be KEY = VALUE"},
     {"NoValue", "[forces]\nrandom_N =\n", 2, "random_N", "has no value"},
     {"OpenHeader", "\n[forces\nrandom_N = 20\n", 2, "forces", "its name in brackets"},
@@ -300,7 +300,7 @@ const Malformed kMalformed[] = {
     {"NestedHeaders", "[" + dotted(100000) + "]\n", 1, "dotted keys", "too deep"},
     {"NestedALittle", dotted(1000) + " = 1\n", 1, "unknown table a", "closest"},
 
-    // Not a key of a scene
+    // Keys that no scene has
     {"UnknownTable", "[body]\n[forcs]\nrandom_N = 1\n", 2, "unknown table forcs",
      "known table is forces"},
     {"UnitForgotten", "[beams]\nlength = 25\n", 2, "beams.length", "known key is beams.length_m"},
@@ -309,7 +309,7 @@ const Malformed kMalformed[] = {
     {"KeyWithNewline", "[forces]\n\"a\\nb\" = 1\n", 2, "forces.a?b", "unknown key"},
     {"LongKey", "[forces]\n" + std::string(100000, 'x') + " = 1\n", 2, "forces.xxx", "unknown key"},
 
-    // Wrong type
+    // Wrong types
     {"LongStringForNumber", "[forces]\nrandom_N = \"" + std::string(100000, 'x') + "\"\n", 2,
      "forces.random_N = \"xxx", "a number in"},
     {"TableForNumber", "[forces.random_N]\na = 20\n", 1, "forces.random_N (a table)",
@@ -464,7 +464,7 @@ field.columns = 3
   EXPECT_EQ(scene.sweep[2].key, "run.method");
   EXPECT_EQ(scene.sweep[2].values, "stable,paper");
   EXPECT_EQ(scene.sweep[3].values, "3");
-  EXPECT_TRUE(scene.named.empty());  // the scene itself has its defaults
+  EXPECT_TRUE(scene.named.empty());  // the scene itself has the defaults
   EXPECT_EQ(to_toml(scene), kDefaultScene);
 }
 
@@ -537,7 +537,7 @@ TEST(SceneBins, AreRefusedByFileAndLine) {
 }
 
 TEST(ToToml, ReadsBackBitForBit) {
-  std::mt19937_64 random(7);  // NOLINT: the same numbers every time
+  std::mt19937_64 random(7);  // reproducible numbers
   const auto spread = [&](double low_power, double high_power) {
     return std::pow(10.0, low_power + (high_power - low_power) *
                                           std::ldexp(static_cast<double>(random() >> 11), -53));
@@ -546,10 +546,11 @@ TEST(ToToml, ReadsBackBitForBit) {
     Scene scene;
     scene.gate.run.method = trial % 2 ? "paper" : "stable";
     for (const dynamics::ParamInfo& info : dynamics::gate_param_table()) {
-      // Any permitted number; the keys that others hang on stay as they are.
+      // Any permitted number, except for keys that restrict others.
       const bool tied = info.key.starts_with("run.") || info.key.find("joint") != info.key.npos ||
                         info.key == "body.radius_m" || info.key == "forces.random_rate_Hz" ||
-                        (trial % 2 == 0 && info.key.starts_with("beams."));  // stable has limits
+                        // Method stable has limits.
+                        (trial % 2 == 0 && info.key.starts_with("beams."));
       if (!tied) info.ref(scene.gate) = spread(-5.0, std::min(5.0, std::log10(info.high)));
     }
     scene.gate.run.step = 0.02 / static_cast<double>(1 + random() % 50);
@@ -604,7 +605,8 @@ TEST(PhysicsDifferences, AsksForTolerancesWhereTheyShapeTheMatrix) {
   there.gate.run.event_tolerance = 1e-3;
   EXPECT_EQ(physics_differences(here, there),
             (std::vector<std::string>{"run.event_tolerance_m: 0.01 here, 0.001 there"}));
-  here.gate.run.method = "auto";  // agrees with what was chosen, if for the same tolerance
+  // Agrees with the chosen method, if it was chosen for the same tolerance.
+  here.gate.run.method = "auto";
   EXPECT_TRUE(physics_differences(here, there).empty());
   there.gate.run.tolerance = 0.01;
   EXPECT_EQ(physics_differences(here, there).size(), 1u);
@@ -618,7 +620,7 @@ TEST(PhysicsDifferences, LeavesOutWhatShapesNoMatrix) {
   EXPECT_TRUE(physics_differences(Scene{}, other).empty());
 }
 
-// What is no TOML is said without the parser's own words, with what is allowed instead.
+// Text that is not TOML: the message uses none of the parser's words, and says what is allowed.
 TEST(Scene, TextThatIsNoToml) {
   struct Mistake {
     const char *text, *said;

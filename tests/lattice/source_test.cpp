@@ -21,7 +21,7 @@ namespace {
 const std::string kField =
     "field = { rows = 2, columns = 3 }\nforces = { propulsion_N = 7.0, random_N = 20.0 }\n";
 
-/// A file that is gone after it was opened, so that nobody can open it again.
+/// A file that is deleted after it was opened, so that nothing can open it again.
 SourceFile opened(const std::string& text) {
   const std::string path = testing::TempDir() + "source.toml";
   std::ofstream(path) << text;
@@ -84,7 +84,7 @@ TEST(Source, RefusalsNameFileLineAndKey) {
                 "gatewalk lattice the others");
 }
 
-// A problem has no cells, and is not taken for one of recorded runs, before the method is chosen.
+// Before the method is chosen, a problem has no cells, and must not count as recorded runs.
 TEST(Source, APredictionChoosesTheMethodThatTheSceneLeavesOpen) {
   Source s = Source::open(opened(kField + "run = { method = 'auto' }\n"));
   EXPECT_TRUE(s.problem.cells.cells.empty());
@@ -130,12 +130,12 @@ TEST(Source, AMatrixSaysWhatItsTreesWereMadeFor) {
   EXPECT_EQ(s.accuracy.accuracy, 0.1);  // half of what was asked for a range
   EXPECT_EQ(s.pool->gate_runs(), chain.pool.gate_runs());
   s.accuracy.accuracy = 0.5;
-  EXPECT_EQ(predict(s).gate_runs, 0);  // its runs do
+  EXPECT_EQ(predict(s).gate_runs, 0);  // its runs suffice
   const TreeInfo trees = tree_info(*s.file, path);
   EXPECT_TRUE(std::isnan(trees.range->worst_kernel_error_95));
   const dynamics::Entry inside{0, {0, 0, 12}}, outside{0, {6, 0, 12}};
   EXPECT_EQ(trees.outside(s.file->transitions.space, {inside, outside, own_start(scene)}), 1);
-  // Another field of the same gates; the runs are read for it anew.
+  // Another field of the same gates; the runs are read again for it.
   EXPECT_EQ(Source::open(kept, {.overrides = {"field.rows=4"}}).problem.field.rows, 4);
 }
 

@@ -20,7 +20,7 @@ TEST(SweepAxes, FromStepTo) {
   EXPECT_EQ(values_of("4:6"), (Values{"4", "5", "6"}));
   EXPECT_EQ(values_of("0:0.1:0.3"), (Values{"0", "0.1", "0.2", "0.3"}));
   EXPECT_EQ(values_of("3:-1.5:0"), (Values{"3", "1.5", "0"}));
-  EXPECT_EQ(values_of("4:3:9"), (Values{"4", "7"}));  // the end need not be met
+  EXPECT_EQ(values_of("4:3:9"), (Values{"4", "7"}));  // the end need not be reached
   EXPECT_EQ(values_of("stable,paper"), (Values{"stable", "paper"}));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tables as spreadsheets and other programs write them: read where they are unambiguous, refused by
-// a sentence where they are not.
+// Tables as spreadsheets and other programs write them: read if they are unambiguous, else refused
+// with a sentence.
 #include "lattice/text/table.h"
 
 #include <gtest/gtest.h>
@@ -90,11 +90,12 @@ TEST_F(TableFile, SaysWhatItUnderstood) {
   expect("a,b\n\"0\",1,2\n\"1\",3,4\n",
          {"the first column has no name and numbers the rows: left out"});
   expect("a,b,a\n1,2,1\n3,4,3\n", {"columns 1 and 3 are both named a, with the same content"});
-  expect("# a b\n#a,b\n1,2\n3,4\n", {});                                        // numpy.savetxt
-  expect("a,b\n1,2\na,b\n3,4\n", {"1 more line names the columns: left out"});  // put together
+  expect("# a b\n#a,b\n1,2\n3,4\n", {});  // numpy.savetxt
+  // Concatenated files.
+  expect("a,b\n1,2\na,b\n3,4\n", {"1 more line names the columns: left out"});
   expect("a,b\n1,2\n#5,6\n3,4\n", {"1 line that begins with # and may be a row: left out"});
   expect("a,b,a\n1,2,1.0\n3,4,3\n", {"columns 1 and 3 are both named a, with the same content"});
-  expect("A,B\n1,2\n3,4\n", {});               // no matter which capitals
+  expect("A,B\n1,2\n3,4\n", {});               // upper and lower case do not matter
   expect("\"x\ny\",a,b\n0,1,2\n0,3,4\n", {});  // a name of two lines
 }
 
@@ -137,7 +138,7 @@ TEST_F(TableFile, NumbersHaveDecimalPointsOrCommas) {
   EXPECT_EQ(sum("a,b\n\"1,5\",\"2,5\"\n"), 4.0);
   EXPECT_EQ(sum("a;b\n1,016;2,5\n"), 3.516);
   EXPECT_EQ(sum("a,b\n\"0,125\",1\n"), 1.125);
-  EXPECT_THROW((void)sum("a,b\n1,\"1,016\"\n"), std::invalid_argument);  // or a thousand
+  EXPECT_THROW((void)sum("a,b\n1,\"1,016\"\n"), std::invalid_argument);  // could be a thousand
   EXPECT_EQ(sum("a;b\n1.5;+2.5\n"), 4.0);
   EXPECT_THROW((void)sum("a;b\n1.5;2,5\n"), std::invalid_argument);
   EXPECT_THROW((void)sum("a;b\n1,5;2.5\n"), std::invalid_argument);
@@ -155,9 +156,9 @@ TEST_F(TableFile, WholeNumbersMayHaveADecimalZero) {
   EXPECT_EQ(Table::whole("12"), 12);
   EXPECT_EQ(Table::whole("+12.0"), 12);
   EXPECT_EQ(Table::whole("-3"), -3);
-  EXPECT_EQ(Table::whole("1e+05"), 100'000);  // R
+  EXPECT_EQ(Table::whole("1e+05"), 100'000);  // as R writes it
   for (const char* none : {"", "1.5", "1.00", "1.000", "1,0", "1e-1", "1.5e3", "1e300", "NaN"})
-    EXPECT_FALSE(Table::whole(none)) << none;  // 1.000 is a thousand elsewhere
+    EXPECT_FALSE(Table::whole(none)) << none;  // 1.000 is a thousand in some countries
 }
 
 TEST_F(TableFile, NamesWhatItHasWhereAColumnIsMissing) {

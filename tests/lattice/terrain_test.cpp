@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Gates of several types in one field: table [terrain], and what runs and chains make of it.
+// Gates of several types in one field: table [terrain], its runs and its chains.
 #include "lattice/scene/terrain.h"
 #include "lattice/pool/predict_pooled.h"
 #include "lattice/scene/scene_keys.h"
@@ -113,7 +113,7 @@ TEST(Terrain, AMapMayBeAFileBesideTheScene) {
               contains(none, "none.csv: cannot be read: No such file or directory"))
       << none;
   EXPECT_TRUE(contains(message("/dev/zero"), "terrain.map_file: /dev/zero is a device"))
-      << message("/dev/zero");  // which has no end
+      << message("/dev/zero");  // a device has no end
 }
 
 TEST(Terrain, TheFileThatASceneNamesIsKnownWithoutReadingIt) {
@@ -158,7 +158,7 @@ TEST(Terrain, AMapMayBeAPicture) {
   const std::vector<int> cells{0, 0, 1, 1, 0, 2};
   write(PNG_FORMAT_GRAY, map, 3);
   EXPECT_EQ(read(grey).terrain->type_of_cell, cells);
-  const Scene again = parse_scene(to_toml(read(grey)), "again");  // letters then
+  const Scene again = parse_scene(to_toml(read(grey)), "again");  // to_toml writes letters
   EXPECT_EQ(again.terrain->type_of_cell, cells);
   EXPECT_TRUE(contains(message(""), "a picture needs the grey value of each type"));
   EXPECT_TRUE(contains(message("grey = { s = 0, \".\" = 255 }\n"),
@@ -181,7 +181,7 @@ TEST(Terrain, AMapMayBeAPicture) {
   write(PNG_FORMAT_GRAY, {0, 0, 0, 0}, 2);
   EXPECT_TRUE(
       contains(message(grey), "is 2 pixels wide and 2 high, the field has 3 columns and 2"));
-  // A palette, of which the file then loses the last colour.
+  // A picture with a palette, of which the file then loses the last colour.
   const auto write_palette = [&](std::vector<png_byte> pixels, bool is_cut) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
@@ -211,7 +211,7 @@ TEST(Terrain, AMapMayBeAPicture) {
   EXPECT_TRUE(contains(message(grey),
                        "map.png: row 2, column 2 has colour 3 of a palette of 3, counted from 0"))
       << message(grey);
-  // A gamma of the file's own would change its values in silence.
+  // A gamma in the file would silently change its values.
   write(PNG_FORMAT_GRAY, map, 3);
   std::ifstream plain(folder / "map.png", std::ios::binary);
   std::string bytes(std::istreambuf_iterator<char>(plain), {});
@@ -238,8 +238,8 @@ TEST(Terrain, AMapMayBeAPicture) {
   }
 }
 
-// A share of each type as often as asked for, the same for the same seed, and where a gate is
-// (counted from the start's column) whatever the size of the field.
+// Each type has the share asked for; the same seed gives the same map, and a gate's type depends on
+// its place (counted from the start's column), not on the size of the field.
 TEST(Terrain, DrawsAMapByShares) {
   const auto drawn = [](int columns, int rows, int seed) {
     return with_map("random = { s = 0.3, t = 0.2 }\nseed = " + std::to_string(seed), kTypes,
@@ -333,7 +333,7 @@ TEST(Terrain, IsDescribedAndCompared) {
   EXPECT_EQ(physics_differences(other, scene),
             (std::vector<std::string>{"terrain.types.t: none here"}));
   other = scene;
-  other.terrain->type_of_cell.assign(6, 0);  // a map shapes no matrix
+  other.terrain->type_of_cell.assign(6, 0);  // a map does not shape a matrix
   EXPECT_TRUE(physics_differences(scene, other).empty());
 }
 
@@ -352,7 +352,7 @@ Scene alike() {
 Scene plain() {
   return parse_scene(kLarge + "beams.damping_Nms_per_rad = 70\nforces.propulsion_N = 8\n", "plain");
 }
-/// Three that differ; no start of a trial is in the scene's own gate.
+/// Three different types; no trial starts in the scene's own gate.
 Scene mixed() {
   return with_map(kMap,
                   "[terrain.types.a]\nbeams.stiffness_left_Nm_per_rad = 250\n"
@@ -457,7 +457,7 @@ TEST(Terrain, TheChainIsThatOfItsOwnDynamics) {
   const double tv = total_variation(p.starts[0].final.final_cells, shares(truth.final_cells));
   const double floor = expected_total_variation(p.starts[0].final.final_cells, truth.trials);
   EXPECT_LT(tv, floor + p.starts[0].error.total_variation);
-  // The plain scene's field is another one.
+  // The field of the plain scene differs.
   EXPECT_GT(total_variation(shares(field_trials(plain(), {0, 5000}, 1).final_cells),
                             shares(truth.final_cells)),
             0.1);
@@ -490,7 +490,7 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
   EXPECT_LT(
       total_variation(p.starts[0].final.final_cells, chain.prediction->starts[0].final.final_cells),
       1e-12);
-  // Walks with the matrices end as the prediction from them says.
+  // Walks with the matrices end as the prediction from the matrices says.
   const ChainStart start =
       chain_start(matrices[0].space, m.scene.field, dynamics::entry_of(kStart));
   const auto walked =
@@ -501,14 +501,14 @@ TEST(Terrain, AFileHoldsAMatrixForEachType) {
             1.5 * expected_total_variation(final, 100'000));
   EXPECT_EQ(walked.unsampled(), 0);
 
-  // In a field where another gate stands at the start, its own first runs are none.
+  // In a field with another gate at the start, its own first runs do not count.
   Scene moved = m.scene;
   moved.terrain->type_of_cell[2] = 1;
   RunPool others = pool_of(*m.file, problem_of(moved), path);
   EXPECT_TRUE(others.starts.empty());
   EXPECT_EQ(others.gate_runs(), chain.pool.gate_runs());
 
-  // Another scene's types are refused by name.
+  // Types of another scene are refused by name.
   const SourceFile other(TomlFile(to_toml(scene), "terrain.toml"));
   const auto message = [&](const std::string& override) {
     try {
@@ -531,7 +531,7 @@ TEST(Terrain, BinsHaveAMatrixForEachType) {
   const States states = states_of(scene, {BinsChoice::Kind::paper}, {kStart}, 1);
   const auto matrices = build_matrices(scene, states, {0, 20}, 1);
   ASSERT_EQ(matrices.size(), 3U);
-  // Each is that of a scene whose own gate is of the type.
+  // Each matrix equals that of a scene whose own gate is of the type.
   for (std::size_t type = 0; type < 2; ++type) {
     Scene own = scene;
     own.gate = gate_of(scene, scene.terrain->types[type]);
@@ -572,7 +572,7 @@ TEST(Actions, AreTheSceneWithSomeKeysOtherwise) {
   EXPECT_EQ(soften.gate.forces.random, 20.0);
   EXPECT_TRUE(physics_differences(wait, scene).empty());
   EXPECT_EQ(physics_differences(push, scene).size(), 1U);
-  // The scene itself stays what it is.
+  // The scene itself stays unchanged.
   EXPECT_TRUE(physics_differences(scene, parse_scene(kField, "x.toml")).empty());
 }
 
@@ -617,8 +617,8 @@ TEST(Actions, RefuseWhatABodyCannotChoose) {
             std::string::npos);
 }
 
-// The action's own number counts in gates of all types, and types that are alike stay apart: the
-// maps of all actions are the same.
+// The action's number applies to gates of all types. Types that become equal stay separate, so that
+// all actions have the same map.
 TEST(Actions, GoBeforeTheTypesOfTheTerrain) {
   const Scene scene = parse_scene(kField + R"([terrain]
 map = ["s.s", "..s"]

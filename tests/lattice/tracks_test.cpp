@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files of tracks: read for what they say, refused for what they do not.
+// Files of tracks: reading what they state, and refusing what they do not.
 #include "lattice/recorded/tracks.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ class TracksFile : public testing::Test {
   std::string refusal(const std::string& text, const TrackOptions& options) {
     return refusal_of(file(text), options);
   }
-  /// The refusal has these words.
+  /// Expects these words in the refusal.
   void expect_refused(const std::string& text, const TrackOptions& options,
                       const std::string& words) {
     EXPECT_NE(refusal(text, options).find(words), std::string::npos) << refusal(text, options);
@@ -84,7 +84,7 @@ TEST_F(TracksFile, TableOfAnyColumns) {
   EXPECT_EQ(t.tracks[0].time, std::vector{0.03});
   EXPECT_EQ(t.tracks[0].x, std::vector{0.01});
   EXPECT_EQ(t.tracks[1].body, "a");
-  EXPECT_EQ(t.tracks[1].time, (std::vector{0.0, 0.01}));  // sorted, as TrackMate's lines are not
+  EXPECT_EQ(t.tracks[1].time, (std::vector{0.0, 0.01}));  // sorted, unlike TrackMate's lines
   EXPECT_EQ(t.tracks[1].y, (std::vector{0.0, 0.002}));
   EXPECT_EQ(t.places, 5);
   EXPECT_EQ(t.no_place, 2);
@@ -120,7 +120,7 @@ TEST_F(TracksFile, TrackMateHasThreeRowsOfUnits) {
       "Label,Spot ID,Track ID,Quality,X,Y,Frame\n"
       ",,,(quality),(micron),(micron),\n"
       "ID7,7,3,1.5,12.5,8,1\n"
-      "ID8,8,,1.5,99,99,1\n"  // a spot of no track
+      "ID8,8,,1.5,99,99,1\n"  // a spot without a track
       "ID6,6,3,1.5,12,7.5,0\n";
   TrackOptions options =
       table_options("body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y,confidence=QUALITY");
@@ -136,7 +136,7 @@ TEST_F(TracksFile, TrackMateHasThreeRowsOfUnits) {
   EXPECT_NE(t.remarks.at(0).find("(micron)"), std::string::npos);
   options.confidence = 2.0;
   EXPECT_EQ(read(text, options).unsure, 2);
-  // Two such rows are no TrackMate's: the line that is no number is named.
+  // Two such rows are not TrackMate's: the message names the line that is no number.
   EXPECT_EQ(refusal("id,f,x,y\nID,F,x,y\nID,F,x,y\na,0,1,1\n", table_options()),
             "t.csv:3: column x: \"x\" is no number, nor are there three rows of descriptions and "
             "units behind the header, as TrackMate writes, or one of units");
@@ -176,7 +176,7 @@ TEST_F(TracksFile, ATableMayHaveColumnsForEachBody) {
   EXPECT_DOUBLE_EQ(t.tracks[1].x[2], 0.009);
   EXPECT_DOUBLE_EQ(t.tracks[1].y[2], 0.010);
   EXPECT_EQ(t.no_place, 1);
-  // AnimalTA's names; and a confidence of each.
+  // AnimalTA's names, and a confidence for each body.
   options = table_options("frame=F,x=X_Arena0_Ind*,y=Y_Arena0_Ind*,confidence=p*");
   options.confidence = 0.5;
   const TrackFile other =
@@ -227,7 +227,7 @@ TEST_F(TracksFile, RecordingsOfOneExperimentAreToldApart) {
   EXPECT_EQ(t.tracks[2].body, "two/2");
   EXPECT_EQ(t.places, 4);
   EXPECT_EQ(t.source, one + ", " + two);
-  ASSERT_EQ(t.remarks.size(), 1U);  // where the lattice begins, of both
+  ASSERT_EQ(t.remarks.size(), 1U);  // one remark for both files: where the lattice begins
   const TrackFile other =
       read_tracks({one, file("id;f;x;y\n1;0;5;1\n", "three.csv")}, table_options());
   EXPECT_EQ(other.remarks.at(1), path("three.csv") + ": fields are set apart by semicolons");
@@ -249,7 +249,7 @@ TEST_F(TracksFile, TimesBesideFramesMayContradictTheFrameRate) {
   EXPECT_FALSE(read(plain + "0.01\n", other).warnings.empty());
   EXPECT_TRUE(read(plain + "20\n", other).warnings.empty());  // ms
   EXPECT_TRUE(read(plain + "1\n", other).warnings.empty());   // frames
-  // What is no clock says nothing: a place, an exposure.
+  // A value that is no clock says nothing: a place, an exposure.
   EXPECT_TRUE(read("id,f,x_s,y,exposure_ms\na,0,1,1,5\na,1,2,1,5\n",
                    [&] {
                      TrackOptions o = other;
@@ -262,8 +262,7 @@ TEST_F(TracksFile, TimesBesideFramesMayContradictTheFrameRate) {
             "(median): one of both is wrong, and velocities with it");
 }
 
-// Places of a body that goes on, with a noise of 0.1 mm; what the tracker held is written over
-// them.
+// Places of a moving body, with a noise of 0.1 mm; the tracker's held places are written over them.
 class LostFrames : public TracksFile {
  protected:
   TrackFile with(const std::function<void(std::size_t, double&, double&)>& change,
@@ -298,12 +297,12 @@ TEST_F(LostFrames, PlacesThatStandStillForLongAreLeftOut) {
     if (f == 300) held_x = x, held_y = y;
     if (f >= 300 && f < 330) x = held_x, y = held_y;
   });
-  EXPECT_EQ(t.repeated, 29);  // the first was seen
+  EXPECT_EQ(t.repeated, 29);  // the first one is real
   EXPECT_EQ(t.tracks[0].time.size(), 371U);
   EXPECT_NE(t.warnings.at(0).find("29 places stand still exactly"), std::string::npos);
 }
 
-// A body that rests goes on from where it was, or stands there to the end: it may be trapped.
+// A body at rest continues from its place, or stands there to the end: it may be trapped.
 TEST_F(LostFrames, ABodyAtRestIsSeen) {
   double x0 = 0.0, y0 = 0.0;
   const auto hold = [&](std::size_t first, std::size_t last) {
@@ -321,7 +320,7 @@ TEST_F(LostFrames, ABodyAtRestIsSeen) {
   }
 }
 
-// Steps of bodies that move are what is usual, also where bodies rest nearly all the time.
+// The usual step is that of moving bodies, even if bodies rest nearly all the time.
 TEST_F(LostFrames, ABodyAtRestGoesOnWithAStep) {
   double x0 = 0.0, y0 = 0.0;
   const TrackFile t = with([&](std::size_t f, double& x, double& y) {
@@ -332,7 +331,7 @@ TEST_F(LostFrames, ABodyAtRestGoesOnWithAStep) {
   EXPECT_EQ(t.repeated, 0);
 }
 
-// Where places are as coarse as they scatter, a body at rest stands still exactly.
+// If the resolution of places is as coarse as their noise, a body at rest stands exactly still.
 TEST_F(LostFrames, CoarsePlacesMayStandStill) {
   EXPECT_EQ(with([](std::size_t, double&, double&) {}, 1.0).repeated, 0);
 }
@@ -343,7 +342,7 @@ TEST_F(LostFrames, PlacesAtZeroAreLeftOut) {
   });
   EXPECT_EQ(t.at_zero, 1 + 20 + 4);
   EXPECT_EQ(t.repeated, 0);
-  // One that begins there is at home there.
+  // A body that begins at (0, 0) may really be there.
   EXPECT_EQ(read("id,f,x,y\na,0,0,0\na,1,0.5,0.1\na,2,1.1,0\n", table_options()).at_zero, 0);
 }
 
@@ -388,7 +387,7 @@ TEST_F(TracksFile, ColumnsThatMakeNoSense) {
   refused("\"body=id,frame=f", "a quotation mark is not closed");
 }
 
-// A time of 20 ms, and a place 5 mm from the origin, however the file states what they are in.
+// A time of 20 ms, and a place 5 mm from the origin, in any unit that the file states.
 TEST_F(TracksFile, UnitsInNamesAreBelieved) {
   const auto read_as = [&](const std::string& time, const std::string& x, const std::string& y,
                            const std::string& values) {
@@ -473,18 +472,19 @@ TEST_F(TracksFile, UnitsThatDoNotFitAreRefused) {
   refused("t_s", "x_mm", "y", "what column y is in: --metres-per-unit X");
   refused("t_s", "x_px", "y_px", "are in px, by its name: --metres-per-unit X");
   refused("t_s", "x", "y", "what x and y are in: --metres-per-unit X");
-  // Steps of 20 ms are 50 frames a second; of 20 s, which the file does not say, every 1000th.
+  // Steps of 20 ms are 50 frames per second; steps of 20 s, in a file without a unit, every 1000th
+  // frame.
   refused("t_ms", "x", "y",
           "--fps 30 is a frame every 0.0333333 s, but column t_ms has "
           "steps of 0.02 s",
           1.0, 30.0);
   refused("t_s", "x", "y", "--fps 0.01 is a frame every 100 s, but column t_s has steps of 20 s",
           1.0, 0.01);
-  // Numbers of frames are no times.
+  // Frame numbers are no times.
   TrackOptions options = table_options("body=id,frame=t_ms,x=x,y=y");
   expect_refused("id,t_ms,x,y\na,0,1,1\n", options,
                  "column t_ms is in ms, by its name, no numbers of frames: time=t_ms in place of");
-  // The end of a name may be something else: x_s is smoothed, and what a pixel is was said.
+  // The end of a name may mean something else: x_s is smoothed, and the size of a pixel was given.
   options = table_options("body=id,time=t,x=x_s,y=y_s");
   options.fps = {};
   EXPECT_EQ(read("id,t,x_s,y_s\na,0,1,1\na,1,1,1\n", options).places, 2);
@@ -527,8 +527,8 @@ TEST_F(TracksFile, TrackMatesUnitsAreBelieved) {
   expect_refused(text("(micron)", "(parsec)", ""), options, "which is no unit of time");
   options.metres_per_unit = 0.001;
   EXPECT_DOUBLE_EQ(read(text("(pixel)", "(sec)", ""), options).tracks[0].y[1], 4.0);
-  // TrackMate writes a unit of places whether or not anybody set it: the user's word counts, and is
-  // said.
+  // TrackMate writes a unit of places whether or not it was set: the user's unit goes first, with a
+  // remark.
   const TrackFile other = read(text("(micron)", "(ms)", ""), options);
   EXPECT_DOUBLE_EQ(other.tracks[0].y[1], 4.0);
   EXPECT_DOUBLE_EQ(other.tracks[0].time[1], 0.04);
@@ -567,7 +567,7 @@ TEST_F(TracksFile, WordsForNobody) {
     EXPECT_EQ(t.no_body, 2) << word;
     EXPECT_EQ(t.places, 3) << word;
   }
-  // Animals may be called so.
+  // Animals may have these names.
   for (const char* name : {"Nat", "NIL", "nat"}) {
     const TrackFile t =
         read(std::string("id,f,x,y\nBo,0,1,1\n") + name + ",0,5,5\n", table_options());
@@ -580,7 +580,7 @@ TEST_F(TracksFile, WordsForNobody) {
     EXPECT_EQ(read(std::string("id,f,x,y\n-1,0,1,1\n") + other + ",0,1,1\n", table_options())
                   .tracks.size(),
               2U);
-  // A place that says nothing, or infinity, was not seen.
+  // A missing or infinite place was not seen.
   const TrackFile t =
       read("id,f,x,y\n1,0,1,1\n1,1,NA,1\n1,2,1,None\n1,3,inf,1\n1,4,1,-inf\n", table_options());
   EXPECT_EQ(t.no_place, 4);
@@ -661,8 +661,8 @@ TEST_F(TracksFile, DeepLabCutIsRefused) {
   expect_refused("scorer,n,n\nbodyparts,nose,nose\ncoords,x,y\n", options, "has no frame");
 }
 
-/// A file as movement writes it, three frames of two bodies with two key points; then of what
-/// `change` makes of it.
+/// Writes a file as movement does, with three frames of two bodies with two key points, after
+/// `change`.
 struct MovementWriter {
   std::string individual = "individuals", key_point = "keypoints", time_unit = "seconds";
   std::vector<std::string> order{"time", "space", "K", "I"};
@@ -713,7 +713,7 @@ struct MovementWriter {
     if (!place_units.empty())
       check(nc_put_att_text(nc, position, "units", place_units.size(), place_units.c_str()));
     if (packed) check(nc_put_att_double(nc, position, "scale_factor", NC_DOUBLE, 1, &times[1]));
-    // 1000 frame + 100 body + 10 key point + space, so that each place tells whose it is.
+    // 1000 frame + 100 body + 10 key point + space, so that each place shows its origin.
     const auto values = [&](const std::vector<std::string>& by, auto&& value) {
       std::vector<float> all;
       std::vector<std::size_t> at(by.size(), 0);
@@ -789,8 +789,8 @@ TEST_F(MovementTracks, AllOrdersAndNamesOfDimensions) {
       ASSERT_EQ(t.tracks.size(), 2U);
       EXPECT_EQ(t.kind, "movement");
       EXPECT_EQ(t.tracks[1].body, "m2");
-      EXPECT_EQ(t.tracks[0].time, (std::vector{0.0, 0.02}));  // not sure in the third frame
-      EXPECT_EQ(t.tracks[1].time, (std::vector{0.0, 0.04}));  // no place in the second
+      EXPECT_EQ(t.tracks[0].time, (std::vector{0.0, 0.02}));  // low confidence in the third frame
+      EXPECT_EQ(t.tracks[1].time, (std::vector{0.0, 0.04}));  // no place in the second frame
       EXPECT_DOUBLE_EQ(t.tracks[0].x[1], 1.010);
       EXPECT_DOUBLE_EQ(t.tracks[1].y[1], 2.111);
       EXPECT_EQ(t.unsure, 1);
@@ -835,7 +835,7 @@ TEST_F(MovementTracks, UnitsOfTimeAreBelieved) {
   expect_refused(w, options(), "time_unit is \"frames\", but the units of time are \"ms\"");
   w.units = "fortnights";
   expect_refused(w, options(), "the units of time are \"fortnights\": must be seconds");
-  // Its fps is 50.
+  // The file's fps is 50.
   w = {};
   w.times = {0.0, 0.03, 0.06};
   expect_refused(w, options(),

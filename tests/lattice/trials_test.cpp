@@ -24,7 +24,7 @@ TEST(FieldTrials, AreThoseOfRunFieldAndChecked) {
 }
 
 TEST(Walks, AreThoseOfTheWalker) {
-  // Up, or trapped: a coin.
+  // Up or trapped, with equal probability.
   dynamics::Transitions t(dynamics::table3_space({}));
   for (auto& row : t.rows) row = {{0, 1}, {t.space.trapped(), 1}};
   for (auto& n : t.trials) n = 2;

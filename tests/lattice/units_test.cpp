@@ -51,14 +51,14 @@ TEST(Units, ShiftTheDecimalPointAndNothingElse) {
   const KeyUnit cm{-2, "cm"}, kilo{3, "km"};
   EXPECT_EQ(in_own_unit(6.1, cm), 0.061);
   EXPECT_EQ(in_own_unit(8.2, cm), 0.082);
-  EXPECT_NE(8.2 * 1e-2, 0.082);  // what a product would give
+  EXPECT_NE(8.2 * 1e-2, 0.082);  // the result of a product
   EXPECT_EQ(in_own_unit(0.1, {-3, "mm"}), 1e-4);
   EXPECT_EQ(in_own_unit(-1.5e-7, kilo), -1.5e-4);
   EXPECT_EQ(in_own_unit(1e300, {3, "km"}), 1e303);
   EXPECT_EQ(in_own_unit(0.0, cm), 0.0);
   std::mt19937_64 random(1);
   std::uniform_int_distribution<std::int64_t> whole(1, 999'999'999'999'999);
-  for (int i = 0; i < 2000; ++i) {  // any decimal of up to 15 digits
+  for (int i = 0; i < 2000; ++i) {  // decimals of up to 15 digits
     const std::string digits = std::to_string(whole(random) >> (i % 40));
     const double given = std::stod(digits + "e-9");
     ASSERT_EQ(in_own_unit(given, cm), std::stod(digits + "e-11")) << digits;
@@ -153,7 +153,7 @@ TEST(Units, OfTypesOfGates) {
 TEST(Units, OfWhatIsVaried) {
   const auto axes = sweep_axes(parse_scene("[sweep]\nbody.radius_m = \"1:2:5\"\n", "x.toml").sweep,
                                {"body.radius_cm=100,200"});
-  ASSERT_EQ(axes.size(), 1u);  // it replaces the file's
+  ASSERT_EQ(axes.size(), 1u);  // the override replaces the file's axis
   const auto points = sweep_points({TomlFile("", "x.toml"), {}, axes});
   ASSERT_EQ(points.size(), 2u);
   EXPECT_EQ(points[1].scene.gate.body.radius, 2.0);

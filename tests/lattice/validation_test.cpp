@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The chain against the full dynamics: findings by hand, and what a validation is made of.
+// The chain against the full dynamics: findings by hand, and the parts of a validation.
 #include "lattice/study/validation.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ Scene straight_up() {
       "straight");
 }
 
-/// Every entry goes up and enters the next gate where it came in.
+/// Every entry goes up, and enters the next gate in the middle, at 15 m/s.
 dynamics::Transitions all_up(const Scene& scene, std::int64_t runs) {
   dynamics::Transitions t(dynamics::table3_space(scene.gate));
   for (int row = 0; row < t.space.size(); ++row) {
@@ -94,11 +94,12 @@ TEST(ValidateChain, AWrongChainHasAnErrorOfItsOwn) {
   EXPECT_TRUE(s.joint_test.differs(markov::Ending::trapped));
   EXPECT_FALSE(s.joint_test.differs(markov::Ending::left_edge));
   EXPECT_EQ(s.walks.trapped(), 40);
-  // 1 of 9 gates off by 100 trials in 100, another as much the other way.
+  // One of 9 gates is off by 100 trials in 100, another by as much in the other direction.
   EXPECT_DOUBLE_EQ(s.exact_against.rmse_per_100, 100.0 * std::sqrt(2.0 / 9.0));
 }
 
-// Ten runs a row that all went one way rule out little: the same 6 % that 1000 runs forbid.
+// The chain traps 6 %, the dynamics nobody: with 50 runs per row, sampling error explains the
+// difference, with 100 000 it does not.
 TEST(ValidateChain, CountsTheSamplingOfTheMatrix) {
   Scene scene = straight_up();
   const auto seldom_trapped = [&](std::int64_t runs) {

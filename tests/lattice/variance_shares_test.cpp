@@ -16,7 +16,7 @@ namespace {
 
 using namespace dynamics;
 
-/// One cell, which a body leaves ahead with this chance.
+/// One cell, which a body leaves ahead with this probability.
 Problem one_cell(double chance) {
   Section section;
   section.faces = {{"S", 0, 1, 0, 0, "from below", {}}};
@@ -44,14 +44,14 @@ TEST(VarianceShares, AreThoseOfTheChance) {
   EXPECT_GT(found.trials, 200'000);
   EXPECT_NEAR(i.mean.mean, 0.475, 0.01);
   EXPECT_NEAR(i.variance.mean, 0.3125 / 12.0, 0.002);
-  EXPECT_NEAR(i.noise, (0.475 * 0.525 - 0.3125 / 12.0) / 16.0, 5e-4);  // of 16 trials
+  EXPECT_NEAR(i.noise, (0.475 * 0.525 - 0.3125 / 12.0) / 16.0, 5e-4);  // for 16 trials
   EXPECT_NEAR(i.first[0].mean, 0.8, 0.03);
   EXPECT_NEAR(i.first[1].mean, 0.2, 0.03);
   EXPECT_NEAR(i.total[0].mean, 0.8, 0.03);
   EXPECT_NEAR(i.total[1].mean, 0.2, 0.03);
 }
 
-// x y: variance 7/144, of which each makes 3/7 alone, and 4/7 with the other.
+// x y: variance 7/144, of which each number makes 3/7 alone, and 4/7 with the other.
 TEST(VarianceShares, IntervalsHold) {
   int inside = 0, of = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -125,7 +125,7 @@ TEST(RangedScene, RefusesWhatIsNoRange) {
   EXPECT_NE(refusal_of_ranges({"body.mass_kg=1:2"}, {"body.mass_kg=3"})
                 .find("--set body.mass_kg=3 has no"),
             std::string::npos);
-  // Beyond what is permitted; between two whole numbers.
+  // Outside the permitted range; between two whole numbers.
   EXPECT_TRUE(refusal_of_ranges({"body.mass_kg=-1:2"}).starts_with("--over body.mass_kg=-1:2: "));
   EXPECT_TRUE(refusal_of_ranges({"field.rows=3:9"}).starts_with("--over field.rows=3:9: "));
 }
