@@ -192,7 +192,7 @@ class Arrays {
   std::vector<Body> bodies_;
   std::vector<Random> scrambles_;  // by array
   std::vector<std::size_t> live_;  // indices of trials that go on
-  // indices of trials that go on, by the type of their cell
+  // Indices of trials that go on, by the type of their cell.
   std::vector<std::vector<std::size_t>> waves_;
   bool first_ = true;
 };

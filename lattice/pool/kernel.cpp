@@ -92,7 +92,7 @@ std::vector<std::size_t> images_of(const CellMap& map) {
 void join_leaves(const Tree& tree, const std::int64_t* runs, std::int64_t least, int first_state,
                  int* first) {
   const std::size_t nodes = tree.nodes.size();
-  // by node: its second half, number of leaves, next node
+  // By node: its second half, number of leaves, next node.
   std::vector<std::size_t> above(nodes), leaves(nodes, 1), end(nodes);
   for (std::size_t i = nodes; i-- > 0;) {
     end[i] = i + 1;

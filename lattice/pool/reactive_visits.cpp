@@ -117,7 +117,7 @@ markov::CellProbabilities final_cells(const ChainWithRewards& c, const FieldPara
   if (!is_sampled(c.start.column, c.start.row, c.start.input))
     ends(c.start.row, c.start.column) = 1.0;
   const auto trapped = trapped_shares(chain);
-  // the farthest move of any exit: most cells are farther than this from all edges
+  // The farthest move of any exit: most cells are farther than this from all edges.
   std::int64_t far = 0;
   bool all_sampled = true;
   for (const markov::Chain& one : chain.chains()) {

@@ -183,7 +183,7 @@ StatedUnit unit_in_name(const std::string& name) {
       continue;
     }
     const bool is_last = i + 1 == words.size();
-    // a single letter, as in xM
+    // A single letter, as in xM.
     const bool is_letter = word.text.size() == 1 && i > 0 && word.gap.empty();
     const bool is_known = is_last ? !is_letter && !is_ambiguous(in_small_letters(word.text)) &&
                                         (words.size() > 1 || unit->kind == UnitKind::time)

@@ -439,7 +439,7 @@ class TrackTable {
   std::vector<std::string> units_;      // fields of the last such line
   std::optional<TrackUnit> time_unit_;  // stated by the file
   TrackUnit other_unit_{UnitKind::time};
-  // last frame and time, by body
+  // Last frame and time, by body.
   std::unordered_map<std::int32_t, std::pair<double, double>> seen_;
   std::vector<double> seconds_a_frame_;
   std::unordered_map<std::string, std::int32_t> bodies_;

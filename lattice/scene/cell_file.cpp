@@ -384,7 +384,7 @@ void read_types(CellFile& file, const GivenTable& cell, bool symmetric) {
     if (file.types.size() == kMostCellTypes)
       throw SceneError(given.at(given.table) + "[[cell.types]]: more than " +
                        std::to_string(kMostCellTypes) + " are not permitted");
-    // the own gate of a scene
+    // The own gate of a scene.
     const bool is_own = file.types.empty() && given.text("name", "") == kOwnGate;
     file.types.push_back(is_own ? std::string(kOwnGate)
                                 : given.plain_name("name", "soft", file.types));

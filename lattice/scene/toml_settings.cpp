@@ -134,7 +134,7 @@ std::size_t first_given(const toml::table& before, const toml::table& again) {
   for (const auto& [key, node] : again) {
     const toml::node* const there = before.get(key.str());
     if (!there) continue;
-    // compares the last [[NAME]] of each
+    // Compares the last [[NAME]] of each.
     if (node.is_array_of_tables() && there->is_array_of_tables()) {
       const toml::node &last = there->as_array()->back(), &own = node.as_array()->back();
       if (const std::size_t line = first_given(*last.as_table(), *own.as_table())) return line;

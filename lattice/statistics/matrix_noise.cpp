@@ -58,7 +58,7 @@ bool equals_row_before(const markov::Counts& counts, int row) {
 double hidden_share(const CountedField& gates, const markov::Start& start,
                     const markov::Field& field, int max_cells) {
   const auto& chains = gates.chains.chains();
-  // by matrix and row; 0: several outcomes were seen
+  // By matrix and row; 0: several outcomes were seen.
   std::vector<std::vector<double>> missed(chains.size());
   bool any = false, leads_back = false;
   for (std::size_t m = 0; m < chains.size(); ++m) {

@@ -57,7 +57,7 @@ MatrixXd curvature(const MatrixXd& terms, const VectorXd& trials, const MatrixXd
       if (a == b) weights += chances.col(a);
       const MatrixXd weighted = weights.cwiseProduct(trials).asDiagonal() * terms;
       auto block = all.block(a * of_each, b * of_each, of_each, of_each);
-      // each block is symmetric; sums in the order of over_rows
+      // Each block is symmetric; sums in the order of over_rows.
       for (Index t = 0; t < of_each; ++t) {
         const Index below = of_each - t;
         block.col(t).tail(below).noalias() =

@@ -69,7 +69,7 @@ struct Critical {
 Critical critical_counts(std::int64_t n, double expected, double level) {
   const Binomial null(n, expected);
   const double mean = static_cast<double>(n) * expected;
-  // distances that differ only by rounding are equal
+  // Distances that differ only by rounding are equal.
   const double slack = 1e-9 * static_cast<double>(n);
   const auto above = static_cast<std::int64_t>(std::floor(mean)) + 1;
   const auto mirror = [&](std::int64_t k) { return 2.0 * mean - static_cast<double>(k); };

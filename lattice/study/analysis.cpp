@@ -140,7 +140,7 @@ class StatesMeeting {
 
   const StateSpace& space_;
   int face_, leaves_ = 0;
-  // by node: where the part above its cut begins; of a leaf: its state
+  // By node: where the part above its cut begins; of a leaf: its state.
   std::vector<std::size_t> above_;
 };
 

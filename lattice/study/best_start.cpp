@@ -41,7 +41,7 @@ class Starter {
   }
 
  private:
-  // trials of the first round, as a multiple of those of a start
+  // Trials of the first round, as a multiple of those of a start.
   static constexpr std::int64_t kSpread = 8;
   static constexpr int kTournament = 4;  // number of drawn starts of which the best is taken
   static constexpr std::size_t kOwn = kLeafSizes.size();  // index after those of the leaf sizes

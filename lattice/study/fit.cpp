@@ -126,7 +126,7 @@ class Fitter {
   /// coefficients.
   struct Bound {
     Likelihood likelihood;
-    // with the greatest log likelihood of each
+    // With the greatest log likelihood of each.
     std::vector<std::pair<OutcomeTree::Coefficients, double>> greatest;
     double below = HUGE_VAL;  // a point is outside if the log likelihood falls further than this
 

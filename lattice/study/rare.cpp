@@ -352,7 +352,7 @@ class Pool {
  private:
   [[nodiscard]] const OwnRuns& start() const { return pool_.starts.front(); }
 
-  // trials from which a runner knows the gates per trial
+  // Trials from which a runner knows the gates per trial.
   static constexpr std::int64_t kFirst = 100;
 
   void run_in(const Problem& problem, std::int64_t trials, std::int64_t most_runs) {
@@ -443,7 +443,7 @@ DirectRows direct_rows(const Problem& problem, std::int64_t trials, std::uint64_
   const int rows = problem.field.rows;
   direct.entered.assign(static_cast<std::size_t>(rows),
                         tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)]);
-  // final gates in later rows, including those of bodies that left over the far edge
+  // Final gates in later rows, including those of bodies that left over the far edge.
   std::int64_t behind = 0;
   for (int row = rows - 1; row > 0; --row) {
     behind += tally.final_cells.row(row).sum();
