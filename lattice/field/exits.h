@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Where along its sides bodies leave the field.
+/// The places along the field's sides at which bodies leave.
 
 #include <array>
 #include <cstdint>

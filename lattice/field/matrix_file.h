@@ -53,7 +53,7 @@ inline constexpr const char* kCountsPerRun = "counts_per_run";
 /// symmetric gates); else empty.
 [[nodiscard]] std::string comment_on_counts(const dynamics::CellMap& map,
                                             const dynamics::StateSpace& space);
-/// The key of this comment in a file's text.
+/// The key of comment_on_counts() in a file's text.
 inline constexpr const char* kCommentText = "comment";
 
 /// Writes a matrix file, as markov::write_counts. The second form moves the file's arrays, which

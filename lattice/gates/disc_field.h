@@ -16,10 +16,10 @@
 namespace gatewalk::lattice {
 
 /// Runs trials through a field of gates, from a start that may lie inside the first gate.
-/// field.fidelity sets which gates move: fresh gates with beams at rest (active), or many gates
-/// that act beyond their bounds (remember, all; field_stepper.h). The random force continues from
-/// gate to gate; its stream is {seed, stream_row(p, start), trial} for every fidelity, with p the
-/// gate that trials start in. run.time_limit_s counts from the entry into a gate. Throws
+/// field.fidelity says which gates move: only a fresh gate with beams at rest (active), or many
+/// gates that act beyond their bounds (remember, all; field_stepper.h). The random force continues
+/// from gate to gate. Its stream is {seed, stream_row(p, start), trial} for every fidelity, with p
+/// the gate that trials start in. run.time_limit_s counts from the entry into a gate. Throws
 /// InvalidParameter, also for gates of several types with a fidelity other than `active`.
 [[nodiscard]] FieldTally run_field(const FieldGates& gates, const FieldParams& field,
                                    const dynamics::BodyState& start, std::uint64_t seed,

@@ -25,14 +25,15 @@ class PoolRunner {
  public:
   static constexpr std::int64_t kLeastTrials = 2 * kTrialGroups;  // per call
 
-  /// Trial numbers are ones that no other command uses with this seed. About `most_runs` gate runs
-  /// are made, except that each call makes its minimum.
+  /// Trials get numbers that no other command uses with this seed. About `most_runs` gate runs are
+  /// made, except that each call makes its minimum.
   PoolRunner(const Problem& problem, std::uint64_t seed, std::int64_t most_runs,
              const dynamics::Work& work);
 
   /// Least number of full trials per call whose noise comes from evenly spread points in all gates
   /// (rqmc_trials.h); `count` is then rounded up to arrays of equal size. In smaller calls, points
-  /// set the noise of the first passages from a start. Both need cells that can do this.
+  /// set the noise of the first passages from a start only. Cells must permit it
+  /// (Cell::lays_noise).
   static constexpr std::int64_t kLeastEven = 4096;
 
   /// Runs full trials from the start; runs through its first gate only; or full trials from

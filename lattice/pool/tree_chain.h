@@ -40,10 +40,10 @@ struct TreeChain {
   std::optional<HausmanCheck> hausman_check{};
 };
 
-/// Makes a chain whose error bar is at most the accuracy for each of the starts, and half of it for
-/// any start of the range; the other half is for the start's own first runs, and for the worst of
-/// many starts. Throws as predict_pooled and pool_range; std::invalid_argument for neither starts
-/// nor range, and for fewer states than faces.
+/// Makes a chain whose error bar is at most the accuracy for each of the starts, and half of that
+/// for any start of the range. The other half is for the start's own first runs, and for the worst
+/// of many starts. Throws as predict_pooled and pool_range; std::invalid_argument for neither
+/// starts nor range, and for fewer states than faces.
 [[nodiscard]] TreeChain make_tree_chain(const Problem& problem, const TreeOptions& options,
                                         const dynamics::Work& work = {});
 

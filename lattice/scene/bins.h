@@ -13,10 +13,10 @@
 
 namespace gatewalk::lattice {
 
-/// True for the field of the paper in any units: its proportions of body, beam length, joints and
-/// rate of the random force (50 per unit of dynamics::Scale's time), and forces that move the body
-/// at the paper's speeds. Other forces, stiffness, damping and run keys are studies of the same
-/// field.
+/// True for the field of the paper in any units. Such a field has the paper's proportions of body,
+/// beam length, joints and rate of the random force (50 per unit of dynamics::Scale's time), and
+/// forces that move the body at the paper's speeds. Other forces, stiffness, damping and run keys
+/// are studies of the same field.
 [[nodiscard]] bool papers_field(const Scene& scene);
 
 /// The choice of a chain's states.

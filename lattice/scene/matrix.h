@@ -78,8 +78,8 @@ struct RowMatrix {
 
 /// The chain and counts of a field: the matrices of base's gate types, or the matrices of `others`
 /// in their rows. Throws std::invalid_argument, with a message that begins "--row FIRST-LAST=PATH",
-/// for rows outside the field or given twice, and for a matrix with another body, gate size or
-/// states than `base` (called `base_path`); also for rows in a base with a terrain.
+/// for rows outside the field or given twice. Also throws for a matrix with another body, gate size
+/// or states than `base` (called `base_path`), and for rows in a base with a terrain.
 [[nodiscard]] CountedField field_of(const SceneMatrix& base, const std::string& base_path,
                                     const std::vector<RowMatrix>& others);
 

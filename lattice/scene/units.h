@@ -19,7 +19,7 @@ struct KeyUnit {
 [[nodiscard]] std::optional<KeyUnit> unit_of(std::string_view given, std::string_view key);
 
 /// A value in `unit`, converted to the key's own unit: the shortest decimal number that reads as x,
-/// with another exponent. 6.1 cm is 0.061 m to the last bit; a number given with more than 15
+/// with another exponent. So 6.1 cm is 0.061 m to the last bit. A number given with more than 15
 /// digits is rounded twice.
 [[nodiscard]] double in_own_unit(double x, const KeyUnit& unit);
 /// A value in the key's own unit, converted to `unit`.

@@ -118,9 +118,9 @@ struct SeenEndings {
 /// null takes the same number of trials from the prediction of a resampled matrix, and compares
 /// them with the prediction.
 struct JointTest {
-  /// One statistic: the observed value, its p-value, and the p-value adjusted for testing all
-  /// statistics together (single-step minP of Westfall and Young, from the same draws). p-values
-  /// are at least 1 / (draws + 1), and NaN where there is no value.
+  /// One statistic: its observed value, its p-value, and the p-value adjusted for testing all
+  /// statistics together. The adjustment is the single-step minP of Westfall and Young, from the
+  /// same draws. p-values are at least 1 / (draws + 1), and NaN where there is no value.
   struct Test {
     double seen = 0.0, p = 1.0, p_adjusted = 1.0;
   };

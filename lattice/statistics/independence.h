@@ -52,10 +52,11 @@ struct Independence {
   double p = 1.0;  // of the three tests together; with clusters, of the first two
   std::int64_t null_draws = 0;
 
-  /// The size of the memory that `pooled` shows, with 95 % bounds and corrected for chance: the
-  /// total variation between the outcomes after one half of the labels and after the other, if it
-  /// were the same in all states and moved this share from the most common outcome to the next. NaN
-  /// without informative runs, and with clusters, for which no chi-squared distribution is known.
+  /// The size of the memory that `pooled` shows, with 95 % bounds and corrected for chance. It is
+  /// the total variation between the outcomes after one half of the labels and after the other
+  /// half, if all states had the same memory, and if it moved a share from the most common outcome
+  /// to the next. NaN without informative runs, and with clusters, for which no chi-squared
+  /// distribution is known.
   double memory = 0.0, memory_low = 0.0, memory_high = 0.0;
   /// A memory of this size is detected at the options' level with probability at least 0.9.
   /// Infinite if no size is, or if the draws are too few for that level.

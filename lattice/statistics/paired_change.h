@@ -23,8 +23,8 @@ struct PairedChange {
   Comparison in_pairs{};  // trial by trial
 
   /// 95 % bound on the distance between the observed total variation and that of infinitely many
-  /// trials: the sampling error of the pairs that differ (triangle inequality), plus 3 / N, which N
-  /// trials without any change would leave open.
+  /// trials. It is the sampling error of the pairs that differ (triangle inequality), plus 3 / N,
+  /// which N trials without any change would leave open.
   [[nodiscard]] double uncertainty() const {
     return in_pairs.floor_total_variation_95 + 3.0 / static_cast<double>(trials);
   }

@@ -106,7 +106,7 @@ class SimulatedTest {
   double single_level_ = 0.0;
 };
 
-/// Shares at this total variation from `shares` that are hardest to detect: each outcome of one
+/// The shares at this total variation from `shares` that are hardest to detect. Each outcome of one
 /// half loses the same fraction, each outcome of the other half gains the same fraction. (Of all
 /// such shares these have the least chi-squared, 4 TV^2 for equal halves: Cauchy-Schwarz.) nullopt
 /// if the losing half has less than that to lose.

@@ -75,12 +75,12 @@ struct CrossValidation {
 /// Splits the bodies into two random halves, each with all trials of its bodies, and tests each
 /// half against the other's chain. Random halves are alike even if the chain is wrong, so permuting
 /// bodies would test nothing. The null is instead a wild cluster bootstrap: each body's
-/// contribution to the difference is multiplied by +1 or -1 (Rademacher weights). The contribution
-/// is, in the observed half, what the body's trials did minus the chain's prediction; in the other
-/// half, the change of the difference with the body's weight in the chain; both by the chain of all
-/// bodies. Bodies beyond kMostParts per half share signs. Throws std::invalid_argument for pools of
-/// fewer than 2 kLeastBodies bodies, for halves without a passage that the field could have, and if
-/// cells times states are too many.
+/// contribution to the difference is multiplied by +1 or -1 (Rademacher weights). In the observed
+/// half, the contribution is what the body's trials did minus the chain's prediction. In the other
+/// half, it is the change of the difference with the body's weight in the chain. Both use the chain
+/// of all bodies. Bodies beyond kMostParts per half share signs. Throws std::invalid_argument for
+/// pools of fewer than 2 kLeastBodies bodies, for halves without a passage that the field could
+/// have, and if cells times states are too many.
 inline constexpr int kMostParts = 100;
 [[nodiscard]] CrossValidation cross_validate(const Problem& problem, const RunPool& pool,
                                              const CrossValidationOptions& options,

@@ -53,9 +53,9 @@ struct FitData {
 
 /// Most parameters of a model of degree 2, which is fitted in a second.
 inline constexpr double kMostParameters = 600.0;
-/// The least share of all trials in a group of outcomes: a hundredth; more for many numbers; and
-/// large enough that sampling error in the model of all groups changes the likelihood of the
-/// observations by at most a fourth of what the range does.
+/// The least share of all trials in a group of outcomes: a hundredth, and more for many numbers. It
+/// is also large enough that sampling error in the model of all groups changes the likelihood of
+/// the observations by at most a fourth of what the range does.
 [[nodiscard]] double least_share(int numbers, double trials, double observed);
 
 /// Fits trials from the problem's start. Throws std::invalid_argument for counts of another field,

@@ -36,9 +36,9 @@ struct RunTrials;
 void add_walks(StateWalks& walks, const dynamics::StateSpace& space, int first,
                const FieldTrials& each, const std::vector<int>& same = {});
 
-/// Names of the coarse origins of a body, in the gate before: the origins of the section's faces,
-/// in two halves if mirror images enter by the same face ("from below in the left half", "from
-/// below in the right half", "from the right", "from the left").
+/// Names of the coarse origins of a body, in the gate before: the origins of the section's faces.
+/// If mirror images enter by the same face, its origin has two halves ("from below in the left
+/// half", "from below in the right half", "from the right", "from the left").
 [[nodiscard]] std::vector<std::string> origins_of(const dynamics::Section& section);
 /// Visits from the sixth on count as one, and so do rows from i_y = 5 on.
 inline constexpr int kVisits = 6, kRows = 6;

@@ -34,13 +34,14 @@ struct Observed {
   std::vector<std::string> remarks{};  // how files were read that are not plain CSV
 };
 
-/// Reads the tables of an experiment (lattice/text/table.h). A table has a line per trial (trial
-/// and ending; gate_x and gate_y; or all four, with i_x and i_y of the final gate; with endings
-/// also time_s, which may be empty if the body did not leave the field), or counts of final gates
-/// (gate_x, gate_y, count; missing gates have none), or counts of endings (ending, count). Files
-/// with the same columns are added up, as recordings of one experiment. Endings have either name of
-/// kEndingNames, or "went back". Throws std::invalid_argument naming file, line and column for
-/// anything else, no trial at all, a file given twice, and different totals of gates and endings.
+/// Reads the tables of an experiment (lattice/text/table.h). A table has a line per trial, or
+/// counts of final gates (gate_x, gate_y, count; missing gates have none), or counts of endings
+/// (ending, count); both kinds of counts may be given in two files. The line of a trial has trial
+/// and ending, or gate_x and gate_y of the final gate (i_x and i_y), or all four; with endings also
+/// time_s, which may be empty if the body did not leave the field. Files with the same columns are
+/// added up, as recordings of one experiment. Endings have either name of kEndingNames, or "went
+/// back". Throws std::invalid_argument naming file, line and column for anything else, no trial at
+/// all, a file given twice, and different totals of gates and endings.
 [[nodiscard]] Observed read_observed(const std::vector<std::string>& paths,
                                      const FieldParams& field);
 

@@ -60,10 +60,10 @@ struct ParameterEffects {
                                                  const ParameterOptions& options,
                                                  const dynamics::Work& work = {});
 
-/// The effects by the chain of a pool, from its runs of the start. Full trials are added until the
-/// chain has 25 times as many runs as the parameters (about `most_runs` new gate runs at most), so
-/// that its error does not exceed their sampling error; the number of states grows with the square
-/// root of the runs. Throws as predict_pooled.
+/// The effects by the chain of a pool, from its runs of the start. Full trials are added (about
+/// `most_runs` new gate runs at most) until the chain has 25 times as many runs as the parameters,
+/// so that its error does not exceed their sampling error. The number of states grows with the
+/// square root of the runs. Throws as predict_pooled.
 [[nodiscard]] ParameterEffects parameter_effects(const Problem& problem, RunPool& pool,
                                                  markov::Ending target,
                                                  const ParameterOptions& options,
