@@ -20,8 +20,8 @@ using LumpingParts = std::vector<int>;
 /// Errors of a lumped chain.
 struct LumpedChain {
   int states = 0;  // including the start's own state
-  /// Total variation between the rows of two states of one part: the largest, averaged over parts
-  /// by visits, for the gate type with the largest value.
+  /// The largest total variation between the rows of two states of a part, averaged over the parts
+  /// by visits; of the gate type with the largest average.
   double largest = 0.0;
   double endings = 0.0, final_gates = 0.0;  // total variation from the original chain's answer
 };

@@ -50,9 +50,9 @@ struct Replicates {
 };
 
 /// Predicts from resampled matrices number first, ... first + count - 1, on all threads of the
-/// current TBB arena; the bits do not depend on the number of threads. `own`, if given: by start,
-/// the predictions of the matrix itself, which tell whether sums take too long, and whether walks
-/// circle for ever there too. Only then are matrices without a prediction not left out. Throws
+/// current TBB arena; the bits do not depend on the number of threads. A matrix whose walks circle
+/// for ever is left out, unless walks of the original matrix do so too. `own`, if given: by start,
+/// the predictions of the original matrix, which show that, and whether sums take too long. Throws
 /// std::invalid_argument as Predictor::predict does.
 [[nodiscard]] Replicates replicate_predictions(
     const CountedField& gates, const markov::Field& field, const std::vector<markov::Start>& starts,

@@ -109,7 +109,7 @@ class Starter {
     return {std::move(kernel.space), std::move(chances)};
   }
 
-  /// The middle one of the drawn starts in the best leaf that has any.
+  /// The best column, with the mean of the drawn starts in the best leaf that has any.
   [[nodiscard]] TrialStart best_of(const StartChances& chances) const {
     TrialStart best{columns_.front(), drawn_.front()};
     int leaf = chances.space.index_of(best.entry).state;

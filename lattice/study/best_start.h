@@ -50,11 +50,11 @@ struct BestStart : ChoiceSummary, StartChances {
   Gain gain{};
 };
 
-/// Finds the best start. Trials from anywhere in the ranges form a chain of trees, and a first
-/// passage gives the probability to cross from any column. The best leaves of chains with three
-/// leaf sizes run as full trials, beside the best start so far; further trials start from the best
-/// of four random starts. Rounds go on until one gains little or the runs are used up. The result
-/// is the same on any number of threads. Throws std::invalid_argument for missing or invalid
+/// Finds the best start. Trials from anywhere in the ranges form a chain of trees, which gives the
+/// probability to cross after every first passage, in any column. The best leaves of chains with
+/// three leaf sizes run as full trials, beside the best start so far. Further trials start from the
+/// best of four random starts. Rounds go on until one gains little or the runs are used up. The
+/// result is the same on any number of threads. Throws std::invalid_argument for missing or invalid
 /// ranges, columns outside the field, and an accuracy outside [0.001, 0.5); std::runtime_error if a
 /// run broke or values do not fit into memory.
 [[nodiscard]] BestStart best_start(const Problem& problem, const BestStartOptions& options,

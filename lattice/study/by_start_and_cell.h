@@ -41,10 +41,10 @@ struct StartStates {
 };
 
 /// Endings by start state of a chain of trees: for each state by which bodies enter through these
-/// faces, as if they started so in the field's first cell, from the runs of that state alone. Error
-/// bars include the spread of these few runs (Student's t), the sampling error of later gates, and
-/// the bias of coarser states (kTrialGroups groups); NaN without groups. If cells times states
-/// exceed `most`, neighbouring states are joined.
+/// faces, as if they started so in the field's first cell. The first passages are those of that
+/// state alone. Error bars include the spread of these few runs (Student's t), the sampling error
+/// of later gates, and the bias of coarser states (kTrialGroups groups); NaN without groups. If
+/// cells times states exceed `most`, neighbouring states are joined.
 [[nodiscard]] StartStates start_states(const Problem& problem, const RunPool& pool,
                                        const AnalysedChain& chain, const ChainOutcomes& outcomes,
                                        const std::vector<int>& faces, int per_leaf,

@@ -51,7 +51,8 @@ struct Fold {
   Error95 chain_error;
 
   double corrcoef = 0.0, rmse_per_100 = 0.0;  // of the final gates, seen against chain
-  /// Values that sampling of the bodies of both halves gives: means, and 95 % quantiles.
+  /// Of corrcoef and RMSE: the mean under sampling error of the bodies of both halves. Of the total
+  /// variation: mean and 95 % quantile.
   double chance_corrcoef = 0.0, chance_rmse_per_100 = 0.0;
   double chance_total_variation = 0.0, chance_total_variation_95 = 0.0;
   std::array<double, markov::kEndings> chance_95{};  // of the difference of an ending's shares

@@ -58,12 +58,12 @@ struct Splitting {
 
 /// Runs full trials from the start, without a limit of gates, with splitting. A body that enters a
 /// gate of value v should have the weight v0/v, with v0 the value of the start. Within a factor of
-/// two its weight w stays; otherwise it becomes a whole number of bodies of that weight, random
-/// with mean weight w, with independent random forces from then on. The weights that enter a row
-/// sum to an unbiased estimate of the probability, whatever the values. The bits are the same on
-/// any number of threads. Throws std::invalid_argument as up_to_row, for a value that is not
-/// positive, for recorded runs, and if bodies may move back to a row before, where they would be
-/// counted twice.
+/// two its weight stays. Otherwise the body becomes a random whole number of bodies of weight v0/v,
+/// which keep its weight on average and have independent random forces from then on. The weights
+/// that enter a row sum to an unbiased estimate of the probability, whatever the values. The bits
+/// are the same on any number of threads. Throws std::invalid_argument as up_to_row, for a value
+/// that is not positive, for recorded runs, and if bodies may move back to a row before, where they
+/// would be counted twice.
 [[nodiscard]] Splitting split(const Problem& problem, double start_value, const EntryValue& value,
                               const SplittingOptions& options, const dynamics::Work& work = {});
 
