@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 /// runs.csv: a table of passages of bodies through cells, recorded or simulated elsewhere, one per
-/// line (format: README.md in this folder). Reads and writes it.
+/// line (format: cli/site/reference/files.md). Reads and writes such tables.
 
 #include <array>
 #include <cstdint>

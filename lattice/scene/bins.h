@@ -68,7 +68,7 @@ struct SeenStates {
 /// The states of a scene's chain, and how well they resolve the entries of its bodies.
 struct States {
   BinsChoice choice;
-  /// Auto replaced Table III, which nobody asked for and which does not resolve the scene.
+  /// `auto` replaced Table III, which nobody asked for and which does not resolve the scene.
   bool replaced = false;
   dynamics::StateSpace space;
   dynamics::Entries entries;  // where the runs of the rows start; empty: uniform in the bins

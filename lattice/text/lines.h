@@ -16,7 +16,7 @@ namespace gatewalk::lattice {
 /// (UTF-16, .xlsx, gzip, XML, HDF5, ...).
 class Lines {
  public:
-  /// `path`: "-" is standard input. Throws for lines longer than `most_bytes`.
+  /// `path`: "-" is standard input. Reading throws for a line longer than `most_bytes`.
   explicit Lines(const std::string& path, std::size_t most_bytes = kMostBytes);
   ~Lines();
   Lines(const Lines&) = delete;

@@ -61,9 +61,9 @@ struct ChosenGates {
   std::vector<std::string> actions;
   std::vector<Scene> taken;  // the scene during each action (with_action)
 };
-/// Makes such gates. `action` chooses the action of a body on entry; the gates have all types under
-/// all actions, numbered as in cells_of (study/plan.h). Throws std::invalid_argument unless there
-/// is one scene per action, at least one, all with the same field and number of gate types; `type`
+/// Makes gates whose type a body chooses on entry by `action`. The gates have all types under all
+/// actions, numbered as in cells_of (study/plan.h). Throws std::invalid_argument unless there is
+/// one scene per action, at least one, all with the same field and number of gate types; `type`
 /// throws std::out_of_range for an unknown action.
 [[nodiscard]] ChosenGates chosen_gates(std::vector<std::string> actions, std::vector<Scene> taken,
                                        CellChoice action);
