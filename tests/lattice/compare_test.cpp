@@ -123,7 +123,7 @@ TEST(Statistics, FieldsMustHaveOneSize) {
 
 // ---- Noise floor ----
 
-// MODEL.md: N = 100, n = 81, s = 0.06.
+// Reference figures for the paper's field: N = 100, n = 81, s = 0.06.
 TEST(NoiseFloor, FiguresOfTheModel) {
   const NoiseFloor two = noise_floor(0.06, 81, 100, 100), exact = noise_floor(0.06, 81, 100, 0);
   EXPECT_NEAR(two.rmse_per_100, 1.52, 5e-3);
@@ -173,8 +173,7 @@ CellProbabilities shares(const CellCounts& c) {
   return c.cast<double>() / static_cast<double>(c.sum());
 }
 
-// CHECKS.md: the formula holds within 2 % in simulation. 4000 repeats give the means to about 0.3
-// %.
+// The formula holds within 2 % in simulation. 4000 repeats give the means to about 0.3 %.
 TEST(NoiseFloor, AgreesWithSimulation) {
   double low = 0.5, high = 5.0;  // sum p^2 = 0.06 by bisection
   for (int i = 0; i < 60; ++i) {

@@ -184,9 +184,10 @@ TEST(FieldStepper, KeepsAngularMomentumAboutASharedJoint) {
   EXPECT_GT(neighbours, 100);
 }
 
-// MODEL.md's converged figures of the study in Sec. III-B (F 7, Rm 10, k 300/500, d 50): 5.5 %
-// traversed left, 53.4 % exited, 41.0 % trapped. The tolerance is four standard deviations of 1500
-// trials, plus 1 % for the step; at 4 ms the step costs `stable` half of that.
+// The converged figures of the study in Sec. III-B (F 7, Rm 10, k 300/500, d 50;
+// results/table4/README.md): 5.5 % traversed left, 53.4 % exited, 41.0 % trapped. The tolerance is
+// four standard deviations of 1500 trials, plus 1 % for the step; at 4 ms the step costs `stable`
+// half of that.
 TEST(FieldStepper, OneGateHasTheConvergedOutcomes) {
   const GateParams p = moreau(test::study(50.0), 0.004);
   constexpr int kTrials = 1500;

@@ -161,7 +161,7 @@ TEST(StreamRow, NamesAStart) {
   EXPECT_LT(stream_row(p, a), std::uint64_t{1} << 56);  // the purpose stands above
 }
 
-// Second route: the trial gate by gate, with the indices and shifts of MODEL.md written out.
+// Second route: the trial gate by gate, with the indices and shifts of the model written out.
 TEST(RunField, TrialsCanBeReplayedAlone) {
   const GateParams p;
   const FieldParams field;

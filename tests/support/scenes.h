@@ -8,8 +8,8 @@
 
 namespace gatewalk::test {
 
-/// The study of Sec. III-B, whose converged figures are in MODEL.md: F = 7, Rm = 10, kL = 300, kR =
-/// 500, no drag; the body starts at rest at the origin.
+/// The study of Sec. III-B: F = 7, Rm = 10, kL = 300, kR = 500, no drag; the body starts at rest at
+/// the origin. Its converged figures are in results/table4/README.md.
 inline dynamics::GateParams study(double damping) {
   dynamics::GateParams p;
   p.forces = {.propulsion = 7.0, .random = 10.0, .random_rate = 50.0, .drag = 0.0};
