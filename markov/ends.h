@@ -62,6 +62,7 @@ template <class Number>
   for (const auto& c : ends.mixed_cells) cells.data()[c.cell] = c[Ending::trapped];
   return cells;
 }
+/// Bodies that left the field from each cell (rows x columns).
 template <class Number>
 [[nodiscard]] CellNumbers<Number> departed_cells(const Ends<Number>& ends) {
   CellNumbers<Number> cells =

@@ -86,8 +86,7 @@ class Walker {
   // Slots: one per nonzero in the order of the matrix, plus one for all unsampled rows (in lanes).
   std::vector<std::uint64_t> keep_;    // (slots) words up to this one draw the first output
   std::vector<std::int32_t> outputs_;  // (slots x 2) the first and the second output
-  std::vector<std::uint64_t>
-      moves_;  // (slots x 2) outputs packed for lanes; empty if they do not fit
+  std::vector<std::uint64_t> moves_;   // (slots x 2) packed outputs; empty if they do not fit
 };
 
 }  // namespace gatewalk::markov

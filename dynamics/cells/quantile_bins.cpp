@@ -107,8 +107,8 @@ bool Resolution::poor() const {
 Resolution resolution_of(const StateSpace& space, const std::vector<Entry>& seen) {
   struct Group {  // sums over the entries of a state or face
     std::int64_t n = 0;
-    std::array<double, kMostCoordinates> mean{},
-        squares{};  // squares: of deviations from the mean (Welford)
+    // squares: of deviations from the mean (Welford)
+    std::array<double, kMostCoordinates> mean{}, squares{};
     void add(const Entry& c, std::size_t coordinates) {
       ++n;
       for (std::size_t axis = 0; axis < coordinates; ++axis) {

@@ -46,7 +46,7 @@ struct Tree {
 
 inline constexpr int kMostStates = 1'000'000;
 /// The default for the least number of entries in a leaf. A leaf's row is noisy, but predictions
-/// average over all leaves, so results are equally good from 5 to 20 (markov/README.md).
+/// average over all leaves: sizes from 5 to 10 are about equally good.
 inline constexpr int kEntriesPerLeaf = 7;
 
 class StateSpace {
@@ -99,10 +99,9 @@ class StateSpace {
   [[nodiscard]] int leaf_of(int face, const Entry& entry) const;
 
   Section section_;
-  std::vector<Bins> bins_;   // by face
-  std::vector<Tree> trees_;  // by face
-  std::vector<std::vector<int>>
-      next_;  // (faces) by node: an inner node's child above the cut; a leaf's state
+  std::vector<Bins> bins_;              // by face
+  std::vector<Tree> trees_;             // by face
+  std::vector<std::vector<int>> next_;  // (faces) by node: child above the cut; a leaf's state
   std::vector<std::array<double, 2>> sides_;  // (leaves x coordinates)
   std::vector<int> offset_;                   // (faces + 1)
   bool open_ = false;

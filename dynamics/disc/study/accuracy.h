@@ -49,9 +49,9 @@ struct Setting {
 /// `event`. Throws std::invalid_argument for another name.
 [[nodiscard]] std::vector<Setting> chart_settings(std::string_view method, const GateParams& p);
 
-/// The reference setting: `event` at 1e-7 units of length (Scale). The second reference is ten
-/// times coarser and shows how accurate the first one is.
+/// The reference setting: `event` at 1e-7 units of length (Scale).
 [[nodiscard]] Setting reference_setting(const GateParams& p);
+/// The second reference setting, ten times coarser: its error shows how accurate the first one is.
 [[nodiscard]] Setting second_reference_setting(const GateParams& p);
 
 // ---- Trials ----

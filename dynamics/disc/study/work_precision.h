@@ -38,11 +38,13 @@ struct ChartPoint {
   std::vector<double> microseconds;  // per trial, one value per round
 
   [[nodiscard]] bool ran() const { return verdict != Verdict::refused; }
-  /// The least time of a trial; NaN if nothing was timed. The next functions return NaN if nothing
-  /// was timed or run.
+  /// The least time of a trial (microseconds) over the rounds; NaN if nothing was timed.
   [[nodiscard]] double least_microseconds() const;
+  /// The median time of a trial (microseconds) over the rounds; NaN if nothing was timed.
   [[nodiscard]] double median_microseconds() const;
+  /// The mean number of steps of a trial; NaN if nothing ran.
   [[nodiscard]] double steps_per_trial() const;
+  /// The mean number of evaluations of a trial; NaN if nothing ran.
   [[nodiscard]] double evaluations_per_trial() const;
 };
 
