@@ -53,10 +53,10 @@ TEST(ChartSettings, StepsFitIntoAnyHold) {
 
 // ---- Weak error, by hand ----
 
-// Ten trials; the run has two more left and, one each, fewer right and trapped.
-// TV = (2 + 1 + 1)/2/10 = 0.2. Two trials changed, each towards the surplus: d = 1, 1, 0 x 8, of
-// which the variance of the mean is (10 * 0.2 * 0.8)/9/10 = 0.16/9.
-// Columns changed 2, 1, 1 times: chance = sqrt(2/pi)/2/10 (sqrt 2 + 1 + 1).
+// Ten trials: compared with the reference, the run has two more `left`, one fewer `right` and one
+// fewer `trapped`. TV = (2 + 1 + 1)/2/10 = 0.2. Two trials changed, each towards the surplus: d =
+// 1, 1, 0 x 8, so the variance of the mean is (10 * 0.2 * 0.8)/9/10 = 0.16/9. The columns changed
+// 2, 1, 1 times: chance = sqrt(2/pi)/2/10 (sqrt 2 + 1 + 1).
 TEST(WeakError, OfHandMadeOutcomes) {
   std::vector<TrialEnd> reference(10, left()), run;
   reference[0].outcome = reference[1].outcome = Outcome::traversed_right;
@@ -71,7 +71,8 @@ TEST(WeakError, OfHandMadeOutcomes) {
   EXPECT_EQ(e.changed, 2);
 }
 
-// Trials that change places cancel: no error, and `chance` says what they could have made.
+// Trials that swap outcomes cancel: the error is 0, and `chance` gives the error that they could
+// have made.
 TEST(WeakError, ExchangedTrialsCancel) {
   std::vector<TrialEnd> reference(4, left()), run;
   reference[0] = trapped();
@@ -83,16 +84,18 @@ TEST(WeakError, ExchangedTrialsCancel) {
   EXPECT_NEAR(e.chance, std::sqrt(2.0 / std::numbers::pi) / 8.0 * 2.0 * std::sqrt(2.0), 4 * kEps);
 }
 
-// Changes of the reference that happen to cancel do not make it better than chance.
+// Changes in the reference that cancel by chance must not give it a better limit than chance
+// allows.
 TEST(WeakError, LimitIsTheLargestOfErrorChanceAndOneTrial) {
   EXPECT_EQ(weak_limit({.total_variation = 0.02, .chance = 0.01}, 1000), kReferenceMargin * 0.02);
   EXPECT_EQ(weak_limit({.total_variation = 0.0, .chance = 0.01}, 1000), kReferenceMargin * 0.01);
   EXPECT_EQ(weak_limit({.total_variation = 0.0, .chance = 0.0}, 1000), kReferenceMargin * 0.001);
 }
 
-// The mean of |TV| over fair coin flips of the changed trials is `chance`: 2000 repeats of 100
-// trials whose standard deviation is sqrt(1 - 2/pi) of it, 1.7 % after 2000; the normal law for a
-// sum of 100 flips is off by 1/(4 * 100); 4 standard errors and that are 4 * 1.7 % + 0.25 %.
+// The mean of |TV| over fair coin flips of the changed trials is `chance`. 2000 repeats of 100
+// trials have a standard deviation of sqrt(1 - 2/pi) of the mean, which leaves 1.7 %; the normal
+// law for a sum of 100 flips is off by 1/(4 * 100). Tolerance: 4 standard errors and this error, 4
+// * 1.7 % + 0.25 %.
 TEST(WeakError, ChanceIsWhatFairFlipsShow) {
   test::Draw draw(7);
   double sum = 0.0, chance = 0.0;
@@ -111,9 +114,9 @@ TEST(WeakError, ChanceIsWhatFairFlipsShow) {
   EXPECT_NEAR(sum / kRepeats, chance, 0.07 * chance);
 }
 
-// The paired standard error is the spread that repeats of the experiment have: 10 % of the trials
-// change, two in three of them one way. Relative error of a standard deviation from 2000 repeats
-// 1/sqrt(4000) = 1.6 %, of the mean of the estimates less; 4 of these.
+// The paired standard error equals the spread over repeats of the experiment: 10 % of the trials
+// change, two in three of them one way. A standard deviation from 2000 repeats has a relative error
+// of 1/sqrt(4000) = 1.6 %, the mean of the estimates a smaller one. Tolerance: 4 of these.
 TEST(WeakError, StandardErrorIsTheSpreadOfRepeats) {
   test::Draw draw(8);
   double sum = 0.0, squares = 0.0, claimed = 0.0;
@@ -136,9 +139,10 @@ TEST(WeakError, StandardErrorIsTheSpreadOfRepeats) {
   EXPECT_NEAR(claimed / kRepeats / spread, 1.0, 0.065);
 }
 
-// Two starts: of the first's 4 trials one goes from trapped to left, of the second's 6 two go the
-// other way. 4/10 * 1/4 + 6/10 * 2/6 = 0.3; all together a surplus of one trapped, 0.1. Standard
-// errors: variances of the means 1/4 * 3/4 / 3 and 2/6 * 4/6 / 5, weighted with 0.4^2 and 0.6^2.
+// Two starts: of the first start's 4 trials one changes from trapped to left; of the second start's
+// 6 trials two change the other way. The mean is 4/10 * 1/4 + 6/10 * 2/6 = 0.3; all trials together
+// have a surplus of one trapped, 0.1. Standard errors: variances of the means 1/4 * 3/4 / 3 and 2/6
+// * 4/6 / 5, weighted with 0.4^2 and 0.6^2.
 TEST(WeakError, OfTwoStartsDoesNotCancel) {
   std::vector<TrialEnd> reference(10, left()), run;
   reference[0] = trapped();
@@ -166,7 +170,7 @@ TEST(WeakError, OfColumns) {
 
 // ---- Strong error, by hand ----
 
-// Of ten trials five have not parted, four have and one is trapped: the median of nine is the
+// Of ten trials five have not parted, four have, and one is trapped. The median of nine is the
 // fifth.
 TEST(StrongError, MediansWithPartedTrialsInfinitelyFar) {
   const GateParams p;
@@ -196,7 +200,7 @@ TEST(StrongError, MediansWithPartedTrialsInfinitelyFar) {
   EXPECT_NEAR(e.energy, 4.5, 4 * kEps);
 }
 
-// A method that loses more trials does not seem better for it; from half on there is no median.
+// A method that loses more trials must not seem better; from half on there is no median.
 TEST(StrongError, GrowsAsTrialsPart) {
   std::vector<TrialEnd> reference(8, left()), run = reference;
   for (std::size_t i = 0; i < run.size(); ++i) run[i].exit.x = 0.01 * static_cast<double>(i + 1);
@@ -205,7 +209,7 @@ TEST(StrongError, GrowsAsTrialsPart) {
     const StrongError e = strong_error(GateParams{}, run, reference);
     EXPECT_EQ(e.parted, static_cast<std::int64_t>(parted));
     if (parted < 4) {
-      EXPECT_NEAR(e.position, 0.05, kEps) << parted;  // the fifth of eight, whatever the last are
+      EXPECT_NEAR(e.position, 0.05, kEps) << parted;  // the fifth of eight, independent of the last
     } else {
       EXPECT_TRUE(std::isnan(e.position) && std::isnan(e.energy)) << parted;
     }
@@ -272,7 +276,7 @@ TEST(TrialEnds, AgainstThemselvesAreExact) {
   EXPECT_EQ(strong.velocity, 0.0);
 }
 
-// A run that was granted less work than it needs is no trial: it ends broken.
+// A run whose limit of work is too small is no trial: it ends broken.
 TEST(TrialEnds, CutShortIsBroken) {
   const GateParams p = test::study(10.0);
   const auto method = make_method(p);
@@ -288,7 +292,7 @@ TEST(TrialEnds, CutShortIsBroken) {
 
 // ---- A check by a better method ----
 
-// The trials are those of the gate; the sample is a fifth of them, not fewer than 100.
+// The trials are those of the gate; the sample is a fifth of them, at least 100.
 TEST(CheckedTrials, AreThoseOfTheGateAndASampleIsChecked) {
   const GateParams p = test::study(10.0);
   const BodyState start{.x = 1.0, .y = 0.0, .vx = 0.0, .vy = 12.0};
@@ -306,9 +310,9 @@ TEST(CheckedTrials, AreThoseOfTheGateAndASampleIsChecked) {
 
 // ---- Order of a method ----
 
-// `stable`, 300 trials, against itself at hold/80: the median exit of trials that have not parted
-// falls with the square of the step (contacts are second order, hits are found exactly). From
-// hold/2 to hold/8 that is 16-fold; between 8 and 32 is a slope of 1.5 to 2.5.
+// 300 trials of `stable` against `stable` at hold/80: the median exit error of trials that have not
+// parted falls with the square of the step (contacts are of second order, hits are found exactly).
+// From hold/2 to hold/8 the factor is 16; between 8 and 32 the slope is 1.5 to 2.5.
 TEST(StrongError, OfStableFallsWithTheStep) {
   const GateParams p = test::study(10.0);
   const auto with_step = [&](int n) {
@@ -325,7 +329,7 @@ TEST(StrongError, OfStableFallsWithTheStep) {
   EXPECT_GT(fall, 8.0);
   EXPECT_LT(fall, 32.0);
   EXPECT_LT(at_fine.parted_share(), 0.05);
-  // Outcomes: no more than what parted trials can change.
+  // The error of the outcomes is at most what parted trials can change.
   EXPECT_LE(outcome_error(fine.trials, reference.trials).total_variation, 0.02);
 }
 

@@ -25,7 +25,7 @@ LimitScene gate() {
   return scene;
 }
 
-/// The same at the beams already, so fast.
+/// The paper's gate with the disc at the beams already, at the given speed.
 LimitScene at_the_beams(double speed) {
   LimitScene scene = gate();
   scene.start = {0.0, scene.gate.beams.joint_y - scene.gate.body.radius, 0.0, speed};
@@ -43,7 +43,7 @@ const LimitMap& map_of(const std::vector<LimitMap>& maps, LimitNumber number,
                        [&](const LimitMap& m) { return m.number == number && m.method == method; });
 }
 
-/// A map whose number reaches so far that every border passes through.
+/// A map whose range of the number contains every border.
 LimitMap wide_map(LimitNumber number, std::string_view method) {
   LimitMap map = map_of(limit_maps(gate()), number, method);
   const double own = map.y.values[map.y.from];
@@ -137,7 +137,7 @@ TEST(LimitPoint, CanBeRepeated) {
   EXPECT_NE(a.health.worst_speed, run_point(point, 2).health.worst_speed);
 }
 
-// The same trials of the same gate: whatever `gate` reports of them.
+// A point runs the trials that `gate` runs, so both report the same.
 TEST(LimitPoint, OfTheSceneItselfIsWhatGateReports) {
   LimitScene scene = gate();
   scene.options.trials = 40;
@@ -159,8 +159,8 @@ TEST(LimitPoint, OfTheSceneItselfIsWhatGateReports) {
   }
 }
 
-// The disc bounces back if the beams do not give way: against runs of the soft beams all outcomes
-// are off.
+// The disc bounces back if the beams do not give way: compared with runs of soft beams, all
+// outcomes differ.
 TEST(LimitPoint, OutcomesAreHeldAgainstTheReference) {
   LimitScene scene = gate();
   scene.options.trials = 40;
@@ -221,7 +221,8 @@ TEST(RunMaps, CanBeStopped) {
   EXPECT_EQ(told, 2);  // before the first point, and after it
 }
 
-// Row by row: a step is beyond the bound where that of the row's beams says so, within a cell.
+// In each row, a step is beyond the bound exactly if it exceeds the bound of the row's beams, to
+// within a cell.
 TEST(RunMaps, FindTheBoundsWithinACell) {
   LimitScene scene = gate();
   scene.options.trials = 1;
@@ -266,7 +267,7 @@ FinishedMap finished(std::string_view method, const std::vector<std::vector<Verd
 TEST(LimitsOf, TellTheNearestFaultsAndWhatHelps) {
   using enum Verdict;
   const std::vector<std::vector<Verdict>> faultless(3, std::vector<Verdict>(4, kOk));
-  // Soft beams below, the scene's row in the middle; its step is the second.
+  // Soft beams in the first row, the scene in the middle row; its step is the second one.
   const std::vector<FinishedMap> maps{
       finished(
           "paper",
@@ -302,7 +303,7 @@ TEST(LimitsOf, TellTheNearestFaultsAndWhatHelps) {
   EXPECT_EQ(*moreau.limits[0].factor(), 4.0);
   EXPECT_EQ(moreau.limits[0].remedy->key, "run.step_s");
   EXPECT_EQ(moreau.limits[0].remedy->value, 4.0);
-  // Twice as stiff is nearer than a third; there its finer step helps.
+  // Twice the stiffness is nearer than a third of it; there a finer step helps.
   EXPECT_EQ(moreau.limits[1].fault_at, 60.0);
   EXPECT_EQ(moreau.limits[1].verdict, too_fast);
   EXPECT_EQ(moreau.limits[1].remedy->value, 1.0);
@@ -313,7 +314,7 @@ TEST(LimitsOf, TellTheNearestFaultsAndWhatHelps) {
   EXPECT_EQ(found[3].nearest(), &found[3].limits[0]);
 }
 
-// No method is fine at its own step; one is at a finer one.
+// No method is fine at its own step, but one is at a finer step.
 TEST(LimitsOf, AnotherMethodMayHelpAtAFinerStep) {
   using enum Verdict;
   const std::vector<std::vector<Verdict>> faulty(3, std::vector<Verdict>(4, energy));
@@ -329,7 +330,7 @@ TEST(LimitsOf, AnotherMethodMayHelpAtAFinerStep) {
   EXPECT_EQ(remedy->value, 1.0);
 }
 
-// Whatever a scene asks for is a value of the map, beside the others.
+// Every value of the scene is a value of the map, beside the regular ones.
 TEST(LimitMaps, HaveTheScenesOwnToleranceHoweverFarOff) {
   for (const double tolerance : {1e-20, 1.0, 5.0, 1e5}) {
     LimitScene scene = gate();
@@ -377,7 +378,7 @@ TEST(Limits, PaperBreaksBeyondBothDampingBounds) {
   }
 }
 
-// Well beyond it the bound is not only claimed: energy appears by orders of magnitude.
+// Well beyond the bound, energy appears by orders of magnitude.
 TEST(Limits, BeyondTheBoundEnergyAppears) {
   const auto created = [](double stiffness) {
     return run_point(scene_at(gate(), LimitNumber::stiffness, "paper", 0.001, stiffness), 1)
@@ -437,7 +438,7 @@ TEST(SemiImplicitBound, GoesWithTheRootOfTheStiffness) {
   EXPECT_NEAR(semi_implicit_bound(light), 0.5 * bound, 4 * kEps * bound);
 }
 
-// The lines of the figures by the formulas that they stand for. A line has points inside its map.
+// The lines of the figures follow their formulas. A line has points inside its map.
 TEST(Borders, OfPaperAreItsEulerBound) {
   const Beams beams = GateParams{}.beams;
   const double inertia = beams.inertia();
@@ -473,7 +474,7 @@ TEST(Borders, OfPenaltyAreTheSemiImplicitBound) {
       const double h = line.x[i], y = line.y[i];
       const double k = number == LimitNumber::stiffness ? y : beams.stiffness_left;
       const double d = number == LimitNumber::damping ? y : beams.damping;
-      // Few rounding errors: no difference of nearly equal numbers on the way.
+      // Few rounding errors, because no nearly equal numbers are subtracted.
       EXPECT_NEAR((h * h * k + 2.0 * h * d) / beams.inertia(), 4.0, 40 * kEps) << h;
     }
   }
@@ -491,7 +492,8 @@ TEST(Borders, OfStableAreWhereItRefuses) {
   EXPECT_TRUE(borders(gate(), wide_map(LimitNumber::lever, "stable")).empty());
 }
 
-// A graze R (1 - y) overlaps for R sqrt(8 y) / v, for small y: as long as a step on the line.
+// For small y, a graze at R (1 - y) overlaps for the time R sqrt(8 y) / v: on the line, as long as
+// a step.
 TEST(Borders, OfGrazesAreOverlapsOfAStep) {
   const LimitScene scene = at_the_beams(10.0);
   for (const LimitMap& map : limit_maps(scene)) {
@@ -531,16 +533,16 @@ TEST(Limits, StableHoldsAtTheJoint) {
           << r << ' ' << speed;
 }
 
-// `paper` creates energy or sinks wherever its constraint acts, however far from any stability
-// bound.
+// `paper` creates energy or sinks wherever its constraint acts, also far from any stability bound.
 TEST(Limits, PaperFailsAtItsOwnSetting) {
   const Verdict v = at(LimitNumber::stiffness, "paper", 0.004, 400.0);
   EXPECT_GE(v, Verdict::energy);
   EXPECT_LT(v, Verdict::beyond_bound);
 }
 
-// Never a hit above R; below, the shorter the overlap (R sqrt(8 delta) / v) against the step, the
-// sooner it is missed: 89 ms at delta 1e-3 and 10 m/s, 28 ms at 1e-4, 0.09 ms at 1e-9.
+// There is never a hit above R. Below R, a hit is missed the sooner, the shorter the overlap (R
+// sqrt(8 delta) / v) is compared with the step: 89 ms at delta 1e-3 and 10 m/s, 28 ms at 1e-4, 0.09
+// ms at 1e-9.
 TEST(Limits, GrazingHitsAreMissedWhenShorterThanAStep) {
   const LimitScene scene = at_the_beams(10.0);
   for (const auto& [method, step] : {std::pair("paper", 0.004), {"stable", 0.02}}) {

@@ -22,7 +22,7 @@ Section upright() {
           .coordinates = {{"s", "s_m", "m", "place"}},
           .costs = {{"time_s", "s", "duration"}}};
 }
-/// A body is put somewhere on a face and turns round now and then.
+/// A cell that puts a body at a random place on a face and sometimes turns it round.
 Passage fine(Body& body) {
   Passage passage{Fate::left, {}, {1.0 + body.random.uniform()}};
   passage.next.face = body.random.uniform() < 0.25 ? 1 - body.entry.face : body.entry.face;
@@ -36,7 +36,7 @@ const std::vector<Entry> kTwoStarts{{0, {0.25}}, {1, {-0.1}}};
 Complaints checked(FunctionCell::Pass pass, bool symmetric = false) {
   return check_cell(FunctionCell(upright(), std::move(pass), symmetric), kTwoStarts);
 }
-/// A cell whose passages are fine but for this.
+/// A cell whose passages are right except for one given change.
 Complaints spoilt(const std::function<void(Body&, Passage&)>& spoil) {
   return checked([=](Body& body) {
     Passage passage = fine(body);
@@ -138,7 +138,7 @@ TEST(CheckCell, FindsBatchesThatAreTooLarge) {
   expect_complaint(complaints, "carry_out counted 0 passages of");
 }
 
-/// Has a number, by which it cannot or can wrongly be changed.
+/// A cell with a number that cannot be changed, or is changed wrongly.
 class Numbered : public FunctionCell {
  public:
   explicit Numbered(bool changes) : FunctionCell(upright(), fine), changes_(changes) {}
@@ -164,7 +164,7 @@ TEST(CheckCell, FindsNumbersThatDoNotKeepTheCell) {
 
 using CarryOut = void (*)(const Cell&, std::int64_t, const BeginBody&, const TakePassage&, Health&);
 
-/// Trials of up to `most` passages; what became of them, by trial.
+/// Runs trials of up to `most` passages; returns their outcomes, by trial.
 std::vector<std::vector<Passage>> carried_out(const Cell& cell, std::int64_t trials, int threads,
                                               CarryOut carry_out = carry_out_trials,
                                               std::size_t most = 5) {
@@ -191,7 +191,7 @@ std::vector<std::vector<Passage>> carried_out(const Cell& cell, std::int64_t tri
   return all;
 }
 
-// Of n passages at most n / 20 are carried out once more, and four; of a long run far fewer.
+// Of n passages at most n / 20 + 4 are repeated; in a long run far fewer.
 TEST(OnceMore, CostsLittleAndChangesNothing) {
   for (const std::int64_t trials : {1, 3, 40, 2000, 40'000})
     for (const int threads : {1, 4}) {
@@ -241,7 +241,7 @@ TEST(OnceMore, FindsCellsThatDependOnMoreThanTheBody) {
       EXPECT_NE(said.find(", in another order, it left by S (s = 0.5), time_s = "), said.npos)
           << said;
     }
-  // It turns wrong late: a run that goes on is looked at again.
+  // The cell turns wrong late: a long run is checked repeatedly.
   auto passed = std::make_shared<std::atomic<int>>(0);
   const FunctionCell late(upright(), [=](Body& body) {
     const int n = (*passed)++;

@@ -17,8 +17,8 @@ namespace {
 
 using test::same_bits;
 
-/// Beams as stiff as walls: coarse settings of every method are off or faulty, so that the
-/// tolerance decides. The longer, the more.
+/// Beams as stiff as walls: coarse settings of every method are inaccurate or faulty, so the
+/// tolerance decides. The longer the run, the stronger the effect.
 GateParams stiff(double tolerance, double seconds) {
   GateParams p;
   p.beams.stiffness_left = p.beams.stiffness_right = 1e5;
@@ -39,12 +39,12 @@ TrialEnds trials(const GateParams& p, std::uint64_t seed, std::int64_t n) {
   return ends;
 }
 
-/// Evaluations per trial: what a setting costs, in the method's own units.
+/// Evaluations per trial: the cost of a setting in the method's own units.
 double evaluations(const GateParams& p) {
   return static_cast<double>(trials(p, 1, 200).health.evaluations) / 200;
 }
 
-/// What the header promises of every choice that was met.
+/// Checks the promises of the header for a choice that was met.
 void expect_in_order(const Choice& c, double tolerance) {
   ASSERT_FALSE(c.tried.empty());
   for (std::size_t i = 0; i < c.tried.size(); ++i) {
@@ -65,9 +65,9 @@ void expect_in_order(const Choice& c, double tolerance) {
   EXPECT_EQ(chosen.run.event_tolerance, c.params.run.event_tolerance);
 }
 
-// Other trials than the pilot's, other reference than its own (ten times finer): what was promised
-// holds, to three standard errors of these 2000 trials. A tight tolerance has its price: what
-// sufficed for a loose one was tried and found wanting.
+// With other trials than the pilot's and another reference (ten times finer), the promise holds to
+// three standard errors of these 2000 trials. A tight tolerance costs more: the setting that
+// sufficed for a loose one was tried and rejected.
 TEST(Choice, MeetsItsToleranceAndATightOneIsDearer) {
   std::vector<Choice> made;
   for (const double tolerance : {0.02, 0.001}) {
@@ -94,8 +94,8 @@ TEST(Choice, MeetsItsToleranceAndATightOneIsDearer) {
   EXPECT_TRUE(rejected);
 }
 
-// With any error allowed it is the cheapest setting without faults. Same method: work is counted
-// evaluations, so every setting that costs less has faults.
+// If any error is allowed, the choice is the cheapest setting without faults. Within one method
+// work is counted in evaluations, so every cheaper setting has faults.
 TEST(Choice, TakesTheCheapestThatWorks) {
   GateParams p = stiff(1.0, 2.0);
   p.beams.stiffness_left = p.beams.stiffness_right = 400.0;
@@ -112,8 +112,8 @@ TEST(Choice, TakesTheCheapestThatWorks) {
       ++dearer;
     }
   }
-  EXPECT_GE(dearer, 2);  // there was something to save
-  // Faulty settings that cost less are shown, uncompared.
+  EXPECT_GE(dearer, 2);  // more expensive settings exist
+  // Cheaper settings with faults are listed, without an error.
   for (std::size_t i = 0; i + 1 < c.tried.size(); ++i)
     EXPECT_NE(c.tried[i].verdict, Verdict::fine) << c.tried[i].setting.method;
 }
@@ -139,8 +139,8 @@ TEST(Choice, SameForAnyThreadsAndTwice) {
   }
 }
 
-// Nothing changed among n trials does not show that nothing changes: 4000 trials cannot vouch for
-// 1e-4, more are run; and no claim is sharper than they can make it.
+// No change among n trials does not show that nothing changes: 4000 trials cannot prove 1e-4, so
+// more are run, and no claim is sharper than their number allows.
 TEST(Choice, ClaimsNoMoreThanItsTrialsCanShow) {
   GateParams p = test::free_rods();  // straight out by the side: every method is exact
   p.run.time_limit = 0.1;
@@ -157,7 +157,7 @@ TEST(Choice, ClaimsNoMoreThanItsTrialsCanShow) {
   }
 }
 
-// Two starts share the pilot evenly; the error is the mean of what they show alone.
+// Two starts share the pilot evenly; the error is the mean of the errors of each start.
 TEST(Choice, ErrorIsTheMeanOverTheStarts) {
   const GateParams p = stiff(0.05, 3.0);
   const BodyState starts[] = {{-3, 0, 0, 15}, {3, 0, 0, 15}};
@@ -175,8 +175,8 @@ TEST(Choice, ErrorIsTheMeanOverTheStarts) {
   EXPECT_NEAR(c.tried.back().error.total_variation, mean, 4 * test::kEps);
 }
 
-// Method event cannot run such beams, and the disc is too fast for any step of the others: there is
-// nothing to compare with, which is said.
+// Method event cannot run these beams, and the disc is too fast for any step of the others: without
+// a reference the choice is refused.
 TEST(Choice, SaysWhenTheReferenceItselfIsFaulty) {
   GateParams p;
   p.beams.stiffness_left = p.beams.stiffness_right = 1e11;
@@ -204,12 +204,12 @@ TEST(Choice, RefusesWhatCannotBe) {
   p.run.tolerance = 0.99e-4;
   EXPECT_EQ(refused_key(p), "run.tolerance");
   p = {};
-  p.run.step = 0.003;  // fits no hold; that some settings replace it is no excuse
+  p.run.step = 0.003;  // fits no hold; refused although some settings replace it
   EXPECT_EQ(refused_key(p), "run.step_s");
   p = {};
   p.body.mass = -1.0;
   EXPECT_EQ(refused_key(p), "body.mass_kg");
-  // Only moreau takes these beams, and nothing can vouch for it.
+  // Only moreau takes these beams, and no reference can check it.
   p = {};
   p.beams.mass = 1e-6;
   p.beams.stiffness_left = p.beams.stiffness_right = 1e12;

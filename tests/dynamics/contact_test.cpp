@@ -32,7 +32,7 @@ Point beam_point(const GateParams& p, Side side, double theta, double r) {
   return {inwards * (r * std::cos(theta) - p.beams.joint_x), p.beams.joint_y + r * std::sin(theta)};
 }
 
-/// Body whose centre is `at` in the beam's own frame (joint at the origin, x inwards).
+/// A body whose centre is `at` in the beam's own frame (joint at the origin, x inwards).
 BodyState body_at(const GateParams& p, Side side, Point at, Point v = {}) {
   const double inwards = side == kLeft ? 1.0 : -1.0;
   return {inwards * (at.x - p.beams.joint_x), p.beams.joint_y + at.y, inwards * v.x, v.y};
@@ -96,7 +96,7 @@ TEST(Nearest, AgreesWithSamplingTheSegment) {
       const Point q = beam_point(p, side, theta, r);
       return std::hypot(body.x - q.x, body.y - q.y);
     };
-    // 1000 samples, then 1000 more around the best: places to 1.25e-5 m.
+    // 1000 samples along the beam, then 1000 more around the best one: positions to 1.25e-5 m.
     double best = 0.0, low = 0.0, high = p.beams.length;
     for (int round = 0; round < 2; ++round) {
       const double spacing = (high - low) / 1000;
@@ -117,7 +117,7 @@ TEST(Nearest, AgreesWithSamplingTheSegment) {
     const Touch t = nearest(p, side, body, theta);
     ++seen[static_cast<int>(t.kind)];
     const double dist = t.gap + p.body.radius;
-    // The sample is too far by at most spacing^2 / (2 dist), and never too near.
+    // The best sample is too far by at most spacing^2 / (2 dist), and never too near.
     EXPECT_LE(dist, shortest + 100 * kEps);
     EXPECT_GE(dist, shortest - half_spacing * half_spacing / shortest - 100 * kEps);
     EXPECT_NEAR(std::hypot(t.nx, t.ny), 1.0, 4 * kEps);
@@ -222,7 +222,7 @@ TEST(OutOfReach, NeverMissesAContact) {
     (skip ? skipped : reached) += 1;
     touching += gap < 0.0;
   }
-  // It is worth having: more than half of all misses are seen.
+  // The shortcut must be worth its cost: it detects more than half of all misses.
   EXPECT_GT(skipped, (reached + skipped - touching) / 2);
 }
 
@@ -255,9 +255,9 @@ TEST(GapRate, IsTheDerivativeOfTheGapAndBiasThatOfTheRate) {
       continue;
     const bool interior = now.kind == ContactKind::interior;
     ++seen[interior ? (now.lever > 0 ? 1 : 0) : static_cast<int>(now.kind) + 1];
-    // Relative speeds up to 60 m/s over distances of 5 m and more: h moves things by a part q of
-    // the distance, up to 0.012, and the fifth-order term is below q^5 dist / h, less than 1e-7 of
-    // the rate's scale q dist / h. Round-off: 50 eps / h = 1e-11.
+    // Relative speeds are up to 60 m/s, distances 5 m and more. In the time h things move by a part
+    // q of the distance, up to 0.012, so the fifth-order term is below q^5 dist / h, less than 1e-7
+    // of the rate's scale q dist / h. Round-off: 50 eps / h = 1e-11.
     const double speed = std::hypot(body.vx, body.vy) + 45 * std::abs(beam.omega);
     const double dist = now.gap + p.body.radius, q = speed * h / dist;
     const double rate_tolerance = std::pow(q, 5) * dist / h + 5e-11;
@@ -331,7 +331,7 @@ RandomHit random_hit(Draw& draw) {
   h.t.lever = draw.sign() * draw.log_uniform(1e-6, 1e6);
   h.s.body.vx = draw.uniform(-20, 20);
   h.s.body.vy = draw.uniform(-20, 20);
-  // Speeds of the beam's contact point from nothing to far above the body's.
+  // The speed of the beam's contact point ranges from nothing to far above the body's.
   h.s.beams[kLeft].omega = draw.sign() * draw.log_uniform(1e-2, 1e2) / std::abs(h.t.lever);
   return h;
 }
@@ -362,12 +362,13 @@ TEST(Impact, SolvesEqs4And5) {
     const long double det = -M * r * r - I;
     const long double v_nf = (-r * b1 - I * b2) / det, w_f = (M * r * b2 - b1) / det;
 
-    // Differences are small against what they are taken from; round-off counts against that. n is
-    // a unit vector only to eps, which the two routes use alike except for v - (n.v) n.
+    // The differences are small compared with their operands, so round-off is relative to the
+    // operands. n is a unit vector only to eps; both routes use it alike except for v - (n.v) n.
     const double speed = std::hypot(h.s.body.vx, h.s.body.vy);
     const double u_scale = speed + static_cast<double>(r) * std::abs(h.s.beams[kLeft].omega);
     const double mu = static_cast<double>(M * I / (I + M * r * r));
-    // J from Eq. (7)'s or (8)'s difference, of the lighter of the two: it cancels least.
+    // J from the difference of Eq. (7) or (8), of the lighter of the two bodies, where it cancels
+    // least.
     const long double J = M * r * r < I ? sign * M * (v_nf - v_ni) : -sign * I * (w_f - w_i) / r;
     most(impulse, j - static_cast<double>(J), 2 * mu * u_scale);
     const double vx = static_cast<double>(h.s.body.vx + (v_nf - v_ni) * nx);
@@ -437,7 +438,7 @@ TEST(Impact, TipHitIsTheOtherZeroOfTheEnergyChange) {
             .asked = 1'000'000});
 }
 
-// Law: the angular momentum about the joint, which is where the only other force acts.
+// Law: the angular momentum about the joint stays, because the only other force acts there.
 TEST(Impact, ConservesAngularMomentum) {
   Draw draw(8);
   double worst = 0.0;
@@ -482,7 +483,8 @@ TEST(Impact, ConservesAngularMomentum) {
             .asked = 1'000'000});
 }
 
-// Law: dE = -(1 - e^2)/2 mu u^2; none for e = 1, and for e = 0 all of the relative motion.
+// Law: dE = -(1 - e^2)/2 mu u^2; no loss for e = 1, and for e = 0 the whole energy of the relative
+// motion.
 TEST(Impact, LosesTheEnergyOfItsRestitution) {
   Draw draw(9);
   for (int i = 0; i < 100'000; ++i) {
@@ -534,7 +536,7 @@ TEST(DoubleImpact, OfTheKnownAnswersIsSymmetric) {
   EXPECT_NEAR(energy - 112.5, -6.328125, 1e-12);
 }
 
-/// W as contacts make it, over wide levers and angles.
+/// W as contacts produce it, over wide ranges of levers and angles.
 Coupling random_coupling(Draw& draw) {
   const double mass = draw.log_uniform(1e-3, 1e3);
   const auto diagonal = [&] {
@@ -575,7 +577,7 @@ TEST(PushOnly, MeetsItsConditions) {
         continue;
       }
       ASSERT_GE(y[side], -bound);  // no contact closes
-      // Who opens is not pushed.
+      // A contact that opens is not pushed.
       if (z[side] > 0.0) {
         ASSERT_LE(std::abs(y[side]), bound);
       }
@@ -666,7 +668,7 @@ struct Accelerations {
   double x, y, theta;  // in the beam's own frame
 };
 
-/// What the contact force of one beam does to body and beam, by Eqs. (2) and (3).
+/// The effect of one beam's contact force on body and beam, by Eqs. (2) and (3).
 Accelerations accelerations(const GateParams& p, Side side, const GateState& s, double force_x) {
   const Touch t = nearest(p, side, s.body, s.beams[side].theta);
   std::array<Touch, 2> touch{};
@@ -707,7 +709,7 @@ TEST(ContactForces, TangentialContactObeysEq11) {
     const double rr = std::sqrt(x * x + y * y - R * R);
     const double eq11 =
         beta * rr + sn * ax - c * ay + (x / rr + c) * omega * vx + (y / rr + sn) * omega * vy;
-    // The spring's part of beta, up to 500 * 1.5 / I, and the contact force's may cancel.
+    // The spring's part of beta, up to 500 * 1.5 / I, and the contact force's part may cancel.
     const double terms =
         (std::abs(beta) + 36) * rr + std::abs(ax) + std::abs(ay) + 100 +
         (std::hypot(x, y) / rr + 1) * std::abs(omega) * (std::abs(vx) + std::abs(vy));
@@ -745,8 +747,8 @@ TEST(ContactForces, PointContactObeysEq13) {
   }
 }
 
-// Without forces and drag the body would go on; the damper brakes the beam: only a pull could keep
-// body and beam together.
+// Without forces and drag the body would go on, while the damper brakes the beam: only a pull could
+// keep body and beam together.
 TEST(ContactForces, PushOnlyNeverPulls) {
   GateParams p;
   p.forces.propulsion = p.forces.drag = 0.0;
@@ -760,7 +762,8 @@ TEST(ContactForces, PushOnlyNeverPulls) {
 
 // ---- Direction ----
 
-// Series below 1/16 rad, cos and sin beyond. Each rounds a handful of times, numbers up to 1.
+// A series is used below 1/16 rad, cos and sin beyond. Each has a handful of roundings of numbers
+// up to 1.
 TEST(Direction, TurnedToIsTheDirectionItself) {
   const auto expect = [](double from, double to) {
     const Direction d = Direction::of(from).turned_to(to);
@@ -804,7 +807,8 @@ TEST(Direction, TurnedToNowhereIsNowhere) {
     EXPECT_TRUE(std::isnan(Direction::of(0.3).turned_to(to).c));
     EXPECT_TRUE(std::isnan(Direction::of(0.3).turned_to(to).s));
   }
-  // From nowhere it finds its way back: the angle itself is asked.
+  // A turn from a direction that is not finite gives the exact direction, because the angle itself
+  // is used.
   EXPECT_EQ(Direction::of(nan).turned_to(0.3).c, Direction::of(0.3).c);
 }
 

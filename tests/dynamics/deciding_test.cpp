@@ -9,7 +9,8 @@
 namespace gatewalk::dynamics {
 namespace {
 
-/// A body that creeps through a thick medium: it passes beams that resist with less than its push.
+/// A body that creeps through a viscous medium: it passes beams whose resistance is below its
+/// propulsion.
 GateParams creeping(double resistance_per_push) {
   GateParams p;
   p.forces.random = 0.0;
@@ -31,7 +32,8 @@ const Deciding* find(const std::vector<Deciding>& all, std::string_view words) {
   return at == all.end() ? nullptr : &*at;
 }
 
-// Closed form: in the limit of much drag the step is where the most resistance equals the push.
+// Closed form: in the limit of strong drag the threshold is where the largest resistance equals the
+// propulsion.
 TEST(Deciding, FindsTheStepThatTheLandscapeHas) {
   const auto all = deciding_numbers(creeping(1.0), kStart);
   const Deciding *stiffness = find(all, "the stiffness"), *push = find(all, "the push");
@@ -41,7 +43,8 @@ TEST(Deciding, FindsTheStepThatTheLandscapeHas) {
   ASSERT_NE(push, nullptr);
   EXPECT_EQ(push->less, GateFate::trapped);
   EXPECT_EQ(push->more, GateFate::crosses);
-  EXPECT_EQ(find(all, "the speed at the start"), nullptr);  // it is forgotten at once
+  // Drag removes the start's speed at once.
+  EXPECT_EQ(find(all, "the speed at the start"), nullptr);
 }
 
 TEST(Deciding, SaysNothingAwayFromTheStep) {
@@ -49,7 +52,7 @@ TEST(Deciding, SaysNothingAwayFromTheStep) {
   EXPECT_TRUE(deciding_numbers(creeping(1.25), kStart).empty());
 }
 
-// Much noise: some cross, some do not, whatever 1 % does.
+// With strong noise some runs cross and some do not, at 1 % less as at 1 % more.
 TEST(Deciding, SaysNothingWhereRunsEndDifferently) {
   EXPECT_TRUE(deciding_numbers(GateParams{}, {.vy = 15.0}).empty());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hits that take no energy, or nearly none, in scenes without forces: what is lost is what the
-// restitution says, at any speed, since weak hits may not end the bouncing there.
+// Hits that take no energy, or nearly none, in scenes without forces: the loss follows from the
+// restitution at any speed, because weak hits must not end the bouncing there.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ using test::Draw;
 using test::kEps;
 using test::Ride;
 
-/// A gate without forces, damping and drag, its numbers drawn, with the method's own settings.
+/// A gate without forces, damping and drag, with random numbers and the method's own settings.
 GateParams free_gate(const std::string& method, Draw& draw, double restitution) {
   GateParams p = test::free_rods();
   p.run.method = method;
@@ -40,7 +40,8 @@ struct Trip {
   Watch watch;
 };
 
-/// A body that comes at this speed (m/s), over the time in which it crosses the gate a few times.
+/// A body with this initial speed (m/s), simulated for the time in which it crosses the gate a few
+/// times.
 Trip trip(const GateParams& p, Draw& draw, double speed) {
   Ride ride(p, test::at_rest(draw.uniform(-20, 20), 15.0, speed * draw.uniform(-0.5, 0.5), speed));
   Trip t{energy(p, ride.s), 0.0, {}};
@@ -73,7 +74,7 @@ TEST_P(Elastic, HitsKeepTheEnergyAtAnySpeed) {
   }
 }
 
-// Law: a hit takes at most the share 1 - e^2 of the energy, and each of these is counted.
+// Law: a hit takes at most the share 1 - e^2 of the energy, and every hit is counted.
 TEST_P(Elastic, NearlyElasticHitsTakeNoMoreThanTheirRestitution) {
   for (const double e : {0.96, 0.99, 0.999})
     for (const double speed : kSpeeds) {
@@ -93,7 +94,8 @@ TEST_P(Elastic, NearlyElasticHitsTakeNoMoreThanTheirRestitution) {
     }
 }
 
-// Law: a hit takes what the surface that is hit takes, whatever the restitution of the other one.
+// Law: the loss of a hit follows from the surface that is hit, independent of the other surface's
+// restitution.
 TEST_P(Elastic, AHitOfTheElasticSurfaceKeepsTheEnergy) {
   for (const bool tip : {false, true})
     for (const double other : {0.0, 0.5, 0.94})
@@ -120,7 +122,7 @@ TEST_P(Elastic, AHitOfTheElasticSurfaceKeepsTheEnergy) {
 INSTANTIATE_TEST_SUITE_P(Methods, Elastic, testing::Values("stable", "event"),
                          [](const auto& method) { return std::string(method.param); });
 
-// Hits of usual scenes end as they always did.
+// In scenes with forces, bouncing ends as before.
 TEST(WeakHits, EndTheBouncingUpToARestitutionOfNineteenTwentieths) {
   const auto factor = [](double side, double tip, double propulsion, double random,
                          ContactKind kind = ContactKind::interior) {
@@ -137,7 +139,7 @@ TEST(WeakHits, EndTheBouncingUpToARestitutionOfNineteenTwentieths) {
     EXPECT_EQ(factor(e, 1.0, 0.0, 0.0), 1.0);
     EXPECT_EQ(factor(e, 1.0, 0.0, 0.0, ContactKind::pin), 1.0);
     EXPECT_EQ(factor(1.0, e, 0.0, 0.0, ContactKind::tip), 1.0);
-    // That of the surface that is hit, where nothing presses bodies onto the other one.
+    // The restitution is that of the surface hit if nothing presses bodies onto the other one.
     EXPECT_EQ(factor(1.0, e, 0.0, 0.0), 0.0);
     EXPECT_EQ(factor(1.0, e, 0.0, 0.0, ContactKind::pin), 0.0);
     EXPECT_EQ(factor(e, 1.0, 0.0, 0.0, ContactKind::tip), 0.0);

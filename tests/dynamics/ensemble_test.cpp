@@ -112,7 +112,7 @@ TEST(GateTrials, EveryTrialEndsOnce) {
   EXPECT_GT(t[Outcome::trapped], 0);
 }
 
-// Trial i inside any range is the run that anybody makes of stream {seed, 0, i}.
+// Trial i in any range is the run of stream {seed, 0, i}.
 TEST(GateTrials, TrialsCanBeReplayedAlone) {
   for (const char* method : {"stable", "paper"}) {
     GateParams p = test::study(10.0);
@@ -183,8 +183,8 @@ double percent(std::int64_t n, const GateTally& t) {
   return 100.0 * static_cast<double>(n) / static_cast<double>(t.trials);
 }
 
-// 20 000 trials of an independent program each: their standard error and that of our 10 000 are
-// 0.35 % and 0.5 % at 46 %, together 0.6 %; the tolerance is 2.5 times that.
+// 20 000 trials of an independent program each. At 46 % their standard error is 0.35 % and that of
+// our 10 000 trials 0.5 %, together 0.6 %; the tolerance is 2.5 times that.
 TEST(GateTrials, ConvergedFiguresAtDamping10) {
   const GateTally t = run_gate_trials(test::study(10.0), {}, 1, {0, 10'000});
   EXPECT_NEAR(percent(t[Outcome::traversed_left], t), 46.0, 1.5);
@@ -209,8 +209,8 @@ double total_variation(const GateTally& a, const GateTally& b) {
   return distance;
 }
 
-// Requirement 14: the default step is converged; a twentieth of it, with the same noise, moves at
-// most 1 % of the outcomes net.
+// Requirement 14: the default step is converged. A twentieth of the step, with the same noise,
+// changes at most 1 % of the outcomes net.
 TEST(GateTrials, OutcomesAreConvergedInTheStep) {
   GateParams p = test::study(10.0);
   const GateTally coarse = run_gate_trials(p, {}, 1, {0, 2000});
@@ -219,8 +219,8 @@ TEST(GateTrials, OutcomesAreConvergedInTheStep) {
   EXPECT_LE(total_variation(coarse, fine), 0.01);
 }
 
-// Without restitution every hit is a contact that lasts: same outcomes as the reference, and hits
-// do not pile up.
+// Without restitution every hit becomes a lasting contact: outcomes are those of the reference, and
+// hits do not accumulate.
 TEST(GateTrials, PlasticHitsHaveTheReferencesOutcomes) {
   GateParams p;
   p.contact.restitution = 0.0;
@@ -234,9 +234,9 @@ TEST(GateTrials, PlasticHitsHaveTheReferencesOutcomes) {
   EXPECT_LE(stable.health.forced_holds, 10);
 }
 
-// Nothing moves further than half a radius between two looks for contact, up to speeds at which
-// that takes a thousand pieces of a step: no hit is missed, and the outcomes are the reference's.
-// Beyond, the status says so.
+// Nothing moves by more than half a radius between two checks for contact, up to speeds that need a
+// thousand pieces of a step: no hit is missed, and the outcomes are those of the reference. Beyond,
+// the status reports it.
 TEST(GateTrials, TheDefaultFollowsAnySpeedOrSaysSo) {
   GateParams p;
   p.run.time_limit = 2.0;

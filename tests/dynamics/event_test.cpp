@@ -59,8 +59,8 @@ TEST(Event, StopsAtTheMomentOfLeaving) {
   }
 }
 
-// Also where drag is strong (0.4 in a hold) and the way out anywhere in the hold. A cubic through
-// the hold, by which the moment was sought once, was off by 1e-5 and more.
+// Also with strong drag (0.4 in a hold), and with the exit anywhere in the hold. A cubic through
+// the whole hold, used in an earlier version, was off by 1e-5 and more.
 TEST(Event, LeavesAFlightWithStrongDragAtItsMoment) {
   GateParams p = event(test::without_beams({}));
   p.forces = {.propulsion = 8.0, .random = 0.0, .random_rate = 5.0, .drag = 2.0};
@@ -80,7 +80,7 @@ TEST(Event, LeavesAFlightWithStrongDragAtItsMoment) {
   }
 }
 
-// What run.step_s and contact.impulse_threshold_Ns are does not matter: not one bit.
+// run.step_s and contact.impulse_threshold_Ns have no effect: not one bit changes.
 TEST(Event, HasNeitherStepNorThreshold) {
   GateParams a = event(test::study(10.0)), b = a;
   b.run.step = 0.02 / 7;
@@ -98,8 +98,9 @@ TEST(Event, HasNeitherStepNorThreshold) {
 
 // ---- S6: Zeno ----
 
-/// A disc dropped upwards by F = 6 N from `height` below something that does not move: first hit
-/// after t0, flight n lasts 2 t0 e^n and rises height e^2n, all of them t0 (1 + e) / (1 - e).
+/// A disc driven upwards by F = 6 N from `height` below something that does not move. The first hit
+/// is after t0; flight n lasts 2 t0 e^n and rises height e^2n; all flights together last t0 (1 + e)
+/// / (1 - e).
 struct Bouncing {
   double e, tolerance, height;
   static constexpr double force = 6.0;
@@ -114,21 +115,21 @@ struct Bouncing {
   }
   [[nodiscard]] double t0() const { return std::sqrt(2 * height / force); }
   [[nodiscard]] double zeno_time() const { return t0() * (1 + e) / (1 - e); }
-  /// Rebounds below the tolerance, or below 1e-11 R whatever the tolerance, are not flown. The
-  /// scene's own is larger where hits are nearly elastic: that is lowered (methods/hybrid.h).
+  /// Rebounds below the tolerance, or below 1e-11 R for any tolerance, are not simulated. The
+  /// scene's tolerance is lowered for nearly elastic hits (methods/hybrid.h).
   [[nodiscard]] double rise() const { return std::max(tolerance, 1e-10); }
-  /// Hits until the rebound would not rise that far.
+  /// The number of hits until the rebound would not rise that far.
   [[nodiscard]] int hits() const {
     int n = 1;
     while (height * std::pow(e, 2 * n) > rise()) ++n;
     return n;
   }
-  /// What a hold at hit number `n` cuts off.
+  /// The time that a hold at hit number `n` cuts off.
   [[nodiscard]] double remainder(std::int64_t n) const {
     return 2 * t0() * std::pow(e, static_cast<double>(n)) / (1 - e);
   }
-  /// Gaps up to 1e-14 R count as contact: the share of the last rebounds' height that this makes,
-  /// added up over the 1 / (1 - e^2) hits that still matter.
+  /// Gaps up to 1e-14 R count as contact. The error is this gap relative to the height of the last
+  /// rebounds, summed over the 1 / (1 - e^2) hits that still matter.
   [[nodiscard]] double blur() const { return 1e-13 / (rise() * (1 - e * e)); }
 };
 
@@ -155,7 +156,7 @@ constexpr double kRestitutions[] = {0.1, 0.3, 0.5, 0.8, 0.9, 0.95, 0.99};
 /// The worst of several scenes.
 struct Settling {
   double error = 0.0;    // relative, of Zeno's time
-  double looks = 0.0;    // share of those allowed
+  double looks = 0.0;    // as a share of the permitted checks
   double seconds = 0.0;  // of CPU for the slowest
   int scenes = 0;
 
@@ -189,7 +190,7 @@ void expect_settling(const Bouncing& b, double relative_error, Settling& worst) 
   Ride ride(b.scene(), at_rest(-25.0, 0.0));  // straight below the left joint: that does not move
   const double t = time_until_held(ride, 2 * b.zeno_time());
   ASSERT_TRUE(ride.s.beams[kLeft].held);
-  // A rebound of just that height may be flown or not: only where blur can be seen.
+  // A rebound of exactly that height may or may not be simulated; only where the blur is visible.
   const auto hits = ride.watch.impacts;
   const double unsure = b.blur() / -std::log(b.e);
   EXPECT_NEAR(static_cast<double>(hits), b.hits(), std::ceil(unsure - 0.01));
@@ -197,7 +198,7 @@ void expect_settling(const Bouncing& b, double relative_error, Settling& worst) 
   EXPECT_NEAR(t, b.zeno_time() - remainder, 4 * b.blur() * remainder + 1e-11 * b.zeno_time());
   const double error = std::abs(t / b.zeno_time() - 1.0);
   EXPECT_LE(error, relative_error);
-  // The work is bounded: some looks at each flight, one at each hold.
+  // The work is bounded: some checks in each flight, one in each hold.
   const auto allowed = 8 * hits + 3 * static_cast<std::int64_t>(t / kHold);
   EXPECT_LE(ride.watch.evaluations, allowed);
   worst.error = std::max(worst.error, error);
@@ -231,15 +232,15 @@ TEST(Zeno, EventSettlesAtThePredictedHit) {
   }
 }
 
-// From 400 m that is below 1e-6.
+// From a height of 400 m this error is below 1e-6.
 TEST(Zeno, EventSettlesInZenosTime) {
   Settling worst;
   for (const double e : kRestitutions) expect_settling({e, 1e-13, 400.0}, 1e-6, worst);
   worst.record("tolerance 1e-13 m, from 400 m");
 }
 
-// Beams of 10^6 kg on springs of 10^12 N m/rad for the pin: a side, both tips. A hit at 2 m/s sets
-// a beam swinging at 4e-6 m/s; the disc meets that at each hit.
+// Beams of 10^6 kg on springs of 10^12 N m/rad replace the pin: at a side, at both tips. A hit at 2
+// m/s sets a beam swinging at 4e-6 m/s, which the disc meets at each hit.
 TEST(Zeno, EventTakesHeavyBeamsForAWall) {
   for (const double e : {0.1, 0.5, 0.8, 0.9})
     for (const double x : {-10.0, 0.0}) {
@@ -261,10 +262,10 @@ TEST(Zeno, EventTakesHeavyBeamsForAWall) {
 
 // ---- Constraints ----
 
-// A disc on the left joint, the beam turned away behind it, slides off the pin as a body does off a
-// sphere: drawn onto it by a = 8 m/s^2 along +y, from right below at v0 = 1 m/s. From energy and
-// the centripetal force it comes off where cos(angle) = 2/3 + v0^2 / (3 a R), with
-// v^2 = a R cos(angle); v_x stays from there on.
+// A disc on the left joint, with the beam turned away behind it, slides off the pin as a body
+// slides off a sphere: a = 8 m/s^2 along +y presses it on, and it starts right below at v0 = 1 m/s.
+// By energy and the centripetal force it leaves where cos(angle) = 2/3 + v0^2 / (3 a R), with v^2 =
+// a R cos(angle); v_x is constant from there on.
 TEST(Event, ReleasesAContactWhereItsForceEnds) {
   GateParams p = event(test::free_rods());
   p.forces.propulsion = 8.0;
@@ -281,8 +282,8 @@ TEST(Event, ReleasesAContactWhereItsForceEnds) {
       one_spell ? (void)ride.go(3.6) : go_in_holds(ride, 3.6);
       EXPECT_FALSE(ride.s.beams[kLeft].held);
       EXPECT_EQ(ride.watch.impacts, 0);
-      // Held a moment too long or too short: second order in time, so of the order of what a step
-      // may err by. Measured up to 0.14 of it, and 3.6e-15 m/s.
+      // The contact may be held slightly too long or too short: an error of second order in time,
+      // like the error of a step. Measured up to 0.14 of it, and 3.6e-15 m/s.
       EXPECT_NEAR(ride.s.body.vx, vx, tolerance + 1e-13);
     }
 }
@@ -302,8 +303,8 @@ GateState on_the_side() {
   return s;
 }
 
-// Error per step is what the tolerance is about. Over 0.4 s in one spell, 2 to 64 steps, it adds up
-// to 0.06 ... 0.14 of the tolerance (measured), over eleven decades.
+// The tolerance bounds the error per step. Over 0.4 s in one spell, 2 to 64 steps, the error adds
+// up to 0.06 ... 0.14 of the tolerance (measured), over eleven decades.
 TEST(Event, ErrorFollowsTheTolerance) {
   GateParams p = test::study(10.0);
   p.beams.stiffness_right = 0.0;
@@ -326,8 +327,8 @@ TEST(Event, ErrorFollowsTheTolerance) {
   }
 }
 
-/// From below the right beam through 59 or 56 hits into sliding along it, under a force that is
-/// another one in each hold.
+/// A ride from below the right beam through 59 or 56 hits into sliding along it, under a force that
+/// changes with each hold.
 GateState after_the_ride(const GateParams& p, double x) {
   Ride ride(p, at_rest(x, 5.0, 0.3, 12.0));
   for (int hold = 0; hold < 120; ++hold) ride.go(kHold, 10.0 * std::sin(0.3 * hold));
@@ -336,13 +337,13 @@ GateState after_the_ride(const GateParams& p, double x) {
   return ride.s;
 }
 
-// The independent route: `stable` with steps that shrink to nothing comes to the same end, at the
-// second order of its midpoint rule. Measured: orders 2.01 to 2.08, last distances 2.5e-9, 2.9e-9.
+// An independent route: `stable` with ever smaller steps converges to the same end, at the second
+// order of its midpoint rule. Measured: orders 2.01 to 2.08, last distances 2.5e-9, 2.9e-9.
 TEST(Event, StableConvergesToIt) {
   GateParams p = test::study(10.0);
   for (const double x : {5.0, 11.0}) {
     const GateState exact = after_the_ride(event(p, 1e-11), x);
-    // A coarser answer of its own: how well this one is known.
+    // A coarser answer of `event` shows the accuracy of this one.
     EXPECT_LE(largest_difference(after_the_ride(event(p, 1e-9), x), exact), 1e-9);
     double last = 0.0;
     for (const int n : {1, 4, 16, 64, 256}) {
@@ -360,13 +361,13 @@ TEST(Event, StableConvergesToIt) {
 
 // ---- S7: energy ----
 
-/// Energy, work and losses of a ride, each from its own source: the work from displacements, what
-/// damping and drag take by quadrature over the motion, what hits take from the law.
+/// Energy, work and losses of a ride, each from a source of its own: the work from displacements,
+/// the losses by damping and drag by quadrature over the motion, the losses of hits from the law.
 struct Ledger {
-  double work = 0.0;    // J, |work| of both forces added up
-  double error = 0.0;   // J, what does not add up, |..| added up
-  double gained = 0.0;  // J, most that a hit added
-  int hits = 0;         // single hits that have been compared with the law
+  double work = 0.0;    // J, sum of the absolute work of both forces
+  double error = 0.0;   // J, sum of the absolute errors of the balance
+  double gained = 0.0;  // J, largest energy gain of a hit
+  int hits = 0;         // single hits compared with the law
 };
 
 /// Follows `s` over dt. A piece with a hit, a release or a hand-over from
@@ -428,9 +429,9 @@ void follow(const GateParams& p, const Method& method, GateState& s, double forc
   s = end;
 }
 
-// Sums of |..| over the ride, share of the work done. What does not add up is the integrator's:
-// measured, worst of 100 rides, 9.7e-5 at the default tolerance of 1e-2 m, 9.7e-6 at 1e-4,
-// 6.4e-9 at 1e-6, 1.3e-9 at 1e-7.
+// Sums of absolute values over the ride, relative to the work done. The error of the balance is
+// that of the integrator: measured, worst of 100 rides, 9.7e-5 at the default tolerance of 1e-2 m,
+// 9.7e-6 at 1e-4, 6.4e-9 at 1e-6, 1.3e-9 at 1e-7.
 TEST(EnergyLedger, EventAddsUp) {
   const auto ledgers = [](double tolerance, int trials) {
     std::vector<Ledger> seen(trials);
@@ -480,8 +481,8 @@ TEST(EnergyLedger, EventAddsUp) {
 
 // ---- S14 ----
 
-// S14, side: thrown down onto a beam at 4 m/s from 1 m above it and drawn up by 8 N, the disc turns
-// where it touches: J = 1.8 sqrt(2 a R delta) / (1/M + r^2/I).
+// S14, side: the disc is thrown down onto a beam at 4 m/s from 1 m above it, while 8 N pull it up,
+// and turns where it touches: J = 1.8 sqrt(2 a R delta) / (1/M + r^2/I).
 TEST(Grazing, EventHitsTheSideOnlyBelowTheRadius) {
   GateParams p = event(test::free_rods());
   p.forces.propulsion = 8.0;

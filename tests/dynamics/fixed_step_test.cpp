@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What `moreau` and `penalty` share: fixed steps, no constraint mode, contacts that overlap.
+// The common properties of `moreau` and `penalty`: fixed steps, no constraint mode, contacts that
+// overlap.
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -60,7 +61,8 @@ TEST_P(FixedStep, StopsWhenTheStateIsNoLongerFinite) {
   EXPECT_EQ(ride.watch.steps, 1);
 }
 
-// The forces once a step, a gap where the disc may reach the beam: far away none, under a beam one.
+// Evaluations: the forces once per step, and a gap if the disc may reach the beam. Far away there
+// are no gaps, under a beam there is one.
 TEST_P(FixedStep, CountsTheWorkItDoes) {
   GateParams p = test::free_rods();
   Ride away(by(p), {});
@@ -70,16 +72,16 @@ TEST_P(FixedStep, CountsTheWorkItDoes) {
   s.body = {-12.0, 20.0, 0.0, 0.0};
   Ride near(by(p), s);
   for (int i = 0; i < 100; ++i) near.step();
-  // penalty looks anew at the start of each spell, here of each step.
+  // `penalty` evaluates again at the start of each spell, which here is each step.
   EXPECT_EQ(near.watch.evaluations, near.p.run.method == "penalty" ? 300 : 200);
 }
 
 // ---- S6: Zeno ----
 
-// Drawn upwards by 6 N onto the left joint, first hit at 2 m/s: it comes to rest after hit n where
-// 2 e^n < h F / M, and sustained contact is no new hit. `moreau` rests in overlap by what it moves
-// in one step at most; `penalty` where the spring carries 6 N, (kContactSteps h / (2 pi))^2 6 m/s^2
-// deep but for the change that damping makes, and takes flights shorter than a step for none.
+// A disc driven upwards by 6 N onto the left joint, first hit at 2 m/s, comes to rest after hit n
+// where 2 e^n < h F / M; sustained contact is no new hit. `moreau` rests in an overlap of at most
+// one step's motion. `penalty` rests where the spring carries 6 N, (kContactSteps h / (2 pi))^2 6
+// m/s^2 deep up to the change by damping, and misses flights shorter than a step.
 TEST_P(FixedStep, BouncingEndsAtRest) {
   const bool springs = std::string(GetParam()) == "penalty";
   for (const double e : {0.0, 0.1, 0.5, 0.8, 0.95}) {
@@ -91,7 +93,7 @@ TEST_P(FixedStep, BouncingEndsAtRest) {
     for (const double step : {0.004, 0.002, 0.001}) {
       SCOPED_TRACE(step);
       Ride ride(by(p, step), test::at_rest(-25.0, 20.0 - 1.0 / 3));
-      // Each hit may come a step late, and the flight is then longer by as much.
+      // Each hit may come a step late, which lengthens the flight by as much.
       ride.go(1.5 / 3 * (1 + e) / (1 - e) + 0.5);
       const auto hits = ride.watch.impacts;
       ride.go(2.0);
@@ -116,7 +118,7 @@ TEST_P(FixedStep, BouncingEndsAtRest) {
 
 // ---- Many trials ----
 
-/// How runs end, whichever beam they pass.
+/// The ending of a run, without the beam that it passes.
 std::vector<Outcome> endings(const GateParams& p, int trials) {
   const auto method = make_method(p);
   std::vector<Outcome> seen(trials);
@@ -128,10 +130,10 @@ std::vector<Outcome> endings(const GateParams& p, int trials) {
   return seen;
 }
 
-/// How the endings of the same trials differ.
+/// The difference between the endings of the same trials.
 struct Difference {
   double total_variation = 0.0;
-  int changed = 0;  // trials that end otherwise
+  int changed = 0;  // trials with another ending
 };
 
 Difference difference(const std::vector<Outcome>& a, const std::vector<Outcome>& b) {
@@ -146,13 +148,14 @@ Difference difference(const std::vector<Outcome>& a, const std::vector<Outcome>&
   return d;
 }
 
-// The same 4000 trials as `stable`, whose distribution at 0.004 s is within 0.0005 of its own at
+// The same 4000 trials by `stable`, whose distribution at 0.004 s is within 0.0005 of its own at
 // 0.0005 s. Total variation at 0.004, 0.002, 0.001, 0.0005 s (measured):
 //     d = 10: moreau .0030 .0013 .0043 .0027    penalty .0330 .0165 .0092 .0037
 //     d = 50: moreau .0050 .0025 .0032 .0018    penalty .0523 .0190 .0088 .0060
-// Two samples of 4000 that shared nothing would be 0.017 apart. When n trials change at random, sd
-// of the total variation is about sqrt(n) / 4000: 0.0034 for moreau's 188 at d = 10. So its figures
-// are chance; what falls with the step is the number of trials that end otherwise, at first order.
+// Two independent samples of 4000 would differ by 0.017. If n trials change at random, the standard
+// deviation of the total variation is about sqrt(n) / 4000: 0.0034 for moreau's 188 at d = 10.
+// moreau's figures are therefore chance; the number of trials with another ending falls with the
+// step, at first order.
 void expect_convergence(const std::string& method, double damping, double total_variation,
                         int changed) {
   constexpr int kTrials = 4000;
@@ -172,7 +175,8 @@ void expect_convergence(const std::string& method, double damping, double total_
   EXPECT_LE(fine.changed, 0.75 * coarse.changed);
 }
 
-// Limits: 1.2 times what was measured (moreau: and one sd more), another libm changes a few trials.
+// Limits: 1.2 times the measured values (moreau: plus one standard deviation), because another libm
+// changes a few trials.
 TEST_P(FixedStep, OutcomesConvergeToThoseOfStableWithLittleDamping) {
   const bool moreau = std::string(GetParam()) == "moreau";
   expect_convergence(GetParam(), 10.0, moreau ? 0.0065 : 0.04, moreau ? 225 : 940);
