@@ -22,7 +22,7 @@ Section upright() {
           .coordinates = {{"s", "s_m", "m", "place"}},
           .costs = {{"time_s", "s", "duration"}}};
 }
-/// A cell that puts a body at a random place on a face and sometimes turns it round.
+/// A valid passage: the body gets a random place on a face, and sometimes the other face.
 Passage fine(Body& body) {
   Passage passage{Fate::left, {}, {1.0 + body.random.uniform()}};
   passage.next.face = body.random.uniform() < 0.25 ? 1 - body.entry.face : body.entry.face;
@@ -36,7 +36,7 @@ const std::vector<Entry> kTwoStarts{{0, {0.25}}, {1, {-0.1}}};
 Complaints checked(FunctionCell::Pass pass, bool symmetric = false) {
   return check_cell(FunctionCell(upright(), std::move(pass), symmetric), kTwoStarts);
 }
-/// A cell whose passages are right except for one given change.
+/// The complaints about a cell whose passages are right except for one change.
 Complaints spoilt(const std::function<void(Body&, Passage&)>& spoil) {
   return checked([=](Body& body) {
     Passage passage = fine(body);

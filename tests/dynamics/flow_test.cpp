@@ -19,7 +19,8 @@ using test::kEps;
 using Real = long double;
 using Complex = std::complex<Real>;
 
-/// The same six numbers from the characteristic roots -a +- delta, in complex long double.
+/// The same six numbers of BeamFlow from the characteristic roots -a +- delta, in complex long
+/// double.
 struct ClosedForm {
   Real tt, tw, wt, ww, ta, wa;
   ClosedForm(Real k, Real d, Real t) {
@@ -58,10 +59,11 @@ struct ClosedForm {
 };
 
 struct Oscillator {
-  double k, d;  // per inertia
+  double k, d;  // divided by the inertia
 };
 
-/// Under-, over- and critically damped, within 1e-3 and 1e-9 of critical, no spring, no damper.
+/// Beams that are under-, over- and critically damped, within 1e-3 and 1e-9 of critical, without
+/// spring, without damper.
 std::vector<Oscillator> oscillators() {
   std::vector<Oscillator> all;
   for (const double k : {0.0, 1e-8, 1e-3, 1.0, 19.2, 1e3, 1e5}) {
@@ -80,12 +82,12 @@ TEST(BeamFlow, AgreesWithTheCharacteristicRoots) {
       SCOPED_TRACE(testing::Message() << "k/I = " << k << ", d/I = " << d << ", dt = " << dt);
       const BeamFlow flow(k, d, dt);
       const ClosedForm exact(k, d, dt);
-      // exp and sin of rate * dt are known to eps * rate * dt; just overdamped, the difference of
-      // two exponentials loses dt * (difference of their rates).
+      // exp and sin of rate * dt have errors of eps * rate * dt. Just above critical damping, the
+      // difference of two exponentials loses dt * (difference of their rates).
       const double z = (a * a - k) * dt * dt;
       const double loss = 1 + rate * dt + (z > 1e-4 ? 1 / std::sqrt(z) : 0.0);
       const double tolerance = 8 * kEps * loss;
-      const double tau = std::min(dt, 1 / rate);  // the time over which velocity lasts
+      const double tau = std::min(dt, 1 / rate);  // the time for which a velocity lasts
       ASSERT_NEAR(flow.tt, static_cast<double>(exact.tt), tolerance);
       ASSERT_NEAR(flow.tw, static_cast<double>(exact.tw), tolerance * tau);
       ASSERT_NEAR(flow.wt, static_cast<double>(exact.wt), tolerance * k * tau);
@@ -96,7 +98,7 @@ TEST(BeamFlow, AgreesWithTheCharacteristicRoots) {
   }
 }
 
-// flow(a) o flow(b) = flow(a + b): also across the switch between series and closed form.
+// flow(a) o flow(b) = flow(a + b), also across the switch between series and closed form.
 TEST(BeamFlow, IsASemigroup) {
   Draw draw(1);
   for (const auto& [k, d] : oscillators()) {
@@ -113,7 +115,8 @@ TEST(BeamFlow, IsASemigroup) {
       const double a = d / 2, z = (a * a - k) * std::pow(std::min(first, second), 2);
       const double overdamped = z > 0 ? 1 / std::sqrt(std::max(z, 1e-4)) : 0;
       const double loss = 1 + rate * (first + second) + overdamped;
-      // Largest angle and speed on the way: start, what the speed adds, what the push adds.
+      // Largest angle and speed on the way: those of the start, plus the effects of the speed and
+      // of the push.
       const double t = first + second, tau = std::min(t, 1 / rate);
       const double omega = std::abs(start.omega) + 3 * tau + std::sqrt(k) * std::abs(start.theta);
       const double theta = std::abs(start.theta) + std::abs(start.omega) * tau + 3 * t * tau;
@@ -125,7 +128,7 @@ TEST(BeamFlow, IsASemigroup) {
   }
 }
 
-// On both sides of every number of terms, forwards and backwards in time.
+// On both sides of the switch, forwards and backwards in time.
 TEST(BeamLaw, AgreesWithTheCharacteristicRootsAtEveryNumberOfTerms) {
   for (const auto& [k, d] : oscillators()) {
     const double rate = std::sqrt(k) + d;
@@ -158,7 +161,7 @@ TEST(BeamLaw, AgreesWithTheCharacteristicRootsAtEveryNumberOfTerms) {
   }
 }
 
-// Back is the inverse of forth.
+// A flow backwards in time is the inverse of the flow forwards.
 TEST(BeamLaw, BackwardsUndoesForwards) {
   const BeamLaw law(19.2, 2.4);
   for (const double dt : {1e-4, 0.004, 0.02, 0.05, 0.3}) {
@@ -206,7 +209,7 @@ TEST(BeamFlow, LimitsWithoutSpringOrDamper) {
     EXPECT_NEAR(flow.ww, std::exp(-d * dt), 8 * kEps * (1 + d * dt));
     EXPECT_NEAR(flow.tw, glide, 8 * kEps * glide);
   }
-  // Only a spring: it turns in phase space.
+  // a rotation in phase space
   for (const double k : {1e-12, 1e-3, 3.0, 4e4}) {
     const BeamFlow flow(k, 0.0, dt);
     const double w = std::sqrt(k), phase_error = 8 * kEps * (1 + w * dt);
@@ -236,8 +239,8 @@ TEST(BodyFlow, AgreesWithTheClosedForm) {
       EXPECT_NEAR(flow.decay, static_cast<double>(std::exp(-z)), 4 * kEps);
       const double rise = static_cast<double>(z < 1e-15L ? dt * (1 - z / 2) : -std::expm1(-z) / g);
       EXPECT_NEAR(flow.rise, rise, 8 * kEps * rise);
-      // (z - 1 + e^-z) / g^2 = dt^2 (1/2 - z/6 + z^2/24 ...); where it is a difference, z of its
-      // terms' digits are lost.
+      // (z - 1 + e^-z) / g^2 = dt^2 (1/2 - z/6 + z^2/24 ...); computed as a difference, it loses
+      // digits as z gets small.
       Real fall = 0, term = 0.5L;
       if (z < 0.5L) {
         for (int n = 3; n < 30; ++n) {
@@ -302,7 +305,7 @@ TEST(GateFlow, GivesEachBeamItsOwnSpring) {
   EXPECT_EQ(flow.body.decay, BodyFlow(0.03, 0.1).decay);
 }
 
-// Where the beam first turns: against the closed form looked at in small steps.
+// The first turning point of the beam, compared with the closed form sampled in small steps.
 TEST(BeamLaw, SwingIsTheLargestDeflectionOnTheWay) {
   Draw draw(8);
   int turned = 0;
@@ -322,7 +325,7 @@ TEST(BeamLaw, SwingIsTheLargestDeflectionOnTheWay) {
       }
       const double swing = law.swing(start, dt);
       turned += swing > 0.0;
-      // Within one look the deflection changes by (rate dt / looks)^2 at most of itself about its
+      // Between samples the deflection changes by at most (rate dt / looks)^2 of itself about its
       // maximum.
       EXPECT_NEAR(std::max({swing, std::abs(start.theta), std::abs(end.theta)}),
                   std::max(seen, std::abs(start.theta)), 1e-4)
@@ -336,8 +339,8 @@ TEST(BeamLaw, SwingIsTheLargestDeflectionOnTheWay) {
 }
 
 TEST(BeamLaw, SwingFromRestAndWithoutForces) {
-  EXPECT_EQ(BeamLaw(0.0, 0.0).swing({0.3, 2.0}, 10.0), 0.0);  // goes on for ever
-  EXPECT_EQ(BeamLaw(0.0, 1.0).swing({0.3, 2.0}, 10.0), 0.0);  // slows, never turns
+  EXPECT_EQ(BeamLaw(0.0, 0.0).swing({0.3, 2.0}, 10.0), 0.0);  // never turns
+  EXPECT_EQ(BeamLaw(0.0, 1.0).swing({0.3, 2.0}, 10.0), 0.0);  // slows down but never turns
   EXPECT_EQ(BeamLaw(4.0, 0.0).swing({0.0, 0.0}, 10.0), 0.0);
   EXPECT_NEAR(BeamLaw(4.0, 0.0).swing({0.0, -3.0}, 10.0), 1.5,
               1e-15);  // energy: omega^2 = k theta^2

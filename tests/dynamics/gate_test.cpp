@@ -38,8 +38,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, Gate,
                          testing::Values("stable", "paper", "moreau", "event", "penalty"),
                          [](const auto& instance) { return std::string(instance.param); });
 
-// Straight lines without forces. The run ends on the border, which rounding alone moves: of a place
-// up to 65 m in each of 125 steps. Method paper goes on to the end of the step that crosses it.
+// Straight motion without forces. The run ends on the border, up to rounding: of a position up to
+// 65 m in each of 125 steps. Method paper goes on to the end of the step that crosses the border.
 TEST_P(Gate, EndsWhereTheBodyLeaves) {
   const double h = p.run.step;
   struct Case {
@@ -67,8 +67,8 @@ TEST_P(Gate, EndsWhereTheBodyLeaves) {
   }
 }
 
-// Over the far end and a side in one step, half a step apart: what it crosses first is the ending.
-// Method paper sees the end of the step only and calls that traversed.
+// A body that crosses the far end and a side in one step, half a step apart: the first crossing is
+// the ending. Method paper sees only the end of the step and reports a traversal.
 TEST_P(Gate, TheFirstBorderIsTheEnding) {
   for (const double side : {-1.0, 1.0}) {
     const Outcome beside = side < 0 ? Outcome::exited_left : Outcome::exited_right;
@@ -99,8 +99,9 @@ TEST_P(Gate, TrappedMeansTheWholeTimeLimit) {
       p.run.step = step;
       const GateRun r = run(p, {0, 5, 0, 0});
       EXPECT_EQ(r.outcome, Outcome::trapped);
-      // Method paper takes whole steps, the last one beyond the limit if need be; the others end at
-      // the limit, with shorter steps in the hold that it cuts. 600 spells of time are added up.
+      // Method paper takes whole steps, the last one beyond the limit if needed. The others end at
+      // the limit, with shorter steps in the hold that the limit cuts. The times of 600 spells are
+      // summed.
       const double steps = std::ceil(limit / step - 1e-6);
       EXPECT_NEAR(r.seconds, whole_steps() ? steps * step : limit, 600 * 12 * kEps)
           << limit << ' ' << step;
@@ -111,7 +112,7 @@ TEST_P(Gate, TrappedMeansTheWholeTimeLimit) {
   }
 }
 
-// S15: without contact v_x adds up one impulse F_i * 0.02 s per hold, whatever the step...
+// S15: without contact v_x is the sum of one impulse F_i * 0.02 s per hold, for any step...
 TEST_P(Gate, LateralSpeedIsTheSumOfItsDrawsAtAnyStep) {
   p.forces.random = 20.0;
   p.beams.joint_x = 1e5;
@@ -130,8 +131,9 @@ TEST_P(Gate, LateralSpeedIsTheSumOfItsDrawsAtAnyStep) {
   }
 }
 
-// ... and so its standard deviation after 2 s is 0.2 Rm (s m/s/N): 0.02 s Rm sqrt(100) / M. 80 000
-// trials know it to 0.25 %, four times that is the tolerance. The full count is all five steps.
+// ... so its standard deviation after 2 s is 0.2 Rm (s m/s/N): 0.02 s Rm sqrt(100) / M. 80 000
+// trials determine it to 0.25 %; the tolerance is four times that. The full count runs all five
+// steps.
 TEST_P(Gate, LateralSpeedHasTheStandardDeviationOfHeldForce) {
   p.forces.random = 20.0;
   p.beams.joint_x = 1e5;
@@ -166,7 +168,7 @@ TEST_P(Gate, LateralSpeedHasTheStandardDeviationOfHeldForce) {
                   .asked = 5});
 }
 
-// The force goes on where the last gate left it: two runs of 1 s are one of 2 s.
+// The force continues from gate to gate: two runs of 1 s equal one run of 2 s.
 TEST_P(Gate, RandomForceGoesOnAcrossRuns) {
   p.run.step = 0.004;
   p.forces.random = 20.0;
@@ -193,12 +195,12 @@ TEST_P(Gate, SameTrialSameBits) {
   EXPECT_TRUE(test::same_bits(a.exit.vy, b.exit.vy));
   EXPECT_EQ(a.watch.impacts, b.watch.impacts);
   EXPECT_TRUE(test::same_bits(a.seconds, b.seconds));
-  // Another trial: exits may lie on the same border, but not come at the same time and speed.
+  // Another trial may leave over the same border, but not at the same time and speed.
   EXPECT_NE(a.seconds, c.seconds);
   EXPECT_NE(a.exit.vx, c.exit.vx);
 }
 
-/// A method that loses itself in the third call.
+/// A method whose state stops being finite in the third call.
 class Breaking final : public Method {
  public:
   explicit Breaking(double BodyState::*what) : what_(what) {}

@@ -45,7 +45,7 @@ TEST(KeptPieces, TooFewOrTooManyBytesAreRefused) {
   EXPECT_THROW(read_bytes(bytes.substr(0, 4), into), std::runtime_error);
 }
 
-/// Keeps pieces in memory; has some already.
+/// A store that keeps pieces in memory and has some already.
 class InMemory : public KeptPieces {
  public:
   std::map<std::int64_t, Next> pieces;
@@ -72,7 +72,8 @@ class InMemory : public KeptPieces {
   std::int64_t end_ = 0;
 };
 
-// Whatever was kept before, each item is taken once, in its order, and only what is missing is run.
+// Whatever pieces are kept already, each item is taken once, in order, and only missing items are
+// run.
 TEST(KeptPieces, OnlyWhatIsMissingIsRun) {
   InMemory kept;
   kept.keep({5, 2}, bytes_of(std::vector<std::int64_t>{5, 6}));
@@ -105,7 +106,7 @@ TEST(KeptPieces, OnlyWhatIsMissingIsRun) {
   EXPECT_TRUE(run.empty());
 }
 
-/// Threads in place of processes.
+/// Ranks that are threads instead of processes.
 struct Meeting {
   explicit Meeting(int size) : all(static_cast<std::size_t>(size)), here(size) {}
   std::vector<std::string> all;
@@ -138,7 +139,7 @@ class ThreadAsRank : public Ranks {
   int rank_;
 };
 
-// However fast each is: every rank takes each item once, in order, and each is run by one of them.
+// Whatever the speed of each rank: every rank takes each item once, in order, and one rank runs it.
 TEST(Ranks, EachTakesAllItemsAndRunsItsOwn) {
   for (const int size : {1, 2, 3}) {
     using Numbers = std::vector<std::int64_t>;

@@ -23,7 +23,7 @@ GateParams unequal() {
   return p;
 }
 
-// Where a beam gives way it touches: gap 0, disc behind it, on its side or with its tip.
+// A deflected beam touches the disc: gap 0, the disc behind it, at its side or its tip.
 TEST(Landscape, DeflectedBeamsTouchTheDisc) {
   const GateParams p;
   Random random(Purpose::gate, {.seed = 1, .row = 0, .trial = 0});
@@ -38,7 +38,7 @@ TEST(Landscape, DeflectedBeamsTouchTheDisc) {
       } else if (theta > 0.0) {
         const Touch t = nearest(p, side, {x, y, 0, 0}, theta);
         EXPECT_NEAR(t.gap, 0.0, 1e-12 * p.body.radius) << x << ' ' << y;
-        EXPECT_LT(t.lever, 0.0);  // a push along n turns it forward
+        EXPECT_LT(t.lever, 0.0);  // a push along n turns the beam forward
         ++(t.kind == ContactKind::tip ? tips : sides);
       }
     }
@@ -57,7 +57,8 @@ TEST(Landscape, ABeamOutOfReachRests) {
 }
 
 // Minus the gradient is the quasi-static force: of beams at rest in contact, k theta = -l f, and of
-// the propulsion. Central differences: h^2 times a third derivative, and eps E / h of rounding.
+// the propulsion. Central differences have errors of h^2 times a third derivative and of eps E / h
+// by rounding.
 TEST(Landscape, MinusTheGradientIsTheForce) {
   const GateParams p = unequal();
   Random random(Purpose::gate, {.seed = 2, .row = 0, .trial = 0});
@@ -110,10 +111,10 @@ TEST(Landscape, MirroredBeamsMirrorIt) {
     }
 }
 
-// Sec. III-B with equal beams of 500 N m/rad at 7 N. On the paper's grid the start has 32 J too
-// little. The true pass is lower: it follows the edge of one beam's reach, where the other alone
-// resists, and no grid point lies on that circle. Walked along here, it is what ever finer grids
-// come down to.
+// Sec. III-B with equal beams of 500 N m/rad at 7 N. On the paper's grid the start lacks 32 J. The
+// true pass is lower: it follows the edge of one beam's reach, where the other beam alone resists,
+// and no grid point lies on that circle. The pass computed along that edge is the limit of ever
+// finer grids.
 TEST(Landscape, TheLowestPassOfThePapersGates) {
   GateParams p = test::study(10.0);
   p.forces.propulsion = 7.0;
@@ -138,14 +139,15 @@ TEST(Landscape, TheLowestPassOfThePapersGates) {
   EXPECT_LT(last, along_the_edge + 1.6);
 }
 
-// A softer left beam: the pass is lower than the start, and on its side.
+// With a softer left beam the pass is lower than the start, and on the left side.
 TEST(Landscape, ASofterBeamOpensItsSide) {
   GateParams p = test::study(10.0);
   p.forces.propulsion = 7.0;
   p.beams.stiffness_right = 500.0;
   p.beams.stiffness_left = 300.0;
   const Landscape l = landscape(p, 0.0, 0.5);
-  // The start lies higher than any pass; but in between is a basin, from which it is a climb again.
+  // The start is higher than any pass, but between them lies a basin, from which the body must
+  // climb.
   EXPECT_EQ(lowest_pass(l, 0.0, 0.0).barrier(), 0.0);
   const auto [x, y] = basin_below(l, 0.0, 0.0);
   EXPECT_GT(y, 15.0);
@@ -159,7 +161,7 @@ TEST(Landscape, ASofterBeamOpensItsSide) {
   EXPECT_LT((*beyond)[0], 0.0);
 }
 
-// Four points around a wall with one gap: by hand.
+// Four points around a wall with one gap, worked out by hand.
 TEST(Landscape, ThePassIsTheLowestOfTheHighest) {
   Landscape l;
   l.x = {0, 1, 2};
@@ -181,9 +183,9 @@ TEST(Landscape, ThePassIsTheLowestOfTheHighest) {
   EXPECT_THROW((void)lowest_pass(l, 5.0, 0.0), std::invalid_argument);
 }
 
-// ---- On two grids ----
+// ---- The pass on two grids ----
 
-// Without springs there is only the propulsion: 8 N downhill from y = 20 to 60 m.
+// Without springs only the propulsion acts: 8 N downhill from y = 20 to 60 m.
 TEST(Passes, WithoutSpringsAreDownhill) {
   GateParams p = test::free_rods();
   p.forces.propulsion = 8.0;
@@ -201,8 +203,8 @@ TEST(Passes, WithoutSpringsAreDownhill) {
   }
 }
 
-// Of stiff beams and a start below y = 0: a climb out of the basin in front of them, told from the
-// start and from the basin itself, which lies lower.
+// Stiff beams and a start below y = 0: the climb out of the basin in front of the beams, measured
+// from the start and from the basin itself, which is lower.
 TEST(Passes, OfABasinAreToldFromTheStartAndFromTheBasin) {
   GateParams p = test::study(10.0);
   const BodyState start{.x = 1.0, .y = -4.0, .vx = 0.0, .vy = 0.0};

@@ -63,7 +63,8 @@ std::vector<LaneScene> lane_scenes() {
   return scenes;
 }
 
-// The same noise, the same steps: what differs by rounding stays together, but for a trial in many.
+// With the same noise and the same steps, results that differ by rounding stay close, except for
+// few trials in many.
 TEST(Lanes, DoWhatThePlainMethodDoes) {
   for (const LaneScene& scene : lane_scenes()) {
     SCOPED_TRACE(scene.name);
@@ -105,7 +106,7 @@ TEST(Lanes, DoWhatThePlainMethodDoes) {
   }
 }
 
-// A lane's neighbours, and how long it has been at work, change nothing.
+// The other lanes, and the lane's earlier runs, change nothing.
 TEST(Lanes, AreIndependentOfTheirCompany) {
   for (const LaneScene& scene : lane_scenes()) {
     SCOPED_TRACE(scene.name);
@@ -137,8 +138,8 @@ TEST(Lanes, HaveTheSameBitsWithAnyInstructionSet) {
   }
 }
 
-// A body that starts outside has ended before the first step; one that is no number is broken; one
-// whose time is over is trapped. Each gives its lane to the next.
+// A body that starts outside has ended before the first step; a body whose state is not finite is
+// broken; a body whose time is over is trapped. Each gives its lane to the next run.
 TEST(Lanes, RunsThatEndAtOnce) {
   GateParams p = marched({});
   p.run.time_limit = 0.004;

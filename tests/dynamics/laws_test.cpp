@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The laws of motion, of hits and of symmetry for each method, within what its row of
-// tests/support/any_method.h grants.
+// The laws of motion, of hits and of symmetry for each method, within the tolerances of the
+// method's row in tests/support/any_method.h.
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, EnergyInSteps, methods_that(stepping), method_
 
 // ---- Free motion ----
 
-// S1: two beams let go, against the closed form of a damped oscillator.
+// S1: two released beams, compared with the closed form of a damped oscillator.
 TEST_P(AnyMethod, FreeBeamFollowsItsClosedForm) {
   const MethodLaws& m = GetParam();
   GateParams p = by({});
@@ -80,7 +80,7 @@ TEST_P(AnyMethod, FreeBeamFollowsItsClosedForm) {
   for (const bool one_spell : {false, true}) {
     const auto [left, right] = errors(one_spell);
     EXPECT_NEAR(left, m.beam_error, m.beam_digits);
-    EXPECT_LE(right, m.beam_error + m.beam_digits);  // it swings no wider
+    EXPECT_LE(right, m.beam_error + m.beam_digits);  // it never swings wider
     last = std::max(left, last);
   }
   measured({.requirement = 1,
@@ -128,8 +128,8 @@ TEST_P(ExactHits, FreeBeamKeepsItsEnergyWithoutDamping) {
   }
 }
 
-// A body under drag, propulsion and a lateral force: towards v_x = -12 m/s, while 4 m/s is its end
-// speed along y.
+// A body under drag, propulsion and a lateral force: v_x approaches -12 m/s; along y, 4 m/s is the
+// final speed.
 TEST_P(AnyMethod, FreeBodyFollowsItsClosedForm) {
   const MethodLaws& m = GetParam();
   GateParams p = by(test::free_rods());
@@ -178,8 +178,9 @@ TEST_P(AnyMethod, NothingMovesWithoutForces) {
   }
 }
 
-// A free body's speed after 2 s is the sum of its 100 held draws times 0.02 s, whatever the step;
-// over 4000 trials sd = 4 m/s, known to 1 / sqrt(2 * 4000) = 1.1 %: four of these.
+// The speed of a free body after 2 s is the sum of its 100 held draws times 0.02 s, for any step.
+// Over 4000 trials sd = 4 m/s, determined to 1 / sqrt(2 * 4000) = 1.1 %; the tolerance is four
+// times that.
 TEST_P(AnyMethod, RandomForceSpreadsAFreeBodyAlikeAtAnyStep) {
   for (const double step : {0.02, 0.004}) {
     constexpr int kTrials = 4000;
@@ -209,8 +210,8 @@ TEST_P(AnyMethod, RandomForceSpreadsAFreeBodyAlikeAtAnyStep) {
 
 // ---- Single hits ----
 
-// S3 in a gate: 135/59, 750/59, 97.2/59, after 2 ms of 4. In mid-step 5 mm deep, where overlap
-// tells of contact.
+// S3 in a gate: 135/59, 750/59, 97.2/59, after 2 ms of 4. In mid-step the overlap is 5 mm, for
+// methods that detect contact by overlap.
 TEST_P(ExactHits, TangentialHitOfTheKnownAnswers) {
   const double y = GetParam().at_mid_step ? 19.975 : 19.97, place = GetParam().place;
   Ride ride(by(test::free_rods(), 0.004), at_rest(-10.0, y, 0.0, 15.0));
@@ -242,13 +243,14 @@ TEST_P(ExactHits, SymmetricDoubleHitOfTheKnownAnswers) {
   EXPECT_EQ(ride.s.body.vx, 0.0);
 }
 
-// S3, S4: first hits of rides without forces, 500 and more each of side, tip and pin, of any
-// restitution. All motion is straight, so the hit is found again from outside: where the body's two
-// lines cross, or in the middle of the step. There the impulse is along the normal, restitution
-// holds; angular momentum about the joint and the energy but for the law's loss stay.
+// S3, S4: the first hits of rides without forces, 500 and more each of side, tip and pin, with any
+// restitution. All motion is straight, so the hit can be reconstructed from outside: where the two
+// lines of the body cross, or in the middle of the step. There the impulse is along the normal and
+// restitution holds; the angular momentum about the joint and the energy, except for the law's
+// loss, are conserved.
 TEST_P(ExactHits, FirstHitsObeyTheLaw) {
   GateParams p = by(test::free_rods());
-  p.contact.impulse_threshold = 0.0;  // nor is a rebound too low for `event`
+  p.contact.impulse_threshold = 0.0;  // nor does `event` stop low rebounds
   p.run.event_tolerance = 1e-10;
   const MethodLaws& m = GetParam();
   const double inertia = p.beams.inertia();
@@ -264,7 +266,7 @@ TEST_P(ExactHits, FirstHitsObeyTheLaw) {
     if (ride.touch(kLeft).gap < 0.0 || ride.touch(kRight).gap < 0.0) continue;
     double t = 0.0;
     while (t < 1.0 && ride.watch.impacts == 0 && !outside(p, ride.s.body)) t += ride.step();
-    // Where the body leaves, the state is interpolated: not exact enough.
+    // When the body leaves, its state is interpolated, which is not exact enough.
     if (ride.watch.impacts != 1 || outside(p, ride.s.body)) continue;
     const GateState& end = ride.s;
     const bool left = end.beams[kLeft].omega != start.beams[kLeft].omega;
@@ -276,10 +278,10 @@ TEST_P(ExactHits, FirstHitsObeyTheLaw) {
     const double after = ((end.body.x - start.body.x - start.body.vx * t) * kick_x +
                           (end.body.y - start.body.y - start.body.vy * t) * kick_y) /
                          (kick * kick);
-    // In the middle of the step: rates to 50 m/s, 500 J, 1000 kg m^2/s, of places that up to 250
-    // steps have rounded.
+    // In the middle of the step: errors of rates up to 50 m/s, of 500 J and of 1000 kg m^2/s, from
+    // positions with the rounding of up to 250 steps.
     const double digits = 1024 * kEps;
-    // Up to 250 steps round positions; the kick turns that into time.
+    // Up to 250 steps round the positions; the kick converts this error into time.
     const double late = m.at_mid_step ? 1e-13 : m.place + 50 * 7e-15 / kick;  // m; s
     const double hit = m.at_mid_step ? t - 0.5 * p.run.step : t - after;
     ASSERT_NEAR(hit, t - after, 1e-11 / kick + m.place);
@@ -321,9 +323,9 @@ TEST_P(ExactHits, FirstHitsObeyTheLaw) {
 
 // ---- Energy ----
 
-// Elastic hits between two rods, without springs or with springs and propulsion: nothing appears
-// and nothing is lost but rounding. The last step may be cut short by the exit. A hold that is
-// forced on a method is inelastic.
+// Elastic hits between two rods, without springs, or with springs and propulsion: energy neither
+// appears nor is lost, up to rounding. The exit may cut the last step short. A hold that is forced
+// on a method is inelastic.
 TEST_P(ExactHits, ElasticHitsKeepTheEnergy) {
   for (const bool springs : {false, true}) {
     GateParams p = by(springs ? test::study(0.0) : test::free_rods());
@@ -434,7 +436,7 @@ TEST_P(BothAlike, MirrorImagesHaveTheSameBits) {
   }
 }
 
-// Both beams are hit at once, again and again, down to the hold: on beams that hardly move too.
+// Both beams are hit at once, repeatedly, until they are held; also with beams that hardly move.
 TEST_P(BothAlike, ASymmetricSceneStaysSymmetric) {
   for (const double mass : {0.1, 1.0, 10.0, 100.0, 1e6})
     for (const double e : {0.0, 0.1, 0.5, 0.9, 1.0}) {
@@ -461,8 +463,8 @@ TEST_P(BothAlike, ASymmetricSceneStaysSymmetric) {
     }
 }
 
-// Lengths, masses and times multiplied by powers of 4: the same bits but for these factors. So no
-// limit in the code has a unit.
+// If lengths, masses and times are multiplied by powers of 4, results are the same bits times these
+// powers. Therefore no limit in the code has a unit.
 TEST_P(AnyMethod, OtherUnitsGiveTheSameBits) {
   const double l = 0x1p-6, mass = 0x1p4, t = 0x1p2, force = mass * l / (t * t), torque = force * l;
   constexpr int kTrials = 100;
@@ -522,8 +524,8 @@ TEST_P(AnyMethod, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
-// S10: elastic, no damping, no drag: turned round, the disc finds its way back through four to ten
-// hits, from wherever it starts.
+// S10: elastic, without damping and drag. With its velocities reversed the disc returns through
+// four to ten hits, from any start.
 TEST_P(ExactHits, ReturnsToTheStart) {
   GateParams p = by(test::study(0.0), 0.004);
   p.forces.random = 0.0;
@@ -543,7 +545,7 @@ TEST_P(ExactHits, ReturnsToTheStart) {
     for (; ride.watch.impacts < 10 && steps < 1000 && !outside(p, ride.s.body); ++steps)
       ride.step();
     EXPECT_FALSE(outside(p, ride.s.body));
-    EXPECT_EQ(ride.watch.forced_holds, 0);  // a hold has no way back
+    EXPECT_EQ(ride.watch.forced_holds, 0);  // a hold cannot be reversed
     const auto there = ride.watch.impacts;
     EXPECT_GE(there, 4);
     turn_round(ride.s);

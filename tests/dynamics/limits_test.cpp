@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What methods do at the limits: contacts that stay, stiff and heavy beams, starts at which a
-// formula is nearly singular, any scene. Each within what its row of tests/support/any_method.h
-// grants.
+// Methods at their limits: lasting contacts, stiff and heavy beams, starts at which a formula is
+// nearly singular, random scenes. Tolerances are those of the method's row in
+// tests/support/any_method.h.
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -45,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, StiffWall, methods_that(exact), method_name);
 
 // ---- Held contacts ----
 
-/// What a trial's contacts showed at the ends of its steps, and where it left the gate.
+/// The contacts of a trial at the ends of its steps, and in its exit state.
 struct Contacts {
   int held_steps = 0;
   double gap = 0.0, rate = 0.0, overlap = 0.0;                 // held contacts; any contact
@@ -87,10 +87,10 @@ Contacts contacts_of_trial(const GateParams& p, RandomForce force) {
   return c;
 }
 
-/// The exit state lies within a step, on a cubic through the step's ends. A disc leaves by a side
-/// straight above or below a joint, where it may just roll from the beam's side onto the joint: its
-/// acceleration along n jumps by as much as v^2 / R. Of a jump a, at the worst place in the step h,
-/// a cubic misses a h^2 / 61 in position and a h / 12 in velocity.
+/// The exit state is on a cubic between the ends of a step. A disc leaves by a side straight above
+/// or below a joint, where it may roll from the beam's side onto the joint; its acceleration along
+/// n then jumps by up to v^2 / R. For a jump a, at the worst place in the step h, a cubic is off by
+/// a h^2 / 61 in position and a h / 12 in velocity.
 void expect_interpolated(const GateParams& p, const Contacts& c) {
   const double jump = c.exit_speed * c.exit_speed / p.body.radius, h = p.run.step;
   EXPECT_LE(c.exit_gap, 1e-9 * p.body.radius + jump * h * h / 61);
@@ -98,7 +98,7 @@ void expect_interpolated(const GateParams& p, const Contacts& c) {
   EXPECT_LE(c.exit_rate, 1e-9 + jump * h / 12);
 }
 
-// Requirement 6: along whole trials, held contacts stay shut, at rest and pushing, others open.
+// Requirement 6: in whole trials, held contacts stay closed, at rest and pushing; others stay open.
 TEST_P(HeldContacts, NeitherDriftNorPull) {
   std::vector<double> tolerances{GateParams{}.run.event_tolerance};
   if (GetParam().name == "event") tolerances.push_back(1e-6);
@@ -127,7 +127,7 @@ TEST_P(HeldContacts, NeitherDriftNorPull) {
   }
 }
 
-// The disc leans with 30 N on a heavy beam that stands upright, then is drawn off it.
+// The disc leans with 30 N on a heavy upright beam, then is pulled off it.
 TEST_P(HeldContacts, AreReleasedWhenTheirForceWouldPull) {
   GateParams p = by(test::free_rods());
   p.beams.mass = 1e6;
@@ -147,7 +147,7 @@ TEST_P(HeldContacts, AreReleasedWhenTheirForceWouldPull) {
             .unit = "contacts",
             .limit = 0.0});
   EXPECT_EQ(ride.watch.impacts, 0);
-  // From then on it is free: 30 N for 0.4 s, less what the push gave the beam, 3.6e-6 of that.
+  // Then the disc is free: 30 N for 0.4 s, less the 3.6e-6 of it that the push gave the beam.
   EXPECT_NEAR(ride.s.body.vx, 12.0, 1e-4);
   EXPECT_NEAR(ride.touch(kLeft).gap, 0.5 * 30.0 * 0.16, 1e-4);
 }
@@ -160,7 +160,7 @@ TEST_P(HeldContacts, PlasticAndElasticTrialsAreHealthy) {
     const GateTally tally = run_gate_trials(p, {}, 1, {0, 500});
     EXPECT_TRUE(tally.health.clean()) << e;
     EXPECT_LE(tally.health.worst_energy_created, 5e-3) << e;
-    std::vector<Contacts> seen(500);  // looked at after every step
+    std::vector<Contacts> seen(500);  // checked after every step
     tbb::parallel_for(0, 500,
                       [&](int trial) { seen[trial] = contacts_of_trial(p, force_of(p, trial)); });
     for (const Contacts& c : seen) {
@@ -172,7 +172,7 @@ TEST_P(HeldContacts, PlasticAndElasticTrialsAreHealthy) {
 
 // ---- S9: stiff and heavy beams ----
 
-// Law: a spring never holds more than the work of propulsion.
+// Law: the energy in a spring never exceeds the work of the propulsion.
 TEST_P(StiffWall, IsHardlyMoved) {
   for (const test::Wall& wall : GetParam().walls)
     for (const double x : {0.0, -10.0, -25.0}) {
@@ -193,10 +193,10 @@ TEST_P(StiffWall, IsHardlyMoved) {
     }
 }
 
-// Let go near by it settles: k theta = F r, half of F for each of two tips. d = 1000 N m s/rad
-// damps disc and light beams together at d / 2 (I + M r^2), 1.5 / s or more: e^-18 in 12 s. Heavy
-// ones ring on. An angle's error of 1e-8 m / L is worth 1e-7 J here; by its default tolerance, 1e-2
-// m, `event` would create 100 J.
+// Released near its rest position, the system settles: k theta = F r, half of F for each of two
+// tips. d = 1000 N m s/rad damps disc and light beams together at d / 2 (I + M r^2), 1.5 / s or
+// more: e^-18 in 12 s. Heavy beams ring on. An error of the angle of 1e-8 m / L means 1e-7 J here;
+// with its default tolerance, 1e-2 m, `event` would create 100 J.
 TEST_P(HeldContacts, SettleAtAStiffWall) {
   for (const auto& [stiffness, mass, at_rest_to] :
        {std::array{1e9, 0.1, 1e-6}, std::array{1e12, 1e4, 2e-4}})
@@ -245,7 +245,7 @@ TEST_P(HeldContacts, BeamsThatAreTooFastAreRefused) {
   EXPECT_EQ(refused(p), "");
   p.beams.damping = 1.001 * rate * inertia;
   EXPECT_EQ(refused(p), GetParam().fastest_key);
-  // Where the message names the step, a shorter one helps.
+  // If the message names the step, a shorter step helps.
   p.run.step = 0.01;
   EXPECT_EQ(refused(p), GetParam().fastest_key == "run.step_s" ? "" : GetParam().fastest_key);
 }
@@ -274,8 +274,7 @@ TEST_P(HeldContacts, NearSingularStartsAreNoTrouble) {
   }
 }
 
-// An impossible start, inside a beam, even on its joint or tip: whatever a method does, it is
-// finite and it ends.
+// An impossible start, inside a beam, even on its joint or tip: every method stays finite and ends.
 TEST_P(EveryMethod, ComesBackFiniteFromTheCentreOfABeam) {
   const GateParams p = by({});
   const auto method = make_method(p);
@@ -284,9 +283,10 @@ TEST_P(EveryMethod, ComesBackFiniteFromTheCentreOfABeam) {
     EXPECT_EQ(trouble(p, *method, at_rest(x, 30.0), draw).not_finite, 0) << x;
 }
 
-// S14, tip: straight up at 10 m/s past the free end at x = 0, closest approach R (1 +- delta). At
-// the hit n = (1 - delta, -sqrt(2 delta - delta^2)), and the law knows the rest. What the method
-// calls contact is a hit or none, and J is next to nothing there.
+// S14, tip: the disc moves straight up at 10 m/s past the free end at x = 0, with a closest
+// approach of R (1 +- delta). At the hit n = (1 - delta, -sqrt(2 delta - delta^2)), and the law
+// gives the rest. Within the method's contact distance there may be a hit or none, and J is next to
+// nothing there.
 TEST_P(HeldContacts, ATipIsHitOnlyBelowTheRadius) {
   GateParams p = by(test::free_rods());
   p.contact.impulse_threshold = 0.0;
@@ -299,7 +299,7 @@ TEST_P(HeldContacts, ATipIsHitOnlyBelowTheRadius) {
       const double delta = (R - s.body.x) / R;  // as rounded
       SCOPED_TRACE(testing::Message() << "delta = " << delta);
       Ride ride(p, s);
-      ride.go(2.5);  // not as far as the other beam
+      ride.go(2.5);  // not far enough to reach the other beam
       const double kick = std::hypot(ride.s.body.vx, ride.s.body.vy - 10.0);
       const auto impulse = [&](double depth) {  // of a hit as deep as that below R
         if (depth <= 0.0) return 0.0;
@@ -317,10 +317,10 @@ TEST_P(HeldContacts, ATipIsHitOnlyBelowTheRadius) {
 
 // ---- Any scene ----
 
-// Requirement 12: scenes from corner to corner: soft and stiff, light and heavy, plastic and
-// elastic. They are refused by name, or run to an end that says so if it is `broken`, within the
-// work granted. Of `event`, over all 10^5, the worst overlap is 1e-4 m, in a state interpolated at
-// the exit; 3 are above 1e-6 m. `stable` keeps 1e-8 m in next to all.
+// Requirement 12: random scenes over the whole range: soft and stiff, light and heavy, plastic and
+// elastic. They are refused by name, or run to an end (marked if `broken`) within the permitted
+// work. For `event`, over all 10^5 scenes, the worst overlap is 1e-4 m, in a state interpolated at
+// the exit; 3 are above 1e-6 m. `stable` keeps 1e-8 m in nearly all.
 TEST_P(HeldContacts, RunAnySceneThatIsAccepted) {
   const bool event = GetParam().name == "event";
   const int scenes = usual_or_full(GetParam().scenes.usual, GetParam().scenes.full);
@@ -385,9 +385,9 @@ TEST_P(HeldContacts, RunAnySceneThatIsAccepted) {
     slowest = std::max(slowest, s.seconds);
     deep += s.overlap > 1e-8;
     ASSERT_LE(s.overlap, event ? 1e-3 : 1e-5) << i;
-    // A light beam that a heavy disc holds may whip round its joint faster than any step follows;
-    // then energy appears (and Health says so). A beam as heavy as the disc does not, but for a few
-    // scenes in a hundred thousand.
+    // A light beam that a heavy disc holds may whip round its joint faster than any step resolves.
+    // Energy then appears, and Health reports it. A beam as heavy as the disc does not, except in a
+    // few scenes in a hundred thousand.
     if (event || s.light) continue;
     created += s.created > 1e-5;
     EXPECT_TRUE(s.created <= 1e-4 || !s.clean) << i;
@@ -397,7 +397,7 @@ TEST_P(HeldContacts, RunAnySceneThatIsAccepted) {
   EXPECT_EQ(hung, 0);
   EXPECT_LE(slowest, 10.0);
   EXPECT_LT(refused, scenes / 4);
-  // Light beams between springs, held by a body that is 10^7 times as heavy. Measured 0.1 %.
+  // Light beams between springs, held by a body 10^7 times as heavy. Measured 0.1 %.
   EXPECT_LE(broken, event ? scenes / 200 : 0);
   if (!event) {
     const bool full = scenes == GetParam().scenes.full;  // measured; none among the ordinary ones

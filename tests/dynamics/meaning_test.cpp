@@ -16,7 +16,7 @@
 namespace gatewalk::dynamics {
 namespace {
 
-/// The paper's gate without beams in the way: too short to reach the middle.
+/// The paper's gate with beams too short to be in the way.
 GateParams open_gate() {
   GateParams p;
   p.beams.length = 5.0;
@@ -39,7 +39,7 @@ TEST(Meaning, SpeedAndPassageAreThoseOfABodyInTheOpen) {
   EXPECT_DOUBLE_EQ(m.draws_per_length, 50.0 * m.passage / 3.0);  // 60 m are 3 body lengths
   EXPECT_DOUBLE_EQ(m.push_per_weight, 8.0 / 9.80665);
 
-  p.forces.propulsion = 0.0;  // rolls out after 15/0.06 m, but never out of 300 m
+  p.forces.propulsion = 0.0;  // stops after 15/0.06 m, short of 300 m
   EXPECT_TRUE(std::isfinite(meaning_of(p, start).passage));
   p.run.traverse_y = 300.0;
   EXPECT_TRUE(std::isinf(meaning_of(p, start).passage));
@@ -71,7 +71,8 @@ TEST(Meaning, NoiseShakesTheBodyAsFarAsItsRunsSay) {
     const double seen = std::sqrt(squares / kTrials);
     EXPECT_NEAR(shaken_sideways(p, seconds) / seen, 1.0, 4.0 / std::sqrt(2.0 * kTrials)) << seconds;
   }
-  // Long runs: that of white noise of the same power, sqrt(T / f) Rm / D; and holds in groups.
+  // Long runs: the spread of white noise of the same power, sqrt(T / f) Rm / D; and holds in
+  // groups.
   EXPECT_NEAR(shaken_sideways(p, 1e5) / (std::sqrt(1e5 / 50.0) * 40.0 / 0.7), 1.0, 1e-4);
 }
 
@@ -83,7 +84,7 @@ TEST(Meaning, BeamsResistAsTheirEnergyRises) {
     most = std::max(most, (beam_energy(p, 0, y + 1e-4) - beam_energy(p, 0, y - 1e-4)) / 2e-4);
   EXPECT_NEAR(beams.resistance, most, 1e-4 * most);
   EXPECT_GT(most, p.forces.propulsion);
-  // Where they are held the push is what they resist with.
+  // Where the beams are held, their resistance equals the propulsion.
   double y = 15.0;
   while (forward_deflection(p, kLeft, 0, y) < beams.held_angle) y += 1e-5;
   EXPECT_NEAR((beam_energy(p, 0, y + 1e-4) - beam_energy(p, 0, y - 1e-4)) / 2e-4,
@@ -96,7 +97,7 @@ TEST(Meaning, BeamsResistAsTheirEnergyRises) {
   EXPECT_TRUE(std::isinf(beams_on_the_middle(p).resistance));
 }
 
-// How a damping is measured: from two swings and the time between, d = 2 I ln(A1/A2) / T.
+// How to measure damping: from two swings and the time between them, d = 2 I ln(A1/A2) / T.
 TEST(Meaning, ABeamRingsDownAsItsDampingSays) {
   GateParams p = test::quiet_gate();
   p.run.method = "event";

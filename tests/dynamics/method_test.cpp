@@ -35,7 +35,7 @@ TEST(Method, IsMadeByItsName) {
   EXPECT_THROW((void)make_method(p), InvalidParameter);
 }
 
-// A scene may say "auto", but somebody has to choose before anything is run.
+// A scene may have method "auto", but it must be resolved before a run.
 TEST(Method, AutoIsAValidNameAndNoMethod) {
   GateParams p;
   p.run.method = "auto";
@@ -80,7 +80,7 @@ TEST(Energy, AddsUpItsParts) {
   EXPECT_NEAR(energy(p, s), expected, 8 * kEps * expected);
 }
 
-// The ledger takes off what propulsion (8 N) and the lateral force did.
+// The ledger subtracts the work of the propulsion (8 N) and of the lateral force.
 TEST(EnergyLedger, KnowsTheWorkOfBothForces) {
   GateParams p = test::free_rods();
   p.forces.propulsion = 8.0;
@@ -98,7 +98,7 @@ TEST(EnergyLedger, KnowsTheWorkOfBothForces) {
   EXPECT_NEAR(w.energy_created, 0.0, 8 * kEps * 23);
 }
 
-// What counts is the rise above the lowest balance so far, and the largest ever.
+// The created energy is the rise above the lowest balance so far, and the largest such rise.
 TEST(EnergyLedger, RemembersTheLargestRise) {
   const GateParams p = test::free_rods();
   GateState s;
@@ -130,7 +130,8 @@ TEST(Watch, KeepsTheLargestOfEachState) {
   EXPECT_EQ(w.fast_steps, 0);
 }
 
-// Half a radius, 5 m, in a step of 0.004 s: disc and tip of the faster beam together 1250 m/s.
+// Half a radius, 5 m, in a step of 0.004 s is 1250 m/s for the disc and the tip of the faster beam
+// together.
 TEST(Watch, CountsStepsThatCanMissAHit) {
   const GateParams p;
   const auto fast = [&](double vy, double left, double right, double dt) {

@@ -28,7 +28,7 @@ GateParams moreau(GateParams p, double step = 0.004) {
 
 // ---- Hits: the law at mid-step, to round-off ----
 
-/// Where disc and beam are nearest in the middle of a step without forces.
+/// The contact point in the middle of a step without forces.
 Touch at_mid_step(const GateParams& p, const GateState& s, Side side) {
   const double half = 0.5 * p.run.step;
   BodyState mid = s.body;
@@ -37,8 +37,8 @@ Touch at_mid_step(const GateParams& p, const GateState& s, Side side) {
   return nearest(p, side, mid, s.beams[side].theta + half * s.beams[side].omega);
 }
 
-/// A disc and two rods, of which it overlaps as many as said at the midpoint of a first step, all
-/// moving anyhow.
+/// A disc and two rods in random motion; at the midpoint of a first step the disc overlaps the
+/// given number of rods.
 GateState overlapping(const GateParams& p, Draw& draw, int rods) {
   for (;;) {
     GateState s = at_rest(draw.uniform(-24, 24), draw.uniform(15, 50), draw.uniform(-15, 15),
@@ -50,8 +50,8 @@ GateState overlapping(const GateParams& p, Draw& draw, int rods) {
   }
 }
 
-// However deep it is: one that closes is hit, one that opens already is left alone, and so is the
-// other beam. 500 and more of side, tip and pin each way.
+// At any depth, a closing contact is hit; an opening contact is left alone, and so is the other
+// beam. 500 and more of side, tip and pin each way.
 TEST(Moreau, OnlyAContactThatClosesIsHit) {
   GateParams p = moreau(test::free_rods());
   p.contact.tip_restitution = 0.9;
@@ -75,8 +75,8 @@ TEST(Moreau, OnlyAContactThatClosesIsHit) {
   }
 }
 
-// A disc that leans on a beam with a stiff spring: the impulse acts on I + h d/2 + h^2 k/4. With
-// e = 0 it leaves no normal speed, whatever the spring does in the step.
+// A disc that leans on a beam with a stiff spring: the impulse acts on I + h d/2 + h^2 k/4. With e
+// = 0 no normal speed is left, whatever the spring does in the step.
 TEST(Moreau, ImpulseKnowsTheImplicitSpring) {
   GateParams p = moreau(test::study(50.0));
   p.beams.stiffness_left = 1e7;
@@ -95,7 +95,7 @@ TEST(Moreau, ImpulseKnowsTheImplicitSpring) {
 
 // ---- S7: energy ----
 
-// Equal restitutions cannot create energy, Newton's law at different ones can: 20000 double hits
+// Equal restitutions cannot create energy; Newton's law with different ones can. 20000 double hits
 // without forces.
 TEST(Moreau, OnlyDifferentRestitutionsCreateEnergyInDoubleHits) {
   for (const bool equal : {true, false}) {
@@ -122,8 +122,9 @@ TEST(Moreau, OnlyDifferentRestitutionsCreateEnergyInDoubleHits) {
   }
 }
 
-// What the header says of a contact that opens by itself, u- = h F / (2 (1 + e) m), under a force F
-// that closes it: held back to -e u-, it gains (1 - e) / (8 (1 + e)) (h F)^2 / m. On a joint pin.
+// The header's statement about a contact that opens by itself, u- = h F / (2 (1 + e) m), under a
+// force F that closes it: held back to -e u-, the contact gains (1 - e) / (8 (1 + e)) (h F)^2 / m.
+// On a joint pin.
 TEST(Moreau, ClosingForceOnAnOpeningContactCreatesALittle) {
   GateParams p = moreau(test::free_rods());
   p.forces.propulsion = 6.0;

@@ -62,7 +62,7 @@ TEST(Paper, FreeBeamIsUnstableBeyondEulersLimit) {
     ride.go(12.0);
     const double rate = (1 - factor) * p.beams.damping * 0.004 / p.beams.inertia();
     const double growth = std::pow(1 - rate, 3000);
-    // Where in its swing the beam is shows in the energy by zeta = d / (2 sqrt(k I)), some 6 %.
+    // The phase of the swing changes the energy by zeta = d / (2 sqrt(k I)), some 6 %.
     EXPECT_NEAR(energy(p, ride.s) / before, growth, 0.12 * growth) << factor;
     EXPECT_EQ(ride.watch.unstable_steps, factor > 1 ? 3000 : 0);
     if (factor > 1)
@@ -75,7 +75,7 @@ TEST(Paper, FreeBeamIsUnstableBeyondEulersLimit) {
   }
 }
 
-// Against one step of Euler written out: position by the old velocity, velocity by the old force.
+// Compared with one explicit Euler step: position by the old velocity, velocity by the old force.
 TEST(Paper, StepIsExplicitEuler) {
   GateParams p = euler(GateParams{});
   GateState s;
@@ -94,8 +94,8 @@ TEST(Paper, StepIsExplicitEuler) {
   EXPECT_NEAR(ride.s.beams[kRight].omega, 0.4 + (400 * 0.3 - 50 * 0.4) / inertia * h, 4 * kEps);
 }
 
-// S5 one after the other, left first: J = 135/59, then 1.8 (750/59) / 11.8; omega = 0.72 J. The
-// paper's asymmetry: 1.647 and 1.396 rad/s where both at once give 1.519.
+// S5 one beam after the other, left first: J = 135/59, then 1.8 (750/59) / 11.8; omega = 0.72 J.
+// The paper's asymmetry: 1.647 and 1.396 rad/s instead of 1.519 for both at once.
 TEST(Paper, DoubleHitIsSequential) {
   GateParams p = euler(test::free_rods());
   p.beams.joint_x = 15.0;  // the disc meets both beams 15 m from their joints
@@ -128,7 +128,7 @@ TEST(Paper, OnlyOverlappingAndClosingContactsAreHit) {
   }
 }
 
-// Free end: elastic, whatever the restitution.
+// The free end is elastic for any restitution.
 TEST(Paper, TipHitKeepsTheEnergy) {
   GateParams p = euler(test::free_rods());
   p.contact.restitution = 0.0;
@@ -155,7 +155,7 @@ TEST(Paper, WeakHitsBecomeConstraints) {
     ride.step();
     EXPECT_EQ(ride.watch.impacts, 1);
     EXPECT_EQ(ride.s.beams[kLeft].held, u < 1);
-    // Held or opening at e v, but for what the beam turns in one step: omega^2 R h.
+    // Held, or opening at e v, up to the turn of the beam in one step: omega^2 R h.
     const double omega = ride.s.beams[kLeft].omega;
     const double rate = gap_rate(ride.touch(kLeft), ride.s.body, ride.s.beams[kLeft]);
     EXPECT_NEAR(rate, u < 1 ? 0.0 : 0.8 * v, 2 * omega * omega * p.body.radius * 0.004);
@@ -175,7 +175,8 @@ TEST(Paper, HasNoFormulaForTheJoint) {
   EXPECT_EQ(ride.s.body.vy, 3.0);  // nothing is done
 }
 
-// S7 and the table of scenes that break methods: its faults are there, and Health shows each.
+// S7 and the table of scenes that break methods: the method's faults occur, and Health reports
+// each.
 TEST(Paper, HealthShowsItsFaults) {
   const GateParams p = euler(test::study(10.0));
   const Health health = run_gate_trials(p, {}, 1, {0, 1000}).health;

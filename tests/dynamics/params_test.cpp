@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// The message with which validate() refuses `params`, or "" when it does not; `key` gets the key.
+/// The message with which validate() refuses `params`, or "" if it accepts them; `key` receives the
+/// key.
 std::string refusal(const GateParams& params, std::string* key = nullptr) {
   try {
     validate(params);
@@ -147,7 +148,7 @@ TEST(Validate, EntranceAndExitLieClearOfTheBeams) {
   EXPECT_EQ(refusal(params), "");
 }
 
-// Reciprocals of mass and inertia, and what is computed from them, must stay numbers.
+// Reciprocals of mass and inertia, and numbers computed from them, must stay finite.
 TEST(Validate, RefusesWhatCannotBeComputed) {
   const auto refused = [](auto set) {
     GateParams params;
@@ -209,7 +210,7 @@ TEST(StepsPerHold, NamesTheNearestStepsThatFit) {
     const std::string what = refusal(params, &key);
     EXPECT_EQ(key, "run.step_s");
     EXPECT_TRUE(what.ends_with(m.nearest)) << what;
-    // What the message offers is accepted when typed in.
+    // The values that the message offers are accepted.
     params.run.step = std::stod(what.substr(what.rfind(' ')));
     EXPECT_EQ(refusal(params), "");
   }

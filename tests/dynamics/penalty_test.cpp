@@ -35,8 +35,8 @@ GateParams penalty(GateParams p, double step = 0.004) {
 
 // ---- Free motion ----
 
-// S2: without damping a step keeps I omega^2 + k theta (theta - h omega); the energy swings about
-// it by w0 h / 2, 1.009-fold, and does not grow.
+// S2: without damping a step conserves I omega^2 + k theta (theta - h omega). The energy oscillates
+// about this quantity by w0 h / 2, 1.009-fold, and does not grow.
 TEST(Penalty, FreeBeamKeepsItsInvariantWithoutDamping) {
   GateParams p = quiet_gate();
   p.beams.damping = 0.0;
@@ -62,7 +62,8 @@ TEST(Penalty, FreeBeamKeepsItsInvariantWithoutDamping) {
 
 // ---- Hits ----
 
-/// What a hit of the left joint or beam at 15 m/s gives back, over where in a step it begins.
+/// The restitution of a hit on the left joint or beam at 15 m/s, over the phase of the step at
+/// which it begins.
 struct Rebound {
   double mean = 0.0, low = 1.0, high = 0.0, depth = 0.0;
 };
@@ -87,10 +88,10 @@ Rebound rebound(double x, double e, double step) {
   return r;
 }
 
-// On a pin nothing but the contact acts: restitution is right on average over the phase, and one
-// hit's is off by what 10 steps to a hit leave, whatever the step. Measured mean (lowest, highest):
-// 0.1054 (.067, .144), 0.3028 (.259, .353), 0.5014 (.467, .547), 0.8004 (.791, .829),
-// 0.9501 (.949, .959), 1.0000 (1, 1); and for 0: 0.021 (.004, .039), 0.015 of which is deliberate.
+// On a pin only the contact acts: restitution is right on average over the phase, and a single hit
+// is off by what 10 steps per hit allow, at any step. Measured mean (lowest, highest): 0.1054
+// (.067, .144), 0.3028 (.259, .353), 0.5014 (.467, .547), 0.8004 (.791, .829), 0.9501 (.949, .959),
+// 1.0000 (1, 1); and for 0: 0.021 (.004, .039), 0.015 of which is deliberate.
 TEST(Penalty, RestitutionOnAPinIsRightOnAverage) {
   for (const double e : {0.0, 0.1, 0.3, 0.5, 0.8, 0.95, 1.0}) {
     SCOPED_TRACE(e);
@@ -98,7 +99,7 @@ TEST(Penalty, RestitutionOnAPinIsRightOnAverage) {
     EXPECT_NEAR(r.mean, e, e == 0.0 ? 0.022 : e < 0.8 ? 0.006 : 5e-4);
     EXPECT_GE(r.low, e - 0.05);
     EXPECT_LE(r.high, e + 0.055);
-    // A contact is the same picture at any step, in proportion.
+    // A contact scales with the step.
     EXPECT_NEAR(fine.mean, r.mean, 1e-9);
     EXPECT_NEAR(fine.depth, r.depth / 4, 1e-9);
     // u kContactSteps h / (2 pi); the steps' own spring is softer by (pi / 20)^2 / 3 and more.
@@ -106,7 +107,7 @@ TEST(Penalty, RestitutionOnAPinIsRightOnAverage) {
   }
 }
 
-// On a beam the contact point moves on during the hit: an error of first order.
+// On a beam the contact point moves during the hit: an error of first order.
 TEST(Penalty, RestitutionOnABeamConverges) {
   for (const double e : {0.8, 0.95, 1.0}) {
     SCOPED_TRACE(e);
@@ -123,9 +124,9 @@ TEST(Penalty, RestitutionOnABeamConverges) {
   }
 }
 
-// S4: the force has no lever about the joint but that of the contact point, so angular momentum is
-// kept to round-off (numbers up to 1000, 500 steps and more); energy, on an elastic tip, in the
-// limit. Measured 4.7, 3.0 and 1.7 % of it.
+// S4: the force acts on the joint only with the lever of the contact point, so the angular momentum
+// is conserved to round-off (numbers up to 1000, 500 steps and more). The energy, on an elastic
+// tip, is conserved in the limit. Measured errors: 4.7, 3.0 and 1.7 %.
 TEST(Penalty, ElasticTipHitKeepsAngularMomentumAndNearlyEnergy) {
   double last = 1.0;
   for (const double step : {0.004, 0.002, 0.001}) {
@@ -153,7 +154,7 @@ TEST(Penalty, ElasticTipHitKeepsAngularMomentumAndNearlyEnergy) {
   }
 }
 
-// S5: 10.78125 by the law. Each contact by itself is a little too hard when both push: measured
+// S5: the law gives 10.78125. Independent contacts are a little too hard when both push: measured
 // 10.68 to 10.84 over the phase, at any step. Both beams get the same bits.
 TEST(Penalty, SymmetricDoubleHitIsSymmetricAndNearlyTheLaws) {
   for (const double step : {0.004, 0.001, 0.00025}) {
@@ -179,8 +180,8 @@ TEST(Penalty, SymmetricDoubleHitIsSymmetricAndNearlyTheLaws) {
 
 // ---- S9, S17: limits ----
 
-// No springs, no damping, elastic: free rods between which the disc bounces keep their energy in
-// the limit. Measured mean loss or gain 0.46 % at 0.004 s, 0.13 % at 0.001 s.
+// No springs, no damping, elastic: free rods between which the disc bounces conserve their energy
+// in the limit. Measured mean loss or gain 0.46 % at 0.004 s, 0.13 % at 0.001 s.
 TEST(Limits, PenaltyKeepsTheEnergyOfFreeRodsInTheLimit) {
   double last = 1.0;
   for (const double step : {0.004, 0.001}) {
@@ -227,7 +228,7 @@ TEST(PenaltyBound, IsWhereSemiImplicitEulerBeginsToGrow) {
   }
 }
 
-// With elastic contacts, two of which take 4 (1 - cos(pi / 10)) of the 4.
+// With elastic contacts: two of them take 4 (1 - cos(pi / 10)) of the 4.
 TEST(PenaltyBound, LeavesRoomForTwoContacts) {
   const double room = 4.0 - 4.0 * (1.0 - std::cos(kPi / 10));
   GateParams p;
@@ -249,7 +250,8 @@ TEST(PenaltyBound, LeavesRoomForTwoContacts) {
   EXPECT_LT(penalty_bound(p), 0.2 * 0.5 * room * 1.0 / 30.0);
 }
 
-// Within the bound a stiff free beam swings for ever as its invariant says; beyond it is refused.
+// Within the bound a stiff free beam swings for ever, as its invariant says; beyond, the method
+// refuses it.
 TEST(PenaltyBound, IsKeptByTheConstructor) {
   GateParams p = penalty(quiet_gate());
   p.contact.restitution = 1.0;
@@ -285,8 +287,9 @@ TEST(PenaltyBound, IsKeptByTheConstructor) {
   EXPECT_THROW((void)make_method(p), InvalidParameter);
 }
 
-// Random scenes, all just within their bound: what blows up does so by many powers of ten. (Beams
-// of under 1/20 of the disc's mass whip round it faster than any step follows, and Health says so.)
+// Random scenes, all just within their bound; an instability would show as many powers of ten.
+// (Beams below 1/20 of the disc's mass whip round it faster than any step resolves, and Health
+// reports it.)
 TEST(PenaltyBound, ScenesWithinItDoNotBlowUp) {
   Draw draw(1);
   int runs = 0;
@@ -310,7 +313,7 @@ TEST(PenaltyBound, ScenesWithinItDoNotBlowUp) {
     const GateRun run = run_gate(p, *make_method(p), {draw.uniform(-20, 20), 0, 0, 10}, force);
     ++runs;
     ASSERT_NE(run.outcome, Outcome::broken) << i;
-    // The energy of a spring at the border swings up to 40-fold about its invariant.
+    // The energy of a spring at the border oscillates up to 40-fold about its invariant.
     const double fastest = run.watch.max_speed;
     EXPECT_LE(fastest, 100.0) << i;
     EXPECT_LE(run.watch.energy_created, p.body.mass * fastest * fastest) << i;

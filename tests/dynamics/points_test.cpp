@@ -24,7 +24,8 @@ std::vector<Point> scrambled(std::uint64_t trial, std::uint32_t first, std::uint
   return all;
 }
 
-// One point in each of 2^k intervals of every coordinate, for any 2^k that begin where they may.
+// Any 2^k points that begin at a multiple of 2^k have one point in each of 2^k intervals of every
+// coordinate.
 TEST(Points, EachCoordinateIsStratified) {
   for (const std::uint32_t first : {0U, 256U, 1U << 20})
     for (std::size_t axis = 0; axis < kPointDimensions; ++axis) {
@@ -34,7 +35,7 @@ TEST(Points, EachCoordinateIsStratified) {
     }
 }
 
-/// How many of the points lie in each of 8 x 8 boxes of two coordinates, sorted.
+/// The numbers of points in each of 8 x 8 boxes of two coordinates, sorted.
 std::vector<int> boxes(const std::vector<Point>& points, std::size_t a, std::size_t b) {
   std::vector<int> in(64);
   for (const Point& p : points)
@@ -43,7 +44,7 @@ std::vector<int> boxes(const std::vector<Point>& points, std::size_t a, std::siz
   return in;
 }
 
-// A scramble moves boxes, whole: as many points in as many of them as of the plain sequence, which
+// A scramble moves whole boxes: the sorted numbers of points are those of the plain sequence, which
 // Boost.Random has from its second point on.
 TEST(Points, AreThoseOfSobol) {
   constexpr std::uint32_t kCount = 128;
@@ -59,7 +60,7 @@ TEST(Points, AreThoseOfSobol) {
       EXPECT_EQ(boxes(ours, a, b), boxes(plain, a, b)) << a << " " << b;
 }
 
-// Over scrambles each point is uniform, and so are two of one scramble where they may be.
+// Over scrambles each point is uniform, and so is each pair of points within its restriction.
 TEST(Points, EachIsUniform) {
   constexpr int kScrambles = 4000;
   for (const std::uint32_t number : {0U, 5U, 1000U}) {
@@ -79,7 +80,8 @@ TEST(Points, EachIsUniform) {
   }
 }
 
-// A smooth mean over points has by far less variance than one over as many random numbers.
+// The mean of a smooth function over the points has far less variance than over as many random
+// numbers.
 TEST(Points, AMeanOverThemHasLessVariance) {
   double squares = 0.0;
   constexpr int kScrambles = 50, kCount = 256;

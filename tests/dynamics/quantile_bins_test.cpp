@@ -17,7 +17,7 @@ using test::Draw;
 
 const Section kPaper = disc_section(GateParams{});
 
-/// Entries at every boundary, those of EN as many as all others together; unequal left and right.
+/// Entries at every boundary, half of them at EN; unequal left and right.
 std::vector<Entry> made_up(int n, std::uint64_t seed) {
   Draw draw(seed);
   std::vector<Entry> entries;
@@ -48,7 +48,7 @@ TEST(QuantileSpace, HasItsEdgesMidwayBetweenTheEntries) {
   EXPECT_EQ(enter.edges[1], (std::vector<double>{1, 12, 128}));
   EXPECT_EQ(enter.edges[2], (std::vector<double>{2, 24, 256}));
   EXPECT_TRUE(s.open());
-  EXPECT_EQ(s.size(), 8 + 4);  // a bin for each boundary where nothing was seen
+  EXPECT_EQ(s.size(), 8 + 4);  // one bin for each boundary without entries
 }
 
 TEST(QuantileSpace, HasAboutAsManyStatesAsAskedFor) {
@@ -59,7 +59,7 @@ TEST(QuantileSpace, HasAboutAsManyStatesAsAskedFor) {
     EXPECT_GE(s.size(), states / 2) << states;
     EXPECT_LE(s.size(), 2 * states + kBoundaries) << states;
   }
-  // No more than entries can tell: 300 entries, 30 states.
+  // At most one state for ten entries: 300 entries, 30 states.
   EXPECT_LE(quantile_space(kPaper, made_up(300, 2), 1000, {}).size(), 60);
   EXPECT_THROW((void)quantile_space(kPaper, seen, 0, {}), std::invalid_argument);
   EXPECT_THROW((void)quantile_space(kPaper, seen, kMostStates + 1, {}), std::invalid_argument);
@@ -145,7 +145,7 @@ TEST(QuantileSpace, TwinsHaveTheSameBins) {
   }
 }
 
-// All alike, or none: bins that a body can still be in.
+// Entries that are all equal, or none: the bins still have a range.
 TEST(QuantileSpace, TakesEntriesThatAreAllAlike) {
   const Entry c{Boundary::enter, {0.0, 0.0, 40.0}};
   const StateSpace s = quantile_space(kPaper, std::vector<Entry>(1000, c), 87, {c});
@@ -177,7 +177,7 @@ TEST(Resolution, IsTheVarianceWithinTheStates) {
   EXPECT_FALSE(resolution_of(space, {}).poor());
 }
 
-// Bins of another scale: nothing is clamped, and everything is in one cell of its boundary.
+// Bins on another scale: nothing is clamped, and everything is in one bin of its boundary.
 TEST(Resolution, TellsBinsThatAreFarTooWide) {
   auto seen = made_up(5000, 7);
   for (Entry& c : seen) c.at = {c.at[0], 0.01 * c.at[1], 15 + 0.01 * c.at[2]};

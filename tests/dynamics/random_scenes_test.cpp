@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Scenes of anybody: units over 12 orders of magnitude each, proportions around the paper's. Every
-// method must end, and either be right or say that it may not be.
+// Random scenes: units over 12 orders of magnitude each, proportions around the paper's. Every
+// method must end, and must either be right or report that it may not be.
 
 #include <gtest/gtest.h>
 
@@ -80,7 +80,8 @@ GateParams by(GateParams p, std::string_view method) {
   return p;
 }
 
-/// Clean as a command says it: the runs' own faults, and the sample by a better method.
+/// Whether a command would report no fault: neither of the runs themselves nor of the sample by a
+/// better method.
 struct Result {
   TrialEnds ends;
   [[nodiscard]] bool clean() const { return ends.health.clean() && ends.out_of_work == 0; }
@@ -97,9 +98,9 @@ std::optional<Result> result(const RandomScene& s, const GateParams& p, std::int
   }
 }
 
-// `stable` against `event`, both at what a scene gets that says nothing. A scene in which they seem
-// to differ is looked at with more trials: few of them cannot tell 0.005. Seldom, next to no noise
-// lets many trials decide alike by a hair, and more than that is off: less than what the check
+// `stable` against `event`, both with default settings. A scene in which they seem to differ gets
+// more trials, because few trials cannot resolve 0.005. In rare scenes with next to no noise many
+// trials are decided alike by a hair, and the difference is larger, but less than what the check
 // itself calls a fault.
 TEST(RandomScenes, StableAndEventAgreeWhereBothSayClean) {
   const int scenes = usual_or_full(25, 10'000);
@@ -156,9 +157,9 @@ TEST(RandomScenes, StableAndEventAgreeWhereBothSayClean) {
       scenes, both, said, refused, worst, off);
 }
 
-// Scenes in which a method once was wrong: beams that swing out and back between events (1542) or
-// within a step (5303), which decides between left and right; next to no force, beside which a
-// tolerance is coarse (659).
+// Scenes in which a method was wrong in an earlier version: beams that swing out and back between
+// events (1542) or within a step (5303), which decides between left and right; next to no force,
+// for which a tolerance was too coarse (659).
 TEST(RandomScenes, FastBeamsAndSmallForces) {
   const std::int64_t trials = 2000;
   const auto ends_of = [&](const RandomScene& s, const GateParams& p) {
@@ -175,8 +176,8 @@ TEST(RandomScenes, FastBeamsAndSmallForces) {
   }
 }
 
-// The other methods: what is off says so. `moreau` at its default step may be off by some per cent
-// (cli/site/explain/methods.md).
+// The other methods: an inaccurate result must be reported. `moreau` at its default step may be off
+// by some per cent (dynamics/README.md).
 TEST(RandomScenes, WhatIsOffSaysSo) {
   const int scenes = usual_or_full(15, 10'000);
   int clean = 0, off = 0, said = 0;

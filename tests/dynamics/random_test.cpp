@@ -40,8 +40,8 @@ TEST(Philox, KnownAnswers) {
       (Words{0xa528f45403e61d95, 0x38c72dbd566e9788, 0xa5a1610e72fd18b5, 0x57bd43b5e52b7fe6}));
 }
 
-// A stream is the key {seed, purpose and row} and the counter {block, trial}: what a result file
-// names replays it for ever.
+// A stream is the key {seed, purpose and row} and the counter {block, trial}, so the names in a
+// result file replay it at any time.
 TEST(Random, WordsAreThePhiloxBlocksOfItsStream) {
   Random none(Purpose{0}, {.seed = 0, .row = 0, .trial = 0});
   EXPECT_EQ(none.word(), 0x16554d9eca36314cu);  // the first known answer
@@ -64,7 +64,7 @@ TEST(Random, EveryPartOfTheNameMakesAnotherStream) {
   std::set<std::uint64_t> words;
   for (Random& stream : streams)
     for (int i = 0; i < 16; ++i) words.insert(stream.word());
-  EXPECT_EQ(words.size(), streams.size() * 16);  // a chance repeat has odds 1e-12
+  EXPECT_EQ(words.size(), streams.size() * 16);  // a repeat by chance has probability 1e-12
 }
 
 TEST(Random, SameNameSameNumbers) {
@@ -115,7 +115,7 @@ TEST(Random, BelowIsUniformOnWholeNumbers) {
   EXPECT_GT(largest, most / 2);  // all 63 bits are in play
 }
 
-// Moments of N(0,1) within 4 standard errors; sine and cosine draws do not correlate.
+// Moments of N(0,1) within 4 standard errors; sine and cosine draws are uncorrelated.
 TEST(Random, NormalsAreStandardNormal) {
   Random random(Purpose::gate, {.seed = 2, .row = 0, .trial = 0});
   constexpr int n = 1'000'000;
@@ -142,7 +142,7 @@ TEST(Random, NormalsAreStandardNormal) {
   EXPECT_NEAR(beyond, n * tail, 4 * std::sqrt(n * tail));
 }
 
-// The plain reference takes the same uniforms; what differs is rounding, relative to the radius of
+// The plain reference takes the same uniforms. Differences are rounding, relative to the radius of
 // a pair and including that of the angle, 2 pi eps.
 TEST(Random, NormalsByTheBatchAreThoseOfThePlainReference) {
   constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -160,7 +160,7 @@ TEST(Random, NormalsByTheBatchAreThoseOfThePlainReference) {
             {worst, std::abs(normals[i] - x) / radius, std::abs(normals[i + 1] - y) / radius});
       }
     }
-    EXPECT_EQ(plain.word(), batch.word());  // as many were taken
+    EXPECT_EQ(plain.word(), batch.word());  // both took the same number
   }
   EXPECT_LE(worst, 10 * eps);
   EXPECT_GT(worst, 0.0);
@@ -220,7 +220,7 @@ TEST(RandomForce, HoldsEachDrawForOneFiftiethOfASecond) {
   }
 }
 
-// However its time is cut: 20 000 steps of 1e-6 s, unequal pieces, or whole holds.
+// For any division of the time: 20 000 steps of 1e-6 s, unequal pieces, or whole holds.
 TEST(RandomForce, DoesNotCareHowTimeIsCut) {
   for (const int cuts : {1, 2, 3, 7, 1000, 20'000}) {
     RandomForce whole = force_of(4), cut = force_of(4);
@@ -236,7 +236,7 @@ TEST(RandomForce, DoesNotCareHowTimeIsCut) {
   }
 }
 
-// A step that fits its hold up to the permitted 1e-6: one draw per hold all the same, either way.
+// A step that fits its hold within the permitted 1e-6: one draw per hold, whichever the sign.
 TEST(RandomForce, ForgivesStepsThatNearlyAddUpToAHold) {
   Forces f;
   f.random_rate = 60.0;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Requirements that ask the same of `event` and `stable`, at the settings that a scene gets which
-// says nothing.
+// Requirements that are the same for `event` and `stable`, with the default settings of a scene.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +29,7 @@ class Requirement : public testing::TestWithParam<const char*> {
     p.run.method = GetParam();
     return p;
   }
-  /// The same trials, whatever the scene.
+  /// The same trials for every scene.
   [[nodiscard]] static std::vector<TrialEnd> trials(const GateParams& p, std::int64_t n) {
     TrialEnds ends;
     add_trial_ends(ends, p, {}, 1, {0, n});
@@ -42,7 +41,7 @@ class Requirement : public testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(Methods, Requirement, testing::Values("event", "stable"),
                          [](const auto& i) { return std::string(i.param); });
 
-// Requirement 9: each limit alone and, for restitution, both ends of both; runs without a fault.
+// Requirement 9: each limit alone and, for restitution, both ends of both; runs have no fault.
 TEST_P(Requirement, LimitsHaveNoFaults) {
   struct Limit {
     const char* name;
@@ -84,8 +83,8 @@ TEST_P(Requirement, LimitsHaveNoFaults) {
             .cases = runs});
 }
 
-// Requirement 14 at the default step; `event` has none, its tolerance is halved. Of 2000 trials
-// measured 0.0015 and 0.0025; chance alone would show 0.0012 and 0.0028.
+// Requirement 14 at the default step; `event` has no step, so its tolerance is halved. Measured
+// with 2000 trials: 0.0015 and 0.0025; chance alone would show 0.0012 and 0.0028.
 TEST_P(Requirement, HalvingTheStepKeepsTheOutput) {
   const std::int64_t n = usual_or_full(2000, 20'000);
   double outcomes = 0.0, columns = 0.0, chance = 0.0, changed = 0.0;
@@ -119,10 +118,10 @@ TEST_P(Requirement, HalvingTheStepKeepsTheOutput) {
   record("share of trials in another output state", changed, none);
 }
 
-// Requirement 15: the impulse threshold, or what `event` has in its place, ten times as high and as
-// low under the same noise. Trials that share c changed ones know a probability to sqrt(c) / n. At
-// its step of 0.02 s `stable` has a threshold of 0.2 N s (stable.h); 2 N s end hits at over 1 m/s,
-// and that is another gate. Measured 0.14.
+// Requirement 15: the impulse threshold, or its counterpart in `event`, ten times as high and as
+// low under the same noise. Trials of which c change determine a probability to sqrt(c) / n. At its
+// step of 0.02 s `stable` has a threshold of 0.2 N s (stable.h); with 2 N s, hits at over 1 m/s
+// become constraints, which is another gate. Measured 0.14.
 TEST_P(Requirement, OutcomesHardlyDependOnTheThreshold) {
   const std::int64_t n = usual_or_full(1000, 20'000);
   for (const double factor : {10.0, 0.1}) {

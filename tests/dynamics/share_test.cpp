@@ -6,8 +6,8 @@
 namespace gatewalk::dynamics {
 namespace {
 
-// Jeffreys' interval of 0 of n has no lower end; the table of Brown, Cai and DasGupta (2001), n
-// = 10.
+// Jeffreys' interval of 0 of n has the lower end 0; other values from the table of Brown, Cai and
+// DasGupta (2001), n = 10.
 TEST(ShareInterval, IsJeffreys) {
   EXPECT_EQ(share_interval(0, 10)[0], 0.0);
   EXPECT_NEAR(share_interval(0, 10)[1], 0.217, 5e-4);

@@ -51,8 +51,7 @@ struct Scene {
   BodyState start;
 };
 
-/// The kinds of motion that the paper's scenes are made of, and those that the lanes leave to the
-/// plain method.
+/// The kinds of motion in the paper's scenes, and those that the lanes leave to the plain method.
 std::vector<Scene> scenes() {
   std::vector<Scene> all;
   const auto add = [&](const char* name, const GateParams& p,
@@ -103,11 +102,11 @@ std::vector<Scene> scenes() {
   add("symmetric, no force at random", p, {});
   p = {};
   p.forces.random = 0.0;
-  p.beams.length = p.beams.joint_x;  // the tips meet, and neither gives way: both hits are one
+  p.beams.length = p.beams.joint_x;  // the tips meet and do not give way: both hits coincide
   p.run.time_limit = 5.0;
   p.beams.mass = 1e17;
   add("a wall of both beams", p);
-  p.beams.mass = 1e15;  // these share one impulse, not one takes it all
+  p.beams.mass = 1e15;  // both share one impulse
   add("a wall that hardly gives way", p);
   p = {};
   p.forces.drag = 2.0;  // beyond the power series of free motion
@@ -148,7 +147,7 @@ TEST(StableLanes, HaveTheBitsOfThePlainMethod) {
   EXPECT_GT(impacts, 50'000);
 }
 
-// Starts anywhere, on and in beams too, and in motion: contacts of every kind from the first step.
+// Random starts in motion, also on and in beams: contacts of every kind from the first step.
 TEST(StableLanes, HaveTheBitsOfThePlainMethodFromAnyStart) {
   const GateParams p;
   const StableMethod method(p);
@@ -182,7 +181,7 @@ TEST(StableLanes, HaveTheBitsOfThePlainMethodFromAnyStart) {
 TEST(StableLanes, AreTakenWhereThereAreRegisters) { EXPECT_TRUE(lanes_pay_for_stable()); }
 #endif
 
-// A run's neighbours, and how many they are, change nothing.
+// The other runs in flight, and their number, change nothing.
 TEST(StableLanes, AreIndependentOfTheirCompany) {
   for (const Scene& scene : scenes()) {
     SCOPED_TRACE(scene.name);
@@ -200,7 +199,7 @@ TEST(StableLanes, HaveTheSameBitsWithAnyInstructionSet) {
   }
 }
 
-// A trial that goes on in its slot keeps its force, in the middle of a hold.
+// A trial that continues in its slot keeps its force, also in the middle of a hold.
 TEST(StableLanes, RunsThatGoOn) {
   const GateParams p;
   const StableMethod method(p);
@@ -236,7 +235,7 @@ TEST(StableLanes, RunsThatGoOn) {
   }
 }
 
-// The first runs of all may begin in the middle of a hold too, and of one of another length.
+// The first runs may also begin in the middle of a hold, and of a hold of another length.
 TEST(StableLanes, RunsThatBeginWithinAHold) {
   GateParams p, other;
   other.forces.random_rate = 25.0;
@@ -269,7 +268,7 @@ TEST(StableLanes, RunsThatBeginWithinAHold) {
   }
 }
 
-// A run that has done its work stops at the same draw of the force.
+// A run at its limit of work stops at the same draw of the force.
 TEST(StableLanes, StopWhenTheyAreOutOfWork) {
   const GateParams p;
   const auto runs = by_lanes(p, {.vy = 15.0}, 60, 500);
@@ -277,8 +276,9 @@ TEST(StableLanes, StopWhenTheyAreOutOfWork) {
   EXPECT_TRUE(std::any_of(runs.begin(), runs.end(), [](const auto& r) { return r.out_of_work; }));
 }
 
-// A body that starts outside has ended before the first step; one that is no number, or soon none,
-// is broken; one whose time is over is trapped. As many as there are, none takes a lane.
+// A body that starts outside has ended before the first step; a body whose state is not finite, or
+// soon is not, is broken; a body whose time is over is trapped. None of them takes a lane, however
+// many there are.
 TEST(StableLanes, RunsThatEndAtOnce) {
   GateParams p;
   p.run.time_limit = 0.02;

@@ -30,14 +30,14 @@ TEST(Stable, PlasticHitLeavesNoNormalSpeed) {
   Ride ride(p, at_rest(-10.0, 19.97, 2.0, 15.0));
   ride.step();
   EXPECT_GE(ride.watch.impacts, 1);
-  // The beam turns under the disc for 2 ms more, omega^2 R = 11 m/s^2 and 2 omega v_x = 4 m/s^2.
+  // The beam turns under the disc for another 2 ms: omega^2 R = 11 m/s^2 and 2 omega v_x = 4 m/s^2.
   EXPECT_NEAR(gap_rate(ride.touch(kLeft), ride.s.body, ride.s.beams[kLeft]), 0.0, 0.03);
 }
 
 // ---- S6: Zeno ----
 
-/// A disc dropped upwards onto something that does not move: F = 6 N, first hit at v0 = 2 m/s after
-/// t0 = 1/3 s; flight n lasts 2 t0 e^n, all of them t0 (1 + e) / (1 - e).
+/// A disc driven upwards onto something that does not move: F = 6 N, first hit at v0 = 2 m/s after
+/// t0 = 1/3 s; flight n lasts 2 t0 e^n, all flights together t0 (1 + e) / (1 - e).
 struct Bouncing {
   double e, step, threshold;
   static constexpr double v0 = 2.0, force = 6.0, t0 = v0 / force;
@@ -51,8 +51,8 @@ struct Bouncing {
     return p;
   }
   [[nodiscard]] double zeno_time() const { return t0 * (1 + e) / (1 - e); }
-  /// The first hit, counted from 0, whose impulse (1 + e) M v0 e^n is below the threshold, which is
-  /// lower for nearly elastic hits (methods/hybrid.h).
+  /// The first hit, counted from 0, whose impulse (1 + e) M v0 e^n is below the threshold. The
+  /// threshold is lower for nearly elastic hits (methods/hybrid.h).
   [[nodiscard]] int last_hit() const {
     const double least = threshold * step / 0.004 * std::min(1.0, (1.0 - e) / 0.05);
     int n = 0;
@@ -64,14 +64,14 @@ struct Bouncing {
   }
 };
 
-/// Steps until the left contact is held, or the limit is over; returns the time.
+/// Steps until the left contact is held or the limit is over; returns the time.
 double time_until_held(Ride& ride, double limit) {
   const auto time = [&] { return static_cast<double>(ride.watch.steps) * ride.p.run.step; };
   while (!ride.s.beams[kLeft].held && time() < limit) ride.step();
   return time();
 }
 
-/// Straight below the left joint: the pin does not move at all.
+/// Straight below the left joint, a pin that does not move.
 const GateState kBelowThePin = at_rest(-25.0, 20.0 - 1.0 / 3);
 
 TEST(Zeno, BouncingEndsInAHoldAtThePredictedHit) {
@@ -87,15 +87,15 @@ TEST(Zeno, BouncingEndsInAHoldAtThePredictedHit) {
       const double hold = b.time_of(last);
       const double t = time_until_held(ride, 2 * b.zeno_time());
       EXPECT_TRUE(ride.s.beams[kLeft].held);
-      // Seen at the end of the step in which it happens. Hits are found to 1e-12 R and each error
-      // lives on in the flights after it: far below 1e-6 s.
+      // The hold is seen at the end of its step. Hits are found to 1e-12 R, and each error persists
+      // in later flights: far below 1e-6 s.
       EXPECT_GE(t, hold - 1e-6);
       EXPECT_LE(t, hold + step + 1e-6);
       EXPECT_EQ(ride.watch.impacts, last + 1);
       EXPECT_EQ(ride.watch.forced_holds, 0);
       if (step == GateParams{}.run.step) error = std::max(error, std::abs(t / b.zeno_time() - 1.0));
       unforeseen = std::max(unforeseen, std::abs(ride.watch.impacts - (last + 1)));
-      // Zeno's remainder: what the hold cuts off.
+      // The remainder of Zeno's series, which the hold cuts off.
       EXPECT_NEAR(b.zeno_time() - hold, 2 * b.t0 * std::pow(e, last + 1) / (1 - e), 1e-9);
 
       ride.go(1.0);
@@ -139,10 +139,10 @@ TEST(Zeno, NumbersOfTheKnownAnswers) {
   EXPECT_EQ(b.last_hit(), 21);
 }
 
-// Without a threshold every flight is flown until a step holds more hits than a method can bear;
-// then contact is forced. With 50 hits in one step, its 49 flights are over 49 times as long as the
-// next; less than (step / 49) / (1 - e) is left to bounce. Small e needs no force: before 50 hits
-// the disc leaves at no more than what counts as rest.
+// Without a threshold every flight is simulated until a step holds more hits than the method
+// allows; then contact is forced. With 50 hits in one step, the 49 flights in it are over 49 times
+// as long as the next one, so less than (step / 49) / (1 - e) of bouncing is left. For small e no
+// force is needed: before 50 hits the disc leaves at a speed that counts as rest.
 TEST(Zeno, EndsWithoutAThreshold) {
   for (const double e : {0.1, 0.5, 0.8, 0.95, 0.99}) {
     SCOPED_TRACE(e);
@@ -159,8 +159,8 @@ TEST(Zeno, EndsWithoutAThreshold) {
   }
 }
 
-// Beams of 10^6 kg do not move either: recoil 10^-6 of the disc's speed. Two tips share each
-// impulse, which comes below the threshold as if that were twice as high.
+// Beams of 10^6 kg hardly move either: their recoil is 10^-6 of the disc's speed. Two tips share
+// each impulse, so it falls below the threshold as if the threshold were twice as high.
 TEST(Zeno, HeavyBeamsBehaveAsTheWall) {
   for (const double x : {-10.0, 0.0}) {  // the left beam's side, both tips
     SCOPED_TRACE(x);
@@ -186,7 +186,7 @@ TEST(Zeno, HeavyBeamsBehaveAsTheWall) {
 
 // ---- Constraints ----
 
-// Sliding along a beam that it pushes, without hits: the midpoint rule is of second order.
+// The disc slides along a beam that it pushes, without hits: the midpoint rule is of second order.
 TEST(Stable, ConstraintIsSecondOrder) {
   const auto at = [](double step) {
     GateParams p = test::study(10.0);
@@ -221,15 +221,15 @@ TEST(Stable, ConstraintIsSecondOrder) {
 
 // ---- Pieces of a step ----
 
-/// Pieces of a step, half a radian or e-fold each, that a beam of this stiffness needs.
+/// The number of pieces of a step, half a radian or e-fold each, for a beam of this stiffness.
 double pieces_of(const GateParams& p, double stiffness) {
   const double inertia = p.beams.inertia();
   const double rate = std::max(std::sqrt(stiffness / inertia), p.beams.damping / inertia);
   return std::exp2(std::max(0.0, std::ceil(std::log2(p.run.step * rate / 0.5))));
 }
 
-// Alone everything is in closed form: both beams are looked at once at the end, and a stiff beam
-// swings in one piece, to the last bit.
+// Without contact everything is in closed form: both beams are evaluated once, at the end, and a
+// stiff beam swings in one piece, to the last bit.
 TEST(Pieces, FreeBeamOutOfReachNeedsOne) {
   GateParams p;
   p.beams.stiffness_left = 1e8;
@@ -247,7 +247,7 @@ TEST(Pieces, FreeBeamOutOfReachNeedsOne) {
   EXPECT_EQ(ride.watch.evaluations, 51 * 2);
 }
 
-// Beside a tip, 0.26 m away: both beams in each piece, whether they would swing or creep.
+// Beside a tip, 0.26 m away: both beams are evaluated in each piece, whether they swing or creep.
 TEST(Pieces, FreeBeamWithinReachNeedsItsOwn) {
   for (const double stiffness : {400.0, 1e6, 1e8}) {
     for (const double damping : {50.0, 1e4}) {
@@ -263,7 +263,8 @@ TEST(Pieces, FreeBeamWithinReachNeedsItsOwn) {
   }
 }
 
-// Pressed against the beam: the contact at start, middle and end of each piece, then both beams.
+// Pressed against the beam: the contact is evaluated at start, middle and end of each piece, then
+// both beams.
 TEST(Pieces, HeldBeamNeedsItsOwn) {
   for (const double stiffness : {400.0, 1e6, 1e8}) {
     for (const double damping : {50.0, 1e4}) {
@@ -294,9 +295,9 @@ TEST(Pieces, HeldBeamThatTurnsFastNeedsMore) {
   EXPECT_EQ(ride.watch.evaluations, 4 * 5);
 }
 
-// A disc that slides along a held beam onto its joint: there the contact force jumps. Against steps
-// of 0.04 ms, worst over six places in the step, measured 3.1e-5 m and 0.006 m/s; in one piece
-// 9e-4 m and 0.11 m/s.
+// A disc that slides along a held beam onto its joint, where the contact force jumps. Compared with
+// steps of 0.04 ms, worst over six places in the step: measured 3.1e-5 m and 0.006 m/s; in one
+// piece 9e-4 m and 0.11 m/s.
 TEST(Pieces, ContactThatChangesItsKindNeedsTheShortest) {
   const auto slid = [](double r, double step, std::int64_t least_evaluations) {
     GateParams p = test::study(10.0);
@@ -342,17 +343,17 @@ TEST(Stable, WatchKeepsTheLargest) {
   }
   EXPECT_EQ(ride.watch.max_theta[kRight], right);
   EXPECT_GT(right, 0.2);
-  // Seen first after a step.
+  // The watch first records after a step.
   EXPECT_NEAR(ride.watch.max_theta[kLeft], 0.3, 0.3 * 4.4 * 4.4 / 2 * h * h);
   EXPECT_NEAR(ride.watch.max_speed, 5.0 * std::exp(-0.06 * h), 1e-12);
   EXPECT_EQ(ride.watch.steps, 250);
 }
 
-// ---- The way out ----
+// ---- The exit ----
 
-// Under drag and force the way is no cubic, but over one step all but. y'''' <= D^2 (F + D v),
-// which is 2.3 m/s^4 at 2 m/s downwards; a cubic misses y'''' h^4 / 384 in position and y'''' h^3 /
-// 125 in velocity: 1.5e-12 m and 1.2e-9 m/s at 0.004 s.
+// Under drag and force the path is nearly a cubic over one step. y'''' <= D^2 (F + D v), which is
+// 2.3 m/s^4 at 2 m/s downwards; a cubic is off by y'''' h^4 / 384 in position and y'''' h^3 / 125
+// in velocity: 1.5e-12 m and 1.2e-9 m/s at 0.004 s.
 TEST(Stable, LeavesACurvedFlightOnTheBorder) {
   GateParams p = test::free_rods();
   p.forces.propulsion = 8.0;
@@ -383,8 +384,8 @@ TEST(Stable, LeavesACurvedFlightOnTheBorder) {
   }
 }
 
-// Below the left joint, 5 m/s upwards: the pin is hit after 2 ms, e = 0.8. The disc leaves by the
-// side before or after that, within the same step; what was not yet must not be seen.
+// Below the left joint, 5 m/s upwards: the disc hits the pin after 2 ms, e = 0.8. It leaves by the
+// side before or after the hit, within the same step; a hit after the exit must not be seen.
 TEST(Stable, LeavesBeforeOrAfterAHitInTheSameStep) {
   for (const double vx : {-1.0, -0.3}) {
     SCOPED_TRACE(vx);
@@ -401,8 +402,8 @@ TEST(Stable, LeavesBeforeOrAfterAHitInTheSameStep) {
   }
 }
 
-// A free beam may swing many times in the step in which the disc leaves: 4.4 rad here. Its state
-// then is its closed form at that moment; 4.4 rad are known to as many eps.
+// A free beam may swing many times in the step in which the disc leaves: 4.4 rad here. Its exit
+// state must be its closed form at that moment, known to 4.4 eps.
 TEST(Stable, LeavesWithFreeBeamsInClosedForm) {
   GateParams p = test::free_rods();
   p.beams.stiffness_left = 1e6;

@@ -28,7 +28,7 @@ StateSpace paper() { return table3_space(GateParams{}); }
 
 // ---- Sections ----
 
-/// Points of unit speed in squares: two coordinates, nobody's disc.
+/// Points of unit speed in squares: two coordinates, not those of a disc.
 Section squares() {
   return {.faces = {{"S", 0, 1, 0, 0b11, "from below", {{{-1, 1}, {-2, 2}}}},
                     {"W", 1, 0, 2, 0b00, "from the left", {{{-1, 1}, {-2, 2}}}},
@@ -92,7 +92,7 @@ TEST(Section, OfADiscKnowsItsMirrorImages) {
   EXPECT_EQ(mirrored(disc_section(), range), (StateRange{enter, {{{-2, -1}, {-4, 3}, {5, 6}}}}));
 }
 
-// The scales and usual ranges are a gate's own; what files tell is not.
+// Scales and usual ranges depend on the gate; the contents of files do not.
 TEST(Section, OfADiscIsOneForAllGates) {
   GateParams p;
   p.body.radius = 5.0;
@@ -117,7 +117,7 @@ TEST(Section, OfEightCoordinatesMakesSpaces) {
   section.validate();
   EXPECT_EQ(mirrored(section, Entry{0, {1, 2, 3, 4, 5, 6, 7, 8}}),
             (Entry{0, {-1, 2, 3, 4, 5, 6, 7, -8}}));
-  // Two bins along each but the last, which has three: the last one counts fastest.
+  // Two bins along each coordinate except the last, which has three and runs fastest.
   Bins bins;
   for (std::size_t axis = 0; axis < 8; ++axis) bins.edges[axis] = {-1, 0, 1};
   bins.edges[7] = {-1, 0, 1, 2};
@@ -164,7 +164,7 @@ TEST(Section, OfTwoCoordinatesMakesSpaces) {
 }
 
 TEST(Section, OfTwoCoordinatesGrowsTreesAndBins) {
-  std::vector<Entry> seen;  // what lies behind the last coordinate is nobody's
+  std::vector<Entry> seen;  // numbers beyond the last coordinate are ignored
   for (int i = 0; i < 400; ++i)
     seen.push_back({i % 2, {-1.0 + 0.005 * i, std::sin(i), static_cast<double>(i)}});
   const StateSpace trees = tree_space(squares(), {squares(), seen}, 10);
@@ -209,7 +209,8 @@ TEST(StateSpace, HasTheEdgesOfTableIII) {
   EXPECT_EQ(of(Boundary::left_traverse), (AllEdges{{{10, 30}, {0, 30}, {-20, 30}}}));
 }
 
-// Distances follow the gate, speeds the scene's own unit: in other units the same bins.
+// Distances follow the gate and velocities the scene's own unit, so bins are the same in other
+// units.
 TEST(StateSpace, TableIIIIsInTheScenesOwnUnits) {
   const StateSpace space = paper();
   for (const int power : {-10, -1, 3, 10}) {
@@ -236,7 +237,7 @@ TEST(StateSpace, TableIIIIsInTheScenesOwnUnits) {
   }
 }
 
-// Open: the outermost bins take everything, and say when it lies beyond their edges.
+// Open: the outermost bins include everything and report what lies beyond their edges.
 TEST(StateSpace, OpenBinsClampNothing) {
   const StateSpace closed = paper(), open(closed.section(), closed.bins(), true);
   EXPECT_FALSE(closed == open);
@@ -269,7 +270,7 @@ TEST(StateSpace, SingleEntriesAreStatesOfTheirOwn) {
                std::invalid_argument);
 }
 
-// The text fixes an order for nobody but us: d slowest, then vx, then vy.
+// Our order, which the paper leaves open: d slowest, then vx, then vy.
 TEST(StateSpace, CountsDThenVxThenVy) {
   const StateSpace s = paper();
   const StateRange enter{Boundary::enter, {{{-15, -5}, {-5, 5}, {10, 20}}}};
@@ -278,7 +279,7 @@ TEST(StateSpace, CountsDThenVxThenVy) {
   EXPECT_EQ(s.range(55 + 15 + 2 * 5 + 4), side);  // LD: second d, third vx, fifth vy
 }
 
-// Bins of one boundary tile their box: volumes add up, and no two states share a bin.
+// The bins of a boundary tile their box: volumes add up, and no two states share a bin.
 TEST(StateSpace, RangesTileTheBoundary) {
   const StateSpace s = paper();
   std::array<double, kBoundaries> volume{};
@@ -311,7 +312,7 @@ TEST(StateSpace, ScalesDistancesWithTheGate) {
             (Edges{-50, -30, -10, 10, 30, 50}));  // a radius of 20 m: 2 m/s for 1 m/s
 }
 
-// RT and LT begin at joint + R = 40 m: a gate that ends there has no room for them.
+// RT and LT begin at joint + R = 40 m; a gate that ends there has no room for them.
 TEST(StateSpace, RefusesAGateThatEndsInTheBeams) {
   GateParams p;
   p.run.traverse_y = 40.0;
@@ -402,7 +403,7 @@ TEST(Refined, SamplesComeBackToTheirState) {
   }
 }
 
-// Every bin of twice as many lies within one bin of the paper's.
+// With twice as many bins, every bin lies within one of the paper's bins.
 TEST(Refined, FinerBinsAreNested) {
   const StateSpace coarse = paper(), fine = refined(coarse, 2.0);
   const auto inside = [](const std::array<double, 2>& a, const std::array<double, 2>& b) {
@@ -567,7 +568,7 @@ TEST(Crossing, OfEachExit) {
   }
 }
 
-// Exactly at the joint's height the body is not below it.
+// A body exactly at the joint's height is not below the joint.
 TEST(Crossing, AtTheJointCountsAsAbove) {
   const GateParams p;
   const Entry at = crossing_of(p, Outcome::exited_left, {-25.1, 30, -5, 0});
@@ -585,8 +586,8 @@ TEST(Crossing, RunsThatStayedInsideHaveNone) {
   EXPECT_THROW((void)crossing_of(p, Outcome::broken, {}), std::logic_error);
 }
 
-// Round trip: the body that enters at a crossing is, on its boundary, the body that has left the
-// neighbour; shifted there and back nothing but the way beyond the border is different.
+// Round trip: the body that enters at a crossing is the body that has left the neighbour, moved
+// onto its boundary. Shifted there and back, only the distance beyond the border differs.
 TEST(Crossing, RoundTrips) {
   const GateParams p;
   Draw draw(1);

@@ -31,7 +31,7 @@ class Trace : public testing::TestWithParam<const char*> {
   }();
 };
 
-// Looking on changes nothing.
+// Recording a trace does not change the run.
 TEST_P(Trace, IsTheRunItself) {
   for (const std::int64_t trial : {0, 1, 2, 6}) {
     const GateRun run = run_gate_trial(p, *make_method(p), {}, 1, trial);
@@ -45,8 +45,8 @@ TEST_P(Trace, IsTheRunItself) {
   }
 }
 
-// Energy at the start and work are what is there and what is lost; nothing comes back from what is
-// lost.
+// Energy at the start plus work equals the energy present plus the energy lost, and the lost energy
+// never decreases.
 TEST_P(Trace, EnergyIsAccountedFor) {
   const bool sound =
       p.run.method == "stable" || p.run.method == "event" || p.run.method == "moreau";
@@ -59,7 +59,7 @@ TEST_P(Trace, EnergyIsAccountedFor) {
     worst_gain = std::max(worst_gain, lost - e.lost);
     lost = std::max(lost, e.lost);
   }
-  // The springs of penalty give back what they took; all others agree with the run's own watch.
+  // The springs of penalty return energy; all other methods agree with the run's own watch.
   if (p.run.method != "penalty") {
     EXPECT_NEAR(worst_gain, t.run.watch.energy_created, 1e-9);
   }
@@ -70,7 +70,7 @@ TEST_P(Trace, EnergyIsAccountedFor) {
   }
 }
 
-// Before the first contact nobody pushes the body but propulsion and random force; the beams push
+// Before the first contact only propulsion and random force push the body; then the beams push
 // back.
 TEST_P(Trace, ForcesOfTheBeams) {
   const GateTrace t = trace(p, 0);

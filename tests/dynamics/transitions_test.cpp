@@ -69,7 +69,7 @@ TEST(Transitions, EveryTrialIsCountedOnce) {
   }
 }
 
-// A trial of a row, replayed by hand from its stream {seed, row, trial}: start, force, index.
+// A trial of a row, replayed step by step from its stream {seed, row, trial}: start, force, index.
 TEST(Transitions, TrialsCanBeReplayedAlone) {
   const GateParams p = field_scene();
   const auto method = make_method(p);
@@ -112,7 +112,7 @@ TEST(Transitions, SameCountsOnAnyNumberOfThreadsAndForAnySplit) {
   expect_same(split, whole);
 }
 
-// Rows that have entries start from them and only from them; the others uniform, as without.
+// Rows with entries start only from these entries; other rows start uniformly, as without entries.
 TEST(Transitions, StartFromTheEntriesOfTheirRow) {
   const GateParams p = field_scene();
   const auto method = make_method(p);
@@ -120,7 +120,7 @@ TEST(Transitions, StartFromTheEntriesOfTheirRow) {
   const Entry middle{Boundary::enter, {1.0, 2.0, 15.0}}, fast{Boundary::enter, {-3.0, -1.0, 40.0}};
   const Entries entries = entries_of(space, {middle, fast, middle});
   const int row = space.index_of(middle).state;
-  ASSERT_EQ(space.index_of(fast).state, row);  // clamped, and yet what really enters there
+  ASSERT_EQ(space.index_of(fast).state, row);  // clamped, but a real entry
   ASSERT_EQ(entries.size(), 87u);
   ASSERT_EQ(entries[row].size(), 3u);
   Transitions t(space);
@@ -148,7 +148,7 @@ TEST(Transitions, StartFromTheEntriesOfTheirRow) {
   EXPECT_THROW(add_trials(t, p, 3, {0, 1}, Entries(86)), std::invalid_argument);
 }
 
-// A single entry that is a state: all its runs start there, and it has more of them.
+// A single entry that is a state: all its runs start there, and it gets more runs.
 TEST(Transitions, GiveSingleEntriesMoreRuns) {
   const GateParams p = field_scene();
   const Entry point{Boundary::enter, {0.0, 0.0, 15.0}};
@@ -211,7 +211,7 @@ TEST(Transitions, TotalsAddUpTheRows) {
   EXPECT_EQ(total.clamped_share(), 1.0 / 3);
 }
 
-// Nothing in the way and no forces: straight lines, whose exit is a division.
+// Without obstacles and forces: straight lines, whose exit is a division.
 TEST(Transitions, StraightLinesLeaveWhereTheyMust) {
   GateParams p = field_scene();
   p.forces = {.propulsion = 0.0, .random = 0.0, .random_rate = 50.0, .drag = 0.0};

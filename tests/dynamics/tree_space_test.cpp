@@ -33,7 +33,7 @@ std::vector<Entry> made_up(int n, std::uint64_t seed) {
   return entries;
 }
 
-// By hand: eight entries in a row along vx, two in a leaf, make cuts at the middles.
+// By hand: eight entries in a row along vx, two per leaf, are cut in the middle.
 TEST(TreeSpace, HalvesAtTheMedianOfTheWidestAxis) {
   std::vector<Entry> entries;
   for (const double vx : {8.0, 1.0, 7.0, 2.0, 6.0, 3.0, 5.0, 4.0})
@@ -46,7 +46,7 @@ TEST(TreeSpace, HalvesAtTheMedianOfTheWidestAxis) {
   EXPECT_EQ(tree.nodes[1], (Tree::Node{1, 2.5}));
   EXPECT_EQ(tree.nodes[2], Tree::Node{});
   EXPECT_EQ(tree.nodes[4], (Tree::Node{1, 6.5}));
-  EXPECT_EQ(space.size(), 4 + 4);  // and one state for each boundary where nothing was seen
+  EXPECT_EQ(space.size(), 4 + 4);  // and one state for each boundary without entries
   EXPECT_EQ(states, (std::vector<int>{3, 0, 3, 0, 2, 1, 2, 1}));
   EXPECT_EQ(space.range(1).at[kEntryVx], (std::array<double, 2>{2.5, 4.5}));
   EXPECT_EQ(space.range(1).at[kEntryD], (std::array<double, 2>{0.1 * 1.0, 0.1 * 8.0}));
@@ -73,9 +73,9 @@ TEST(TreeSpace, LeavesHoldFromOnceToTwiceTheEntriesAskedFor) {
   EXPECT_EQ(static_cast<int>(held.size()) + 2, space.size());  // RT and LT were never seen
 }
 
-// ---- A plain grower: sorts where the other one partitions.
+// ---- A plain grower, which sorts instead of partitioning.
 
-/// Appends the tree of entries number `these`, and puts their leaves into `states`.
+/// Appends the tree of the entries with numbers `these`, and writes their leaves into `states`.
 void grow_plainly(const Section& section, const std::vector<Entry>& entries,
                   const std::vector<std::size_t>& these, std::size_t per_leaf,
                   std::vector<Tree::Node>& nodes, std::vector<int>& states, int& leaves) {
@@ -95,7 +95,8 @@ void grow_plainly(const Section& section, const std::vector<Entry>& entries,
     std::vector<std::size_t> sorted = these;
     std::stable_sort(sorted.begin(), sorted.end(),
                      [&](std::size_t a, std::size_t b) { return value(a, axis) < value(b, axis); });
-    // Below the entries that equal the median, or above them: the nearer to the middle that fits.
+    // Cut below or above the entries that equal the median: at the place nearer to the middle that
+    // fits.
     const double median = value(sorted[n / 2], axis);
     std::size_t low = 0, high = 0;
     for (const std::size_t i : sorted) {
@@ -121,7 +122,7 @@ void grow_plainly(const Section& section, const std::vector<Entry>& entries,
   nodes.push_back({});
 }
 
-/// Faces one row on; coordinates of different scales.
+/// Faces that lead one row on, with coordinates of different scales.
 Section section_of(std::size_t coordinates, int faces) {
   Section section{.faces = {}, .coordinates = {}, .costs = {{"time_s", "s", "duration"}}};
   for (int f = 0; f < faces; ++f)

@@ -15,7 +15,7 @@ namespace {
 using test::Twin;
 using test::twins;
 
-/// Keys that a scene need not give are left to it.
+/// The keys that a scene may leave out are left out.
 GateParams own_settings(GateParams p) {
   p.contact.impulse_threshold = default_impulse_threshold(p);
   p.run.event_tolerance = default_event_tolerance(p);

@@ -17,8 +17,8 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // ---- What can be told, by hand ----
 
-// 1000 trials. The reference is off by 0.002 in outcomes, of which chance explains 0.001, so ten
-// times 0.002 is what it can show; in columns it is not off at all: ten trials.
+// 1000 trials. The reference's own error is 0.002 in outcomes, of which chance explains 0.001, so
+// the limit is ten times 0.002. In columns the reference has no error: the limit is ten trials.
 WorkPrecision by_hand() {
   WorkPrecision chart;
   chart.trials = 1000;
@@ -112,10 +112,10 @@ TEST(WorkPrecision, RunsEverySettingAgainstTheReference) {
     const ChartPoint& point = chart.points[i];
     EXPECT_EQ(point.setting, settings[i]);
     EXPECT_EQ(point.health.runs, kTrials);
-    EXPECT_EQ(point.microseconds.size(), 2u);  // the round that warms up is not kept
+    EXPECT_EQ(point.microseconds.size(), 2u);  // without the warm-up round
     EXPECT_GT(point.least_microseconds(), 0.0);
   }
-  // Against the reference, and that against another setting, run here.
+  // The errors against the reference, and those of the reference against another setting, run here.
   const TrialEnds reference = ends_of(p, reference_setting(p), kTrials);
   const TrialEnds some = ends_of(p, settings[2], kTrials);
   const TrialEnds stable = ends_of(p, chart_settings("stable", p).back(), kTrials);
@@ -134,8 +134,8 @@ TEST(WorkPrecision, RunsEverySettingAgainstTheReference) {
                           [](const TrialEnd& e) { return e.outcome == Outcome::trapped; }));
 }
 
-// `stable` needs over 1024 pieces of half a radian for a step above 512 sqrt(I/k): here a whole
-// hold is more than that, and half a hold is less. (`event` takes twice that rate.)
+// `stable` needs over 1024 pieces of half a radian for a step above 512 sqrt(I/k). Here a whole
+// hold is longer than that, and half a hold is shorter. (`event` takes twice that rate.)
 TEST(WorkPrecision, ARefusalIsAResult) {
   GateParams p = test::study(10.0);
   const double step = 0.7 / p.forces.random_rate;
@@ -150,7 +150,7 @@ TEST(WorkPrecision, ARefusalIsAResult) {
     EXPECT_EQ(chart.points[i].refusal.empty(), i > 0) << i;
     EXPECT_EQ(chart.points[i].microseconds.size(), i > 0 ? 1u : 0u) << i;
   }
-  // The finest ran and is the second opinion; after 0.1 s all are still inside.
+  // The finest setting ran and serves as the other method; after 0.1 s all bodies are still inside.
   EXPECT_EQ(chart.reference.other_method, chart.points[7].setting);
   EXPECT_EQ(chart.reference.other.strong.trapped, 2);
 }

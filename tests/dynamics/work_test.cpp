@@ -86,7 +86,7 @@ TEST(Work, PartsAreToldAsTheirShareOfTheWhole) {
   whole.part("sweep", 2, 4).part("inner", 1, 2).tell("runs", 1, 2);
   whole.part("sweep", 1000.0, 500.0, 4000).tell("runs", 1, 5);
   EXPECT_EQ(told, (std::vector<std::int64_t>{1500, 4000, 2750, 1100}));
-  Work{}.part("sweep", 0, 1).tell("runs", 0, 1);  // nobody watches
+  Work{}.part("sweep", 0, 1).tell("runs", 0, 1);  // without a receiver
 }
 
 }  // namespace
