@@ -23,10 +23,10 @@ struct Reward {
 /// The quantities of the chains of a field: [chain][quantity].
 using Rewards = std::vector<std::vector<Reward>>;
 
-/// The first two moments of a total over some of the walks.
+/// The first two moments of a total over a group of the walks.
 struct Moments {
-  double share = 0.0;  // of all walks
-  /// Means of the total and of its square over all walks, where walks that are not meant count 0.
+  double share = 0.0;  // share of all walks that are in the group
+  /// Means over all walks of the total and of its square, where walks outside the group count as 0.
   double sum = 0.0, square = 0.0;
   [[nodiscard]] double mean() const {
     return share > 0.0 ? sum / share : std::numeric_limits<double>::quiet_NaN();

@@ -48,9 +48,9 @@ inline constexpr std::size_t kEntryD = 0, kEntryVx = 1, kEntryVy = 2;
 
 /// The states of Table III: 25 EN, 30 RD, 30 LD, 1 RT, 1 LT. Distances follow the gate's size,
 /// velocities the scene's own unit of speed; in the paper's scenes both are those of the table. RT
-/// and LT are one state each, with y from joint + R up and the velocities of RD and LD ("Departures
-/// and decisions" in the documentation). Throws InvalidParameter if no disc can be ahead of the
-/// beams inside the gate.
+/// and LT are one state each, with y from joint + R up and the velocities of RD and LD (see
+/// "Departures from the paper"). Throws InvalidParameter if no disc can be ahead of the beams
+/// inside the gate.
 [[nodiscard]] StateSpace table3_space(const GateParams& p);
 
 }  // namespace gatewalk::dynamics

@@ -2,7 +2,7 @@
 #pragma once
 /// The scene of one gate: body, beams, forces, contacts and time stepping. Defaults are those of
 /// the paper's field study (Sec. III-C, Tables I and IV); where the paper is silent, the
-/// documentation's table "Departures and decisions" has the reasons.
+/// documentation ("Departures from the paper") has the reasons.
 
 #include <cmath>
 #include <functional>

@@ -311,7 +311,7 @@ TEST(Impact, TangentialHitOfTheKnownAnswers) {
     return 0.5 * g.body.vy * g.body.vy + 0.5 * p.beams.inertia() * w * w;
   };
   EXPECT_NEAR(energy(after) - energy(s), -202.5 / 59, 1e-12);  // 112.5 J are known to 1.4e-14
-  // The printed digits of CHECKS.md, S3.
+  // The decimal values of S3.
   EXPECT_NEAR(j, 2.2881, 5e-5);
   EXPECT_NEAR(after.body.vy, 12.7119, 5e-5);
   EXPECT_NEAR(after.beams[kLeft].omega, 1.64746, 5e-6);

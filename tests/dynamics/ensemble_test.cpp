@@ -177,7 +177,7 @@ TEST(GateTrials, ScenesThatCannotBeRunAreRefused) {
   EXPECT_THROW((void)run_gate_trials(p, {}, 1, {0, 1}), InvalidParameter);
 }
 
-// ---- Converged figures of MODEL.md: F = 7, Rm = 10, kL = 300, kR = 500 ----
+// ---- Converged figures of an independent program: F = 7, Rm = 10, kL = 300, kR = 500 ----
 
 double percent(std::int64_t n, const GateTally& t) {
   return 100.0 * static_cast<double>(n) / static_cast<double>(t.trials);

@@ -177,7 +177,7 @@ TEST(RandomScenes, FastBeamsAndSmallForces) {
 }
 
 // The other methods: an inaccurate result must be reported. `moreau` at its default step may be off
-// by some per cent (dynamics/README.md).
+// by some per cent (table of methods in the documentation).
 TEST(RandomScenes, WhatIsOffSaysSo) {
   const int scenes = usual_or_full(15, 10'000);
   int clean = 0, off = 0, said = 0;

@@ -15,7 +15,7 @@ namespace {
 using test::Twin;
 using test::twins;
 
-/// The keys that a scene may leave out are left out.
+/// The scene with default values of the keys that a scene may leave out.
 GateParams own_settings(GateParams p) {
   p.contact.impulse_threshold = default_impulse_threshold(p);
   p.run.event_tolerance = default_event_tolerance(p);

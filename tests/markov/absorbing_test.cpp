@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One body of tests for all kinds of number: exact fractions say what is right, doubles must be
-/// within some roundings of it, enclosures must hold it.
+/// One set of tests for all kinds of number: exact fractions are the truth, doubles must be within
+/// some roundings of it, and enclosures must contain it.
 
 #include "tests/support/absorbing.h"
 
@@ -44,7 +44,7 @@ void expect_is(const Absorption<Number>& a, const Absorption<Rational>& exact) {
   }
 }
 
-/// 0 goes to 1 or ends as 0, by 1/2 each; 1 goes to 0 with 1/3 or ends as 1.
+/// State 0 goes to 1 or ends as 0, with 1/2 each; state 1 goes to 0 with 1/3 or ends as 1.
 template <class Number>
 AbsorbingChain<Number> two_states() {
   AbsorbingChain<Number> chain(2, 2);
@@ -56,7 +56,7 @@ AbsorbingChain<Number> two_states() {
 
 TYPED_TEST(Absorbing, TwoStatesByHand) {
   const auto a = absorption(two_states<TypeParam>());
-  // A round trip has chance 1/6, so state 0 is visited 1 / (1 - 1/6) = 6/5 times from itself.
+  // A round trip has probability 1/6, so state 0 is visited 1 / (1 - 1/6) = 6/5 times from itself.
   const int fifths[2][2][2] = {{{3, 2}, {1, 4}}, {{6, 3}, {2, 6}}};  // ends, visits
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < 2; ++j) {
@@ -104,7 +104,8 @@ TYPED_TEST(Absorbing, GamblersRuin) {
     expect_is(fair.ends(i - 1, 1), Rational(i, most), n);
     expect_is(fair.steps[static_cast<std::size_t>(i - 1)], Rational(i * (most - i)), n);
   }
-  // With r = lost / won = 3/2: (1 - r^i) / (1 - r^most) win, after (i - most * that) / (3/5 - 2/5).
+  // With r = lost / won = 3/2: (1 - r^i) / (1 - r^most) of the gamblers win; the mean duration is
+  // (i - most * that) / (3/5 - 2/5).
   const auto unfair = absorption(gambler<TypeParam>(n, 2, 5));
   const auto power = [](int k) {
     Rational p(1);
@@ -142,7 +143,8 @@ TYPED_TEST(Absorbing, RandomFractions) {
   expect_is(absorption(random_chain<TypeParam>(20, 6)), absorption(random_chain<Rational>(20, 6)));
 }
 
-// Another route for the fractions: visits = 1 + moves visits, ends = visits times the chain's ends.
+// An independent route for the fractions: visits = 1 + moves visits, ends = visits times the
+// chain's ends.
 TEST(AbsorbingFractions, SolveTheirEquations) {
   const int n = 6;
   const auto chain = random_chain<Rational>(n, 1);
@@ -164,7 +166,7 @@ TEST(AbsorbingFractions, SolveTheirEquations) {
   }
 }
 
-/// Three states that hardly ever end: two of them, by 1 and 3 times 2^-996 (1.5e-300).
+/// Three states that hardly ever end: two of them end with 1 and 3 times 2^-996 (1.5e-300).
 template <class Number>
 AbsorbingChain<Number> nearly_closed() {
   AbsorbingChain<Number> chain(3, 2);
@@ -183,7 +185,7 @@ TYPED_TEST(Absorbing, EndsWithChance1e300) {
   EXPECT_TRUE(exact.steps[0] > Rational(1e299));
 }
 
-// LU of I - Q sees 1 - q_kk as a difference, in which the way out is lost.
+// LU of I - Q computes 1 - q_kk as a difference, in which the probability of leaving is lost.
 TEST(AbsorbingDoubles, KeepDigitsWhereLuHasNone) {
   const auto chain = nearly_closed<double>();
   const auto exact = absorption(nearly_closed<Rational>());
@@ -202,7 +204,7 @@ TEST(AbsorbingDoubles, KeepDigitsWhereLuHasNone) {
     }
 }
 
-// 0, 1, 2, 0, ...: from 2 one in eight ends.
+// A cycle 0, 1, 2, 0, ...: from state 2 one in eight ends.
 TYPED_TEST(Absorbing, APeriodicChain) {
   AbsorbingChain<TypeParam> chain(3, 1);
   chain.moves(0, 1) = chain.moves(1, 2) = TypeParam(1);
@@ -216,7 +218,7 @@ TYPED_TEST(Absorbing, APeriodicChain) {
   }
 }
 
-// Nobody comes to state 2, and state 0 never to end 1.
+// State 2 is never reached, and end 1 is never reached from state 0.
 TYPED_TEST(Absorbing, StatesThatNobodyReaches) {
   AbsorbingChain<TypeParam> chain(3, 2);
   chain.moves(0, 0) = chain.ends(0, 0) = fraction<TypeParam>(1, 2);
@@ -286,7 +288,7 @@ TEST(Enclosure, HoldsTheExactNumber) {
   EXPECT_TRUE(third > Enclosure(0.3) && !(third > third) && !(third >= third));
 }
 
-// Nothing is exactly nothing, and what is too small for a double is still held.
+// Zero is exactly zero, and a number too small for a double is still enclosed.
 TEST(Enclosure, KnowsNothingFromNextToNothing) {
   const Enclosure tiny = std::numeric_limits<double>::min();
   EXPECT_TRUE(Enclosure(0) * tiny == Enclosure(0));

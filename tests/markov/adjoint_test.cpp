@@ -68,7 +68,7 @@ TEST(Adjoint, SaysWhatPropagationSays) {
       }
 }
 
-// So many states that terms are looked at ahead.
+// Enough states that terms are prefetched.
 TEST(Adjoint, OfManyStates) {
   constexpr int kStates = 9000;
   std::vector<Exit> exits;  // to the left, ahead, to the right, in turn

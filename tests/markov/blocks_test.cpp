@@ -17,7 +17,7 @@ namespace {
 using test::expect_same_in_blocks;
 
 constexpr double kBound = 1e-12;
-constexpr double kTolerance = 1e-14;  // left walking
+constexpr double kTolerance = 1e-14;  // share of walks that may be left
 
 FinalDistribution fine(const FieldChain& chain, const Field& cells, const Start& start) {
   return predict(chain, cells, {start}, {.tolerance = kTolerance}).front();
@@ -29,7 +29,7 @@ FinalDistribution coarse(const BlockField& blocks, const Field& cells, const Sta
 Chain five_states(std::uint64_t seed = 1) {
   return Chain::from_counts(test::boundary_counts(seed), test::boundary_exits());
 }
-/// Hardly anyone is trapped, so walks see many cells.
+/// Few walks are trapped, so walks pass many cells.
 Chain long_walks() {
   Counts counts = test::boundary_counts(5);
   for (int row = 0; row < 5; ++row) {
@@ -39,7 +39,7 @@ Chain long_walks() {
   return Chain::from_counts(counts, test::boundary_exits());
 }
 
-// One state that goes up or to the right: two cells side by side are passed as binomials say.
+// One state that goes up or to the right: walks pass two neighbouring cells as binomials say.
 TEST(BlockField, TwoCellsByHand) {
   const Chain chain = Chain::from_probabilities(
       test::matrix(1, 3, {{0, 0, 0.5}, {0, 1, 0.25}, {0, 2, 0.25}}), {{0, 0, 1}, {0, 1, 0}, {}});
@@ -81,7 +81,7 @@ TEST(BlockField, BlocksNeedNotBeSquare) {
   }
 }
 
-// 3 x 3 cells, blocks of 3 x 3 such blocks, and once more.
+// 3 x 3 cells, blocks of 3 x 3 such blocks, and blocks of these.
 TEST(BlockField, BlocksOfBlocks) {
   const Chain chain = long_walks();
   for (const int cells : {9, 27, 81}) {
@@ -123,8 +123,8 @@ TEST(BlockField, TakesMovesDownAndLeaps) {
   }
 }
 
-// Cells of three types in a pattern of 3 x 3: all blocks are one type then. A block one cell high
-// makes uniform rows of it, which solver `rows` takes.
+// Cells of three types in a pattern of 3 x 3: all blocks have one type. A block one cell high makes
+// uniform rows, which solver `rows` accepts.
 TEST(BlockField, ARepeatedPatternIsOneType) {
   const FieldChain chain = test::repeated({five_states(1), five_states(2), long_walks()}, {3, 3},
                                           {0, 1, 2, 2, 2, 0, 1, 0, 2}, {9, 9});
@@ -161,7 +161,7 @@ std::string complaint(const FieldChain& chain, const Field& block, const Start& 
   return "none";
 }
 
-// A way into a block that was never sampled stays one; within a block it has no word.
+// An unsampled way into a block stays unsampled; within a block unsampled rows are refused.
 TEST(BlockField, StatesNeverSampled) {
   Counts counts = test::boundary_counts(1);
   test::empty_row(counts, 4);

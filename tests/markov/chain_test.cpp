@@ -103,7 +103,7 @@ TEST(Chain, RefusesARowThatDoesNotAddUp) {
   EXPECT_REFUSED(with_sum(0.9), "row 1 (counted from 0): probabilities sum to 0.90000000000000002");
   EXPECT_REFUSED(with_sum(1.0 + 1.1e-12), "row 1");
   EXPECT_REFUSED(with_sum(1.0 - 1.1e-12), "row 1");
-  // Nothing is normalised: what is within the tolerance stays as it came.
+  // Nothing is normalised: rows within the tolerance stay as given.
   EXPECT_EQ(with_sum(1.0 - 9e-13).matrix().coeff(1, 1), (1.0 - 9e-13) - 0.25);
 }
 

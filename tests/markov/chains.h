@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Chains that several tests walk on.
+/// Chains that several tests share.
 
 #include <gtest/gtest.h>
 
@@ -41,8 +41,8 @@ inline Probabilities matrix(int inputs, int outputs, const std::vector<Entry>& e
   return p;
 }
 
-/// The paper's shape, no physics: 87 inputs, 88 outputs of which the last is trapped; moves up
-/// (25 outputs), right (30), left (30) and down (2); about 12 outputs a row.
+/// A chain of the paper's shape without physics: 87 inputs, 88 outputs, the last of which is
+/// trapped; moves up (25 outputs), right (30), left (30) and down (2); about 12 outputs per row.
 inline std::vector<Exit> lattice_exits() {
   std::vector<Exit> exits;
   for (int j = 0; j < 87; ++j) {
@@ -62,7 +62,7 @@ inline std::vector<Exit> lattice_exits() {
   return exits;
 }
 
-/// Exits of the paper's kind: left, right and up only.
+/// Exits as in the paper: left, right and up only.
 inline std::vector<Exit> never_down() {
   auto exits = lattice_exits();
   for (Exit& exit : exits)
@@ -97,12 +97,12 @@ inline Counts lattice_counts(std::uint64_t seed) {
   return counts;
 }
 
-/// Five states, one a boundary: entered from below (0), by a move to the left (1, 3) or to the
+/// Five states, one per boundary: entered from below (0), by a move to the left (1, 3) or to the
 /// right (2, 4). The last output is trapped.
 inline std::vector<Exit> boundary_exits() {
   return {{0, 0, 1}, {1, -1, 0}, {2, 1, 0}, {3, -1, 0}, {4, 1, 0}, {}};
 }
-/// The same with moves down in state 3.
+/// The five states with moves down in state 3.
 inline std::vector<Exit> boundary_exits_down() {
   auto exits = boundary_exits();
   exits[3] = {3, 0, -1};
@@ -120,7 +120,8 @@ inline void empty_row(Counts& counts, int row) {
   counts.prune([row](Eigen::Index r, Eigen::Index, std::int64_t) { return r != row; });
 }
 
-/// Two states that pass to each other with 1 - escape, so I - Q has condition 2/escape.
+/// Two states that go to each other with probability 1 - escape, so I - Q has the condition number
+/// 2/escape.
 inline Chain nearly_closed(double escape) {
   return Chain::from_probabilities(
       matrix(2, 3, {{0, 1, 1 - escape}, {0, 2, escape}, {1, 0, 1 - escape}, {1, 2, escape}}),
@@ -130,7 +131,7 @@ inline Chain nearly_closed(double escape) {
 inline constexpr Field kNineByNine{9, 9};
 inline constexpr Start kBottomCentre{4, 0, 12};
 
-/// The same endings, in all and cell by cell, within `bound` each.
+/// Expects equal endings, in total and in each cell, within `bound` each.
 inline void expect_same_endings(const FinalDistribution& a, const FinalDistribution& b,
                                 double bound) {
   for (std::size_t e = 0; e < kEndings; ++e)
@@ -139,7 +140,7 @@ inline void expect_same_endings(const FinalDistribution& a, const FinalDistribut
   EXPECT_LE((departed_cells(a) - departed_cells(b)).abs().maxCoeff(), bound);
 }
 
-/// The cells' endings add up to those of the field, and to the cells' numbers.
+/// Expects the cells' endings to add up to those of the field, and to the cells' numbers.
 inline void expect_endings_add_up(const FinalDistribution& d) {
   constexpr double kFewEps = 1e-14;
   EXPECT_NEAR(trapped_cells(d).sum(), d.trapped(), kFewEps);
@@ -156,7 +157,7 @@ inline void expect_endings_add_up(const FinalDistribution& d) {
 
 inline constexpr auto kFar = static_cast<std::size_t>(Ending::far_edge);
 
-/// A walk gains 1 by crossing.
+/// Gains of 1 for crossing.
 inline Gains crossing() {
   Gains gains;
   gains.ending[kFar] = 1.0;
@@ -168,7 +169,7 @@ inline std::vector<Exit> few_exits() { return {{0, 0, 1}, {1, 1, 0}, {1, -1, 0},
 inline Chain few(const std::vector<Entry>& entries) {
   return Chain::from_probabilities(matrix(2, 5, entries), few_exits());
 }
-/// Without the ways back and left nobody comes to a cell again.
+/// Without moves back and to the left no walk returns to a cell.
 inline Chain random_chain(Words& words, bool comes_back = true) {
   std::vector<Entry> entries;
   for (int input = 0; input < 2; ++input) {

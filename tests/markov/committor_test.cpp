@@ -16,7 +16,8 @@ namespace {
 
 using namespace test;
 
-// From every state of some cells: what a prediction without limit says of the far edge.
+// From every state of some cells, the committor equals the share over the far edge in a prediction
+// without a limit.
 TEST(Committor, IsTheChanceOfTheFarEdge) {
   const Chain chain = Chain::from_counts(lattice_counts(3), never_down());
   const Field field{5, 6};
@@ -31,7 +32,7 @@ TEST(Committor, IsTheChanceOfTheFarEdge) {
       }
 }
 
-// One way up with chance q a row: q^n, however small.
+// A single way up with probability q per row: q^n, however small.
 TEST(Committor, KeepsItsDigitsWhereItIsSmall) {
   const double q = 0.01;
   const Chain chain =
@@ -49,15 +50,15 @@ TEST(Committor, TakesCellsOfSeveralTypes) {
   EXPECT_DOUBLE_EQ(committor(rows, {2, 3})(0, 0, 0), 0.5 * 0.25 * 0.25);
 }
 
-// Rows of one type are solved in registers, by strips, rows of several cell by cell: of cells that
-// are all alike the same, also where walks stay long in a row, and leave by a side.
+// Rows of one type are solved in registers, by strips; rows of several types cell by cell. For
+// equal cells both give the same, also if walks stay long in a row and leave by a side.
 TEST(Committor, IsTheSameByEitherRoute) {
   for (const int far : {1, 3})
     for (const double stays : {0.3, 0.95}) {
       std::vector<Exit> exits = never_down();
       for (Exit& exit : exits) exit.di_x *= far;
       Probabilities p = Chain::from_counts(lattice_counts(3), exits).matrix();
-      for (int row = 0; row < p.rows(); ++row) {  // so much within the row, the rest ahead and ends
+      for (int row = 0; row < p.rows(); ++row) {  // p within the row, the rest ahead or ending
         double within = 0.0;
         for (Probabilities::InnerIterator it(p, row); it; ++it)
           within += exits[static_cast<std::size_t>(it.col())].di_x != 0 ? it.value() : 0.0;
@@ -80,8 +81,8 @@ TEST(Committor, IsTheSameByEitherRoute) {
     }
 }
 
-// One state that moves to either side with 0.05, or on with 0.4: over the left side of a single
-// row.
+// One state that moves to either side with 0.05, or ahead with 0.4: the probability to leave over
+// the left side of a single row.
 TEST(Committor, KnowsSmallChancesAsWellAsLargeOnes) {
   const Chain chain = Chain::from_probabilities(
       matrix(1, 4, {{0, 0, 0.05}, {0, 1, 0.05}, {0, 2, 0.4}, {0, 3, 0.5}}),
@@ -105,12 +106,12 @@ TEST(Committor, KnowsSmallChancesAsWellAsLargeOnes) {
   }
 }
 
-// A gambler who wins a game with chance p: by hand (r^n - 1) / (r^N - 1) with r = (1 - p) / p, of
-// few states (eliminated), of many (swept), and of a fair game, where r is 1: n / N.
+// A gambler who wins a game with probability p. By hand: (r^n - 1) / (r^N - 1) with r = (1 - p) /
+// p, for few states (elimination) and many (sweeps); for a fair game, r = 1: n / N.
 TEST(Committor, OfMovesBackIsTheGamblersRuin) {
   for (const int rows : {9, 1500})
     for (const double p : {0.4, 0.5, 0.6}) {
-      if (p == 0.5 && rows > 9) continue;  // circles for too long
+      if (p == 0.5 && rows > 9) continue;  // walks circle too long
       const Chain chain = Chain::from_probabilities(matrix(1, 2, {{0, 0, p}, {0, 1, 1 - p}}),
                                                     {{0, 0, 1}, {0, 0, -1}});
       const Committor won = committor(chain, {1, rows}),
@@ -128,7 +129,7 @@ TEST(Committor, OfMovesBackIsTheGamblersRuin) {
     }
 }
 
-// Who circles between two rows for ever has no ending.
+// Walks that circle between two rows for ever have no ending.
 TEST(Committor, LeavesOutWalksThatNeverEnd) {
   // State 0: on with 1/2, into the circle with 1/4, else trapped; 1 and 2: up and down.
   const Chain chain = Chain::from_probabilities(
@@ -136,13 +137,13 @@ TEST(Committor, LeavesOutWalksThatNeverEnd) {
       {{0, 0, 1}, {1, 0, 1}, {2, 0, -1}, {}});
   const Committor far = committor(chain, {1, 2}),
                   trapped = committor(chain, {1, 2}, Ending::trapped);
-  // In the second row both ways on lead over the edge: 1/2 * 3/4, and 1/4 + 1/2 * 1/4.
+  // In the second row both ways ahead lead over the edge: 1/2 * 3/4, and 1/4 + 1/2 * 1/4.
   EXPECT_DOUBLE_EQ(far(0, 0, 0), 0.375);
   EXPECT_DOUBLE_EQ(trapped(0, 0, 0), 0.375);
   EXPECT_EQ(far(0, 1, 1), 0.0);
 }
 
-// Of two types of rows: from the first up into the second, and back again.
+// Rows of two types: from the first up into the second, and back again.
 TEST(Committor, LeavesOutWalksThatCircleThroughCellsOfSeveralTypes) {
   const auto all_go = [](int rows) {
     return Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{0, 0, rows}});
@@ -151,8 +152,8 @@ TEST(Committor, LeavesOutWalksThatCircleThroughCellsOfSeveralTypes) {
   EXPECT_EQ(far.values, (std::vector<double>{0.0, 0.0, 1.0}));
 }
 
-// All go back, row by row, to the near edge: who can end is found in one go, not row after row
-// through all rows, which would take hours.
+// All walks go back, row by row, to the near edge. The states that can end are found in one pass;
+// one row at a time through all rows would take hours.
 TEST(Committor, OfManyRowsTakesNoLongerThanTheyAreMany) {
   constexpr int kRows = 1'000'000;
   const Chain back =
@@ -162,7 +163,7 @@ TEST(Committor, OfManyRowsTakesNoLongerThanTheyAreMany) {
     for (const int input : {0, 1}) EXPECT_EQ(near(0, row, input), 1.0);
 }
 
-// Of moves to all sides, what a prediction without limit says, by a direct solve.
+// With moves to all sides the committor equals a prediction without a limit, by a direct solve.
 TEST(Committor, OfMovesToAllSidesIsWhatAPredictionSays) {
   const Chain chain = Chain::from_counts(lattice_counts(3), lattice_exits());
   for (const Field& field : {Field{3, 3}, Field{5, 6}})  // eliminated, swept
@@ -178,7 +179,7 @@ TEST(Committor, OfMovesToAllSidesIsWhatAPredictionSays) {
   EXPECT_THROW((void)row_chances(chain, {5, 6}, {}), std::invalid_argument);
 }
 
-// From left to right and back, and out of it once in a million: sweeps do not get there.
+// From left to right and back, and out once in a million: sweeps do not converge.
 TEST(Committor, KnowsWhereWalksCircleForLong) {
   const double out = 1e-6;
   // left (state 0): to the right, up, trapped; right (state 1): to the left.

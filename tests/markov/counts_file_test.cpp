@@ -27,8 +27,8 @@
 
 namespace {
 
-// The calls by which a file reaches the disk, so that a test can let the k-th of them fail. They
-// stand before the C library's; unarmed they pass everything on.
+// The system calls that write a file, so that a test can make the k-th of them fail. They replace
+// the C library's calls and, unless armed, pass everything on.
 struct Disk {
   bool armed = false;
   bool for_ever = false;
@@ -86,7 +86,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A folder of its own for each test.
+// A fixture with a folder for each test.
 class ChainIo : public testing::Test {
  protected:
   ChainIo() {
@@ -167,8 +167,8 @@ void put_bytes(const std::string& path, const std::string& bytes) {
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-// What read_counts says of the file; everything else on the way (a message on stderr, another
-// exception) is a failure.
+// The message of read_counts about a file; anything else (output on stderr, another exception) is a
+// failure.
 std::string complaint(const std::string& path) {
   testing::internal::CaptureStderr();
   std::string what = "accepted";
@@ -187,7 +187,7 @@ void expect_complaint(const std::string& path, const std::string& part) {
   EXPECT_NE(what.find(part), std::string::npos) << what;
 }
 
-// CRC-64/XZ bit by bit, and the checksum as chain_io.h describes it.
+// CRC-64/XZ bit by bit, and the checksum as markov/formats/counts.h describes it.
 std::uint64_t crc64(const std::string& bytes) {
   std::uint64_t crc = ~std::uint64_t{0};
   for (const char byte : bytes) {
@@ -221,16 +221,17 @@ TEST_F(ChainIo, RoundTrip) {
   EXPECT_FALSE(same(read_counts(path()), file));
 }
 
-// HDF5 has its switch for printing in every thread, and NetCDF asks it for much that is not there.
+// HDF5 has a switch for printing in every thread, and NetCDF asks HDF5 for much that does not
+// exist.
 TEST_F(ChainIo, NothingIsPrintedInAnyThread) {
-  write_counts(path(), example());  // NetCDF begins in this thread
+  write_counts(path(), example());  // NetCDF is first called in this thread
   testing::internal::CaptureStderr();
   std::thread([&] { EXPECT_TRUE(same(read_counts(path()), example())); }).join();
   std::thread([&] { write_counts(path(), example()); }).join();
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-/// Any file that may be written: 1 to 9 rows, some of them empty, now and then the largest numbers.
+/// A random valid file: 1 to 9 rows, some of them empty, sometimes with the largest numbers.
 CountsFile any_file(test::Words& words) {
   const auto any = [&](std::initializer_list<double> numbers) {
     return numbers.begin()[words.below(static_cast<int>(numbers.size()))];
@@ -245,7 +246,8 @@ CountsFile any_file(test::Words& words) {
         const std::int64_t most = std::numeric_limits<std::int64_t>::max() - sum;
         const std::int64_t count =
             words.below(20) == 0 ? most : std::min<std::int64_t>(most, words.below(100));
-        some.counts.coeffRef(row, words.below(columns)) += count;  // or a stored zero, no content
+        // Or a stored zero, which is no content.
+        some.counts.coeffRef(row, words.below(columns)) += count;
         sum += count;
       }
       some.trials.push_back(sum);
@@ -280,7 +282,8 @@ CountsFile any_file(test::Words& words) {
   return file;
 }
 
-// Numbers to the bit; arrays come back by name. The same content is the same bytes.
+// Numbers are equal to the bit; arrays are read back by name. The same content gives the same
+// bytes.
 TEST_F(ChainIo, AnyFileReadsBackTheSame) {
   test::Words words(3);
   for (int k = 0; k < 100; ++k) {
@@ -300,7 +303,7 @@ TEST_F(ChainIo, AnyFileReadsBackTheSame) {
   }
 }
 
-// Room for more between the rows holds no counts.
+// Free space between the rows of a matrix holds no counts.
 TEST_F(ChainIo, NumbersOfCountsMayComeWithAMatrixThatHasGaps) {
   CountsFile file = example();
   file.counts.makeCompressed();
@@ -333,7 +336,7 @@ TEST_F(ChainIo, RelativePathsAndOddNames) {
   fs::current_path(before);
 }
 
-// ---- What does not add up is not written ----
+// ---- Inconsistent content is not written ----
 
 TEST_F(ChainIo, RefusesToWriteWhatDoesNotAddUp) {
   write_counts(path(), example());
@@ -474,7 +477,7 @@ struct Variable {
   nc_type type;
 };
 
-// A small file as chain_io.h lays it out: 2 inputs, 3 outputs.
+// A small file in the layout of markov/formats/counts.h: 2 inputs, 3 outputs.
 struct Draft {
   std::map<std::string, std::size_t> dimensions = {
       {"input_state", 2}, {"output_state", 3}, {"nonzero", 4}};
@@ -592,7 +595,7 @@ TEST_F(ChainIo, RefusesEveryMalformedDraft) {
       d.variables.at(name).values.clear();
     }
   });
-  // More numbers than the bytes of the file can hold, nothing behind them.
+  // More numbers than the bytes of the file can hold, and no data behind them.
   for (const std::size_t length : {std::size_t{100'000'000}, std::size_t{1} << 40}) {
     refused("is absurdly long", [&](Draft& d) {
       d.dimensions["nonzero"] = length;
@@ -616,7 +619,7 @@ TEST_F(ChainIo, RefusesEveryMalformedDraft) {
   });
   refused("attribute seed is not text", [](Draft& d) { d.numbers["seed"] = 1; });
   refused("name \"1st\"", [](Draft& d) { d.text["1st"] = "x"; });
-  // A variable that is not ours must be a NamedArray.
+  // A variable of another name must be a NamedArray.
   refused("attribute long_name", [](Draft& d) {
     d.dimensions["extra_length"] = 1;
     d.variables["extra"] = {"extra_length", {1}, NC_DOUBLE};
@@ -724,7 +727,7 @@ TEST_F(ChainIo, TakesANameAsLongAsAFileCanHave) {
   EXPECT_TRUE(same(read_counts(path(std::string(255, 'n'))), example()));
 }
 
-// Sparse files: were they read into memory, the limit below would stop the program.
+// Sparse files: if they were read into memory, the limit below would stop the program.
 TEST_F(ChainIo, RefusesALargeFileInConstantMemory) {
   const std::string begin = "\x89HDF\r\n\x1a\n";
   put_bytes(path("zeros"), "");
@@ -748,7 +751,7 @@ TEST_F(ChainIo, RefusesALargeFileInConstantMemory) {
   EXPECT_LT(resident() - before, 20'000);
 }
 
-// A mark that lies across two of the pieces that are read, and a second one far behind the first.
+// A mark that crosses two of the pieces that are read, and a second mark far behind the first.
 TEST_F(ChainIo, FindsTheChecksumWhereverItStands) {
   const std::string begin = "\x89HDF\r\n\x1a\n";
   for (int shift = 0; shift < 12; ++shift) {

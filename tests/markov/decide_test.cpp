@@ -25,13 +25,13 @@ using test::kFar;
 using test::propagate;
 using test::random_chain;
 
-/// From column 0 in state 0 to column 1 in state 1, and back, for ever.
+/// A chain that goes from column 0 in state 0 to column 1 in state 1, and back, for ever.
 Chain closed() {
   return Chain::from_probabilities(matrix(2, 2, {{0, 1, 1.0}, {1, 0, 1.0}}),
                                    {{0, -1, 0}, {1, 1, 0}});
 }
 
-/// What is gained in each cell and state where `decisions` are kept for ever, by a dense solve.
+/// The gain in each cell and state if `decisions` are kept for ever, by a dense solve.
 template <int N>
 Eigen::Matrix<double, N, 1> gained(const std::vector<FieldChain>& actions, const Field& field,
                                    const Gains& gains, const std::uint16_t* action) {
@@ -76,7 +76,7 @@ TEST(Decide, IsTheBestOfAllPoliciesOfASmallField) {
   }
 }
 
-/// The most that can be gained in so many draws, all ways tried.
+/// The largest gain in this number of draws, by trying all ways.
 double most_gained(const std::vector<FieldChain>& actions, const Field& field, const Gains& gains,
                    const Start& from, int draws) {
   double most = -1e300;
@@ -116,7 +116,7 @@ TEST(Decide, WithALimitKnowsHowManyDrawsAreLeft) {
   }
 }
 
-/// The paper's size: 87 states, and as many chains as there are actions.
+/// The paper's size: 87 states, one chain per action.
 std::vector<FieldChain> nine_actions() {
   std::vector<FieldChain> actions;
   for (int a = 0; a < 9; ++a)
@@ -140,7 +140,7 @@ TEST(Decide, ValueIsWhatPlainPropagationOfItsDecisionsSays) {
     for (const FieldChain& action : actions) most_single = std::max(most_single, chance(action));
     EXPECT_GT(best.value[best.at(4, 0, input)], most_single);
   }
-  // With a limit: each draw by the decisions of its number.
+  // With a limit, each draw follows the decisions for its number.
   constexpr int kLimit = 13;
   const Decisions limited = decide(actions, field, crossing(), {.max_cells = kLimit});
   std::vector<double> now(static_cast<std::size_t>(9 * 9 * 87), 0.0);
@@ -168,8 +168,8 @@ TEST(Decide, ValueIsWhatPlainPropagationOfItsDecisionsSays) {
   EXPECT_NEAR(crossed, limited.value[limited.at(4, 0, 13)], 1e-10);
 }
 
-// Actions between which walks could circle for ever are as good, by the equation of optimality, as
-// the one that goes on; who takes them gains nothing.
+// By the equation of optimality, actions between which walks could circle for ever are as good as
+// the one that goes on; a walk that takes them gains nothing.
 TEST(Decide, DoesNotCircleWhereAllWaysLookAlike) {
   const FieldChain aside(few({{0, 1, 1.0}, {1, 1, 1.0}}));  // right for sure
   const FieldChain back(few({{0, 2, 1.0}, {1, 2, 1.0}}));   // left for sure
@@ -183,12 +183,12 @@ TEST(Decide, DoesNotCircleWhereAllWaysLookAlike) {
     for (int column = 0; column < 4; ++column)
       EXPECT_NEAR(solve_absorption(chain, field, {column, 0, 1}).endings[kFar], 0.5, 1e-12);
   }
-  // Only circling: nothing is gained, and that is found.
+  // If walks can only circle, the gain is 0.
   const Decisions none = decide({closed()}, {2, 1}, crossing());
   EXPECT_EQ(*std::max_element(none.value.begin(), none.value.end()), 0.0);
 }
 
-/// The same chain with its outputs in another order, so that sums are rounded otherwise.
+/// The chain with its outputs in another order, so that sums round differently.
 Chain reversed(const Chain& chain) {
   const int outputs = chain.outputs();
   Probabilities p(chain.inputs(), outputs);
@@ -199,10 +199,9 @@ Chain reversed(const Chain& chain) {
   return Chain::from_probabilities(std::move(p), std::move(exits));
 }
 
-// Of actions that are as good but for rounding the first is taken.
+// Of actions that are equal up to rounding, the first is chosen.
 TEST(Decide, ADrawThatWasNeverSampledCostsToo) {
-  // The first action's row was never sampled: a walk ends there, which is worth nothing, less its
-  // cost.
+  // The first action's row is unsampled: a walk ends there, which gains nothing and costs the draw.
   const Chain never = Chain::from_counts(Counts(1, 1), {{0, 0, 1}});
   const Chain sure = Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{0, 0, 1}});
   for (const double cost : {-0.4, -2.0}) {
@@ -226,7 +225,7 @@ TEST(Decide, TakesTheFirstOfEqualActions) {
   EXPECT_EQ(*std::max_element(best.action.begin(), best.action.end()), 0);
 }
 
-// To circle costs little at first.
+// Circling costs little at first.
 TEST(Decide, LeavesACheapCircle) {
   const FieldChain ahead(
       Chain::from_probabilities(matrix(2, 1, {{0, 0, 1.0}, {1, 0, 1.0}}), {{0, 0, 1}}));
@@ -236,7 +235,7 @@ TEST(Decide, LeavesACheapCircle) {
   const Decisions best = decide(actions, {2, 1}, gains);
   EXPECT_EQ(best.action[best.at(0, 0, 0)], 1);
   EXPECT_NEAR(best.value[best.at(0, 0, 0)], -1.0, 1e-12);
-  // The better action has the value that was there to begin with.
+  // The better action has the initial value.
   const FieldChain trapped(
       Chain::from_probabilities(matrix(2, 1, {{0, 0, 1.0}, {1, 0, 1.0}}), {{}}));
   gains.draw = {{{-1.0, -1.0}}, {{-1.0, -1.0}}};
@@ -245,7 +244,7 @@ TEST(Decide, LeavesACheapCircle) {
   EXPECT_EQ(free.value[0], 0.0);
 }
 
-// Chances that are next to nothing are found, and what to do for them.
+// Tiny probabilities and the decisions for them are found.
 TEST(Decide, FindsRareChances) {
   const std::vector<FieldChain> actions{few({{0, 0, 0.001}, {0, 4, 0.999}, {1, 4, 1.0}}),
                                         few({{0, 0, 0.002}, {0, 4, 0.998}, {1, 4, 1.0}})};
@@ -255,8 +254,8 @@ TEST(Decide, FindsRareChances) {
   EXPECT_EQ(best.action[best.at(0, 0, 0)], 1);
 }
 
-// Rows that no longer change keep their decisions; moves lead over several cells, and each edge and
-// ending gains something else.
+// Rows that no longer change keep their decisions. Moves lead over several cells, and each edge and
+// ending has another gain.
 TEST(Decide, WithALongLimitIsPlainPropagation) {
   test::Words words(21);
   std::vector<FieldChain> actions;
@@ -271,7 +270,7 @@ TEST(Decide, WithALongLimitIsPlainPropagation) {
   const Field field{4, 12};
   constexpr int kLimit = 80;
   const Decisions best = decide(actions, field, gains, {.max_cells = kLimit});
-  // Far from its end a limit means nothing: decisions for ever have the same value.
+  // Far from the limit, decisions have the same value as without a limit.
   const Decisions endless = decide(actions, field, gains);
   const FieldChain first = decided(actions, best), always = decided(actions, endless);
   for (const int input : {0, 17, 40}) {
@@ -286,7 +285,7 @@ TEST(Decide, WithALongLimitIsPlainPropagation) {
     EXPECT_NEAR(gained(first), best.value[best.at(1, 0, input)], 1e-7);
     EXPECT_NEAR(best.value[best.at(1, 0, input)], endless.value[endless.at(1, 0, input)], 1e-7);
   }
-  // What is done after the first draws, too.
+  // The decisions after the first draws as well.
   const FieldChain later = decided(actions, best, 5);
   EXPECT_EQ(propagate(later, field, {1, 3, 0}).endings, propagate(first, field, {1, 3, 0}).endings);
 }
@@ -314,15 +313,15 @@ TEST(Decide, RefusesWhatHasNoAnswer) {
   EXPECT_THROW((void)decide({actions[0], nine_actions()[0]}, field, crossing()),
                std::invalid_argument);
   Gains gains = crossing();
-  gains.ending[0] = -1.0;  // to circle would be better
+  gains.ending[0] = -1.0;  // circling would be better
   EXPECT_THROW((void)decide(actions, field, gains), std::invalid_argument);
   EXPECT_NO_THROW((void)decide(actions, field, gains, {.max_cells = 3}));
   gains = crossing();
-  gains.draw = {{{-0.1, 0.0}}, {{-0.1, -0.1}}};  // a draw for nothing
+  gains.draw = {{{-0.1, 0.0}}, {{-0.1, -0.1}}};  // a draw without cost
   EXPECT_THROW((void)decide(actions, field, gains), std::invalid_argument);
   gains.draw.pop_back();
   EXPECT_THROW((void)decide(actions, field, gains, {.max_cells = 3}), std::invalid_argument);
-  // Each draw costs something, and nothing ends: no value.
+  // Each draw costs something and no walk ends, so there is no value.
   gains.draw = {{{-0.1, -0.1}}};
   EXPECT_THROW((void)decide({closed()}, {2, 1}, gains, {.max_sweeps = 1000}), std::runtime_error);
   const Decisions best = decide(actions, field, crossing());

@@ -42,7 +42,7 @@ std::vector<int> own_map(const FieldChain& chain, const Field& field) {
   return map;
 }
 
-/// The best of all maps that differ in `changes` cells at most from `cell` on.
+/// The best of all maps that differ in at most `changes` cells from `cell` on.
 double best_of_all(const FieldChain& chain, const Field& field, const Start& start, int max_cells,
                    std::vector<int>& map, std::size_t cell, int changes, double sign) {
   double best = sign * crosses(chain, field, start, max_cells, map);
@@ -115,7 +115,7 @@ TEST(Design, IsTheBestOfAllMapsOfSixteenCells) {
   }
 }
 
-// All cells may change, each among two of four types: the best of all 512 maps.
+// All cells may change, each between two of four types: the best of all 512 maps.
 TEST(Design, CellsStayOfTheirKind) {
   const Field field{3, 3};
   const Start start{1, 0, 0};
@@ -149,7 +149,7 @@ TEST(Design, CellsStayOfTheirKind) {
   }
 }
 
-// Walks that never come back to a cell: what a change alone does is linear in it.
+// If walks never return to a cell, the effect of a single change is linear.
 TEST(Design, TheGradientIsExactWhereNobodyComesBack) {
   test::Words words(11);
   const Field field{4, 4};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Walks that circle long, or for ever: a sum over their moves would have to be stopped early.
+// Walks that circle long or for ever, for which a sum over moves would have to stop early.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -21,9 +21,9 @@ constexpr Solver kAutomatic = Solver::automatic;
 
 double of(const FinalDistribution& d, Ending e) { return d.endings[static_cast<std::size_t>(e)]; }
 
-/// Ahead to the right (3/4) or back out of the field; then left and right between two cells, with a
-/// chance `leave` to go ahead at every second move; back in row 0: out. In a field of 3 x 3 cells
-/// all who go right cross.
+/// Ahead to the right (3/4) or back out of the field; then left and right between two cells, with
+/// probability `leave` to go ahead at every second move; back in row 0: out. In a field of 3 x 3
+/// cells all walks that go right cross.
 Chain rarely_leaves(double leave) {
   return Chain::from_probabilities(matrix(4, 5,
                                           {{0, 1, 0.75},
@@ -35,8 +35,8 @@ Chain rarely_leaves(double leave) {
                                    {{0, 0, 1}, {1, 1, 0}, {2, -1, 0}, {3, 0, -1}, {}});
 }
 
-/// Round a cycle of three cells of a row of four, by steps of +1, +1 and -2 cells; from the third
-/// `up` goes ahead (and so out of the field of one row), `trapped` is trapped.
+/// A cycle of three cells in a row of four, by steps of +1, +1 and -2 cells; from the third cell
+/// `up` go ahead (and so out of the field of one row), `trapped` are trapped.
 Chain round_of_three(double up, double trapped) {
   return Chain::from_probabilities(
       matrix(3, 5,
@@ -44,15 +44,15 @@ Chain round_of_three(double up, double trapped) {
       {{0, -2, 0}, {1, 1, 0}, {2, 1, 0}, {0, 0, 1}, {}});
 }
 
-// Closed form: nobody is lost, and a walk makes 2 / leave moves in each row it circles in.
+// Closed form: no mass is lost, and a walk makes 2 / leave moves in each row in which it circles.
 TEST(Circling, EndsAreRightHoweverSeldomWalksLeave) {
   for (const double leave : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15}) {
     SCOPED_TRACE(leave);
     const FinalDistribution d =
         predict(FieldChain(rarely_leaves(leave)), {3, 3}, {{1, 0, 0}}).front();
-    // Row 0: 1/4 goes back. Who goes right circles, goes ahead into row 1, where again 3/4 go right
-    // and 1/4 back into row 0, where state `back` goes ahead.
-    // In row 1 and 2 state `back` of the row below leads ahead again: all of them cross in the end.
+    // Row 0: 1/4 go back. Walks that go right circle, then go ahead into row 1, where again 3/4 go
+    // right and 1/4 back into row 0, where state `back` goes ahead. In rows 1 and 2 state `back` of
+    // the row below leads ahead again, so all of them cross in the end.
     EXPECT_NEAR(of(d, Ending::near_edge), 0.25, 1e-13);
     EXPECT_NEAR(of(d, Ending::far_edge), 0.75, 1e-13);
     EXPECT_LE(d.remainder + d.rounding, 1e-12);
@@ -60,7 +60,7 @@ TEST(Circling, EndsAreRightHoweverSeldomWalksLeave) {
   }
 }
 
-// By rows, of moves that RowElimination does not take.
+// Row by row, with moves that RowElimination does not take.
 TEST(Circling, RoundsOfThreeEndByTheirChances) {
   for (const double leave : {1e-3, 1e-6, 1e-9, 1e-12}) {
     SCOPED_TRACE(leave);
@@ -75,7 +75,7 @@ TEST(Circling, RoundsOfThreeEndByTheirChances) {
   }
 }
 
-// Half of the walks get into two states that lead to each other and nowhere else.
+// Half of the walks enter two states that lead only to each other.
 TEST(Circling, WhatNeverEndsIsTold) {
   const Chain chain =
       Chain::from_probabilities(matrix(3, 4, {{0, 1, 0.5}, {0, 3, 0.5}, {1, 2, 1.0}, {2, 1, 1.0}}),
@@ -94,7 +94,7 @@ TEST(Circling, WhatNeverEndsIsTold) {
 }
 
 // A second route: dense elimination, state by state, of random chains with ways back; and the same
-// bits alone and in company.
+// bits alone and together.
 TEST(Circling, AgreesWithDenseElimination) {
   test::Words words(5);
   for (int k = 0; k < 30; ++k) {
@@ -123,7 +123,7 @@ TEST(Circling, AgreesWithDenseElimination) {
   }
 }
 
-// The paper's shape with ways down: 7000 states, which sums settle too.
+// The paper's shape with moves down: 7000 states, for which sums also converge.
 TEST(Circling, AgreesWithSumsInALargerField) {
   const FieldChain chain(Chain::from_counts(test::lattice_counts(3), test::lattice_exits()));
   const Field field{5, 4};
@@ -137,8 +137,8 @@ TEST(Circling, AgreesWithSumsInALargerField) {
       std::invalid_argument);
 }
 
-// Where elimination without subtraction would be too large KLU's LU is taken, whose digits the
-// answer tells; where it keeps too few, none.
+// Where elimination without subtraction would be too large, KLU's LU is used, and the result states
+// its digits; if it keeps too few, there is no result.
 TEST(Circling, TooLargeForEliminationByKlu) {
   const int kStates = 60;
   const auto circling = [kStates](double trapped, double most_operations) {
@@ -167,7 +167,7 @@ TEST(Circling, TooLargeForEliminationByKlu) {
   EXPECT_FALSE(circling(1e-12, 1e3));
 }
 
-// What sums settle in time is left to them: the same bits as they give.
+// If sums converge in time they are used: the same bits.
 TEST(Circling, SumsThatSettleStay) {
   const FieldChain chain(Chain::from_counts(test::lattice_counts(4), test::lattice_exits()));
   const FinalDistribution
@@ -176,7 +176,7 @@ TEST(Circling, SumsThatSettleStay) {
   EXPECT_EQ(automatic.endings, steps.endings);
   EXPECT_EQ(automatic.operations, 0.0);
   EXPECT_GT(automatic.steps, 0);
-  // 10^-3 a round takes some 10^5 sums.
+  // 10^-3 per round takes some 10^5 sums.
   EXPECT_GT(predict(FieldChain(rarely_leaves(1e-3)), {3, 3}, {{1, 0, 0}}).front().operations, 0.0);
 }
 

@@ -25,7 +25,7 @@ using Values = std::vector<double>;
 
 double uniform(test::Words& words) { return (words.below(1'000'000) + 0.5) / 1e6; }
 
-/// One cell, one draw: over four edges and trapped, in this order.
+/// One cell and one draw: over four edges or trapped, in this order.
 const std::vector<Ending> kWays{Ending::far_edge, Ending::right_edge, Ending::left_edge,
                                 Ending::near_edge, Ending::trapped};
 double least_mean(const Values& p, const Values& v, double deviations, double runs) {
@@ -56,7 +56,7 @@ Values random_values(test::Words& words, std::size_t outputs) {
   return v;
 }
 
-// Three outputs: q in all directions from p, as far as the set goes.
+// Three outputs: q in all directions from p, up to the border of the set.
 TEST(Decide, TheWorstRowIsTheLeastOfAllOfItsSet) {
   test::Words words(5);
   for (int row = 0; row < 300; ++row) {
@@ -74,7 +74,7 @@ TEST(Decide, TheWorstRowIsTheLeastOfAllOfItsSet) {
       for (std::size_t k = 0; k < 3; ++k) sum += (p[k] + far * d[k]) * v[k];
       return sum;
     };
-    // Finer and finer about the best.
+    // Ever finer steps around the best.
     double best = 0.0, width = std::acos(-1.0), least = mean(0.0);
     for (; width > 1e-13; width /= 50.0)
       for (int i = -200; i <= 200; ++i)
@@ -86,8 +86,8 @@ TEST(Decide, TheWorstRowIsTheLeastOfAllOfItsSet) {
   }
 }
 
-/// Another way: of all sets of outputs that might keep something, the least mean of those q that
-/// Lagrange's rule gives for them without heed of signs, and that have none below 0.
+/// An independent method: over all subsets of outputs that may keep probability, the least mean of
+/// the q that Lagrange's rule gives without regard to signs, if no q is negative.
 double least_by_supports(const Values& p, const Values& v, double radius) {
   constexpr double kAlike = 1e-25;  // variance of values that differ by rounding
   double least = std::numeric_limits<double>::infinity();
@@ -132,7 +132,7 @@ TEST(Decide, TheWorstRowOfManyOutputsIsThatOfLagrange) {
       mean += p[k] * v[k];
       squares += p[k] * v[k] * v[k];
     }
-    // The normal interval's end where no q would have to be below 0, above it elsewhere.
+    // The end of the normal interval if no q would be negative, else above it.
     const double end = mean - 1.96 * std::sqrt((squares - mean * mean) / runs);
     EXPECT_GE(found, end - 1e-12);
     EXPECT_GE(found, *std::min_element(v.begin(), v.end()));
@@ -146,7 +146,7 @@ Doubt doubt(double deviations, std::size_t actions, const Values& runs) {
   return {deviations, std::vector(actions, std::vector(1, runs))};
 }
 
-/// What a draw by `action` is worth at worst, in a field of two states for a cell.
+/// The worst-case value of a draw by `action`, in a field of two states per cell.
 double worst_draw(const Chain& chain, const Field& field, const Gains& gains, int cell, int input,
                   double radius, const Values& of_state, bool last_draw = false) {
   Values p, v;
@@ -228,7 +228,7 @@ TEST(Decide, InDoubtWithALimitNatureKnowsTheDrawsToo) {
   }
 }
 
-/// The paper's size, and the runs of its rows.
+/// Chains of the paper's size with the runs of their rows.
 struct Sampled {
   std::vector<FieldChain> actions;
   Doubt doubt;
@@ -286,7 +286,7 @@ TEST(Decide, WhatIsSureFallsWithDoubt) {
   }
 }
 
-// Where a row may keep a walk in the field for ever it is worth nothing, and another is taken.
+// A row that may keep a walk in the field for ever has the value 0, and another is chosen.
 TEST(Decide, InDoubtLeavesWhatMayCircle) {
   const FieldChain circle(few({{0, 1, 0.97}, {0, 0, 0.03}, {1, 2, 0.97}, {1, 0, 0.03}}));
   const FieldChain ahead(few({{0, 0, 0.5}, {0, 4, 0.5}, {1, 0, 0.5}, {1, 4, 0.5}}));
@@ -299,8 +299,8 @@ TEST(Decide, InDoubtLeavesWhatMayCircle) {
   EXPECT_EQ(*std::max_element(alone.value.begin(), alone.value.end()), 0.0);
 }
 
-// By simulation: what is sure of decisions by few runs lies below what they are worth, nearly
-// always; what the counts say of the best by them is often above it.
+// By simulation: the sure value of decisions from few runs is nearly always below their true value;
+// the value that the counts give to the best decisions is often above it.
 TEST(Decide, WhatIsSureIsBelowTheTruth) {
   constexpr int kSets = 300, kRuns = 40;
   const Field field{4, 4};

@@ -8,7 +8,7 @@ namespace {
 
 using Counted = Ends<std::int64_t>;
 
-/// A field of four cells: all are trapped in those that `mixed` does not list.
+/// A field of four cells; in cells that `mixed` does not list, all bodies are trapped.
 Counted ends(const std::array<std::int64_t, 4>& final_cells,
              std::vector<CellEndings<std::int64_t>> mixed) {
   Counted e;
@@ -30,7 +30,7 @@ CellEndings<std::int64_t> cell(std::int64_t at, std::int64_t trapped, std::int64
   return c;
 }
 
-// Cells that are mixed in both, in one and in the other.
+// Cells that are mixed in both, in one or in the other.
 TEST(Ends, AddCellByCellAndByEnding) {
   Counted sum = ends({5, 3, 0, 7}, {cell(1, 1, 2, 0), cell(3, 4, 2, 1)});
   sum += ends({2, 2, 1, 4}, {cell(0, 0, 0, 2), cell(3, 1, 3, 0)});
@@ -45,7 +45,7 @@ TEST(Ends, AddCellByCellAndByEnding) {
   EXPECT_EQ(departed_cells(sum).sum(), sum.left_field());
 }
 
-// Of a field, or of walks whose cells nobody asked for.
+// Ends of a field, or of walks without cells.
 TEST(Ends, AddEndingsWithoutCells) {
   const Counted some = ends({5, 3, 0, 7}, {cell(1, 1, 2, 0)});
   Counted without;

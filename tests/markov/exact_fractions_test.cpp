@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// All solvers of predictions without limit against exact fractions of integer counts: 3 x 3 cells
-/// of five states.
+/// All solvers without a limit against exact fractions of integer counts: 3 x 3 cells of five
+/// states.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ using test::Rational;
 
 constexpr Field kThreeByThree{3, 3};
 
-/// Count over the row's total, as any kind of number.
+/// Counts divided by the row's total, as any kind of number.
 template <class Number>
 auto chance_of(const FieldChain& chain, const std::vector<Counts>& counts) {
   return [&](const Start& s, const FieldStates::Draw& draw) {

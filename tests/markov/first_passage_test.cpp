@@ -38,8 +38,8 @@ Rewards times_of(const FieldChain& chain) {
   return all;
 }
 
-/// Eq. h = P h, m = P (t h + m) written down for all pairs, where walks still have `left` draws: of
-/// a field without limit, whatever `left` is, `next` and `now` are the same.
+/// The equations h = P h, m = P (t h + m) for all pairs while walks have `left` draws. In a field
+/// without a limit `left` has no effect, and `next` and `now` are the same.
 struct Equations {
   const FieldChain& chain;
   Field field;
@@ -78,7 +78,7 @@ struct Equations {
 };
 
 struct Expected {
-  Eigen::VectorXd chance, draws, time;  // of all walks, not of those that arrive
+  Eigen::VectorXd chance, draws, time;  // over all walks, not only those that arrive
 };
 
 /// Without limit, by one dense LU.
@@ -128,7 +128,7 @@ std::vector<PassageTarget> some_targets() {
           {.cell = 5, .input = 3}};
 }
 
-// Of a field with ways back and two types of cells: what LU of all equations says.
+// A field with moves back and two types of cells, compared with LU of all equations.
 TEST(FirstPassage, SolvesItsEquations) {
   const Field field{4, 3};
   const std::vector<int> types{0, 1, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1};
@@ -142,7 +142,7 @@ TEST(FirstPassage, SolvesItsEquations) {
                  solved({chain, field, target, times}), 1e-12);
 }
 
-// With a limit: one draw after the other, as the equations stand.
+// With a limit: draw by draw, directly by the equations.
 TEST(FirstPassage, OfALimitIsThatOfEachDraw) {
   const Field field{4, 3};
   const FieldChain chain = Chain::from_counts(boundary_counts(3), boundary_exits_down());
@@ -178,9 +178,9 @@ TEST(FirstPassage, OfALimitIsThatOfEachDraw) {
   }
 }
 
-// A gambler who wins a game with chance p, ruined before the first row: (1 - r^n) / (1 - r^N) with
-// r = (1 - p) / p, to some roundings of its own size, however small it is; of a fair game n / N,
-// and (N^2 - n^2) / 3 games of those who win (Feller, An Introduction to Probability Theory, XIV).
+// A gambler who wins a game with probability p, ruined before the first row: (1 - r^n) / (1 - r^N)
+// with r = (1 - p) / p, to some roundings of its own size, however small. For a fair game n / N,
+// and (N^2 - n^2) / 3 games of the winners (Feller, An Introduction to Probability Theory, XIV).
 TEST(FirstPassage, OfMovesBackIsTheGamblersRuin) {
   const int rows = 60, to = 40;  // the row to be reached
   for (const double p : {0.1, 0.5, 0.9}) {
@@ -196,7 +196,7 @@ TEST(FirstPassage, OfMovesBackIsTheGamblersRuin) {
     }
     EXPECT_EQ(f.chance[to], 1.0);
     EXPECT_EQ(f.draws[to], 0.0);
-    // From beyond: the same game from the other side.
+    // From beyond the target: the same game from the other side.
     const double back = rows - to, n = rows - 50;
     EXPECT_NEAR(f.chance[50],
                 p == 0.5 ? n / back : (std::pow(1 / r, n) - 1) / (std::pow(1 / r, back) - 1),
@@ -204,7 +204,7 @@ TEST(FirstPassage, OfMovesBackIsTheGamblersRuin) {
   }
 }
 
-// Walks that pass to each other 10^14 times: 1 / escape draws, where LU has two digits left.
+// States that pass walks to each other 10^14 times: 1 / escape draws, where LU keeps two digits.
 TEST(FirstPassage, KeepsItsDigitsWhereWalksHardlyEnd) {
   for (const double escape : {1e-6, 1e-14, 1e-200}) {
     const FirstPassages f =
@@ -214,7 +214,7 @@ TEST(FirstPassage, KeepsItsDigitsWhereWalksHardlyEnd) {
   }
 }
 
-// How often a state is visited is the chance to get there times the visits from itself.
+// The expected visits of a state are the probability to reach it times the visits from itself.
 TEST(FirstPassage, TimesReturnsIsTheVisits) {
   const Field field{3, 3};
   const Chain chain = Chain::from_counts(boundary_counts(8), boundary_exits_down());
@@ -230,8 +230,8 @@ TEST(FirstPassage, TimesReturnsIsTheVisits) {
   }
 }
 
-// 9 x 9 cells of 87 states, with and without limit: the chance is that of committor.h, and of all
-// endings together 1.
+// 9 x 9 cells of 87 states, with and without a limit: the probability equals that of committor.h,
+// and all endings sum to 1.
 TEST(FirstPassage, OfEndingsIsTheCommittor) {
   const Chain chain = Chain::from_counts(lattice_counts(3), never_down());
   for (const int most : {0, 13}) {
@@ -250,7 +250,7 @@ TEST(FirstPassage, OfEndingsIsTheCommittor) {
   }
 }
 
-// Too many pairs to eliminate: sweeps, up and with ways back, end at what the equations say.
+// Too many pairs to eliminate: sweeps, upwards and with ways back, satisfy the equations.
 TEST(FirstPassage, OfLargeFieldsSolvesItsEquationsToo) {
   const Field field{16, 16};
   for (const bool back : {false, true}) {
@@ -281,7 +281,7 @@ TEST(FirstPassage, OfLargeFieldsSolvesItsEquationsToo) {
 }
 
 TEST(FirstPassage, KnowsRowsNeverSampledAndWalksThatNeverEnd) {
-  // State 0 goes on to 1 or to 2, which was never sampled; 1 circles for ever.
+  // State 0 goes on to 1 or to 2, which is unsampled; 1 circles for ever.
   const Chain chain = Chain::from_probabilities(
       matrix(3, 4, {{0, 1, 0.25}, {0, 2, 0.25}, {0, 3, 0.5}, {1, 1, 1.0}}),
       {{0, 0, 1}, {1, 0, 0}, {2, 0, 0}, {}});

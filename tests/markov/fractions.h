@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Exact fractions, and what it means that another kind of number is right. Boost's cpp_rational
-/// needs no library (mpq_rational: GMP), and its fractions here are made in a blink.
+/// Exact fractions, and tests of other kinds of number against them. Boost's cpp_rational needs no
+/// library (mpq_rational needs GMP) and is fast enough here.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,8 @@ namespace gatewalk::markov::test {
 
 using Rational = boost::multiprecision::cpp_rational;
 
-/// Within n * 1e-15 of the exact number's own size, or as many roundings of a longer kind of float.
+/// Expects a number within n * 1e-15 of the exact one, relative to it, or as many roundings of a
+/// longer floating-point type.
 template <class Float>
 void expect_within_roundings(Float x, const Rational& exact, std::int64_t n) {
   ASSERT_TRUE(std::isfinite(x));
@@ -34,7 +35,8 @@ inline void expect_is(long double x, const Rational& exact, std::int64_t n) {
 inline void expect_is(const Rational& x, const Rational& exact, std::int64_t) {
   EXPECT_TRUE(x == exact) << x << " for " << exact;
 }
-/// Held, and by not much more: some roundings per state, which grow as they are passed on.
+/// Expects an enclosure of the exact number that is not much wider than needed: some roundings per
+/// state, which grow as they propagate.
 inline void expect_is(const Enclosure& x, const Rational& exact, std::int64_t n) {
   ASSERT_TRUE(std::isfinite(x.hi));
   EXPECT_TRUE(Rational(x.lo) <= exact && exact <= Rational(x.hi))

@@ -11,7 +11,8 @@
 namespace gatewalk::markov {
 namespace {
 
-// Of one to four cells, of few and many states, to the bit the sums of its terms in their order.
+// For one to four cells and for few and many states, equal to the bit to the sums of its terms in
+// their order.
 TEST(Gather, IsTheSumOfItsTerms) {
   constexpr int kMoves = 3;
   for (const int states : {1, 87, 8192, 8193}) {

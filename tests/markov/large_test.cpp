@@ -27,8 +27,8 @@ using Solver = PredictOptions::Solver;
 const int kSide = gatewalk::test::usual_or_full(301, 1001);
 const std::int64_t kManyWalks = gatewalk::test::usual_or_full(20'000, 1'000'000);
 
-/// The paper's shape: from below (0 to 24), to the right (25 to 54), to the left (55 to 84). Walks
-/// keep their direction for some 20 cells and end in `trapped` of the draws.
+/// Chains of the paper's shape: from below (0 to 24), to the right (25 to 54), to the left (55 to
+/// 84). Walks keep their direction for some 20 cells and are trapped in `trapped` of the draws.
 Chain keeping_on(double trapped) {
   test::Words words(11);
   auto exits = test::lattice_exits();
@@ -60,9 +60,9 @@ void expect_whole(const FinalDistribution& d) {
 
 using Shares = Eigen::ArrayXd;
 
-// A count of n walks is off a probability p by sqrt(p (1 - p) / n) or less on average; one walk
-// moves the total variation by 1/n, so it exceeds its mean by more than sqrt(10 / n) once in e^20 =
-// 5e8 (McDiarmid).
+// The count of n walks differs from a probability p by sqrt(p (1 - p) / n) or less on average. One
+// walk changes the total variation by 1/n, so the total variation exceeds its mean by more than
+// sqrt(10 / n) once in e^20 = 5e8 (McDiarmid).
 void expect_as_walked(const Shares& walked, const Shares& p, const char* what) {
   const auto n = static_cast<double>(kManyWalks);
   const double apart = 0.5 * (walked / n - p).abs().sum();
@@ -93,7 +93,7 @@ TEST(LargeField, IsAsWalked) {
   EXPECT_NEAR(static_cast<double>(tally.steps) / n / d.mean_steps, 1.0, 10 / std::sqrt(n));
 }
 
-// Two routes: columns eliminated, moves summed.
+// Two routes: elimination of columns and sums over moves.
 TEST(LargeField, EliminationIsSummation) {
   const Field field{kSide, kSide / 3};
   const Start start{kSide / 3, 0, 3};
@@ -111,8 +111,8 @@ TEST(LargeField, EliminationIsSummation) {
   EXPECT_NEAR(a.mean_steps / b.mean_steps, 1.0, 1e-9);
 }
 
-// Where walks end long before any border, rows (and columns) alone are a chain of their own: the
-// same one with its moves in the other direction struck out.
+// If walks end long before any border, rows (and columns) alone form a chain: the same chain
+// without its moves in the other direction.
 TEST(LargeField, RowsAndColumnsAreChainsOfTheirOwn) {
   const Chain chain = keeping_on(0.3);
   const auto d = Predictor(chain).predict({kSide, kSide}, {kSide / 2, 0, 12});
@@ -129,7 +129,7 @@ TEST(LargeField, RowsAndColumnsAreChainsOfTheirOwn) {
   EXPECT_LE((d.final_cells.colwise().sum() - columns.final_cells.row(0)).abs().maxCoeff(), 1e-12);
 }
 
-/// Seconds of processor time, told in a long run.
+/// Seconds of processor time, reported in a long run.
 template <class Work>
 auto timed(const char* what, Work work) {
   const std::clock_t begin = std::clock();
@@ -140,8 +140,7 @@ auto timed(const char* what, Work work) {
   return result;
 }
 
-/// Chains of the paper's shape in cells of three types, by one pattern of 9 x 9 cells again and
-/// again.
+/// Chains of the paper's shape in cells of three types, in a repeated pattern of 9 x 9 cells.
 FieldChain patterned(const Field& cells) {
   test::Words words(5);
   std::vector<int> pattern;
@@ -150,7 +149,8 @@ FieldChain patterned(const Field& cells) {
                         cells);
 }
 
-// Blocks of 9 x 1 cells make uniform rows of it, 9 x 9 (of 3 x 3 blocks of 3 x 3 cells) one type.
+// Blocks of 9 x 1 cells make rows uniform; blocks of 9 x 9 (3 x 3 blocks of 3 x 3 cells) leave one
+// type.
 void expect_same_in_both_blocks(int side) {
   const Field cells{side, side};
   const Start start{side / 2, 0, 12};
@@ -184,7 +184,7 @@ TEST(LargeField, AMillionCellsInBlocks) {
   expect_same_in_both_blocks(gatewalk::test::usual_or_full(90, 999));
 }
 
-// One type: there the cells' own rows are the faster way.
+// With one type, the cells' own rows are the faster way.
 TEST(LargeField, OneTypeInBlocks) {
   const int side = gatewalk::test::usual_or_full(45, 999);
   const Field cells{side, side};

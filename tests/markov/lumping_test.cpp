@@ -26,8 +26,8 @@ std::vector<int> boundaries() {
   return group_of;
 }
 
-/// Each state of a chain three times: all three go on alike, but to the copies of a state by shares
-/// of their own.
+/// Each state of a chain three times: the three copies have the same transitions, but divide them
+/// among the copies of a target by shares of their own.
 Chain three_copies(const Chain& chain) {
   const double shares[3][3] = {{0.5, 0.25, 0.25}, {0.125, 0.5, 0.375}, {0.0, 0.0, 1.0}};
   const int n = chain.inputs();
@@ -77,7 +77,7 @@ TEST(Lumping, CopiesOfAStateAreLumpedExactly) {
   }
 }
 
-/// State 0 alone, 1 and 2 together.
+/// Groups: state 0 alone, states 1 and 2 together.
 Chain three_states() {
   return Chain::from_probabilities(matrix(3, 4,
                                           {{0, 1, 0.25},
@@ -123,7 +123,7 @@ TEST(Lumping, OfNothingIsTheChain) {
   EXPECT_TRUE(Eigen::MatrixXd(lumping.chain.matrix()) == Eigen::MatrixXd(chain.matrix()));
 }
 
-// All states as one: it still goes up, left, right and down.
+// All states in one group, which still goes up, left, right and down.
 TEST(Lumping, TellsDirectionsApart) {
   const Counts counts = test::boundary_counts(1);
   const Lumping lumping = lump(Chain::from_counts(counts, test::boundary_exits_down()),
@@ -159,7 +159,7 @@ TEST(Lumping, WeightsOfCountsAddThem) {
   }
 }
 
-// All exits made to stay in the cell: then groups are visited as often as their states.
+// All exits stay in the cell, so groups are visited as often as their states.
 TEST(Lumping, VisitsAsWeightsKeepVisits) {
   auto exits = test::lattice_exits();
   for (Exit& exit : exits) exit.di_x = exit.di_y = 0;
@@ -191,7 +191,7 @@ TEST(Lumping, ThePapersShapeByBoundary) {
                                              start, {.max_cells = max_cells});
     EXPECT_EQ(error.lumped.final_cells.rows(), 9);
     EXPECT_GT(error.final_cells, 1e-3);
-    // A draw of the lumped chain is off by its start's row at most, then by less and less.
+    // The error of a lumped draw is at most that of its start's row, then ever smaller.
     EXPECT_LT(error.final_cells, 0.3);
     EXPECT_LE(error.endings, 0.3);
     const FinalDistribution plain =

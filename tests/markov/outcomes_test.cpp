@@ -18,7 +18,7 @@ struct OutcomesCase {
   int max_cells;
 };
 
-/// How walks end by the outcomes after their first draw.
+/// How walks end, from the outcomes after their first draw.
 EndTable after_first_draw(const FieldChain& chain, const Start& start, const Outcomes& o) {
   const Chain& c = chain.at(start.column, start.row);
   return (c.matrix().row(start.input) * o.by_output.matrix()).array();
@@ -41,7 +41,7 @@ void expect_all_outcomes(const FieldChain& chain, const OutcomesCase& c) {
     expect_outcomes(after_first_draw(chain, start, o),
                     propagate(chain, c.field, start, {.max_cells = c.max_cells}), bound);
   }
-  // Visits are those of the totals, whatever becomes of them.
+  // Visits equal those of the totals, for any ending.
   const WalkTotals totals = walk_totals(chain, c.field, c.start, c.max_cells);
   constexpr auto kEnds = static_cast<Eigen::Index>(kEndings);
   for (Eigen::Index cell = 0; cell < totals.visits.size(); ++cell) {
@@ -50,7 +50,7 @@ void expect_all_outcomes(const FieldChain& chain, const OutcomesCase& c) {
     EXPECT_NEAR(o.by_cell.row(cell).tail(totals.visits.size()).sum(), visits, 1e3 * bound);
     EXPECT_NEAR(o.next.row(cell).sum(), visits, 1e3 * bound);
   }
-  // Who visits the first cell at the first draw, and never comes back, is everybody.
+  // All walks visit the first cell at the first draw and never return.
   double trapped = 0.0;
   for (Eigen::Index cell = 0; cell < o.next.rows(); ++cell)
     trapped += o.next(cell, o.next.cols() - 1);
@@ -84,7 +84,7 @@ TEST(Outcomes, WithoutLimitAndOfSeveralTypes) {
 }
 
 TEST(Outcomes, OfACellAreThoseOfItsVisitors) {
-  // Up with 3/4, else trapped: of those who come to row 1, 3/4 cross the two rows.
+  // Up with 3/4, else trapped: of the walks that reach row 1, 3/4 cross the two rows.
   const Chain up =
       Chain::from_probabilities(test::matrix(1, 2, {{0, 0, 0.75}, {0, 1, 0.25}}), {{0, 0, 1}, {}});
   const Outcomes o = outcomes(up, {1, 2}, {0, 0, 0}, 0);

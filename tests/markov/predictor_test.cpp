@@ -61,7 +61,8 @@ Chain with_gaps(std::uint64_t seed, std::vector<Exit> exits) {
   return Chain::from_counts(counts, std::move(exits));
 }
 
-/// One output per row, few of the rows ever entered: mass is drawn where no walk returns to.
+/// One output per row, and few rows are ever entered: no walk returns to some of the rows with
+/// mass.
 Chain thin(std::uint64_t seed, std::vector<Exit> exits) {
   test::Words words(seed);
   Counts counts(87, 88);
@@ -96,7 +97,7 @@ TEST(Predictor, PropagatesAsThePlainReferenceWhereFewRowsAreEntered) {
               by_rows,
               propagate(chain, {6, 5}, {2, 1, input}, {.tolerance = 1e-13, .max_steps = 1000}),
               1e-12);
-        } catch (const std::runtime_error&) {  // left and right for ever
+        } catch (const std::runtime_error&) {  // walks go left and right for ever
           EXPECT_GT(propagate(chain, {6, 5}, {2, 1, input}, {.tolerance = 1e-13, .max_steps = 1000})
                         .remainder,
                     0.1);
@@ -106,8 +107,8 @@ TEST(Predictor, PropagatesAsThePlainReferenceWhereFewRowsAreEntered) {
   }
 }
 
-/// Up to 9 inputs, moves of up to 2 cells (of `up` alone: none down), rows of any number of
-/// outputs.
+/// A random chain of up to 9 inputs, moves of up to 2 cells (with `up`: none down), rows of any
+/// number of outputs.
 Chain random_chain(test::Words& words, bool chequered, bool up) {
   const int inputs = 1 + words.below(9), outputs = 1 + words.below(14);
   std::vector<Exit> exits;
@@ -151,7 +152,7 @@ TEST(Predictor, RandomChains) {
       EXPECT_EQ(plainly_free.steps, free[j].steps);
       if (!predictor.can_go_by_rows()) continue;
       const auto far = propagate(chain, field, starts[j], {.tolerance = 1e-13, .max_steps = 2000});
-      if (far.remainder > 1e-12) continue;  // circles
+      if (far.remainder > 1e-12) continue;  // walks circle
       for (const auto method : kMethods)
         expect_near(
             far,
@@ -192,7 +193,7 @@ TEST(Predictor, RowsThatDifferAreThePlainReference) {
         for (std::size_t k = 0; k < starts.size(); ++k) {
           const auto plain =
               propagate(rows, field, starts[k], {.tolerance = 1e-13, .max_steps = 300});
-          if (plain.remainder > 1e-12) continue;  // circles in a thin row
+          if (plain.remainder > 1e-12) continue;  // walks circle in a row of few outputs
           for (const auto method : kMethods)
             expect_near(plain,
                         predictor.predict(
@@ -232,7 +233,7 @@ TEST(Predictor, CellsThatDifferAreThePlainReference) {
   }
 }
 
-// Longer than a register, so that whole registers are of one type, and of none.
+// Rows longer than a register, so that whole registers have one type, or none of a type.
 TEST(Predictor, LongStretchesOfATypeAreThePlainReference) {
   constexpr int kColumns = 45;
   std::vector<Chain> chains;
@@ -252,7 +253,7 @@ TEST(Predictor, LongStretchesOfATypeAreThePlainReference) {
   }
 }
 
-// Equal chains are prepared twice here, and drawn from in turn: not a bit changes.
+// Equal chains are prepared twice and used in turn: not a bit changes.
 TEST(Predictor, EqualChainsInTurnHaveTheBitsOfOne) {
   for (const auto& exits : {never_down(), leaps()}) {
     const Chain chain = with_gaps(5, exits);
@@ -296,8 +297,8 @@ TEST(Predictor, PropagatesAsThePlainReference) {
   }
 }
 
-// What goes up by two rows and out of the field has left it, and does not remain as well; a loose
-// tolerance shows it.
+// Mass that goes up by two rows and out of the field has left, and must not also remain; a loose
+// tolerance would show it.
 TEST(Predictor, LeapsOutOfTheTopAreCountedOnce) {
   const Chain chain = Chain::from_probabilities(
       matrix(2, 4, {{0, 2, 1.0}, {1, 0, 0.05}, {1, 1, 0.01}, {1, 3, 0.94}}),
@@ -307,7 +308,7 @@ TEST(Predictor, LeapsOutOfTheTopAreCountedOnce) {
         {1, 3}, {0, 0, 0}, {.solver = Solver::rows, .row_method = method, .tolerance = 0.3}));
 }
 
-// Two states that hardly ever let go of each other, among many that do at once.
+// Two states that rarely leave each other, among many states that leave at once.
 TEST(Predictor, FindsAFewThatCircleForLong) {
   constexpr int n = 40;
   std::vector<Entry> entries;
@@ -326,8 +327,8 @@ TEST(Predictor, FindsAFewThatCircleForLong) {
   expect_near(d, solve_absorption(chain, {5, 1}, {2, 0, 0}), 1e-9);
 }
 
-// Of few runs a state often has none that leaves the row; what counts is how long walks stay there.
-// Sweeps are then cheaper than dense elimination of so many states.
+// With few runs a state often has none that leaves the row; only how long walks stay in the row
+// matters. Sweeps are then cheaper than dense elimination of many states.
 TEST(Predictor, TakesSweepsWhereWalksSoonLeaveTheRow) {
   constexpr int n = 400;
   std::vector<Entry> entries;
@@ -367,8 +368,8 @@ TEST(Predictor, RefusesMovesBeyondAnyField) {
                std::invalid_argument);
 }
 
-// A limit far beyond the walks costs no steps: it is as none.
-// Which steps may be done without a limit means nothing with one.
+// A limit far beyond the length of walks costs no steps. Options for steps without a limit have no
+// effect with a limit.
 TEST(Predictor, LimitOfCellsIsNoLimitOfSteps) {
   const Chain chain = Chain::from_counts(lattice_counts(5), lattice_exits());
   const Field field{30, 30};
@@ -417,7 +418,7 @@ Chain weakly_trapping(std::uint64_t seed) {
   return Chain::from_counts(counts, never_down());
 }
 
-// Two other routes to the same: step by step until nothing is left, and one factorisation.
+// Two other routes to the same result: step by step until nothing is left, and one factorisation.
 TEST(Predictor, ByRowsIsTheLimitOfPropagation) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Chain chain = with_gaps(seed, never_down());
@@ -469,8 +470,8 @@ TEST(Predictor, ByRowsTakesLongWalksWithoutSummingThem) {
   }
 }
 
-// Each number lies within remainder + rounding of a route with more digits, and the two say
-// something: they are small.
+// Each number lies within remainder + rounding of a route with more digits, and both bounds are
+// small.
 TEST(Predictor, RemainderAndRoundingBoundTheError) {
   const auto expect_bounded = [](const FinalDistribution& d, const FinalDistribution& exact) {
     const double bound = d.remainder + d.rounding;
@@ -502,7 +503,7 @@ TEST(Predictor, RemainderAndRoundingBoundTheError) {
           exact);
 }
 
-// The longer the walks, the fewer digits hold; how many is said, or refused.
+// The longer the walks, the fewer digits hold; the result states their number, or is refused.
 TEST(Predictor, RemainderOfEliminationIsHonest) {
   for (const double escape : {1e-3, 1e-6, 1e-8}) {
     const auto d =
@@ -525,7 +526,7 @@ TEST(Predictor, RemainderOfEliminationIsHonest) {
                  std::runtime_error);
 }
 
-// Starts in other cells and rows, some of which end early, more than go together in a group.
+// Starts in different cells and rows, some of which end early, more than fit in a group.
 TEST(Predictor, SeveralStartsHaveTheBitsOfEachAlone) {
   for (const auto& exits : {lattice_exits(), never_down(), leaps()}) {
     const Chain chain = with_gaps(3, exits);
@@ -582,7 +583,7 @@ TEST(Predictor, RemainderIsWhatTheToleranceLeaves) {
     EXPECT_GT(d.remainder, 0.0);
     EXPECT_LE(d.remainder, tolerance);
     expect_whole(d);
-    // Each number is short of the exact one by the remainder at most.
+    // Each number is below the exact one by at most the remainder.
     EXPECT_GE((exact.final_cells - d.final_cells).minCoeff(), -1e-15);
     EXPECT_LE((exact.final_cells - d.final_cells).maxCoeff(), d.remainder + 1e-15);
   }
@@ -599,7 +600,7 @@ TEST(Predictor, ByRowsRefusesWhatItCannotDo) {
   try {
     (void)Predictor(down).predict(kNineByNine, kBottomCentre, {.solver = Solver::rows});
     FAIL() << "moves to a row below are taken";
-  } catch (const std::invalid_argument& e) {  // by the names that predict --solver takes
+  } catch (const std::invalid_argument& e) {  // with the names of the option --solver
     EXPECT_NE(std::string(e.what()).find("solver march"), std::string::npos) << e.what();
     EXPECT_NE(std::string(e.what()).find("auto and klu"), std::string::npos) << e.what();
   }

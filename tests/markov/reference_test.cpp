@@ -56,7 +56,7 @@ void expect_near(const FinalDistribution& a, const FinalDistribution& b, double 
   EXPECT_NEAR(a.unsampled(), b.unsampled(), bound);
 }
 
-// Bernstein: a binomial count is further off than this with probability below 2 e^-20 = 4e-9.
+// Bernstein: a binomial count deviates more than this with a probability below 2 e^-20 = 4e-9.
 void expect_binomial(std::int64_t count, std::int64_t n, double p) {
   const double variance = static_cast<double>(n) * p * (1 - p);
   const double bound = std::sqrt(2 * 20 * variance) + 2 * 20 / 3.0;
@@ -86,8 +86,8 @@ Chain lattice_chain(std::uint64_t seed, std::initializer_list<int> emptied = {})
 
 // ---- Closed forms ----
 
-// Knuth and Yao: a fair die from fair coins. Inputs 0 ... 6 are the flips, all in cell 0; a face k
-// sits in cell k and is trapped there (input 7).
+// Knuth and Yao: a fair die from fair coins. Inputs 0 ... 6 are the flips, all in cell 0; face k is
+// in cell k and is trapped there (input 7).
 Chain knuths_die() {
   constexpr int kFace = 7;
   std::vector<Exit> exits;
@@ -123,7 +123,8 @@ TEST(Exact, KnuthsDieIsFair) {
   for (int face = 1; face <= 6; ++face) {
     expect_binomial(tally.final_cells(0, face), kWalks, 1.0 / 6.0);
   }
-  // Flips come in rounds: 3 with chance 3/4, else 2 more: the variance of the number is 20/9.
+  // Flips come in rounds: 3 with probability 3/4, else 2 more; the variance of their number is
+  // 20/9.
   const double mean = static_cast<double>(tally.steps) / kWalks;
   EXPECT_NEAR(mean, 14.0 / 3.0, 6 * std::sqrt(20.0 / 9.0 / kWalks));
 }
@@ -152,7 +153,8 @@ TEST(Exact, GamblersRuin) {
       const double mean = p == 0.5 ? i * (n - i) : (i - n * wins) / (1 - 2 * p);
       EXPECT_NEAR(solved.mean_steps / mean, 1.0, 3e4 * kEps);
 
-      // Stopped early or late, the truth lies between the sum and the sum plus the remainder.
+      // Whether stopped early or late, the truth lies between the sum and the sum plus the
+      // remainder.
       if (column != 80) continue;
       for (const double tolerance : {0.5, 1e-6, 1e-13}) {
         const FinalDistribution d = by_steps(chain, {length, 1}, start, {.tolerance = tolerance});
@@ -165,7 +167,8 @@ TEST(Exact, GamblersRuin) {
   }
 }
 
-// a in cell 0 <-> b in cell 1, a passes on with pa, b with pb, otherwise trapped where they are.
+// State a in cell 0 <-> b in cell 1: a goes on with pa, b with pb; otherwise the walk is trapped
+// where it is.
 TEST(Exact, TwoStateLoopIsGeometric) {
   const double pa = 0.75, pb = 0.5;
   const Chain chain = Chain::from_probabilities(
@@ -194,7 +197,7 @@ TEST(Exact, TwoStateLoopIsGeometric) {
 // ---- The rule of a step ----
 
 TEST(Exact, WhereAStepEnds) {
-  // Input 0 moves right for sure, input 1 was never sampled, input 2 is trapped.
+  // Input 0 always moves right, input 1 is unsampled, input 2 is trapped.
   const Probabilities p = matrix(3, 4, {{0, 0, 0.5}, {0, 1, 0.5}, {2, 3, 1.0}});
   const Chain chain = Chain::from_probabilities(p, {{0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {}});
   const Field field{3, 1};
@@ -214,9 +217,10 @@ TEST(Exact, WhereAStepEnds) {
     if (max_cells == 0) expect_near(solve_absorption(chain, field, start), wanted, 2 * kEps);
     expect_walks_agree(chain, field, start, max_cells, wanted, 1000);
   };
-  // One cell: whoever would go on is cut off where it stands, whatever state it would enter.
+  // One cell: a walk that would go on is cut off where it is, for any state that it would enter.
   expect({0, 0, 0}, 1, {1, 0, 0}, 0, 0, 1, 0);
-  // The last cell allowed: entered in a sampled state cut off there, in an unsampled one unsampled.
+  // The last permitted cell: a walk that enters it in a sampled state is cut off there, in an
+  // unsampled state it is unsampled.
   expect({0, 0, 0}, 2, {0, 1, 0}, 0, 0, 0.5, 0.5);
   // Outside the field nothing is cut off or unsampled.
   expect({2, 0, 0}, 1, {0, 0, 1}, 0, 1, 0, 0);
@@ -230,9 +234,9 @@ TEST(Exact, WhereAStepEnds) {
   EXPECT_EQ(by_steps(chain, field, {1, 0, 1}, {.max_cells = 5}).steps, 0);
 }
 
-// Up 1/2, left and right 1/8, trapped 1/4, from the middle of the first row of 3 x 3 cells. A row
-// that is entered by (x, y, x) is visited m = (y + x/4) 32/31 times in its middle and x + m/8 at
-// each side.
+// Up 1/2, left and right 1/8, trapped 1/4, from the middle of the first row of 3 x 3 cells. If a
+// row is entered by (x, y, x), its middle is visited m = (y + x/4) 32/31 times and each side x +
+// m/8 times.
 TEST(Exact, EndingsOfThreeByThreeAreFractions) {
   const Chain chain = Chain::from_probabilities(
       matrix(1, 4, {{0, 0, 0.5}, {0, 1, 0.125}, {0, 2, 0.125}, {0, 3, 0.25}}),
@@ -248,7 +252,7 @@ TEST(Exact, EndingsOfThreeByThreeAreFractions) {
     expect_whole(d);
   };
   const auto expect_all = [&](int max_cells, double far, double side, double trapped, double cut) {
-    constexpr double kBound = 1e-12;  // what may still walk
+    constexpr double kBound = 1e-12;  // largest share still under way
     expect(propagate(chain, field, start, {.max_cells = max_cells}), far, side, trapped, cut,
            kBound);
     expect(predictor.predict(field, start, {.max_cells = max_cells, .solver = Solver::steps}), far,
@@ -273,8 +277,8 @@ TEST(Exact, EndingsOfThreeByThreeAreFractions) {
                              {.solver = Solver::rows, .row_method = method, .tolerance = 1e-14}),
            7584 / whole, 2729 / (2 * whole), 19478 / whole, 0.0, 1e-13);
   expect_all(2, 0.0, 1 / 64.0, 7 / 16.0, 17 / 32.0);
-  // Who leaves is last seen at the edges: over the far one from row 2, over the sides from columns
-  // 0, 2.
+  // Walks that leave are last in the edge cells: over the far edge from row 2, over the sides from
+  // columns 0 and 2.
   const FinalDistribution d = by_steps(chain, field, start);
   const CellProbabilities departed = departed_cells(d), trapped = trapped_cells(d);
   EXPECT_EQ(departed(0, 1), 0.0);
@@ -317,7 +321,8 @@ TEST(Exact, PropagationSolveAndWalksAgree) {
   EXPECT_GT(solved.unsampled(), 0.0);
   EXPECT_EQ(solved.cut_off(), 0.0);
   expect_near(far, solved, far.remainder + 64 * kEps);
-  EXPECT_NEAR(far.mean_steps, solved.mean_steps, 1e-11);  // the remainder would walk some 30 on
+  // The remainder would go on for some 30 draws.
+  EXPECT_NEAR(far.mean_steps, solved.mean_steps, 1e-11);
   expect_walks_agree(chain, kNineByNine, kBottomCentre, 0, solved, 1'000'000);
   for (const int max_cells : kLimits) {
     expect_walks_agree(chain, kNineByNine, kBottomCentre, max_cells,
@@ -359,8 +364,8 @@ TEST(Exact, PartlyEmptyFieldsAndLongMoves) {
 
 // ---- Rows that differ ----
 
-// Brute force: all (cell, input) pairs in one dense matrix; visits by its inverse, or (with a
-// limit) by its powers; then every output of every visit is looked at once.
+// Brute force: all (cell, input) pairs in one dense matrix; visits by its inverse or (with a limit)
+// by its powers; then each output of each visit is evaluated once.
 FinalDistribution densely(const std::vector<Chain>& chain_of_row, const Field& field,
                           const Start& start, int max_cells) {
   const int n = chain_of_row.front().inputs(), cells = field.columns * field.rows;
@@ -369,7 +374,7 @@ FinalDistribution densely(const std::vector<Chain>& chain_of_row, const Field& f
   };
   struct Draw {
     double p;
-    int next;  // state; or where it ends, below
+    int next;  // a state, or an ending (below)
   };
   enum : int { kTrapped = -1, kLeft = -2 };
   const auto draws = [&](int s) {
@@ -422,7 +427,7 @@ FinalDistribution densely(const std::vector<Chain>& chain_of_row, const Field& f
 }
 
 TEST(Exact, RowsThatDifferAreTheDenseSolution) {
-  // Row by row another chain, some inputs sampled in one of them only.
+  // Another chain in each row, some inputs sampled in only one of them.
   std::vector<Chain> chains;
   for (const std::uint64_t seed : {1, 2, 3}) {
     Counts counts = lattice_counts(seed);
@@ -476,12 +481,12 @@ TEST(Exact, AClosedLoopHasNoSolution) {
   EXPECT_EQ(d.steps, 100);
   EXPECT_EQ(d.trapped(), 0.5);
   EXPECT_NEAR(d.remainder, 0.5, 100 * kEps);
-  // From inside nothing else is seen: the same, and the loop of one state as well.
+  // From inside the loop the result is the same, also for a loop of one state.
   EXPECT_THROW((void)solve_absorption(chain, {1, 1}, {0, 0, 1}), std::runtime_error);
   const Chain one = Chain::from_probabilities(matrix(1, 1, {{0, 0, 1.0}}), {{0, 0, 0}});
   EXPECT_THROW((void)solve_absorption(one, {1, 1}, {}), std::runtime_error);
   EXPECT_EQ(by_steps(one, {1, 1}, {}, {.tolerance = 0.0, .max_steps = 7}).remainder, 1.0);
-  // Rounding may make the sum of its row 1 +- 1e-16: no less a loop.
+  // Rounding may make the row's sum 1 +- 1e-16: still a loop.
   for (const double p : {1.0 / 6, 0.1, 0.3, 1.0 / 7}) {
     const Chain parts =
         Chain::from_probabilities(matrix(1, 3, {{0, 0, p}, {0, 1, p}, {0, 2, 1.0 - 2 * p}}),

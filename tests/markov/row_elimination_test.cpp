@@ -26,7 +26,7 @@ Chain small() {
   return Chain::from_probabilities(test::matrix(5, 8, entries), exits);
 }
 
-/// Moves within a row of so many cells, as one matrix: from (cell, input) to (cell, input).
+/// The moves within a row of cells as one matrix: from (cell, input) to (cell, input).
 Eigen::MatrixXd within_row(const Chain& chain, int cells) {
   const int n = chain.inputs();
   Eigen::MatrixXd q = Eigen::MatrixXd::Zero(n * cells, n * cells);

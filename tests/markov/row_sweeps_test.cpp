@@ -16,8 +16,8 @@ using Moves = std::vector<RowSweeps::Move>;
 
 constexpr int kInputs = 23;
 
-/// States 0 and 1 are never entered, from 2 and 3 nobody goes on. The others keep `stays` of the
-/// walks in the row, most of them by moves to the side to which they were entered.
+/// States 0 and 1 are never entered; no walk goes on from 2 and 3. The others keep `stays` of the
+/// walks in the row, most of them by moves to the side from which they were entered.
 Moves some_moves(int widest, double stays, std::uint64_t seed) {
   test::Words words(seed);
   Moves moves;
@@ -32,7 +32,7 @@ Moves some_moves(int widest, double stays, std::uint64_t seed) {
   return moves;
 }
 
-/// b + Q b + Q Q b + ..., number by number.
+/// Computes b + Q b + Q Q b + ..., number by number.
 std::vector<double> plain_sum(const Moves& moves, RowSweeps::Sums sums, int columns,
                               std::vector<double> term) {
   std::vector<double> all = term;
@@ -66,7 +66,7 @@ std::vector<double> summed(const Moves& moves, RowSweeps::Sums sums, int columns
   return values;
 }
 
-/// Anything in any cell, or in the cell of one column only.
+/// Random numbers in any cell, or in the cell of one column only.
 std::vector<double> some_numbers(int columns, int only) {
   test::Words words(11);
   std::vector<double> b(static_cast<std::size_t>(columns) * kInputs, 0.0);
@@ -107,7 +107,7 @@ TEST(RowSweeps, IsAsExactAsAskedFor) {
       off_largest = std::max(off_largest, std::abs(of_largest[i] - exact[i]));
     }
     EXPECT_LE(off_largest, tolerance * largest);
-    EXPECT_GT(off_largest, tolerance * 1e-5 * largest);  // it was stopped before
+    EXPECT_GT(off_largest, tolerance * 1e-5 * largest);  // it stopped earlier
   }
 }
 

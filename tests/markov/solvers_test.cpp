@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One body of tests for all solvers of exact predictions: closed forms that can be checked by
-/// hand, and each solver against the others within the errors they state.
+/// One set of tests for all solvers of exact predictions: closed forms worked out by hand, and each
+/// solver against the others within their stated errors.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Route{"klu", Solver::klu}),
     [](const auto& param) { return std::string(param.param.name); });
 
-/// What the result says its numbers are off at most, and a few roundings of the expected ones.
+/// The error bound that the result states, plus a few roundings of the expected numbers.
 double bound(const FinalDistribution& d) { return d.remainder + d.rounding + 4 * kEps; }
 
 void expect_cells(const FinalDistribution& d, const CellProbabilities& expected) {
@@ -67,7 +67,7 @@ void expect_cells(const FinalDistribution& d, const CellProbabilities& expected)
   test::expect_endings_add_up(d);
 }
 
-/// To the right with `right`, to the left with `left`, up with `up`, else trapped. One state.
+/// One state: to the right with `right`, to the left with `left`, up with `up`, else trapped.
 Chain drift(double right, double left, double up) {
   return Chain::from_probabilities(
       matrix(1, 4, {{0, 0, right}, {0, 1, left}, {0, 2, up}, {0, 3, 1 - right - left - up}}),
@@ -107,8 +107,8 @@ TEST_P(Solvers, ThreeByThreeCells) {
   expect_cells(d, expected);
 }
 
-// Two cells visited at most: trapped at the start with 1/4, cut off in the cell above with 1/2 *
-// 3/4 and at the right with 1/4 * 3/4.
+// At most two cells: trapped at the start with 1/4, cut off in the cell above with 1/2 * 3/4 and to
+// the right with 1/4 * 3/4.
 TEST_P(Solvers, ThreeByThreeCellsWithALimitOfTwo) {
   if (!takes_a_limit()) {
     EXPECT_THROW((void)from(drift(0.25, 0.0, 0.5), {3, 3}, {0, 0, 0}, 2), std::invalid_argument);
@@ -149,8 +149,8 @@ TEST_P(Solvers, ATypePerCellOfAChessboard) {
       d, CellProbabilities{{0.0, 0.25, 0.0}, {0.25, 0.0, 1.0 / 16.0}, {0.125, 0.25, 1.0 / 16.0}});
 }
 
-/// As many rows as field and the paper's states, moves to the sides and up; some rows never
-/// sampled.
+/// A chain for each row of the field with the paper's states, moves to the sides and up; some rows
+/// unsampled.
 std::vector<Chain> three_chains() {
   auto exits = test::lattice_exits();
   for (Exit& exit : exits)
@@ -196,7 +196,7 @@ TEST_P(Solvers, AgreeWithThePlainReferenceWithinTheirBounds) {
   }
 }
 
-// A prepared predictor is the same as the function, bit for bit.
+// A prepared predictor gives the bits of the function.
 TEST_P(Solvers, PreparedOrNotIsTheSame) {
   const FieldChain chain = FieldChain::by_row(three_chains(), {0, 2, 2, 1, 0});
   const Field field{7, 5};

@@ -22,7 +22,7 @@ using test::propagate;
 
 using namespace test;
 
-/// Some time for each nonzero, with some spread.
+/// A random time for each nonzero, with some spread.
 Rewards some_rewards(const FieldChain& chain, std::uint64_t seed) {
   Words words(seed);
   Rewards rewards;
@@ -74,7 +74,7 @@ TEST(WalkTotals, EndAsPropagationSays) {
   }
 }
 
-// Row by row and step by step: the same. A limit that nobody reaches goes by steps.
+// Row by row and step by step give the same. A limit that no walk reaches is computed by steps.
 TEST(WalkTotals, ByRowsAreThoseByStepsUpToALimitThatNobodyReaches) {
   Counts gaps = lattice_counts(4);
   empty_row(gaps, 30);
@@ -114,7 +114,7 @@ TEST(WalkTotals, ByRowsAreThoseByStepsUpToALimitThatNobodyReaches) {
   }
 }
 
-// Walks that hardly any make are followed where the question is of these.
+// Rare walks are followed if they are the target.
 TEST(WalkTotals, FollowTheFewThatEndAsAskedFor) {
   const double up = 1e-4;
   const Chain chain =
@@ -129,7 +129,8 @@ TEST(WalkTotals, FollowTheFewThatEndAsAskedFor) {
   EXPECT_NEAR(few.draws[at(Ending::far_edge)].mean(), 20.0, 1e-12);
 }
 
-// In large fields visits and endings are as exact, and times those of walks that were drawn.
+// In large fields visits and endings are as exact as in small ones, and times come from drawn
+// walks.
 TEST(WalkTotals, OfLargeFieldsAreTheSameButForChanceInTheMoments) {
   Counts gaps = lattice_counts(4);
   empty_row(gaps, 30);
@@ -167,7 +168,7 @@ TEST(WalkTotals, OfLargeFieldsAreTheSameButForChanceInTheMoments) {
       expect_close(large.draws[at(e)], exact.draws[at(e)]);
       expect_close(large.totals[0][at(e)], exact.totals[0][at(e)]);
     }
-    // The means of all walks need no drawing.
+    // The means over all walks need no drawn walks.
     EXPECT_NEAR(WalkTotals::all(large.draws).mean(), WalkTotals::all(exact.draws).mean(), 1e-9);
     for (std::size_t q = 0; q < exact.totals.size(); ++q)
       EXPECT_NEAR(WalkTotals::all(large.totals[q]).mean() / WalkTotals::all(exact.totals[q]).mean(),
@@ -177,7 +178,7 @@ TEST(WalkTotals, OfLargeFieldsAreTheSameButForChanceInTheMoments) {
   }
 }
 
-// A row that nobody gets to but one in 10^80: those that do are drawn as well.
+// A row that one walk in 10^80 reaches: such walks are drawn as well.
 TEST(WalkTotals, OfLargeFieldsKnowTheFewThatEndAsAskedFor) {
   const Chain chain =
       Chain::from_probabilities(matrix(1, 2, {{0, 0, 1e-4}, {0, 1, 1.0 - 1e-4}}), {{0, 0, 1}, {}});
@@ -192,10 +193,10 @@ TEST(WalkTotals, OfLargeFieldsKnowTheFewThatEndAsAskedFor) {
   EXPECT_NEAR(WalkTotals::all(few.totals[0]).mean(), 3.0 * 1e-4 / (1.0 - 1e-4) + 1.0, 1e-12);
   const WalkTotals without =
       walk_totals(chain, field, {}, 0, {}, {}, {.chance = &chance, .large = 0.0}, 3);
-  EXPECT_EQ(without.drawn_walks, 0);  // nobody asks for what they take
+  EXPECT_EQ(without.drawn_walks, 0);  // no rewards are asked for
 }
 
-// Times of walks have the moments that were asked for, and walks the endings.
+// The times of walks have the given moments, and the walks have the endings of the prediction.
 TEST(WalkTotals, AreThoseOfTimedWalks) {
   std::vector<Chain> chains = {Chain::from_counts(lattice_counts(3), never_down()),
                                Chain::from_counts(lattice_counts(4), never_down())};
@@ -243,7 +244,7 @@ TEST(WalkTotals, RefuseRewardsOfAnotherChain) {
 // geometric, and G - 1 on the right. Sums stop long before.
 TEST(WalkTotals, AreExactWhereWalksCircleForLong) {
   const double out = 1e-6;
-  for (const int back : {1, -1}) {  // with a state that may lead back, which nobody enters
+  for (const int back : {1, -1}) {  // with an unreachable state that may lead back
     const Chain chain = Chain::from_probabilities(
         matrix(3, 4, {{0, 1, 1.0 - out}, {0, 2, out}, {1, 0, 1.0}, {2, 3, 1.0}}),
         {{0, -1, 0}, {1, 1, 0}, {2, 0, 1}, {2, 0, back}});
@@ -297,7 +298,8 @@ TEST(EndingChance, FewerDrawsAreLeftLater) {
   EXPECT_EQ(EndingChance(chain, {5, 6}, Ending::cut_off, 7)(8, 12, 0), 1.0);
 }
 
-// Where walks from a start can come, the same bits as from everywhere; elsewhere nothing is known.
+// In cells that walks from a start can reach, the bits are those from everywhere; elsewhere the
+// result is NaN.
 TEST(EndingChance, FromAStartIsTheSameWhereItLeads) {
   Counts counts = lattice_counts(7);
   empty_row(counts, 30);
@@ -373,9 +375,8 @@ TEST(Paths, AreTheMostFrequentOfAll) {
   EXPECT_NEAR(sum, chance(1, 1, start.input), 1e-14);
 }
 
-// From left to right and back, and up once in 10^4: k rounds are made with chance (1 - out)^k out.
-// The first of these paths are known to be the most frequent only when some 10^5 rounds have been
-// looked at.
+// From left to right and back, and up once in 10^4: k rounds have the probability (1 - out)^k out.
+// The first of these paths are proved to be the most frequent only after some 10^5 rounds.
 TEST(Paths, ShareTheirBeginningsWhereWalksCircleForLong) {
   const double out = 1e-4;
   const Chain chain =
@@ -412,7 +413,7 @@ TEST(QuasiStationary, IsTheFirstEigenvectorOfTheMatrix) {
 }
 
 TEST(QuasiStationary, IsKnownForTwoStates) {
-  // A half survives in each state, and goes to either alike: 0 to 0 and 1, 1 to 0 alone.
+  // Half of the walks survive in each state: state 0 goes to 0 and 1 alike, state 1 only to 0.
   const Chain chain = Chain::from_probabilities(
       matrix(2, 3, {{0, 0, 0.25}, {0, 1, 0.25}, {0, 2, 0.5}, {1, 0, 0.5}, {1, 2, 0.5}}),
       {{0, 0, 1}, {1, 1, 0}, {}});
@@ -439,7 +440,8 @@ Chain ring(int states, double on, double back) {
   return Chain::from_probabilities(matrix(states, states + 1, entries), exits);
 }
 
-// By hand: 0.9 (1 - 2 p + 2 p cos(2 pi k / n)) of steps to both sides; of a circle all have 0.9.
+// By hand: 0.9 (1 - 2 p + 2 p cos(2 pi k / n)) for steps to both sides; on a one-way circle all
+// moduli are 0.9.
 TEST(QuasiStationary, OfARingHasItsTimeScales) {
   const std::vector<double> both = quasi_stationary(ring(7, 0.2, 0.2), {1.0}).moduli;
   ASSERT_EQ(std::ssize(both), kToldEigenvalues);
@@ -456,9 +458,9 @@ TEST(QuasiStationary, OfARingHasItsTimeScales) {
   EXPECT_EQ(implied_time_scale(0.0), 0.0);
 }
 
-// More states than are solved at once: what is told is right, and more than the two that were.
+// More states than are solved densely: the reported eigenvalues are right, and more than two.
 TEST(QuasiStationary, OfManyStatesTellsWhatSettles) {
-  // 5 x 87 states, of which each draw changes both parts: eigenvalues are products.
+  // 5 x 87 states, of which each draw changes both parts, so eigenvalues are products.
   const Probabilities slow = ring(5, 0.1, 0.02).matrix();
   const Chain fast = Chain::from_counts(lattice_counts(7), never_down());
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(435, 435);

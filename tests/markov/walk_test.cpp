@@ -60,7 +60,7 @@ Walked plainly(const Walker& walker, const Field& field, const Start& start, int
   return walked;
 }
 
-/// Rows 0, 12 (where kBottomCentre starts), 40 and 86 were never sampled.
+/// A chain whose rows 0, 12 (where kBottomCentre starts), 40 and 86 are unsampled.
 Chain with_gaps(std::uint64_t seed) {
   Counts counts = lattice_counts(seed);
   for (const int row : {0, 12, 40, 86}) empty_row(counts, row);
@@ -78,7 +78,7 @@ Chain leaping(std::uint64_t seed, int reach) {
   return Chain::from_counts(lattice_counts(seed), exits);
 }
 
-/// Very many nonzeros, all but three in the first row: to the right, up or on the spot.
+/// A chain of very many nonzeros, all but three in the first row: to the right, up or in place.
 Chain with_nonzeros(int nonzeros) {
   const int outputs = nonzeros - 3;
   Counts counts(2, outputs);
@@ -93,7 +93,8 @@ Chain with_nonzeros(int nonzeros) {
   return Chain::from_counts(counts, exits);
 }
 
-// How many of the 2^64 words draw each output. A slot shows one output, then perhaps another.
+// The number of the 2^64 words that draw each output. A slot gives one output, then perhaps
+// another.
 std::map<int, long double> words_per_output(const Walker& walker, int row, int slots) {
   __extension__ using Wide = unsigned __int128;
   const auto first_of = [slots](int slot) {
@@ -148,7 +149,7 @@ TEST(Walker, EveryProbabilityIsMetToAFewWordsOf2To64) {
 }
 
 TEST(Walker, TheExtremeWordsAreValid) {
-  // 1/2 and 1/2: both slots are always kept.
+  // 1/2 and 1/2: both slots keep all words.
   const Walker even(Chain::from_probabilities(matrix(1, 3, {{0, 0, 0.5}, {0, 2, 0.5}}),
                                               {{0, 0, 0}, {0, 0, 0}, {}}));
   EXPECT_EQ(even.draw(0, 0), 0);
@@ -177,7 +178,7 @@ TEST(Walker, RefusesARowItCannotDrawFrom) {
 }
 
 TEST(Walk, FrequenciesPassChiSquare) {
-  // From cell 0 one of ten cells, there trapped; p = 1/55 ... 10/55.
+  // From cell 0 to one of ten cells, trapped there; p = 1/55 ... 10/55.
   constexpr int kCells = 10;
   constexpr std::int64_t kWalks = 1'000'000;
   Counts counts(2, kCells + 1);
@@ -330,9 +331,8 @@ TEST(Walk, RowsOfOneEntryAndOfHardlyPossibleOnes) {
 }
 
 TEST(Walk, TheLowHalfOfAWordCounts) {
-  // 1/4 + 1.25 2^-33: what a word must not exceed within the first of two slots is
-  // 0x8000000140000000 less one. This walk's word decides in its low half, and in the carry out of
-  // it.
+  // 1/4 + 1.25 2^-33: within the first of two slots a word must not exceed 0x8000000140000000 less
+  // one. This walk's word decides in its low half, and in the carry out of it.
   const double p = 0.25 + 1.25 / 8589934592.0;
   const Walker walker(
       Chain::from_probabilities(matrix(1, 2, {{0, 0, p}, {0, 1, 1 - p}}), {{}, {0, 1, 0}}));
@@ -484,8 +484,9 @@ TEST(Walk, WithoutLimitIsFollowedThroughAMillionCells) {
   EXPECT_EQ(tally.still_walking, 6);
 }
 
-// In the first cell a quarter each: trapped, over the edge, into a state never sampled, and into
-// one that stays. Who stays has no final cell; all others have theirs, in lanes and plainly.
+// In the first cell a quarter each: trapped, over the edge, into an unsampled state, and into a
+// state that stays. Walks that stay have no final cell; all others have theirs, in lanes and
+// plainly.
 TEST(Walk, FinalCellsAreThoseOfWalksThatEnded) {
   const Walker walker(Chain::from_probabilities(
       matrix(3, 4, {{0, 0, 0.25}, {0, 1, 0.25}, {0, 2, 0.25}, {0, 3, 0.25}, {1, 3, 1.0}}),
