@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// First passages: how likely walks are to reach cells, states or an ending, from every state of
-/// every cell, and how long those that do are on their way.
+/// First passages: the probability that walks reach a cell, a state or an ending, from every state
+/// of every cell, and the mean draws and totals of walks that reach it.
 
 #include <cstdint>
 #include <optional>

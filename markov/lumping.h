@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Chains with fewer states: states taken together in groups, and what that costs.
+/// Lumped chains: states are merged into groups, and the error of lumping is computed.
 
 #include <vector>
 

@@ -41,6 +41,7 @@ class Walker {
   /// The number of cells after which a walk without a limit is stopped.
   static constexpr int kMostCells = 1'000'000;
 
+  /// Builds the alias tables of the chain's rows.
   explicit Walker(const FieldChain& chain);
 
   /// Draws an output of `row` from a uniform 64-bit word; outputs of probability zero are never

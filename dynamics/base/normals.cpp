@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace gatewalk::dynamics {
 namespace HWY_NAMESPACE {
 
-/// Box-Muller for n pairs of uniforms, n a multiple of 16.
+/// Box-Muller for n pairs of uniforms; n must be a multiple of 16.
 void box_muller(const double* radius, const double* angle, std::size_t n, double* normals) {
   const D d;
   for (std::size_t i = 0; i < n; i += width()) {

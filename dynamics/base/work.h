@@ -57,7 +57,7 @@ class TrialSet {
   }
 
  private:
-  std::map<std::int64_t, std::int64_t> ends_;  // first -> one past the last
+  std::map<std::int64_t, std::int64_t> ends_;  // first trial -> one past the last trial
 };
 
 /// How the caller of long work follows and stops the work. `told` receives progress; by default

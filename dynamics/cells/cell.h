@@ -74,6 +74,7 @@ class Cell {
  public:
   virtual ~Cell() = default;
 
+  /// The section that the cell shares with its field.
   [[nodiscard]] virtual const Section& section() const = 0;
   /// Whether the mirror image (left for right) of every passage is a passage too, equally likely.
   [[nodiscard]] virtual bool is_symmetric() const { return false; }
@@ -118,6 +119,7 @@ class Cell {
     std::string key;
     double value = 0.0;
   };
+  /// The parameters of the cell, which with() can change.
   [[nodiscard]] virtual std::vector<Number> numbers() const { return {}; }
   /// A copy of the cell in which parameter `number` is multiplied by `times`; null where such a
   /// cell is not permitted.

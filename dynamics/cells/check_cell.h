@@ -10,6 +10,7 @@
 
 namespace gatewalk::dynamics {
 
+/// Options of check_cell().
 struct CheckOptions {
   std::int64_t trials = 200;  // number of trials; the starts take turns
   int cells = 8;              // largest number of cells that a trial passes

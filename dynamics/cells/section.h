@@ -46,10 +46,10 @@ struct Entry {
 
 /// A coordinate of every entry. The first coordinate is the place along the face.
 struct Coordinate {
-  std::string name;   // "vx", in tables
-  std::string key;    // "vx_m_per_s", in JSON and scenes
-  std::string unit;   // "m s-1"
-  std::string words;  // "lateral velocity"
+  std::string name;    // "vx", in tables
+  std::string key;     // "vx_m_per_s", in JSON and scenes
+  std::string unit;    // "m s-1"
+  std::string words;   // "lateral velocity"
   double scale = 1.0;  // > 0; the unit in which spreads along coordinates are compared
 
   /// Coordinates are equal if all but their scales are.
@@ -58,6 +58,7 @@ struct Coordinate {
   }
 };
 
+/// The value of Face::mirror for a face without a mirror image.
 inline constexpr int kNoMirror = -1;
 
 /// A part of a cell's border, with coordinates of its own.

@@ -49,6 +49,7 @@ inline constexpr int kMostStates = 1'000'000;
 /// average over all leaves: sizes from 5 to 10 are about equally good.
 inline constexpr int kEntriesPerLeaf = 7;
 
+/// The states of a chain: bins or leaves of trees at every face, then single entries.
 class StateSpace {
  public:
   /// Makes a space of bins. The states are the bins of every face (the last coordinate runs
@@ -79,13 +80,17 @@ class StateSpace {
   /// The first state of a face.
   [[nodiscard]] int first(int face) const { return offset_[static_cast<std::size_t>(face)]; }
 
+  /// The state that contains an entry.
   struct Index {
     int state = 0;
     bool clamped = false;  // the entry is outside every bin and was assigned to the nearest
     bool beyond = false;   // the entry is beyond the outer edges, clamped or in an open bin
   };
+  /// Finds the state of an entry.
   [[nodiscard]] Index index_of(const Entry& entry) const;
+  /// The range of a state.
   [[nodiscard]] StateRange range(int state) const;
+  /// The face of a state.
   [[nodiscard]] int face(int state) const;
 
   /// Draws an entry uniformly from the state's range. A point gives itself.

@@ -28,6 +28,7 @@ struct Transitions {
 
   [[nodiscard]] Eigen::SparseMatrix<std::int64_t, Eigen::RowMajor> counts() const;  // (n x n+1)
 
+  /// Sums over all rows.
   struct Totals {
     std::int64_t runs = 0;
     std::int64_t crossings = 0;  // runs that left their cell

@@ -229,7 +229,7 @@ HWY_INLINE WideCoupling<N> coupling(const LaneGate& g, const WideTouch (&t)[N]) 
   return w;
 }
 
-/// bilateral_impulses() where both contacts are active.
+/// bilateral_impulses() for lanes in which both contacts are active.
 HWY_INLINE Each<2> both_impulses(const WideCoupling<2>& w, const Each<2>& b) {
   const Wide sign = choose(w.cross < all(0.0), all(-1.0), all(1.0)), a = sign * w.cross;
   const Wide e[2] = {w.own[0] - a, w.own[1] - a};

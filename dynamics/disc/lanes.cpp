@@ -235,8 +235,9 @@ namespace HWY_NAMESPACE {
 /// The first part of nearest() (contact.h) in all lanes, which shows whether disc and beam touch.
 struct Look {
   Wide c, s, along, across;
-  Wide r, qx, qy, distance_sq;  // the nearer end point, joint or tip, at r from the joint; from
-                                // there to the disc
+  // Nearer end point, joint or tip: distance from the joint; vector from it to the disc; squared
+  // distance.
+  Wide r, qx, qy, distance_sq;
   WideMask interior, touches;
 };
 HWY_INLINE Look look_at(const GateParams& p, Wide px, Wide py, Wide theta) {

@@ -14,13 +14,16 @@
 
 namespace gatewalk::dynamics {
 
+/// The side of a beam.
 enum Side : int { kLeft = 0, kRight = 1 };
 
+/// The body: a disc that slides over the ground without rotation.
 struct Disc {
   double mass = 1.0;     // kg
   double radius = 10.0;  // m
 };
 
+/// The two hinged beams of a gate. Each turns about its joint against a spring and a damper.
 struct Beams {
   double length = 25.0;            // m
   double mass = 0.1;               // kg
@@ -37,6 +40,7 @@ struct Beams {
   [[nodiscard]] double inertia() const { return mass * length * length / 3.0; }
 };
 
+/// The forces on the disc besides contact.
 struct Forces {
   double propulsion = 8.0;    // N, along +y
   double random = 40.0;       // N, Rm of Eq. (1), along x
@@ -44,6 +48,7 @@ struct Forces {
   double drag = 0.06;         // N s / m, D of Sec. III-C
 };
 
+/// The laws of contact.
 struct ContactParams {
   double restitution = 0.8;         // -, side of a beam and joint pin, Sec. II-A
   double tip_restitution = 1.0;     // -, free end, Eq. (6): elastic
@@ -53,6 +58,7 @@ struct ContactParams {
 inline constexpr double kPaperStep =
     0.004;  // s, Sec. II-B; in units of time (Scale) in other scenes
 
+/// How a run is computed and when it ends.
 struct RunParams {
   std::string method = "stable";  // a name of method_names()
   double step = 0.02;        // s, one step per draw of the random force; the paper's is kPaperStep
@@ -62,6 +68,7 @@ struct RunParams {
   double tolerance = 0.005;       // -; for `auto`: permitted total variation of the outcomes
 };
 
+/// All numbers of the scene of one gate.
 struct GateParams {
   Disc body;
   Beams beams;
@@ -71,6 +78,7 @@ struct GateParams {
 
   /// Distance between the joints (m): the width of a cell of the field.
   [[nodiscard]] double gate_width() const { return 2.0 * beams.joint_x; }
+  /// Length of a gate along y (m): the length of a cell of the field.
   [[nodiscard]] double gate_length() const { return run.traverse_y; }
 };
 
@@ -95,6 +103,7 @@ struct Scale {
   [[nodiscard]] double force() const { return mass * length / (time * time); }            // N
   [[nodiscard]] double energy() const { return mass * length * length / (time * time); }  // J
 };
+/// The own units of a scene.
 [[nodiscard]] Scale scale_of(const GateParams& params);
 
 /// One numeric key of a scene: its public name with unit, its place in GateParams, its permitted

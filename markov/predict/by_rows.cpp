@@ -147,13 +147,13 @@ class PredictionRows {
     return type_masks_.data() + static_cast<std::ptrdiff_t>(type) * stride_;
   }
 
-  /// to += stencil from, from cells of one type.
+  /// Computes to += stencil from, for cells of one type.
   void apply(const Stencil& stencil, const CellsOfType& cells, const Shift* shifts, Planes from,
              Planes to) const {
     apply_stencil(stencil, shifts, stride_, cells.mask, cells.ranges, from.data(), to.data(), true);
   }
-  /// The same from all cells, each by the stencil of its type; all moves within one row: what goes
-  /// up arrives in the same column of `to`.
+  /// Computes to += stencil from for all cells, each by the stencil of its type. All moves stay
+  /// within one row of planes: mass that goes up arrives in the same column of `to`.
   void apply_in_row(Stencil PreparedChain::*stencil, Planes from, Planes to) const {
     for (const CellsOfType& cells : types_)
       apply(plan_.chains[cells.type].*stencil, cells, layout_.shifts(0), from, to);

@@ -79,7 +79,7 @@ void MoreauMethod::one_step(GateState& s, double force_x, const Step& step, Watc
     }
     for (const Side side : {kLeft, kRight}) {
       if (!active[side])
-        continue;  // by the midpoint rule an impulse works on the mean of both rates
+        continue;  // an impulse does work on the mean of both rates (midpoint rule)
       watch.hit_loss -=
           0.5 * impulse[side] * (before[side] + gap_rate(touch[side], body, beams[side]));
     }
