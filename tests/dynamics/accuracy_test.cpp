@@ -84,8 +84,8 @@ TEST(WeakError, ExchangedTrialsCancel) {
   EXPECT_NEAR(e.chance, std::sqrt(2.0 / std::numbers::pi) / 8.0 * 2.0 * std::sqrt(2.0), 4 * kEps);
 }
 
-// Changes in the reference that cancel by chance must not give it a better limit than chance
-// allows.
+// If changes of the reference cancel by chance, the limit follows from chance; without changes,
+// from one trial.
 TEST(WeakError, LimitIsTheLargestOfErrorChanceAndOneTrial) {
   EXPECT_EQ(weak_limit({.total_variation = 0.02, .chance = 0.01}, 1000), kReferenceMargin * 0.02);
   EXPECT_EQ(weak_limit({.total_variation = 0.0, .chance = 0.01}, 1000), kReferenceMargin * 0.01);

@@ -181,8 +181,8 @@ void check_outcomes(Health& health, const GateParams& p, std::span<const BodySta
 /// An error can be shown only above this multiple of the reference's own error.
 inline constexpr double kReferenceMargin = 10.0;
 
-/// The smallest total variation that can be shown: kReferenceMargin times the reference's own
-/// error, more than chance makes of the reference's own changes, and more than one trial.
+/// The smallest total variation that can be shown: kReferenceMargin times the largest of the
+/// reference's own error, the error that chance makes of its own changes, and one trial.
 [[nodiscard]] double weak_limit(const WeakError& own, std::int64_t trials);
 
 }  // namespace gatewalk::dynamics
