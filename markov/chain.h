@@ -55,7 +55,6 @@ class Chain {
   [[nodiscard]] bool is_sampled(int row) const {
     return p_.outerIndexPtr()[row + 1] > p_.outerIndexPtr()[row];
   }
-  /// The number of rows without samples.
   [[nodiscard]] int unsampled_rows() const;
 
  private:

@@ -90,7 +90,6 @@ struct Work {
   /// is reported under the name `what`, as a share of the whole.
   [[nodiscard]] Work part(std::string what, double from, double size, std::int64_t total) const;
 
-  /// Calls `told` if it is set.
   void tell(std::string_view what, std::int64_t done, std::int64_t total) const {
     if (told) told(what, done, total);
   }

@@ -88,9 +88,7 @@ class StateSpace {
   };
   /// Finds the state of an entry.
   [[nodiscard]] Index index_of(const Entry& entry) const;
-  /// The range of a state.
   [[nodiscard]] StateRange range(int state) const;
-  /// The face of a state.
   [[nodiscard]] int face(int state) const;
 
   /// Draws an entry uniformly from the state's range. A point gives itself.

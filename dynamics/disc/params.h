@@ -14,7 +14,6 @@
 
 namespace gatewalk::dynamics {
 
-/// The side of a beam.
 enum Side : int { kLeft = 0, kRight = 1 };
 
 /// The body: a disc that slides over the ground without rotation.
@@ -103,7 +102,6 @@ struct Scale {
   [[nodiscard]] double force() const { return mass * length / (time * time); }            // N
   [[nodiscard]] double energy() const { return mass * length * length / (time * time); }  // J
 };
-/// The own units of a scene.
 [[nodiscard]] Scale scale_of(const GateParams& params);
 
 /// One numeric key of a scene: its public name with unit, its place in GateParams, its permitted
