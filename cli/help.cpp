@@ -13,6 +13,7 @@
 
 #include "cli/commands.h"
 #include "cli/fields/schema.h"
+#include "cli/render/scene_keys.h"
 #include "cli/render/version.h"
 #include "cli/terminal/output.h"
 
@@ -300,6 +301,7 @@ void write_help(const std::string& share) {
   for (const ResultOf& of : results())
     write(fmt::format("gatewalk/schemas/{}.schema.json", file_name_of(of.command)), schema_of(of));
   write("doc/gatewalk/results.md", results_in_markdown());
+  write("doc/gatewalk/scene.md", scene_keys_in_markdown());
   write("man/man1/gatewalk.1", manual(all));
   for (const Page& page : all)
     write(fmt::format("man/man1/gatewalk-{}.1", file_name_of(page.name)), manual_of(page));

@@ -58,7 +58,7 @@ const std::vector<SceneKey>& scene_keys() {
         all.push_back({kMethodKey,
                        [](Scene& s) { return Slot(&s.gate.run.method); },
                        {},
-                       "how time is stepped: auto, stable, moreau, event, penalty or paper"});
+                       "method of time stepping: auto, stable, moreau, event, penalty, paper"});
       }
       all.push_back({info.key, [&info](Scene& s) { return Slot(&info.ref(s.gate)); },
                      [&info](const Scene&) {
@@ -80,29 +80,29 @@ const std::vector<SceneKey>& scene_keys() {
     };
     add(
         "field.columns", [](Scene& s) { return &s.field.columns; }, fixed(kFieldSizes),
-        "gates side by side");
+        "columns of gates, side by side");
     add(
         "field.rows", [](Scene& s) { return &s.field.rows; }, fixed(kFieldSizes),
-        "gates one behind the other");
+        "rows of gates, one behind the other");
     add(
         "field.max_gates", [](Scene& s) { return &s.field.max_gates; }, fixed(kGateLimits),
-        "gates a body may visit before it is cut off, 0: no limit");
+        "gates that a body may visit before it is cut off; 0: no limit");
     add(
         kFidelityKey, [](Scene& s) { return &s.field.fidelity; }, {},
-        "which beams act: active (only the gate the body is in), remember, all");
+        "beams that act: active (the body's gate), remember (also the last), all");
     add(
         "start.x_m", [](Scene& s) { return &s.start.x; },
         [](const Scene& s) {
           return Interval{-s.gate.beams.joint_x, s.gate.beams.joint_x, true, true};
         },
-        "start, from the gate's middle line");
+        "x of the start, from the gate's middle line");
     add(
         "start.y_m", [](Scene& s) { return &s.start.y; },
         [](const Scene& s) {
           return Interval{-kFar * dynamics::scale_of(s.gate).length, s.gate.run.traverse_y, false,
                           true};
         },
-        "start, from the gate's entrance");
+        "y of the start, from the gate's entrance");
     add(
         "start.vx_m_per_s", [](Scene& s) { return &s.start.vx; }, speeds,
         "lateral velocity at the start");
