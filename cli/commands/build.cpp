@@ -39,7 +39,7 @@ struct BuildCommand : Options {
   TextOption cell_file =
       input_file("cell",
                  "SCENE is a table of recorded runs (runs.csv) through cells as this file "
-                 "(cell.toml) says: lattice/recorded/README.md");
+                 "(cell.toml) says: cli/site/reference/files.md");
   AskedProgram program = add_cell_program(*this);
   TextsOption start = add_starts(
       *this,

@@ -31,7 +31,7 @@ struct LatticeCommand : Options {
   TextOption passages =
       output_file("passages", "FILE.csv",
                   "write every passage through a gate as a table of recorded runs "
-                  "(lattice/recorded/README.md)");
+                  "(cli/site/reference/files.md)");
   TextOption cell_file =
       output_file("cell-file", "FILE.toml", "write what such a table's cells are (cell.toml)");
   TextOption netcdf = output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);

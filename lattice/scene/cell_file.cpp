@@ -600,7 +600,7 @@ CellFile read_cell_file(const TomlFile& file, const std::vector<std::string>& ov
   if (has_ending(file.name(), ".csv"))
     throw SceneError(
         file.name() +
-        ": is a table, and no file of cells, which is TOML (lattice/recorded/README.md); "
+        ": is a table, and no file of cells, which is TOML (cli/site/reference/files.md); "
         "with --cell CELL.toml the table stands before it");
   return cell_file_of(file, overrides);
 }

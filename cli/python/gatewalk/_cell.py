@@ -64,7 +64,7 @@ class Cell:
         symmetric cells a face also has ``"odd"``, the coordinates that change sign in the mirror (left for right), and
         ``"mirror"``, the face by which mirror images enter, if several faces have the mirrored move.
     coordinates : list of dict
-        Coordinates of an entry: ``{"name": "s", "unit": "m", "scale": 0.1}``; ``scale`` is a distance that matters.
+        Coordinates of an entry: ``{"name": "s", "unit": "m", "scale": 0.1}``; ``scale`` is a difference that matters.
     costs : list of dict
         Costs of a passage, the time first: ``{"key": "time_s", "unit": "s"}``.
     symmetric : bool
