@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A line that a cell program writes: what became of a passage (cli/site/reference/cell_program.md).
+/// A line that a cell program writes: how a passage ended (cli/site/reference/cell_program.md).
 
 #include <array>
 #include <charconv>

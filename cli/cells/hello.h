@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The first line that a cell program writes: what its cell looks like (cli/site/reference/cell_program.md).
+/// The first line that a cell program writes, which describes its cell
+/// (cli/site/reference/cell_program.md).
 
 #include <cstdint>
 #include <string>

@@ -249,7 +249,7 @@ std::vector<std::string> check_cell(const py::object& cell,
 PYBIND11_MODULE(_core, m) {
   using namespace gatewalk;
   using python::Matrix;
-  m.doc() = "What gatewalk is made of in C++; see the module gatewalk.";
+  m.doc() = "The C++ part of the module gatewalk, which is documented there.";
   m.attr("version") = cli::kVersion;
   m.attr("commit") = cli::kCommit;
   const auto error = [&](auto tag, const char* name, PyObject* base) {
@@ -270,17 +270,18 @@ PYBIND11_MODULE(_core, m) {
   m.def("run", &python::run, pybind11::arg("command"), pybind11::arg("words"), pybind11::kw_only(),
         pybind11::arg("told"), pybind11::arg("warned"), pybind11::arg("cell"),
         pybind11::arg("matrices"),
-        "Runs a command with these words: (exit status, its result as a dict). told(what, "
-        "done, total) hears how far it is, warned(text) what it warns of. Files of `matrices` are "
-        "not read again.");
+        "Runs a command with these words of a command line. Returns (exit status, result as a "
+        "dict). The command calls told(what, done, total) with its progress and warned(text) with "
+        "each warning. It does not read the files of `matrices` again.");
   m.def("result_keys", &python::result_keys, pybind11::arg("command"),
-        "The keys of the command's results: [(command or shared object, [(key, type, unit, "
+        "Keys of the results of a command: [(command or shared object, [(key, type, unit, "
         "meaning, always there)])].");
   m.def("options", &python::options, pybind11::arg("command"),
-        "(name, value as shown, kind, is a file, may be repeated) of each option of a command.");
+        "Options of a command: [(name, value as shown, kind, is a file, may be repeated)].");
   m.def("check_cell", &python::check_cell, pybind11::arg("cell"), pybind11::arg("starts"),
         pybind11::arg("trials"), pybind11::arg("cells"), pybind11::arg("seed"),
-        "What is wrong with a cell, in words, of trials from starts (face, coordinates).");
+        "Tests a cell with trials from starts [(face, coordinates)]. Returns a sentence for each "
+        "fault.");
   m.def(
       "threads",
       [](int n) {
@@ -291,14 +292,18 @@ PYBIND11_MODULE(_core, m) {
           limit = std::make_unique<tbb::global_control>(
               tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(n));
       },
-      pybind11::arg("n"), "Threads to use from now on; 0: all.");
-  pybind11::class_<Matrix>(m, "Matrix", "What a matrix file holds.")
+      pybind11::arg("n"), "Sets the number of threads for all commands that follow; 0: all.");
+  pybind11::class_<Matrix>(m, "Matrix", "The content of a matrix file.")
       .def(pybind11::init<std::string>(), pybind11::arg("path"))
-      .def_property_readonly("types", &Matrix::types, "Names of types; '' is the first.")
-      .def_property_readonly("text", &Matrix::text, "Scene, seed, version, command.")
+      .def_property_readonly("types", &Matrix::types,
+                             "Names of the types of gates; '' is the first type.")
+      .def_property_readonly("text", &Matrix::text,
+                             "Texts of the file: scene, seed, version, command.")
       .def("csr", &Matrix::csr, pybind11::arg("type"), pybind11::arg("probabilities"),
-           "(data, indices, indptr, shape), views of the matrix.")
+           "Returns (data, indices, indptr, shape); the arrays are views of the matrix.")
       .def("states", &Matrix::states,
-           "By name: name, if states have some, face, and low and high of each coordinate.")
-      .def("faces", &Matrix::faces, "(name, di_x, di_y) of each face.");
+           "A dict of columns with a value for each state: its name (if states have names), its "
+           "face, and low and high of each coordinate.")
+      .def("faces", &Matrix::faces,
+           "A list of (name, di_x, di_y), the move into a cell by each face.");
 }
