@@ -1,9 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Pages as they stand (pages.py), each in an empty folder.
-#   pages_test.sh GATEWALK ROOT PYTHON PAGE...      gatewalk importable by PYTHON
+# Runs pages (pages.py), each in an empty folder.   pages_test.sh GATEWALK ROOT PYTHON [--renew] PAGE...
+# PYTHON must find the module gatewalk. --renew writes into the pages what is printed now.
 set -euo pipefail
 gatewalk=$(realpath "$1") root=$(realpath "$2") python=$3
+shift 3
+renew=()
+if [ "${1-}" = --renew ]; then
+  renew=(--renew)
+  shift
+fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 PATH=$(dirname "$gatewalk"):$PATH
@@ -37,12 +43,27 @@ wrong "$fence" '$ echo 1' 2 "$fence"
 wrong "$fence" '$ false' "$fence"
 right "$fence" '$ gatewalk gate none.toml' 'gatewalk: none.toml: [...]' "$fence"
 
-for page in "${@:4}"; do
+# --renew keeps what matches, takes numbers and words from what is printed, and reports lines without a counterpart.
+renewed() {  # STATUS, then the page that must result
+  local status=0
+  (cd "$work" && "$python" "$root/tests/pages.py" right.md --renew >/dev/null 2>&1) || status=$?
+  [ "$status" = "$1" ] && printf '%s\n' "${@:2}" | cmp -s - "$work/right.md" || { echo "FAILED: renewed:"; cat "$work/right.md"; exit 1; }
+}
+shows() { printf '%s\n' "$@" >"$work/right.md"; }
+command='$ printf "%s\n" first "crossed 1.5 % [1, 2] of all" "left side 2" "trapped 3" "gates 4, 5"'
+shows "$fence" "$command" '[...]' 'crossed 0.9 % [0, 2] [...]' '[...]' 'trapped 3' '[...]' "$fence"
+renewed 0 "$fence" "$command" '[...]' 'crossed 1.5 % [1, 2] [...]' '[...]' 'trapped 3' '[...]' "$fence"
+shows "$fence" "$command" 'crossed 1' '[...]' 'nowhere 3' 'gates 1' "$fence" text
+renewed 1 "$fence" "$command" '[...]' 'crossed 1.5 % [1, 2] of all' '[...]' 'gates 4, 5' "$fence" text
+shows "${fence}sh" 'printf "%s\n" 1 2' "$fence" "${fence}text" 1 "$fence"
+renewed 0 "${fence}sh" 'printf "%s\n" 1 2' "$fence" "${fence}text" 1 2 "$fence"
+
+for page in "$@"; do
   began=$SECONDS
   rm -rf "$work/folder"
   mkdir "$work/folder"
   ln -s "$(dirname "$gatewalk")" "$work/folder/build"
   [ "$page" = cli/site/tutorial.md ] || ln -s "$root/scenes" "$work/folder/scenes"
-  (cd "$work/folder" && "$python" "$root/tests/pages.py" "$root/$page")
+  (cd "$work/folder" && "$python" "$root/tests/pages.py" "$root/$page" "${renew[@]}")
   echo "$page: $((SECONDS - began)) s"
 done
