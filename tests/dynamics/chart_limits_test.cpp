@@ -248,7 +248,7 @@ TEST(RunMaps, FindTheBoundsWithinACell) {
   EXPECT_GT(beyond, 30);
 }
 
-// ---- How far from the scene ----
+// ---- Distance from the scene to the faults ----
 
 constexpr Verdict kOk = Verdict::fine;
 
@@ -357,7 +357,7 @@ TEST(Signs, AreNumbersOfTheStatus) {
 
 // ---- Borders that are known ----
 
-// Explicit Euler grows a swinging beam when h > d/k. Both sides of the border, 1 % away.
+// With explicit Euler a swinging beam grows if h > d/k. Both sides of the border, 1 % away.
 TEST(Limits, PaperBreaksBeyondItsStiffnessBound) {
   for (const double h : {0.001, 0.002, 0.004}) {
     const double border = GateParams{}.beams.damping / h;
@@ -366,7 +366,8 @@ TEST(Limits, PaperBreaksBeyondItsStiffnessBound) {
   }
 }
 
-// ... and a creeping one when h > about 2 I/d; a swinging one also when the damping is too small.
+// With explicit Euler a creeping beam grows if h > about 2 I/d; a swinging beam also if the damping
+// is too small.
 TEST(Limits, PaperBreaksBeyondBothDampingBounds) {
   const double inertia = GateParams{}.beams.inertia(), k = GateParams{}.beams.stiffness_left;
   for (const double h : {0.001, 0.004}) {

@@ -119,7 +119,7 @@ TEST(CheckCell, FindsSectionsAndStartsThatAreNone) {
   EXPECT_THROW((void)check_cell(FunctionCell(upright(), fine), {}), std::invalid_argument);
 }
 
-/// Takes more bodies at once than it may, and counts none of them.
+/// A cell that takes more bodies at once than permitted, and counts none of them.
 class Greedy : public FunctionCell {
  public:
   Greedy() : FunctionCell(upright(), fine) {}

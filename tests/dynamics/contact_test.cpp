@@ -38,7 +38,7 @@ BodyState body_at(const GateParams& p, Side side, Point at, Point v = {}) {
   return {inwards * (at.x - p.beams.joint_x), p.beams.joint_y + at.y, inwards * v.x, v.y};
 }
 
-/// A body somewhere around the beam, with a velocity.
+/// A body at a random place around the beam, with a random velocity.
 BodyState random_body(const GateParams& p, Side side, Draw& draw) {
   return body_at(p, side, {draw.uniform(-20, 45), draw.uniform(-40, 40)},
                  {draw.uniform(-15, 15), draw.uniform(-15, 15)});
@@ -415,7 +415,7 @@ TEST(Impact, TipHitIsTheOtherZeroOfTheEnergyChange) {
     using L = long double;
     const L M = h.mass, I = p.beams.inertia(), l = h.t.lever;
     const L w = h.s.beams[kLeft].omega, vx = h.s.body.vx, vy = h.s.body.vy;
-    const auto energy_change = [&](L J) {  // (after - before).(after + before), or it all cancels
+    const auto energy_change = [&](L J) {  // (after - before).(after + before) avoids cancellation
       const L dx = J * h.t.nx / M, dy = J * h.t.ny / M, dw = -l * J / I;
       return M / 2 * (dx * (2 * vx + dx) + dy * (2 * vy + dy)) + I / 2 * dw * (2 * w + dw);
     };

@@ -44,14 +44,15 @@ RandomForce force_of(const GateParams& p, int trial, double sign = 1.0) {
 
 // ---- Free motion ----
 
-// x = 24.9 + t - 2 t^2 m tops out at 25.025 m: out at (1 - sqrt(.2)) / 4 s, and in again before the
-// spell is over.
+// x = 24.9 + t - 2 t^2 m has its maximum at 25.025 m: the body leaves at (1 - sqrt(.2)) / 4 s and
+// would be inside again before the spell is over.
 TEST(Event, StopsAtTheMomentOfLeaving) {
   const GateParams p = event(test::free_rods());
   for (const double spell : {0.2, 0.5, 5.0}) {
     Ride ride(p, at_rest(24.9, 0.0, 1.0, 0.0));
     const double out = (1 - std::sqrt(0.2)) / 4;
-    // A parabola is interpolated without error; 0.447 m/s turn a rounding of 25 m into time.
+    // A parabola is interpolated without error; a speed of 0.447 m/s converts the rounding of 25 m
+    // into time.
     EXPECT_NEAR(ride.go(spell, -4.0), out, 8 * kEps * 25.0 / 0.447) << spell;
     EXPECT_TRUE(outside(p, ride.s.body));
     EXPECT_NEAR(ride.s.body.x, 25.0, 8 * kEps * 25.0);
@@ -187,7 +188,7 @@ struct Settling {
 void expect_settling(const Bouncing& b, double relative_error, Settling& worst) {
   const double began = test::thread_seconds();
   SCOPED_TRACE(testing::Message() << "e = " << b.e << ", tolerance = " << b.tolerance);
-  Ride ride(b.scene(), at_rest(-25.0, 0.0));  // straight below the left joint: that does not move
+  Ride ride(b.scene(), at_rest(-25.0, 0.0));  // straight below the left joint, which does not move
   const double t = time_until_held(ride, 2 * b.zeno_time());
   ASSERT_TRUE(ride.s.beams[kLeft].held);
   // A rebound of exactly that height may or may not be simulated; only where the blur is visible.
@@ -219,8 +220,9 @@ void expect_settling(const Bouncing& b, double relative_error, Settling& worst) 
   ++worst.scenes;
 }
 
-// The scene of the known answers, 1/3 m below the joint. What the hold cuts off is the error:
-// relative 2 / (1 + e) sqrt(tolerance / height), 0.19 at e = 0.8 by default and no less than 2e-5.
+// The scene with known answers, 1/3 m below the joint. The error is the time that the hold cuts
+// off: relative 2 / (1 + e) sqrt(tolerance / height), 0.19 at e = 0.8 by default and no less than
+// 2e-5.
 TEST(Zeno, EventSettlesAtThePredictedHit) {
   for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}) {
     Settling worst;
@@ -370,8 +372,8 @@ struct Ledger {
   int hits = 0;         // single hits compared with the law
 };
 
-/// Follows `s` over dt. A piece with a hit, a release or a hand-over from
-/// side to tip in it is halved until that fills 1e-11 s.
+/// Follows `s` over dt. A piece that contains a hit, a release or a hand-over from side to tip is
+/// halved until its length is 1e-11 s.
 void follow(const GateParams& p, const Method& method, GateState& s, double force, double dt,
             Ledger& ledger) {
   const auto carried = [&](const GateState& from, double seconds, Watch& w) {
@@ -399,7 +401,7 @@ void follow(const GateParams& p, const Method& method, GateState& s, double forc
   ledger.work += std::abs(up) + std::abs(aside);
   double lost = energy(p, s) + up + aside - energy(p, end);
   if (smooth) {
-    // Gauss-Legendre, four nodes: (dt omega)^8 / 10^10 of what it adds up.
+    // Gauss-Legendre with four nodes: a relative error of (dt omega)^8 / 10^10.
     constexpr double node[] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281,
                                0.9305681557970263};
     constexpr double weight[] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
@@ -497,7 +499,7 @@ TEST(Grazing, EventHitsTheSideOnlyBelowTheRadius) {
       Ride ride(p, s);
       ride.go(0.8);
       const double mu = 1 / compliance(1.0, p.beams.inertia(), 15.0);
-      const auto impulse = [&](double d) {  // of a hit as deep as that below R
+      const auto impulse = [&](double d) {  // of a hit at this depth below R
         return 1.8 * std::sqrt(2 * 8.0 * std::max(d, 0.0)) * mu;
       };
       const double J = ride.s.beams[kLeft].omega * -p.beams.inertia() / 15.0;

@@ -221,7 +221,7 @@ TEST(BeamFlow, LimitsWithoutSpringOrDamper) {
 }
 
 TEST(BeamFlow, ForgetsItsStartWhenStronglyDamped) {
-  // 0.3 s of a beam whose fast root is 10^12/s: what is left is the slow root -k/d and no overflow.
+  // 0.3 s of a beam whose fast root is 10^12/s: only the slow root -k/d is left, without overflow.
   const BeamFlow flow(1e3, 1e12, 0.3);
   EXPECT_NEAR(flow.tt, std::exp(-1e3 / 1e12 * 0.3), 4 * kEps);
   EXPECT_NEAR(flow.tw, 1e-12, 1e-12 * 1e-9);

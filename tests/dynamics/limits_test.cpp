@@ -301,7 +301,7 @@ TEST_P(HeldContacts, ATipIsHitOnlyBelowTheRadius) {
       Ride ride(p, s);
       ride.go(2.5);  // not far enough to reach the other beam
       const double kick = std::hypot(ride.s.body.vx, ride.s.body.vy - 10.0);
-      const auto impulse = [&](double depth) {  // of a hit as deep as that below R
+      const auto impulse = [&](double depth) {  // of a hit at this depth below R
         if (depth <= 0.0) return 0.0;
         const double ny = std::sqrt(depth * (2 - depth)), l = p.beams.length * ny;
         return 2 * 10.0 * ny / compliance(1.0, p.beams.inertia(), l);

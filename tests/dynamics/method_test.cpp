@@ -93,7 +93,7 @@ TEST(EnergyLedger, KnowsTheWorkOfBothForces) {
   ledger.step(s, 5.0, 0.02, w);
   EXPECT_NEAR(w.energy_created, 0.0, 8 * kEps * 23);
   s.body.x = 5;
-  s.body.vx = std::sqrt(2 * 20.0);  // 1 m back-pushed by 2 N: 21 J were due, 1 J was lost
+  s.body.vx = std::sqrt(2 * 20.0);  // 1 m against 2 N: 21 J are expected, 1 J is lost
   ledger.step(s, -2.0, 0.02, w);
   EXPECT_NEAR(w.energy_created, 0.0, 8 * kEps * 23);
 }

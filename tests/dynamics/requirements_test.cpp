@@ -53,7 +53,7 @@ TEST_P(Requirement, LimitsHaveNoFaults) {
        [](GateParams& p) {
          p.beams.mass = 1e4;
          p.beams.stiffness_left = p.beams.stiffness_right = 1e12;
-         p.run.event_tolerance = 1e-8;  // an angle's error of 1e-2 m / L would be worth 10^5 J
+         p.run.event_tolerance = 1e-8;  // an error of the angle of 1e-2 m / L would be 10^5 J
        }},
       {"Rm = 0", [](GateParams& p) { p.forces.random = 0.0; }},
       {"F = 0", [](GateParams& p) { p.forces.propulsion = 0.0; }},

@@ -173,7 +173,8 @@ TEST(Section, OfTwoCoordinatesGrowsTreesAndBins) {
     for (const Tree::Node& node : tree.nodes) EXPECT_LT(node.axis, 2);
   EXPECT_EQ(trees.trees()[2].seen[1], (std::array<double, 2>{-2, 2}));  // the usual range
   const StateSpace bins = quantile_space(squares(), seen, 8, {});
-  EXPECT_EQ(bins.size(), 9);  // 2 x 2 for either half of them, and one where nothing was seen
+  // 2 x 2 for either half of the entries, and one at the face without entries.
+  EXPECT_EQ(bins.size(), 9);
   Section lacking = squares();
   lacking.faces[2].usual = {};
   EXPECT_THROW((void)tree_space(lacking, {lacking, seen}, 10), std::invalid_argument);
@@ -380,7 +381,7 @@ TEST(Refined, HasEqualBinsOverTheSameRange) {
     for (int b = 0; b < kBoundaries; ++b)
       for (std::size_t axis = 0; axis < kPaper.coordinates.size(); ++axis) {
         const Edges &now = s.bins()[b].edges[axis], &was = before.bins()[b].edges[axis];
-        EXPECT_EQ(now.front(), was.front());  // what was clamped stays clamped, and nothing else
+        EXPECT_EQ(now.front(), was.front());  // exactly the clamped entries stay clamped
         EXPECT_EQ(now.back(), was.back());
         const double width = (was.back() - was.front()) / static_cast<double>(now.size() - 1);
         for (std::size_t i = 1; i < now.size(); ++i)  // edges of at most 60, differences of two

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// ---- What can be told, by hand ----
+// ---- Limits of what can be shown, by hand ----
 
 // 1000 trials. The reference's own error is 0.002 in outcomes, of which chance explains 0.001, so
 // the limit is ten times 0.002. In columns the reference has no error: the limit is ten trials.

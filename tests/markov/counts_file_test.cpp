@@ -206,7 +206,7 @@ std::string sealed(std::string bytes) {
   return bytes.replace(at, 16, digits);
 }
 
-// ---- What is written is read ----
+// ---- Reading returns what was written ----
 
 TEST_F(ChainIo, RoundTrip) {
   const CountsFile file = example();

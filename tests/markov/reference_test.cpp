@@ -194,7 +194,7 @@ TEST(Exact, TwoStateLoopIsGeometric) {
   }
 }
 
-// ---- The rule of a step ----
+// ---- The rules of a single step ----
 
 TEST(Exact, WhereAStepEnds) {
   // Input 0 always moves right, input 1 is unsampled, input 2 is trapped.

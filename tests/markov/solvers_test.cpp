@@ -125,7 +125,7 @@ TEST_P(Solvers, TwoChainsByRow) {
   const FieldChain chain =
       FieldChain::by_row({drift(0.0, 0.0, 0.5), drift(0.25, 0.25, 0.0)}, {0, 1});
   const FinalDistribution d = from(chain, {3, 2}, {1, 0, 0});
-  // Beside: 3/4 of the visits end, by a trap or over the side.
+  // In the side cells 3/4 of the visits end, trapped or over the side.
   expect_cells(d, CellProbabilities{{0.0, 0.5, 0.0}, {3.0 / 28.0, 2.0 / 7.0, 3.0 / 28.0}});
 }
 

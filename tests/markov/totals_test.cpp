@@ -269,7 +269,7 @@ TEST(WalkTotals, AreExactWhereWalksCircleForLong) {
   }
 }
 
-// ---- The chance of an ending ----
+// ---- The probability of an ending ----
 
 TEST(EndingChance, IsThatOfPropagationFromEverywhere) {
   Counts counts = lattice_counts(7);
