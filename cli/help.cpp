@@ -13,8 +13,8 @@
 
 #include "cli/commands.h"
 #include "cli/fields/schema.h"
-#include "cli/render/scene_keys.h"
 #include "cli/render/version.h"
+#include "cli/scene_keys.h"
 #include "cli/terminal/output.h"
 
 namespace gatewalk::cli {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/render/scene_keys.h"
+#include "cli/scene_keys.h"
 
 #include <fmt/core.h>
 #include <fmt/format.h>
