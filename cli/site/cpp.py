@@ -30,12 +30,12 @@ WARN_AS_ERROR = FAIL_ON_WARNINGS
 INDEX = """C++ reference
 =============
 
-What ``cmake --install`` brings: ``find_package(gatewalk)``, then link ``gatewalk::dynamics``, ``gatewalk::markov`` or
-``gatewalk::lattice``, which brings the other two. :doc:`The front page </index>` has a first program, :doc:`lattice
-</lattice/index>` has more. Folder, namespace and library have one name; ``lattice/lattice.h`` includes what most
-programs need, ``markov/markov.h`` what chains alone need.
+All installed headers, with what they declare. :doc:`From C++ </guides/library>` explains by examples how to use them.
+A program calls ``find_package(gatewalk)`` and links ``gatewalk::dynamics``, ``gatewalk::markov`` or
+``gatewalk::lattice``, which brings the other two. Folder, namespace and library have the same name.
+``lattice/lattice.h`` includes what most programs need, ``markov/markov.h`` what chains alone need.
 
-Here are all headers with what they declare. A member's default with named parts (``= {.trials = 100}``) is not shown.
+A member's default with named parts (``= {.trials = 100}``) is not shown.
 """
 
 

@@ -4,7 +4,8 @@
     prepare.py ROOT PROGRAM SOURCE [NOTEBOOKS]
 
 ROOT is the repository, PROGRAM the built gatewalk, SOURCE the folder to make, NOTEBOOKS a folder with executed
-notebooks as pages. The READMEs of the repository are the pages; links to files that are none are to copies.
+notebooks as pages. Every Markdown file of the repository is a page: those in cli/site at the top of the site, a README
+as index.md in its folder. A file that a page links to, and that is no page, is copied.
 """
 
 import os

@@ -54,15 +54,15 @@ def command_page(manual: str, name: str) -> str:
             else:
                 out, lines = [*out, _words(lines[0])], lines[1:]
         out.append("")
-    out += ["Exit statuses are [those of all commands](../cli/index.md#options-and-exit-status).", ""]
+    out += ["[Options and exit statuses of all commands](../reference/conventions.md).", ""]
     return "\n".join(out)
 
 
 def commands_page(overview: str) -> str:
     """All commands in the groups of `gatewalk help`."""
-    out = ["# Commands", "", "Each page is the program's own help, `gatewalk help COMMAND`. The front page has them",
-           "[by what you want](index.md#i-want-); [options and exit status](cli/index.md#options-and-exit-status) are",
-           "those of all commands.", ""]
+    out = ["# Commands", "", "Each page shows what `gatewalk help COMMAND` prints. Another page lists the commands",
+           "[by what you want](guides/index.md#every-command-by-what-you-want).",
+           "[Conventions](reference/conventions.md) explains what all commands share.", ""]
     names = []
     for title, lines in re.findall(r"^(\w.*)\n((?:  [\w-]+(?: \w+)?  +.*\n)+)", overview, re.M):
         out += [f"## {title}", ""]
@@ -75,7 +75,7 @@ def commands_page(overview: str) -> str:
 
 
 def notebooks_page(names: list[str]) -> str:
-    out = ["# Notebooks", "", "Each is run when this site is built: its numbers and pictures are of this version.", ""]
+    out = ["# Notebooks", "", "The site runs each notebook when it is built, so numbers and pictures are those of this version.", ""]
     out += ["```{toctree}", ":maxdepth: 1", "", *(f"notebooks/{name}" for name in names), "```", ""]
     return "\n".join(out)
 

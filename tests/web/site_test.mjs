@@ -6,7 +6,7 @@ import {browse, close} from './browser.mjs';
 
 const site = process.argv[2];
 const pages = ['index', 'gallery', 'commands', 'commands/predict', 'python', 'cpp/index', 'cpp/markov', 'glossary',
-  'guides/markov', 'lattice/index', 'results/index', 'CHANGELOG'];
+  'guides/index', 'guides/markov', 'explain/model', 'reference/conventions', 'cli/scene', 'results/index', 'CHANGELOG'];
 let failures = 0;
 const fail = what => {
   console.log(`FAILED: ${what}`);
