@@ -12,7 +12,7 @@ begins with "gatewalk: " and further ones that are indented; else it must end we
 line of its own for any lines. A file that the page shows by cat is made unless it exists.
 
 --renew changes only output that does not match. Output without a line "[...]" is replaced whole. Else each line is
-replaced by the next printed line that begins with the same words (up to the first number or bracket), and "[...]" stands
+replaced by the next printed line that begins with the same words, up to the first number or bracket; "[...]" stands
 where printed lines are left out. A line that ended in "[...]" is cut after as many words as before; so is each line
 longer than 110 characters.
 """
@@ -35,7 +35,8 @@ def fail(text, *rest):
 
 def as_pattern(shown):
     lines = [r"(?:.*\n)*?" if line.strip() == ELSE else
-             ".*".join(re.escape(part.rstrip() if k == last else part) for k, part in enumerate(line.split(ELSE))) + r"[ \t]*\n"
+             ".*".join(re.escape(part.rstrip() if k == last else part)
+                       for k, part in enumerate(line.split(ELSE))) + r"[ \t]*\n"
              for line in shown.splitlines() for last in [line.count(ELSE)]]
     return "".join(lines)
 
