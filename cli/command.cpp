@@ -120,8 +120,10 @@ std::string mistake_in(const po::error& error, const po::options_description& of
              "makes a matrix of recorded runs";
     Strings names;
     for (const auto& option : offered.options()) names.push_back(option->long_name());
-    const std::string meant =
-        lattice::meant_name(given.substr(given.find_first_not_of('-')), names);
+    const std::string name = given.substr(given.find_first_not_of('-'));
+    std::string meant = lattice::meant_name(name, names);
+    if (meant.empty() && name.starts_with("trial") && offered.find_nothrow("walks", false))
+      meant = "walks";  // the trials of a chain
     return "there is no option " + given +
            (meant.empty() ? "" : fmt::format(" (did you mean --{}?)", meant));
   }

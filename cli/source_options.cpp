@@ -137,8 +137,7 @@ Source open_source(const Options& options, const Asked& asked) {
 
 Source field_to_run(const Options& options, const Asked& asked, const std::string& made) {
   Source s = open_source(options, asked);
-  if (s.file)
-    throw UsageError(s.path + ": is a matrix, and new bodies are to be run: give a scene");
+  if (s.file) throw UsageError(needs_scene(s.path));
   if (s.starts.size() > 1) throw UsageError("--start: " + made + " for one start");
   return s;
 }
@@ -201,6 +200,27 @@ std::string text_of(const dynamics::Cell& cell) {
   for (const dynamics::Cell::Number& n : cell.numbers())
     text += fmt::format("; {} = {}", n.key, digits(n.value));
   return text;
+}
+
+std::string asked_again(const Options& options, const Asked& asked) {
+  std::string text = shell_quoted(asked.path.value());
+  if (text == "-" || asked.scene.value() == "-") return "";
+  if (asked.scene) text += " " + shell_quoted(asked.scene.value());
+  for (const std::string& set : options.overrides()) text += " --set " + shell_quoted(set);
+  if (asked.program.command)
+    text += " --cell-program " + shell_quoted(asked.program.command.value());
+  for (const std::string& start : asked.starts.values()) text += " --start=" + shell_quoted(start);
+  return text;
+}
+
+std::string next_step(const std::string& command, const std::string& what_for) {
+  constexpr std::size_t kBefore = 6, kMost = 100;  // "Next: " stands before it
+  const std::string line = "gatewalk " + command, both = line + "  # " + what_for;
+  return kBefore + both.size() > kMost ? line : both;
+}
+
+std::string needs_scene(const std::string& path) {
+  return path + ": is a matrix (HDF5), and this command simulates new bodies: give a scene (TOML)";
 }
 
 void refuse(std::initializer_list<Option> options, const std::string& where) {

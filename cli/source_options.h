@@ -57,6 +57,16 @@ void choose_method(const Options& options, lattice::Source& s);
 /// What a program says of its cell, in one line, by which cells are told apart.
 [[nodiscard]] std::string text_of(const dynamics::Cell& cell);
 
+/// "scenes/field.toml --set forces.random_N=20": the words that ask another command about the same.
+/// Empty for standard input, which cannot be read again.
+[[nodiscard]] std::string asked_again(const Options& options, const Asked& asked);
+/// A line of Screen::next: "gatewalk predict scenes/field.toml  # WHAT_FOR", which a shell runs as
+/// it stands. Without WHAT_FOR where the line would be longer than 100 characters.
+[[nodiscard]] std::string next_step(const std::string& command, const std::string& what_for);
+
+/// Why a command that simulates new bodies refuses the matrix at `path`.
+[[nodiscard]] std::string needs_scene(const std::string& path);
+
 /// Refuses these options, if they are given: they have no meaning `where` ("for bins: ...").
 void refuse(std::initializer_list<Option> options, const std::string& where);
 

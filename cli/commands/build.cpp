@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <string>
 
@@ -26,9 +27,10 @@ struct BuildCommand : Options {
   using Options::Options;
   TextOption path = scene();
   AskedAccuracy accuracy = add_accuracy(*this);
-  CountOption trials =
-      add_count("trials", "N",
-                "bins: runs per input state (default: 100); tree: exactly so many full trials");
+  CountOption trials = add_count(
+      "trials", "N",
+      "bins: runs from each state (default: 100); tree: number of full trials, instead of "
+      "--accuracy");
   CountOption first_trial = add_first_trial();
   Option seed_given = add_seed();
   TextOption checkpoint = add_kept({"building matrix", "full trials", "scattered trials"});
@@ -38,20 +40,39 @@ struct BuildCommand : Options {
   TextOption bins = add_bins(*this);
   TextOption cell_file =
       input_file("cell",
-                 "SCENE is a table of recorded runs (runs.csv) through cells as this file "
-                 "(cell.toml) says: cli/site/reference/files.md");
+                 "SCENE is a table of recorded runs (runs.csv), and this file (cell.toml) "
+                 "describes the cells (cli/site/reference/files.md)");
   AskedProgram program = add_cell_program(*this);
-  TextsOption start = add_starts(
-      *this,
-      "the scene's start; gatewalk validate takes those of Table IV in the paper's field; "
-      "tree only: each is a state of its own");
+  TextsOption start =
+      add_starts(*this, "the scene's start; for trees only: each start becomes a state of its own");
   TextOption starts =
       add_text("starts", "all|D,VX,VY",
-               "tree: good for any start of a range, LOW:HIGH each; all: Table III's from below");
-  CountOption states = add_count("states", "S", "tree: at most S states beside the starts");
+               "tree: make the matrix good for any start in this range, LOW:HIGH each; all: the "
+               "entries from below of Table III");
+  CountOption states = add_count("states", "S", "tree: at most S states besides the starts");
 };
 
 using Settled = std::optional<lattice::Settled>;
+
+/// What a user of the matrix does next. Its chain can be held against the dynamics of a scene.
+std::vector<std::string> next_of(const BuildCommand& options, const std::string& matrix,
+                                 bool is_of_scene) {
+  std::vector<std::string> next{
+      next_step("predict " + shell_quoted(matrix), "how bodies cross the field")};
+  if (const std::string again = asked_again(options, {.path = options.path});
+      is_of_scene && !again.empty())
+    next.push_back(next_step("validate " + again + " --matrix " + shell_quoted(matrix),
+                             "does the chain agree with the dynamics?"));
+  return next;
+}
+
+/// A matrix is NetCDF whatever its file's name says.
+void warn_of_ending(const BuildCommand& options) {
+  const std::string path = options.output.value();
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (!ending.empty() && ending != ".nc")
+    options.warn(path + ": a matrix is written as NetCDF, whatever the name; .nc tells others so");
+}
 
 /// Writes the file of matrices, one for each type of gate, and says what was made.
 int give_out(const BuildCommand& options, const lattice::Scene& scene, MadeMatrix made,
@@ -62,8 +83,9 @@ int give_out(const BuildCommand& options, const lattice::Scene& scene, MadeMatri
   lattice::put_matrices(made.file, scene, matrices);
   options.keep_old(made.path);
   lattice::write_matrix(made.path, made.file);
-  options.give_out(made, summary_table(made.file, made.path) + states_line(made.states) +
-                             method_line(made.method));
+  options.give_out(made, {summary_table(made.file, made.path),
+                          "\n" + states_line(made.states) + method_line(made.method),
+                          next_of(options, made.path, true)});
   return status_of(options, matrices.front().health);
 }
 
@@ -129,7 +151,7 @@ lattice::TreeOptions tree_options(const BuildCommand& options, const lattice::Sc
   if (how.starts.empty() && !how.range) how.starts = {lattice::own_start(scene)};
   if (scene.field.fidelity != lattice::Fidelity::active)
     options.warn(fmt::format(
-        "field.fidelity = \"{}\" is of the full dynamics: a chain always has \"active\"",
+        "field.fidelity = \"{}\" is for the full dynamics; a chain always has \"active\"",
         lattice::name_of(scene.field.fidelity)));
   return how;
 }
@@ -155,8 +177,8 @@ int build_tree(const BuildCommand& options, const lattice::Scene& scene, const S
   if (how.accuracy.trials) return status;
   if (chain.prediction) warn_of(options, *chain.prediction, how.accuracy.accuracy);
   if (chain.range && !chain.range->reached)
-    options.warn("starts of the range need more runs than these for the accuracy asked for, " +
-                 digits(how.accuracy.accuracy) + ": predict adds trials of their own");
+    options.warn("some starts of the range need more runs for an accuracy of " +
+                 digits(how.accuracy.accuracy) + "; predict adds them");
   return status;
 }
 
@@ -180,7 +202,8 @@ void give_out_cells(const BuildCommand& options, std::vector<dynamics::Transitio
   options.keep_old(path);
   lattice::write_matrix(path,
                         std::move(built.matrix.file));  // takes the arrays, which no one shows
-  options.give_out(built, summary_table(built.matrix.file, path) + table_of(pool));
+  options.give_out(built, {summary_table(built.matrix.file, path) + table_of(pool),
+                           "\n" + states_line(states), next_of(options, path, false)});
 }
 
 /// gatewalk build RUNS.csv --cell CELL.toml: from recorded runs.
@@ -202,7 +225,7 @@ int build_recorded(const BuildCommand& options) {
   const auto& costs = problem.map().section.costs;
   for (std::size_t c = 0; c < costs.size(); ++c)
     if (unknown[c] > 0)
-      options.warn(fmt::format("{} is blank in {} passages: analyze gives none of it", costs[c].key,
+      options.warn(fmt::format("{} is blank in {} passages: analyze leaves it out", costs[c].key,
                                unknown[c]));
   auto matrices = lattice::cell_matrices(problem, pool, dynamics::kEntriesPerLeaf);
   const StateRecord states{
@@ -241,12 +264,19 @@ int build_program(const BuildCommand& options) {
 int run_build(const Arguments& arguments) {
   BuildCommand options(
       "build SCENE|RUNS.csv -o MATRIX.nc [options]",
-      "Makes the transition matrix of one gate. By default its states are the leaves of trees,\n"
-      "grown over the gate runs of full trials from the scene's start (or --start, --starts)\n"
-      "until predictions are as accurate as --accuracy says. With --bins paper it is the\n"
-      "paper's: N short runs from each of Table III's 87 bins, counted by where they come out.",
+      "Makes the transition matrix of one gate and writes it to a file, from which predict, walk,\n"
+      "analyze and export answer without new runs.\n\n"
+      "By default the states are the leaves of trees. build simulates trials from the scene's "
+      "start\n"
+      "(or those of --start, --starts) and grows trees over their gate runs, until predictions "
+      "are\n"
+      "as accurate as --accuracy says. With --bins paper the states are the paper's 87 bins of\n"
+      "Table III: build simulates N runs through one gate from each bin and counts their outcomes.",
       "gatewalk build scenes/field.toml --accuracy 0.02 --starts all -o chain.nc");
+  options.add_details("how the states were made and tested");
+  options.most_used({"output", "accuracy", "starts", "bins", "set"});
   if (!options.parse(arguments)) return kFine;
+  warn_of_ending(options);
   if (has_cell(options, options.program)) return build_program(options);
   if (options.cell_file) return build_recorded(options);
   lattice::Scene scene = options.read_scene();

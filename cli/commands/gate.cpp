@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
 #include "cli/arguments.h"
+#include "cli/fields/text.h"
 #include "cli/render/choice.h"
 #include "cli/render/gate_runs.h"
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
+#include "cli/source_options.h"
 #include "dynamics/base/kept_pieces.h"
 #include "dynamics/disc/study/accuracy.h"
 
@@ -11,15 +15,17 @@ namespace gatewalk::cli {
 
 int run_gate(const Arguments& arguments) {
   Options options("gate SCENE [options]",
-                  "Runs one gate many times from the scene's start and counts how the runs end.",
+                  "Simulates runs through one gate from the scene's start and counts how they end.",
                   "gatewalk gate scenes/single_gate.toml --set beams.stiffness_left_Nm_per_rad=300 "
                   "--trials 1000 --json -");
-  options.scene();
+  const TextOption path = options.scene();
   options.add_trials_and_seed("runs of the gate");
   options.add_first_trial();
   options.add_kept({"gate runs"});
   options.add_strict();
-  options.add_figure("a bar per outcome");
+  options.add_figure("a bar for each outcome");
+  options.add_details("the numbers of the scene and how runs are simulated");
+  options.most_used({"trials", "set", "seed", "figure", "json"});
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = options.read_scene();
   const auto settled = settle_method(options, scene, lattice::RunsFrom::start);
@@ -30,7 +36,20 @@ int run_gate(const Arguments& arguments) {
       settled, options.provenance(scene)};
   options.work().end_part();
 
-  options.give_out(result, scene_line(scene) + table_of(result.tally) + method_line(settled));
+  const std::string again = asked_again(options, {.path = path});
+  options.give_out(
+      result,
+      {table_of(result.tally) +
+           wrapped(fmt::format(
+               "From {} through one gate from the scene's start. The 95 % intervals count "
+               "their sampling error.",
+               counted(result.tally.trials, "run", "runs"))),
+       "\n" + scene_line(scene) + method_line(settled),
+       again.empty()
+           ? std::vector<std::string>()
+           : std::vector{next_step("trace " + again + " --trials 5 --replay runs.html",
+                                   "watch single runs"),
+                         next_step("predict " + again, "how bodies cross a field of gates")}});
   const int exit = status_of(options, result.tally.health);
   options.draw([&] { return figure_of(result.tally); });
   return exit;

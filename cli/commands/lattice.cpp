@@ -30,13 +30,13 @@ struct LatticeCommand : Options {
   AskedProgram program = add_cell_program(*this);
   TextOption passages =
       output_file("passages", "FILE.csv",
-                  "write every passage through a gate as a table of recorded runs "
+                  "write each passage through a gate as a line of a table of recorded runs "
                   "(cli/site/reference/files.md)");
-  TextOption cell_file =
-      output_file("cell-file", "FILE.toml", "write what such a table's cells are (cell.toml)");
+  TextOption cell_file = output_file(
+      "cell-file", "FILE.toml", "write the cell file (cell.toml) that belongs to such a table");
   TextOption netcdf = output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
   TextOption policy =
-      input_file("policy", "bodies do what this file of gatewalk plan says (FILE.json)");
+      input_file("policy", "a result of gatewalk plan (FILE.json): bodies follow its policy");
   TextOption figure = add_figure("where bodies end, and how");
   Asked asked{.path = path, .program = program};
 };
@@ -69,7 +69,7 @@ FieldRun empty_run(const LatticeCommand& options, const lattice::Source& s) {
 /// Trials through any cells; writes the tables of --passages and --cell-file.
 FieldRun run_cells(const LatticeCommand& options) {
   lattice::Source s = open_source(options, options.asked);
-  if (s.file) throw UsageError(s.path + ": is a matrix, and bodies are to be run: give a scene");
+  if (s.file) throw UsageError(needs_scene(s.path));
   choose_method(options, s);
   FieldRun run = empty_run(options, s);
   if (s.scene) run.scene = RunScene{*s.scene, lattice::settled_of(s)};
@@ -98,10 +98,7 @@ FieldRun run_cells(const LatticeCommand& options) {
 FieldRun run_policy(const LatticeCommand& options) {
   refuse({options.passages, options.cell_file}, "with --policy");
   lattice::Source s = open_source(options, options.asked);
-  if (s.file)
-    throw UsageError(s.path +
-                     ": is a matrix, and bodies that do what a policy says are to be run: "
-                     "give what it was made for");
+  if (s.file) throw UsageError(needs_scene(s.path));
   Actions all = actions_of(options, s);
   const lattice::Policy policy = read_policy(options.policy.value(), all.made_for);
   FieldRun run = empty_run(options, s);
@@ -120,14 +117,32 @@ FieldRun field_run(const LatticeCommand& options) {
   return any_cells ? run_cells(options) : run_gates(options);
 }
 
+/// What a user of this answer does next.
+std::vector<std::string> next_of(const LatticeCommand& options) {
+  const std::string again = asked_again(options, options.asked);
+  if (again.empty() || options.policy) return {};
+  std::vector<std::string> next{
+      next_step("predict " + again, "the same shares from fewer trials, and an error bar")};
+  if (!has_cell(options, options.program))
+    next.push_back(next_step("trace " + again + " --field --trials 5 --replay runs.html",
+                             "watch single bodies"));
+  return next;
+}
+
 }  // namespace
 
 int run_lattice(const Arguments& arguments) {
   LatticeCommand options(
       "lattice SCENE [options]",
-      "Simulates the field: the full dynamics, gate by gate. Counts the final gates. `gatewalk\n"
-      "simulate` is another name of this command.",
+      "Simulates trials of the full dynamics through the field, gate by gate, and counts how and "
+      "in\n"
+      "which gate they end. `gatewalk simulate` is another name of this command.\n\n"
+      "Where bodies leave and what they take (time, work) are counted as well. For rare endings "
+      "or\n"
+      "many starts, gatewalk predict needs fewer trials for the same interval.",
       "gatewalk lattice scenes/field.toml --trials 10000 --seed 1 --json lattice.json");
+  options.add_details("maps of the final gates, where bodies leave, times and costs, the scene");
+  options.most_used({"trials", "set", "seed", "figure", "json"});
   if (!options.parse(arguments)) return kFine;
   const dynamics::Stopwatch watch;
   const FieldRun run = field_run(options);
@@ -137,7 +152,7 @@ int run_lattice(const Arguments& arguments) {
                              run.start);
   if (options.netcdf)
     options.write(options.netcdf.value(), netcdf_of({picture}, run.shown.map.section, run.made_by));
-  options.give_out(run, table_of(run));
+  options.give_out(run, {answer_text(run), details_text(run), next_of(options)});
   options.remark(fixed(seconds, 2) + " s");
   options.warn(too_few_gates(run.shown));
   const int exit = status_of(options, run.tally.health);

@@ -33,29 +33,31 @@ struct PredictCommand : Options {
       add_accuracy(*this, "0.02; that of a matrix, or half of it if it is for any start");
   CountOption first_runs =
       add_count("first-runs", "N",
-                "matrix of trees: N first runs (16 or more) of a start that it does not know, and "
-                "no other trials; 0: none, it is taken for any other of its leaf, which says "
-                "little");
+                "for a matrix of trees: simulate N runs (16 or more) through the first gate from a "
+                "start that the file does not know, and no other trials; 0: none, and the row of "
+                "the start's leaf is used, which is noisy");
   TextsOption start = add_starts(*this, "the scene's start");
   TextsOption row =
       add_texts("row", "A-B=FILE",
-                "gates of rows i_y = A to B as in another matrix of the same bins (may be "
+                "use another matrix of the same bins for the gates in rows i_y = A to B (may be "
                 "repeated)");
   TextOption solver =
       add_text("solver", "NAME",
-               "propagate: step by step; for field.max_gates = 0 also march: row by row, and "
-               "klu: one sparse solve; auto: march without limit, else propagate",
+               "how the chain is solved: propagate (step by step), or, if field.max_gates = 0, "
+               "march (row by row) or klu (one sparse solve); auto takes march without a limit, "
+               "else propagate",
                "auto");
   TextOption checkpoint = add_kept();
   Option strict = add_strict();
   AskedProgram program = add_cell_program(*this);
   TextOption netcdf = output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
   TextOption figure =
-      add_figure(fmt::format("where bodies end, and how; of up to {} starts", kMostPictures));
+      add_figure(fmt::format("where bodies end, and how, for up to {} starts", kMostPictures));
   TextOption page = add_page(*this);
   Option seed_given = add_seed(
-      "seed of all trials; of a matrix of bins: of the resampled matrices behind the "
+      "seed of all trials; for a matrix of bins, seed of the resampled matrices that make the "
       "intervals");
+  Asked asked{matrix, second, program, start, accuracy};
 };
 
 /// "4-6=other.nc": rows whose gates are those of another matrix.
@@ -102,11 +104,30 @@ markov::PredictOptions::Solver solver_of(const PredictCommand& options) {
   throw UsageError(fmt::format("--solver {}: must be auto, propagate, march or klu", name));
 }
 
+/// What a user of this answer does next.
+std::vector<std::string> next_of(const PredictCommand& options, const lattice::Source& s) {
+  const std::string again = asked_again(options, options.asked);
+  std::vector<std::string> next;
+  if (again.empty()) return next;
+  if (s.is_recorded() && !s.is_imported && s.pool->bodies() >= 2 * lattice::kLeastBodies)
+    next.push_back(next_step("validate " + asked_again(options, {.path = options.matrix}),
+                             "does one half of the bodies predict the other?"));
+  if (s.starts.size() == 1)  // an analysis is of one
+    next.push_back(next_step("analyze " + again,
+                             s.file ? "times, visits of gates, and what the chain remembers"
+                                    : "which number of the scene matters most"));
+  if (s.pool && !s.is_recorded())
+    next.push_back(
+        next_step(fmt::format("predict {} --accuracy {}", again, digits(0.5 * s.accuracy.accuracy)),
+                  "halves the error bar"));
+  return next;
+}
+
 /// Gives out the result, and warns of what its endings leave out.
 template <class Answer>
 void tell(const PredictCommand& options, const lattice::Source& s, const PredictResult& result,
           const std::vector<Answer>& answers) {
-  options.give_out(result, table_of(result));
+  options.give_out(result, {answer_text(result), details_text(result), next_of(options, s)});
   options.warn(too_few_gates(result.shown));
   for (std::size_t k = 0; k < answers.size(); ++k)
     options.warn(rest_warning(rest_of(answers[k].final), where(s, k)));
@@ -183,6 +204,8 @@ int predict_from_matrix(const PredictCommand& options, const lattice::Source& s,
   PredictResult result = empty_result(options, s);
   MatrixPrediction& of = result.of_matrix.emplace();
   of = {.prediction = std::move(made),
+        .path = s.path,
+        .matrix_states = s.file->transitions.space.size(),
         .solver = solver,
         .status = recorded_health(*s.file),
         .probabilities = gates.exact,
@@ -206,23 +229,27 @@ int predict_from_matrix(const PredictCommand& options, const lattice::Source& s,
 int run_predict(const Arguments& arguments) {
   PredictCommand options(
       "predict SCENE|MATRIX.nc [SCENE] [options]",
-      "The distribution of endings and final gate. From a scene: full trials are run, and their\n"
-      "gate runs pooled into a chain, until the error bar keeps --accuracy (the trials' own "
-      "shares\n"
-      "are the answer where they are the more certain). From a matrix with trees: the same with\n"
-      "the runs that it keeps, and first runs of a start that it does not know. From a matrix of\n"
-      "bins: what infinitely many walks with it would give; its intervals count that the\n"
-      "matrix is a sample of gate runs, the chain's own error gatewalk validate measures.",
+      "Predicts how often bodies cross the field, leave it by a side or are trapped, and in which\n"
+      "gate they end, with 95 % intervals.\n\n"
+      "From a scene, predict simulates trials until the error bar is as small as --accuracy asks,\n"
+      "pools their runs through single gates into a Markov chain, and answers from the chain. If\n"
+      "the shares of the trials are more precise than the chain, they are the answer.\n"
+      "From a matrix of trees (gatewalk build), predict uses the gate runs that the file keeps. "
+      "It\n"
+      "adds runs only for a start that the file does not know.\n"
+      "From a matrix of bins, predict gives what infinitely many walks would give. The intervals\n"
+      "then count the sampling error of the matrix; gatewalk validate measures the chain's own.",
       "gatewalk predict scenes/field.toml --accuracy 0.01 --json prediction.json");
   options.reads(options.row,
                 [](const std::string& rows) { return rows.substr(rows.find('=') + 1); });
+  options.add_details("maps of the final gates, where bodies leave, and how the error bar is made");
+  options.most_used({"accuracy", "start", "set", "figure", "json"});
   if (!options.parse(arguments)) return kFine;
   if (const auto starts = options.start.values(); options.figure && starts.size() > kMostPictures)
     throw UsageError(fmt::format("--figure: shows at most {} starts, these are {}", kMostPictures,
                                  starts.size()));
   (void)solver_of(options);
-  lattice::Source s = open_source(
-      options, {options.matrix, options.second, options.program, options.start, options.accuracy});
+  lattice::Source s = open_source(options, options.asked);
   if (options.page) refuse({options.row}, "beside --page");
   check_page(options.page, s);
   const bool no_runs = options.first_runs && options.first_runs.value(0) == 0,

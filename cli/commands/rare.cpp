@@ -23,34 +23,36 @@ lattice::Problem up_to_row(const lattice::Source& s, int row) {
 int run_rare(const Arguments& arguments) {
   Options options(
       "rare SCENE [options]",
-      "The chance that a body enters a far row of a field without limit of gates, however small: "
-      "full trials of the\n"
-      "dynamics, split into more bodies where they get far (importance splitting). How far a body "
-      "is, a chain says\n"
-      "that some gate runs make first; the estimate is unbiased whatever it says. Beside it stands "
-      "the chain's own\n"
-      "answer.",
+      "Estimates the chance that a body enters a far row of the field, however small, with a 95 %\n"
+      "interval. The number of gates that a body may visit is not limited here.\n\n"
+      "Trials of the full dynamics are split into copies when they get far (importance "
+      "splitting).\n"
+      "A chain that some gate runs make first says what is far. The estimate is unbiased even "
+      "where\n"
+      "that chain is wrong; the chain's own answer is shown beside it.",
       "gatewalk rare scenes/field.toml --row 20 --json rare.json");
   const TextOption path = options.scene();
   const CountOption row =
       options.add_count("row", "N",
-                        "the row to enter, counted from 0 (default: one behind the field's "
-                        "last: the field is crossed); at most the rows of a terrain");
+                        "the row to enter, counted from 0; at most the rows of a terrain. The "
+                        "default is one row beyond the field, so that the field is crossed");
   const NumberOption accuracy =
       options.add_number("accuracy", "R", "relative standard error to reach (default: 0.05)");
   const CountOption gate_runs = options.add_count(
       "gate-runs", "N",
-      "at most so many gate runs, about (default: 2e7, and 100 000 trials as long as "
-      "nobody gets there)");
+      "about the largest number of gate runs (default: 2e7; as long as no body enters the row, "
+      "those of 100 000 trials)");
   const CountOption trials =
-      options.add_count("trials", "N", "also run N trials directly, to compare");
+      options.add_count("trials", "N", "also simulate N trials without splitting, to compare");
   const CountOption split_trials = options.add_count(
-      "split-trials", "N", "exactly N split trials, whatever the accuracy (parts need it)");
+      "split-trials", "N", "exactly N split trials, whatever the accuracy (--shard needs it)");
   options.add_seed();
   options.add_kept({"split trials", "field trials"});
   options.add_strict();
   const AskedProgram program = add_cell_program(options);
   options.add_figure("the chance of every row up to N");
+  options.add_details("the chance of every row and the time that it took");
+  options.most_used({"row", "accuracy", "set", "figure", "json"});
   if (!options.parse(arguments)) return kFine;
   lattice::SplittingOptions how{.accuracy = accuracy ? accuracy.value() : 0.05,
                                 .seed = options.seed()};
@@ -66,8 +68,7 @@ int run_rare(const Arguments& arguments) {
     throw UsageError("--accuracy: must lie between 0 and 1");
   lattice::Source source =
       open_source(options, {.path = path, .program = program, .accuracy = {accuracy, gate_runs}});
-  if (source.file)
-    throw UsageError(source.path + ": is a matrix, and new bodies are to be run: give a scene");
+  if (source.file) throw UsageError(needs_scene(source.path));
   how.row = row ? static_cast<int>(row.value(1, 10001)) : source.problem.field.rows;
   if (source.scene) (void)lattice::up_to_row(*source.scene, how.row);  // refuses before a pilot
   choose_method(options, source);
@@ -80,15 +81,23 @@ int run_rare(const Arguments& arguments) {
     result.direct = lattice::direct_rows(deep, trials.value(), options.seed(), options.work());
   options.work().end_part();
 
-  options.give_out(result, table_of(result, source.problem.field));
+  std::vector<std::string> next;
+  if (const std::string again = asked_again(options, {.path = path, .program = program});
+      !again.empty()) {
+    if (!how.trials && result.event.splitting.reached)
+      next.push_back(next_step(
+          fmt::format("rare {} --row {} --accuracy {}", again, how.row, digits(0.5 * how.accuracy)),
+          "halves the standard error"));
+    next.push_back(next_step("analyze " + again, "which number of the scene matters most"));
+  }
+  options.give_out(result, {answer_text(result), details_text(result, source.problem.field), next});
   if (const lattice::Splitting& s = result.event.splitting; !(s.rows.back().probability > 0.0))
-    options.warn(
-        fmt::format("none of {} trials entered row {}; --gate-runs N goes on for so many gate runs",
-                    s.trials, how.row));
+    options.warn(fmt::format("none of {} trials entered row {}; --gate-runs N allows more",
+                             s.trials, how.row));
   else if (!s.reached && !how.trials)
     options.warn(
-        fmt::format("the relative standard error of {} was not reached with {} gate runs; "
-                    "--gate-runs allows more",
+        fmt::format("the relative standard error of {} needs more than {} gate runs; "
+                    "--gate-runs N allows more",
                     digits(how.accuracy), how.most_runs));
   const int exit = status_of(options, result.event.splitting.health);
   options.draw([&] { return figure_of(result); });

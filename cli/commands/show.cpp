@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/command.h"
 #include "cli/render/matrix.h"
+#include "cli/source_options.h"
 #include "lattice/source/cell_matrix.h"
 
 namespace gatewalk::cli {
@@ -8,17 +9,19 @@ namespace gatewalk::cli {
 int run_show(const Arguments& arguments) {
   Options options(
       "show MATRIX.nc [options]",
-      "Shows what a matrix file holds: size, counts, sparsity, clamped share, where it\n"
-      "came from; with --rows every row, with --row I one row with all its outputs.",
+      "Shows what a matrix file holds: its size, the runs behind it and how it was made. --rows\n"
+      "shows a line for each state, and --row I all outcomes of one state.",
       "gatewalk show matrix.nc --rows");
   const TextOption file_given =
       options.positional("matrix", "matrix file written by gatewalk build", true);
-  const Option rows = options.add_flag("rows", "a line per input state");
+  const Option rows = options.add_flag("rows", "show a line for each state: runs and outcomes");
   const CountOption row =
-      options.add_count("row", "I", "all outputs of input state I; states count from 0");
+      options.add_count("row", "I", "show all outcomes of state I; states count from 0");
   const TextOption type =
-      options.add_text("type", "NAME", "the matrix of gates of that type of the table [terrain]");
+      options.add_text("type", "NAME", "show the matrix of this type of gates ([terrain.types])");
   options.add_figure("the matrix, states grouped by boundary");
+  options.add_details("how the matrix was made, its states and its scene");
+  options.most_used({"rows", "row", "figure", "json"});
   options.without_scene("a matrix keeps its scene");
   if (!options.parse(arguments)) return kFine;
   const std::string path = file_given.value();
@@ -33,7 +36,11 @@ int run_show(const Arguments& arguments) {
   ShownRows shown{.all = static_cast<bool>(rows), .one = {}};
   if (row) shown.one = static_cast<int>(row.value(0, file.transitions.space.size() - 1));
 
-  options.give_out(matrix, table_of(matrix, shown));
+  std::vector<std::string> next;
+  if (!shown.all && !shown.one)
+    next.push_back(next_step("show " + shell_quoted(path) + " --rows", "a line for each state"));
+  next.push_back(next_step("predict " + shell_quoted(path), "how bodies cross the field"));
+  options.give_out(matrix, {answer_text(matrix, shown), details_text(matrix), next});
   options.draw([&] { return figure_of(file.transitions); });
   return kFine;
 }

@@ -33,30 +33,33 @@ struct ValidateCommand : Options {
   Option strict = add_strict();
   TextsOption observed =
       add_texts("observed", "FILE.csv",
-                "an experiment from this start, to hold against both: a line per trial, "
-                "trial,ending (crossed, left side, right side, trapped, cut off, or went back, "
-                "which the model does not have: left out) with or without gate_x,gate_y (the "
-                "final gate's i_x and i_y); or counts, gate_x,gate_y,count or ending,count, or "
-                "both; files with the same columns are added up");
+                "counts of an experiment from this start, compared with dynamics and chain. A line "
+                "for each trial: trial,ending (crossed, left side, right side, trapped, cut off; "
+                "went back is left out, since no body of the model does) and, if known, the final "
+                "gate's gate_x,gate_y. Or counts: gate_x,gate_y,count or ending,count, or both. "
+                "Files with the same columns are added up");
   TextOption matrix =
-      input_file("matrix", "matrix to validate; without it one is built from the scene");
+      input_file("matrix", "the matrix to test; without it, validate builds one from the scene");
   CountOption matrix_trials =
       add_count("matrix-trials", "N",
-                "bins: runs per input state of the matrix that is built (default: 100)");
+                "for a matrix of bins that is built: runs from each state (default: 100)");
   AskedAccuracy accuracy = add_accuracy(*this);
   CountOption walks = add_count("walks", "N", "walks per start (default: as many as trials)");
   CountOption null_draws =
       add_count("null-draws", "N",
                 "draws behind each p-value (default: 999 to 9999, by the size of the work)");
   Option memory =
-      add_flag("memory", "also run the trials with the random force drawn anew at every crossing");
+      add_flag("memory",
+               "also simulate the trials with the random force drawn anew at every crossing, and "
+               "compare");
   TextsOption start = add_starts(*this);
   TextOption bins = add_bins(*this);
   AskedProgram program = add_cell_program(*this);
   TextOption figure = add_figure(
-      "final gates of dynamics and chain, and their difference; below them where bodies are 2 to 8 "
-      "gates later (Chapman-Kolmogorov), and implied time scales; with --observed instead what was "
-      "counted, with intervals, beside both");
+      "the final gates of dynamics and chain and their difference, the Chapman-Kolmogorov test for "
+      "2 "
+      "to 8 gates, and implied time scales; with --observed the counts with intervals, beside "
+      "both");
   Asked asked{.path = path, .program = program, .starts = start, .accuracy = accuracy};
 };
 
@@ -106,12 +109,11 @@ void warn_of_trials(const ValidateCommand& options, const lattice::Observed& obs
   options.warn(who_went_back(observed));
   options.warn(too_few_observed(observed));
   if (!observed.timed.empty())
-    options.warn("--observed: times are not looked at here; gatewalk fit does");
+    options.warn("--observed: validate does not test the times; gatewalk fit uses them");
   if (options.trials && options.trials.value() < kTrialsPerObserved * n)
-    options.warn(
-        fmt::format("--trials {} for {} observed: chance in the dynamics' own trials hides "
-                    "differences too; take {} or more",
-                    options.trials.value(), n, kTrialsPerObserved * n));
+    options.warn(fmt::format(
+        "--trials {}: take {} or more for {} observed, or their noise hides differences",
+        options.trials.value(), kTrialsPerObserved * n, n));
 }
 
 std::optional<lattice::Observed> experiment_of(const ValidateCommand& options,
@@ -244,12 +246,38 @@ int validate_recorded(const ValidateCommand& options) {
       .made_by = options.provenance(s)};
   constexpr std::int64_t kChecked = 200;  // results/tracks
   if (s.pool->bodies() < kChecked)
-    options.warn(fmt::format("these are {} bodies: of fewer than {} p may come out too small",
+    options.warn(fmt::format("with {} bodies p may be too small: it was checked with {} or more",
                              s.pool->bodies(), kChecked));
-  options.give_out(result, table_of(result) + table_of(*s.pool));
+  options.give_out(result, {answer_text(result),
+                            details_text(result),
+                            {next_step("predict " + asked_again(options, {.path = options.path}),
+                                       "what all bodies together predict")}});
   for (const std::string& rest : rest_warnings(result.validation)) options.warn(rest);
   options.draw([&] { return figure_of(result.validation, ShownField(s)); });
   return kFine;
+}
+
+/// What a user of this answer does next.
+std::vector<std::string> next_of(const ValidateCommand& options, const lattice::Validation& v) {
+  const std::string again = asked_again(options, options.asked);
+  if (again.empty()) return {};
+  if (options.observed) return {next_step("power " + again, "how many trials an experiment needs")};
+  const std::string matrix =
+      options.matrix ? " --matrix " + shell_quoted(options.matrix.value()) : "";
+  const bool differs = std::any_of(v.starts.begin(), v.starts.end(), [](const auto& start) {
+    return start.finding() == lattice::Finding::own_error;
+  });
+  if (differs && v.starts.size() == 1 && !options.start)
+    return {next_step("lattice " + again + " --trials 10000", "the full dynamics alone")};
+  std::vector<std::string> next;
+  if (v.trials < 1000)
+    next.push_back(
+        next_step("validate " + again + matrix + fmt::format(" --trials {}", 10 * v.trials),
+                  "reveals smaller differences"));
+  next.push_back(
+      next_step("predict " + (options.matrix ? shell_quoted(options.matrix.value()) : again),
+                "the chain's answer alone"));
+  return next;
 }
 
 }  // namespace
@@ -257,19 +285,22 @@ int validate_recorded(const ValidateCommand& options) {
 int run_validate(const Arguments& arguments) {
   ValidateCommand options(
       "validate SCENE [options]",
-      "Compares the chain with the full dynamics: for the scene's start (in the paper's field the\n"
-      "four of Table IV), or those given, the endings with 95 % intervals and one verdict on "
-      "endings\n"
-      "and final gates that counts chance in trials and matrix together; corrcoef, RMSE and total\n"
-      "variation of walks and of the exact chain, each beside its noise floor; the time each "
-      "takes.\n"
-      "In JSON, trials_and_matrix is that verdict; p_values count chance in the trials (and\n"
-      "walks) alone. Last it asks whether the gate before, the visit or the row tell more than\n"
-      "the state. With --observed, counts of an experiment are held against both, and the\n"
-      "smallest differences are said that so many trials could have shown. Of a matrix of\n"
-      "recorded runs (in SCENE's place): does one half of the bodies predict the other?",
+      "Tests whether the chain agrees with trials of the full dynamics, and whether it is "
+      "Markov.\n\n"
+      "The verdict is one p-value for endings and final gates. It counts chance in the trials and "
+      "in\n"
+      "the sampling of the matrix together, and is corrected for all that is tested. In JSON it "
+      "is\n"
+      "trials_and_matrix; the keys p_values count chance in the trials (and walks) alone. In the\n"
+      "paper's field the starts are the four of Table IV.\n"
+      "With --observed, validate compares the counts of an experiment with the full dynamics and\n"
+      "with the chain, and says which shifts so many trials would detect.\n"
+      "For a matrix of recorded runs (in SCENE's place), validate is a cross-validation: does one\n"
+      "half of the bodies predict the other?",
       "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
   options.reads(options.observed, [](const std::string& file) { return file; });
+  options.add_details("every ending and measure by start, Table IV, times, each test of memory");
+  options.most_used({"observed", "matrix", "trials", "set", "json"});
   if (!options.parse(arguments)) return kFine;
   if (const lattice::SourceFile& file = options.file(options.path.value());
       !has_cell(options, options.program) && file.is_matrix() && file.is_of_cells())
@@ -302,7 +333,7 @@ int run_validate(const Arguments& arguments) {
   result.validation = lattice::validate_chain(tested.problem, result.matrix.matrices, tested.starts,
                                               how, options.work());
   const lattice::Validation& v = result.validation;
-  options.give_out(result, table_of(result));
+  options.give_out(result, {answer_text(result), details_text(result), next_of(options, v)});
   options.warn(text_of(v.left_out));
   for (const lattice::StartValidation& start : v.starts)
     options.warn(rest_warning(rest_of(start.exact), "by the chain "));

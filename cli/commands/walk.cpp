@@ -17,8 +17,11 @@ namespace gatewalk::cli {
 int run_walk(const Arguments& arguments) {
   Options options(
       "walk MATRIX.nc [SCENE] [options]",
-      "Walks the field by drawing every gate's outcome from the matrix (the paper's\n"
-      "Markov chain Monte Carlo) and counts the final gates.",
+      "Simulates walks of the Markov chain through the field and counts how and in which gate "
+      "they\n"
+      "end. Each step draws the outcome of a gate from the matrix, as the paper does (Markov "
+      "chain\n"
+      "Monte Carlo). gatewalk predict gives the limit of infinitely many walks.",
       "gatewalk walk matrix.nc scenes/field.toml --walks 1e6 --seed 1 --json walks.json");
   const TextOption matrix =
       options.positional("matrix", "matrix file written by gatewalk build", true);
@@ -30,6 +33,8 @@ int run_walk(const Arguments& arguments) {
   const TextOption netcdf =
       options.output_file("netcdf", "FILE.nc", kNetcdfHelp, Options::Content::binary);
   options.add_figure("where walks end, and how");
+  options.add_details("maps of the final gates, and the state in which walks begin");
+  options.most_used({"walks", "seed", "set", "figure", "json"});
   if (!options.parse(arguments)) return kFine;
   const std::string path = matrix.value();
   if (!options.file(path).is_matrix())
@@ -54,7 +59,12 @@ int run_walk(const Arguments& arguments) {
                              s.starts.front());
   if (netcdf)
     options.write(netcdf.value(), netcdf_of({picture}, s.problem.map().section, result.made_by));
-  options.give_out(result, table_of(result));
+  const std::string again = asked_again(options, {.path = matrix, .scene = scene});
+  options.give_out(result,
+                   {answer_text(result), details_text(result),
+                    again.empty() ? std::vector<std::string>()
+                                  : std::vector{next_step("predict " + again,
+                                                          "the limit of infinitely many walks")}});
   options.warn(too_few_gates(shown));
   options.warn(rest_warning(rest_of(tally)));
   options.remark(fmt::format("{} s, {} million walks a second", fixed(seconds, 3),

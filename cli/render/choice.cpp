@@ -120,14 +120,12 @@ void describe_method(Fields& out, const std::optional<lattice::Settled>& settled
 std::string complaint(const lattice::Settled& settled) {
   if (settled.choice.reference_verdict != dynamics::Verdict::fine)
     return fmt::format(
-        "run.method \"auto\": the reference itself shows faults ({}), nothing can be compared with "
-        "it; took it all the same: {}",
+        "run.method \"auto\": even the most accurate setting shows faults ({}); it is used: {}",
         dynamics::name_of(settled.choice.reference_verdict),
         setting_text(settled.choice.params.run));
   if (!settled.choice.met)
     return fmt::format(
-        "run.method \"auto\": no setting was shown to keep the outcomes within run.tolerance = {}; "
-        "took the one they were compared with: {}",
+        "run.method \"auto\": no faster setting was shown to keep run.tolerance = {}; uses {}",
         json_number(settled.tolerance), setting_text(settled.choice.params.run));
   return {};
 }
@@ -135,14 +133,14 @@ std::string complaint(const lattice::Settled& settled) {
 std::string method_line(const std::optional<lattice::Settled>& settled) {
   if (!settled) return "";
   const dynamics::Choice& choice = settled->choice;
-  std::string shown = "not shown to meet run.tolerance";
+  std::string shown = "They did not show that it meets run.tolerance.";
   if (choice.met) {
     const auto& last = choice.tried.back();
-    shown = fmt::format("outcomes off by {} +- {} (total variation)",
+    shown = fmt::format("It changes their outcomes by a total variation of {} +- {}.",
                         fixed(last.error.total_variation, 4), fixed(last.uncertainty, 4));
   }
-  return fmt::format("{}: chosen on {} pilot trials, {}\n", setting_text(choice.params.run),
-                     choice.trials, shown);
+  return fmt::format("Time stepping: {}, chosen with {} pilot trials.\n{}\n",
+                     setting_text(choice.params.run), choice.trials, shown);
 }
 
 void describe_methods(Fields& out, const ActionMethods& all) {

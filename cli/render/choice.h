@@ -20,7 +20,7 @@ void describe_method(Fields& out, const std::optional<lattice::Settled>& settled
 [[nodiscard]] lattice::Settled settled_from(const Json& json);
 /// What is wrong with a choice, in a sentence; empty if nothing.
 [[nodiscard]] std::string complaint(const lattice::Settled& settled);
-/// "method stable, run.step_s = 0.02: chosen by ..." as a line of a table; empty for none.
+/// "Time stepping: method stable, run.step_s = 0.02, chosen with ...", two lines; empty for none.
 [[nodiscard]] std::string method_line(const std::optional<lattice::Settled>& settled);
 
 /// What a body may do, and the methods that were chosen for it.

@@ -131,7 +131,7 @@ std::string table_of(const FieldCosts& costs, const ShownField& shown) {
   };
   add("all", {});
   for (const EndingName& e : kAllEndingNames) add(e.name, e.ending);
-  return table.text();
+  return "Times and costs of a trial, by ending\n" + table.text();
 }
 
 }  // namespace gatewalk::cli

@@ -115,31 +115,18 @@ std::string total_variation_text(const Fold& fold) {
                      fixed(fold.chance_total_variation, 3));
 }
 
-std::string endings_table(const CrossValidation& v) {
-  const std::vector<EndingName> names = shown_endings_of(v);
-  std::vector<TextColumn> columns{{"", -kFit}};
-  for (const EndingName& e : names)
-    columns.push_back(
-        {fmt::format("{} ", e.name), kFit, 0, "", columns.size() == 1 ? "  |  " : "  "});
-  TextTable table(columns);
-  const auto row = [&](const std::string& name, const auto& text_of) {
-    std::vector<TextCell> cells{name};
-    for (const EndingName& e : names)
-      cells.emplace_back(text_of(static_cast<std::size_t>(e.ending)));
-    table.row(cells);
-  };
-  for (std::size_t w = 0; w < 2; ++w) {
-    const Fold& fold = v.folds[w];
-    const auto shares = [&](const lattice::EndingShares& of, std::size_t at) {
-      return with_interval(of.share[at], of.interval[at]);
-    };
-    row(seen_name(w) + " as seen", [&](std::size_t at) { return shares(fold.seen, at) + " "; });
-    row("chain of " + chain_name(w), [&](std::size_t at) {
-      return shares(fold.chain_endings, at) +
-             (fold.differs(static_cast<markov::Ending>(at)) ? "*" : " ");
-    });
-    row("chance",
-        [&](std::size_t at) { return fmt::format("+-{} ", percents(fold.chance_95[at])); });
+std::string endings_table(const Fold& fold, const std::vector<EndingName>& names,
+                          const std::string& seen, const std::string& chain) {
+  TextTable table({{"", -10},
+                   {seen + " as seen, %", -24, 0, "", "  "},
+                   {"chain of " + chain + ", %", -24, 0, "", "  "},
+                   {"difference by chance", 0, 0, "", "  "}});
+  for (const EndingName& e : names) {
+    const auto at = static_cast<std::size_t>(e.ending);
+    table.row({e.name, with_interval(fold.seen.share[at], fold.seen.interval[at]),
+               with_interval(fold.chain_endings.share[at], fold.chain_endings.interval[at]) +
+                   (fold.differs(e.ending) ? " *" : ""),
+               "+-" + percents(fold.chance_95[at])});
   }
   return table.text();
 }
@@ -150,13 +137,12 @@ std::string seen_text(const Fold& fold, const std::string& name) {
     return percent(static_cast<double>(n), static_cast<double>(s.trials));
   };
   std::string text = fmt::format(
-      "{}: {} bodies, {} trials, of which {} were seen to their end, {} until nobody looked, {} "
-      "until they were lost",
+      "{}: {} bodies, {} trials. Seen to their end: {}; unwatched after a while: {}; lost: {}",
       name, fold.bodies, s.trials, share(s.to_end), share(s.unwatched), share(s.lost));
   if (s.other_type > 0)
-    text += fmt::format(", {} until their cell's type was not the field's", share(s.other_type));
+    text += fmt::format("; seen until a cell of another type: {}", share(s.other_type));
   if (s.left_out > 0) text += fmt::format("; {} trials without a passage are left out", s.left_out);
-  return text + "\n";
+  return wrapped(text + ".");
 }
 
 std::string verdict(const CrossValidation& v) {
@@ -269,32 +255,94 @@ std::vector<std::string> rest_warnings(const CrossValidation& v) {
   return all;
 }
 
-std::string table_of(const CrossValidationResult& result) {
+namespace {
+
+/// The half and the ending whose shares differ most, over what chance makes.
+std::pair<std::size_t, EndingName> differs_most(const CrossValidation& v) {
+  std::pair<std::size_t, EndingName> most{0, kEndingNames.front()};
+  double largest = -1.0;
+  for (std::size_t w = 0; w < 2; ++w)
+    for (const EndingName& e : shown_endings_of(v)) {
+      const auto at = static_cast<std::size_t>(e.ending);
+      const Fold& fold = v.folds[w];
+      const double difference = std::abs(fold.seen.share[at] - fold.chain_endings.share[at]);
+      if (difference > largest) {
+        largest = difference;
+        most = {w, e};
+      }
+    }
+  return most;
+}
+
+std::string memory_text(const lattice::Independence& m, const dynamics::Section& section) {
+  if (m.label < 0)
+    return "Memory cannot be tested: no state was entered in two ways with two outcomes.\n";
+  if (m.p > lattice::MemoryStudy::kLevel)
+    return fmt::format("Memory: the face of the cell before tells nothing beyond the state ({}).\n",
+                       p_words(m.p));
+  const auto& faces = section.faces;
+  const auto outcome = static_cast<std::size_t>(m.outcome);
+  return fmt::format(
+      "Memory: the face of the cell before tells more than the state ({}). Strongest: after {},\n"
+      "bodies {} {} points {} often than others in the same state.\n",
+      p_words(m.p), faces[static_cast<std::size_t>(m.label)].name,
+      outcome < faces.size() ? "go on by " + faces[outcome].name : "are trapped",
+      fixed(100.0 * std::abs(m.more), 1), m.more > 0.0 ? "more" : "less");
+}
+
+}  // namespace
+
+std::string answer_text(const CrossValidationResult& result) {
   const CrossValidation& v = result.validation;
+  const auto [w, most] = differs_most(v);
+  const Fold& fold = v.folds[w];
+  const auto at = static_cast<std::size_t>(most.ending);
+  std::string text = fmt::format(
+      "One half of the bodies {} ({}).\n"
+      "Largest difference: {}, {} % in {} as seen, {} % by the chain of {};\n"
+      "chance alone makes {} points (95 %).\n",
+      v.differs() ? "does not predict the other"
+                  : "predicts the other, as far as these runs can tell",
+      p_words(v.p), most.name, percents(fold.seen.share[at]), seen_name(w),
+      percents(fold.chain_endings.share[at]), chain_name(w), percents(fold.chance_95[at]));
+  for (std::size_t k = 0; k < 2; ++k)
+    text += fmt::format("Final gates of {}: {}.\n", seen_name(k), total_variation_text(v.folds[k]));
+  text += memory_text(result.memory, result.section) + table_of(result.recorded);
+  if (v.differs())
+    text +=
+        "Beware: a prediction for other bodies errs by about that difference; record more "
+        "bodies.\n";
+  return text;
+}
+
+std::string details_text(const CrossValidationResult& result) {
+  const CrossValidation& v = result.validation;
+  const std::vector<EndingName> names = shown_endings_of(v);
   std::string text =
-      "Does one half of the bodies predict the other? Endings in % with 95 % intervals: chance in "
-      "the\n"
-      "bodies as seen; the error bars of the chain, from the same starts. Where a trial was not "
-      "seen to its\n"
-      "end, the chain goes on from the last entry seen: only what was seen can differ. Chance: 95 "
-      "% of the\n"
-      "differences that chance in the bodies of both halves makes; *: this ending differs.\n\n" +
-      endings_table(v) + "\n";
-  for (const std::string& rest : rest_warnings(v)) text += rest + "\n";
+      "\nEndings with 95 % intervals: chance in the bodies as seen, and the error bars of the "
+      "chain from the\nsame starts. Where a trial was not seen to its end, the chain continues "
+      "from "
+      "the last entry seen.\nDifference by chance: 95 % of the differences that chance in both "
+      "halves makes; *: differs by more.\n";
+  for (std::size_t w = 0; w < 2; ++w)
+    text += "\n" + endings_table(v.folds[w], names, seen_name(w), chain_name(w));
+  text += "\n";
   for (std::size_t w = 2; w-- > 0;) text += seen_text(v.folds[w], seen_name(w));
-  text +=
-      "\nFinal gates, as seen against the chain; in brackets what chance makes on average (of the "
-      "total\nvariation also what 95 % do not exceed).\n\n";
+  TextTable gates({{"", -8},
+                   {"corrcoef (chance)", -18, 0, "", "  "},
+                   {"RMSE per 100 (chance)", -22, 0, "", "  "},
+                   {"total variation (chance, 95 % of chance)", 0, 0, "", "  "}});
   for (std::size_t w = 0; w < 2; ++w) {
     const Fold& fold = v.folds[w];
-    text += fmt::format(
-        "{}  | corrcoef {} ({}), RMSE {} ({}) per 100, total variation {} ({}, {})\n", seen_name(w),
-        fixed(fold.corrcoef, 3), fixed(fold.chance_corrcoef, 3), fixed(fold.rmse_per_100, 2),
-        fixed(fold.chance_rmse_per_100, 2), fixed(fold.total_variation.seen, 3),
-        fixed(fold.chance_total_variation, 3), fixed(fold.chance_total_variation_95, 3));
+    gates.row(
+        {seen_name(w),
+         fmt::format("{} ({})", fixed(fold.corrcoef, 3), fixed(fold.chance_corrcoef, 3)),
+         fmt::format("{} ({})", fixed(fold.rmse_per_100, 2), fixed(fold.chance_rmse_per_100, 2)),
+         fmt::format("{} ({}, {})", fixed(fold.total_variation.seen, 3),
+                     fixed(fold.chance_total_variation, 3),
+                     fixed(fold.chance_total_variation_95, 3))});
   }
-  return text +
-         fmt::format("\n{}.\nMemory: {}.\n", verdict(v), verdict(result.memory, result.section));
+  return text + "\nFinal gates as seen against the chain of the other half\n" + gates.text();
 }
 
 Figure figure_of(const CrossValidation& v, const ShownField& shown) {

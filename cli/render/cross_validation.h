@@ -26,7 +26,9 @@ struct CrossValidationResult {
 void describe(Fields& out, const CrossValidationResult& result);
 /// Of each chain whose endings leave something out (rest_warning).
 [[nodiscard]] std::vector<std::string> rest_warnings(const lattice::CrossValidation& v);
-[[nodiscard]] std::string table_of(const CrossValidationResult& result);
+/// What the screen shows first, and its details.
+[[nodiscard]] std::string answer_text(const CrossValidationResult& result);
+[[nodiscard]] std::string details_text(const CrossValidationResult& result);
 [[nodiscard]] Figure figure_of(const lattice::CrossValidation& v, const ShownField& shown);
 
 }  // namespace gatewalk::cli

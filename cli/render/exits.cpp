@@ -120,7 +120,7 @@ std::string table_of(const FieldExits& exits, const ShownField& shown) {
     }
   }
   const std::string rows = table.text();
-  return rows.empty() ? "" : "where they leave along each side, % of all\n" + rows;
+  return rows.empty() ? "" : "Where bodies leave along each side, % of all bodies\n" + rows;
 }
 
 std::string places_outside(const FieldExits& dynamics, const FieldExits& chain) {

@@ -95,10 +95,10 @@ void FieldEnds<Number>::describe_still_walking(Fields& out,
 }
 
 template <class Number>
-std::string FieldEnds<Number>::table(const std::string& of, const std::string& about) const {
-  return fmt::format("{}{}{}{}departed {}\n", endings_text(shares, of), about,
-                     map_of(share_of(this->final_cells)),
-                     map_of_trapped(share_of(trapped_cells(*this))),
+std::string FieldEnds<Number>::maps(const std::string& unit) const {
+  return fmt::format("{}{}Departed over any side: {}\n",
+                     map_of(share_of(this->final_cells), "Final gate", unit),
+                     map_of_trapped(share_of(trapped_cells(*this)), unit),
                      percent(static_cast<double>(departed), bodies, 2));
 }
 

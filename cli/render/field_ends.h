@@ -38,8 +38,9 @@ struct FieldEnds : markov::Ends<Number> {
   void describe_never_sampled(Fields& out) const;
   /// `share`: 95 % interval of the share of these walks.
   void describe_still_walking(Fields& out, const std::optional<Interval>& share = {}) const;
-  /// Endings (`of` says of what), `about` the field, maps and who departed.
-  [[nodiscard]] std::string table(const std::string& of, const std::string& about) const;
+  /// The maps of final gates and of trapped bodies in `unit` ("% of trials"), and the share of
+  /// bodies that left the field.
+  [[nodiscard]] std::string maps(const std::string& unit) const;
 };
 
 /// The keys "trapped", "departed" and "cut_off": shares of trials, or as predicted.

@@ -66,27 +66,31 @@ void describe(Fields& out, const FieldRun& run) {
   describe_made_by(out, run.made_by);
 }
 
-std::string table_of(const FieldRun& run) {
+std::string answer_text(const FieldRun& run) {
+  return endings_text(ends_of(run.tally, run.shown.field).shares) +
+         fmt::format(
+             "From {} of the full dynamics{}. The 95 % intervals count their sampling error.\n",
+             counted(run.tally.trials, "trial", "trials"),
+             run.may_do.actions.empty() ? "" : " under the policy");
+}
+
+std::string details_text(const FieldRun& run) {
   const lattice::FieldTally& tally = run.tally;
-  std::string text =
-      ends_of(tally, run.shown.field)
-          .table(fmt::format("of {} trials, 95 % intervals", tally.trials),
-                 limits_text(run.shown) + (run.scene ? scene_line(run.scene->scene) : ""));
+  std::string text = "\n" + limits_text(run.shown) +
+                     ends_of(tally, run.shown.field).maps("% of trials") +
+                     table_of(exits_of(tally), run.shown) + table_of(run.costs, run.shown);
   if (tally.broken() > 0)
     text += fmt::format(
-        "stopped being finite numbers: {}\n",
+        "Trials with a run that stopped being finite numbers: {}\n",
         percent(static_cast<double>(tally.broken()), static_cast<double>(tally.trials), 4));
-  return text + (run.scene ? method_line(run.scene->settled) : "") +
-         table_of(exits_of(run.tally), run.shown) + table_of(run.costs, run.shown) +
-         method_lines(run.may_do);
+  if (run.scene) text += scene_line(run.scene->scene) + method_line(run.scene->settled);
+  return text + method_lines(run.may_do);
 }
 
 Rest rest_of(const markov::WalkTally& tally) {
   const auto n = static_cast<double>(tally.walks);
   return {static_cast<double>(tally.unsampled()) / n, static_cast<double>(tally.still_walking) / n,
-          fmt::format("after {} gates, the most that a walk is followed where field.max_gates = 0 "
-                      "sets no limit",
-                      markov::Walker::kMostCells)};
+          fmt::format("after {} gates, where walks are stopped", markov::Walker::kMostCells)};
 }
 
 void describe(Fields& out, const WalkResult& r) {
@@ -119,22 +123,26 @@ void describe(Fields& out, const WalkResult& r) {
   describe_made_by(out, r.made_by);
 }
 
-std::string table_of(const WalkResult& r) {
+std::string answer_text(const WalkResult& r) {
+  return endings_text(ends_of(r.tally, r.shown.field).shares) +
+         fmt::format("From {} through the chain.\n", counted(r.tally.walks, "walk", "walks")) +
+         wrapped(std::string("Beware: the 95 % intervals count the sampling error of the walks "
+                             "alone. gatewalk predict adds that of the matrix.") +
+                 (r.foreign ? "" : " gatewalk validate measures the chain's own error."));
+}
+
+std::string details_text(const WalkResult& r) {
   const markov::WalkTally& tally = r.tally;
   const auto n = static_cast<double>(tally.walks);
-  std::string text =
-      ends_of(tally, r.shown.field)
-          .table(fmt::format("of {} walks, 95 % intervals", tally.walks), limits_text(r.shown));
-  text += fmt::format(
-      "start: {}\n"
-      "The intervals count chance in the walks alone: that of the matrix gatewalk predict has{}\n",
-      r.state ? r.state->bin : lattice::title_of(r.shown.map.section, r.start),
-      r.foreign ? "." : ", the chain's own error (bins, memory) gatewalk validate measures.");
+  const std::string start =
+      r.state ? "start: " + r.state->bin : lattice::title_of(r.shown.map.section, r.start);
+  std::string text = fmt::format("\n{}{}State of the chain at the {}\n", limits_text(r.shown),
+                                 ends_of(tally, r.shown.field).maps("% of walks"), start);
   if (tally.unsampled() > 0)
-    text += fmt::format("reach a state never sampled: {}\n",
+    text += fmt::format("Walks that reach a state without any run: {}\n",
                         percent(static_cast<double>(tally.unsampled()), n, 4));
   if (tally.still_walking > 0)
-    text += fmt::format("still walking after {} gates, where walks are stopped: {} %\n",
+    text += fmt::format("Walks stopped after {} gates, still walking: {} %\n",
                         markov::Walker::kMostCells,
                         with_interval(static_cast<double>(tally.still_walking) / n,
                                       still_walking_95(tally, r.shown.field)));

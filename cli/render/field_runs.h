@@ -34,7 +34,9 @@ struct FieldRun {
   ActionMethods may_do{};  // under a policy
 };
 void describe(Fields& out, const FieldRun& run);
-[[nodiscard]] std::string table_of(const FieldRun& run);
+/// What the screen shows first, and its details.
+[[nodiscard]] std::string answer_text(const FieldRun& run);
+[[nodiscard]] std::string details_text(const FieldRun& run);
 
 /// The result of `walk`: how walks of a chain through the field went.
 struct WalkResult {
@@ -48,6 +50,7 @@ struct WalkResult {
 };
 [[nodiscard]] Rest rest_of(const markov::WalkTally& tally);
 void describe(Fields& out, const WalkResult& result);
-[[nodiscard]] std::string table_of(const WalkResult& result);
+[[nodiscard]] std::string answer_text(const WalkResult& result);
+[[nodiscard]] std::string details_text(const WalkResult& result);
 
 }  // namespace gatewalk::cli

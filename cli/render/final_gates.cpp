@@ -171,12 +171,13 @@ std::string short_percent(double share) {
 
 std::string map_of(const markov::CellProbabilities& shares, const std::string& what,
                    const std::string& unit) {
-  const FieldMap map(shares, 40, 15);
-  std::string text = fmt::format("{}, {} (i_y upwards, i_x to the right", what, unit);
+  constexpr Eigen::Index kMostRows = 40, kMostColumns = 12;  // with one more these fit into a line
+  const FieldMap map(shares, kMostRows, kMostColumns);
+  std::string text = fmt::format("{}, {} (i_y upwards, i_x to the right)\n", what, unit);
   if (map.rows.block > 1 || map.columns.block > 1)
-    text += fmt::format("; blocks of {} x {} gates: i_x in their middle, i_y at their lower end",
-                        map.columns.block, map.rows.block);
-  text += ")\n";
+    text += fmt::format(
+        "(blocks of {} x {} gates; i_x is that of the middle gate, i_y that of the lowest)\n",
+        map.columns.block, map.rows.block);
   const markov::CellProbabilities blocks = map.blocks_of(shares);
   int width = 7;  // shares take six places at most, and a blank; visits may take more
   for (const double share : blocks.reshaped())
@@ -323,10 +324,11 @@ void describe(Fields& out, const Rest& rest) {
 std::string rest_text(const Rest& rest) {
   std::string text;
   if (rest.never_sampled > 0.0)
-    text += fmt::format("reach a state never sampled: {}\n", percent(rest.never_sampled, 1.0, 4));
+    text += fmt::format("Share that reaches a state without any run: {}\n",
+                        percent(rest.never_sampled, 1.0, 4));
   if (rest.still_walking > 1e-8)
-    text +=
-        fmt::format("still walking {}: {}\n", rest.stopped, percent(rest.still_walking, 1.0, 6));
+    text += fmt::format("Share that is still walking {}: {}\n", rest.stopped,
+                        percent(rest.still_walking, 1.0, 6));
   return text;
 }
 
@@ -341,10 +343,8 @@ std::string rest_warning(const Rest& rest, const std::string& where) {
   };
   add(rest.never_sampled, "reach a state that was never sampled");
   add(rest.still_walking, "were still walking " + rest.stopped);
-  return fmt::format(
-      "{}the endings add up to {} %: {}; how these end is not known, each share may be larger by "
-      "as much",
-      where, percents(1.0 - all), what);
+  return fmt::format("{}the endings add up to {} %: {}; each share may be larger by as much", where,
+                     percents(1.0 - all), what);
 }
 
 std::string with_interval(double share, const std::array<double, 2>& interval) {
@@ -353,23 +353,23 @@ std::string with_interval(double share, const std::array<double, 2>& interval) {
 }
 
 std::string endings_text(const lattice::EndingShares& shares, const std::string& of) {
-  TextTable table({{"", -11}, {"", 7}, {"", 0, 0, "", " %"}, {}});
-  std::vector<EndingName> names(kEndingNames.begin(), kEndingNames.end());
-  if (shares.share[kBack] > 0.0) names.push_back(lattice::kWentBack);
-  for (const EndingName& e : names) {
+  std::string text;
+  for (const EndingName& e : kAllEndingNames) {
+    if (shares.rules_out(e.ending)) continue;
     const auto at = static_cast<std::size_t>(e.ending);
     const auto& [low, high] = shares.interval[at];
-    table.row({e.name, percents(shares.share[at]),
-               std::isnan(low) ? "" : fmt::format("  [{}, {}]", percents(low), percents(high)),
-               e.ending == kEndingNames.front().ending ? "  " + of : ""});
+    text += fmt::format("{:<11}{:>7} %", e.name, percents(shares.share[at]));
+    if (!std::isnan(low)) text += fmt::format("  [{}, {}]", percents(low), percents(high));
+    if (!of.empty() && e.ending == kEndingNames.front().ending) text += "  " + of;
+    text += "\n";
   }
-  return table.text();
+  return text;
 }
 
-std::string map_of_trapped(const markov::CellProbabilities& shares) {
+std::string map_of_trapped(const markov::CellProbabilities& shares, const std::string& unit) {
   constexpr Eigen::Index kMost = 15;
   if (shares.rows() > kMost || shares.cols() > kMost || shares.sum() == 0.0) return "";
-  return map_of(shares, "of these trapped");
+  return map_of(shares, "Trapped bodies by gate", unit);
 }
 
 }  // namespace gatewalk::cli

@@ -73,14 +73,13 @@ struct FieldMap {
 /// A share in %, short enough for a gate of a figure: "17", "1.2", "<.1", nothing for none.
 [[nodiscard]] std::string short_percent(double share);
 
-/// The field seen from above, farthest row on top, in percent. Of fields too large to print: where
-/// all but next to nothing lies, in blocks if need be.
-[[nodiscard]] std::string map_of(const markov::CellProbabilities& shares,
-                                 const std::string& what = "final gate",
-                                 const std::string& unit = "% of trials");
-/// The map of the trapped, below the first one; empty for fields too large to print and where none
-/// is.
-[[nodiscard]] std::string map_of_trapped(const markov::CellProbabilities& shares);
+/// The field seen from above, farthest row on top, in percent: "WHAT, UNIT" is its title. Of fields
+/// too large to print: where all but next to nothing lies, in blocks if need be.
+[[nodiscard]] std::string map_of(const markov::CellProbabilities& shares, const std::string& what,
+                                 const std::string& unit);
+/// The map of trapped bodies; empty for fields too large to print and where no body is trapped.
+[[nodiscard]] std::string map_of_trapped(const markov::CellProbabilities& shares,
+                                         const std::string& unit);
 
 using lattice::EndingName;
 using lattice::kAllEndingNames;
@@ -127,8 +126,10 @@ void describe(Fields& out, const Rest& rest);
 
 /// A share in % with two decimals, or two digits if that would be 0.
 [[nodiscard]] std::string percents(double share);
-/// A line each: "crossed      0.02 %  [0.00, 0.05]"; `of` ends the first one.
-[[nodiscard]] std::string endings_text(const lattice::EndingShares& shares, const std::string& of);
+/// A line for each ending that is possible: "crossed      0.02 %  [0.00, 0.05]"; `of` stands at the
+/// end of the first line.
+[[nodiscard]] std::string endings_text(const lattice::EndingShares& shares,
+                                       const std::string& of = "");
 /// "17.61 [16.87, 18.37]", in %; "17.61" without an interval.
 [[nodiscard]] std::string with_interval(double share, const std::array<double, 2>& interval);
 

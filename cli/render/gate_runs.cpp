@@ -41,7 +41,7 @@ void describe(Fields& out, const GateResult& result) {
 }
 
 std::string table_of(const dynamics::GateTally& tally) {
-  TextTable table({{"trials", -18},
+  TextTable table({{"runs", -18},
                    {std::to_string(tally.trials), 10},
                    {"share   ", 11, 2, "%"},
                    {"95 % interval", 0, 0, "", "  "}});

@@ -48,37 +48,52 @@ std::vector<double> outcome_shares(const Transitions& t, int row) {
   return share;
 }
 
+/// "[-24.7, -8.95]": three digits, so that a line has room.
+std::string short_range(const std::array<double, 2>& range) {
+  return range[0] == range[1] ? digits(range[0], 3)
+                              : fmt::format("[{}, {}]", digits(range[0], 3), digits(range[1], 3));
+}
+
+/// "18.2", "100", "." for none: at most four places.
+std::string short_share(double share) {
+  const std::string text = fixed(100.0 * share, 1);
+  return share == 0.0 ? "." : text == "100.0" ? "100" : text;
+}
+
 std::string row_table(const Transitions& t) {
   const Section& section = t.space.section();
-  int width = 0;  // of names, if states have some
-  for (const NamedEntries& named : section.named)
-    width = std::max(width, static_cast<int>(named.name.size()) + 2);
-  std::string head = fmt::format("\n  in  {:<{}}from", width > 0 ? "name" : "", width);
-  std::vector<TextColumn> columns{{"", 4}, {"", -width, 0, "", "  "}, {}};
+  const bool has_names = !section.named.empty(), has_clamped = t.totals().clamped_share() > 0.0;
+  std::vector<TextColumn> columns{{"in", 4}};
+  if (has_names) columns.push_back({"name", -kFit, 0, "", "  "});
+  columns.push_back({"from", -kFit, 0, "", "  "});
   for (const Coordinate& c : section.coordinates) {
-    const bool is_first = &c == &section.coordinates.front();
     const std::string unit = behind_number(c.unit);
-    const std::string name = c.name + (unit.empty() ? "" : fmt::format(" ({})", unit.substr(1)));
-    head += is_first ? fmt::format(" {:<13}", name) : fmt::format("{:<12}", name);
-    columns.push_back({"", -12, 0, "", is_first ? " " : ""});
+    columns.push_back(
+        {c.name + (unit.empty() ? "" : fmt::format(" ({})", unit.substr(1))), -kFit, 0, "", " "});
   }
-  columns.insert(columns.end(), {{"", 7}, {"", 8}, {"", 6, 1, "", " |"}});
-  columns.resize(columns.size() + section.faces.size(), {"", 6, 1});
+  columns.push_back({"runs", 6});
+  if (has_clamped) columns.push_back({"clamped", 8});
+  for (const Face& face : section.faces)
+    columns.push_back({face.name, std::max(5, static_cast<int>(face.name.size()) + 1), 0, "",
+                       &face == &section.faces.front() ? " |" : ""});
+  columns.push_back({"trap", 5});
   TextTable table(std::move(columns));
   for (const int row : lattice::shown_order(t.space)) {
     const StateRange range = t.space.range(row);
-    std::vector<TextCell> cells{lattice::shown_number(t.space, row),
-                                name_of(section, range.middle()), section.faces[range.face].name};
+    std::vector<TextCell> cells{lattice::shown_number(t.space, row)};
+    if (has_names) cells.emplace_back(name_of(section, range.middle()));
+    cells.emplace_back(section.faces[range.face].name);
     for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
-      cells.emplace_back(dynamics::text_of(range.at[axis]) + " ");
+      cells.emplace_back(short_range(range.at[axis]));
     cells.emplace_back(t.trials[row]);
-    cells.emplace_back(t.clamped[row]);
-    for (const double share : outcome_shares(t, row)) cells.emplace_back(100.0 * share);
+    if (has_clamped) cells.emplace_back(t.clamped[row]);
+    for (const double share : outcome_shares(t, row)) cells.emplace_back(short_share(share));
     table.row(cells);
   }
-  head += "trials clamped |";
-  for (const Face& face : section.faces) head += fmt::format("{:>5} ", face.name);
-  return head + " trap (%)\n" + table.rows();
+  return "\nRows: the state of a body that enters a gate; the shares, in %, are the ways in which "
+         "it "
+         "enters the\nnext gate, and trapped\n" +
+         table.text();
 }
 
 /// The outputs of a row, in the order in which states are shown: state here, count.
@@ -98,14 +113,15 @@ std::string outputs_table(const Transitions& t, int shown) {
                column == t.space.trapped() ? "trapped"
                                            : text_of(t.space.section(), t.space.range(column))});
   }
-  return fmt::format("\n  outputs of input {}\n{}", shown, table.text());
+  return fmt::format("\nState {}: the states that follow, with their counts\n{}", shown,
+                     table.text());
 }
 
 /// A line of each other gate in the field.
 void add_types(TextTable& table, const lattice::MatrixFile& file) {
   for (const auto& [name, t] : file.types) {
     const auto total = t.totals();
-    table.row({"type " + name, fmt::format("{} counts, {} nonzeros, {} rows never sampled",
+    table.row({"type " + name, fmt::format("{} counts, {} entries above 0, {} rows without runs",
                                            total.runs, total.nonzeros, total.empty_rows)});
   }
 }
@@ -279,23 +295,37 @@ void describe(Fields& out, const MadeMatrix& made) {
   describe_made_by(out, made.made_by);
 }
 
+namespace {
+
+/// "m.nc: transition matrix of 87 states (87 rows, 88 columns, the last one: trapped)"
+std::string size_line(const Transitions& t, const std::string& path) {
+  const int n = t.space.size();
+  return fmt::format("{}: transition matrix of {} ({} rows, {} columns, the last one: trapped)\n",
+                     path, counted(n, "state", "states"), n, n + 1);
+}
+
+}  // namespace
+
 std::string summary_table(const lattice::MatrixFile& file, const std::string& path) {
   const Transitions& t = file.transitions;
   const auto total = t.totals();
   const auto states = recorded_states(file, path);
-  std::string text = fmt::format("{}: {} x {} matrix, ", path, t.space.size(), t.space.size() + 1);
-  if (!t.space.has_trees())
-    text += states && states->are_probabilities
-                ? "probabilities, "
-                : fmt::format("{} {}, ", total.runs,
-                              states && states->is_imported() ? "counted steps" : "gate runs");
-  text += fmt::format("{} nonzeros", total.nonzeros);
-  if (!t.space.has_trees() && !(states && states->is_imported()))
-    text += fmt::format(", {} of the crossings clamped into the nearest bin",
+  const bool is_imported = states && states->is_imported();
+  const bool is_recorded = states && states->trees && !states->trees->accuracy;
+  const std::string runs = states && states->are_probabilities
+                               ? "given as probabilities"
+                               : fmt::format("from {} {}", gate_runs_of(file, path),
+                                             is_imported   ? "counted steps"
+                                             : is_recorded ? "recorded passages"
+                                                           : "gate runs");
+  std::string text =
+      size_line(t, path) + fmt::format("{} entries are above 0, {}.\n", total.nonzeros, runs);
+  if (!t.space.has_trees() && !is_imported)
+    text += fmt::format("{} of the crossings lie outside the bins and count in the nearest bin.\n",
                         percent(total.clamped_share(), 1.0));
   TextTable types({{"", -20}, {}});
   add_types(types, file);
-  return text + "\n" + types.text();
+  return text + types.text();
 }
 
 void describe(Fields& out, const ShownMatrix& shown) {
@@ -340,38 +370,45 @@ void describe(Fields& out, const CellMatrixResult& built) {
   describe_made_by(out, built.made_by);
 }
 
-std::string table_of(const ShownMatrix& matrix, const ShownRows& shown) {
+std::string answer_text(const ShownMatrix& matrix, const ShownRows& shown) {
   const auto& [path, file] = matrix;
   const Transitions& t = file.transitions;
-  const int n = t.space.size();
   const auto total = t.totals();
-  const std::int64_t cells = std::int64_t{n} * (n + 1);
+  const std::int64_t cells = std::int64_t{t.space.size()} * (t.space.size() + 1);
   TextTable table({{"", -20, 0, "", "  "}, {}});
-  table.row({"size", fmt::format("{} inputs x {} outputs (the last: trapped)", n, n + 1)});
-  table.row({"gate runs",
-             fmt::format("{}{}", gate_runs_of(file, path),
-                         t.space.has_trees() ? fmt::format(", counts {}", total.runs) : "")});
-  table.row({"nonzeros", fmt::format("{} of {} ({})", total.nonzeros, cells,
-                                     percent(static_cast<double>(total.nonzeros),
-                                             static_cast<double>(cells)))});
-  if (!t.space.has_trees()) table.row({"clamped crossings", percent(total.clamped_share(), 1.0)});
-  table.row({"rows never sampled", total.empty_rows});
+  table.row(
+      {"gate runs", fmt::format("{}{}", gate_runs_of(file, path),
+                                t.space.has_trees()
+                                    ? fmt::format(" (counts, with mirror images: {})", total.runs)
+                                    : "")});
+  table.row({"entries above 0", fmt::format("{} of {} ({})", total.nonzeros, cells,
+                                            percent(static_cast<double>(total.nonzeros),
+                                                    static_cast<double>(cells)))});
+  if (!t.space.has_trees())
+    table.row({"outside the bins", fmt::format("{} of the crossings, counted in the nearest bin",
+                                               percent(total.clamped_share(), 1.0))});
+  table.row({"rows without runs", total.empty_rows});
   add_types(table, file);
-  for (const char* key : {"program", "commit", "command", "seed", "trials_per_row", "bins"})
-    if (const auto it = file.text.find(key); it != file.text.end()) table.row({key, it->second});
-  std::string text = path + "\n" + table.text();
-  if (const auto states = recorded_states(file, path)) text += "  " + states_line(*states);
   const std::string faults =
       !file.text.contains("status") && file.text.contains(lattice::kCellText)
           ? std::string("none on record") + (lattice::has_runs(file) ? ": runs were recorded" : "")
           : faults_recorded(recorded_health(file));
-  TextTable last({{"", -20, 0, "", "  "}, {}});
-  last.row({"numerical faults", faults.empty() ? "none seen" : faults});
-  text += last.text();
+  table.row({"numerical faults", faults.empty() ? "none seen" : faults});
+  std::string text = size_line(t, path) + table.text();
   if (shown.all) text += row_table(t);
   if (shown.one) text += outputs_table(t, *shown.one);
+  return text;
+}
+
+std::string details_text(const ShownMatrix& matrix) {
+  const auto& [path, file] = matrix;
+  std::string text = "\n";
+  for (const char* key : {"program", "commit", "command", "seed", "trials_per_row", "bins"})
+    if (const auto it = file.text.find(key); it != file.text.end())
+      text += wrapped(fmt::format("  {:<20}{}", key, it->second), std::string(22, ' '));
+  if (const auto states = recorded_states(file, path)) text += states_line(*states);
   if (const auto scene = file.text.find("scene"); scene != file.text.end())
-    text += "\n" + scene->second;
+    text += "\nThe scene, as TOML\n" + scene->second;
   return text;
 }
 

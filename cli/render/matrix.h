@@ -45,6 +45,7 @@ void describe(Fields& out, const MadeMatrix& made);
 [[nodiscard]] std::map<std::string, std::string> texts_of(const MadeMatrix& made,
                                                           const lattice::Scene& scene,
                                                           const dynamics::Health& health);
+/// Size, runs and types of gates of a matrix that was written, a line each.
 [[nodiscard]] std::string summary_table(const lattice::MatrixFile& file, const std::string& path);
 
 /// The result of `show`: all that a file holds.
@@ -74,7 +75,9 @@ struct ShownRows {
   bool all = false;
   std::optional<int> one;
 };
-[[nodiscard]] std::string table_of(const ShownMatrix& matrix, const ShownRows& shown);
+[[nodiscard]] std::string answer_text(const ShownMatrix& matrix, const ShownRows& shown);
+/// How the matrix was made, and its scene.
+[[nodiscard]] std::string details_text(const ShownMatrix& matrix);
 
 /// The matrix as a picture: states grouped by boundary, in blocks if they are many.
 [[nodiscard]] Figure figure_of(const dynamics::Transitions& t);

@@ -264,20 +264,92 @@ void describe(Fields& out, const MemoryStudy& study) {
   }
 }
 
-std::string text_of(const MemoryStudy& study) {
-  std::string text = fmt::format(
-      "\nIs it Markov? {} gate runs of {} trials from all starts, in the states of the chain; p "
-      "for four questions together.\n",
-      study.runs, study.walks);
+std::string sentence_of(const MemoryStudy& study) {
+  double least = 1.0;
   for (int k = 0; k < lattice::kQuestions; ++k)
-    text += fmt::format("  {}\n", any_sentence(study, static_cast<Question>(k)));
-  return text + (study.remembers()
-                     ? "So the chain forgets what matters; how much that costs its predictions, "
-                       "the verdicts above say.\n"
-                     : "So the chain forgets nothing that these runs could show.\n");
+    least = std::min(least, study.p_adjusted(static_cast<Question>(k)));
+  if (study.remembers())
+    return fmt::format(
+        "Is it Markov? No: in {} gate runs the next step depends on more than the state ({}).\n",
+        study.runs, p_words(least));
+  return fmt::format(
+      "Is it Markov? {} gate runs give no evidence that the chain has lost information ({}).\n",
+      study.runs, p_words(least));
 }
 
-std::string text_of(const lattice::ForceMemory& m) {
+namespace {
+
+/// What a question asks, as the subject of a sentence.
+constexpr std::array<std::string_view, lattice::kQuestions> kSubjects{
+    "Several gates ahead", "The gate before", "The number of gates so far", "The row of the field"};
+
+std::string lines_ahead(const MemoryStudy& study) {
+  if (study.ahead.steps.empty())
+    return "not tested, because the field has several types of gates.\n";
+  const GatesAhead::Step& s = study.ahead.largest();
+  return fmt::format(
+      "bodies are {} the powers of the matrix put them.\n"
+      "    {} gates ahead: total variation {}; chance alone makes up to {} (95 %).\n",
+      study.remembers(Question::gates_ahead) ? "elsewhere than" : "where", s.gates,
+      fixed(s.total_variation.seen, 4), fixed(s.chance_95, 4));
+}
+
+std::string lines_of(const MemoryStudy& study, Question q) {
+  const Independence& i = study.independence(q);
+  if (!study.remembers(q)) {
+    const std::string text = "tells nothing more than the state.\n    ";
+    if (i.runs == 0) return text + "No state was entered in two such ways.\n";
+    if (!std::isfinite(i.seen_at_90)) return text + "There are too few runs to detect a memory.\n";
+    return text + fmt::format(
+                      "A memory of total variation {} would be detected with probability "
+                      "0.9.\n",
+                      fixed(i.seen_at_90, 3));
+  }
+  std::string text = "tells more than the state.\n    ";
+  text += i.memory_low > 0.0
+              ? fmt::format("The memory has a total variation of {} [{}, {}].\n",
+                            fixed(i.memory, 3), fixed(i.memory_low, 3), fixed(i.memory_high, 3))
+              : "The difference has another sign in other states.\n";
+  if (i.label >= 0)
+    text += fmt::format("    Strongest: {}, next {}: {} points {} than in the other runs.\n",
+                        label_name(study, q, i.label), outcome_name(study, i.outcome),
+                        fixed(100.0 * std::abs(i.more), 1), i.more > 0.0 ? "more" : "fewer");
+  return text;
+}
+
+}  // namespace
+
+std::string text_of(const MemoryStudy& study) {
+  std::string text = fmt::format(
+      "\nIs it Markov? Four tests with {} gate runs of {} trials from all starts, in the chain's "
+      "states.\np is corrected for four tests.\n",
+      study.runs, study.walks);
+  for (int k = 0; k < lattice::kQuestions; ++k) {
+    const auto q = static_cast<Question>(k);
+    text += fmt::format("  {} ({}): {}", kSubjects[static_cast<std::size_t>(k)],
+                        p_words(study.p_adjusted(q)),
+                        q == Question::gates_ahead ? lines_ahead(study) : lines_of(study, q));
+  }
+  return text + (study.remembers()
+                     ? "So the chain loses information; the verdict above says what that costs its "
+                       "predictions.\n"
+                     : "So these runs give no evidence that the chain has lost information.\n");
+}
+
+std::string sentence_of(const lattice::ForceMemory& m) {
+  const lattice::Comparison &pairs = m.change.in_pairs, &apart = m.change.apart;
+  return wrapped(fmt::format(
+      "With the random force drawn anew at every crossing, the final gates {} ({}): total "
+      "variation "
+      "{} +- {}; chance makes {}. {} of the trials end in another gate.",
+      m.matters() ? "change" : "change no more than by chance", p_words(pairs.p_total_variation),
+      fixed(apart.total_variation, 4), fixed(m.change.uncertainty(), 4),
+      fixed(pairs.floor_total_variation, 4), percent(m.change.changed, 1.0)));
+}
+
+namespace {
+
+std::string verdict(const lattice::ForceMemory& m) {
   const lattice::Comparison &pairs = m.change.in_pairs, &apart = m.change.apart;
   return fmt::format(
       "a random force drawn anew at every crossing {} ({}): total variation {} +- {}, chance makes "
@@ -288,8 +360,10 @@ std::string text_of(const lattice::ForceMemory& m) {
       percent(m.change.changed, 1.0));
 }
 
+}  // namespace
+
 void describe(Fields& out, const lattice::ForceMemory& m) {
-  out.text({"verdict", "the result of the test in words"}, text_of(m));
+  out.text({"verdict", "the result of the test in words"}, verdict(m));
   out.flag(
       {"matters",
        "whether the final gates change by more than chance: p of total variation at most 0.05"},

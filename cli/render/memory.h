@@ -18,7 +18,8 @@ void describe(Fields& out, const lattice::MultipleTests::Test& test);
 void describe(Fields& out, const lattice::MemoryStudy& study);
 void describe(Fields& out, const lattice::ForceMemory& memory);
 
-/// A line per question, then the verdict.
+/// The answer to all questions in one line, and the answer to each of them.
+[[nodiscard]] std::string sentence_of(const lattice::MemoryStudy& study);
 [[nodiscard]] std::string text_of(const lattice::MemoryStudy& study);
 /// Panels of a figure below its others: so high, and drawn from `top` on.
 struct MorePanels {
@@ -28,7 +29,7 @@ struct MorePanels {
 /// The Chapman-Kolmogorov test: a panel for each way in and each way later, and the implied time
 /// scales over the lag. None where it was not asked, or of more ways than panels can be read.
 [[nodiscard]] MorePanels panels_of(const lattice::MemoryStudy& study);
-/// "the force's hold ...": one sentence.
-[[nodiscard]] std::string text_of(const lattice::ForceMemory& memory);
+/// What the force's hold over crossings does, in two lines.
+[[nodiscard]] std::string sentence_of(const lattice::ForceMemory& memory);
 
 }  // namespace gatewalk::cli

@@ -105,51 +105,60 @@ void describe(Fields& out, const lattice::LeastDifferences& least,
 }
 
 std::string gates_part(const lattice::ObservedComparison& c) {
-  TextTable table(
-      {{"", -14}, {"", 8, 3}, {"", 0}, {"", 9, 3}, {"", 0}, {"", 9, 3}, {"", 0}, {"", 9}});
+  TextTable table({{"", -14},
+                   {"corrcoef (floor)", -20, 0, "", "  "},
+                   {"RMSE (floor)", -16, 0, "", "  "},
+                   {"TV (chance, 95 % of chance)", -28, 0, "", "  "},
+                   {"p", 7, 0, "", "  "}});
   const auto row = [&](const char* name, const lattice::Comparison& k, const JointTest& j) {
-    table.row({name, k.corrcoef, fmt::format(" ({})", fixed(k.floor.corrcoef, 3)), k.rmse_per_100,
-               fmt::format(" ({})", fixed(k.floor.rmse_per_100, 3)), k.total_variation,
-               fmt::format(" ({}, {})", fixed(j.chance_total_variation, 3),
-                           fixed(j.chance_total_variation_95, 3)),
-               p_text(p_of_gates(j))});
+    table.row(
+        {name, fmt::format("{} ({})", fixed(k.corrcoef, 3), fixed(k.floor.corrcoef, 3)),
+         fmt::format("{} ({})", fixed(k.rmse_per_100, 3), fixed(k.floor.rmse_per_100, 3)),
+         fmt::format("{} ({}, {})", fixed(k.total_variation, 3), fixed(j.chance_total_variation, 3),
+                     fixed(j.chance_total_variation_95, 3)),
+         p_text(p_of_gates(j))});
   };
-  row("  dynamics", *c.dynamics_gates, c.against_dynamics);
-  row("  chain", *c.chain_gates, c.against_chain);
-  return "Final gates     corrcoef (floor)   RMSE (floor)      TV (chance, at 95 %)        p\n" +
-         table.rows();
+  row("full dynamics", *c.dynamics_gates, c.against_dynamics);
+  row("chain", *c.chain_gates, c.against_chain);
+  return "\nFinal gates of the observed trials against both; TV: total variation\n" + table.text();
 }
 
-std::string endings_part(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
-  const auto text = [](const lattice::EndingShares& of, const EndingName& e) {
-    return with_interval(of.share[index_of(e)], of.interval[index_of(e)]);
-  };
-  const auto column = [&](const std::string& heading, const lattice::EndingShares& of) {
-    std::size_t width = heading.size();
-    for (const EndingName& e : kEndingNames) width = std::max(width, text(of, e).size());
-    return TextColumn{heading, static_cast<int>(width) + 2};
-  };
+/// Endings as they were observed, beside both models; *: differs from the observed.
+std::string shares_part(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
   TextTable table({{"", -10},
-                   column("observed", c.endings),
-                   column("dynamics", v.dynamics_endings),
-                   column("chain", v.exact_endings),
-                   {"p: dynamics", 13},
-                   {"chain", 8},
-                   {"seen from, points", 0, 0, "", "    "}});
+                   {"observed, %", -23, 0, "", "  "},
+                   {"full dynamics, %", -24, 0, "", "  "},
+                   {"chain, %", 0, 0, "", "  "}});
   for (const EndingName& e : kEndingNames) {
     if (c.endings.rules_out(e.ending)) continue;
     const std::size_t at = index_of(e);
-    table.row({e.name, text(c.endings, e), text(v.dynamics_endings, e), text(v.exact_endings, e),
-               p_text(c.against_dynamics.endings[at].p_adjusted),
-               p_text(c.against_chain.endings[at].p_adjusted),
-               "  " + text_of(c.least.by_ending[at])});
+    const auto cell = [&](const lattice::EndingShares& of, bool differs) {
+      return with_interval(of.share[at], of.interval[at]) + (differs ? " *" : "");
+    };
+    table.row({e.name, cell(c.endings, false),
+               cell(v.dynamics_endings, c.against_dynamics.differs(e.ending)),
+               cell(v.exact_endings, c.against_chain.differs(e.ending))});
   }
   return table.text();
 }
 
-std::string from_on(const std::optional<double>& total_variation) {
-  return total_variation ? fmt::format("from {} on", fixed(*total_variation, 2))
-                         : "not at all (none of this kind is large enough)";
+std::string endings_part(const lattice::ObservedComparison& c) {
+  TextTable table({{"", -10},
+                   {"p: full dynamics", 18},
+                   {"p: chain", 10},
+                   {"detectable shift, points", 0, 0, "", "    "}});
+  for (const EndingName& e : kEndingNames) {
+    if (c.endings.rules_out(e.ending)) continue;
+    const std::size_t at = index_of(e);
+    table.row({e.name, p_text(c.against_dynamics.endings[at].p_adjusted),
+               p_text(c.against_chain.endings[at].p_adjusted), text_of(c.least.by_ending[at])});
+  }
+  return fmt::format(
+      "\nEach ending: how often chance makes as large a difference (p, corrected for all that is "
+      "tested),\nand the smallest shift that {} detect with {} % power (none: no shift "
+      "is).\n{}",
+      counted(c.seen.trials(), "trial", "trials"), fixed(100.0 * c.least.goal.power, 0),
+      table.text());
 }
 
 /// One sentence; p-values belong to the differences that it names.
@@ -202,43 +211,60 @@ void describe_observed(Fields& out, const lattice::ObservedComparison& c,
   });
 }
 
-std::string table_of(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
-  const std::string trials = counted(c.seen.trials(), "trial", "trials");
-  std::string text = fmt::format(
-      "Observed: {}, beside {} of the full dynamics and the exact chain. p: how often chance makes "
-      "as large a\ndifference in anything that is looked at.\n\n",
-      trials, v.dynamics.trials);
-  if (c.seen.has_endings())
-    text += fmt::format(
-        "Endings, % with 95 % intervals\n{}"
-        "Seen from: so many points more (+) or fewer (-) than the model are seen in {} of 100 "
-        "experiments of {}; none: no difference is.\n",
-        endings_part(c, v), fixed(100.0 * c.least.goal.power, 0), trials);
-  if (c.seen.has_endings() && c.seen.has_gates()) text += "\n";
+std::string answer_text(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
+  const JointTest &d = c.against_dynamics, &k = c.against_chain;
+  const char* const agree = d.differs() ? "differ from" : "agree with";
+  const char* const then = d.differs() == k.differs() ? (d.differs() ? "and from" : "and with")
+                           : k.differs()              ? "but differ from"
+                                                      : "but agree with";
+  std::string text =
+      wrapped(fmt::format("The {} observed trials {} the full dynamics ({}) {} the chain ({}).",
+                          c.seen.trials(), agree, p_of(d), then, p_of(k)));
+  if (c.seen.has_endings()) text += shares_part(c, v);
   if (c.seen.has_gates())
     text += fmt::format(
-        "{}A total variation (TV) of the final gates is seen {} if it is spread over all gates, "
-        "the "
-        "hardest to see.\n",
-        gates_part(c), from_on(c.least.final_gates));
-  std::string said = verdict_of(c, v);
-  for (std::size_t at = 0; (at = said.find("; ", at)) != said.npos;) said.replace(at, 2, ";\n  ");
+        "Final gates: total variation {} from the full dynamics; chance alone makes {}.\n",
+        fixed(c.dynamics_gates->total_variation, 3), fixed(d.chance_total_variation, 3));
+  text += wrapped(fmt::format(
+      "From {} and {} of the full dynamics. Quote the first p: it is corrected for all that is "
+      "tested.{}",
+      counted(c.seen.trials(), "observed trial", "observed trials"),
+      counted(v.dynamics.trials, "trial", "trials"),
+      d.differs() ? " gatewalk fit finds numbers that explain the counts."
+                  : " Agreement does not show that both are equal."));
+  if (v.finding() == lattice::Finding::own_error)
+    text += fmt::format(
+        "Beware: the chain differs from the full dynamics ({}); compare with the "
+        "dynamics.\n",
+        p_of(v.joint_test));
+  return text;
+}
+
+std::string details_text(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
+  std::string text;
+  if (c.seen.has_endings()) text += endings_part(c);
+  if (c.seen.has_gates()) {
+    text += gates_part(c);
+    text += c.least.final_gates
+                ? fmt::format(
+                      "Detectable: a total variation of the final gates of {} or more, if it "
+                      "is spread over all gates.\n",
+                      fixed(*c.least.final_gates, 2))
+                : "Detectable: no total variation of the final gates that is spread over all "
+                  "gates.\n";
+  }
   return fmt::format(
-      "{}\n{}\n\n"
-      "The p to quote is that against the dynamics in this sentence, the smallest of those above: "
-      "it counts that all is\nlooked at. The dynamics is the model, the chain its approximation.\n"
-      "\nWhether the chain is to be trusted: {}.\n"
-      "(More of that without --observed, and in --json.)\n",
-      text, said, verdict(v));
+      "{}\n{}\nThe full dynamics is the model, and the chain approximates it. validate without "
+      "--observed shows\nmore of their comparison.\n",
+      text, chain_verdict(v));
 }
 
 std::string who_went_back(const lattice::Observed& observed) {
   if (observed.went_back == 0) return "";
-  const std::int64_t others = observed.seen.trials();
   return fmt::format(
-      "{} of {} trials went back, which no body of the model does: they are left out, and the "
-      "other {} used. Who gave up in front of a gate is trapped there",
-      observed.went_back, observed.went_back + others, others);
+      "{} of {} trials went back, which the model excludes: they are left out (a body that gave up "
+      "at a gate is trapped there)",
+      observed.went_back, observed.went_back + observed.seen.trials());
 }
 
 std::string too_few_observed(const lattice::Observed& observed) {
@@ -247,9 +273,8 @@ std::string too_few_observed(const lattice::Observed& observed) {
   const auto least = lattice::smallest_difference(n, 0.5, goal);
   if (least.more && *least.more <= kFewAreEnough) return "";
   return fmt::format(
-      "{} little: an ending of 50 % must be {} points off to be seen in {} of 100 such "
-      "experiments; gatewalk power says how many trials it takes",
-      counted(n, "trial shows", "trials show"),
+      "{} a shift of {} points in an ending of 50 % (power {} %); gatewalk power plans experiments",
+      counted(n, "trial detects", "trials detect"),
       least.more ? fixed(100.0 * *least.more, 0) : "more than 50", fixed(100.0 * goal.power, 0));
 }
 

@@ -21,8 +21,10 @@ struct ObservedFiles {
 /// The key "observed". `v`: the model's side of it.
 void describe_observed(Fields& out, const lattice::ObservedComparison& c,
                        const lattice::StartValidation& v, const ObservedFiles& files);
-[[nodiscard]] std::string table_of(const lattice::ObservedComparison& c,
-                                   const lattice::StartValidation& v);
+[[nodiscard]] std::string answer_text(const lattice::ObservedComparison& c,
+                                      const lattice::StartValidation& v);
+[[nodiscard]] std::string details_text(const lattice::ObservedComparison& c,
+                                       const lattice::StartValidation& v);
 
 /// The endings and the gates in which most end, as they were observed, by the dynamics and by the
 /// chain, each with its 95 % interval (but the chain's gates, whose intervals are not known).

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cli/fields/text.h"
@@ -101,37 +102,89 @@ void describe(Fields& out, const RunsPrediction& runs, bool given) {
              });
 }
 
-std::string table_of(const lattice::StartAnswer& a, const ShownField& shown) {
-  const bool known = std::isfinite(a.error.total_variation);
-  std::string text = ends_of(a.final, a.endings)
-                         .table(known ? "of all bodies, 95 % intervals that count everything"
-                                      : "of all bodies, without intervals",
-                                limits_text(shown)) +
-                     table_of(shown_exits(a.exits, a.final), shown);
-  if (known)
+namespace {
+
+/// "2779 simulated trials", "500 runs through the first gate", "12 recorded trials".
+std::string runs_of(const RunsPrediction& runs) {
+  if (runs.recorded)
+    return counted(runs.recorded->counts.trials, "recorded trial", "recorded trials");
+  std::int64_t trials = 0, first_runs = 0;
+  for (const lattice::StartAnswer& a : runs.prediction.starts) {
+    trials += a.trials;
+    first_runs += a.first_runs;
+  }
+  std::string text;
+  if (trials > 0) text = counted(trials, "simulated trial", "simulated trials");
+  if (first_runs > 0)
+    text += (text.empty() ? "" : " and ") +
+            counted(first_runs, "run through the first gate", "runs through the first gate");
+  return text.empty() ? "the gate runs of the file" : text;
+}
+
+/// How the chain's own trials judge it, as the end of a sentence; empty where none do.
+std::string agreement(const std::optional<lattice::HausmanCheck>& own) {
+  if (!own) return "";
+  return fmt::format("; the chain {} its own trials ({})",
+                     own->differs() ? "differs from" : "agrees with", p_words(own->p));
+}
+
+bool has_error_bar(const lattice::StartAnswer& a) { return std::isfinite(a.error.total_variation); }
+
+}  // namespace
+
+std::string answer_text(const lattice::StartAnswer& a) {
+  std::string text = endings_text(ends_of(a.final, a.endings).shares);
+  if (a.from_trials)
+    text += "These are the shares of the trials: they are more precise here than the chain.\n";
+  if (has_error_bar(a))
+    text +=
+        fmt::format("Final gates: within a total variation of {} of the truth, 95 times in 100.\n",
+                    digits(a.error.total_variation, 2));
+  return text;
+}
+
+std::string answer_text(const RunsPrediction& runs) {
+  const auto& starts = runs.prediction.starts;
+  const bool any = std::any_of(starts.begin(), starts.end(), has_error_bar);
+  std::string text = wrapped(fmt::format(
+      "From {}, pooled into a chain of {} states{}{}.", runs_of(runs), runs.prediction.states,
+      any ? "" : ", without error bars", agreement(runs.prediction.hausman_check)));
+  if (any)
+    text += "The 95 % intervals include sampling error and the chain's own approximation error.\n";
+  if (runs.recorded && runs.recorded->bounds.lost > 0.0)
     text += fmt::format(
-        "error: at most {} in total variation of the final gates, corrcoef at least {}, RMSE at "
-        "most {} per 100, each 95 times in 100 (sampling, states and memory)\n",
+        "Beware: {} of the passages were lost from sight, which no interval counts; see "
+        "--details.\n",
+        percent(runs.recorded->bounds.lost, 1.0, 2));
+  return text;
+}
+
+std::string details_text(const lattice::StartAnswer& a, const ShownField& shown) {
+  std::string text = ends_of(a.final, a.endings).maps("% of all bodies") +
+                     table_of(shown_exits(a.exits, a.final), shown);
+  if (has_error_bar(a))
+    text += fmt::format(
+        "Error bars of the final gates, each right 95 times in 100: total variation at most {},\n"
+        "corrcoef at least {}, RMSE at most {} per 100.\n",
         fixed(a.error.total_variation, 4), fixed(a.error.corrcoef, 4),
         fixed(a.error.rmse_per_100, 3));
-  if (a.from_trials)
-    text += "the trials' own shares: they are more certain here than the chain\n";
-  else if (a.unseen > 0.0)
+  if (!a.from_trials && a.unseen > 0.0)
     text += fmt::format(
-        "the error counts {} that enter the second gate where no gate run did: what becomes of "
-        "them is a guess\n",
+        "{} of the bodies enter the second gate where no simulated run did. Their ending is a "
+        "guess,\nand the error bars include it.\n",
         percent(a.unseen, 1.0, 2));
   return text + rest_text(rest_of(a.final));
 }
 
-std::string table_of(const RunsPrediction& runs) {
+std::string details_text(const RunsPrediction& runs) {
   const lattice::PooledPrediction& p = runs.prediction;
-  std::string text =
-      fmt::format("{}{} gate runs, {} states, {} s", hausman_check_text(p.hausman_check),
-                  p.gate_runs, p.states, fixed(p.seconds, 2));
+  std::string text = fmt::format(
+      "{}Simulated for this answer: {} gate runs; the chain has {} states. Time: {} s.\n",
+      hausman_check_text(p.hausman_check), p.gate_runs, p.states, fixed(p.seconds, 2));
   if (const double direct = direct_seconds(p); std::isfinite(direct))
-    text += fmt::format("; direct simulation would take some {} s", fixed(direct, 2));
-  text += "\n" + method_line(runs.method);
+    text += fmt::format("Direct simulation with the same error bar would take about {} s.\n",
+                        fixed(direct, 2));
+  text += method_line(runs.method);
   return runs.recorded ? text + table_of(runs.recorded->counts) + table_of(runs.recorded->bounds)
                        : text;
 }
@@ -157,10 +210,12 @@ void describe_hausman_check(Fields& out, const std::optional<lattice::HausmanChe
 
 std::string hausman_check_text(const std::optional<lattice::HausmanCheck>& own) {
   if (!own) return "";
-  return fmt::format("check: its {} full trials themselves are {} away, chance makes {} ({}){}\n",
-                     own->trials, fixed(own->total_variation, 4),
-                     fixed(own->chance_total_variation, 4), p_words(own->p),
-                     own->differs() ? ": the chain errs" : "");
+  return fmt::format(
+      "Check: the final gates of {} full trials differ from the chain's by a total variation of "
+      "{};\n"
+      "chance alone makes {} ({}).{}\n",
+      own->trials, fixed(own->total_variation, 4), fixed(own->chance_total_variation, 4),
+      p_words(own->p), own->differs() ? " So the chain errs." : "");
 }
 
 }  // namespace gatewalk::cli

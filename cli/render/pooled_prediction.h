@@ -29,14 +29,18 @@ struct RunsPrediction {
 /// The keys of one start, and those of all together; `given`: the starts stand in a list.
 void describe(Fields& out, const lattice::StartAnswer& answer, const ShownField& shown);
 void describe(Fields& out, const RunsPrediction& runs, bool given);
-[[nodiscard]] std::string table_of(const lattice::StartAnswer& answer, const ShownField& shown);
-[[nodiscard]] std::string table_of(const RunsPrediction& runs);
+/// The answer for one start, and what all starts share.
+[[nodiscard]] std::string answer_text(const lattice::StartAnswer& answer);
+[[nodiscard]] std::string answer_text(const RunsPrediction& runs);
+/// Details of one start, and those that all starts share.
+[[nodiscard]] std::string details_text(const lattice::StartAnswer& answer, const ShownField& shown);
+[[nodiscard]] std::string details_text(const RunsPrediction& runs);
 
 /// The key "error_95".
 void describe_error(Fields& out, double error_95);
 /// The key "own_trials": what a chain's own full trials say of it; null where there are none.
 void describe_hausman_check(Fields& out, const std::optional<lattice::HausmanCheck>& own);
-/// The same as a line; empty where there are none.
+/// The same as a sentence; empty where there are none.
 [[nodiscard]] std::string hausman_check_text(const std::optional<lattice::HausmanCheck>& own);
 
 }  // namespace gatewalk::cli

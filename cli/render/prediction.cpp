@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cli/fields/text.h"
@@ -46,30 +47,38 @@ void describe(Fields& out, const lattice::StartPrediction& s, const ShownField& 
   out.count({"steps", "1", "propagation steps; 0: a linear solve instead"}, f.steps);
 }
 
-std::string table_of(const lattice::StartPrediction& s, const std::string& bin,
-                     const MatrixPrediction& of, const ShownField& shown) {
+/// What the intervals of a matrix's answer count, or why there are none.
+std::string intervals_text(const MatrixPrediction& of) {
+  const lattice::StartPrediction& s = of.prediction.starts.front();
+  if (std::isnan(s.shares.interval.front().front()))
+    return of.probabilities
+               ? "Without intervals: the matrix holds probabilities, not counts.\n"
+               : "Without intervals: the field is too large for many predictions, rows have few "
+                 "runs each,\nor resampled matrices fail.\n";
+  return s.replicates == 0
+             ? "The 95 % intervals count the walks that were not followed to an end.\n"
+             : "The 95 % intervals count the sampling error of the matrix.\n";
+}
+
+std::string answer_text(const MatrixPrediction& of) {
+  std::string text =
+      fmt::format("From the matrix {} of {} states: the limit of infinitely many walks.\n{}",
+                  of.path, of.matrix_states, intervals_text(of));
+  if (!of.foreign)
+    text +=
+        "Beware: the chain's own error is left out. gatewalk validate SCENE --matrix FILE measures "
+        "it.\n";
+  return text;
+}
+
+std::string details_text(const lattice::StartPrediction& s, const std::string& bin,
+                         const ShownField& shown) {
   const markov::FinalDistribution& f = s.final;
-  const auto ends = ends_of(f, s.shares);
-  const bool intervals = !std::isnan(ends.shares.interval.front().front());
-  return ends.table(
-             intervals && s.replicates == 0
-                 ? "of all walks, and what they may be, as some were not followed to an end"
-             : intervals ? "of all walks, 95 % intervals for the sampling of the matrix"
-             : of.probabilities
-                 ? "of all walks; no intervals: the matrix holds probabilities, not counts"
-                 : "of all walks; no intervals: the field is too large for many predictions, "
-                   "rows have few runs each, or resampled matrices fail",
-             limits_text(shown)) +
-         cli::table_of(shown_exits(s.exits, f), shown) +
+  return ends_of(f, s.shares).maps("% of all bodies") + table_of(shown_exits(s.exits, f), shown) +
          fmt::format(
-             "start: {}\n{}{}Rounding and walks not finished, which are not the error of the "
-             "prediction: at most {} in all shares together\n",
-             bin, rest_text(rest_of(f)),
-             of.foreign ? ""
-                        : "The chain's own error (bins, memory, and with bins from a pilot where "
-                          "its rows start) is not in the intervals:\n"
-                          "gatewalk validate measures it.\n",
-             digits(f.remainder + f.rounding, 2));
+             "State of the chain at the start: {}\n{}"
+             "Rounding and unfinished walks change all shares together by at most {}.\n",
+             bin, rest_text(rest_of(f)), digits(f.remainder + f.rounding, 2));
 }
 
 /// `describe_one` takes the number of a start.
@@ -136,26 +145,52 @@ void describe(Fields& out, const PredictResult& r) {
   describe_made_by(out, r.made_by);
 }
 
-std::string table_of(const PredictResult& r) {
+namespace {
+
+/// Adds for each start its title, if starts were given, and what `text_of` says of it.
+template <class Text>
+std::string by_start(const PredictResult& r, Text text_of) {
   std::string text;
   const std::size_t starts = std::max<std::size_t>(1, r.given.size());
   for (std::size_t k = 0; k < starts; ++k) {
-    if (!r.given.empty())
-      text += (k > 0 ? "\n" : "") + lattice::title_of(r.shown.map.section, r.given[k]) + "\n";
-    text += r.of_runs ? table_of(r.of_runs->prediction.starts[k], r.shown)
-                      : table_of(r.of_matrix->prediction.starts[k], r.of_matrix->states[k].bin,
-                                 *r.of_matrix, r.shown);
+    if (!r.given.empty()) text += lattice::title_of(r.shown.map.section, r.given[k]) + "\n";
+    text += text_of(k);
   }
-  if (r.of_runs) return text + table_of(*r.of_runs);
+  return text;
+}
+
+}  // namespace
+
+std::string answer_text(const PredictResult& r) {
+  return by_start(r,
+                  [&](std::size_t k) {
+                    if (r.of_runs) return answer_text(r.of_runs->prediction.starts[k]);
+                    const lattice::StartPrediction& s = r.of_matrix->prediction.starts[k];
+                    return endings_text(ends_of(s.final, s.shares).shares);
+                  }) +
+         (r.of_runs ? answer_text(*r.of_runs) : answer_text(*r.of_matrix));
+}
+
+std::string details_text(const PredictResult& r) {
+  std::string text = "\n" + limits_text(r.shown) + by_start(r, [&](std::size_t k) {
+                       return r.of_runs ? details_text(r.of_runs->prediction.starts[k], r.shown)
+                                        : details_text(r.of_matrix->prediction.starts[k],
+                                                       r.of_matrix->states[k].bin, r.shown);
+                     });
+  if (r.of_runs) return text + details_text(*r.of_runs);
+  if (!r.of_matrix->foreign)
+    text +=
+        "The chain's own error comes from the size of its states, from memory across gates, and,\n"
+        "with bins from a pilot, from where its rows start. No interval above counts it.\n";
   for (const OtherRows& o : r.of_matrix->rows)
-    text += fmt::format("rows {} to {}: gates of {}\n", o.first, o.last, o.matrix);
+    text += fmt::format("Rows {} to {} have the gates of {}.\n", o.first, o.last, o.matrix);
   return text;
 }
 
 std::string text_of(const lattice::LeftOut& left_out) {
   if (left_out.matrices == 0) return "";
   return fmt::format("{}{} of {} resampled matrices: {}",
-                     left_out.too_many() ? "no interval counts the sampling of the matrix: failed "
+                     left_out.too_many() ? "no interval counts the matrix's sampling error: failed "
                                          : "intervals leave out ",
                      left_out.matrices, left_out.of, left_out.why);
 }

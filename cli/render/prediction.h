@@ -26,6 +26,8 @@ struct OtherRows {
 /// What a matrix says as it is.
 struct MatrixPrediction {
   lattice::Prediction prediction{};
+  std::string path{};                // of the matrix
+  int matrix_states = 0;             // the number of its states
   std::vector<ShownState> states{};  // in which bodies start, by start
   std::string solver{};
   std::optional<dynamics::Health> status{};  // of the matrix
@@ -44,7 +46,9 @@ struct PredictResult {
   Provenance made_by{};
 };
 void describe(Fields& out, const PredictResult& result);
-[[nodiscard]] std::string table_of(const PredictResult& result);
+/// What the screen shows first, and its details.
+[[nodiscard]] std::string answer_text(const PredictResult& result);
+[[nodiscard]] std::string details_text(const PredictResult& result);
 
 /// Empty if none is.
 [[nodiscard]] std::string text_of(const lattice::LeftOut& left_out);

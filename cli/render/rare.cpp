@@ -94,32 +94,41 @@ void describe(Fields& out, const RareResult& result) {
   describe_made_by(out, made_by);
 }
 
-std::string table_of(const RareResult& result, const lattice::FieldParams& field) {
+std::string answer_text(const RareResult& result) {
   const auto& [event, direct, method, made_by] = result;
   const lattice::Splitting& s = event.splitting;
   const lattice::RowChance& last = s.rows.back();
-  std::string text = fmt::format("chance to enter row {}: ", s.rows.size());
-  if (last.probability > 0.0)
-    text += fmt::format("{} {}, relative standard error {} %", chance(last.probability),
-                        interval_text(last.interval_95()),
-                        fixed(100 * last.relative_standard_error, 1));
-  else
-    text += fmt::format("none of {} trials did: at most {} (two-sided 95 %)", s.trials,
-                        chance(last.at_most));
-  text += "\nthe chain alone says " + chance(event.chain.back());
+  std::string text = fmt::format("Chance to enter row {}: ", s.rows.size());
+  text += last.probability > 0.0
+              ? fmt::format("{}, 95 % interval {} (relative standard error {} %).\n",
+                            chance(last.probability), interval_text(last.interval_95()),
+                            fixed(100 * last.relative_standard_error, 1))
+              : fmt::format("at most {} (two-sided 95 %): none of {} trials did.\n",
+                            chance(last.at_most), s.trials);
+  text += fmt::format(
+      "From {} trials of the full dynamics that were split on their way, {} gate runs in "
+      "all.\n",
+      s.trials, s.gate_runs + event.pool_runs);
   if (has_error(last))
-    text += fmt::format("; direct simulation would need {} trials for the same error",
+    text += fmt::format("Direct simulation would need about {} trials for the same error.\n",
                         rounded(trials_needed(last)));
-  text += fmt::format("\nof a field of {} columns: who leaves it by a side does not come back",
-                      field.columns);
+  return text + fmt::format("The chain alone predicts {}.\n", chance(event.chain.back()));
+}
+
+std::string details_text(const RareResult& result, const lattice::FieldParams& field) {
+  const auto& [event, direct, method, made_by] = result;
+  const lattice::Splitting& s = event.splitting;
+  std::string text = fmt::format(
+      "\nThe field has {} columns: a body that leaves it by a side does not come back.\n",
+      field.columns);
   if (field.max_gates > 0)
     text += fmt::format(
-        "; bodies go on for as long as it takes:\n"
-        "field.max_gates = {}, which predict and lattice keep, does not count here",
+        "Bodies visit as many gates as they need: field.max_gates = {}, which predict and lattice "
+        "keep,\ndoes not count here.\n",
         field.max_gates);
-  text += "\n\n   row      chance              95 %            chain";
-  if (direct.trials > 0) text += "      direct simulation, 95 %";
-  TextTable table({{"", 6}, {"", 12}, {"", 24}, {"", 12}, {"", 12}, {"", 24}});
+  std::vector<TextColumn> columns{{"row", 6}, {"chance", 12}, {"95 %", 24}, {"chain", 12}};
+  if (direct.trials > 0) columns.insert(columns.end(), {{"direct", 12}, {"direct, 95 %", 24}});
+  TextTable table(std::move(columns));
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const lattice::RowChance& c = s.rows[r];
     std::vector<TextCell> cells = {r + 1, chance(c.probability), interval_text(c.interval_95()),
@@ -131,11 +140,10 @@ std::string table_of(const RareResult& result, const lattice::FieldParams& field
     }
     table.row(cells);
   }
-  text += fmt::format("\n{}{} trials that were split, {} gate runs, {} s", table.rows(), s.trials,
-                      s.gate_runs + event.pool_runs, fixed(event.seconds, 1));
+  text += fmt::format("\n{}\nTime: {} s", table.text(), fixed(event.seconds, 1));
   if (direct.trials > 0)
-    text += fmt::format("; {} direct trials, {} s", direct.trials, fixed(direct.seconds, 1));
-  return text + "\n" + method_line(method);
+    text += fmt::format("; {} direct trials took {} s", direct.trials, fixed(direct.seconds, 1));
+  return text + ".\n" + method_line(method);
 }
 
 Figure figure_of(const RareResult& result) {

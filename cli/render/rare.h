@@ -23,7 +23,8 @@ struct RareResult {
   Provenance made_by;
 };
 void describe(Fields& out, const RareResult& result);
-[[nodiscard]] std::string table_of(const RareResult& result, const lattice::FieldParams& field);
+[[nodiscard]] std::string answer_text(const RareResult& result);
+[[nodiscard]] std::string details_text(const RareResult& result, const lattice::FieldParams& field);
 [[nodiscard]] Figure figure_of(const RareResult& result);
 
 }  // namespace gatewalk::cli

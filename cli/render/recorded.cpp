@@ -52,9 +52,10 @@ void describe_recorded(Fields& out, const RecordedCounts& counts) {
 std::string table_of(const lattice::RunPool& pool) { return table_of(counts_of(pool)); }
 
 std::string table_of(const RecordedCounts& counts) {
-  return fmt::format("{} bodies, {} trials, {} passages: {} left, {} trapped, {} lost\n",
-                     counts.bodies, counts.trials, counts.passages, counts.left, counts.trapped,
-                     counts.lost);
+  return fmt::format(
+      "Recorded: {} bodies, {} trials, {} passages; {} left their cell, {} were trapped, {} "
+      "lost.\n",
+      counts.bodies, counts.trials, counts.passages, counts.left, counts.trapped, counts.lost);
 }
 
 void describe_lost_bounds(Fields& out, const lattice::LostBounds& bounds) {
@@ -76,15 +77,15 @@ void describe_lost_bounds(Fields& out, const lattice::LostBounds& bounds) {
 
 std::string table_of(const lattice::LostBounds& bounds) {
   if (!(bounds.lost > 0.0)) return "";
-  TextTable table({{"", -11}, {"", 7}, {"", 7, 0, "", " %, "}, {}});
+  TextTable table({{"", -11}, {"all trapped", 11, 0, "", "  "}, {"all left", 11, 0, "", "  "}});
   for (const EndingName& e : kEndingNames) {
     const auto at = static_cast<std::size_t>(e.ending);
-    table.row({e.name, percents(bounds.final[0].endings[at]), percents(bounds.final[1].endings[at]),
-               " %"});
+    table.row({e.name, percents(bounds.final[0].endings[at]) + " %",
+               percents(bounds.final[1].endings[at]) + " %"});
   }
   return fmt::format(
-      "{} of the passages were lost from sight and are left out, which no interval counts. If all "
-      "of these bodies had been trapped, or all had left:\n{}",
+      "{} of the passages were lost from sight and are left out; no interval counts them. The "
+      "endings\nif all lost bodies had been trapped, and if all had left their cell:\n{}",
       percent(bounds.lost, 1.0, 2), table.text());
 }
 

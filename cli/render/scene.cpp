@@ -45,14 +45,13 @@ std::string shown_range(const lattice::KeyInfo& k) {
 
 std::string limits_text(const ShownField& shown) {
   std::string text = std::isnan(shown.time_limit)
-                         ? "(trapped: as the runs say"
-                         : fmt::format("(trapped: still in the same gate {} after entering it",
+                         ? "Trapped: as the recorded runs say."
+                         : fmt::format("Trapped: still in the same gate {} after entering it.",
                                        quantity(shown.time_limit, "s"));
-  if (shown.field.max_gates > 0)
-    text += fmt::format(
-        "; cut off: would go on from gate number {}, the limit field.max_gates, 0 for none",
-        shown.field.max_gates);
-  return text + ")\n";
+  return text + (shown.field.max_gates > 0
+                     ? fmt::format("\nCut off: would go on after {} gates (field.max_gates).\n",
+                                   shown.field.max_gates)
+                     : "\nNo body is cut off: field.max_gates = 0 sets no limit.\n");
 }
 
 std::string too_few_gates(const ShownField& shown) {
@@ -72,17 +71,21 @@ std::string scene_line(const lattice::Scene& scene, const std::vector<std::strin
   const Sized place = readable_unit("m", std::max(std::abs(start.x), std::abs(start.y)));
   const Sized speed = readable_unit("m/s", std::max(std::abs(start.vx), std::abs(start.vy)));
   const std::string text =
-      fmt::format("{}: start x {}, y {} {}, v ({}, {}) {}; disc {}, R {}; ", scene.source,
+      fmt::format("{}: start x {}, y {} {}, v ({}, {}) {}\nbody {}, radius {}; ", scene.source,
                   number(start.x / place.size), number(start.y / place.size), place.name,
                   number(start.vx / speed.size), number(start.vy / speed.size), speed.name,
                   quantity(gate.body.mass, "kg", 6), quantity(gate.body.radius, "m", 6));
   if (!actions.empty()) return fmt::format("{}actions {}\n", text, fmt::join(actions, ", "));
-  return fmt::format("{}F {}, Rm {}; beams k {} / {}, d {}; {} {}\n", text,
-                     quantity(gate.forces.propulsion, "N", 6), quantity(gate.forces.random, "N", 6),
-                     number(gate.beams.stiffness_left), number(gate.beams.stiffness_right),
-                     number(gate.beams.damping), gate.run.method,
-                     gate.run.method == "event" ? quantity(gate.run.event_tolerance, "m", 6)
-                                                : quantity(gate.run.step, "s", 6));
+  return fmt::format(
+      "{}push {}, random force {}\n"
+      "beams: stiffness left {}, right {} Nm/rad, damping {} Nms/rad\n"
+      "method {}, {} {}\n",
+      text, quantity(gate.forces.propulsion, "N", 6), quantity(gate.forces.random, "N", 6),
+      number(gate.beams.stiffness_left), number(gate.beams.stiffness_right),
+      number(gate.beams.damping), gate.run.method,
+      gate.run.method == "event" ? "tolerance" : "step",
+      gate.run.method == "event" ? quantity(gate.run.event_tolerance, "m", 6)
+                                 : quantity(gate.run.step, "s", 6));
 }
 
 std::string table_of(const std::vector<lattice::KeyInfo>& keys) {

@@ -11,7 +11,7 @@
 
 namespace gatewalk::cli {
 
-/// What is run, in one line: start, body, forces, beams, method.
+/// What is run, in four lines: start, body and forces, beams and method.
 [[nodiscard]] std::string scene_line(const lattice::Scene& scene,
                                      const std::vector<std::string>& actions = {});
 /// What two of the endings mean in this scene, below them.

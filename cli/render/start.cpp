@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "cli/fields/text.h"
 #include "dynamics/disc/disc_section.h"
@@ -78,12 +77,7 @@ StartTexts::StartTexts(const dynamics::Section& section, const std::vector<dynam
     add("face", 4, 1, face_of);
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
     add(section.coordinates[axis].name, axis == 0 ? 4 : 5, axis == 0 ? 1 : 2,
-        [&](const dynamics::Entry& s) {
-          char digits[32];
-          const auto end =
-              std::to_chars(digits, digits + sizeof digits, s.at[axis] + 0.0).ptr;  // -0 is 0
-          return std::string(digits, end);
-        });
+        [&](const dynamics::Entry& s) { return digits(s.at[axis] + 0.0, 6); });  // -0 is 0
 }
 
 ShownState shown_state(const lattice::ChainStart& start, const dynamics::StateSpace& space) {

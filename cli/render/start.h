@@ -20,7 +20,7 @@ void describe_start(Fields& out, const Label& l, const dynamics::Section& sectio
                     const std::optional<dynamics::Entry>& start);
 void describe_start(Fields& out, const dynamics::Section& section,
                     const std::optional<dynamics::Entry>& start);
-/// "  23  -11   16": columns as wide as the numbers of all starts need, every digit of them.
+/// "  23  -11   16": columns as wide as the numbers of all starts need, of six digits at most.
 struct StartTexts {
   std::string header;              // "   d   vx   vy"
   std::vector<std::string> texts;  // (starts)

@@ -117,36 +117,39 @@ BinRecord bins_in(const Json& json) {
 std::string text_of_start(const Section& section, const Entry& start) {
   std::string text;
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
-    text += (axis == 0 ? "" : ",") + digits(start.at[axis]);
+    text += (axis == 0 ? "" : ",") + digits(start.at[axis], 6);
   return start.face == 0 ? text
                          : section.faces[static_cast<std::size_t>(start.face)].name + ":" + text;
 }
 
-/// ", for the starts 0,0,15; 4,5,10".
+/// "Starts with a state of their own: 0,0,15; 4,5,10".
 std::string starts_text(const StateRecord& s) {
   if (s.starts.empty()) return "";
-  std::string text = s.starts.size() == 1 ? ", for the start" : ", for the starts";
+  std::string text =
+      s.starts.size() == 1 ? "Start with a state of its own:" : "Starts with a state of their own:";
   constexpr std::size_t kMost = 4;
   for (std::size_t i = 0; i < std::min(kMost, s.starts.size()); ++i)
     text += (i > 0 ? "; " : " ") + text_of_start(s.section, s.starts[i]);
   if (s.starts.size() > kMost) text += fmt::format("; ... {} in all", s.starts.size());
-  return text;
+  return text + "\n";
 }
 
 std::string lines_of(const lattice::TreeInfo& trees, const StateRecord& s) {
   std::string text =
-      fmt::format("states: {} (leaves of trees with {} entries or more{}) from {} gate runs\n",
-                  s.states, trees.entries_per_leaf, starts_text(s), trees.gate_runs);
+      fmt::format("States: {}, leaves of trees with {} entries or more, from {} gate runs.\n",
+                  s.states, trees.entries_per_leaf, trees.gate_runs);
+  text += starts_text(s);
   if (trees.range) {
     const auto& at = trees.range->range.at;
-    text += fmt::format("for starts d {} m, vx {} m/s, vy {} m/s\n", dynamics::text_of(at[kEntryD]),
-                        dynamics::text_of(at[kEntryVx]), dynamics::text_of(at[kEntryVy]));
+    text += fmt::format("Good for starts with d {} m, vx {} m/s, vy {} m/s.\n",
+                        dynamics::text_of(at[kEntryD]), dynamics::text_of(at[kEntryVx]),
+                        dynamics::text_of(at[kEntryVy]));
   }
   if (trees.states_bias > 0.0)
-    text += fmt::format("fewer states than the runs allow: total variation {} of the final gates\n",
+    text += fmt::format("The limit of states changes the final gates by a total variation of {}.\n",
                         fixed(trees.states_bias, 4));
   return text + hausman_check_text(trees.hausman_check.value_or(std::nullopt)) +
-         "a row has few runs and is noisy by itself: a prediction averages over all of them\n";
+         "A single row has few runs and is noisy; a prediction averages over all rows.\n";
 }
 
 std::string lines_of(const BinRecord& bins, const StateRecord& s) {
@@ -156,14 +159,16 @@ std::string lines_of(const BinRecord& bins, const StateRecord& s) {
                                         : "the scene's bins";
   if (bins.factor.value_or(1.0) != 1.0) kind += " x " + lattice::toml_float(*bins.factor);
   std::string text = fmt::format(
-      "states: {} ({}); of {} entries in {} pilot trials {} lie outside, 90 % in {} states; "
-      "variance within states: d {}, vx {}, vy {}\n",
+      "States: {} ({}). Of {} entries in {} pilot trials, {} lie outside the bins\nand 90 % lie in "
+      "{} states. Variance that remains within states: d {}, vx {}, vy {}.\n",
       s.states, kind, r.entries, bins.pilot_trials, percent(clamped_share(r), 1.0), r.states_of_90,
       percent(r.unresolved[kEntryD], 1.0), percent(r.unresolved[kEntryVx], 1.0),
       percent(r.unresolved[kEntryVy], 1.0));
   if (bins.rows_without_entries.value_or(0) > 0)
-    text += fmt::format("states without an entry seen: {}, their rows start anywhere in the bin\n",
-                        *bins.rows_without_entries);
+    text += fmt::format(
+        "States that no body was seen to enter: {}; their rows start anywhere in the "
+        "bin.\n",
+        *bins.rows_without_entries);
   return text;
 }
 
@@ -289,8 +294,8 @@ std::string states_line(const StateRecord& s) {
   if (s.trees) return lines_of(*s.trees, s);
   if (s.bins) return lines_of(*s.bins, s);
   return fmt::format(
-      "states: {}, of a chain from elsewhere{}; --start takes a name, or a number from 0 (input "
-      "less 1)\n",
+      "States: {}, of an imported chain{}. --start takes the name of a state, or its number from "
+      "0.\n",
       s.states, s.are_probabilities ? ", given as probabilities" : "");
 }
 
@@ -299,22 +304,19 @@ std::vector<std::string> complaints(const lattice::States& s) {
   if (!s.entries.empty() && !s.pilot.health.clean())
     all.push_back("the pilot: " + complaint(s.pilot.health));
   if (s.pilot.entries.empty())
-    all.push_back(
-        fmt::format("no body entered a second gate in {} pilot trials: bins could not be judged by "
-                    "what bodies do",
-                    s.pilot.trials));
+    all.push_back(fmt::format(
+        "no body entered a second gate in {} pilot trials: the bins could not be tested",
+        s.pilot.trials));
   if (s.resolution.poor())
     all.push_back(fmt::format(
-        "the bins resolve too little of how bodies enter gates: {} of the entries seen lie "
-        "outside, 90 % of "
-        "them in {} states; the chain may be far off. {}",
+        "the bins are too coarse ({} of the entries lie outside, 90 % in {} states), and the chain "
+        "may be far off: {}",
         percent(static_cast<double>(s.resolution.clamped),
                 static_cast<double>(s.resolution.entries)),
         s.resolution.states_of_90,
         s.choice.kind == lattice::BinsChoice::Kind::automatic
-            ? fmt::format("Only {} entries were seen, too few for more states",
-                          s.resolution.entries)
-            : "--bins auto, without a table [bins] in the scene, makes bins that suit it"));
+            ? fmt::format("{} entries are too few for more states", s.resolution.entries)
+            : "take --bins auto, without a table [bins]"));
   return all;
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 #include "cli/fields/text.h"
@@ -233,129 +234,158 @@ std::string with_sd(const lattice::MeanAndSd& m) {
   return fmt::format("{} ({})", fixed(m.mean(), 3), fixed(m.sd(), 3));
 }
 
-/// How trials ended, by the dynamics and by the chain, and the verdicts.
-std::string endings_table(const lattice::Validation& v, const StartTexts& labels) {
-  std::vector<EndingName> names(kEndingNames.begin(), kEndingNames.end());
-  if (std::any_of(v.starts.begin(), v.starts.end(), [](const lattice::StartValidation& r) {
-        return !r.dynamics_endings.rules_out(lattice::kWentBack.ending) ||
-               !r.exact_endings.rules_out(lattice::kWentBack.ending);
-      }))
-    names.push_back(lattice::kWentBack);
-  std::vector<TextColumn> columns{{labels.header}, {"", -8, 0, "", "  | "}};
-  for (const EndingName& e : names)
-    columns.push_back({fmt::format("{} ", e.name), kFit, 0, "", "  "});
-  columns.push_back({"p", 8});
-  TextTable table(columns);
-  std::string verdicts, rests;
+/// The ending whose share differs most between trials and chain.
+const EndingName& differs_most(const lattice::StartValidation& r) {
+  const auto difference = [&](const EndingName& e) {
+    const auto at = static_cast<std::size_t>(e.ending);
+    return std::abs(r.dynamics_endings.share[at] - r.exact_endings.share[at]);
+  };
+  return *std::max_element(
+      kAllEndingNames.begin(), kAllEndingNames.end(),
+      [&](const EndingName& a, const EndingName& b) { return difference(a) < difference(b); });
+}
+
+/// A line for each start: p, the ending that differs most, and the final gates.
+std::string starts_table(const lattice::Validation& v, const StartTexts& labels) {
+  TextTable table({{labels.header},
+                   {"p", 9},
+                   {"differs most", -14, 0, "", "   "},
+                   {"trials, %", 9},
+                   {"chain, %", 10},
+                   {"final gates: TV", 17, 3},
+                   {"by chance", 11, 3}});
   for (std::size_t k = 0; k < v.starts.size(); ++k) {
     const lattice::StartValidation& r = v.starts[k];
-    const auto cells = [&](const char* name, const lattice::EndingShares& shares, bool marked) {
-      std::vector<TextCell> line{labels.texts[k], name};
-      for (const EndingName& e : names) {
-        const auto at = static_cast<std::size_t>(e.ending);
-        line.emplace_back(with_interval(shares.share[at], shares.interval[at]) +
-                          (marked && r.joint_test.differs(e.ending) ? "*" : " "));
-      }
-      return line;
-    };
-    table.row(cells("dynamics", r.dynamics_endings, false));
-    std::vector<TextCell> chain = cells("chain", r.exact_endings, true);
-    chain.emplace_back(p_text(r.joint_test.p));
-    table.row(chain);
-    verdicts += fmt::format("{}  | {}\n", labels.texts[k], verdict(r));
-    if (const std::string rest = rest_warning(rest_of(r.exact), "by the chain "); !rest.empty())
-      rests += fmt::format("{}  | {}\n", labels.texts[k], rest);
+    const EndingName& most = differs_most(r);
+    const auto at = static_cast<std::size_t>(most.ending);
+    table.row({labels.texts[k], p_text(r.joint_test.p), most.name,
+               percents(r.dynamics_endings.share[at]), percents(r.exact_endings.share[at]),
+               r.joint_test.total_variation.seen, r.joint_test.chance_total_variation});
   }
-  return fmt::format(
-      "Endings, % of {} trials of the full dynamics and by the exact chain, with 95 % intervals: "
-      "chance in the\n"
-      "trials, in the sampling of the matrix. p: how often chance in both together would make any "
-      "ending\n"
-      "or the final gates look as different; *: this ending differs.\n\n"
-      "{}\n{}{}",
-      v.trials, table.text(), verdicts, rests);
+  return table.text();
+}
+
+/// How trials of one start ended, by the dynamics and by the chain.
+std::string endings_table(const lattice::StartValidation& r) {
+  TextTable table({{"", -10},
+                   {"trials, %", -24, 0, "", "  "},
+                   {"exact chain, %", -24, 0, "", "  "},
+                   {"p", 7, 0, "", "  "}});
+  for (const EndingName& e : kAllEndingNames) {
+    if (r.dynamics_endings.rules_out(e.ending) && r.exact_endings.rules_out(e.ending)) continue;
+    const auto at = static_cast<std::size_t>(e.ending);
+    const auto cell = [&](const lattice::EndingShares& shares) {
+      return with_interval(shares.share[at], shares.interval[at]);
+    };
+    table.row({e.name, cell(r.dynamics_endings), cell(r.exact_endings),
+               p_text(r.joint_test.endings[at].p_adjusted) +
+                   (r.joint_test.differs(e.ending) ? " *" : "")});
+  }
+  return table.text();
+}
+
+std::string endings_tables(const lattice::Validation& v, const dynamics::Section& section) {
+  std::string text =
+      "\nEndings with 95 % intervals. Those of the trials count their sampling error, those of the "
+      "exact\nchain the sampling of the matrix. p: how often chance in both makes as large a "
+      "difference,\ncorrected for all that is tested; *: this ending differs.\n";
+  for (const lattice::StartValidation& r : v.starts) {
+    text += "\n";
+    if (v.starts.size() > 1) text += lattice::title_of(section, r.start) + "\n";
+    text += endings_table(r) + rest_text(rest_of(r.exact));
+  }
+  return text;
+}
+
+/// A table of one measure with a line for each start: columns of numbers with three decimals, or
+/// words.
+std::string measure_table(const StartTexts& labels, const std::vector<std::string>& headings,
+                          const std::function<std::vector<TextCell>(std::size_t)>& cells_of) {
+  std::vector<TextColumn> columns{{labels.header}};
+  for (const std::string& heading : headings)
+    columns.push_back({heading, std::max(10, static_cast<int>(heading.size()) + 2), 3});
+  TextTable table(columns);
+  for (std::size_t k = 0; k < labels.texts.size(); ++k) {
+    std::vector<TextCell> line{labels.texts[k]};
+    for (TextCell& cell : cells_of(k)) line.push_back(std::move(cell));
+    table.row(line);
+  }
+  return table.text();
 }
 
 /// Beside what the paper prints, where these are its starts.
-std::string table4_table(const ValidateResult& result, const StartTexts& labels) {
-  TextTable table({{},
-                   {"", 6, 3, "", "  |"},
-                   {"", -15, 0, "", "  "},
-                   {"", 5, 3},
-                   {"", -15, 0, "", "  "},
-                   {"", 6, 3, "", "|"},
-                   {"", -15, 0, "", "  "},
-                   {"", 5, 3},
-                   {"", 0, 0, "", "  "}});
-  for (std::size_t k = 0; k < result.validation.starts.size(); ++k) {
-    const lattice::StartValidation& r = result.validation.starts[k];
-    const lattice::PaperSized& p = r.paper_sized;
-    const auto printed = [&](double lattice::PaperStart::*x) {
-      return result.like_table4 && !result.papers.empty() ? result.papers[k].*x : kUnknown;
-    };
-    table.row({labels.texts[k], printed(&lattice::PaperStart::corrcoef), with_sd(p.exact_corrcoef),
-               r.floor_100_exact.corrcoef, with_sd(p.walks_corrcoef),
-               printed(&lattice::PaperStart::rmse), with_sd(p.exact_rmse),
-               r.floor_100_exact.rmse_per_100, with_sd(p.walks_rmse)});
-  }
+std::string table4_tables(const ValidateResult& result, const StartTexts& labels) {
+  const std::vector<std::string> headings{"  paper", "  exact chain", "  floor", "    100 walks"};
+  const auto table =
+      [&](double lattice::PaperStart::*printed, lattice::MeanAndSd lattice::PaperSized::*exact,
+          double lattice::NoiseFloor::*floor, lattice::MeanAndSd lattice::PaperSized::*walks) {
+        return measure_table(labels, headings, [&](std::size_t k) -> std::vector<TextCell> {
+          const lattice::StartValidation& r = result.validation.starts[k];
+          const double paper =
+              result.like_table4 && !result.papers.empty() ? result.papers[k].*printed : kUnknown;
+          return {paper, with_sd(r.paper_sized.*exact), r.floor_100_exact.*floor,
+                  with_sd(r.paper_sized.*walks)};
+        });
+      };
   return fmt::format(
-      "\nAs in the paper's Table IV: 100 trials of the full dynamics against the chain, mean (sd) "
-      "over\n"
-      "repeats. Floor: what chance alone gives if the chain were perfect.\n\n"
-      "{}  |            corrcoef                      |        RMSE, trials per 100\n"
-      "{}  | paper  exact chain    floor  100 walks   | paper  exact chain    floor  100 walks\n"
-      "{}",
-      std::string(labels.header.size(), ' '), labels.header, table.rows());
+      "\nAs in the paper's Table IV: final gates of 100 trials of the full dynamics against the "
+      "chain,\nmean (standard deviation) over repeats. Floor: the best result to expect, what "
+      "sampling noise alone\nwould give for a perfect chain.\n\n"
+      "corrcoef\n{}\nRMSE, trials per 100\n{}",
+      table(&lattice::PaperStart::corrcoef, &lattice::PaperSized::exact_corrcoef,
+            &lattice::NoiseFloor::corrcoef, &lattice::PaperSized::walks_corrcoef),
+      table(&lattice::PaperStart::rmse, &lattice::PaperSized::exact_rmse,
+            &lattice::NoiseFloor::rmse_per_100, &lattice::PaperSized::walks_rmse));
 }
 
 /// Of all trials.
-std::string final_gates_table(const lattice::Validation& v, const StartTexts& labels) {
-  TextTable table({{},
-                   {"", -15, 0, "", "  | "},
-                   {"", 9, 4},
-                   {"", 8, 4},
-                   {"", 8, 3},
-                   {"", 8, 3},
-                   {"", 8, 3},
-                   {"", 8, 3},
-                   {"", 8, 3},
-                   {"", 8, 3}});
-  for (std::size_t k = 0; k < v.starts.size(); ++k) {
-    const lattice::StartValidation& r = v.starts[k];
-    const auto row = [&](const std::string& name, const lattice::Comparison& c, double chance) {
-      table.row({labels.texts[k], name, c.corrcoef, c.floor.corrcoef, c.rmse_per_100,
-                 c.floor.rmse_per_100, c.total_variation, c.floor_total_variation,
-                 r.matrix_noise_mean, chance});
-    };
-    row("exact chain", r.exact_against, r.joint_test.chance_total_variation);
-    row(fmt::format("{} walks", v.walks), r.walks_against, kUnknown);
-  }
+std::string final_gates_tables(const lattice::Validation& v, const StartTexts& labels) {
+  const std::vector<std::string> headings{"exact chain", "floor", "walks", "floor"};
+  std::vector<std::string> of_variation = headings;
+  of_variation.insert(of_variation.end(), {"matrix", "chance"});
+  const auto& starts = v.starts;
+  const auto corrcoef =
+      measure_table(labels, headings, [&](std::size_t k) -> std::vector<TextCell> {
+        const lattice::Comparison &exact = starts[k].exact_against,
+                                  &walks = starts[k].walks_against;
+        return {exact.corrcoef, exact.floor.corrcoef, walks.corrcoef, walks.floor.corrcoef};
+      });
+  const auto rmse = measure_table(labels, headings, [&](std::size_t k) -> std::vector<TextCell> {
+    const lattice::Comparison &exact = starts[k].exact_against, &walks = starts[k].walks_against;
+    return {exact.rmse_per_100, exact.floor.rmse_per_100, walks.rmse_per_100,
+            walks.floor.rmse_per_100};
+  });
+  const auto variation =
+      measure_table(labels, of_variation, [&](std::size_t k) -> std::vector<TextCell> {
+        const lattice::Comparison &exact = starts[k].exact_against,
+                                  &walks = starts[k].walks_against;
+        return {exact.total_variation,       exact.floor_total_variation,
+                walks.total_variation,       walks.floor_total_variation,
+                starts[k].matrix_noise_mean, starts[k].joint_test.chance_total_variation};
+      });
   return fmt::format(
-      "\nFinal gates of all {} trials per start. Floor: chance in these trials (and walks) alone; "
-      "matrix:\n"
-      "total variation (TV) that the sampling of the matrix alone makes; chance: that both "
-      "together "
-      "make.\n\n"
-      "{}  | against         corrcoef  floor    RMSE   floor      TV   floor  matrix  chance\n{}",
-      v.trials, labels.header, table.rows());
+      "\nFinal gates of all {} trials per start against the exact chain and {} walks. Floor: "
+      "chance "
+      "in\nthese trials (and walks) alone. Matrix: the total variation that the sampling of the "
+      "matrix alone\nmakes. Chance: trials and matrix together.\n\n"
+      "corrcoef\n{}\nRMSE, trials per 100\n{}\ntotal variation\n{}",
+      v.trials, v.walks, corrcoef, rmse, variation);
 }
 
 std::string exits_table(const lattice::Validation& v, const StartTexts& labels) {
-  std::string text =
-      "\nPlaces along the sides at which the chain lets more or fewer leave than the 95 % "
-      "intervals of\nthe dynamics have (chance alone: one in 20):\n\n";
-  for (std::size_t k = 0; k < v.starts.size(); ++k)
-    text += fmt::format("{}  | {}\n", labels.texts[k],
-                        places_outside(v.starts[k].dynamics_exits, v.starts[k].exact_exits));
-  return text;
+  return "\nPlaces along the sides where the chain lies outside the 95 % interval of the trials\n"
+         "(chance alone: 1 of 20)\n" +
+         measure_table(labels, {"places"}, [&](std::size_t k) -> std::vector<TextCell> {
+           return {places_outside(v.starts[k].dynamics_exits, v.starts[k].exact_exits)};
+         });
 }
 
 std::string seconds_table(const lattice::Validation& v, const StartTexts& labels) {
   TextTable table({{labels.header},
-                   {"dynamics", 19, 2, "", "  |"},
+                   {"dynamics", 12, 2},
                    {"walks", 11, 4},
                    {"exact", 11, 6},
-                   {"dynamics/exact", 15, 0, "", " |"},
+                   {"dynamics/exact", 15, 0},
                    {"trial/walk", 12, 0}});
   for (std::size_t k = 0; k < v.starts.size(); ++k) {
     const lattice::StartValidation& r = v.starts[k];
@@ -363,8 +393,10 @@ std::string seconds_table(const lattice::Validation& v, const StartTexts& labels
                r.dynamics_seconds / r.exact_seconds, seconds_per_trial(r) / seconds_per_walk(r)});
   }
   return fmt::format(
-      "\nSeconds: {} trials and {} walks on {}, one exact prediction on one.\n\n{}", v.trials,
-      v.walks, counted(static_cast<std::int64_t>(v.threads), "thread", "threads"), table.text());
+      "\nSeconds for {} trials and {} walks on {}, and for one exact prediction on one "
+      "thread.\n\n{}",
+      v.trials, v.walks, counted(static_cast<std::int64_t>(v.threads), "thread", "threads"),
+      table.text());
 }
 
 /// By which faces bodies went on: "S 61.2 %, W 19.4 %".
@@ -443,36 +475,115 @@ void describe(Fields& out, const ValidateResult& result) {
   describe_made_by(out, result.made_by);
 }
 
-std::string table_of(const ValidateResult& result) {
+namespace {
+
+bool differs(const lattice::StartValidation& r) {
+  return r.finding() == lattice::Finding::own_error;
+}
+
+StartTexts labels_of(const ValidateResult& result) {
+  std::vector<dynamics::Entry> starts;
+  for (const lattice::StartValidation& r : result.validation.starts) starts.push_back(r.start);
+  return {result.shown.map.section, starts};
+}
+
+/// What one start says.
+std::string answer_text(const lattice::StartValidation& r) {
+  const EndingName& most = differs_most(r);
+  const auto at = static_cast<std::size_t>(most.ending);
+  const lattice::JointTest& j = r.joint_test;
+  const auto shares = [&](const lattice::EndingShares& of) {
+    const auto& [low, high] = of.interval[at];
+    return percents(of.share[at]) + " %" +
+           (std::isnan(low) ? "" : fmt::format(" [{}, {}]", percents(low), percents(high)));
+  };
+  return fmt::format(
+      "{}\nLargest difference: {}, trials {}, chain {}.\n"
+      "Final gates: total variation {} between trials and chain; chance alone makes {}.\n",
+      chain_verdict(r), most.name, shares(r.dynamics_endings), shares(r.exact_endings),
+      fixed(j.total_variation.seen, 3), fixed(j.chance_total_variation, 3));
+}
+
+/// What several starts say.
+std::string answer_text(const lattice::Validation& v, const StartTexts& labels) {
+  const auto n = std::count_if(v.starts.begin(), v.starts.end(), differs);
+  return (n == 0
+              ? fmt::format("The chain agrees with the full dynamics from all {} starts, as far as "
+                            "these trials and this\nmatrix can tell.\n",
+                            v.starts.size())
+              : fmt::format(
+                    "The chain differs from the full dynamics from {} of {} starts, by more "
+                    "than chance in trials\nand matrix.\n",
+                    n, v.starts.size())) +
+         starts_table(v, labels);
+}
+
+}  // namespace
+
+std::string chain_verdict(const lattice::StartValidation& r) {
+  return fmt::format(
+      "The chain {} ({}).",
+      differs(r) ? "differs from the full dynamics by more than chance in trials and matrix"
+                 : "agrees with the full dynamics as far as these trials and matrix can tell",
+      p_of(r.joint_test));
+}
+
+std::string answer_text(const ValidateResult& result) {
   const lattice::Validation& v = result.validation;
   const ValidatedMatrix& matrix = result.matrix;
   if (const auto& experiment = v.starts.front().observed)
-    return table_of(*experiment, v.starts.front());
-  std::vector<dynamics::Entry> starts;
-  for (const lattice::StartValidation& r : v.starts) starts.push_back(r.start);
-  const StartTexts labels(result.shown.map.section, starts);
+    return answer_text(*experiment, v.starts.front());
+  const bool is_one = v.starts.size() == 1;
+  constexpr std::int64_t kFewTrials = 1000;
+  std::string text =
+      (is_one ? answer_text(v.starts.front()) : answer_text(v, labels_of(result))) +
+      sentence_of(*v.memory) +
+      fmt::format("From {} of the full dynamics{} and a matrix of {} gate runs{}.\n",
+                  counted(v.trials, "trial", "trials"), is_one ? "" : " per start",
+                  totals_of(matrix).runs, matrix.path.empty() ? "" : " in " + matrix.path);
+  if (std::any_of(v.starts.begin(), v.starts.end(), differs))
+    text +=
+        "Beware: the chain is biased here by about that difference. gatewalk lattice simulates "
+        "the dynamics.\n";
+  else if (v.trials < kFewTrials)
+    text += fmt::format(
+        "Beware: {} trials reveal only large differences; more trials reveal smaller "
+        "ones.\n",
+        v.trials);
+  return text;
+}
+
+std::string details_text(const ValidateResult& result) {
+  const lattice::Validation& v = result.validation;
+  const ValidatedMatrix& matrix = result.matrix;
+  if (const auto& experiment = v.starts.front().observed)
+    return details_text(*experiment, v.starts.front());
+  const StartTexts labels = labels_of(result);
   const auto of_crossings = [&](std::int64_t n) {
     return percent(static_cast<double>(n), static_cast<double>(v.entries));
   };
-  std::string table = endings_table(v, labels);
-  if (result.shown.mass) table += table4_table(result, labels);  // of discs in gates
-  table += final_gates_table(v, labels) + exits_table(v, labels) + seconds_table(v, labels);
-  table += fmt::format(
-      "\nMatrix: {} gate runs, {}. Crossings between gates in the dynamics: {}, {} outside the "
+  std::string text = endings_tables(v, result.shown.map.section);
+  if (result.shown.mass) text += table4_tables(result, labels);  // of discs in gates
+  text += final_gates_tables(v, labels) + exits_table(v, labels) + seconds_table(v, labels);
+  text += fmt::format(
+      "\nMatrix: {} gate runs, {}.\nCrossings between gates in the trials: {};\n{} lie outside the "
       "bins.\n",
       totals_of(matrix).runs,
-      matrix.path.empty() ? fixed(matrix.seconds, 2) + " s" : "read from " + matrix.path,
+      matrix.path.empty() ? "built in " + fixed(matrix.seconds, 2) + " s"
+                          : "read from " + matrix.path,
       result.shown.mass ? fmt::format("{} through RT or LT{}", of_crossings(traverse_sides(v)),
                                       result.like_table4 ? " (paper: fewer than 4 %)" : "")
                         : by_face(v, result.shown.map.section),
       of_crossings(v.clamped));
-  if (matrix.states) table += states_line(*matrix.states);
-  table += text_of(*v.memory);
-  for (std::size_t k = 0; k < v.starts.size(); ++k)
-    if (v.starts[k].force)
-      table += fmt::format("{}  | {}\n", labels.texts[k], text_of(*v.starts[k].force));
-  if (v.entries == 0) table += "No trial ever reached a second gate.\n";
-  return table;
+  if (matrix.states) text += states_line(*matrix.states);
+  text += text_of(*v.memory);
+  for (const lattice::StartValidation& r : v.starts)
+    if (r.force) {
+      if (v.starts.size() > 1) text += lattice::title_of(result.shown.map.section, r.start) + ":\n";
+      text += sentence_of(*r.force);
+    }
+  if (v.entries == 0) text += "No trial ever reached a second gate.\n";
+  return text;
 }
 
 namespace {

@@ -42,9 +42,13 @@ struct ValidateResult {
   Provenance made_by{};
 };
 void describe(Fields& out, const ValidateResult& result);
-[[nodiscard]] std::string table_of(const ValidateResult& result);
+/// What the screen shows first, and its details.
+[[nodiscard]] std::string answer_text(const ValidateResult& result);
+[[nodiscard]] std::string details_text(const ValidateResult& result);
+/// The verdict alone: "The chain agrees with the full dynamics ... (p = 0.870)."
+[[nodiscard]] std::string chain_verdict(const lattice::StartValidation& r);
 
-/// One sentence: whether the chain agrees with the dynamics from one start.
+/// One sentence of a result: whether the chain agrees with the dynamics from one start.
 [[nodiscard]] std::string verdict(const lattice::StartValidation& r);
 /// "p = 0.034", "p < 0.001"
 [[nodiscard]] std::string p_of(const lattice::JointTest& j);

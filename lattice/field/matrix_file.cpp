@@ -392,6 +392,9 @@ void write_matrix(const std::string& path, MatrixFile&& file) {
 }
 
 MatrixFile read_matrix(const std::string& path, const SectionOf& section_of) {
+  if (path == "-")
+    throw markov::BadFile(
+        "-: a matrix is not read from standard input: give the file that gatewalk build wrote");
   const markov::CountsFile in = [&] {
     try {
       return markov::read_counts(path);

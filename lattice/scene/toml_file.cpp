@@ -79,7 +79,7 @@ TomlFile TomlFile::read(const std::string& path) {
   try {
     std::string text = path == "-" ? standard_input() : read_all(path);
     if (text.starts_with("\x89HDF"))
-      return refused(text, path + ": is a matrix (HDF5), not a scene (TOML)",
+      return refused(text, path + ": is a matrix (HDF5), and a scene (TOML) is needed here",
                      text == kMatrix && path != "-");
     return {std::move(text), path};
   } catch (const SceneError& e) {

@@ -62,15 +62,17 @@ TEST(StateRecord, SaysWhatSentencesAndStartsNeed) {
   EXPECT_EQ(trees.trees->gate_runs, 1008);
   EXPECT_EQ(trees.starts.at(1), (dynamics::Entry{dynamics::Boundary::right_deflect, {1.5, -2, 3}}));
   EXPECT_EQ(states_line(trees),
-            "states: 193 (leaves of trees with 7 entries or more, for the starts 0,0,15; "
-            "RD:1.5,-2,3) from 1008 gate runs\n"
-            "fewer states than the runs allow: total variation 0.2500 of the final gates\n"
-            "a row has few runs and is noisy by itself: a prediction averages over all of them\n");
+            "States: 193, leaves of trees with 7 entries or more, from 1008 gate runs.\n"
+            "Starts with a state of their own: 0,0,15; RD:1.5,-2,3\n"
+            "The limit of states changes the final gates by a total variation of 0.2500.\n"
+            "A single row has few runs and is noisy; a prediction averages over all rows.\n");
   EXPECT_EQ(read(kAnyStart).trees->range->range.at[2], (std::array{10.0, 20.0}));
   EXPECT_EQ(states_line(read(kBins)),
-            "states: 87 (Table III's bins x 2.0); of 1094 entries in 200 pilot trials 13.1 % lie "
-            "outside, 90 % in 44 states; variance within states: d 11.0 %, vx 14.6 %, vy 11.6 %\n"
-            "states without an entry seen: 3, their rows start anywhere in the bin\n");
+            "States: 87 (Table III's bins x 2.0). Of 1094 entries in 200 pilot trials, 13.1 % lie "
+            "outside the bins\n"
+            "and 90 % lie in 44 states. Variance that remains within states: d 11.0 %, vx 14.6 %, "
+            "vy 11.6 %.\n"
+            "States that no body was seen to enter: 3; their rows start anywhere in the bin.\n");
 }
 
 lattice::MatrixFile file_with(const std::string& key, const std::string& text) {

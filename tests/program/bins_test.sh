@@ -47,20 +47,20 @@ traverse_y_m = 0.40
 [start]
 vy_m_per_s = 0.4
 END
-expect 0 'bins from a pilot' "$gatewalk" build cm.toml --trials 2 --seed 3 -o auto.nc --json auto.json --threads 1
+expect 0 'bins from a pilot' "$gatewalk" build cm.toml --trials 2 --seed 3 -o auto.nc --json auto.json --threads 1 --details
 holds '.bins == "auto" and .clamped_share == 0 and .state_space.outermost_bins == "open" and .state_space.row_starts == "visited"' auto.json
 holds '.state_space | .states > 100 and .pilot.trials == 2000 and .pilot.entries > 1000 and .resolution.poor == false and .starts_of_their_own == [{"d_m": 0, "vx_m_per_s": 0, "vy_m_per_s": 0.4}]' auto.json
 holds '.state_space.resolution.unresolved_variance | [.d, .vx, .vy] | all(. > 0 and . < 0.5)' auto.json
 "$gatewalk" build cm.toml --trials 2 --seed 3 -o auto2.nc --quiet --threads 2 >/dev/null
 cmp -s auto.nc auto2.nc || fail "build: bins from a pilot depend on the threads"
-expect 0 'states: .* pilot trials' "$gatewalk" show auto.nc
+expect 0 '^States: .* pilot trials' "$gatewalk" show auto.nc --details
 "$gatewalk" show auto.nc --json auto-show.json --quiet
 # Where the scene is symmetric, so are its bins: EN's states, by d, then vx, turned about.
 holds '[.rows[] | select(.boundary == "EN") | .vx_m_per_s] | flatten | unique | map(. + 0) | . == (map(-.) | sort)' <(jq '.rows |= .[:-1]' auto-show.json)
-expect 0 '^start: EN d 0 m, vx 0 m/s, vy 0.4 m/s' "$gatewalk" predict auto.nc
+expect 0 '^State of the chain at the start: EN d 0 m, vx 0 m/s, vy 0.4 m/s' "$gatewalk" predict auto.nc --details
 expect 0 'beyond every entry that the bins were made from' "$gatewalk" predict auto.nc --start 0,0,9 --quiet
 # A warning, and the way out, where the bins given do not resolve what bodies do.
-expect 0 'resolve too little.*--bins auto' "$gatewalk" build cm.toml --set "bins.EN_vx_m_per_s=[-90, 90]" --set "bins.RD_vx_m_per_s=[-90, 0]" --set "bins.LD_vx_m_per_s=[0, 90]" --trials 1 -o own.nc --quiet
+expect 0 'the bins are too coarse.*--bins auto' "$gatewalk" build cm.toml --set "bins.EN_vx_m_per_s=[-90, 90]" --set "bins.RD_vx_m_per_s=[-90, 0]" --set "bins.LD_vx_m_per_s=[0, 90]" --trials 1 -o own.nc --quiet
 expect 2 'has a table \[bins\]' "$gatewalk" build cm.toml --set "bins.EN_vx_m_per_s=[-1, 1]" --bins auto -o x.nc
 expect 2 'no meaning beside --matrix' "$gatewalk" validate cm.toml --matrix auto.nc --bins auto
 expect 2 'must be paper, tree, auto' "$gatewalk" build cm.toml --bins many -o x.nc
@@ -71,7 +71,7 @@ holds '(.starts | map(.start.vy_m_per_s)) == [0.4] and .state_space.bins == "aut
 holds '(.starts | map(.start.d_m)) == [3]' own.json
 # Edges of one's own travel with the matrix, and another scene's are a difference.
 { cat "$scenes/field.toml"; printf '[bins]\nEN_d_m = [-25, -5, 5, 25]\nEN_vx_m_per_s = [-20, 0, 20]\n'; } >bins.toml
-expect 0 '68 x 69 matrix' "$gatewalk" build bins.toml --trials 2 -o bins.nc --json bins.json
+expect 0 'transition matrix of 68 states (68 rows, 69 columns' "$gatewalk" build bins.toml --trials 2 -o bins.nc --json bins.json
 holds '.bins == "scene" and .state_space.outermost_bins == "closed"' bins.json
 expect 0 '^trapped' "$gatewalk" predict bins.nc bins.toml
 expect 2 '\[bins\]: none here, edges of its own there' "$gatewalk" predict bins.nc "$scenes/field.toml"

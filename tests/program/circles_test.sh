@@ -38,7 +38,7 @@ holds '.still_walking as $left | .endings_95.crossed[0] <= 0.75 and .endings_95.
 # Half of them get into two states that lead to nowhere else.
 printf 'from,to,count\nahead,right,50\nahead,trapped,50\nright,left,1000\nleft,right,1000\n' >never.csv
 import never.csv never.nc 2
-expect 0 'still walking in states without a way out: 50' "$gatewalk" predict never.nc --json never.json
+expect 0 'still walking in states without a way out: 50' "$gatewalk" predict never.nc --details --json never.json
 grep -q '^gatewalk: .*50.00 % were still walking in states without a way out' out.txt || fail "no warning of walks that never end"
 holds '.endings.trapped == 0.5 and .still_walking == 0.5 and .endings_95.trapped[0] > 0.38 and .endings_95.trapped[1] == 1 and .endings_95.crossed[1] >= 0.5' never.json
 expect 2 "solver march .*solvers auto and klu" "$gatewalk" predict long.nc --solver march

@@ -26,20 +26,20 @@ for file in predict lattice trees; do
 done
 holds '.exits | .left_side[1].from_m == 60 and .left_side[8].to_m == 540 and .crossed[0].from_m == -225 and .crossed[4].to_m == 25' ends-predict.json
 grep -q '^left side  y 60 to 120 m  *[0-9.]* \[' trees.txt || fail "predict: no place on the left side"
-"$gatewalk" lattice "$scenes/field.toml" --trials 150 --quiet | grep -q '^left side  y 60 to 120 m' || fail "lattice: no place on the left side"
+"$gatewalk" lattice "$scenes/field.toml" --trials 150 --quiet --details | grep -q '^left side  y 60 to 120 m' || fail "lattice: no place on the left side"
 holds '.matrix_sampling | .replicates == 999 and 0 < .total_variation_mean and .total_variation_mean < .total_variation_q95 and .total_variation_q95 < 1' ends-predict.json
 "$gatewalk" predict m.nc --threads 1 --json ends-again.json --quiet
 jq -s '.[0].endings_95 == .[1].endings_95' ends-predict.json ends-again.json | grep -q true || fail "predict: intervals depend on the threads"
 "$gatewalk" predict m.nc --seed 2 --json ends-again.json --quiet
 jq -s '.[0].endings_95 != .[1].endings_95 and .[0].endings == .[1].endings' ends-predict.json ends-again.json | grep -q true || fail "predict: --seed is not that of the intervals"
 for args in "walk m.nc" "predict m.nc" "lattice $scenes/field.toml"; do
-  "$gatewalk" $args --quiet >first.txt 2>/dev/null
+  "$gatewalk" $args --quiet --details >first.txt 2>/dev/null
   [ "$(head -5 first.txt | cut -c1-11 | tr -d ' ' | tr '\n' ,)" = "crossed,leftside,rightside,trapped,cutoff," ] || fail "$args: the endings do not come first"
   head -5 first.txt | grep -vq '%  \[' && fail "$args: an ending without interval"
-  grep -q '^departed [0-9.]* %$' first.txt || fail "$args: does not say what departed"
+  grep -q '^Departed over any side: [0-9.]* %$' first.txt || fail "$args: does not say what departed"
   grep -i 'left the field' first.txt && fail "$args: a second word for departed"
 done
-"$gatewalk" predict m.nc --quiet | tail -1 | grep -q '^Rounding and walks not finished' || fail "predict: the numerical bound is not last"
+"$gatewalk" predict m.nc --quiet --details | grep -q '^Rounding and unfinished walks change all shares' || fail "predict: no numerical bound"
 # More runs a row, narrower intervals; also a matrix of 10^6 runs a row is resampled at once.
 "$gatewalk" build "$scenes/field.toml" --trials 1 -o one.nc --quiet >/dev/null
 "$gatewalk" predict one.nc --json ends-one.json --quiet

@@ -23,7 +23,7 @@ done
 start=$(jq .start_state.input ours.json)
 for form in mtx csv npz; do
   "$gatewalk" export p.nc --gate --counts -o g.$form --force --quiet >/dev/null || fail "export --gate $form"
-  expect 0 '87 x 88 matrix' "$gatewalk" import g.$form --states g.states.csv --start "$start" -o $form.nc
+  expect 0 '87 rows, 88 columns' "$gatewalk" import g.$form --states g.states.csv --start "$start" -o $form.nc
   "$gatewalk" export $form.nc --gate --counts -o back.$form --force --quiet >/dev/null
   cmp -s <(grep -av '^%' g.$form) <(grep -av '^%' back.$form) || fail "$form comes back otherwise"
   "$gatewalk" predict $form.nc --json back.json --quiet

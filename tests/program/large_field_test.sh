@@ -8,7 +8,7 @@ paper_matrix m.nc
 large="--set field.max_gates=0 --set field.columns=301 --set field.rows=301"
 # shellcheck disable=SC2086
 {
-expect 0 '^elsewhere in the 301 x 301 gates: 0.0' "$gatewalk" predict m.nc $large --json large.json
+expect 0 '^elsewhere in the 301 x 301 gates: 0.0' "$gatewalk" predict --details m.nc $large --json large.json
 [ "$(wc -l <out.txt)" -lt 50 ] || fail "predict: $(wc -l <out.txt) lines for a large field"
 holds '(.final_gates | length == 301 and (map(length) | unique == [301])) and (([.final_gates[][]] | add) - 1 | fabs) < 1e-11' large.json
 "$gatewalk" walk m.nc $large --walks 20000 --json large-walk.json --quiet
@@ -23,7 +23,7 @@ for limit in 13 0; do
   "$gatewalk" predict m.nc --set field.max_gates=$limit --json base.json --quiet
   "$gatewalk" predict m.nc --set field.max_gates=$limit --row 0-8=copy.nc --json same.json --quiet
   jq -s '.[0].final_gates == .[1].final_gates' base.json same.json | grep -q true || fail "predict: rows of the same gates change something"
-  expect 0 '^rows 4 to 6: gates of stiff.nc$' "$gatewalk" predict m.nc --set field.max_gates=$limit --row 4-6=stiff.nc --row 2=copy.nc --json rows.json
+  expect 0 '^Rows 4 to 6 have the gates of stiff.nc.$' "$gatewalk" predict m.nc --details --set field.max_gates=$limit --row 4-6=stiff.nc --row 2=copy.nc --json rows.json
   jq -s '[.[0].final_gates[0:4] == .[1].final_gates[0:4], .[0].final_gates[4] == .[1].final_gates[4]] == [true, false]' base.json rows.json |
     grep -q true || fail "predict: other gates in rows 4 to 6 change rows below, or not row 4"
   holds '(([.final_gates[][]] | add) - 1 | fabs) < 1e-12 and (.rows | map([.first, .last, .matrix])) == [[4, 6, "stiff.nc"], [2, 2, "copy.nc"]]' rows.json

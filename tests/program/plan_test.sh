@@ -105,7 +105,7 @@ expect 2 'accuracy: must lie in \[0.001, 0.5)' "$gatewalk" plan own.toml --accur
 expect 2 'a plan is made for one start' "$gatewalk" plan own.toml --start 0,0,15 --start 4,0,15
 expect 2 'actions.a.contact.restitution is not permitted: a body cannot choose it' "$gatewalk" plan own.toml --set actions.a.contact.restitution=0.5
 "$gatewalk" build "$scenes/field.toml" --accuracy 0.2 -o tree.nc --quiet
-expect 2 'is a matrix, and new bodies are to be run' "$gatewalk" plan tree.nc
+expect 2 'is a matrix (HDF5), and this command simulates new bodies: give a scene' "$gatewalk" plan tree.nc
 # Nobody can cross.
 expect 0 'none of 25 trials crossed: too rare to choose by' "$gatewalk" plan own.toml --set run.method=moreau --set field.max_gates=2 --accuracy 0.2
 
@@ -156,8 +156,8 @@ if command -v python3 >/dev/null; then
   expect 0 '^crossed' "$gatewalk" predict hopper.nc --set field.rows=2
   expect 0 '^crossed' "$gatewalk" predict hopper.nc "${hopper[@]:1}" --start S:-0.2
   # What cannot be planned.
-  expect 2 'hopper.nc: is a matrix, and new bodies are to be run' "$gatewalk" plan hopper.nc
-  expect 2 'hopper.nc: is a matrix, and bodies that do what a policy says are to be run' "$gatewalk" lattice hopper.nc "${hopper[@]:1}" --policy hops.policy.json
+  expect 2 'hopper.nc: is a matrix (HDF5), and this command simulates new bodies' "$gatewalk" plan hopper.nc
+  expect 2 'hopper.nc: is a matrix (HDF5), and this command simulates new bodies' "$gatewalk" lattice hopper.nc "${hopper[@]:1}" --policy hops.policy.json
   expect 2 'hopper.toml: has cells of another kind, \[cell\]: --cell-program' "$gatewalk" plan hopper.toml
   expect 2 'is a table, and no scene' "$gatewalk" plan "$scenes/tracks/runs.csv"
   expect 2 'over: says where bodies may start, such as --over start.s_m=0:1' "$gatewalk" plan "${bare[@]}"

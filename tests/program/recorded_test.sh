@@ -5,20 +5,20 @@
 tracks=$scenes/tracks
 
 # Few bodies: an answer, but no error bars, which is said.
-expect 0 '12 bodies, 12 trials, 40 passages: 31 left, 7 trapped, 2 lost' \
+expect 0 '^Recorded: 12 bodies, 12 trials, 40 passages; 31 left their cell, 7 were trapped, 2 lost.$' \
   "$gatewalk" build "$tracks/runs.csv" --cell "$tracks/cell.toml" -o few.nc --json build.json
 holds '.recorded.bodies == 12 and .recorded.lost == 2 and .inputs == 9' build.json
 expect 0 'no error bars: they need 16 bodies' "$gatewalk" predict few.nc --json few.json
 holds '.error_95 == null and (.endings | add) > 0.999 and (.endings | add) < 1.001' few.json
 holds '.recorded.lost_bounds.if_trapped.trapped >= .recorded.lost_bounds.if_left.trapped' few.json
-expect 0 '9 inputs x 10 outputs' "$gatewalk" show few.nc --rows
+expect 0 '9 rows, 10 columns' "$gatewalk" show few.nc --rows
 expect 0 'SVG\|^' "$gatewalk" predict few.nc --figure few.svg
 expect 2 'has no meaning for recorded runs' "$gatewalk" build "$tracks/runs.csv" --cell "$tracks/cell.toml" -o x.nc --accuracy 0.1
 expect 2 'whose runs were recorded' "$gatewalk" predict few.nc --gate-runs 100
 expect 2 'is for a matrix of a scene' "$gatewalk" predict few.nc --first-runs 100
 expect 2 'must be seen, or' "$gatewalk" predict few.nc --start Q:0,0,1
 
-expect 0 'all entries that were seen first' "$gatewalk" walk few.nc --walks 100 --json walk.json
+expect 0 'all entries that were seen first' "$gatewalk" walk few.nc --details --walks 100 --json walk.json
 holds '.start_state == "as seen" and .walks == 100' walk.json
 expect 0 'by the chain' "$gatewalk" analyze few.nc --json analyze.json
 holds '.expected_time_s > 0 and .expected_time_s_95 == null and .sensitivities.parameters == []' analyze.json
@@ -120,7 +120,7 @@ awk 'BEGIN { srand(4); print "body,trial,in,s,out,out_s,time_s"
       if (rand() < (b % 2 ? 0.05 : 0.6)) { print b ",1,S," s ",trapped,,1"; break }
       next_s = int(1000 * rand()) / 1e4; print b ",1,S," s ",S," next_s ",1"; s = next_s } } }' >unlike.csv
 "$gatewalk" build unlike.csv --cell coin.toml -o unlike.nc --quiet >/dev/null || fail "build of unlike.csv"
-expect 0 'does not predict the other.*crossed' "$gatewalk" validate unlike.nc --figure halves.svg --json unlike.json
+expect 0 '^Largest difference: crossed' "$gatewalk" validate unlike.nc --figure halves.svg --json unlike.json
 holds '.differs and .p < 0.05' unlike.json
 expect 2 'two halves need 32 bodies at least, these are 12' "$gatewalk" validate few.nc
 expect 2 'has no meaning for' "$gatewalk" validate coin.nc --trials 100
@@ -158,7 +158,7 @@ awk 'BEGIN {
 expect 0 'type hard' "$gatewalk" build types.csv --cell types.toml -o types.nc
 "$gatewalk" predict types.nc --json types.json --quiet >/dev/null
 holds '.endings.crossed > 0.999' types.json
-expect 0 'one half of the bodies' "$gatewalk" validate types.nc --null-draws 99
+expect 0 '^One half of the bodies' "$gatewalk" validate types.nc --null-draws 99
 expect 0 'crossed' "$gatewalk" analyze types.nc
 # Cells that are symmetric do not make starts so: all of these enter on the right side, and leave to the left.
 cat >sides.toml <<'END'

@@ -12,7 +12,7 @@ printf 'from,to,count\nup,up,5\nup,right,5\n' >half.csv
 # Nobody was seen to leave "right". Of half.csv's walks 1/2 enter it in the first gate, 1/4 in the second: 1/4 cross.
 expect 0 'the endings add up to 25.00 %: 75.00 % reach a state that was never sampled' "$gatewalk" predict half.nc --json predict.json
 expect 0 'the endings add up to 25.00 %: 75.00 % reach a state that was never sampled' "$gatewalk" analyze half.nc --start up --json analyze.json
-expect 0 '^reach a state never sampled: 75.0000 %$' "$gatewalk" analyze half.nc --start up
+expect 0 '^Share that reaches a state without any run: 75.0000 %$' "$gatewalk" analyze half.nc --start up
 for file in predict analyze; do holds '.never_sampled == 0.75 and .still_walking == 0' $file.json; done
 holds '([.endings[]] | add) + .never_sampled == 1' analyze.json
 expect 0 'the endings add up to [0-9.]* %: [0-9.]* % reach a state that was never sampled' "$gatewalk" walk half.nc --walks 4000 --json walk.json
@@ -28,16 +28,17 @@ printf 'from,to,count\nup,up,5\nup,right,5\nright,trapped,3\n' >whole.csv
 for command in predict analyze "walk --walks 100"; do
   # shellcheck disable=SC2086
   "$gatewalk" ${command%% *} whole.nc $(printf '%s' "${command#"${command%% *}"}") --json whole.json --force >whole.txt 2>&1 || fail "$command whole.nc"
-  ! grep -e 'add up' -e 'never sampled' -e 'still walking' whole.txt || fail "$command: says that something is left out"
+  ! grep -e 'add up' -e 'never sampled' -e 'without any run' -e 'still walking' whole.txt || fail "$command: says that something is left out"
   holds '.never_sampled == 0 and .still_walking < 1e-12' whole.json
 done
 
 # Half of these walks go to and fro for ever. Where the field has no limit of gates nobody is cut off by it.
 printf 'from,to,count\nup,right,50\nup,trapped,50\nright,left,1\nleft,right,1\n' >circles.csv
 "$gatewalk" import circles.csv --states s.csv "${field[@]}" --set field.rows=2 --set field.max_gates=0 -o circles.nc --quiet
-expect 0 '^still walking after 1000000 gates, where walks are stopped: [0-9.]* \[[0-9.]*, [0-9.]*\] %$' "$gatewalk" walk circles.nc --walks 20 --json circles.json
-expect 0 '% were still walking after 1000000 gates, the most that a walk is followed where field.max_gates = 0' "$gatewalk" walk circles.nc --walks 20
-expect 0 '^cut off       0.00 %  \[0.00, 0.00\]$' "$gatewalk" walk circles.nc --walks 20
+expect 0 '^Walks stopped after 1000000 gates, still walking: [0-9.]* \[[0-9.]*, [0-9.]*\] %$' "$gatewalk" walk circles.nc --details --walks 20 --json circles.json
+expect 0 '% were still walking after 1000000 gates, where walks are stopped' "$gatewalk" walk circles.nc --walks 20
+expect 0 '^No body is cut off: field.max_gates = 0 sets no limit.$' "$gatewalk" walk circles.nc --walks 20 --details
+! grep -q '^cut off' out.txt || fail "walk: an ending that is not possible has a line"
 holds '.endings.cut_off == 0 and .cut_off == 0 and .still_walking > 0 and .still_walking + .endings.trapped == 20 and .still_walking_95[0] < .still_walking and .still_walking < .still_walking_95[1]' circles.json
 holds '([.final_gates[][]] | add) == .endings.trapped' circles.json
 # Those who still walk may end in any way but cut off: of 20 nobody crossed, and it may be as many as walk or, of 20, chance leaves out.
@@ -51,7 +52,7 @@ expect 0 '^   1  right  right ' "$gatewalk" show half.nc --rows
 expect 0 '^     1        5  right$' "$gatewalk" show half.nc --row 0
 "$gatewalk" show half.nc --quiet --json show.json
 holds '[.rows[].name] == ["up", "right", "left"]' show.json
-expect 0 '^start: up$' "$gatewalk" walk half.nc
+expect 0 '^State of the chain at the start: up$' "$gatewalk" walk half.nc --details
 holds '.start_state.bin == "up"' walk.json
 holds '.start_state.bin == "up"' predict.json
 holds '[.starts[] | [.start.name, .start_state.bin]] == [["up", "up"], ["right", "right"]]' two.json

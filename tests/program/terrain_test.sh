@@ -14,12 +14,12 @@ jq -s '.[0].map == .[1].map' mixed.json again.json | grep -q true || fail "scene
 "$gatewalk" build $mixed --bins paper --trials 3 -o mixed.nc --json mixed.json --quiet
 holds '(.types | keys) == ["s", "u"] and .types.u.counts > 200' mixed.json
 expect 0 '^  type u  ' "$gatewalk" show mixed.nc
-expect 0 'outputs of input 12' "$gatewalk" show mixed.nc --type u --row 12
+expect 0 '^State 12: the states that follow' "$gatewalk" show mixed.nc --type u --row 12
 expect 2 'has no such type' "$gatewalk" show mixed.nc --type x
 expect 0 '^trapped' "$gatewalk" walk mixed.nc --walks 1000
 expect 0 '^trapped' "$gatewalk" predict mixed.nc --set terrain.seed=6
 expect 0 '^trapped' "$gatewalk" predict $mixed --accuracy 0.1 --quiet
-expect 0 'not asked of a field with several types' "$gatewalk" validate $mixed --matrix mixed.nc --trials 100
+expect 0 'not tested, because the field has several types' "$gatewalk" validate $mixed --details --matrix mixed.nc --trials 100
 expect 2 'terrain.types.u.forces.propulsion_N: 9 here, 8 there' "$gatewalk" predict mixed.nc $mixed --set terrain.types.u.forces.propulsion_N=9
 expect 2 'none here' "$gatewalk" walk mixed.nc "$scenes/field.toml" --set run.method=moreau
 expect 2 'which says what stands where' "$gatewalk" predict mixed.nc --row 2=mixed.nc

@@ -14,7 +14,7 @@ jq -s '.[0].final_gates == .[1].final_gates and .[0].error_95 == .[1].error_95' 
 expect 0 'was not reached' "$gatewalk" predict "$scenes/field.toml" "${fast[@]}" --accuracy 1e-6 --gate-runs 2000
 expect 2 'must lie between 0 and 1' "$gatewalk" predict "$scenes/field.toml" --accuracy 5
 expect 2 'row has no meaning' "$gatewalk" predict "$scenes/field.toml" --row 1=m.nc
-expect 0 'leaves of trees.*for the start 0,0,15' "$gatewalk" build "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 -o tree.nc
+expect 0 '^Start with a state of its own: 0,0,15$' "$gatewalk" build "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 -o tree.nc --details
 "$gatewalk" predict tree.nc --json tree.json --quiet >/dev/null 2>&1
 holds '.gate_runs == 0 and .error_95 <= 0.05 and .answer_from == "chain"' tree.json
 "$gatewalk" predict tree.nc --start 4,5,10 --json other.json --quiet >/dev/null 2>&1
@@ -27,8 +27,8 @@ holds '([.final_gates[][]] | add) == 1000' walk-tree.json
 holds '.state_space.bins == "tree" and .inputs == (.rows | length) and .gate_runs < .counts' show-tree.json
 "$gatewalk" validate "$scenes/field.toml" "${fast[@]}" --matrix tree.nc --trials 100 --start 0,0,15 --null-draws 19 --json validate-tree.json --quiet >/dev/null 2>&1
 holds '.state_space.bins == "tree" and .markov.verdict != null' validate-tree.json
-expect 0 'fewer states than the runs allow' "$gatewalk" build "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --states 100 -o few.nc
-expect 0 'for starts d' "$gatewalk" build "$scenes/field.toml" "${fast[@]}" --accuracy 0.2 --starts=-5:5,-5:5,12:16 -o range.nc
+expect 0 'The limit of states changes the final gates' "$gatewalk" build --details "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --states 100 -o few.nc
+expect 0 '^Good for starts with d' "$gatewalk" build --details "$scenes/field.toml" "${fast[@]}" --accuracy 0.2 --starts=-5:5,-5:5,12:16 -o range.nc
 expect 2 'd must lie inside' "$gatewalk" build "$scenes/field.toml" --starts=-50:5,-5:5,12:16 -o x.nc
 expect 2 'three ranges' "$gatewalk" build "$scenes/field.toml" --starts 1:2 -o x.nc
 expect 2 'must be at least 16' "$gatewalk" build "$scenes/field.toml" --bins tree --trials 5 -o x.nc

@@ -1,0 +1,105 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# A command's first screen has at most fifteen lines for one start and no line over 100 characters, also with --details;
+# it says what to do next, and what it says runs.   screens_test.sh GATEWALK ROOT
+. "$(dirname "$0")/preamble.sh"
+
+cp -r "$scenes"/*.toml "$scenes/observed.csv" "$scenes/tracks" .
+cat >small.toml <<'END'
+forces = { propulsion_N = 8, random_N = 50 }
+field = { columns = 5, rows = 3 }
+END
+# Shapes of screens: how many lines, how wide, and how they end.
+wide() { awk -v most=100 'length($0) > most' "$1" | head -n 1; }
+# first LINES COMMAND...: the first screen has at most so many lines besides a map of gates, and Next lines; kept in screen.txt.
+first() {
+  local most=$1 lines
+  shift
+  "$gatewalk" "$@" --force >screen.txt 2>err.txt || { fail "$*: $(head -n 1 err.txt)" && return; }
+  lines=$(grep -c -v -e '^ *[0-9]* |' -e '^  i_x ' screen.txt)
+  [ "$lines" -le "$most" ] || fail "$lines lines: $*"
+  [ -z "$(wide screen.txt)" ] || fail "a line is too wide: $*: $(wide screen.txt)"
+  [ "$(wc -l <err.txt)" -le 2 ] || fail "more than two remarks: $*: $(cat err.txt)"
+  grep -q '^Next: ' screen.txt || fail "does not say what to do next: $*"
+  tail -n 1 screen.txt | grep -q -e '--details shows ' || fail "does not say that there are details: $*"
+  sed -n 's/^\(Next: \|      \)gatewalk /gatewalk /p' screen.txt >>next.txt
+}
+# screens COMMAND...: its first screen, and the whole one, which has all of the first but for the advice on details.
+screens() {
+  first 15 "$@"
+  "$gatewalk" "$@" --force --details >whole.txt 2>/dev/null || { fail "$* --details" && return; }
+  [ -z "$(wide whole.txt)" ] || fail "with --details a line is too wide: $*: $(wide whole.txt)"
+  [ "$(wc -l <whole.txt)" -gt "$(wc -l <screen.txt)" ] || fail "--details shows nothing more: $*"
+  grep -q -e '--details shows ' whole.txt && fail "--details advises --details: $*"
+  grep -v -e '--details shows ' -e '^Next: ' -e '^      ' screen.txt | grep -v -x -F -f whole.txt >missing.txt
+  # What was timed differs from run to run.
+  grep -v ' [0-9.]* s\b' missing.txt && fail "--details leaves out what the first screen has: $*: $(head -n 1 missing.txt)"
+}
+
+: >next.txt
+screens gate single_gate.toml --trials 50
+screens lattice walker.toml --trials 50
+screens lattice mixed.toml --trials 50
+screens build small.toml --trials 5 -o bins.nc
+screens build small.toml --accuracy 0.2 -o tree.nc
+screens build tracks/runs.csv --cell tracks/cell.toml -o few.nc
+screens show bins.nc
+screens show tree.nc
+first 200 show tree.nc --rows
+first 200 show bins.nc --row 3
+screens walk bins.nc --walks 50
+screens predict bins.nc
+screens predict tree.nc
+screens predict walker.toml --accuracy 0.2
+screens predict field.toml --accuracy 0.3
+screens predict mixed.toml --accuracy 0.3
+screens predict few.nc
+screens rare small.toml --row 2 --accuracy 0.3
+screens validate small.toml --matrix tree.nc --trials 40 --null-draws 99 --memory
+screens validate field.toml --observed observed.csv --trials 1200 --accuracy 0.3 --null-draws 99
+# Several starts: the answer of each, the rest once.
+first 23 predict small.toml --accuracy 0.3 --start 0,0,15 --start 4.3,5.1,10.2
+[ "$(grep -c '^crossed' screen.txt)" = 2 ] && [ "$(grep -c '^The 95 % intervals' screen.txt)" = 1 ] || fail "predict: several starts: $(cat screen.txt)"
+screens validate field.toml --accuracy 0.3 --trials 40 --null-draws 99
+head -n 1 screen.txt | grep -q '^The chain .* from .* starts' || fail "validate: no verdict of all starts"
+# Recorded bodies, one half against the other.
+"$gatewalk" passages tracks/tracks.csv --cell tracks/cell.toml -o passages.csv --fps 10 --metres-per-unit 0.001 --fastest 0.4 \
+  --lattice 9,9 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y --quiet >/dev/null 2>err.txt || fail "passages: $(cat err.txt)"
+screens build passages.csv --cell tracks/cell.toml -o bodies.nc
+screens predict bodies.nc
+screens validate bodies.nc --null-draws 99
+head -n 1 screen.txt | grep -q '^One half of the bodies ' || fail "validate: no verdict of the halves"
+# A chain that was made elsewhere.
+printf 'from,to,count\n0,0,4\n0,1,3\n0,2,2\n1,0,2\n1,1,6\n1,2,1\n' >counts.csv
+printf 'state,move_x,move_y\n0,0,1\n1,1,0\n' >states.csv
+"$gatewalk" import counts.csv --states states.csv --start 0 --set field.rows=3 --set field.columns=3 -o own.nc --quiet >/dev/null
+screens show own.nc
+screens walk own.nc --walks 50
+screens predict own.nc
+# What to do next runs, a shell's own comment behind it; with less accuracy where that takes long.
+sort -u next.txt >all.txt
+[ "$(wc -l <all.txt)" -ge 15 ] || fail "few lines of advice: $(cat all.txt)"
+gatewalk() {
+  case $1 in
+    analyze) set -- "$@" --runs 0 ;;
+    power) set -- "$@" --accuracy 0.3 ;;
+    validate) set -- "$@" --null-draws 99 ;;
+  esac
+  command "$program" "$@" --force
+}
+program=$gatewalk
+export program
+export -f gatewalk
+while read -r line; do
+  bash -c "$line" >out.txt 2>err.txt </dev/null || fail "advice does not run: $line: $(head -n 1 err.txt)"
+done <all.txt
+# From standard input nothing can be asked again.
+"$gatewalk" gate - --trials 5 <small.toml >screen.txt 2>/dev/null
+grep -q 'gatewalk .* -' screen.txt && fail "asks standard input again: $(cat screen.txt)"
+
+# What is not what it is taken for.
+for command in validate gate lattice rare trace scene; do expect 2 'tree.nc: is a matrix (HDF5), and .* scene' "$gatewalk" $command tree.nc; done
+for command in show walk; do expect 2 'a matrix is not read from standard input' "$gatewalk" $command -; done
+expect 2 'there is no option --trials (did you mean --walks?)' "$gatewalk" walk bins.nc --trials 5
+expect 0 'm.toml: a matrix is written as NetCDF' "$gatewalk" build small.toml --trials 1 -o m.toml
+finish
