@@ -5,11 +5,15 @@
 #include <array>
 #include <string_view>
 
+#include "cli/fields/text.h"
+
 namespace gatewalk::cli {
 namespace {
 
 /// Options that belong to the scene, so that another command takes them over.
 constexpr std::array<std::string_view, 4> kOfScene{"set", "start", "cell-program", "cell-timeout"};
+
+constexpr std::string_view kBefore = "Next: ";  // in front of a line
 
 /// "force" of "--force" and of "--force=2"; empty for a file.
 std::string_view option_of(std::string_view word) {
@@ -45,13 +49,19 @@ NextCommands& NextCommands::again(const std::string& name, const std::string& va
   std::string line = "gatewalk " + options_.words().command;
   for (const std::string& word : options_.words().shaping)
     if (option_of(word) != name) line += " " + written(word);
-  put(line + " --" + name + (value.empty() ? "" : " " + value), why);
+  const std::string option = "--" + name + " " + value;
+  line += " " + option;
+  if (kBefore.size() + line.size() > kScreenColumns)
+    lines_.push_back(option + " " + why);
+  else
+    put(line, why);
   return *this;
 }
 
-void NextCommands::put(std::string command, const std::string& why) {
+void NextCommands::put(const std::string& command, const std::string& why) {
   if (std::ranges::count(options_.words().shaping, "-") > 0) return;
-  lines_.push_back(std::move(command) + "  # " + why);
+  const std::string line = command + "  # " + why;
+  lines_.push_back(kBefore.size() + line.size() > kScreenColumns ? command : line);
 }
 
 }  // namespace gatewalk::cli
