@@ -9,6 +9,7 @@
 #include "cli/arguments.h"
 #include "cli/exchange/imported.h"
 #include "cli/fields/text.h"
+#include "cli/next.h"
 #include "cli/number_ranges.h"
 #include "cli/page.h"
 #include "cli/render/analysis.h"
@@ -17,6 +18,7 @@
 #include "lattice/field/matrix_file.h"
 #include "lattice/pool/chain_with_rewards.h"
 #include "lattice/pool/lumped_chain.h"
+#include "lattice/scene/ranges.h"
 #include "lattice/scene/scene_problem.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/study/prediction.h"
@@ -88,8 +90,7 @@ AnalysedSubject chain_of_runs(const Options& options, lattice::Source& s) {
                                .states = prediction.states,
                                .seconds = prediction.seconds,
                                .health = prediction.health,
-                               .method = lattice::settled_of(s)},
-                    .clean = status_of(options, prediction.health) == kFine};
+                               .method = lattice::settled_of(s)}};
   if (per_leaf != s.accuracy.per_leaf)
     options.warn(
         fmt::format("the analysis has {} states, not {}, so that it takes no more than 8 GiB: what "
@@ -257,20 +258,60 @@ std::optional<RangedShares> shares_of(const Options& options, const CountOption&
                                target, how, options.work())};
 }
 
+/// Of all runs that the command made.
+dynamics::Health health_of(const AnalysedSubject& subject, const AnalysedField& result) {
+  dynamics::Health all = result.parameters.health;
+  if (subject.of_runs) all += subject.of_runs->health;
+  if (result.shares) all += result.shares->found.health;
+  if (result.direct) all += result.direct->tally.health;
+  return all;
+}
+
+/// A number that matters most over 10 % to each side, as --vary of gatewalk sweep takes it; empty
+/// where there is none, or where the scene does not permit all of that.
+std::string range_of_largest(const Options& options, const lattice::Source& s,
+                             const AnalysedField& result) {
+  constexpr std::size_t kShown = 3;  // on the first screen
+  for (const auto& effect : sorted_effects(result) | std::views::take(kShown)) {
+    if (!std::isfinite(effect.value)) continue;
+    const std::string step = digits(0.05 * effect.value, 2),
+                      low = digits(effect.value - 2.0 * std::stod(step)),
+                      high = digits(effect.value + 2.0 * std::stod(step));
+    try {
+      (void)lattice::RangedScene(options.file(s.path).toml(), options.overrides(),
+                                 {fmt::format("{}={}:{}", effect.key, low, high)}, "--vary");
+      return fmt::format("{}={}:{}:{}", effect.key, low, step, high);
+    } catch (const std::exception&) {  // the scene does not permit all of that
+      continue;
+    }
+  }
+  return "";
+}
+
+std::vector<std::string> next_of(const Options& options, const lattice::Source& s,
+                                 const AnalysedField& result) {
+  NextCommands next(options);
+  const bool is_of_gates = s.scene && !s.file && !s.starts_given;  // as sweep takes it
+  if (const std::string range = is_of_gates ? range_of_largest(options, s, result) : "";
+      !range.empty())
+    return next.add("sweep", "--vary " + range, "varies one of these numbers in one gate").lines();
+  return next.again("figure", "analysis.svg", "draws visits, paths and influences").lines();
+}
+
 }  // namespace
 
 int run_analyze(const Arguments& arguments) {
   Options options(
       "analyze SCENE|MATRIX.nc [SCENE] [options]",
-      "What the chain of a field says beside its final gates: how long bodies take to cross, what "
-      "work that is,\n"
-      "how often they visit each gate, which ways lead across, how likely other starts are to get "
-      "there, what\n"
-      "becomes of those who go on for ever, and which numbers of the scene change that most. From "
-      "a scene, or from\n"
-      "the gate runs that a matrix of trees keeps; runs are added until the error bar keeps "
-      "--accuracy. From a matrix\n"
-      "of bins as it is, without error bars on times and works.",
+      "Answers: which numbers of the scene change the chance to cross most, how long bodies take, "
+      "how much work that\n"
+      "needs, which gates they visit, which paths lead across, and how likely other starts are to "
+      "cross. The answers\n"
+      "come from the chain of the field. analyze simulates gate runs until the error bar is as "
+      "small as --accuracy. A\n"
+      "matrix of trees brings its own gate runs. A matrix of bins is used as it is; it gives no "
+      "intervals for times and\n"
+      "work.",
       "gatewalk analyze scenes/field.toml --target left_side --json analysis.json");
   const TextOption path = options.positional(
       "matrix", "a scene (-: standard input), or a matrix file written by gatewalk build", true);
@@ -280,43 +321,45 @@ int run_analyze(const Arguments& arguments) {
       options.add_texts("start", "D,VX,VY", "where a body starts (default: the scene's start)");
   const TextOption target =
       options.add_text("target", "ENDING",
-                       "what starts, paths and influences are of: crossed, left_side, right_side, "
-                       "trapped or cut_off",
+                       "the ending that starts, paths and influences are about: crossed, "
+                       "left_side, right_side, trapped or cut_off",
                        "crossed");
   const TextOption to_reach = options.add_text(
       "first-passage", "TARGET",
-      "how likely bodies get there and how long that takes, from every state of every "
-      "gate: an ending, a gate\nIX,IY, of a matrix a state (name or number), or "
-      "IX,IY,STATE; --json and --csv have all states");
+      "the chance and the mean time to reach TARGET: an ending, a gate IX,IY, or, of a matrix, a "
+      "state (name or\nnumber) or IX,IY,STATE; --json and --csv list every state of every gate");
   const CountOption runs = options.add_count(
       "runs", "N",
-      "gate runs with a little more, and as many with a little less of each number "
-      "of the scene,\nand as many again for the intervals, on top of --gate-runs; 0: none",
+      "for each number of the scene: N gate runs with a little more of it, N with a little less, "
+      "and 2 N\nfor the intervals, on top of --gate-runs; 0: no influences",
       "20000");
-  const NumberOption step =
-      options.add_number("step", "PART", "how much more and less, as a part of it (default: 0.02)");
+  const NumberOption step = options.add_number(
+      "step", "PART", "how much more and less, as a part of the number (default: 0.02)");
   const TextOption lump = options.add_text(
       "lump", "D,VX,VY",
-      "into how many parts the states of each boundary are cut by d, vx and vy (or what other "
-      "cells have), to\nsee what so few states would cost (default: 1 each)");
+      "merge the states of each boundary into this many parts by d, vx and vy (or by the "
+      "coordinates of other\ncells), to see how much accuracy so few states lose (default: 1 "
+      "each)");
   const CountOption paths =
-      options.add_count("paths", "N", "the most frequent ways through the field", "5");
+      options.add_count("paths", "N", "how many of the most frequent paths to list", "5");
   const TextsOption over = options.add_varied(
       "over", "KEY=LOW:HIGH",
-      fmt::format("a number of the scene, or of the program, and a range: how much of the variance "
-                  "of the target's chance each of these\nmakes, all of them anywhere in their "
-                  "ranges alike (Sobol's first and total indices; at most {};\nmay be repeated)",
+      fmt::format("vary a number of the scene, or of the program, over a range: says which part of "
+                  "the variance of the target's\nchance comes from each number, all values alike "
+                  "probable (Sobol's first and total indices; at most {};\nmay be repeated)",
                   lattice::kMostVaried));
   const CountOption over_trials = options.add_count(
-      "over-trials", "N", "full trials for that, at most, all together (default: 200000)");
-  const CountOption trials =
-      options.add_count("trials", "N", "also run N trials of the full dynamics, to compare");
+      "over-trials", "N", "full trials for --over, at most, in all (default: 200000)");
+  const CountOption trials = options.add_count(
+      "trials", "N", "also run N trials of the full dynamics, to compare times and work");
   options.add_seed();
   options.add_kept();
   options.add_strict();
   const AskedProgram program = add_cell_program(options);
   const TextOption page = add_page(options);
   options.add_figure("visits and paths, durations, starts and influences");
+  options.add_details("times and work by ending, visits, paths, and the influence of every number");
+  options.most_used({"accuracy", "target", "set", "figure", "json"});
   if (!options.parse(arguments)) return kFine;
   if (starts_given.values().size() > 1) throw UsageError("--start: an analysis is of one start");
   const lattice::ParameterOptions parameters{.runs = runs.value(0, 1'000'000),
@@ -357,18 +400,13 @@ int run_analyze(const Arguments& arguments) {
     result.direct = DirectTrials{std::move(tally), std::move(costs)};
   }
   result.shares = shares_of(options, over_trials, ranges, s, how.target);
-  bool clean = c.clean;
-  const auto look_at = [&](const dynamics::Health& health, const std::string& where) {
-    clean = status_of(options, health, where) == kFine && clean;
-  };
-  if (result.shares) look_at(result.shares->found.health, "at the points of --over ");
   result.made_by = options.provenance(s);
-  options.give_out(result, table_of(result));
+  options.give_out(result,
+                   {answer_text(result), details_text(result), next_of(options, s, result)});
   options.warn(rest_warning(c.answer.rest));
   if (const std::string why = analysis.why_unfinished(); !why.empty())
     options.warn("gates visited, visits, times and costs are not known: " + why);
-  look_at(result.parameters.health, "in gates with changed numbers ");
-  if (result.direct) look_at(result.direct->tally.health, "");
+  const bool clean = status_of(options, health_of(c, result)) == kFine && c.clean;
   const std::vector<PageAnswer> starts =
       c.of_runs ? page_answers(*c.of_runs) : page_answers(*c.of_bins, s);
   write_page(options, page, s, of_file, starts, &result);

@@ -65,7 +65,9 @@ struct AnalysedField {
 void describe(Fields& out, const AnalysedField& field);
 /// The keys that pages show.
 void describe_for_page(Fields& out, const AnalysedField& field);
-[[nodiscard]] std::string table_of(const AnalysedField& field);
+/// The first screen, and what --details adds to it.
+[[nodiscard]] std::string answer_text(const AnalysedField& field);
+[[nodiscard]] std::string details_text(const AnalysedField& field);
 [[nodiscard]] Figure figure_of(const AnalysedField& field);
 
 /// What bodies take that end so, or all of them, by the chain.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ranges>
 
@@ -31,28 +32,108 @@ std::string few_runs_text(const lattice::Analysis& a) {
     if (const auto& costs = a.costs_of[static_cast<std::size_t>(e.ending)];
         !costs.empty() && !costs.front().why_none.empty() && std::isfinite(costs.front().mean))
       texts.push_back(fmt::format("{}, {}", e.name, costs.front().why_none));
-  return texts.empty() ? ""
-                       : fmt::format("(means without an interval: {})\n", fmt::join(texts, "; "));
+  return texts.empty()
+             ? ""
+             : wrapped(fmt::format("These means have no interval: {}.", fmt::join(texts, "; ")),
+                       "  ");
 }
 
-/// How bodies end, and how many gates they visit.
-std::string endings_part(const AnalysedField& f) {
-  const Mean95OfRuns& gates = f.analysis.gates;
-  const lattice::EndingShares& shares = f.answer.endings;
-  std::string text =
-      endings_text(shares, f.analysis.by_groups
-                               ? "of all bodies, 95 % intervals that count everything"
-                           : std::isnan(shares.interval.front().front())
-                               ? "of all bodies; no intervals"
-                               : "of all bodies; 95 % intervals that count the sampling of the "
-                                 "matrix") +
-      limits_text(f.shown) + rest_text(f.answer.rest) + "\ngates visited  " +
-      with_limits(gates.mean, gates.interval, 3);
-  if (!gates.why_none.empty())
-    text += fmt::format(" ({}: {})",
-                        std::isnan(gates.mean) ? "nor visits, times and costs" : "no interval",
-                        gates.why_none);
-  return text + "\n";
+/// How many gates bodies visit, and how long they take, as far as that is known.
+std::string means_text(const lattice::Analysis& a) {
+  std::vector<std::string> means;
+  if (std::isfinite(a.gates.mean))
+    means.push_back("visits " + with_limits(a.gates.mean, a.gates.interval, 2, " gates"));
+  if (const Mean95OfRuns& time = a.costs.front(); std::isfinite(time.mean))
+    means.push_back("takes " + with_limits(time.mean, time.interval, 2, " s"));
+  return means.empty() ? "" : fmt::format("On average a body {}.\n", fmt::join(means, " and "));
+}
+
+/// The trials of --trials beside the chain, in a sentence.
+std::string direct_text(const AnalysedField& f) {
+  if (!f.direct) return "";
+  const auto [distance, chance_95] = duration_distance(f.analysis, f.direct->costs, {});
+  const std::int64_t trials = f.direct->tally.trials;
+  if (std::isnan(distance))
+    return fmt::format("The {} of the full dynamics are too few to compare times with.\n",
+                       counted(trials, "trial", "trials"));
+  return wrapped(
+      fmt::format("{} trials of the full dynamics {} the chain's distribution of times: the "
+                  "largest difference is {}, and chance alone stays below {} (95 %).",
+                  trials, distance > chance_95 ? "differ from" : "agree with", fixed(distance, 4),
+                  fixed(chance_95, 4)));
+}
+
+/// What the intervals of an analysis count.
+std::string intervals_text(const AnalysedField& f) {
+  if (f.analysis.by_groups)
+    return "The 95 % intervals include sampling error and the chain's own approximation error.";
+  return std::isnan(f.answer.endings.interval.front().front())
+             ? "There are no intervals."
+             : "The 95 % intervals include only the sampling error of the matrix.";
+}
+
+std::string basis_text(const AnalysedField& f) {
+  const std::string chain = counted(f.answer.states, "state", "states");
+  return wrapped((f.gate_runs() > 0
+                      ? fmt::format("From {} gate runs and a chain of {}. ", f.gate_runs(), chain)
+                      : fmt::format("From a chain of {}. ", chain)) +
+                 intervals_text(f));
+}
+
+/// One number that changes the chance of the target, in a line of a table.
+std::string elasticity_text(const AnalysedField& f, const lattice::ParameterEffect& e) {
+  const std::string text = with_limits(e.elasticity.mean, e.elasticity.interval, 2);
+  return std::isnan(e.elasticity.interval[0]) && f.analysis.by_groups
+             ? text + " (no interval: too few runs make it)"
+             : text;
+}
+
+TextTable table_of_effects() { return TextTable({{"", -36, 0, "", "  "}, {}}); }
+
+/// The numbers that change the chance of the target most, `most` of them.
+std::string largest_effects(const AnalysedField& f, std::size_t most) {
+  const auto effects = sorted_effects(f);
+  if (effects.empty()) return "";
+  TextTable table = table_of_effects();
+  for (const lattice::ParameterEffect& e : effects | std::views::take(most))
+    table.row({e.key, elasticity_text(f, e)});
+  return fmt::format(
+      "Largest influences: % by which the chance of \"{}\" grows for 1 % more of\n{}",
+      target_name(f), table.text());
+}
+
+/// How far the chance of the target changes in one step of the number that matters most; 0:
+/// unknown.
+double largest_change(const AnalysedField& f) {
+  const auto effects = sorted_effects(f);
+  return effects.empty() ? 0.0 : std::abs(effects.front().elasticity.mean) * f.step;
+}
+
+bool is_open(const lattice::Mean95& m) { return m.interval[0] < 0.0 && m.interval[1] > 0.0; }
+
+/// What a reader of the first screen may take wrong, in a line.
+std::string beware_text(const AnalysedField& f, std::size_t most) {
+  const lattice::Analysis& a = f.analysis;
+  const auto effects = sorted_effects(f);
+  if (effects.empty())
+    return a.is_certain()
+               ? fmt::format(
+                     "Beware: {} ends as \"{}\" here, so these runs tell no influences; try "
+                     "--set KEY=VALUE.\n",
+                     a.target_chance > 0.5 ? "every body" : "no body", target_name(f))
+               : "";
+  constexpr double kSmall = 0.3;
+  if (const double change = largest_change(f); change > kSmall)
+    return fmt::format(
+        "Beware: the chance changes by {} in one step of {}; repeat with --step {}.\n",
+        percent(change, 1.0, 0), percent(f.step, 1.0), digits(f.step * 0.1 / change, 1));
+  if (!a.by_groups)
+    return "Beware: a matrix of bins gives coarse influences without intervals; analyze the "
+           "scene.\n";
+  return std::ranges::any_of(effects | std::views::take(most),
+                             [](const auto& e) { return is_open(e.elasticity); })
+             ? "Beware: an interval that includes 0 leaves the direction open; raise --runs.\n"
+             : "";
 }
 
 /// What bodies take, by the chain and by trials.
@@ -64,29 +145,24 @@ std::string costs_part(const AnalysedField& f) {
   };
   add("all", {});
   for (const EndingName& e : kAllEndingNames) add(e.name, e.ending);
-  std::string text = "\nby the chain\n" + costs.text() + few_runs_text(a);
+  std::string text = "\nTimes and work of a body, by its ending (from the chain)\n" + costs.text() +
+                     few_runs_text(a);
   if (!std::isfinite(a.costs.front().mean) && !std::isnan(a.gates.mean))
-    text += f.shown.mass
-                ? "(the file is of an older version, which kept no durations: build it again)\n"
-                : "(the durations of some passages are not known)\n";
+    text += f.shown.mass ? "An older version wrote this file, without durations. Build it again.\n"
+                         : "The durations of some passages are not known.\n";
   if (a.totals.drawn_walks > 0)
-    text += fmt::format(
-        "(a large field: times and work by ending are those of {} walks with the chain; none of "
-        "them: no line)\n",
-        a.totals.drawn_walks);
-  if (f.direct) {
-    const auto [distance, chance_95] = duration_distance(a, f.direct->costs, {});
-    text += fmt::format(
-        "by {} trials of the full dynamics\n{}largest difference of the two distributions of time: "
-        "{} (chance: {}, 95 %)\n",
-        f.direct->tally.trials, table_of(f.direct->costs, f.shown), fixed(distance, 4),
-        fixed(chance_95, 4));
-  }
+    text += wrapped(fmt::format(
+        "The field is large: times and work by ending come from {} walks with the chain. An ending "
+        "that no walk had has no line.",
+        a.totals.drawn_walks));
+  if (f.direct)
+    text += fmt::format("The same from {} trials of the full dynamics\n{}", f.direct->tally.trials,
+                        table_of(f.direct->costs, f.shown));
   if (f.shown.mass)
     text +=
-        "work: of the propulsion and of the random force; lost: to hits, dampers and drag, and "
-        "left in the beams;\nJ/(kg m): cost of transport, work of both forces per mass and way "
-        "forward\n";
+        "push, noise: work of the propulsion and of the random force. lost: energy lost to hits,\n"
+        "dampers and drag, or left in the beams. J/(kg m): cost of transport, the work of both\n"
+        "forces per mass and distance forward.\n";
   return text;
 }
 
@@ -96,9 +172,9 @@ std::string endless_part(const lattice::Analysis& a) {
                         return fixed(markov::implied_time_scale(modulus), 2);
                       });
   return fmt::format(
-      "\nbodies that go on for ever: {} of them get through or out of each further gate; {} rows a "
-      "gate; from gate to gate {} is left of what tells where they started\nimplied time scales "
-      "(gates): {}\n",
+      "\nIn an endless field: {} of the bodies still under way survive each further gate, and "
+      "advance\n{} rows a gate. The memory of the start falls to {} from one gate to the next "
+      "(second\neigenvalue / first). Implied time scales, in gates: {}\n",
       percent(a.endless->survival, 1.0), fixed(a.endless->rows_per_cell, 2),
       percent(a.endless->second / a.endless->survival, 1.0), fmt::join(scales, ", "));
 }
@@ -107,7 +183,7 @@ std::string endless_part(const lattice::Analysis& a) {
 std::string paths_part(const AnalysedField& f) {
   const lattice::FieldParams& field = f.shown.field;
   const markov::FrequentPaths& paths = f.analysis.paths;
-  TextTable table({{"", 11}, {.before = " "}});
+  std::string lines;
   for (const markov::CellPath& path : paths.paths) {
     std::string gates;
     std::int64_t row = -1;
@@ -116,67 +192,51 @@ std::string paths_part(const AnalysedField& f) {
                            cell % field.columns - field.start_column());
       row = cell / field.columns;
     }
-    table.row({percents(path.share) + " %", gates});
+    lines +=
+        wrapped(fmt::format("{:>11} {}", percents(path.share) + " %", gates), std::string(13, ' '));
   }
   return fmt::format(
-      "\nmost frequent ways to \"{}\", by the columns i_x of their gates (>: in the same "
+      "\nMost frequent paths to \"{}\": columns i_x of their gates (>: the next gate is in the "
+      "same "
       "row)\n{}{}",
-      target_name(f), table.text(),
-      paths.gave_up         ? "  (the search for more was given up: there are very many ways)\n"
+      target_name(f), lines,
+      paths.gave_up         ? "  (there are very many paths; the search for more was stopped)\n"
       : paths.paths.empty() ? "  (none)\n"
                             : "");
 }
 
-/// What would change the chance of the target.
+/// What would change the chance of the target, number by number.
 std::string parameters_part(const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
   const auto effects = sorted_effects(f);
-  if (effects.empty())
-    return a.is_certain() ? fmt::format(
-                                "{} ends so in these runs: they cannot tell what a little "
-                                "more or less of a number changes; --set KEY=VALUE tries "
-                                "more\n",
-                                a.target_chance > 0.5 ? "everybody" : "nobody")
-                          : "";
+  if (effects.empty()) return "";
   // The chain behind these has more runs than that behind the endings above.
   const std::string chance = percents(f.parameters.chance),
                     answer = percents(f.answer.endings.share[static_cast<std::size_t>(a.target)]);
   std::string text = fmt::format(
-      "\nper cent that the chance of \"{}\" ({} %{}) grows for 1 % more of each number, 95 %\n",
-      target_name(f), chance,
-      chance == answer || f.parameters.pool_runs == 0
-          ? ""
-          : fmt::format(" by the chain of {} gate runs behind these numbers; the answer is the {} "
-                        "% above",
-                        f.parameters.pool_runs, answer));
-  TextTable table({{"", -34}, {}});
+      "\nInfluences: % by which the chance of \"{}\" ({} %) grows for 1 % more of each number, 95 "
+      "%\n",
+      target_name(f), chance);
+  if (chance != answer && f.parameters.pool_runs > 0)
+    text +=
+        wrapped(fmt::format("({} % comes from the larger chain of {} gate runs behind this "
+                            "table. The answer is the {} % above.)",
+                            chance, f.parameters.pool_runs, answer));
   for (const lattice::ParameterEffect& e : effects) {
-    std::string line = with_limits(e.elasticity.mean, e.elasticity.interval, 2);
-    if (std::isnan(e.elasticity.interval[0]) && a.by_groups)
-      line += " (no interval: too few runs make it)";
+    std::string line = elasticity_text(f, e);
     if (!e.of_type.empty())
-      line +=
-          "  of it: " + types_text(f.shown.types, [&](std::size_t t) { return e.of_type[t].mean; });
+      line += "; by type of gate: " +
+              types_text(f.shown.types, [&](std::size_t t) { return e.of_type[t].mean; });
     if (e.bends)
-      line +=
-          fmt::format(" (with more of it {}, with less {})", fixed(e.more, 2), fixed(e.less, 2));
-    table.row({e.key, line});
+      line += fmt::format("; with more of it {}, with less {}", fixed(e.more, 2), fixed(e.less, 2));
+    text += wrapped(fmt::format("  {:<36}{}", e.key, line), std::string(40, ' '));
   }
-  text += table.text();
-  text +=
-      a.by_groups
-          ? "one number at a time, in gates of all types; intervals count chance and the "
-            "chain's own error; --set KEY=VALUE\nsays what a large change does\n"
-          : "a matrix of bins does not tell how far off these are, and its states are coarse: a "
-            "scene tells more\n";
-  const double largest = std::abs(effects.front().elasticity.mean) * f.step;
-  constexpr double kSmall = 0.3;
-  if (largest > kSmall)
-    text += fmt::format(
-        "the chance changes by {} in a step of {}, so the first are rough: a smaller --step is "
-        "more exact\n",
-        percent(largest, 1.0, 0), percent(f.step, 1.0));
-  return text;
+  return text +
+         (a.by_groups
+              ? "Each number is changed alone, in gates of all types. The intervals include "
+                "sampling error\nand the chain's own approximation error. --set KEY=VALUE shows "
+                "the effect of a large change.\n"
+              : "");
 }
 
 std::string types_part(const AnalysedField& f) {
@@ -184,43 +244,90 @@ std::string types_part(const AnalysedField& f) {
   const std::vector<std::string>& types = f.shown.types;
   if (types.empty() || std::isnan(a.gates.mean)) return "";
   std::string text = fmt::format(
-      "\nby type of the gate: visits per body {}; trapped there, % of these visits {}",
+      "\nBy type of gate\n  visits per body: {}\n  % of these visits that trap the body: {}\n",
       types_text(types, [&](std::size_t t) { return a.types[t].visits; }),
       types_text(types,
                  [&](std::size_t t) { return 100.0 * a.types[t].trapped / a.types[t].visits; }));
   if (!a.type_trapping.empty())
-    text += fmt::format(";\nper cent that \"{}\" grows for 1 % fewer of these {}", target_name(f),
-                        types_text(types, [&](std::size_t t) { return a.type_trapping[t]; }));
-  return text + "\n";
+    text +=
+        fmt::format("  % by which \"{}\" grows for 1 % fewer of the trapped: {}\n", target_name(f),
+                    types_text(types, [&](std::size_t t) { return a.type_trapping[t]; }));
+  return text;
 }
+
+/// What the chain loses with its states merged, as --lump says or into one for each boundary.
+std::string lumping_text(const lattice::Analysis& a) {
+  if (!a.lumped) return "";
+  return wrapped(fmt::format(
+      "Merged into {} (--lump), the chain errs by a total variation of {} in the endings and {} in "
+      "the final gates.",
+      counted(a.lumped->states, "state", "states"), fixed(a.lumped->endings, 4),
+      fixed(a.lumped->final_gates, 4)));
+}
+bool is_asked_lumping(const lattice::Analysis& a) {
+  return std::ranges::any_of(a.lumping, [](int parts) { return parts != 1; });
+}
+
+std::int64_t lines_of(const std::string& text) { return std::ranges::count(text, '\n'); }
 
 }  // namespace
 
-std::string table_of(const AnalysedField& f) {
+std::string answer_text(const AnalysedField& f) {
+  constexpr std::int64_t kLines = 15, kNext = 2;
+  const lattice::EndingShares& shares = f.answer.endings;
+  const auto at = static_cast<std::size_t>(f.analysis.target);
+  const bool is_of_more = f.passage || f.shares;  // then the endings are details
+  std::string text = f.passage ? text_of(*f.passage) : "";
+  text += f.shares    ? fmt::format("{:<11}  {} %\n", target_name(f),
+                                    with_interval(shares.share[at], shares.interval[at]))
+          : f.passage ? ""
+                      : endings_text(shares, "of all bodies");
+  if (!f.shares) text += means_text(f.analysis);
+  text += direct_text(f);
+  if (f.shares) text += answer_text(*f.shares);
+  std::string below =
+      (is_asked_lumping(f.analysis) ? lumping_text(f.analysis) : "") + basis_text(f);
+  if (!is_of_more) {
+    constexpr std::int64_t kMost = 3;
+    const std::int64_t room = kLines - kNext - lines_of(text) - lines_of(below) - 2;
+    const auto most = static_cast<std::size_t>(std::clamp<std::int64_t>(room, 1, kMost));
+    text += largest_effects(f, most);
+    below += beware_text(f, most);
+  }
+  return text + below;
+}
+
+std::string details_text(const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
-  std::string text = (f.passage ? text_of(*f.passage) : "") + endings_part(f) + costs_part(f);
+  std::string text = "\n";
+  if (f.passage || f.shares)
+    text += endings_text(f.answer.endings, "of all bodies, 95 % intervals");
+  text += limits_text(f.shown) + rest_text(f.answer.rest);
+  if (!a.gates.why_none.empty())
+    text += wrapped(fmt::format("{}: {}.",
+                                std::isnan(a.gates.mean)
+                                    ? "Gates visited, visits, times and costs are not known"
+                                    : "The mean number of gates has no interval",
+                                a.gates.why_none));
+  if (f.answer.from_trials)
+    text += wrapped(fmt::format(
+        "The endings come from the full trials, which are more precise here than the chain. All "
+        "other numbers come from the chain, by which \"{}\" is {} %.",
+        target_name(f), percents(a.target_chance)));
+  text += costs_part(f);
   if (!std::isnan(a.gates.mean))
     text += "\n" + map_of(a.totals.visits, "visits of each gate", "per 100 bodies");
-  text += endless_part(a);
-  if (f.answer.from_trials)
-    text += fmt::format(
-        "\nthe endings above are the trials' own shares, which are more certain here; the chain's "
-        "are behind all else (\"{}\": {} %)\n",
-        target_name(f), percents(a.target_chance));
-  text += paths_part(f);
+  text += endless_part(a) + paths_part(f);
   if (std::ssize(a.starts) > a.told_starts())
-    text += fmt::format(
-        "other starts: --json has the {} of {} ways to enter that were entered most; --figure "
-        "draws all\n",
-        a.told_starts(), a.starts.size());
+    text +=
+        wrapped(fmt::format("Other starts: --json lists the {} of {} ways to enter that were "
+                            "entered most, and --figure "
+                            "draws all of them.",
+                            a.told_starts(), a.starts.size()));
   text += parameters_part(f) + types_part(f);
-  if (a.lumped)
-    text += fmt::format(
-        "\nwith {} states (--lump), total variation to this chain: endings {}, final gates {}\n",
-        a.lumped->states, fixed(a.lumped->endings, 4), fixed(a.lumped->final_gates, 4));
-  text += fmt::format("{} gate runs, {} states, {} s\n", f.gate_runs(), f.answer.states,
-                      fixed(f.seconds(), 2));
-  return text + (f.shares ? table_of(*f.shares) : "");
+  if (!is_asked_lumping(a)) text += "\n" + lumping_text(a);
+  if (f.shares) text += details_text(*f.shares);
+  return text + fmt::format("\nTime: {} s.\n", fixed(f.seconds(), 2));
 }
 
 }  // namespace gatewalk::cli

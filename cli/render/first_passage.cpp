@@ -88,18 +88,17 @@ void describe(Fields& out, const PassageResult& result) {
 std::string text_of(const PassageResult& result) {
   const lattice::FirstPassage& f = result.found;
   std::string text =
-      fmt::format("first passage to {}: {} %", result.asked.text, percents(f.chance.mean));
+      fmt::format("First passage to {}: {} %", result.asked.text, percents(f.chance.mean));
   if (const auto& [low, high] = f.chance.interval; std::isfinite(low))
     text += fmt::format(" [{}, {}]", percents(low), percents(high));
-  text += " of all bodies get there";
+  text += " of all bodies reach it";
   if (std::isfinite(f.gates.mean)) {
-    text += "; those that do take " + with_limits(f.gates.mean, f.gates.interval, 3, " gates");
+    text += ", on average after " + with_limits(f.gates.mean, f.gates.interval, 3, " gates");
     if (std::isfinite(f.time.mean))
       text += " and " + with_limits(f.time.mean, f.time.interval, 3, " s");
-    text += " on average";
     if (!f.gates.why_none.empty()) text += fmt::format(" (no interval: {})", f.gates.why_none);
   }
-  return text + "\n\n";
+  return wrapped(text + ".");
 }
 
 }  // namespace gatewalk::cli

@@ -62,36 +62,44 @@ void describe(Fields& out, const RangedShares& shares) {
   describe_status(out, shares.found.health);
 }
 
-std::string table_of(const RangedShares& shares) {
+std::string answer_text(const RangedShares& shares) {
   const auto& [ranges, target, found] = shares;
   const lattice::SobolIndices& i = found.indices;
   const auto points = [](double share) { return fixed(100.0 * share, 2); };
   const char* const ending = ending_name(target).name;
   if (found.ended == 0 || found.ended == found.trials)
-    return fmt::format(
-        "\nat all points of these ranges {} of {} trials ended as \"{}\": these cannot\ntell what "
-        "the chance depends on\n",
-        found.ended > 0 ? "all" : "none", found.trials, ending);
-  const auto& [low, high] = i.variance.interval;
-  TextTable table({{"", -34}, {"range", 20}, {"alone", 20}, {"with others, 95 %", 22}});
-  for (std::size_t k = 0; k < ranges.size() && std::isfinite(i.first[k].mean); ++k)
+    return wrapped(fmt::format(
+        "At all points of these ranges {} of {} trials ended as \"{}\": these trials cannot tell "
+        "what the chance depends on.",
+        found.ended > 0 ? "all" : "none", found.trials, ending));
+  std::string text =
+      fmt::format("Over these ranges the chance of \"{}\" is {} % [{}, {}] on average; ", ending,
+                  points(i.mean.mean), points(i.mean.interval[0]), points(i.mean.interval[1]));
+  if (std::isnan(i.first.front().mean)) {
+    const auto& [low, high] = i.variance.interval;
+    return wrapped(text + fmt::format("it does not vary by more than sampling noise (standard "
+                                      "deviation at most {} points). More --over-trials show less.",
+                                      points(std::sqrt(std::max(0.5 * (high - low), high)))));
+  }
+  text = wrapped(text + fmt::format("its standard deviation is {} points.",
+                                    points(std::sqrt(i.variance.mean))));
+  TextTable table({{"Share of this variance", -34},
+                   {"range", 20},
+                   {"alone, 95 %", 20},
+                   {"with others, 95 %", 20}});
+  for (std::size_t k = 0; k < ranges.size(); ++k)
     table.row({ranges[k].key,
                fmt::format("{} to {}", lattice::shortest(ranges[k].low),
                            lattice::shortest(ranges[k].high)),
                with_interval(i.first[k]), with_interval(i.total[k])});
-  const std::string varies =
-      std::isnan(i.first.front().mean)
-          ? fmt::format(
-                "it does not vary\nby more than chance: its standard deviation is at most "
-                "{} points (more --over-trials see less)\n",
-                points(std::sqrt(std::max(0.5 * (high - low), high))))
-          : fmt::format("its standard deviation is {} points;\nof its variance each number makes\n",
-                        points(std::sqrt(i.variance.mean))) +
-                table.text();
+  return text + table.text();
+}
+
+std::string details_text(const RangedShares& shares) {
+  const lattice::VarianceShares& found = shares.found;
   return fmt::format(
-      "\nover these ranges the chance of \"{}\" is {} [{}, {}] % on average; {}by {} trials at {} "
-      "points; the chance in the trials of a point is left out, {} s\n",
-      ending, points(i.mean.mean), points(i.mean.interval[0]), points(i.mean.interval[1]), varies,
+      "\nShares of the variance: from {} trials at {} points, in {} s. The sampling noise of the "
+      "trials\nat one point is not part of the variance.\n",
       found.trials, found.points, fixed(found.seconds, 1));
 }
 

@@ -17,6 +17,8 @@ struct RangedShares {
   lattice::VarianceShares found{};
 };
 void describe(Fields& out, const RangedShares& shares);
-[[nodiscard]] std::string table_of(const RangedShares& shares);
+/// What each number makes of the variance, and behind --details what that rests on.
+[[nodiscard]] std::string answer_text(const RangedShares& shares);
+[[nodiscard]] std::string details_text(const RangedShares& shares);
 
 }  // namespace gatewalk::cli
