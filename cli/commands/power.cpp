@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/power.h"
 #include "cli/arguments.h"
+#include "cli/next.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/scene.h"
 #include "cli/source_options.h"
@@ -18,38 +19,54 @@ void require_error_bars(const lattice::Source& s) {
                      "chain of trees" + (s.pool ? ", of 16 bodies or more" : ""));
 }
 
+std::vector<std::string> next_of(const Options& options, const lattice::Source& s) {
+  NextCommands next(options);
+  if (!options.trials)
+    next.again("trials", "100", "says what 100 trials detect");
+  else if (s.is_recorded())
+    next.add("validate", "", "tests whether half of the bodies predict the others");
+  else if (!s.file)
+    next.add("lattice", "--trials " + std::to_string(options.trials.value()),
+             "simulates one such experiment");
+  return next.lines();
+}
+
 }  // namespace
 
 int run_power(const Arguments& arguments) {
   Options options(
       "power SCENE|MATRIX.nc [options]",
-      "How many trials an experiment needs: to see that an ending is more or less often than the "
-      "scene\n"
-      "predicts (exact binomial test), or that the final gates differ by a total variation\n"
-      "(simulated, by the test of gatewalk validate --observed); with --versus, to tell the scene\n"
-      "from another one, or two groups of animals from each other, with so many trials of each. "
-      "With --trials also\n"
-      "what so many show.",
+      "Answers: how many trials an experiment needs, or what N trials can show (--trials N).\n"
+      "power predicts the endings and counts the trials that detect a shift of an ending (exact "
+      "binomial test), or a\n"
+      "total variation of the final gates (simulated experiments, with the test of gatewalk "
+      "validate "
+      "--observed).\n"
+      "--versus compares two scenes, or two groups of animals, with equally many trials of each.",
       "gatewalk power scenes/robot.toml --trials 60 --versus "
       "beams.stiffness_left_Nm_per_rad=0.3");
   const TextOption path = options.scene();
-  const TextsOption other_given = options.add_varied(
-      "versus", "KEY=VALUE",
-      "the scene to tell this one from has this key otherwise (may be repeated); or "
-      "a matrix of another group's recorded runs");
+  const TextsOption other_given =
+      options.add_varied("versus", "KEY=VALUE",
+                         "the other scene has this value of this key (may be repeated); or a "
+                         "matrix of another group's "
+                         "recorded runs");
   options.reads(other_given, [&options](const std::string& given) {
     return options.file(given).is_matrix() ? given : lattice::TomlFile(given, "").map_file();
   });
   const CountOption trials = options.add_count(
-      "trials", "N", "also: what N trials show (with --versus, N of each scene), at most 100000");
-  const NumberOption power =
-      options.add_number("power", "P", "how often a difference is to be found (default: 0.8)");
+      "trials", "N", "say what N trials detect (with --versus, N of each scene), at most 100000");
+  const NumberOption power = options.add_number(
+      "power", "P", "share of experiments that are to detect a difference (default: 0.8)");
   const NumberOption level = options.add_number(
-      "level", "A", "how often one may be found where there is none (default: 0.05)");
+      "level", "A",
+      "share of experiments that may report a difference where there is none (default: 0.05)");
   const AskedAccuracy accuracy = add_accuracy(options);
   options.add_seed();
   options.add_strict();
   const AskedProgram program = add_cell_program(options);
+  options.add_details("tables for two groups, for single tests and for the power of each test");
+  options.most_used({"trials", "versus", "power", "accuracy", "json"});
   if (!options.parse(arguments)) return kFine;
   lattice::ExperimentOptions how{
       .goal = {.power = power.within(0.8, 0.5, 0.99), .level = level.within(0.05, 0.01, 0.25)},
@@ -82,7 +99,7 @@ int run_power(const Arguments& arguments) {
     result.health += second->health;
   }
   work.tell("power of experiments", 1, 1);
-  options.give_out(result, table_of(result));
+  options.give_out(result, {answer_text(result), details_text(result), next_of(options, s)});
   options.warn(too_few_gates(ShownField(s)));
   options.warn(rest_warning(rest_of(answer.final)));
   if (result.versus)

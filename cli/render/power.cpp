@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "cli/fields/text.h"
 #include "cli/fields/text_table.h"
@@ -156,32 +157,38 @@ std::string power_text(const Effect& effect) {
   return effect.power ? fixed(100.0 * *effect.power, 0) + " %" : "-";
 }
 
-constexpr int kName = -12, kShare = 10, kCell = 20;
+constexpr int kName = -12, kShare = 10, kCell = 18;
+
+lattice::EndingShares predicted_shares(const lattice::StartAnswer& a) {
+  return shown_endings(a.endings, a.final);
+}
 
 std::string share_text(const lattice::StartAnswer& a, std::size_t e) {
-  const lattice::EndingShares shown = shown_endings(a.endings, a.final);
-  return percents(shown.share[static_cast<std::size_t>(kAllEndingNames[e].ending)]);
+  return percents(predicted_shares(a).share[static_cast<std::size_t>(kAllEndingNames[e].ending)]);
 }
 
 std::string sureness(const ExperimentOptions& options) {
-  return fmt::format("{} % power at a level of {} %", digits(100.0 * options.goal.power),
+  return fmt::format("power {} %, level {} %", digits(100.0 * options.goal.power),
                      digits(100.0 * options.goal.level));
 }
 
-/// A line under a table: its brackets and columns, and the marks that its rows have.
+/// Below a table: `always`, and a line for each mark that its rows have.
 std::string legend(const std::string& rows, const std::string& always) {
   std::string text = always;
   const auto explain = [&](const char* mark, const std::string& what) {
-    if (rows.find(mark) != rows.npos) text += (text.empty() ? "" : ";\n") + what;
+    if (rows.find(mark) != rows.npos) text += what + "\n";
   };
-  explain("?", "?: the prediction may itself be as far off, a smaller --accuracy makes it better");
-  explain(">", fmt::format(">{}: more, or there is no such difference", lattice::kMostPlanned));
-  explain("none", "none: no difference is found so often");
-  explain(" - ", "-: there is no such difference");
-  return text.empty() ? text : text + ".\n";
+  explain("?",
+          "?: the prediction itself may be off by as much; a smaller --accuracy is more precise.");
+  explain(">", fmt::format(">{}: more trials than that, or such a shift is impossible.",
+                           lattice::kMostPlanned));
+  explain("none", "none: no shift is detected this often.");
+  explain(" - ", "-: such a shift is impossible.");
+  return text;
 }
 
-constexpr const char* kBrackets = "29 (41): 29 if this ending alone is looked at, 41 if all are";
+constexpr const char* kBrackets =
+    "29 (41): 29 trials if only this ending is tested, 41 if all endings are tested.\n";
 
 /// A table of endings: names, predicted shares, and a column of this width for each difference,
 /// `scale` times as large in its heading and with `behind` it; then `more`.
@@ -219,10 +226,13 @@ std::string needed_table(const PowerResult& p) {
   add_lines(endings, p, &EndingPlan::effects);
   gates.row(line_of("final gates", "", p.plan.final_gates, gates_text));
   return fmt::format(
-      "\nOne experiment against the model: trials needed, for {},\nto see that an ending is so "
-      "many percentage points more or less often than predicted (the worse of both):\n\n{}{}\nThe "
-      "same, to see that the final gates differ by a total variation of so much, spread over all "
-      "of them\n(the hardest to see):\n\n{}{}",
+      "\nOne experiment against the model: trials needed ({}) to detect that\n"
+      "an ending is so many points more or less often than predicted (the larger of both "
+      "numbers):\n"
+      "\n{}{}\n"
+      "Trials needed to detect that the final gates differ by this total variation, spread over "
+      "all\n"
+      "gates (the difference that is hardest to detect):\n\n{}{}",
       sureness(p.options), endings.text(), legend(endings.rows(), kBrackets), gates.text(),
       legend(gates.rows(), ""));
 }
@@ -231,14 +241,13 @@ std::string groups_table(const PowerResult& p) {
   TextTable table = table_of_endings(lattice::kGroupDifferences, kCell, " points ");
   add_lines(table, p, &EndingPlan::of_groups);
   return fmt::format(
-      "\nTwo groups, such as animals with and without a treatment, one of which ends as predicted: "
-      "trials of each group,\nfor {}, to see that an ending is so many points more or less often "
-      "in the other\n(the worse of both):\n\n{}{}",
+      "\nTwo groups, such as animals with and without a treatment: trials of each group needed\n"
+      "({}) to detect that an ending differs between the groups by so many points.\n"
+      "One group ends as predicted; the number is the larger one for more and less often:\n\n{}{}",
       sureness(p.options), table.text(),
-      legend(table.rows(), std::string(kBrackets) +
-                               ". Trials are those of different animals: m trials of one "
-                               "animal\ncount for m / (1 + (m - 1) r), where r is the correlation "
-                               "between them"));
+      legend(table.rows(), kBrackets) +
+          "The trials must come from different animals: m trials of one animal count as\n"
+          "m / (1 + (m - 1) r), where r is the correlation between them.\n");
 }
 
 std::string power_table(const PowerResult& p) {
@@ -259,13 +268,13 @@ std::string power_table(const PowerResult& p) {
   table.row({"final gates", "",
              fmt::format("{}  smallest TV {}", gates, least ? fixed(*least, 3) : "none")});
   return fmt::format(
-      "\nOne experiment of {} against the model: how likely a difference of so many points is "
-      "found, and\nthe smallest that is found in {} % of such experiments:\n\n{}{}",
+      "\nOne experiment of {} against the model: how likely it detects a shift of so many\n"
+      "points, and the smallest shift that {} % of such experiments detect:\n\n{}{}",
       counted(*p.options.trials, "trial", "trials"), digits(100.0 * p.options.goal.power),
       table.text(),
       legend(table.rows(),
              "+5.0 / -4.0: 5 points more, or 4 fewer, than predicted; in brackets: if all endings "
-             "are looked at;\nTV: total variation"));
+             "are tested.\nTV: total variation.\n"));
 }
 
 std::string versus_table(const PowerResult& p) {
@@ -293,54 +302,58 @@ std::string versus_table(const PowerResult& p) {
        gates_text(apart.final_gates)},
       apart.final_gates);
   return fmt::format(
-      "\nTwo experiments{}{}{}:\ntrials of each that tell them apart, for {}:\n\n"
-      "{}{}{}",
+      "\nTwo experiments{}, one {}\n{}Trials of each that tell them apart ({}):\n\n{}{}{}",
       n.empty() ? "" : fmt::format(" of {} trials each", n),
-      scene ? ", one of this scene, one with\n" : ", one with this group, one with that of\n",
-      fmt::join(set, ", "), sureness(p.options), endings.text(), gates.rows(),
-      legend(endings.rows() + gates.rows(), kBrackets));
+      scene ? "with this scene, one with" : "with this group, one with the group of",
+      wrapped(fmt::format("{}.", fmt::join(set, ", "))), sureness(p.options), endings.text(),
+      gates.rows(), legend(endings.rows() + gates.rows(), kBrackets));
 }
 
 // ---- In sentences ----
 
-/// "12 to 15"
-std::string from_to(std::optional<double> least, std::optional<double> most) {
-  const std::string low = fixed(100.0 * least.value_or(0.0), 0),
-                    high = fixed(100.0 * most.value_or(0.0), 0);
-  return low == high ? low : fmt::format("{} to {}", low, high);
+/// "260 trials", "more than 100000 trials"
+std::string trials_words(const std::optional<std::int64_t>& trials) {
+  return trials ? counted(*trials, "trial", "trials")
+                : fmt::format("more than {} trials", lattice::kMostPlanned);
 }
 
-/// What so many trials show.
+/// The larger of both shifts, as far as they are detected.
+std::optional<double> larger(const lattice::SmallestDifference& d) {
+  if (d.more && d.fewer) return std::max(*d.more, *d.fewer);
+  return d.more ? d.more : d.fewer;
+}
+
+/// "You detect a shift of 12 points in crossed, 15 in trapped, or a total variation of ..."
 std::string shown_by(const PowerResult& p) {
-  const std::string begin = fmt::format("In {} of 100 experiments {} trials show ",
-                                        digits(100.0 * p.options.goal.power), *p.options.trials);
-  std::optional<double> least, most;
-  for (const std::size_t e : looked_at(p)) {
-    const lattice::SmallestDifference& all = p.plan.endings[e].least_of_all;
-    for (const auto& d : {all.more, all.fewer})
-      if (d) {
-        least = std::min(*d, least.value_or(*d));
-        most = std::max(*d, most.value_or(*d));
-      }
-  }
+  const std::string begin =
+      fmt::format("With {} (power {} %) you detect ", counted(*p.options.trials, "trial", "trials"),
+                  digits(100.0 * p.options.goal.power));
+  std::vector<std::string> shifts;
+  for (const std::size_t e : looked_at(p))
+    if (const auto least = larger(p.plan.endings[e].least_of_all))
+      shifts.push_back(fmt::format("{}{} in {}", fixed(100.0 * *least, 0),
+                                   shifts.empty() ? " points" : "", kAllEndingNames[e].name));
   const std::string gates = p.plan.least_total_variation
-                                ? "final gates that differ by a total variation of " +
-                                      fixed(*p.plan.least_total_variation, 2)
+                                ? "a total variation of " +
+                                      fixed(*p.plan.least_total_variation, 2) +
+                                      " in the final gates"
                                 : "";
-  if (!least && gates.empty()) return begin + "no difference from this prediction.";
-  return fmt::format(
-      "{}{}{}{}.", begin,
-      least ? fmt::format("an ending that is {} points off, by ending", from_to(least, most)) : "",
-      least && !gates.empty() ? ", or " : "", gates);
+  if (shifts.empty() && gates.empty()) return begin + "no difference from this prediction.";
+  return fmt::format("{}{}{}{}{}.", begin, shifts.empty() ? "" : "a shift of ",
+                     fmt::join(shifts, ", "), shifts.empty() || gates.empty() ? "" : ", or ",
+                     gates);
 }
 
-/// The most trials that any ending takes to be seen `at` kShareDifferences off.
-std::string trials_of_endings(const PowerResult& p, std::size_t at) {
+/// The most trials that any ending takes to be seen `at` kShareDifferences off; none: over
+/// kMostPlanned.
+std::optional<std::int64_t> trials_of_endings(const PowerResult& p, std::size_t at) {
   std::int64_t most = 0;
-  for (const std::size_t e : looked_at(p))
-    most = std::max(
-        most, p.plan.endings[e].effects[at].trials_of_all.value_or(lattice::kMostPlanned + 1));
-  return trials_text(most > lattice::kMostPlanned ? std::optional<std::int64_t>() : most);
+  for (const std::size_t e : looked_at(p)) {
+    const auto& trials = p.plan.endings[e].effects[at].trials_of_all;
+    if (!trials) return {};
+    most = std::max(most, *trials);
+  }
+  return most;
 }
 
 /// What it takes to tell the scene from the other one.
@@ -355,33 +368,73 @@ std::string told_apart(const PowerResult& p) {
     }
   const Effect& gates = apart.final_gates;
   std::string text = fmt::format(
-      "To tell this {} from {} so often takes {} trials of each by their final gates, {} by their "
-      "endings{}",
-      scene ? "scene" : "group", fmt::join(set, ", "), trials_text(gates.trials),
-      trials_text(by_ending), name);
+      "To tell this {} from {} (power {} %) you need {} of each by the final gates, {} by the "
+      "endings{}.",
+      scene ? "scene" : "group", fmt::join(set, ", "), digits(100.0 * p.options.goal.power),
+      trials_words(gates.trials), trials_words(by_ending), name);
   if (p.options.trials && gates.power)
-    text += fmt::format("; {} of each do in {} of 100 experiments by their final gates",
-                        *p.options.trials, fixed(100.0 * *gates.power, 0));
-  return text + ".";
+    text +=
+        fmt::format(" {} of each tell them apart in {} of 100 experiments, by the final gates.",
+                    counted(*p.options.trials, "trial", "trials"), fixed(100.0 * *gates.power, 0));
+  return text;
 }
+
+constexpr std::size_t kPoints = 2, kGates = 2;  // 10 points, a total variation of 0.2
 
 /// What these trials show, and what it takes.
 std::array<std::string, 2> summary_of(const PowerResult& p) {
-  constexpr std::size_t kPoints = 2, kGates = 2;  // 10 points, a total variation of 0.2
-  const std::string often =
-      fmt::format(" in {} of 100 experiments", digits(100.0 * p.options.goal.power));
   const std::string of_endings = fmt::format(
-      "To see any one ending {} points more or less often{} takes up to {} trials",
-      digits(100.0 * lattice::kShareDifferences[kPoints]), often, trials_of_endings(p, kPoints));
-  const std::string off = digits(lattice::kTotalVariations[kGates]),
-                    trials = trials_text(p.plan.final_gates[kGates].trials);
-  const std::string of_both =
-      fmt::format("{}, final gates a total variation of {} off {}.", of_endings, off, trials);
-  if (p.options.trials) return {shown_by(p), p.versus ? told_apart(p) : of_both};
-  if (p.versus) return {of_both, told_apart(p)};
-  return {of_endings + ".",
-          fmt::format("To see final gates a total variation of {} off{} takes {}.", off, often,
-                      trials)};
+      "To detect a shift of {} percentage points in any one ending (power {} %) you need up to {}.",
+      digits(100.0 * lattice::kShareDifferences[kPoints]), digits(100.0 * p.options.goal.power),
+      trials_words(trials_of_endings(p, kPoints)));
+  const std::string of_gates = fmt::format(
+      "To detect a total variation of {} in the final gates you need {}.",
+      digits(lattice::kTotalVariations[kGates]), trials_words(p.plan.final_gates[kGates].trials));
+  if (p.options.trials)
+    return {shown_by(p), p.versus ? told_apart(p) : of_endings + " " + of_gates};
+  if (p.versus) return {of_endings + " " + of_gates, told_apart(p)};
+  return {of_endings, of_gates};
+}
+
+/// "44 ", with ? where the prediction may be as much off: where all endings are tested.
+std::string of_all_text(const Effect& effect) {
+  return trials_text(effect.trials_of_all) + (effect.within_error ? "?" : " ");
+}
+
+/// The endings of the first screen: as predicted, and what it takes to see them shifted.
+std::string first_table(const PowerResult& p) {
+  constexpr int kWide = 24, kNarrow = 13;
+  const lattice::EndingShares shares = predicted_shares(p.prediction);
+  const auto predicted = [](const lattice::EndingShares& of, std::size_t e) {
+    const auto at = static_cast<std::size_t>(kAllEndingNames[e].ending);
+    return with_interval(of.share[at], of.interval[at]);
+  };
+  std::vector<TextColumn> columns{{"", kName}, {"predicted, %", kWide}};
+  if (p.versus) {
+    const lattice::EndingShares others = predicted_shares(p.versus->prediction);
+    columns.insert(columns.end(), {{"versus, %", kWide}, {"trials of each ", kWide}});
+    TextTable table(columns);
+    for (const std::size_t e : looked_at_apart(p))
+      table.row({kAllEndingNames[e].name, predicted(shares, e), predicted(others, e),
+                 of_all_text(p.versus->apart.endings[e])});
+    return table.text();
+  }
+  std::vector<std::size_t> differences{1, 2, 3};  // places in kShareDifferences
+  if (p.options.trials) {
+    differences.erase(differences.begin());
+    columns.push_back({counted(*p.options.trials, "trial", "trials") + " detect", kWide});
+  }
+  for (const std::size_t d : differences)
+    columns.push_back({digits(100.0 * lattice::kShareDifferences[d]) + " points ", kNarrow});
+  TextTable table(columns);
+  for (const std::size_t e : looked_at(p)) {
+    const EndingPlan& plan = p.plan.endings[e];
+    std::vector<TextCell> cells{kAllEndingNames[e].name, predicted(shares, e)};
+    if (p.options.trials) cells.emplace_back(text_of(plan.least_of_all));
+    for (const std::size_t d : differences) cells.emplace_back(of_all_text(plan.effects[d]));
+    table.row(cells);
+  }
+  return table.text();
 }
 
 }  // namespace
@@ -435,17 +488,29 @@ void describe(Fields& out, const PowerResult& p) {
   describe_made_by(out, p.made_by);
 }
 
-std::string table_of(const PowerResult& p) {
+std::string answer_text(const PowerResult& p) {
   const auto sentences = summary_of(p);
+  const std::string table = first_table(p);
+  std::string text = wrapped(sentences[0]) + wrapped(sentences[1]) + table;
+  text += wrapped(fmt::format(
+      "These numbers hold if you test all endings, at a level of {} %. The predicted final gates "
+      "are "
+      "within a total variation of {} of the truth, 95 times in 100.",
+      digits(100.0 * p.options.goal.level), digits(p.prediction.error.total_variation, 2)));
+  return text + (table.find('?') != table.npos
+                     ? "Beware: ? marks shifts within the prediction's own error; a smaller "
+                       "--accuracy helps.\n"
+                     : "Beware: several trials of one animal count less than trials of different "
+                       "animals (--details).\n");
+}
+
+std::string details_text(const PowerResult& p) {
   return fmt::format(
-      "{}\n{}\n\n{}{}error: at most {} in total variation of the final gates, 95 times in "
-      "100\n{}{}{}{}{}",
-      sentences[0], sentences[1],
-      endings_text(shown_endings(p.prediction.endings, p.prediction.final),
-                   "of all bodies as predicted, 95 % intervals"),
-      rest_text(rest_of(p.prediction.final)), fixed(p.prediction.error.total_variation, 4),
-      needed_table(p), groups_table(p), p.options.trials ? power_table(p) : "",
-      p.versus ? versus_table(p) : "", method_line(p.method));
+      "\n{}{}{}{}{}{}{}",
+      endings_text(predicted_shares(p.prediction), "of all bodies as predicted, 95 % intervals"),
+      rest_text(rest_of(p.prediction.final)), needed_table(p), groups_table(p),
+      p.options.trials ? power_table(p) : "", p.versus ? versus_table(p) : "",
+      method_line(p.method));
 }
 
 }  // namespace gatewalk::cli

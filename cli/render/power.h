@@ -38,6 +38,8 @@ struct PowerResult {
   Provenance made_by{};
 };
 void describe(Fields& out, const PowerResult& result);
-[[nodiscard]] std::string table_of(const PowerResult& result);
+/// The first screen, and what --details adds to it.
+[[nodiscard]] std::string answer_text(const PowerResult& result);
+[[nodiscard]] std::string details_text(const PowerResult& result);
 
 }  // namespace gatewalk::cli
