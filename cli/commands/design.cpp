@@ -6,6 +6,7 @@
 #include "cli/arguments.h"
 #include "cli/choice_rounds.h"
 #include "cli/fields/text.h"
+#include "cli/next.h"
 #include "cli/render/crossings.h"
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
@@ -36,27 +37,39 @@ std::vector<int> types_named(const std::string& names, const lattice::Scene& sce
   return types;
 }
 
+std::vector<std::string> next_of(const Options& options) {
+  NextCommands next(options);
+  if (!options.output) next.again("output", "changed.toml", "writes the changed scene");
+  return next.again("figure", "design.svg", "draws what each change does").lines();
+}
+
 }  // namespace
 
 int run_design(const Arguments& arguments) {
-  Options options("design SCENE [options]",
-                  "Which gates of a field to change into other types of its table [terrain], so "
-                  "that bodies cross it as\n"
-                  "often as they can. The best map of a chain is run in full, its trials are "
-                  "added, and so on; new trials\n"
-                  "say how often bodies cross it, and the field as it is.",
-                  "gatewalk design scenes/mixed.toml --changes 3 --types s,.");
+  Options options(
+      "design SCENE [options]",
+      "Answers: which gates of a field to change into other types of its table "
+      "[terrain], so that bodies\n"
+      "cross as often as possible. design finds the best map for a chain, simulates the "
+      "map in full, adds these\n"
+      "trials to the chain, and repeats. New trials then measure how often bodies cross "
+      "the changed field, and\n"
+      "the field as it is.",
+      "gatewalk design scenes/mixed.toml --changes 3 --types s,.");
   const TextOption path = options.scene();
   const CountOption changes =
       options.add_count("changes", "N", "change at most so many gates", "1");
   const TextOption types = options.add_text(
-      "types", "A,B", "into these types of [terrain], . the scene's own (default: all)");
-  const Option least = options.add_flag("least", "bodies shall cross as rarely as they can");
+      "types", "A,B",
+      "change gates into these types of [terrain] only; . is the scene's own type (default: all)");
+  const Option least = options.add_flag("least", "let bodies cross as rarely as possible instead");
   const ChoiceRounds rounds = add_choice_rounds(options);
   const TextOption output =
       options.output_file("output", "FILE.toml",
                           "write the scene with the gates changed, and with the start of --start");
-  options.add_figure("what a change of each gate does, and which are changed");
+  options.add_figure("what a change of each gate does, and which gates are changed");
+  options.add_details("the maps that the chain preferred, and the time-stepping method");
+  options.most_used({"changes", "types", "accuracy", "output", "figure"});
   if (!options.parse(arguments)) return kFine;
   lattice::FieldDesignOptions how{.least = static_cast<bool>(least)};
   take_choice_rounds(options, rounds, how);
@@ -82,7 +95,7 @@ int run_design(const Arguments& arguments) {
   const DesignedScene designed{
       *s.scene, std::move(changed), problem.map().section, problem.start,        how,
       settled,  std::move(design),  watch.seconds(),       options.provenance(s)};
-  options.give_out(designed, table_of(designed));
+  options.give_out(designed, {answer_text(designed), details_text(designed), next_of(options)});
   if (output) options.write(output.value(), lattice::scene_file(designed.after));
   const lattice::Crossings &with = designed.design.crossings, &without = designed.design.before;
   options.warn(few_crossings(with.crossed > without.crossed ? with : without));

@@ -12,6 +12,7 @@
 #include "cli/choice_rounds.h"
 #include "cli/exchange/policy_file.h"
 #include "cli/fields/text.h"
+#include "cli/next.h"
 #include "cli/render/best_start.h"
 #include "cli/render/choice.h"
 #include "cli/render/crossings.h"
@@ -38,23 +39,26 @@ struct PlanCommand : Options {
   AskedProgram program = add_cell_program(*this);
   TextsOption over =
       add_varied("over", "KEY=LOW:HIGH",
-                 "without actions: where bodies may start (start.x_m, start.vx_m_per_s, "
-                 "start.vy_m_per_s;\ndefault: a radius from the joints, up to the speed of an open "
-                 "gate; may be repeated)");
+                 "without actions: range of the start to search (start.x_m, start.vx_m_per_s, "
+                 "start.vy_m_per_s;\ndefault: x up to a body radius from the joints, speed up to "
+                 "that of an open gate; may be repeated)");
   TextOption policy =
       output_file("policy", "FILE.json",
-                  "write what to do in each gate, for --policy of gatewalk lattice and trace");
-  TextOption gate_policy = output_file(
-      "gate-policy", "FILE.json", "the same of the best that knows the gate alone, not the way in");
+                  "write the policy, for --policy of gatewalk lattice and gatewalk trace");
+  TextOption gate_policy =
+      output_file("gate-policy", "FILE.json",
+                  "write the best policy that knows the gate alone, not how the body enters");
   TextOption least =
       add_text("least", "COST",
-               "also policies that cross less often and take less of this (time_s, work_J, "
-               "...), to that which takes least for each crossing");
-  CountOption points = add_count("points", "N", "such policies, at most (default: 5)");
+               "also find policies that cross less often and take less of this cost (time_s, "
+               "work_J, ...), down to the policy with the least cost per crossing");
+  CountOption points = add_count("points", "N", "at most N policies of --least (default: 5)");
   NumberOption chance = add_number(
-      "chance", "P", "--policy writes the one that takes least of those that cross so often");
+      "chance", "P",
+      "of the policies of --least, --policy writes the cheapest one that crosses with at least P");
   Option robust = add_flag(
-      "robust", "policies that are best where the chain is as bad as its runs leave possible");
+      "robust",
+      "find the policy that is best in the worst chain that the sampled runs leave possible");
   TextOption figure = add_figure("the actions by gate, and how often bodies cross");
 };
 
@@ -151,6 +155,32 @@ std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& 
   return ranges;
 }
 
+/// Of a best start: its prediction, where --start can name it, and the map of starts.
+std::vector<std::string> next_of(const Options& options, const lattice::Source& s,
+                                 const FoundStart& found) {
+  NextCommands next(options);
+  const lattice::TrialStart& best = found.found.best;
+  if (s.scene && !s.starts_given && best.column == s.problem.field.start_column())
+    next.add("predict",
+             fmt::format("--start={},{},{}", digits(best.entry.at[0], 4),
+                         digits(best.entry.at[1], 4), digits(best.entry.at[2], 4)),
+             "predicts all endings from there");
+  return next.again("figure", "starts.svg", "draws the chance to cross by start").lines();
+}
+
+/// Of a plan: bodies that follow its policy, once that is a file.
+std::vector<std::string> next_of(const PlanCommand& options) {
+  NextCommands next(options);
+  if (options.policy && !options.cell() && !options.program.command)
+    next.add("trace",
+             fmt::format("--policy {} --trials 20 --replay runs.html",
+                         shell_quoted(options.policy.value())),
+             "shows 20 bodies that follow the policy");
+  else if (!options.policy)
+    next.again("policy", "policy.json", "writes the policy for gatewalk lattice and trace");
+  return next.again("figure", "plan.svg", "draws the actions by gate").lines();
+}
+
 /// Of a scene without actions: the start from which bodies cross most often. `s`: as field_to_run
 /// gives it. Returns the exit status. Throws UsageError.
 int plan_start(const PlanCommand& options, lattice::Source s) {
@@ -182,7 +212,7 @@ int plan_start(const PlanCommand& options, lattice::Source s) {
   const FoundStart shown{
       ShownField(s),   s.problem.start,        how.ranges,           how.columns, std::move(found),
       watch.seconds(), lattice::settled_of(s), options.provenance(s)};
-  options.give_out(shown, table_of(shown) + method_line(lattice::settled_of(s)));
+  options.give_out(shown, {answer_text(shown), details_text(shown), next_of(options, s, shown)});
   options.warn(few_crossings(shown.found.crossings));
   warn_of_choice_rounds(options, shown.found);
   options.warn(too_few_gates(ShownField(s)));
@@ -196,17 +226,25 @@ int plan_start(const PlanCommand& options, lattice::Source s) {
 int run_plan(const Arguments& arguments) {
   PlanCommand options(
       "plan SCENE [options]",
-      "What a body should do in each gate, by how it enters, to cross as often as it can.\n"
-      "Its actions are tables of the scene, such as\n"
+      "Answers: which action a body should take in each gate, by how it enters, to cross as often "
+      "as possible.\n"
+      "The actions are tables of the scene, such as\n"
       "  [actions.push]\n"
       "  forces.propulsion_N = 9\n"
-      "each with keys of forces and beams as they are while a body takes it, or parameters.KEY\n"
-      "of a cell program; an empty table is the scene as it is. They are numbered in the order of\n"
-      "their names. The best policy of chains of all actions is run in full, its trials are\n"
-      "added, and so on; new trials say how often it crosses, beside each action all the time.\n"
-      "Without actions: the start from which bodies cross most often, in a terrain in any column.",
+      "An action sets keys of forces and beams while a body takes it, or parameters.KEY of a cell "
+      "program. An empty\n"
+      "table is the scene as it is. plan finds the best policy for a chain, simulates the policy "
+      "in "
+      "full, adds these\n"
+      "trials to the chain, and repeats. New trials then measure how often the policy crosses, and "
+      "how often each\n"
+      "action crosses when bodies always take it.\n"
+      "Of a scene without actions, plan finds the start from which bodies cross most often, in a "
+      "terrain in any column.",
       "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 --set "
       "actions.fast.forces.propulsion_N=9");
+  options.add_details("each action taken all the time, and what each column or method gives");
+  options.most_used({"set", "policy", "accuracy", "figure", "json"});
   if (!options.parse(arguments)) return kFine;
   lattice::PlanOptions how;
   take_choice_rounds(options, options.rounds, how);
@@ -229,7 +267,7 @@ int run_plan(const Arguments& arguments) {
   lattice::Plan plan = lattice::make_plan(all.actions, how, options.work());
   const PlannedField planned{ShownField(s),   all.names(), std::move(all.methods), std::move(plan),
                              watch.seconds(), how.thrift,  options.provenance(s)};
-  options.give_out(planned, table_of(planned));
+  options.give_out(planned, {answer_text(planned), details_text(planned), next_of(options)});
   if (options.policy)
     options.write(options.policy.value(), policy_text(chosen_policy(planned), all.made_for));
   if (options.gate_policy) {

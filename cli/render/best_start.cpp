@@ -30,10 +30,10 @@ double best_in(const FoundStart& f, int column) {
   return *std::max_element(chance.begin(), chance.end());
 }
 
-std::string verdict(const FoundStart& f) {
+std::string gain_verdict(const FoundStart& f) {
   if (f.found.own)
-    return "no start was found that is better than the own one by more than chance\n";
-  return gain_sentence(f.found.gain, "it", "the own start");
+    return "No start was found that is better than the scene's own by more than chance.\n";
+  return gain_sentence(f.found.gain, "The best start", "the scene's own");
 }
 
 void describe_column(Fields& out, const FoundStart& f, int column) {
@@ -121,7 +121,7 @@ void describe(Fields& out, const FoundStart& f) {
   describe_made_by(out, f.made_by);
 }
 
-std::string table_of(const FoundStart& f) {
+std::string answer_text(const FoundStart& f) {
   const lattice::BestStart& found = f.found;
   const bool several = f.columns.size() > 1;
   TextTable table({{"", -8}, {"crossed, %", 22}, {}});
@@ -133,16 +133,20 @@ std::string table_of(const FoundStart& f) {
   };
   line("  best", found.best, found.crossings);
   line("  own", {f.shown.field.start_column(), f.own}, found.crossings_of_own);
-  std::string text = chance_text(found.crossings) + trials_text(found.crossings) + verdict(f) +
-                     "\n" + table.text();
-  if (several) {
-    text += "\nthe best start of each column, by the chain:\n";
+  return chance_text(found.crossings, " from the best start") + gain_verdict(f) + table.text() +
+         basis_text(found);
+}
+
+std::string details_text(const FoundStart& f) {
+  std::string text = "\n";
+  if (f.columns.size() > 1) {
+    text += "Chance to cross from the best start of each column, by the chain:\n";
     TextTable columns({{"", 10}, {"", 12, 2, "%"}});
     for (const int column : f.columns)
       columns.row({column_text(f, column), 100.0 * best_in(f, column)});
     text += columns.text();
   }
-  return text + rounds_text(found) + fixed(f.seconds, 1) + " s\n";
+  return text + fmt::format("{}Time: {} s.\n", method_line(f.method), fixed(f.seconds, 1));
 }
 
 Figure figure_of(const FoundStart& f) {

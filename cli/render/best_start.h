@@ -29,7 +29,9 @@ struct FoundStart {
   Provenance made_by{};
 };
 void describe(Fields& out, const FoundStart& f);
-[[nodiscard]] std::string table_of(const FoundStart& f);
+/// The first screen, and what --details adds to it.
+[[nodiscard]] std::string answer_text(const FoundStart& f);
+[[nodiscard]] std::string details_text(const FoundStart& f);
 /// The chance to cross by start in the best column, and in full from the best and the own one.
 [[nodiscard]] Figure figure_of(const FoundStart& f);
 

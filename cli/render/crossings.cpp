@@ -41,12 +41,10 @@ void describe_search(Fields& out, const lattice::ChoiceSummary& search, double s
   describe_status(out, search.health);
 }
 
-std::string chance_text(const lattice::Crossings& c) {
-  return fmt::format("chance to cross: {} %", with_interval(c.share(), c.interval_95()));
-}
-
-std::string trials_text(const lattice::Crossings& c) {
-  return fmt::format(" of {} trials by which nothing was chosen\n", c.trials);
+std::string chance_text(const lattice::Crossings& c, std::string_view of) {
+  return wrapped(
+      fmt::format("Chance to cross{}: {} % in {} new trials that were not used in the search.", of,
+                  with_interval(c.share(), c.interval_95()), c.trials));
 }
 
 std::string gain_text(const lattice::Gain& gain) {
@@ -59,15 +57,15 @@ std::string gain_text(const lattice::Gain& gain) {
 std::string gain_sentence(const lattice::Gain& gain, const std::string& what,
                           const std::string& other) {
   if (gain.interval_95[0] > 0.0)
-    return fmt::format("{} gains {} points over {}\n", what, gain_text(gain), other);
-  return fmt::format(
-      "{} is not shown to gain anything over {}: {} points; a smaller --accuracy\nshows a smaller "
-      "gain, if there is one\n",
-      what, other, gain_text(gain));
+    return wrapped(fmt::format("{} gains {} points over {}.", what, gain_text(gain), other));
+  return wrapped(
+      fmt::format("{} is not shown to gain anything over {}: {} points. A smaller --accuracy can "
+                  "show a smaller gain.",
+                  what, other, gain_text(gain)));
 }
 
-std::string rounds_text(const lattice::ChoiceSummary& search) {
-  return fmt::format("{} gate runs in {}, ", search.gate_runs,
+std::string basis_text(const lattice::ChoiceSummary& search) {
+  return fmt::format("From {} gate runs in {} of choosing.\n", search.gate_runs,
                      counted(search.rounds, "round", "rounds"));
 }
 
@@ -76,11 +74,11 @@ std::string few_crossings(const lattice::Crossings& c) {
   if (c.crossed >= kFew) return "";
   if (c.crossed == 0)
     return fmt::format(
-        "none of {} trials crossed: too rare to choose by; a smaller field.rows asks for less, "
-        "gatewalk rare says how rare it is",
+        "none of {} trials crossed: too rare to choose by; take a smaller field.rows, or ask "
+        "gatewalk rare how rare crossings are",
         c.trials);
   return fmt::format(
-      "only {} of {} trials crossed: few show what helps; a smaller --accuracy runs more",
+      "only {} of {} trials crossed, which are few to choose by; a smaller --accuracy runs more",
       c.crossed, c.trials);
 }
 

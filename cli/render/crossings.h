@@ -24,17 +24,15 @@ void describe_gain(Fields& out, std::string_view meaning, const lattice::Gain& g
 /// The keys "rounds" to "status".
 void describe_search(Fields& out, const lattice::ChoiceSummary& search, double seconds);
 
-/// "chance to cross: 17.61 [16.87, 18.37] %"
-[[nodiscard]] std::string chance_text(const lattice::Crossings& c);
-/// " of 1068 trials by which nothing was chosen"
-[[nodiscard]] std::string trials_text(const lattice::Crossings& c);
+/// "Chance to cross`of`: 17.61 [16.87, 18.37] % in 1068 new trials that ...": lines.
+[[nodiscard]] std::string chance_text(const lattice::Crossings& c, std::string_view of = {});
 /// "+2.7 [1.4, 3.9]", in percentage points.
 [[nodiscard]] std::string gain_text(const lattice::Gain& gain);
-/// "`what` gains 2.7 points over `other`", or that it is not shown to.
+/// "`what` gains 2.7 points over `other`.", or that it is not shown to: lines.
 [[nodiscard]] std::string gain_sentence(const lattice::Gain& gain, const std::string& what,
                                         const std::string& other);
-/// "200000 gate runs in 2 rounds, "
-[[nodiscard]] std::string rounds_text(const lattice::ChoiceSummary& search);
+/// "From 200000 gate runs in 2 rounds of choosing."
+[[nodiscard]] std::string basis_text(const lattice::ChoiceSummary& search);
 
 /// That so few trials crossed that they say little; empty where they are not few.
 [[nodiscard]] std::string few_crossings(const lattice::Crossings& c);

@@ -19,7 +19,7 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr std::size_t kMostListed = 40;  // changes in the table
+constexpr std::size_t kMostListed = 12;  // changes on the screen
 constexpr std::size_t kMostOptima = 3;   // other maps in the table
 
 const std::string& name_of(const lattice::Scene& scene, int type) {
@@ -65,16 +65,17 @@ std::string changes_text(const DesignedScene& d, const std::vector<Changed>& cha
   return fmt::format("{}{}", fmt::join(listed, ", "), changes.size() > kMostListed ? ", ..." : "");
 }
 
-std::string verdict(const DesignedScene& d, std::size_t changes) {
+std::string gain_verdict(const DesignedScene& d, std::size_t changes) {
   if (changes == 0)
-    return fmt::format("no change that was tried in full lets bodies cross more {}\n",
+    return fmt::format("No change that was simulated in full lets bodies cross more {}.\n",
                        d.options.least ? "rarely" : "often");
   const lattice::Gain& gain = d.design.gain;
   const bool shown = d.options.least ? gain.interval_95[1] < 0.0 : gain.interval_95[0] > 0.0;
-  return fmt::format(
-      "{} points by {}{}\n", gain_text(gain),
-      counted(static_cast<std::int64_t>(changes), "changed gate", "changed gates"),
-      shown ? "" : ": not shown to be a change; a smaller --accuracy shows a smaller one");
+  return wrapped(fmt::format(
+      "{} the chance by {} points.{}",
+      counted(static_cast<std::int64_t>(changes), "changed gate changes", "changed gates change"),
+      gain_text(gain),
+      shown ? "" : " This is not more than chance; a smaller --accuracy can show a smaller gain."));
 }
 
 }  // namespace
@@ -156,29 +157,41 @@ void describe(Fields& out, const DesignedScene& d) {
   describe_made_by(out, d.made_by);
 }
 
-std::string table_of(const DesignedScene& d) {
+std::string answer_text(const DesignedScene& d) {
   const lattice::DesignedField& design = d.design;
   const std::vector<Changed> changes = changes_of(d, design.type_of_cell);
-  const markov::Designs& chain = design.by_chain;
-  std::string table = fmt::format("{}, {} % as the field is,{}{}", chance_text(design.crossings),
-                                  with_interval(design.before.share(), design.before.interval_95()),
-                                  trials_text(design.crossings), verdict(d, changes.size()));
-  if (!changes.empty()) table += fmt::format("gates: {}\n", changes_text(d, changes));
-  table += fmt::format(
-      "by the chain, with its own error: {} % as the field is; searches, whose results are too "
-      "good besides, ended at\n",
+  std::string text =
+      chance_text(design.crossings, " the changed field") +
+      fmt::format("The field as it is: {} % in as many trials.\n",
+                  with_interval(design.before.share(), design.before.interval_95())) +
+      gain_verdict(d, changes.size());
+  if (!changes.empty())
+    text +=
+        wrapped(fmt::format("Gates to change, as (i_x, i_y): {}.", changes_text(d, changes)), "  ");
+  text += basis_text(design);
+  const std::vector<std::string> rows = lattice::map_rows(*d.after.terrain, d.after.field);
+  if (d.after.field.rows <= kMostPrinted && d.after.field.columns <= kMostPrinted)
+    text += fmt::format("Types of all gates after the change, far row first:\n  {}\n",
+                        fmt::join(rows, "\n  "));
+  return text;
+}
+
+std::string details_text(const DesignedScene& d) {
+  const markov::Designs& chain = d.design.by_chain;
+  std::string text = fmt::format(
+      "\nThe chain that guided the search has errors of its own. It gives {} % for the field as it "
+      "is.\nIts searches ended at these maps; their chances are too high, as a search exploits "
+      "sampling errors:\n",
       fixed(100.0 * chain.before, 2));
   for (std::size_t i = 0; i < std::min(chain.optima.size(), kMostOptima); ++i) {
     const std::vector<Changed> to = changes_of(d, chain.optima[i].type_of_cell);
-    table += fmt::format("  {} %, {} times: {}\n", fixed(100.0 * chain.optima[i].gain, 2),
-                         chain.optima[i].searches,
-                         to.empty() ? "the field as it is" : changes_text(d, to));
+    text += wrapped(fmt::format("  {} %, {} times: {}", fixed(100.0 * chain.optima[i].gain, 2),
+                                chain.optima[i].searches,
+                                to.empty() ? "the field as it is" : changes_text(d, to)),
+                    "    ");
   }
-  const std::vector<std::string> rows = lattice::map_rows(*d.after.terrain, d.after.field);
-  if (d.after.field.rows <= kMostPrinted && d.after.field.columns <= kMostPrinted)
-    table += fmt::format("\nthe gates, far row first:\n  {}\n", fmt::join(rows, "\n  "));
-  return fmt::format("{}{}{}{} maps solved in all, {} s\n", table, method_line(d.method),
-                     rounds_text(design), chain.solves, fixed(d.seconds, 1));
+  return text + fmt::format("{}The chain was solved for {} maps. Time: {} s.\n",
+                            method_line(d.method), chain.solves, fixed(d.seconds, 1));
 }
 
 Figure figure_of(const DesignedScene& d) {

@@ -31,7 +31,9 @@ void describe(Fields& out, const DesignedScene& d);
 /// The scene with gates of these types of its terrain: (rows x columns), the near row first.
 [[nodiscard]] lattice::Scene with_gates(lattice::Scene scene, std::vector<int> type_of_cell);
 
-[[nodiscard]] std::string table_of(const DesignedScene& d);
+/// The first screen, and what --details adds to it.
+[[nodiscard]] std::string answer_text(const DesignedScene& d);
+[[nodiscard]] std::string details_text(const DesignedScene& d);
 /// What the best change of each gate alone does, which are changed, and how often bodies cross.
 [[nodiscard]] Figure figure_of(const DesignedScene& d);
 

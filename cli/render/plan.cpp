@@ -42,8 +42,7 @@ std::string map_text(const PlannedField& p) {
   if (columns > kMostPrinted || rows > kMostPrinted || p.actions.size() > kMarks.size()) return "";
   const std::vector<MostTaken> most = most_taken(p);
   std::string text = fmt::format(
-      "\nthe action that is taken most in each gate (.: fewer than {} of {} bodies came), far row "
-      "first:\n",
+      "Most frequent action in each gate, far row first (.: fewer than {} of {} bodies came):\n",
       kFewVisits, p.plan.crossings.trials);
   for (int r = rows; r-- > 0;) {
     text += fmt::format("{:>4} ", r);
@@ -56,24 +55,25 @@ std::string map_text(const PlannedField& p) {
   return text;
 }
 
-/// What the plan gains, in a sentence.
-std::string verdict(const PlannedField& p) {
+/// What the plan gains, in sentences.
+std::string gain_verdict(const PlannedField& p) {
   const std::size_t best = best_alone(p.plan);
   const lattice::Gain& gain = p.plan.gains[best];
   const std::string alone = p.actions[best] + " all the time";
   if (const auto& always = p.plan.policy.always)
-    return fmt::format("the best that was found is to take {} all the time\n",
+    return fmt::format("The best policy found takes {} all the time.\n",
                        p.actions[static_cast<std::size_t>(*always)]);
   if (gain.interval_95[1] < 0.0)
-    return fmt::format(
-        "the plan is worse than {}, {} points: chosen by chance; a smaller --accuracy helps\n",
-        alone, gain_text(gain));
-  return gain_sentence(gain, "choosing by the way in", alone);
+    return wrapped(
+        fmt::format("Beware: the plan is worse than {}, by {} points. Sampling noise led the "
+                    "search; use a smaller --accuracy.",
+                    alone, gain_text(gain)));
+  return gain_sentence(gain, "Choosing the action by how a body enters", alone);
 }
 
 std::string worst_text(const lattice::Plan& plan) {
   if (!plan.worst_case) return "";
-  return fmt::format("with each row 1.96 standard errors worse than counted: {} %\n",
+  return fmt::format("Worst case, each row of the chain 1.96 standard errors worse: {} % cross.\n",
                      fixed(100.0 * *plan.worst_case, 2));
 }
 
@@ -92,10 +92,8 @@ std::string front_text(const PlannedField& p) {
     return fmt::format("{} [{}, {}]", amount(mean), amount(interval[0]), amount(interval[1]));
   };
   if (p.plan.front.size() < 2)
-    return fmt::format("\nno policy was found that takes less for each crossing ({})\n",
-                       cost.words);
-  TextTable table(
-      {{"", -2}, {"crossed, %", 22}, {"a trial takes", 32}, {"each crossing takes", 32}});
+    return fmt::format("No policy was found that takes less for each crossing ({}).\n", cost.words);
+  TextTable table({{"", -2}, {"crossed, %", 22}, {"per trial", 36}, {"per crossing", 36}});
   const std::optional<std::size_t> chosen = cheapest(p);
   for (std::size_t i = 0; i < p.plan.front.size(); ++i) {
     const auto& [price, policy, crossings, spent] = p.plan.front[i];
@@ -103,8 +101,8 @@ std::string front_text(const PlannedField& p) {
                between(spent.mean, spent.mean_95),
                between(spent.per_crossing, spent.per_crossing_95)});
   }
-  return fmt::format("\npolicies that take less ({}), under the same noise:\n\n{}", cost.words,
-                     table.text());
+  return fmt::format("Policies that take less ({}), with the same random numbers{}\n{}", cost.words,
+                     chosen ? " (*: the one that --chance chooses):" : ":", table.text());
 }
 
 /// The action that is taken most in each gate; none where nobody came.
@@ -315,34 +313,53 @@ void describe(Fields& out, const PlannedField& p) {
   describe_made_by(out, p.made_by);
 }
 
-std::string table_of(const PlannedField& p) {
+namespace {
+
+/// A line for each action taken all the time, and one for the policy that knows the gate alone.
+std::string actions_table(const PlannedField& p) {
   const lattice::Plan& plan = p.plan;
   TextTable table({{"", -4},
-                   {"action", -kFit},
+                   {"always one action", -kFit},
                    {"crossed, %", 22, 0, "", "  "},
-                   {"the plan's gain, points", 28},
-                   {"the plan takes it", 20, 1, "%"}});
+                   {"the plan gains, points", 26},
+                   {"the plan takes it", 19, 1, "%"}});
   double all = 0.0;
   for (const double u : plan.usage) all += u;
   for (std::size_t a = 0; a < p.actions.size(); ++a)
     table.row({fmt::format("  {}", mark_of(a)), p.actions[a],
                with_interval(plan.alone[a].share(), plan.alone[a].interval_95()),
                gain_text(plan.gains[a]), 100.0 * usage_of(p, a).sum() / all});
-  std::string not_searched;
-  if (const auto& gates = plan.by_cell) {
-    table.row({"", "gate alone",
+  if (const auto& gates = plan.by_cell)
+    table.row({"", "by gate alone",
                with_interval(gates->crossings.share(), gates->crossings.interval_95()),
                gain_text(gates->worth)});
-    if (!gates->searched)
-      not_searched =
-          "gate alone: not all that was to be tried was, in so large a field; there may be "
-          "better\n";
-  }
-  return fmt::format(
-      "{}{}{}{}\neach action all the time, under the same noise:\n\n{}{}{}{}{}{} s\n",
-      chance_text(plan.crossings), trials_text(plan.crossings), worst_text(plan), verdict(p),
-      table.text(), not_searched, front_text(p), map_text(p), rounds_text(plan),
-      fixed(p.seconds, 1));
+  return table.text();
+}
+
+/// Whether the table of actions is short enough for the first screen.
+bool is_short(const PlannedField& p) { return p.actions.size() <= 5; }
+
+}  // namespace
+
+std::string answer_text(const PlannedField& p) {
+  const lattice::Plan& plan = p.plan;
+  return chance_text(plan.crossings) + worst_text(plan) + gain_verdict(p) +
+         (p.thrift      ? front_text(p)
+          : is_short(p) ? actions_table(p) + map_text(p)
+                        : "") +
+         basis_text(plan);
+}
+
+std::string details_text(const PlannedField& p) {
+  std::string text = "\n";
+  if (p.thrift || !is_short(p)) text += actions_table(p) + map_text(p);
+  text +=
+      "by gate alone: the best policy found that knows the gate, but not how the body enters.\n"
+      "All policies are compared with the same random numbers.\n";
+  if (p.plan.by_cell && !p.plan.by_cell->searched)
+    text += "The field is too large to try every policy by gate alone; a better one may exist.\n";
+  return text +
+         fmt::format("{}Time: {} s.\n", method_lines({p.actions, p.methods}), fixed(p.seconds, 1));
 }
 
 Figure figure_of(const PlannedField& p) {

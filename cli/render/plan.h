@@ -26,7 +26,9 @@ struct PlannedField {
   Provenance made_by{};
 };
 void describe(Fields& out, const PlannedField& p);
-[[nodiscard]] std::string table_of(const PlannedField& p);
+/// The first screen, and what --details adds to it.
+[[nodiscard]] std::string answer_text(const PlannedField& p);
+[[nodiscard]] std::string details_text(const PlannedField& p);
 /// Which action is taken most in each cell, and how often bodies cross.
 [[nodiscard]] Figure figure_of(const PlannedField& p);
 

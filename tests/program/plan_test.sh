@@ -5,14 +5,14 @@
 
 actions=(--set actions.slow.forces.propulsion_N=6 --set actions.fast.forces.propulsion_N=9)
 small=("$scenes/field.toml" --set run.method=moreau --set field.rows=3 --accuracy 0.1)
-expect 0 '^chance to cross: [0-9.]* \[[0-9., ]*\] % of 97 trials by which nothing was chosen$' "$gatewalk" plan "${small[@]}" "${actions[@]}" --json plan.json --figure plan.svg --policy fast.json
+expect 0 '^Chance to cross: [0-9.]* \[[0-9., ]*\] % in 97 new trials that were not used in the search.$' "$gatewalk" plan "${small[@]}" "${actions[@]}" --json plan.json --figure plan.svg --policy fast.json
 holds '.crossed > 0 and .crossed_95[0] < .crossed and .crossed < .crossed_95[1] and .trials == 97 and [.actions[].name] == ["fast", "slow"] and (.best_alone == "fast" or .best_alone == "slow") and (.most_taken | length) == 3 and .most_taken[0][4] != null and .most_taken[0][0] == null' plan.json
 # At the start each trial takes one action.
 holds '[.actions[].taken[0][4]] | add | . > 0.999999 and . < 1.000001' plan.json
 grep -q 'most frequent action' plan.svg || fail "no map of actions"
 # An action all the time is the field with its keys. Over itself a plan gains nothing, which is no estimate.
 holds '[.actions[] | .crossed - .crossed_95[0] > 0 and (.gain_95 == null or .gain_95[0] < .gain and .gain < .gain_95[1])] | all' plan.json
-grep -q '^the best that was found is to take fast all the time$' out.txt || fail "this plan is to be one action: $(head -n 2 out.txt)"
+grep -q '^The best policy found takes fast all the time.$' out.txt || fail "this plan is to be one action: $(head -n 2 out.txt)"
 holds '.actions[0].gain == 0 and .actions[0].gain_95 == null and .actions[1].gain_95 != null and .by_gate.gain == 0 and .by_gate.gain_95 == null' plan.json
 [ "$(grep -c ' 0.00  *100.0 %$\| 0.00$' out.txt)" = 2 ] || fail "the gain of a plan over itself: $(grep -e fast -e 'gate alone' out.txt)"
 # The same bits on one thread, and from a scene's own tables; what is kept is taken up again.
@@ -29,7 +29,7 @@ expect 0 '^actions.fast.forces.propulsion_N  *9.0 ' "$gatewalk" scene own.toml
 expect 0 '^actions: fast, slow, wait (the scene as it is)$' "$gatewalk" scene own.toml --set actions.wait={} --json scene.json
 holds '.actions == ["fast", "slow", "wait"]' scene.json
 # Gates of several types; an action that is the scene as it is.
-expect 0 '^chance to cross: ' "$gatewalk" plan "$scenes/mixed.toml" --set run.method=moreau --set field.max_gates=30 --set actions.fast.forces.propulsion_N=12 --set actions.wait={} --accuracy 0.2 --json mixed.json
+expect 0 '^Chance to cross: ' "$gatewalk" plan "$scenes/mixed.toml" --set run.method=moreau --set field.max_gates=30 --set actions.fast.forces.propulsion_N=12 --set actions.wait={} --accuracy 0.2 --json mixed.json
 holds '.most_taken | length == 9' mixed.json
 # The policy is a file, which the full dynamics runs: as often as the plan says, the same at every go.
 { cat "$scenes/field.toml"; printf '[actions.left]\nbeams.stiffness_left_Nm_per_rad = 200\n[actions.right]\nbeams.stiffness_right_Nm_per_rad = 200\n'; } >sides.toml
@@ -53,7 +53,7 @@ holds '.by_gate.crossed > 0 and .by_gate.gain_95[0] <= .by_gate.gain and (.by_ga
 jq -s '.[0].by_gate.crossed_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' sides.json run.json | grep -q true || fail "the policy by gates crosses less or more often than planned"
 # Policies that take less, from the plan's own on; the one that is written crosses so often.
 least=("$scenes/field.toml" --set run.method=moreau --set field.rows=2 --set actions.slow.forces.propulsion_N=5 --set actions.fast.forces.propulsion_N=11 --accuracy 0.05)
-expect 0 '^policies that take less (work of the propulsion), under the same noise:$' "$gatewalk" plan "${least[@]}" --least work_J --points 4 --json least.json
+expect 0 '^Policies that take less (work of the propulsion), with the same random numbers:$' "$gatewalk" plan "${least[@]}" --least work_J --points 4 --json least.json
 holds '.least == "work_J" and (.front | length) > 1 and (.front | length) <= 4 and .front[0].crossed == .crossed and .front[0].price == 0 and (.front | map(.price) | . == sort) and (.front | map(.chosen) | any | not)' least.json
 holds '.front | map(.per_crossing / .mean * .crossed | . > 0.999 and . < 1.001) | all' least.json
 chance=$(jq '.front[-1].crossed' least.json)
@@ -66,7 +66,7 @@ expect 2 "'heat_J' is none of time_s, forward_m, work_J, random_work_J, lost_J" 
 expect 2 '--points: only with --least' "$gatewalk" plan "${least[@]}" --points 3
 expect 2 '--chance: must lie between 0 and 1' "$gatewalk" plan "${least[@]}" --least time_s --chance 1
 # What is best in the worst case, and how bad that is.
-expect 0 "^with each row 1.96 standard errors worse than counted: [0-9.]* %$" "$gatewalk" plan "${sides[@]}" --accuracy 0.05 --robust --json robust.json --policy robust.policy.json
+expect 0 "^Worst case, each row of the chain 1.96 standard errors worse: [0-9.]* % cross.$" "$gatewalk" plan "${sides[@]}" --accuracy 0.05 --robust --json robust.json --policy robust.policy.json
 holds '.worst_case >= 0 and .worst_case < .crossed_95[1] and .chain == null' robust.json
 holds 'has("worst_case") | not' sides.json
 "$gatewalk" lattice "${sides[@]}" --policy robust.policy.json --trials 2000 --seed 3 --quiet --json run.json --force
@@ -115,7 +115,7 @@ expect 0 'none of 25 trials crossed: too rare to choose by' "$gatewalk" plan own
 if command -v python3 >/dev/null; then
   cp "$scenes/programs/hopper.toml" .
   hopper=(hopper.toml --cell-program "python3 $scenes/programs/hopper.py")
-  expect 0 '^choosing by the way in gains ' "$gatewalk" plan "${hopper[@]}" --seed 2 --json hops.json --policy hops.policy.json --gate-policy push.policy.json --threads 2
+  expect 0 '^Choosing the action by how a body enters gains ' "$gatewalk" plan "${hopper[@]}" --seed 2 --json hops.json --policy hops.policy.json --gate-policy push.policy.json --threads 2
   holds '[.actions[].name] == ["gently", "hard"] and .trials == 2401 and .best_alone == "hard" and .settled' hops.json
   holds '(.crossed - 0.729 | fabs) < 0.03 and (.actions[0].crossed - 0.108 | fabs) < 0.02 and (.actions[1].crossed - 0.324 | fabs) < 0.03 and (.by_gate.crossed - 0.324 | fabs) < 0.03' hops.json
   # The first one is always taken on hard ground.
@@ -146,7 +146,7 @@ if command -v python3 >/dev/null; then
   holds '(.actions[0].crossed - 0.324 | fabs) < 0.03 and (.crossed - 0.729 | fabs) < 0.03' as.json
   expect 2 'as.policy.json: was made for another cell: .*push_J = 2.*push_J = 3' "$gatewalk" lattice "${bare[@]}" --set parameters.push_J=2 --set actions.gently.parameters.push_J=1 --set 'actions.as_it_is={}' --policy as.policy.json
   # Costs are those of the cell: the push that gets on best also takes least time for each crossing.
-  expect 0 '^no policy was found that takes less for each crossing (time_s)$' "$gatewalk" plan "${hopper[@]}" --accuracy 0.05 --least time_s --points 3
+  expect 0 '^No policy was found that takes less for each crossing (time_s).$' "$gatewalk" plan "${hopper[@]}" --accuracy 0.05 --least time_s --points 3
   expect 2 "'lost_J' is none of time_s, work_J" "$gatewalk" plan "${hopper[@]}" --least lost_J
   # Other commands leave the actions alone, and a matrix keeps them.
   "$gatewalk" lattice "${hopper[@]}" --trials 200 --quiet --json with.json --force
