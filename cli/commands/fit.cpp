@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "cli/arguments.h"
+#include "cli/next.h"
 #include "cli/number_ranges.h"
 #include "cli/render/observed.h"
 #include "cli/source_options.h"
@@ -22,32 +23,33 @@ struct FitCommand : Options {
   TextOption path = scene();
   TextsOption counts = positional_list(
       "counts",
-      "what the experiment saw (CSV: gate_x,gate_y,count; ending,count; or, for both, "
-      "trial,ending,gate_x,gate_y; also with time_s; files with the same columns are added up; or "
-      "passages: runs.csv)");
+      "the experiment (CSV): gate_x,gate_y,count; or ending,count; or a line per trial, "
+      "trial,ending,gate_x,gate_y, also with time_s; or passages, runs.csv. Files with the same "
+      "columns are added up");
   TextsOption free = add_varied(
       "free", "KEY=LOW:HIGH",
       fmt::format(
-          "a number of the scene, or of the program, and its range (at most {}; may be repeated)",
+          "a number to find, of the scene or of the program, and its range (at most {}; may be "
+          "repeated)",
           lattice::kMostFitted));
-  CountOption trials = add_count(
-      "trials", "N",
-      fmt::format("full trials, or passages, all points together; {} or more for each number",
-                  lattice::least_trials_of_fit(1)),
-      "400000");
+  CountOption trials =
+      add_count("trials", "N",
+                fmt::format("simulate N trials, or passages, in all; {} or more for each number",
+                            lattice::least_trials_of_fit(1)),
+                "400000");
   TextsOption start =
       add_texts("start", "D,VX,VY", "where bodies started (default: the scene's start)");
   Option seed_given = add_seed();
   AskedProgram program = add_cell_program(*this);
   TextOption output =
-      output_file("output", "FILE.toml",
-                  "write the scene in which the counts are likeliest, with --scenes others too");
-  CountOption scenes =
-      add_count("scenes", "N",
-                "with -o FILE.toml, write N scenes drawn from the posterior as FILE-1.toml, ...");
-  TextOption draws = output_file("draws", "FILE.csv", "write the posterior, a line for each draw");
+      output_file("output", "FILE.toml", "write the scene in which the counts are likeliest");
+  CountOption scenes = add_count(
+      "scenes", "N",
+      "with -o FILE.toml, also write N scenes drawn from the posterior, FILE-1.toml, ...");
+  TextOption draws =
+      output_file("draws", "FILE.csv", "write the draws from the posterior, a line each");
   TextOption inference_data =
-      output_file("inference-data", "FILE.nc", "write it as ArviZ reads it (InferenceData)",
+      output_file("inference-data", "FILE.nc", "write the posterior as InferenceData, for ArviZ",
                   Options::Content::binary);
   TextOption checkpoint = add_kept();
   Option strict = add_strict();
@@ -126,14 +128,13 @@ lattice::FitData of_passages(const FitCommand& options, const lattice::Source& s
   };
   if (runs.lost > 0)
     options.warn(of_all(runs.lost) +
-                 "were lost and are left out: that is right if losing bodies has nothing to do "
-                 "with how they get on");
+                 "were lost and are left out; this biases nothing if losses are independent of the "
+                 "motion");
   lattice::FitData data =
       lattice::passages_to_fit(lattice::entered_passages(runs), numbers, at, trials);
   if (data.inside > 0)
     options.warn(of_all(data.inside) +
-                 "begin with the body well inside an obstacle of the scene: places in the table "
-                 "are off, or obstacles in the scene");
+                 "begin with the body deep inside an obstacle: check the places and the scene");
   return data;
 }
 
@@ -155,15 +156,15 @@ lattice::FitData of_trials(const FitCommand& options, const lattice::Problem& pr
   if (observed.seen.has_gates() && observed.seen.has_endings() &&
       observed.gates_by_ending[0].size() == 0) {
     options.warn(
-        "the endings are left out: nothing says which of them belong to which final gates; "
-        "lines of trials (trial,ending,gate_x,gate_y) tell both");
+        "the endings are left out: nothing says which of them belong to which final gates; give "
+        "lines of trials (trial,ending,gate_x,gate_y)");
     observed.seen.endings = {};
   }
   options.warn(who_went_back(observed));
   options.warn(not_listed(observed, problem.field));
   lattice::FitData data = lattice::trials_to_fit(observed, problem);
   if (!observed.timed.empty() && data.outcomes.times.empty())
-    options.warn("the times are all alike, or there are none: they tell nothing");
+    options.warn("the times are all equal, or missing, and tell nothing");
   return data;
 }
 
@@ -188,22 +189,38 @@ std::vector<double> point_of(const Eigen::MatrixXd& draws, Eigen::Index draw) {
   return {draws.row(draw).begin(), draws.row(draw).end()};
 }
 
+std::vector<std::string> next_of(const FitCommand& options, const FittedScene& fitted) {
+  NextCommands next(options);
+  const std::string output = options.output.value();
+  if (!output.empty() && output != "-")
+    return {"gatewalk predict " + shell_quoted(output) + "  # predicts with the fitted numbers"};
+  if (fitted.fit.p >= 0.01 && !options.program.command && !options.cell())
+    next.again("output", "best.toml", "writes the best scene");
+  return next.again("figure", "fit.svg", "draws the posterior").lines();
+}
+
 }  // namespace
 
 int run_fit(const Arguments& arguments) {
   FitCommand options(
       "fit SCENE SEEN.csv [MORE.csv ...] --free KEY=LOW:HIGH [options]",
-      "Which numbers of the scene an experiment speaks for: their posterior, all of them anywhere "
-      "in their\n"
-      "ranges alike before. The chances of final gates and endings come from full trials at points "
-      "of the\n"
-      "ranges, more and more of them where the counts are likely. Counts: as of validate "
-      "--observed, of one start;\n"
-      "lines of trials may have time_s, when a body left the field. Of recorded passages "
-      "(runs.csv) each is\n"
-      "carried out from where it began. Cells of a program: its numbers, parameters.KEY.",
+      "Answers: which values of a scene's numbers explain an experiment. fit gives the posterior "
+      "of "
+      "each number, if\n"
+      "all values of its range are equally likely before. It simulates full trials at points of "
+      "the "
+      "ranges, with more\n"
+      "points where the counts are likely.\n"
+      "The counts have the columns of validate --observed, and belong to one start. Lines of "
+      "trials "
+      "may have time_s, the\n"
+      "time at which a body left the field. Recorded passages (runs.csv) are simulated from where "
+      "each one began. Of\n"
+      "cells of a program, fit finds numbers of the program: parameters.KEY.",
       "gatewalk fit scenes/field.toml counts.csv --free forces.propulsion_N=5:9 --free "
       "forces.random_N=10:40");
+  options.add_details("the search, the checks of the posterior, and the time-stepping method");
+  options.most_used({"free", "output", "trials", "figure", "json"});
   if (!options.parse(arguments)) return kFine;
   lattice::Source s = field_to_run(
       options, {.path = options.path, .program = options.program, .starts = options.start},
@@ -228,7 +245,7 @@ int run_fit(const Arguments& arguments) {
                            lattice::fit(numbers, at, data, how, options.work()),
                            options.provenance(s)};
   const lattice::Fit& fit = fitted.fit;
-  options.give_out(fitted, table_of(fitted));
+  options.give_out(fitted, {answer_text(fitted), details_text(fitted), next_of(options, fitted)});
   if (options.draws) options.write(options.draws.value(), draws_csv(fitted));
   if (options.inference_data) options.write(options.inference_data.value(), inference_data(fitted));
   if (const std::string path = options.output.value(); !path.empty()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/fit.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -195,11 +195,61 @@ void describe(Fields& out, const FittedScene& f) {
   describe_made_by(out, f.made_by);
 }
 
-std::string table_of(const FittedScene& f) {
+namespace {
+
+/// Numbers that the data leave anywhere in their ranges, in a sentence.
+std::string untold_text(const FittedScene& f) {
+  std::vector<std::string> keys;
+  for (std::size_t k = 0; k < f.ranges.size(); ++k)
+    if (!f.fit.numbers[k].told) keys.push_back(f.ranges[k].key);
+  if (keys.empty()) return "";
+  return wrapped(fmt::format("Beware: these data cannot tell {}: any value of the range fits.",
+                             fmt::join(keys, " or ")));
+}
+
+/// Pairs of numbers of which only a combination is known, at most so many.
+std::string together_text(const FittedScene& f, std::size_t most) {
+  std::string text;
+  for (std::size_t k = 0; k < f.ranges.size(); ++k)
+    for (std::size_t other = 0; other < k; ++other)
+      if (const double c =
+              f.fit.correlation(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(other));
+          std::abs(c) > kTogether && most > 0) {
+        --most;
+        text +=
+            wrapped(fmt::format("Beware: these data tell {} and {} only together (correlation {}).",
+                                f.ranges[other].key, f.ranges[k].key, fixed(c, 2)));
+      }
+  return text;
+}
+
+/// Whether the numbers explain the counts, and where not.
+std::string explained_text(const FittedScene& f) {
+  const lattice::Fit& fit = f.fit;
+  if (fit.p >= kUnexplained)
+    return wrapped(fmt::format(
+        "The fitted scene explains the counts: {} of the experiments that it predicts lie further "
+        "from the expectation ({}).",
+        percent(fit.p, 1.0), p_words(fit.p)));
+  std::vector<lattice::OutcomeGroup> sorted = fit.groups;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+    return std::abs(surprise(a)) > std::abs(surprise(b));
+  });
+  std::string text = fmt::format(
+      "Beware: no numbers in these ranges explain the counts ({}){}. Largest differences:\n",
+      p_words(fit.p), fit.outcomes.is_of_passages() ? "; are the cells of the same size?" : "");
+  for (std::size_t i = 0; i < std::min(kMostShown, sorted.size()); ++i)
+    text += fmt::format("  {}: {} expected, {} observed\n", words_of(f, sorted[i]),
+                        fixed(sorted[i].expected, 1), sorted[i].observed);
+  return text;
+}
+
+}  // namespace
+
+std::string answer_text(const FittedScene& f) {
   const lattice::Fit& fit = f.fit;
   TextTable numbers(
-      {{"", -34}, {"range", 18}, {"best", 12}, {"median", 12}, {"95 % interval", 26}});
-  std::string told;
+      {{"", -34}, {"range", 18}, {"best", 11}, {"median", 11}, {"95 % interval", 25}});
   for (std::size_t k = 0; k < f.ranges.size(); ++k) {
     const auto& [key, low, high] = f.ranges[k];
     const lattice::FittedNumber& n = fit.numbers[k];
@@ -207,36 +257,35 @@ std::string table_of(const FittedScene& f) {
     numbers.row({key, fmt::format("{} to {}", lattice::shortest(low), lattice::shortest(high)),
                  at(n.best), at(n.median),
                  fmt::format("[{}, {}]", at(n.interval[0]), at(n.interval[1]))});
-    if (!n.told)
-      told += fmt::format("these data cannot tell {}: they leave it anywhere in its range\n", key);
-    for (std::size_t other = 0; other < k; ++other)
-      if (const double c =
-              fit.correlation(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(other));
-          std::abs(c) > kTogether)
-        told += fmt::format("these data tell {} and {} only together: correlation {}\n",
-                            f.ranges[other].key, key, fixed(c, 2));
   }
-  std::string unexplained;
-  if (fit.p < kUnexplained) {
-    std::vector<lattice::OutcomeGroup> sorted = fit.groups;
-    std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
-      return std::abs(surprise(a)) > std::abs(surprise(b));
-    });
-    unexplained = fmt::format(
-        "no numbers in these ranges explain the counts{}; furthest off, expected and observed:\n",
-        fit.outcomes.is_of_passages() ? " (of cells of other lengths?)" : "");
-    for (std::size_t i = 0; i < std::min(kMostShown, sorted.size()); ++i)
-      unexplained += fmt::format("  {}: {}, {}\n", words_of(f, sorted[i]),
-                                 fixed(sorted[i].expected, 1), sorted[i].observed);
-  }
-  return fmt::format(
-      "{}{}{} observed {}; of experiments like this one {} are further from what is expected "
-      "({})\n{}{}{} {}, in the last of {} rounds at {} points of {} of the ranges; chances between "
-      "them by polynomials of degree {}{}, {} s\n",
-      numbers.text(), told, fit.observed, counted(f), percent(fit.p, 1.0), p_words(fit.p),
-      unexplained, method_line(f.method), fit.trials, counted(f), fit.rounds + 1, fit.points,
-      percent(fit.volume, 1.0, fit.volume < 0.01 ? 3 : 1), fit.degree,
-      fit.parts > 1 ? fmt::format(" in {} parts of these", fit.parts) : "", fixed(fit.seconds, 1));
+  constexpr std::size_t kMostPairs = 1;
+  return numbers.text() + explained_text(f) +
+         fmt::format("From {} observed {} and {} simulated {}.\n", fit.observed, counted(f),
+                     fit.trials, counted(f)) +
+         untold_text(f) + together_text(f, kMostPairs);
+}
+
+std::string details_text(const FittedScene& f) {
+  const lattice::Fit& fit = f.fit;
+  double by_trials = 0.0;
+  for (const lattice::FittedNumber& n : fit.numbers) by_trials = std::max(by_trials, n.by_runs);
+  std::string text = "\n" + together_text(f, f.ranges.size() * f.ranges.size());
+  text += method_line(f.method);
+  text += wrapped(fmt::format(
+      "The search took {} rounds. The last round has {} points in {} of the ranges' volume. "
+      "Polynomials of degree {}{} give the chances between the points.",
+      fit.rounds + 1, fit.points, percent(fit.volume, 1.0, fit.volume < 0.01 ? 3 : 1), fit.degree,
+      fit.parts > 1 ? fmt::format(", in {} parts of the ranges,", fit.parts) : ""));
+  text += fmt::format(
+      "Checks of the posterior, with the largest value that passes:\n"
+      "  error of the log likelihood between the points   {:>8}   0.5\n"
+      "  share of a variance from the simulated trials    {:>8}   20 %\n"
+      "  R of the walks (Gelman and Rubin)                {:>8}   1.05\n"
+      "  draws at the edge of the points                  {:>8}   1 %\n"
+      "  posterior that may lie outside the points        {:>8}   1 %\n",
+      fixed(fit.misfit, 2), percent(by_trials, 1.0, 0), fixed(fit.mixing, 2),
+      percent(fit.near_bounds, 1.0), percent(fit.outside, 1.0));
+  return text + fmt::format("Time: {} s.\n", fixed(fit.seconds, 1));
 }
 
 bool is_clean(const FittedScene& f) {
@@ -253,33 +302,24 @@ std::vector<std::string> warnings_of(const FittedScene& f) {
     const lattice::FittedNumber& n = fit.numbers[k];
     for (const std::size_t end : {0U, 1U})
       if (n.goes_on[end])
-        warn(fmt::format(
-            "{} is likely to lie beyond {}, where its range ends: a wider one tells, if that is "
-            "permitted",
-            f.ranges[k].key, lattice::shortest(end == 0 ? f.ranges[k].low : f.ranges[k].high)));
+        warn(fmt::format("{} is likely to lie beyond {}, where its range ends: use a wider range",
+                         f.ranges[k].key,
+                         lattice::shortest(end == 0 ? f.ranges[k].low : f.ranges[k].high)));
   }
   if (fit.never > 0)
-    warn(fmt::format(
-        "{} of {} observed {} ended as none of the model did where their numbers are likeliest: "
-        "they are counted with their neighbours",
-        fit.never, fit.observed, counted(f)));
+    warn(
+        fmt::format("{} of {} observed {} ended as no simulated one did; they are counted with the "
+                    "next outcome",
+                    fit.never, fit.observed, counted(f)));
   for (std::size_t k = 0; k < f.ranges.size(); ++k)
     if (const lattice::FittedNumber& n = fit.numbers[k];
         !n.goes_on[0] && !n.goes_on[1] && (n.best < n.interval[0] || n.best > n.interval[1]))
       warn(fmt::format(
-          "the counts are likeliest outside the interval of {}: many other values fit nearly as "
-          "well, and the ranges decide how many",
+          "the best value of {} lies outside its interval: many others fit nearly as well",
           f.ranges[k].key));
   if (fit.settled()) return all;
-  double by_trials = 0.0;
-  for (const lattice::FittedNumber& n : fit.numbers) by_trials = std::max(by_trials, n.by_runs);
-  warn(fmt::format(
-      "the posterior is rough: chances between the points change the log likelihood by {}, trials "
-      "make {} of a variance (which is counted), R of the walks is {}, {} of the draws lie at the "
-      "edge of the points, {} of the posterior may lie where there are none; more --trials{}",
-      fixed(fit.misfit, 2), percent(by_trials, 1.0, 0), fixed(fit.mixing, 2),
-      percent(fit.near_bounds, 1.0), percent(fit.outside, 1.0),
-      goes_on ? " help" : ", or narrower ranges, help"));
+  warn(fmt::format("the posterior is rough (--details lists the checks): more --trials{}",
+                   goes_on ? " help" : ", or narrower ranges, help"));
   return all;
 }
 

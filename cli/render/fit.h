@@ -28,7 +28,9 @@ void describe(Fields& out, const FittedScene& f);
 
 /// What was seen and run: "trials", or "passages".
 [[nodiscard]] std::string counted(const FittedScene& f);
-[[nodiscard]] std::string table_of(const FittedScene& f);
+/// The first screen, and what --details adds to it.
+[[nodiscard]] std::string answer_text(const FittedScene& f);
+[[nodiscard]] std::string details_text(const FittedScene& f);
 /// A line for each draw: the numbers in their units, and the log likelihood.
 [[nodiscard]] std::string draws_csv(const FittedScene& f);
 /// Each number's posterior, and that of each pair.
