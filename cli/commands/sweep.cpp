@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/arguments.h"
+#include "cli/next.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/sweep.h"
@@ -44,20 +45,28 @@ std::vector<std::string> remarks_on(const std::vector<lattice::SweepPoint>& poin
   return {texts.begin(), texts.end()};
 }
 
+std::vector<std::string> next_of(const Options& options, const SweepResult& result) {
+  NextCommands next(options);
+  constexpr std::size_t kMostDrawn = 2;  // keys
+  if (result.axes.size() <= kMostDrawn) next.again("figure", "sweep.svg", "draws all points");
+  return next.again("csv", "sweep.csv", "writes all points as a table").lines();
+}
+
 }  // namespace
 
 int run_sweep(const Arguments& arguments) {
   Options options(
       "sweep SCENE [options]",
-      "Runs one gate many times at every point of a grid over any keys of the scene and counts "
-      "how\n"
-      "the runs end. Values are from:step:to or a list; the grid is all their combinations. A "
-      "scene\n"
-      "may bring its own in a table [sweep]; --vary adds to it or replaces its values of a key.",
+      "Answers: how the runs through one gate end when numbers of the scene change.\n"
+      "sweep simulates the gate many times at every point of a grid over any keys, and counts how "
+      "the runs end. Values\n"
+      "are from:step:to or a list; the grid has all combinations. A scene may bring a grid in a "
+      "table [sweep]; --vary\n"
+      "adds a key to that grid, or replaces the values of a key.",
       "gatewalk sweep scenes/single_gate.toml --vary forces.propulsion_N=4:1:9 "
       "--vary forces.random_N=0,10,20 --trials 1000 --csv sweep.csv");
   const TextOption path = options.scene();
-  options.add_trials_and_seed("runs of the gate at each point");
+  options.add_trials_and_seed("runs through the gate at each point");
   options.add_first_trial();
   options.add_kept({"gate runs"});
   options.add_strict();
@@ -68,6 +77,8 @@ int run_sweep(const Arguments& arguments) {
   const TextOption table =
       options.output_file("csv", "FILE", "write the grid as CSV; - is standard output");
   const TextOption figure = options.add_figure("shares over one key, a map over two");
+  options.add_details("the table of all points, and the numbers that stay fixed");
+  options.most_used({"vary", "trials", "figure", "csv", "json"});
   if (!options.parse(arguments)) return kFine;
   const std::string csv = table.value();
   const dynamics::TrialRange trials = options.trial_range();
@@ -90,7 +101,8 @@ int run_sweep(const Arguments& arguments) {
     if (!options.json.value().empty()) options.give_out(result, std::string());
   } else {
     if (!csv.empty()) options.write(csv, csv_of(result));
-    options.give_out(result, table_of(result, scene));
+    options.give_out(result,
+                     {answer_text(result), details_text(result, scene), next_of(options, result)});
   }
   dynamics::Health health;
   for (const lattice::SweepPoint& p : result.points) health += p.tally.health;

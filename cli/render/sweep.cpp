@@ -44,13 +44,13 @@ std::vector<Part> shares_of(const dynamics::GateTally& t) {
            t[Outcome::traversed_left] + t[Outcome::traversed_right]}};
 }
 
-/// "  5.1 [3.9, 6.6]    ", in %
+/// "5.1 [3.9, 6.6]", in %; "-" of none.
 std::string share_text(const Part& s) {
-  if (s.whole == 0) return fmt::format("{:>6}{:16}", "-", "");
+  if (s.whole == 0) return "-";
   const auto [low, high] = share_interval(s.part, s.whole);
-  return fmt::format("{:>6}{:16}",
+  return fmt::format("{} [{}, {}]",
                      fixed(100.0 * static_cast<double>(s.part) / static_cast<double>(s.whole), 1),
-                     fmt::format(" [{}, {}]", fixed(100.0 * low, 1), fixed(100.0 * high, 1)));
+                     fixed(100.0 * low, 1), fixed(100.0 * high, 1));
 }
 
 void describe(Fields& out, const std::vector<SweepAxis>& axes, const SweepPoint& p) {
@@ -115,26 +115,82 @@ std::string csv_of(const SweepResult& result) {
   return out.str();
 }
 
-std::string table_of(const SweepResult& result, const lattice::Scene& scene) {
-  std::vector<TextColumn> columns;
-  for (const SweepAxis& axis : result.axes) columns.push_back({axis.key, kFit, 0, "", "  "});
-  columns.push_back({"   traversed             right of those        exited   trapped"});
+namespace {
+
+/// Keys in the headings where they are short; else letters, which a line in front explains.
+struct KeyColumns {
+  std::string legend{};
+  std::vector<TextColumn> columns{};
+
+  explicit KeyColumns(const std::vector<SweepAxis>& axes) {
+    constexpr std::size_t kMostWide = 30;
+    std::size_t wide = 0;
+    for (const SweepAxis& axis : axes) wide += axis.key.size() + 2;
+    const bool letters = wide > kMostWide;
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      const std::string letter(1, static_cast<char>('a' + static_cast<char>(k)));
+      columns.push_back({letters ? letter : axes[k].key, kFit, 0, "", "  "});
+      if (letters) legend += fmt::format("  {}: {}\n", letter, axes[k].key);
+    }
+  }
+};
+
+/// A line for each of these points.
+std::string table_of(const std::vector<SweepAxis>& axes,
+                     const std::vector<const SweepPoint*>& points) {
+  auto [legend, columns] = KeyColumns(axes);
+  for (const char* heading : {"traversed, %", "of these right, %"})
+    columns.push_back({heading, 21});
+  for (const char* heading : {"exited, %", "trapped, %"}) columns.push_back({heading, 11});
+  columns.push_back({});
   TextTable table(columns);
-  for (const SweepPoint& p : result.points) {
-    std::vector<TextCell> cells(p.values.begin(), p.values.end());
-    const auto shares = shares_of(p.tally);
+  for (const SweepPoint* p : points) {
+    std::vector<TextCell> cells(p->values.begin(), p->values.end());
+    const auto shares = shares_of(p->tally);
     const auto share = [&](std::size_t i) {
-      return percent(static_cast<double>(shares[i].part), static_cast<double>(shares[i].whole));
+      return fixed(
+          100.0 * static_cast<double>(shares[i].part) / static_cast<double>(shares[i].whole), 1);
     };
-    cells.emplace_back(fmt::format("    {}{}{:>8}{:>10}{}", share_text(shares[0]),
-                                   share_text(shares[5]), share(3), share(4),
-                                   p.tally.health.clean() ? "" : "  faults"));
+    for (const std::string& text :
+         {share_text(shares[0]), share_text(shares[5]), share(3), share(4)})
+      cells.emplace_back(text);
+    if (!p->tally.health.clean()) cells.emplace_back("  faults");
     table.row(cells);
   }
-  return fmt::format(
-      "{}but for the keys varied. {} points of {} trials, all under the same noise; % of them with "
-      "95 % intervals.\n\n{}",
-      scene_line(scene), result.points.size(), result.points.front().tally.trials, table.text());
+  return legend + table.text();
+}
+
+constexpr std::size_t kMostShown = 8;  // points of the first screen; fewer below a legend of keys
+constexpr std::size_t kMostBelowLegend = 6;
+
+}  // namespace
+
+std::string answer_text(const SweepResult& result) {
+  std::vector<const SweepPoint*> points;
+  for (const SweepPoint& p : result.points) points.push_back(&p);
+  std::string text;
+  if (points.size() > kMostShown) {  // those where most and fewest traverse
+    std::ranges::stable_sort(points, [](const SweepPoint* a, const SweepPoint* b) {
+      return a->tally.traversed() > b->tally.traversed();
+    });
+    const bool has_legend = !KeyColumns(result.axes).legend.empty();
+    const auto half = static_cast<std::ptrdiff_t>((has_legend ? kMostBelowLegend : kMostShown) / 2);
+    points.erase(points.begin() + half, points.end() - half);
+    text = fmt::format("The {} points at which most runs traverse, and the {} with fewest:\n", half,
+                       half);
+  }
+  return text + table_of(result.axes, points) +
+         fmt::format("From {} of {}, all with the same random numbers; 95 % intervals.\n",
+                     counted(std::ssize(result.points), "point", "points"),
+                     counted(result.points.front().tally.trials, "trial", "trials"));
+}
+
+std::string details_text(const SweepResult& result, const lattice::Scene& scene) {
+  std::string text = "\nAll other numbers are those of the scene:\n" + scene_line(scene);
+  if (result.points.size() <= kMostShown) return text;
+  std::vector<const SweepPoint*> points;
+  for (const SweepPoint& p : result.points) points.push_back(&p);
+  return text + "\nAll points\n" + table_of(result.axes, points);
 }
 
 namespace {

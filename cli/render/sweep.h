@@ -20,7 +20,9 @@ struct SweepResult {
 };
 void describe(Fields& out, const SweepResult& result);
 [[nodiscard]] std::string csv_of(const SweepResult& result);
-[[nodiscard]] std::string table_of(const SweepResult& result, const lattice::Scene& scene);
+/// The first screen, and what --details adds to it.
+[[nodiscard]] std::string answer_text(const SweepResult& result);
+[[nodiscard]] std::string details_text(const SweepResult& result, const lattice::Scene& scene);
 
 /// Of one key: shares over its values; of two: a map of the traversed. Throws std::invalid_argument
 /// for more.

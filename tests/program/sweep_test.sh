@@ -12,8 +12,8 @@ holds '[.points[].at["forces.propulsion_N"]] == [8, 8, 8.5, 8.5, 9, 9]' sweep.js
   fail "sweep: a point is not what gate gives"
 [ "$(wc -l <sweep.csv)" = 7 ] || fail "sweep: $(wc -l <sweep.csv) lines"
 [ "$(head -n 1 sweep.csv | cut -d, -f1,2,3)" = "forces.propulsion_N,run.method,method" ] || fail "sweep: $(head -n 1 sweep.csv)"
-expect 0 '60 points of 1 trials' "$gatewalk" sweep "$scenes/fig8.toml" --trials 1 --quiet
-expect 0 '216 points of 1 trials' "$gatewalk" sweep "$scenes/fig12.toml" --trials 1 --quiet
+expect 0 '^From 60 points of 1 trial,' "$gatewalk" sweep "$scenes/fig8.toml" --trials 1 --quiet
+expect 0 '^From 216 points of 1 trial,' "$gatewalk" sweep "$scenes/fig12.toml" --trials 1 --quiet
 expect 0 ' 12 points' "$gatewalk" sweep "$scenes/fig8.toml" --trials 1 --quiet --vary forces.random_N=20
 expect 2 'nothing to vary' "$gatewalk" sweep "$scenes/field.toml"
 expect 2 'closest known key is forces.random_N' "$gatewalk" sweep "$scenes/field.toml" --vary forces.randm_N=1
