@@ -3,6 +3,7 @@
 
 #include "cli/arguments.h"
 #include "cli/fields/text.h"
+#include "cli/next.h"
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
 #include "dynamics/base/kept_pieces.h"
@@ -26,30 +27,42 @@ double spacing_for(const NumberOption& given, const lattice::Scene& scene) {
   return spacing;
 }
 
+std::vector<std::string> next_of(const Options& options, std::int64_t trials) {
+  NextCommands next(options);
+  if (trials > 0) return next.add("gate", "--trials 1000", "simulates the gate alone").lines();
+  return next.again("trials", "1000", "compares with simulated runs").lines();
+}
+
 }  // namespace
 
 int run_landscape(const Arguments& arguments) {
   Options options("landscape SCENE -o DIR [options]",
-                  "The potential energy of body and beams over the gate, Eqs. (14) and (15) of the "
-                  "paper, with beams\n"
-                  "deflected forward; the way through whose highest point is lowest, and how far "
-                  "that lies above the\n"
-                  "energy of the start and above the basin on the way. Writes landscape.csv, "
-                  "landscape.json, landscape.svg.",
+                  "Answers: how high the energy barrier of one gate is, and where a body can get "
+                  "stuck before it.\n"
+                  "landscape computes the potential energy of body and beams over the gate, Eqs. "
+                  "(14) and (15) of the paper,\n"
+                  "with beams deflected forward. It finds the path whose highest point is lowest, "
+                  "and compares this pass with\n"
+                  "the energy of the start and of the basin on the way. It writes landscape.csv, "
+                  "landscape.json and\n"
+                  "landscape.svg.",
                   "gatewalk landscape scenes/single_gate.toml -o landscape --trials 1000");
   options.scene();
   const std::vector<std::string> files{"landscape.csv", "landscape.json", "landscape.svg"};
   options.output_folder("folder to write to", files);
   const NumberOption spacing = options.add_number(
-      "spacing", "M", "of the grid, in m (default: a twentieth of body.radius_m, as in the paper)");
+      "spacing", "M",
+      "spacing of the grid, in m (default: a twentieth of body.radius_m, as in the paper)");
   const TextOption beam = options.add_text(
       "beam", "WHICH", "beams that resist: both, left or right (the other swings free: Fig. 6C)",
       "both");
-  const CountOption trials_given = options.add_count(
-      "trials", "N", "also run the gate N times: who passes, beside who should", "0");
+  const CountOption trials_given =
+      options.add_count("trials", "N", "also simulate N runs through the gate, to compare", "0");
   options.add_seed();
   options.add_strict();
   options.add_figure("the figure of the folder");
+  options.add_details("the passes of both grids, and the numbers of the scene");
+  options.most_used({"output", "trials", "beam", "set", "figure"});
   if (!options.parse(arguments)) return kFine;
   const auto beams = beams_of(beam.value());
   const std::int64_t trials = trials_given.value(0);
@@ -68,7 +81,8 @@ int run_landscape(const Arguments& arguments) {
   result.made_by = options.provenance(scene);
   folder.write("landscape.csv", csv_of(result.passes.coarse.landscape), "landscape.json", result);
   folder.draw("landscape.svg", figure_of(result.passes));
-  options.give_out(result, line + table_of(result, scene.gate));
+  options.give_out(result, {answer_text(result, scene.gate),
+                            details_text(result, scene.gate) + line, next_of(options, trials)});
   const int exit =
       status_of(options, result.measured ? result.measured->health : dynamics::Health());
   options.draw([&] { return figure_of(result.passes); });

@@ -15,34 +15,38 @@ struct PassagesCommand : Options {
   using Options::Options;
   TextsOption tracks =
       positional_list("tracks",
-                      "tables with a line a place (CSV), DeepLabCut's CSV, or movement's NetCDF; "
-                      "several recordings make one RUNS.csv");
+                      "tables with a line for each place (CSV), CSV of DeepLabCut, or NetCDF of "
+                      "movement; several recordings make one RUNS.csv");
   TextOption cell_file =
-      input_file("cell", "the cells and what is measured of an entry (cell.toml)");
+      input_file("cell", "cell.toml: size of the cells, and what is measured of an entry");
   TextOption output =
-      main_output_file("RUNS.csv", "the passages, a line each", Options::Content::binary);
-  NumberOption fastest =
-      add_number("fastest", "M/S",
-                 "what is faster from frame to frame, noise included, is a jump (must be given)");
+      main_output_file("RUNS.csv", "write the passages, a line each", Options::Content::binary);
+  NumberOption fastest = add_number(
+      "fastest", "M/S",
+      "highest speed from frame to frame, noise included; a faster step is a jump (must be "
+      "given)");
   TextOption columns =
       add_text("columns", "MEANING=NAME,...",
-               "of a table: body=..., frame=... or time=..., x=..., y=..., confidence=...; "
-               "x=x*,y=y* where columns are of a body each");
+               "columns of a table: body=..., frame=... or time=..., x=..., y=..., confidence=...; "
+               "x=x*,y=y* where each body has columns of its own");
   NumberOption fps = add_number("fps", "N", "frames per second");
   NumberOption metres_per_unit =
-      add_number("metres-per-unit", "X", "of the file's x and y, unless it says so; 1: metres");
-  TextOption key_point = add_text("key-point", "NAME", "the key point that is the body's place");
-  NumberOption confidence = add_number("confidence", "X", "places with less are not seen");
+      add_number("metres-per-unit", "X",
+                 "length of one unit of x and y in metres, unless the file says it; 1: metres");
+  TextOption key_point = add_text("key-point", "NAME", "the key point to take as the body's place");
+  NumberOption confidence =
+      add_number("confidence", "X", "take places with less confidence as not seen");
   TextOption origin = add_text(
       "origin", "X,Y", "lower left corner of column 0 and row 0, in the file's unit", "0,0");
   Option y_down =
-      add_flag("y-down", "y grows downwards in the file, as in pictures; upwards without it");
+      add_flag("y-down", "y grows downwards in the file, as in images (default: upwards)");
   TextOption cells =
       add_text("lattice", "COLUMNS,ROWS",
-               "cells that there are, from the origin on; all: no end (default: the field's)");
+               "number of cells from the origin on; all: no limit (default: those of the field)");
   TextOption window =
-      add_text("window", "N|Xs", "of local fits, frames or seconds (default: least error)");
-  CountOption bridge = add_count("bridge", "N", "frames that may be missing without a gap", "0");
+      add_text("window", "N|Xs",
+               "length of local fits, in frames or seconds (default: the length of least error)");
+  CountOption bridge = add_count("bridge", "N", "bridge gaps of up to N missing frames", "0");
   TextOption figure = add_figure("all tracks over the cells, and where they were cut");
 };
 
@@ -78,7 +82,8 @@ lattice::TrackOptions track_options(const PassagesCommand& options) {
 
 lattice::CutOptions cut_options(const PassagesCommand& options) {
   if (!options.fastest)
-    throw UsageError("how fast bodies can be is not said: --fastest M/S; what is faster is a jump");
+    throw UsageError(
+        "missing --fastest M/S: how fast bodies can be; a faster step counts as a jump");
   lattice::CutOptions cut{.fastest = options.fastest.value(),
                           .window = options.window.value(),
                           .bridge = static_cast<int>(options.bridge.value(0, 1000))};
@@ -94,19 +99,31 @@ lattice::CutOptions cut_options(const PassagesCommand& options) {
   return cut;
 }
 
+std::vector<std::string> next_of(const std::string& runs, const std::string& cell) {
+  if (runs == "-") return {};
+  return {"gatewalk build " + shell_quoted(runs) + " --cell " + shell_quoted(cell) +
+          " -o chain.nc  # makes a chain of the passages"};
+}
+
 }  // namespace
 
 int run_passages(const Arguments& arguments) {
   PassagesCommand options(
       "passages TRACKS... --cell CELL.toml -o RUNS.csv [options]",
-      "Cuts tracks from a lab at the borders of cells into passages, which gatewalk "
-      "build makes a chain of.\nWhat the file does not say has to be given. Gaps and "
-      "jumps are no passages: who is in a cell then is lost.",
+      "Cuts the tracks of your animals or robots at the borders of cells into passages; gatewalk "
+      "build makes a chain of\n"
+      "them. Options give what the file does not say: units, frames per second, columns. A body "
+      "that is in a cell\n"
+      "during a gap or a jump of its track counts as lost there.",
       "gatewalk passages tracks.csv --cell cell.toml -o runs.csv --fastest 2 --fps 120 "
       "--metres-per-unit 0.001 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,"
       "y=POSITION_Y");
+  options.add_details("how the file was understood, gaps, jumps, noise, and the local fits");
+  options.most_used({"cell", "output", "fastest", "columns", "fps"});
   if (!options.parse(arguments)) return kFine;
-  if (!options.cell_file) throw UsageError("the cells are not said: --cell CELL.toml");
+  if (!options.cell_file)
+    throw UsageError(
+        "missing --cell CELL.toml: it says how large the cells are; gatewalk sample cell");
   const auto cutting = cut_options(options);
   lattice::CellFile cell =
       lattice::read_cell_file(options.file(options.cell_file.value()).toml(), options.overrides());
@@ -123,7 +140,8 @@ int run_passages(const Arguments& arguments) {
   options.keep_old(path);
   lattice::write_runs(path, result.cell,
                       lattice::recorded_runs(result.cut, result.file, result.cell));
-  options.give_out(result, table_of(result));
+  options.give_out(result, {answer_text(result), details_text(result),
+                            next_of(path, options.cell_file.value())});
   options.draw([&] { return figure_of(result.cut, result.cell); });
   return kFine;
 }

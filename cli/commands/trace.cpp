@@ -13,6 +13,7 @@
 #include "cli/fields/text.h"
 #include "cli/film/replay.h"
 #include "cli/film/video.h"
+#include "cli/next.h"
 #include "cli/render/health.h"
 #include "cli/render/recording.h"
 #include "cli/web/embedded.h"
@@ -30,11 +31,11 @@ struct TraceCommand : Options {
   CountOption trials = add_count("trials", "N", "record trials I to I + N - 1", "1");
   TextOption only = add_text(
       "only", "ENDING",
-      "keep the runs that end so, e.g. traversed, 'traversed left', trapped; with "
+      "keep only the runs with this ending, e.g. traversed, 'traversed left', trapped; with "
       "--field crossed, 'left side', 'right side', departed (any of these), trapped, 'cut off'");
   Option across_field = add_flag("field", "cross the field, gate after gate, instead of one gate");
   TextOption policy = input_file(
-      "policy", "cross the field and do what this file of gatewalk plan says (FILE.json)");
+      "policy", "cross the field and follow the policy in this file of gatewalk plan (FILE.json)");
   TextOption csv = output_file("csv", "FILE", "write all samples as CSV; - is standard output");
   TextOption netcdf =
       output_file("netcdf", "FILE", "write all samples as NetCDF-4", Options::Content::binary);
@@ -42,10 +43,11 @@ struct TraceCommand : Options {
   TextOption video =
       output_file("video", "FILE.mp4|gif", "write a film of the first run (needs ffmpeg)",
                   Options::Content::binary);
-  TextOption figure = add_figure(fmt::format("the ways of up to {} runs", kMostDrawn));
-  NumberOption video_speed =
-      add_number("video-speed", "X",
-                 "times as fast as real (default: the scene's own pace, 1 in the paper's scenes)");
+  TextOption figure = add_figure(fmt::format("the paths of up to {} runs", kMostDrawn));
+  NumberOption video_speed = add_number(
+      "video-speed", "X",
+      "play X times as fast as real time (default: the scene's own pace, 1 in the paper's "
+      "scenes)");
 };
 
 std::optional<double> video_speed(const TraceCommand& options, const lattice::Scene& scene) {
@@ -89,20 +91,32 @@ lattice::RecordingOptions recording_options(const TraceCommand& options) {
   return wanted;
 }
 
+std::vector<std::string> next_of(const TraceCommand& options, bool across_field) {
+  NextCommands next(options);
+  if (!options.replay)
+    return next.again("replay", "runs.html", "plays the runs in a browser").lines();
+  const std::string policy =
+      options.policy ? " --policy " + shell_quoted(options.policy.value()) : "";
+  return next.add(across_field ? "lattice" : "gate", "--trials 1000" + policy, "counts the endings")
+      .lines();
+}
+
 }  // namespace
 
 int run_trace(const Arguments& arguments) {
   TraceCommand options(
       "trace SCENE [options]",
-      "Records runs in full: every step of the method with positions, velocities, "
-      "beams, forces, contacts\n"
-      "and energies. A trial is the very same one as in `gatewalk gate` (with --field: "
-      "in `gatewalk lattice`)\n"
-      "of that seed and number; with --policy as in `gatewalk lattice --policy`. CSV "
-      "and NetCDF have all of\n"
-      "it; --replay makes a page that plays the runs, --video a film of the first one.",
+      "Shows single runs: trace records every step with positions, velocities, beams, forces, "
+      "contacts and energies.\n"
+      "A run is the same as in gatewalk gate with this seed and number (with --field or --policy: "
+      "as in gatewalk\n"
+      "lattice). --replay writes a page that plays the runs, --video a film of the first run. CSV "
+      "and NetCDF keep all\n"
+      "steps.",
       "gatewalk trace scenes/soft_left.toml --trials 20 --only 'traversed left' "
       "--replay runs.html --csv runs.csv");
+  options.add_details("more runs, what the columns mean, and the numbers of the scene");
+  options.most_used({"field", "trials", "only", "replay", "csv"});
   if (!options.parse(arguments)) return kFine;
   lattice::RecordingOptions wanted = recording_options(options);
   lattice::Scene scene = options.read_scene();
@@ -144,9 +158,11 @@ int run_trace(const Arguments& arguments) {
   }
   const bool to_stdout = options.csv.value() == "-" || options.replay.value() == "-";
   options.give_out(result,
-                   to_stdout ? ""
-                             : table_of(scene, recordings) + method_line(result.method) +
-                                   method_lines(result.may_do) + film_line,
+                   to_stdout ? Screen(std::string())
+                             : Screen(answer_text(scene, recordings) + film_line,
+                                      details_text(scene, recordings) + method_line(result.method) +
+                                          method_lines(result.may_do),
+                                      next_of(options, wanted.across_field)),
                    -1);
   const int exit = status_of(options, recordings.health);
   options.draw([&] { return figure_of(scene, recordings); });

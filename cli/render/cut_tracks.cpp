@@ -33,53 +33,61 @@ std::vector<std::int64_t> left_by(const CutTracks& cut, const lattice::CellFile&
   return counts;
 }
 
+/// How the files of tracks were understood.
 std::string lines_of_file(const lattice::TrackFile& file) {
-  std::string text = fmt::format("{} ({}): {}, {} places, a frame every {}\n", file.source,
-                                 file.kind, counted(std::ssize(file.tracks), "body", "bodies"),
-                                 file.places, quantity(file.interval, "s"));
+  std::string text =
+      wrapped(fmt::format("{} ({}): {}, {} places, a frame every {}", file.source, file.kind,
+                          counted(std::ssize(file.tracks), "body", "bodies"), file.places,
+                          quantity(file.interval, "s")),
+              "  ");
   const auto add = [&](std::int64_t n, const std::string& what) {
     if (n > 0) text += fmt::format("  {} {}\n", n, what);
   };
   const auto places = [](std::int64_t n) { return std::string(n == 1 ? "place" : "places"); };
   add(file.no_place, places(file.no_place) + " without a number");
-  add(file.unsure, places(file.unsure) + " with less confidence than asked for");
-  add(file.repeated, places(file.repeated) + " written again and again, taken as not seen");
+  add(file.unsure, places(file.unsure) + " with less confidence than --confidence");
+  add(file.repeated, places(file.repeated) + " repeated exactly, taken as not seen");
   add(file.at_zero, places(file.at_zero) + " at (0, 0), taken as not seen");
-  add(file.no_body, std::string(file.no_body == 1 ? "line" : "lines") + " of no body, left out");
+  add(file.no_body,
+      std::string(file.no_body == 1 ? "line" : "lines") + " without a body, left out");
   add(never_seen(file), "of the bodies never seen");
-  for (const std::string& remark : file.remarks) text += "  " + remark + "\n";
+  for (const std::string& remark : file.remarks) text += wrapped("  " + remark, "    ");
   return text;
 }
 
 /// What happened between the places that were seen, and how the cells lie among them.
 std::string lines_of_cut(const CutResult& result) {
   const auto& [file, cell, cut, made_by] = result;
-  std::string text = fmt::format(
-      "{} between {} and {}; fastest step {}\n", counted(std::ssize(cut.pieces), "piece", "pieces"),
-      counted(cut.gaps, "gap", "gaps"), counted(cut.jumps, "jump", "jumps"),
-      quantity(cut.fastest_step, "m/s"));
+  std::string text =
+      wrapped(fmt::format("{} between {} and {}; the fastest step is {}",
+                          counted(std::ssize(cut.pieces), "piece of track", "pieces of track"),
+                          counted(cut.gaps, "gap", "gaps"), counted(cut.jumps, "jump", "jumps"),
+                          quantity(cut.fastest_step, "m/s")));
   if (cut.short_pieces > 0)
-    text += fmt::format("  {} of {} too short to be fitted, left out\n",
+    text += fmt::format("  {} of {} left out: too short for a fit\n",
                         counted(cut.short_pieces, "more piece", "more pieces"),
                         counted(cut.short_frames, "frame", "frames"));
-  text += fmt::format("cells {} x {}, {}\n", quantity(cell.width, "m"), quantity(cell.length, "m"),
-                      cut.columns > 0 ? fmt::format("{} columns and {} rows from the origin on",
-                                                    cut.columns, cut.rows)
-                                      : "as many as there is room for");
+  text += fmt::format(
+      "cells of {} x {}, {}\n", quantity(cell.width, "m"), quantity(cell.length, "m"),
+      cut.columns > 0
+          ? fmt::format("{} columns and {} rows from the origin on", cut.columns, cut.rows)
+          : "wherever there are tracks");
   if (cut.places_outside > 0)
-    text += fmt::format(
-        "  {} outside them, {} never seen in them: no passages; {} where a body comes back\n",
-        counted(cut.places_outside, "place lies", "places lie"),
-        counted(cut.bodies_outside, "body is", "bodies are"),
-        counted(cut.came_back, "trial begins", "trials begin"));
+    text += wrapped(
+        fmt::format("  {} outside the cells, {} never seen in a cell; {} where a body comes back",
+                    counted(cut.places_outside, "place lies", "places lie"),
+                    counted(cut.bodies_outside, "body is", "bodies are"),
+                    counted(cut.came_back, "trial begins", "trials begin")),
+        "    ");
   const lattice::TrackNoise& noise = cut.noise;
   return text +
          fmt::format(
-             "fits of {} frames ({}); noise of places {}, of velocities {} at borders; smoothed "
-             "away {}\na border is crossed by who gets {} over it: {} to and fro not counted\n\n",
+             "local fits of {} frames ({}), which smooth away {} of velocity\n"
+             "noise: {} in places, {} in velocities at borders\n"
+             "A crossing counts only if the path then goes {} beyond the border; {} did not.\n",
              noise.window, quantity(noise.window * file.interval, "s", 3),
-             quantity(noise.place, "m", 3), quantity(cut.crossing_velocity_noise, "m/s", 3),
-             quantity(noise.velocity_bias, "m/s", 3), quantity(cut.hysteresis, "m", 3),
+             quantity(noise.velocity_bias, "m/s", 3), quantity(noise.place, "m", 3),
+             quantity(cut.crossing_velocity_noise, "m/s", 3), quantity(cut.hysteresis, "m", 3),
              counted(cut.uncounted, "crossing", "crossings"));
 }
 
@@ -204,7 +212,7 @@ void describe(Fields& out, const CutResult& result) {
   describe_made_by(out, made_by);
 }
 
-std::string table_of(const CutResult& result) {
+std::string answer_text(const CutResult& result) {
   const auto& [file, cell, cut, made_by] = result;
   std::vector<std::string> faces, losses;
   const auto counts = left_by(cut, cell);
@@ -215,10 +223,7 @@ std::string table_of(const CutResult& result) {
         fmt::format("{} {}", lattice::kLostNames[i], cut.lost(static_cast<lattice::LostBy>(i))));
   const std::size_t all = cut.passages.size();
   TextTable table({{"", -10}, {"", 8}, {"", 10}, {"", 0, 0, "", "   "}});
-  table.row(
-      {"passages", all, "",
-       fmt::format("in {}; {} that began unseen left out", counted(cut.trials, "trial", "trials"),
-                   counted(cut.first_stays, "stay", "stays"))});
+  table.row({"passages", all, "", fmt::format("in {}", counted(cut.trials, "trial", "trials"))});
   const auto line = [&](const char* name, CutEnd end, const std::string& of_what) {
     const std::int64_t n = cut.count(end);
     table.row({name, n, percent(static_cast<double>(n), static_cast<double>(all)), of_what});
@@ -228,7 +233,21 @@ std::string table_of(const CutResult& result) {
        cell.trapped_after ? "for more than " + quantity(*cell.trapped_after, "s")
                           : "cell.trapped_after_s is not given");
   line("lost", CutEnd::lost, fmt::format("{}", fmt::join(losses, ", ")));
-  return lines_of_file(file) + lines_of_cut(result) + table.text();
+  std::string text =
+      table.text() +
+      wrapped(fmt::format("From {}, {} places; {} left out, because they began unseen.",
+                          counted(std::ssize(file.tracks), "body", "bodies"), file.places,
+                          counted(cut.first_stays, "stay", "stays")));
+  constexpr double kFew = 0.01;
+  if (static_cast<double>(cut.count(CutEnd::lost)) > kFew * static_cast<double>(all))
+    text +=
+        "Beware: lost passages bias a chain if losses depend on the motion; --bridge N bridges "
+        "gaps.\n";
+  return text;
+}
+
+std::string details_text(const CutResult& result) {
+  return "\n" + lines_of_file(result.file) + lines_of_cut(result);
 }
 
 namespace {

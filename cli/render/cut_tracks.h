@@ -19,7 +19,9 @@ struct CutResult {
   Provenance made_by{};
 };
 void describe(Fields& out, const CutResult& result);
-[[nodiscard]] std::string table_of(const CutResult& result);
+/// The first screen, and what --details adds to it.
+[[nodiscard]] std::string answer_text(const CutResult& result);
+[[nodiscard]] std::string details_text(const CutResult& result);
 
 /// All tracks over the cells, with the places where they were cut.
 [[nodiscard]] Figure figure_of(const lattice::CutTracks& cut, const lattice::CellFile& cell);

@@ -61,13 +61,13 @@ const char* beams_word(dynamics::BeamsThatPush beams) {
   return beams[dynamics::kLeft] ? "left" : "right";
 }
 
-/// "measured: 5.1 % of 1000 trials traverse, 95 % [3.9, 6.6]"
+/// "5.1 % [3.9, 6.6] of 1000 simulated runs traverse the gate."
 std::string measured_line(const dynamics::GateTally& tally) {
   const auto [from, to] = dynamics::share_interval(tally.traversed(), tally.trials);
   return fmt::format(
-      "measured: {} of {} trials traverse, 95 % [{}, {}]\n",
+      "{} [{}, {}] of {} simulated runs traverse the gate (95 %).\n",
       percent(static_cast<double>(tally.traversed()), static_cast<double>(tally.trials)),
-      tally.trials, fixed(100.0 * from, 1), fixed(100.0 * to, 1));
+      fixed(100.0 * from, 1), fixed(100.0 * to, 1), tally.trials);
 }
 
 }  // namespace
@@ -101,38 +101,75 @@ std::string csv_of(const dynamics::Landscape& l) {
   return csv.text();
 }
 
-std::string table_of(const LandscapeResult& result, const dynamics::GateParams& p) {
+namespace {
+
+/// Lengths and energies, to what counts in such a gate.
+struct GateReadings {
+  dynamics::Scale scale;
+
+  explicit GateReadings(const dynamics::GateParams& p) : scale(dynamics::scale_of(p)) {}
+  [[nodiscard]] std::string place(double x) const { return reading(x, "m", 0.01 * scale.length); }
+  [[nodiscard]] std::string energy(double e) const {
+    return reading(e, "J", 0.01 * scale.energy());
+  }
+};
+
+}  // namespace
+
+std::string answer_text(const LandscapeResult& result, const dynamics::GateParams& p) {
   const dynamics::Passes& passes = result.passes;
-  TextTable table({{"", -22},
-                   {"pass at x", 13},
-                   {"y", 12},
-                   {"above the start", 18},
-                   {"above the basin", 18},
-                   {"basin at x", 13},
-                   {"y", 12}});
-  const dynamics::Scale scale = dynamics::scale_of(p);
-  const auto place = [&](double x) { return reading(x, "m", 0.01 * scale.length); };
-  const auto energy = [&](double e) { return reading(e, "J", 0.01 * scale.energy()); };
-  for (const GridPasses* grid : {&passes.coarse, &passes.fine}) {
+  const GridPasses& fine = passes.fine;
+  const GateReadings show(p);
+  std::string text;
+  if (fine.downhill()) {
+    text =
+        "The easiest way through the gate goes downhill to the far boundary: there is no basin.\n";
+  } else {
+    const auto& [x, y] = fine.from_basin.way.front();
+    text = wrapped(fmt::format(
+               "The lowest pass through the gate is at x {}, y {}. It lies {} {} the energy of the "
+               "start at rest.",
+               show.place(fine.from_basin.x), show.place(fine.from_basin.y),
+               show.energy(std::abs(fine.above_start())),
+               fine.above_start() < 0.0 ? "below" : "above")) +
+           wrapped(fmt::format(
+               "A body that comes to rest in the basin on the way, at x {}, y {}, must climb {} to "
+               "get out.",
+               show.place(x), show.place(y), show.energy(fine.from_basin.barrier())));
+  }
+  text += wrapped(
+      fmt::format("The start has {} of kinetic energy. {}", show.energy(passes.kinetic_energy),
+                  fine.above_start() > passes.kinetic_energy
+                      ? "This is too little for the pass without work of the random force."
+                      : "This would be enough for the pass, but hits and dampers take energy."));
+  if (result.measured) text += measured_line(*result.measured);
+  return text + fmt::format("From the energy on a grid of {}, Eqs. (14) and (15) of the paper.\n",
+                            quantity(fine.spacing, "m"));
+}
+
+std::string details_text(const LandscapeResult& result, const dynamics::GateParams& p) {
+  TextTable table({{"", -14},
+                   {"pass at x", 12},
+                   {"y", 10},
+                   {"above start", 15},
+                   {"above basin", 15},
+                   {"basin at x", 12},
+                   {"y", 10}});
+  const GateReadings show(p);
+  for (const GridPasses* grid : {&result.passes.coarse, &result.passes.fine}) {
     const std::string name = "grid " + quantity(grid->spacing, "m");
     if (grid->downhill()) {
       table.row({name, "  no basin on the way: downhill to the far boundary"});
       continue;
     }
     const auto& [x, y] = grid->from_basin.way.front();
-    table.row({name, place(grid->from_basin.x), place(grid->from_basin.y),
-               energy(grid->above_start()), energy(grid->from_basin.barrier()), place(x),
-               place(y)});
+    table.row({name, show.place(grid->from_basin.x), show.place(grid->from_basin.y),
+               show.energy(grid->above_start()), show.energy(grid->from_basin.barrier()),
+               show.place(x), show.place(y)});
   }
-  return fmt::format(
-      "{}Between grid points the pass may lie lower: hence the finer grid.\nThe start has {} of "
-      "kinetic energy: {}.\n{}",
-      table.text(), energy(passes.kinetic_energy),
-      passes.fine.above_start() > passes.kinetic_energy
-          ? "too little for the pass without work of the random force"
-          : "as energies go enough, but hits and dampers take theirs: a body that comes to rest in "
-            "a basin must climb out of it",
-      result.measured ? measured_line(*result.measured) : "");
+  return "\n" + table.text() +
+         "Between grid points the pass may lie lower, so the answer uses the finer grid.\n" +
+         method_line(result.method);
 }
 
 double ceiling_of(const Landscape& l) {

@@ -25,9 +25,12 @@ struct LandscapeResult {
 void describe(Fields& out, const LandscapeResult& result);
 /// A line for each point of the grid.
 [[nodiscard]] std::string csv_of(const dynamics::Landscape& landscape);
-/// A line for each grid, and whether the start's own energy would do; lengths and energies to what
-/// counts in such a gate. Then how many passed, if the gate was run.
-[[nodiscard]] std::string table_of(const LandscapeResult& result, const dynamics::GateParams& p);
+/// The first screen: the pass, and whether the start's own energy would do; lengths and energies to
+/// what counts in such a gate. Then how many passed, if the gate was run. And what --details adds:
+/// a line for each grid.
+[[nodiscard]] std::string answer_text(const LandscapeResult& result, const dynamics::GateParams& p);
+[[nodiscard]] std::string details_text(const LandscapeResult& result,
+                                       const dynamics::GateParams& p);
 /// The coarse grid as two maps, elastic energy and with the propulsion, the latter with the lowest
 /// way through of the fine one; and the energy along it.
 [[nodiscard]] Figure figure_of(const dynamics::Passes& passes);

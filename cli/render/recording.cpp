@@ -28,7 +28,7 @@ using lattice::Scene;
 
 namespace {
 
-constexpr std::size_t kMostLines = 20;  // of the table
+constexpr std::size_t kFewLines = 6, kMostLines = 20;  // of the table, without and with --details
 
 /// One unit for each column of a table, so that its lines can be compared.
 struct Readings {
@@ -118,21 +118,23 @@ void put_column(int nc, int sample, const Column& c, const Recordings& recording
 
 }  // namespace
 
-std::string table_of(const lattice::Scene& scene, const Recordings& recordings) {
+namespace {
+
+/// A line for each run, of the first `most`.
+std::string table_of(const lattice::Scene& scene, const Recordings& recordings, std::size_t most) {
   const std::vector<Recording>& runs = recordings.runs;
-  const std::size_t shown = std::min(runs.size(), kMostLines);
+  const std::size_t shown = std::min(runs.size(), most);
   std::size_t longest_ending = 14;
   for (std::size_t i = 0; i < shown; ++i)
     longest_ending = std::max(longest_ending, runs[i].ending.size());
-  std::vector<TextColumn> columns{{"trial", 8},
-                                  {"ending", -static_cast<int>(longest_ending) - 2, 0, "", "  "},
-                                  {"time", 10},
+  std::vector<TextColumn> columns{{"trial", 6},
+                                  {"ending", -static_cast<int>(longest_ending) - 1, 0, "", "  "},
+                                  {"time", 9},
                                   {"steps", 7},
-                                  {"hits", 7}};
-  if (recordings.across_field) columns.push_back({"gates", 7});
-  for (const TextColumn& energy : {TextColumn{"work", 12}, TextColumn{"lost", 12},
-                                   TextColumn{"of it in hits", 15}, TextColumn{"left over", 12}})
-    columns.push_back(energy);
+                                  {"hits", 6}};
+  if (recordings.across_field) columns.push_back({"gates", 6});
+  for (const char* energy : {"work", "lost", "in hits", "left over"})
+    columns.push_back({energy, 11});
   TextTable table(columns);
   const Readings show(scene, runs);
   for (std::size_t i = 0; i < shown; ++i) {
@@ -147,8 +149,43 @@ std::string table_of(const lattice::Scene& scene, const Recordings& recordings) 
     table.row(cells);
   }
   const std::size_t more = runs.size() - shown;
-  return scene_line(scene, recordings.actions) + table.text() +
-         (more > 0 ? fmt::format("   ... and {} more\n", more) : "");
+  return table.text() + (more > 0 ? fmt::format("  ... and {} more\n", more) : "");
+}
+
+/// "3 trapped, 1 traversed left"
+std::string endings_of(const std::vector<Recording>& runs) {
+  std::vector<std::pair<std::string, std::int64_t>> counts;
+  for (const Recording& r : runs) {
+    const auto at =
+        std::ranges::find(counts, r.ending, &std::pair<std::string, std::int64_t>::first);
+    if (at == counts.end())
+      counts.emplace_back(r.ending, 1);
+    else
+      ++at->second;
+  }
+  std::string text;
+  for (const auto& [ending, n] : counts)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, ending);
+  return text;
+}
+
+}  // namespace
+
+std::string answer_text(const lattice::Scene& scene, const Recordings& recordings) {
+  const std::vector<Recording>& runs = recordings.runs;
+  return wrapped(fmt::format("Recorded {}: {}.", counted(std::ssize(runs), "run", "runs"),
+                             endings_of(runs))) +
+         table_of(scene, recordings, kFewLines);
+}
+
+std::string details_text(const lattice::Scene& scene, const Recordings& recordings) {
+  return (recordings.runs.size() > kFewLines ? "\n" + table_of(scene, recordings, kMostLines)
+                                             : "") +
+         "\nwork: of the propulsion and the random force. lost: to hits, dampers and drag; in "
+         "hits: "
+         "the part\nof it that hits took. left over: kinetic energy of body and beams, and elastic "
+         "energy.\n" +
+         scene_line(scene, recordings.actions);
 }
 
 std::string csv_of(const Recordings& recordings) {

@@ -11,9 +11,12 @@
 
 namespace gatewalk::cli {
 
-/// A line per run, of the first twenty, in units that suit all of them.
-[[nodiscard]] std::string table_of(const lattice::Scene& scene,
-                                   const lattice::Recordings& recordings);
+/// The first screen: how the runs ended, and a line each of the first six, in units that suit all
+/// of them. And what --details adds: the first twenty, and the scene.
+[[nodiscard]] std::string answer_text(const lattice::Scene& scene,
+                                      const lattice::Recordings& recordings);
+[[nodiscard]] std::string details_text(const lattice::Scene& scene,
+                                       const lattice::Recordings& recordings);
 
 /// One line per moment; the first line names the columns with their units.
 [[nodiscard]] std::string csv_of(const lattice::Recordings& recordings);

@@ -85,8 +85,8 @@ head -n 1 runs.csv | grep -qx 'body,trial,in,s,vx,vy,out,out_s,out_vx,out_vy,tim
 awk -F, '$1 == "a" && !seen++ { bad = $3 != "S" || ($4 - 0.032)^2 + ($5 - 0.2)^2 + ($6 - 0.5)^2 > 1e-12 || $7 != "W" || ($11 - 0.09)^2 > 1e-12
   if (bad) print; exit bad }' runs.csv || fail "passages: where a crosses"
 grep -q '<svg' tracks.svg && grep -q 'lost 6' tracks.svg || fail "passages: no picture"
-"$gatewalk" passages "${table[@]:0:$((${#table[@]} - 1))}" -o runs.csv --force >table.txt 2>err.txt || fail "passages: table"
-for words in '3 rows of descriptions and units' 'y grows upwards' 'fits of' 'noise of places' 'to and fro' 'lost  *6' 'gap 2, jump 2'; do
+"$gatewalk" passages "${table[@]:0:$((${#table[@]} - 1))}" -o runs.csv --force --details >table.txt 2>err.txt || fail "passages: table"
+for words in '3 rows of descriptions and units' 'y grows upwards' 'local fits of' '^noise: ' 'A crossing counts only if' 'lost  *6' 'gap 2, jump 2'; do
   grep -q "$words" table.txt || fail "passages: no '$words' in $(cat table.txt)"
 done
 # Seen from above: the other way is up, and a face for it is missing.
@@ -105,8 +105,8 @@ for word in "${table[@]}"; do [ "$word" = --lattice ] || [ "$word" = all ] || ow
 cmp -s own.csv given.csv || fail "passages: the field's cells are not the default"
 holds '.lattice == {columns: 3, rows: 3} and .places_outside > 100 and .bodies_outside == 0' own.json
 holds '.lattice == null and .places_outside == 0' runs.json
-"$gatewalk" passages "${own[@]:0:$((${#own[@]} - 1))}" -o own.csv --force >table.txt || fail "passages: the field's table"
-grep -q '3 columns and 3 rows from the origin on' table.txt && grep -q 'places lie outside them, 0 bodies are never seen in them' table.txt ||
+"$gatewalk" passages "${own[@]:0:$((${#own[@]} - 1))}" -o own.csv --force --details >table.txt || fail "passages: the field's table"
+grep -q '3 columns and 3 rows from the origin on' table.txt && grep -q 'places lie outside the cells, 0 bodies are never seen in a cell' table.txt ||
   fail "passages: nothing is said of what lies outside: $(cat table.txt)"
 sed '/^\[field\]/,$d' cell.toml >no_field.toml
 expect 2 'no_field.toml does not say how many cells there are: give columns and rows of \[field\], or --lattice' \
@@ -122,7 +122,7 @@ awk 'BEGIN {
     for (f = 0; f < 45; f++) { y = -15 + 2 * f; print b "," 100 * f ",5," (y < stays ? y : stays) }
   }
 }' >law.csv
-"$gatewalk" passages law.csv --cell law.toml -o law_runs.csv --fastest 1 --window 5 --columns body=body,time=t_ms,x=x_cm,y=y_cm --json law.json >law.txt ||
+"$gatewalk" passages law.csv --cell law.toml -o law_runs.csv --fastest 1 --window 5 --columns body=body,time=t_ms,x=x_cm,y=y_cm --details --json law.json >law.txt ||
   fail "passages: a known law"
 holds '.passages == 1845 and .trials == 625 and .endings == {left: 1476, trapped: 369, lost: 0}' law.json
 grep -q 'column t_ms is in ms, by its name: converted to s' law.txt && grep -q 'places are in cm, by its name' law.txt ||
@@ -134,10 +134,10 @@ holds '(.endings.crossed - 0.4096 | fabs) < 1e-12' law.json
 lacks() { expect 2 "$1" "$gatewalk" passages "${@:2}" -o x.csv --cell cell.toml; }
 lacks 'which column is what (there are LABEL, TRACK_ID, .*): --columns.*frames per second: --fps N.*--metres-per-unit' spots.csv --fastest 1
 lacks '--confidence X' spots.csv --fastest 1 --fps 100 "${scale[@]}" --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y,confidence=QUALITY
-lacks 'how fast bodies can be is not said: --fastest' spots.csv
+lacks 'missing --fastest M/S' spots.csv
 lacks 'frames per second: --fps N' dlc.csv --fastest 1
 lacks '--metres-per-unit X' movement.nc --fastest 1 --confidence 1
-expect 2 'the cells are not said: --cell CELL.toml' "$gatewalk" passages spots.csv -o x.csv
+expect 2 'missing --cell CELL.toml' "$gatewalk" passages spots.csv -o x.csv
 expect 2 'missing -o' "$gatewalk" passages spots.csv --cell cell.toml
 expect 2 'missing TRACKS' "$gatewalk" passages --cell cell.toml -o x.csv
 expect 2 'are the same file' "$gatewalk" passages "${table[@]}" -o spots.csv
