@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/scene.h"
+#include "cli/next.h"
 #include "cli/render/meaning.h"
 #include "cli/source_options.h"
 #include "cli/terminal/output.h"
@@ -24,20 +25,20 @@ std::string as_text(const std::vector<std::string>& overrides) {
 int run_scene(const Arguments& arguments) {
   Options options(
       "scene [SCENE] [options]",
-      "Shows every key of a scene: its value, unit, range and meaning, and where the value comes\n"
-      "from: a line of the file, an override, the paper, or derived from the other keys. Then what "
-      "these\n"
-      "numbers mean, and where they are far from what walks. Without a file the scene is what "
-      "--set "
-      "gives.",
+      "Shows what a scene means in words, and every key with its value, unit, range and source: a "
+      "line of the file,\n"
+      "--set, the paper (a default), or derived from the other keys. scene also says which numbers "
+      "no walking animal or\n"
+      "robot reaches. Without a file, the scene is what --set gives.",
       "gatewalk scene --new --set body.mass_kg=0.25 --set body.radius_m=0.08 "
       "--set forces.propulsion_N=0.8 -o mine.toml");
   const TextOption given =
       options.positional("scene", "scene file (TOML; -: standard input)", false);
   const Option is_new =
-      options.add_flag("new", "write the scene as a commented TOML file, to edit");
+      options.add_flag("new", "write the scene as a TOML file with comments, to edit");
   const TextOption output = options.output_file(
       "output", "FILE", "with --new: the file to write (default: standard output)");
+  options.most_used({"set", "new", "output", "figure", "json"});
   options.add_figure("one gate to scale, each length and force at its place");
   if (!options.parse(arguments)) return kFine;
   if (!is_new) refuse({output}, "without --new");
@@ -50,7 +51,10 @@ int run_scene(const Arguments& arguments) {
   }
   const SceneResult result{scene, dynamics::meaning_of(scene.gate, scene.start),
                            dynamics::deciding_numbers(scene.gate, scene.start)};
-  options.give_out(result, table_of(result));
+  NextCommands next(options);
+  if (given) next.add("predict", "", "predicts how bodies cross the field");
+  next.again("figure", "gate.svg", "draws one gate to scale");
+  options.give_out(result, {table_of(result), "", next.lines()});
   options.draw([&] { return figure_of(scene); });
   return kFine;
 }

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
+#include <utility>
 
 #include "cli/fields/text.h"
 #include "cli/render/quantity.h"
@@ -39,7 +39,7 @@ std::string degrees(double angle) {
 
 std::string ringing(const dynamics::RingDown& r) {
   if (std::isfinite(r.period))
-    return fmt::format("swings once in {}, each swing {} of the one before",
+    return fmt::format("swings once in {}, each swing with {} of the amplitude before",
                        quantity(r.period, "s", 3), three_digits(r.kept));
   return std::isfinite(r.half)
              ? fmt::format("creeps back without a swing, in the end half of its angle in {}",
@@ -59,9 +59,14 @@ std::string_view words_of(dynamics::GateFate fate) {
   return "is trapped";
 }
 
-/// Numbers that decide alike in a line.
-std::string steps_text(std::vector<dynamics::Deciding> left) {
-  std::string text;
+/// A sentence about what the numbers mean.
+struct Sentence {
+  std::string about, words;
+};
+
+/// Numbers that decide alike in a sentence.
+std::vector<Sentence> thresholds(std::vector<dynamics::Deciding> left) {
+  std::vector<Sentence> all;
   while (!left.empty()) {
     const dynamics::Deciding first = left.front();
     std::string names;
@@ -70,92 +75,114 @@ std::string steps_text(std::vector<dynamics::Deciding> left) {
       if (alike) names += (names.empty() ? "" : ", or ") + std::string(d.words);
       return alike;
     });
-    text += fmt::format("  {:<10}1 % less of {}: the body {}; 1 % more: it {}\n",
-                        text.empty() ? "on a step" : "", names, words_of(first.less),
-                        words_of(first.more));
+    all.push_back({"threshold", fmt::format("with 1 % less of {} the body {}; with 1 % more it {}",
+                                            names, words_of(first.less), words_of(first.more))});
   }
-  return text;
+  return all;
 }
 
-/// What the numbers mean, a paragraph below the table of keys.
-std::string meaning_text(const SceneResult& result) {
-  const auto& [scene, m, deciding] = result;
+std::string speed_words(const lattice::Scene& scene, const Meaning& m) {
+  const std::string top =
+      std::isfinite(m.top_speed)
+          ? fmt::format(
+                "at most {} in the open, {} body lengths per second (95 % of it {} after a start "
+                "from rest); ",
+                quantity(m.top_speed, "m/s", 3),
+                three_digits(m.top_speed / (2.0 * scene.gate.body.radius)),
+                quantity(m.top_speed_time, "s", 3))
+          : "without drag there is no top speed; ";
+  return top +
+         (std::isfinite(m.passage)
+              ? fmt::format("from the start the body passes a gate without beams in {}, at {} "
+                            "in the end",
+                            quantity(m.passage, "s", 3), quantity(m.passage_speed, "m/s", 3))
+              : "the body never gets through a gate, even without beams");
+}
+
+std::string sideways_words(const lattice::Scene& scene, const Meaning& m) {
   const auto& gate = scene.gate;
-  const std::string push = quantity(gate.forces.propulsion, "N", 3);
-  const bool passes = std::isfinite(m.passage), pushes = gate.forces.propulsion > 0.0;
-  std::string text = fmt::format("\nwhat these numbers mean{}:\n  speed     ",
-                                 scene.terrain ? ", in the scene's own gate" : "");
-  if (std::isfinite(m.top_speed))
-    text += fmt::format(
-        "at most {} in the open, {} body lengths per second (95 % of it {} after a start from "
-        "rest); ",
-        quantity(m.top_speed, "m/s", 3), three_digits(m.top_speed / (2.0 * gate.body.radius)),
-        quantity(m.top_speed_time, "s", 3));
-  else
-    text += "without drag no top speed; ";
-  text += passes ? fmt::format("from the start through a gate without beams in {}, {} at its end\n",
-                               quantity(m.passage, "s", 3), quantity(m.passage_speed, "m/s", 3))
-                 : "it never gets through a gate, even without beams\n";
-  text += fmt::format(
-      "  sideways  noise shakes the body by {} (standard deviation) in {}, {} of the way to a "
-      "joint",
+  std::string text = fmt::format(
+      "noise moves the body by {} (standard deviation) in {}, {} of the way to a joint",
       quantity(m.shaken, "m", 3), quantity(std::min(m.passage, gate.run.time_limit), "s", 3),
       three_digits(m.shaken / gate.beams.joint_x));
-  if (pushes)
+  if (gate.forces.propulsion > 0.0)
     text += fmt::format("; the random force is {} the push",
                         times_as(gate.forces.random / gate.forces.propulsion));
-  if (passes) text += fmt::format(", drawn {} per body length", times_as(m.draws_per_length));
-  text += "\n  beams     ";
-  const std::string resistance = quantity(m.beams.resistance, "N", 3),
-                    angle = degrees(m.beams.angle);
-  if (m.beams.resistance == 0.0)
-    text += "a body on the middle line gets past them without resistance\n";
-  else if (!pushes)
-    text += "there is no push\n";
-  else if (std::isnan(m.beams.held_angle))
-    text += fmt::format(
-        "on the middle line they resist with at most {} (at {}); the push of {} bends them aside\n",
-        resistance, angle, push);
-  else
-    text += fmt::format(
-        "on the middle line they hold the push of {} at {}; {}\n", push,
-        degrees(m.beams.held_angle),
-        std::isfinite(m.beams.resistance)
-            ? fmt::format("at {} they would hold {}, the most: only speed or noise takes the body "
-                          "on",
-                          angle, resistance)
-            : "there the body covers their joints and cannot get past");
-  const std::string left = ringing(m.ring_down[dynamics::kLeft]);
-  text += gate.beams.stiffness_left == gate.beams.stiffness_right
-              ? fmt::format("            let go, a beam {}\n", left)
-              : fmt::format("            let go, the left one {}; the right one {}\n", left,
-                            ringing(m.ring_down[dynamics::kRight]));
-  text += fmt::format(
-      "  trapped   is who is still in a gate after {}{}\n", quantity(gate.run.time_limit, "s", 3),
-      passes ? fmt::format(", {} what a gate without beams takes", times_as(m.passages_waited))
-             : "");
-  text += steps_text(deciding);
-  const auto all = far_from_walkers(m, scene);
-  if (!all.empty()) text += "far from any animal or robot that walks:\n";
-  for (const FarFromWalkers& far : all) text += fmt::format("  {}: {}\n", far.what, far.reason);
+  if (std::isfinite(m.passage))
+    text += fmt::format(", drawn {} per body length", times_as(m.draws_per_length));
   return text;
 }
 
-/// Its sentences, each behind what it is about: "sideways: noise shakes the body by ...".
-std::vector<std::string> remarks(const SceneResult& result) {
-  constexpr std::size_t kText = 12;  // where sentences begin
-  std::vector<std::string> all;
-  std::istringstream lines(meaning_text(result));
-  lines.exceptions(std::ios_base::badbit);
-  std::string about;
-  std::getline(lines, about);  // an empty line, and the heading
-  std::getline(lines, about);
-  for (std::string line; std::getline(lines, line) && line.starts_with("  ");) {
-    std::string name = line.substr(2, kText - 2);
-    name.erase(name.find_last_not_of(' ') + 1);
-    if (!name.empty()) about = name;
-    all.push_back(fmt::format("{}: {}", about, line.substr(kText)));
+std::string resistance_words(const lattice::Scene& scene, const Meaning& m) {
+  const auto& beams = m.beams;
+  const std::string push = quantity(scene.gate.forces.propulsion, "N", 3),
+                    resistance = quantity(beams.resistance, "N", 3), angle = degrees(beams.angle);
+  if (beams.resistance == 0.0)
+    return "a body on the middle line gets past the beams without resistance";
+  if (!(scene.gate.forces.propulsion > 0.0)) return "there is no push";
+  if (std::isnan(beams.held_angle))
+    return fmt::format(
+        "on the middle line the beams resist with at most {} (at {}); the push of {} bends them "
+        "aside",
+        resistance, angle, push);
+  return fmt::format(
+      "on the middle line the beams hold the push of {} at {}; {}", push, degrees(beams.held_angle),
+      std::isfinite(beams.resistance)
+          ? fmt::format("they resist most at {}, with {}, so only speed or noise takes the body on",
+                        angle, resistance)
+          : "there the body covers their joints and cannot get past");
+}
+
+std::string swing_words(const lattice::Scene& scene, const Meaning& m) {
+  const auto& beams = scene.gate.beams;
+  const std::string left = ringing(m.ring_down[dynamics::kLeft]);
+  return beams.stiffness_left == beams.stiffness_right
+             ? fmt::format("once released, a beam {}", left)
+             : fmt::format("once released, the left beam {}; the right one {}", left,
+                           ringing(m.ring_down[dynamics::kRight]));
+}
+
+/// What the numbers mean, a sentence for each thing; without what is far from walkers.
+std::vector<Sentence> sentences(const SceneResult& result) {
+  const auto& [scene, m, deciding] = result;
+  std::vector<Sentence> all{
+      {"speed", speed_words(scene, m)},
+      {"sideways", sideways_words(scene, m)},
+      {"beams", resistance_words(scene, m)},
+      {"beams", swing_words(scene, m)},
+      {"trapped",
+       fmt::format("a body counts as trapped after {} in one gate{}",
+                   quantity(scene.gate.run.time_limit, "s", 3),
+                   std::isfinite(m.passage) ? fmt::format(", {} what a gate without beams takes",
+                                                          times_as(m.passages_waited))
+                                            : "")}};
+  for (Sentence& s : thresholds(deciding)) all.push_back(std::move(s));
+  return all;
+}
+
+/// The same, a paragraph above the table of keys.
+std::string meaning_text(const SceneResult& result) {
+  std::string text = fmt::format("What these numbers mean{}\n",
+                                 result.scene.terrain ? ", in the scene's own gate" : "");
+  std::string before;
+  for (const auto& [about, words] : sentences(result)) {
+    text += wrapped(fmt::format("  {:<11}{}", about == before ? "" : about, words),
+                    std::string(13, ' '));
+    before = about;
   }
+  const auto all = far_from_walkers(result.meaning, result.scene);
+  if (!all.empty())
+    text += "Beware: no walking animal or robot is like this; measure your own numbers\n";
+  for (const FarFromWalkers& far : all)
+    text += wrapped(fmt::format("  {}: {}", far.what, far.reason), "    ");
+  return text;
+}
+
+/// Its sentences, each behind what it is about: "sideways: noise moves the body by ...".
+std::vector<std::string> remarks(const SceneResult& result) {
+  std::vector<std::string> all;
+  for (const auto& [about, words] : sentences(result))
+    all.push_back(fmt::format("{}: {}", about, words));
   for (const FarFromWalkers& far : far_from_walkers(result.meaning, result.scene))
     all.push_back(fmt::format("far from what walks: {}: {}", far.what, far.reason));
   return all;
@@ -265,8 +292,8 @@ std::vector<FarFromWalkers> far_from_walkers(const Meaning& m, const lattice::Sc
         {"passages_waited",
          fmt::format("trapped after {}, {} what an open gate takes",
                      quantity(scene.gate.run.time_limit, "s", 3), times_as(m.passages_waited)),
-         "who is slow, or tries again, counts like who is stuck: run.time_limit_s is how "
-         "long you would watch"});
+         "a slow body, or one that tries again, counts as stuck: run.time_limit_s is how long you "
+         "would watch"});
   return all;
 }
 
@@ -312,15 +339,15 @@ void describe(Fields& out, const SceneResult& result) {
 
 std::string table_of(const SceneResult& result) {
   const lattice::Scene& scene = result.scene;
-  std::string text = table_of(lattice::describe(scene)) + meaning_text(result);
+  std::string text = meaning_text(result);
   if (scene.terrain)
-    text += fmt::format("\nmap, the far side first:\n{}\n",
+    text += fmt::format("\nMap of the gates' types, far row first:\n{}\n",
                         fmt::join(lattice::map_rows(*scene.terrain, scene.field), "\n"));
   std::vector<std::string> actions;
   for (const lattice::Terrain::Type& action : scene.actions)
     actions.push_back(action.name + (action.keys.empty() ? " (the scene as it is)" : ""));
   if (!actions.empty()) text += fmt::format("\nactions: {}\n", fmt::join(actions, ", "));
-  return text;
+  return text + "\n" + table_of(lattice::describe(scene));
 }
 
 }  // namespace gatewalk::cli

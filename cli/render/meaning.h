@@ -29,7 +29,7 @@ struct SceneResult {
   std::vector<dynamics::Deciding> deciding;
 };
 void describe(Fields& out, const SceneResult& result);
-/// Every key, and what the numbers mean; below it the map and the actions, if there are.
+/// What the numbers mean; below it the map and the actions, if there are, and every key.
 [[nodiscard]] std::string table_of(const SceneResult& result);
 
 }  // namespace gatewalk::cli

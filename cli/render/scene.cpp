@@ -89,15 +89,23 @@ std::string scene_line(const lattice::Scene& scene, const std::vector<std::strin
 }
 
 std::string table_of(const std::vector<lattice::KeyInfo>& keys) {
-  TextTable table({{"key", -kFit},
-                   {"value", -kFit, 0, "", "  "},
-                   {"unit", -kFit, 0, "", "  "},
-                   {"from", -kFit, 0, "", "  "},
-                   {"meaning; range", 0, 0, "", "  "}});
-  for (const lattice::KeyInfo& k : keys)
-    table.row({k.key, shown_value(k), k.unit, k.source,
-               k.meaning + (k.range.empty() ? "" : "; " + shown_range(k))});
-  return table.text();
+  TextTable table({{"key", -kFit}, {"value", -kFit, 0, "", "  "}, {"unit", -kFit, 0, "", "  "}});
+  for (const lattice::KeyInfo& k : keys) table.row({k.key, shown_value(k), k.unit});
+  std::string text = "Every number: key, value, unit and source; below it meaning and range\n";
+  const std::string rows = table.rows();
+  std::size_t begin = 0;
+  for (const lattice::KeyInfo& k : keys) {
+    const std::size_t end = rows.find('\n', begin);
+    std::string row = rows.substr(begin, end - begin);
+    const std::string source = "  " + k.source,
+                      meaning = k.meaning + (k.range.empty() ? "" : "; " + shown_range(k));
+    begin = end + 1;
+    const bool fits = row.size() + source.size() <= kScreenColumns;
+    if (!fits) row.erase(row.find_last_not_of(' ') + 1);
+    text += row + (fits ? source + "\n" : "\n" + wrapped("    from" + source.substr(1), "      ")) +
+            wrapped("    " + meaning, "      ");
+  }
+  return text;
 }
 
 std::string commented(const lattice::Scene& scene) {
