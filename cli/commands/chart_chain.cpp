@@ -34,32 +34,38 @@ std::vector<double> factors_of(const NumbersOption& given, lattice::BinsChoice::
 int run_chart_chain(const Arguments& arguments) {
   Options options(
       "chart chain SCENE -o DIR [options]",
-      "Charts the chain's error against its cost: matrices of coarser and finer bins and of\n"
-      "10 to 10000 trials a row, and trees (predict --accuracy), against the full dynamics,\n"
-      "beside direct simulation at the same cost. Writes chain.csv, chain.json and chain.svg into "
-      "DIR.",
+      "Answers: how large the chain's error is for its cost, and when direct simulation is "
+      "better.\n"
+      "chart chain compares matrices of coarser and finer bins with 10 to 10000 trials a row, and "
+      "trees (predict\n"
+      "--accuracy), with the full dynamics and with direct simulation at the same cost. It writes "
+      "chain.csv, chain.json\n"
+      "and chain.svg into DIR.",
       "gatewalk chart chain scenes/field.toml -o results/chain --truth-trials 1e5");
   options.scene();
   const std::vector<std::string> files{"chain.csv", "chain.json", "chain.svg"};
   options.output_folder("folder to write to, made if missing", files);
   const CountOption truth_trials = options.add_count(
-      "truth-trials", "N", "trials of the full dynamics per start, against which errors are taken",
+      "truth-trials", "N", "trials of the full dynamics per start, from which errors are measured",
       "1e5");
   const CountOption runs_limit =
-      options.add_count("runs-limit", "N", "gate runs that one matrix or tree may take", "1e6");
+      options.add_count("runs-limit", "N", "most gate runs of one matrix or tree", "1e6");
   const NumbersOption factors = options.add_numbers(
       "bins", "FACTOR",
-      "bins per axis, as a multiple of those that build has without --bins (may be "
-      "repeated; default: 0.5, 1, 2, 4)");
+      "bins per axis, as a multiple of the bins that build takes without --bins (may be repeated; "
+      "default: 0.5, 1, 2, 4)");
   const CountOption visited = options.add_count(
       "visited", "N",
-      "also chart matrices whose rows start not anywhere in their bins but where N full trials per "
-      "start were seen to enter; these trials count as cost. Bins that are made from what is seen "
-      "always start so, by default from 2000 trials per start");
+      "also chart matrices whose rows start where N full trials per start were seen to enter; "
+      "these "
+      "trials count as cost. Without it rows start anywhere in their bins. Bins made from pilot "
+      "trials always start where bodies enter, by default from 2000 trials per start");
   const TextsOption given = add_starts(options);
   options.add_seed();
   options.add_strict();
   options.add_figure("the figure of the folder");
+  options.add_details("tables of all matrices, and what limits the best one");
+  options.most_used({"output", "start", "truth-trials", "runs-limit", "bins"});
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = options.read_scene();
   const std::vector<dynamics::Entry> starts = starts_of(given, scene);
@@ -86,7 +92,7 @@ int run_chart_chain(const Arguments& arguments) {
                                 std::move(settled), options.provenance(scene)};
   const auto& chart = result.chart;
   folder.write("chain.csv", csv_of(chart), "chain.json", result);
-  options.give_out(result, table_of(chart));
+  options.give_out(result, {answer_text(chart), details_text(chart)});
   folder.draw("chain.svg", figure_of(chart));
   const int exit = status_of(options, chart.health);
   options.draw([&] { return figure_of(chart); });

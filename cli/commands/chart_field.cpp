@@ -7,14 +7,18 @@ namespace gatewalk::cli {
 int run_chart_field(const Arguments& arguments) {
   Options options(
       "chart field SCENE -o DIR [options]",
-      "Runs the full dynamics at every field.fidelity, with the same noise: what do beams that\n"
-      "remember, and beams of neighbouring gates, change in the final gates, and what do they\n"
-      "cost? Method moreau at the scene's run.step_s, which the text names; run.method and\n"
-      "field.fidelity of the scene are not used. Also the default method, to show what another\n"
-      "integrator changes. Long steps let moreau sink into beams: a warning says so, and a "
-      "smaller\n"
-      "run.step_s helps. Writes fidelity.csv, fidelity.json and, with gnuplot, fidelity.svg into "
-      "DIR.",
+      "Answers: whether it is enough that only the beams of the body's own gate move "
+      "(field.fidelity = active).\n"
+      "chart field simulates the full dynamics at every field.fidelity with the same noise, and "
+      "compares final gates and\n"
+      "cost with beams that remember, and with the beams of neighbouring gates. It uses method "
+      "moreau at the scene's\n"
+      "run.step_s, and ignores run.method and field.fidelity of the scene. One more line has the "
+      "default method. With a\n"
+      "long step, moreau sinks into beams; then a warning asks for a smaller run.step_s. The "
+      "command "
+      "writes fidelity.csv,\n"
+      "fidelity.json and, with gnuplot, fidelity.svg into DIR.",
       "gatewalk chart field scenes/field.toml --trials 2000 --set run.step_s=0.001 -o "
       "results/fidelity");
   options.scene();
@@ -24,6 +28,8 @@ int run_chart_field(const Arguments& arguments) {
   const TextsOption given = add_starts(options);
   options.add_strict();
   options.add_figure("the figure of the folder");
+  options.add_details("endings, times and changes for each start and fidelity");
+  options.most_used({"output", "trials", "start", "set", "json"});
   if (!options.parse(arguments)) return kFine;
   const lattice::Scene scene = options.read_scene();
   if (scene.gate.run.method == "auto")
@@ -45,7 +51,7 @@ int run_chart_field(const Arguments& arguments) {
                               options.provenance(scene)};
   const lattice::FidelityStudy& study = result.study;
   folder.write("fidelity.csv", csv_of(study), "fidelity.json", result);
-  options.give_out(result, table_of(study));
+  options.give_out(result, {answer_text(study), details_text(study)});
   for (const std::string& text : complaints(study)) options.warn(text);
   folder.draw("fidelity.svg", figure_of(study));
   const int exit = exit_status(options, study.clean());

@@ -12,12 +12,15 @@ namespace gatewalk::cli {
 int run_chart_limits(const Arguments& arguments) {
   Options options(
       "chart limits SCENE -o DIR [options]",
-      "Where does each method break near the numbers of a scene, by which sign is it recognised,\n"
-      "and what helps? Maps over a method's step and one number of the scene each: stiffness and\n"
-      "damping of the beams, their mass, random force, speed of the start, restitution, impulse\n"
-      "threshold, first contact near a joint, grazing a tip. Each point runs the gate from the\n"
-      "scene's start with every method, under the same noise as a reference. Writes limits.csv,\n"
-      "limits.json and a figure for each number.",
+      "Answers: where each time-stepping method breaks near the numbers of a scene, how you "
+      "recognise it, and what helps.\n"
+      "chart limits maps a method's step against one number of the scene at a time: stiffness and "
+      "damping of the beams,\n"
+      "their mass, random force, speed of the start, restitution, impulse threshold, first contact "
+      "near a joint, grazing a\n"
+      "tip. Each point simulates the gate from the scene's start with every method, with the noise "
+      "of a reference. The\n"
+      "command writes limits.csv, limits.json and a figure for each number.",
       "gatewalk chart limits scenes/walker.toml -o limits --quick");
   options.scene();
   std::vector<std::string> files{"limits.csv", "limits.json"};
@@ -28,6 +31,8 @@ int run_chart_limits(const Arguments& arguments) {
       options.add_count("trials", "N", "trials at each point (default: 100, with --quick 40)");
   options.add_seed();
   options.add_figure("all maps in one figure");
+  options.add_details("the distance of each method from the faults of every number");
+  options.most_used({"output", "quick", "trials", "set", "figure"});
   if (!options.parse(arguments)) return kFine;
   const lattice::Scene scene = options.read_scene();
   LimitsResult result{.label = std::filesystem::path(options.scene_file.value()).stem().string(),
@@ -56,7 +61,7 @@ int run_chart_limits(const Arguments& arguments) {
   for (std::size_t first = 0; first < maps.size(); first += result.limits.size())
     folder.draw(figure_name(maps[first].map.number),
                 figure_of(result.scene, std::span(maps).subspan(first, result.limits.size())));
-  options.give_out(result, table_of(result));
+  options.give_out(result, {answer_text(result), details_text(result)});
   double slowest = 0.0;
   for (const auto& m : maps)
     slowest = std::max(slowest, *std::max_element(m.seconds.begin(), m.seconds.end()));

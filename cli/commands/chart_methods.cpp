@@ -73,10 +73,13 @@ std::vector<std::string> chosen_methods(const TextOption& given) {
 int run_chart_methods(const Arguments& arguments) {
   Options options(
       "chart methods SCENE... -o DIR [options]",
-      "Charts the methods' speed against their accuracy, each over its own settings: time per\n"
-      "trial on one thread, and error against a reference under the same noise. Writes chart.csv\n"
-      "and chart.json, again after each scene, and chart.svg. With 1e5 trials a scene takes some\n"
-      "ten minutes; --trials 2000 --repeats 3 gives a first look in one.",
+      "Answers: which time-stepping method is fastest for an accuracy.\n"
+      "chart methods measures the time per trial on one thread, and the error against a reference "
+      "with the same noise,\n"
+      "for several settings of each method. It writes chart.csv and chart.json after each scene, "
+      "and chart.svg in the end.\n"
+      "With 1e5 trials a scene takes about ten minutes; --trials 2000 --repeats 3 gives a first "
+      "look in one.",
       "gatewalk chart methods scenes/field.toml scenes/stiff.toml -o results/chart --trials 1e4");
   const TextsOption scenes =
       options.positional_list("scene", "scene files (TOML); a scene is called by its file's name");
@@ -84,12 +87,14 @@ int run_chart_methods(const Arguments& arguments) {
   options.output_folder("folder to write to", files);
   const CountOption trials = options.add_count("trials", "N", "trials per setting", "1e5");
   const CountOption repeats =
-      options.add_count("repeats", "N", "rounds of timing, after one that warms up", "10");
+      options.add_count("repeats", "N", "rounds of timing, after one round that warms up", "10");
   const TextOption methods =
       options.add_text("methods", "A,B,...", "methods to chart (default: all)");
   options.add_seed();
   options.add_strict();
   options.add_figure("the figure of the folder");
+  options.add_details("every setting of each method, with its errors and times");
+  options.most_used({"output", "trials", "repeats", "methods", "set"});
   if (!options.parse(arguments)) return kFine;
   dynamics::WorkPrecisionOptions how{.label = {},
                                      .methods = chosen_methods(methods),
@@ -102,7 +107,6 @@ int run_chart_methods(const Arguments& arguments) {
 
   ChartResult result;
   const auto& charts = result.charts;
-  std::string table;
   try {
     for (const std::string& path : paths) {
       const lattice::Scene scene =
@@ -111,7 +115,6 @@ int run_chart_methods(const Arguments& arguments) {
       result.charts.push_back(
           dynamics::work_precision(scene.gate, scene.start, how, options.work()));
       result.made_by.push_back(options.provenance(scene));
-      table += (table.empty() ? "" : "\n") + table_of(charts.back());
       folder.write("chart.csv", csv_of(charts), "chart.json", result);
     }
   } catch (const Interrupted&) {
@@ -123,7 +126,7 @@ int run_chart_methods(const Arguments& arguments) {
                     folder.path("chart.csv"), charts.size(), paths.size()));
     return kStopped;
   }
-  options.give_out(result, table + "\n" + work_precision_legend(how.rounds));
+  options.give_out(result, {answer_text(charts), details_text(charts, how.rounds)});
   folder.draw("chart.svg", figure_of(charts));
   bool clean = true;
   for (const auto& chart : charts) {

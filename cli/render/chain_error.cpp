@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <vector>
 
 #include "cli/fields/csv.h"
@@ -189,24 +190,25 @@ std::string when_it_pays(const ChainErrorChart& chart, const ChainSummary& summa
   const FieldTruth& truth = chart.truths[s];
   std::string text = "For one start ";
   if (summary.pays_from == ChainSummary::kNever)
-    text += "direct simulation is better than bins at every cost charted";
+    text += "direct simulation beats bins at every cost charted.";
   else if (summary.pays_until == ChainSummary::kNever)
-    text += fmt::format("bins are better from {} s on, as far as this truth can tell",
+    text += fmt::format("bins beat direct simulation from {} s on, as far as this truth can tell.",
                         seconds_text(summary.pays_from));
   else
     text += fmt::format(
-        "bins are better from {} s; from {} s ({} trials) on direct simulation is better than any "
-        "matrix charted",
+        "bins beat direct simulation from {} s to {} s ({} trials); beyond, direct simulation "
+        "beats "
+        "every matrix.",
         seconds_text(summary.pays_from), seconds_text(summary.pays_until),
         digits(std::round(summary.pays_until / truth.seconds_per_trial)));
   if (summary.starts_to_pay == ChainSummary::kNever)
-    return text + ". Its error costs direct simulation less than one prediction: it never pays.\n";
+    return wrapped(text +
+                   " Bins never pay for many starts either: direct simulation costs less "
+                   "than one prediction.");
   const double direct = truth.seconds_for(chart.points[summary.cheapest].error(s));
-  return fmt::format(
-      "{}. For many starts, at that cheapest point, it pays from {} {} on ({} s of direct "
-      "simulation each).\n",
-      text, digits(summary.starts_to_pay), summary.starts_to_pay == 1.0 ? "start" : "starts",
-      seconds_text(direct));
+  return wrapped(fmt::format(
+      "{} The cheapest matrix pays from {} on, as direct simulation takes {} s for each.", text,
+      counted(std::llround(summary.starts_to_pay), "start", "starts"), seconds_text(direct)));
 }
 
 /// What direct simulation shows of the same truth in so many seconds.
@@ -215,54 +217,67 @@ std::string direct_text(const FieldTruth& truth, double seconds) {
   return fixed(lattice::expected_total_variation(truth.p, truth.as_against_exact(trials)), 3);
 }
 
-/// "Trees: TV 0.045 in 0.03 s (direct simulation 0.103), 0.023 in 0.1 s (0.052)."
-std::string trees_text(const ChainErrorChart& chart, std::size_t s) {
+/// "Trees (predict --accuracy): TV 0.045 in 0.03 s (direct simulation 0.103), ...": at most `most`
+/// of the predictions, the most accurate last.
+std::string trees_text(const ChainErrorChart& chart, std::size_t s, std::size_t most) {
+  const auto& trees = chart.trees[s];
+  if (trees.empty()) return "Trees: no prediction within --runs-limit.\n";
   std::string text;
-  for (const lattice::TreePoint& p : chart.trees[s])
+  for (const lattice::TreePoint& p :
+       trees | std::views::drop(trees.size() - std::min(most, trees.size())))
     text += fmt::format(
         "{}{} in {} s ({}{})", text.empty() ? "Trees (predict --accuracy): TV " : ", ",
         fixed(p.error.total_variation, 3), seconds_text(p.seconds),
-        text.empty() ? "direct simulation then has " : "", direct_text(chart.truths[s], p.seconds));
-  return text.empty() ? "Trees: no prediction within --runs-limit.\n" : text + ".\n";
+        text.empty() ? "direct simulation " : "", direct_text(chart.truths[s], p.seconds));
+  return wrapped(text + ".");
 }
 
-/// A paragraph for one start.
+/// A matrix of the chart in words.
+std::string place_text(const ChainErrorChart& chart, const ChainPoint& p, std::size_t s) {
+  return fmt::format("{}, {} trials a row, {} s", name_of(chart.curves[p.curve]), p.trials,
+                     seconds_text(p.seconds(s)));
+}
+
+/// What the chart says for one start, in at most eight lines.
+std::string answer_for(const ChainErrorChart& chart, std::size_t s) {
+  const ChainSummary summary = summary_of(chart, s);
+  const ChainPoint& best = chart.points[summary.best];
+  constexpr std::size_t kFewTrees = 2;
+  return wrapped(fmt::format(
+             "Start{}: the best matrix of bins errs by a total variation (TV) of {} ({}).",
+             name_of(chart.truths[s]).substr(1), fixed(best.error(s), 3),
+             place_text(chart, best, s))) +
+         when_it_pays(chart, summary, s) + trees_text(chart, s, kFewTrees);
+}
+
+/// What limits the best matrix, and what others reach.
 std::string words_of(const ChainErrorChart& chart, std::size_t s) {
   const ChainSummary summary = summary_of(chart, s);
-  const auto place = [&](const ChainPoint& p) {
-    return fmt::format("{}, {} trials a row, {} s", name_of(chart.curves[p.curve]), p.trials,
-                       seconds_text(p.seconds(s)));
-  };
   const ChainPoint &best = chart.points[summary.best], &cheapest = chart.points[summary.cheapest];
-  std::string text = fmt::format("The best error of bins is TV {} ({}; the truth's noise: {}); ",
-                                 fixed(best.error(s), 3), place(best),
-                                 fixed(chart.truths[s].floor.total_variation, 3));
-  if (summary.cheapest == summary.best)
-    text += "nothing cheaper comes within 1.5 times of it.\n";
-  else
-    text += fmt::format("the cheapest within 1.5 times of it is TV {} ({}).\n",
-                        fixed(cheapest.error(s), 3), place(cheapest));
-  text += when_it_pays(chart, summary, s);
+  std::string text =
+      summary.cheapest == summary.best
+          ? "No cheaper matrix comes within 1.5 times of the best error.\n"
+          : wrapped(fmt::format("The cheapest matrix within 1.5 times of the best error has TV {} "
+                                "({}).",
+                                fixed(cheapest.error(s), 3), place_text(chart, cheapest, s)));
   const ChainAnswer& a = best.answers[s];
   const std::string bins = fixed(a.bins, 3), sampling = fixed(a.sampling, 3);
-  if (a.bins > a.sampling)
-    text += fmt::format(
-        "At their best bins are limited by what they forget (TV {}; sampling makes {}): more "
-        "trials would not help.\n",
-        bins, sampling);
-  else
-    text += fmt::format(
-        "At their best bins are limited by the sampling of its matrix (TV {}; bins and what they "
-        "forget make {}): more trials would help.\n",
-        sampling, bins);
+  text += wrapped(
+      a.bins > a.sampling
+          ? fmt::format("The coarse states limit the best matrix (TV {}; sampling {}): more trials "
+                        "would not help.",
+                        bins, sampling)
+          : fmt::format("Sampling limits the best matrix (TV {}; coarse states {}): more trials "
+                        "would help.",
+                        sampling, bins));
   if (summary.best_visited) {
     const ChainPoint& visited = chart.points[*summary.best_visited];
-    text += fmt::format(
-        "With rows started where bodies were seen to enter its best is TV {} ({}, the trials that "
-        "saw them included).\n",
-        fixed(visited.error(s), 3), place(visited));
+    text += wrapped(fmt::format(
+        "With rows started where bodies were seen to enter, the best TV is {} ({}, which includes "
+        "these trials).",
+        fixed(visited.error(s), 3), place_text(chart, visited, s)));
   }
-  return text + trees_text(chart, s);
+  return text + trees_text(chart, s, chart.trees[s].size());
 }
 
 /// Curves [first, beyond) side by side, for one start: a line for each number of trials a row, with
@@ -395,25 +410,37 @@ std::string csv_of(const ChainErrorChart& chart) {
   return csv.text();
 }
 
-std::string table_of(const ChainErrorChart& chart) {
+std::string answer_text(const ChainErrorChart& chart) {
+  std::string text;
+  for (std::size_t s = 0; s < chart.truths.size(); ++s) text += answer_for(chart, s);
+  const FieldTruth& first = chart.truths.front();
+  return text + wrapped(fmt::format(
+                    "TV is the difference from {} full trials for each start. Their own sampling "
+                    "noise is TV {}{}.",
+                    first.tally.trials, fixed(first.floor.total_variation, 3),
+                    chart.truths.size() > 1 ? " for the first start" : ""));
+}
+
+std::string details_text(const ChainErrorChart& chart) {
+  constexpr std::size_t kBeside = 2;  // curves that fit into the width of a screen
   std::string out;
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
     const FieldTruth& truth = chart.truths[s];
     out += fmt::format(
-        "{}S{}: {} full trials, {} ms each; seconds, TV of the exact chain, TV of direct "
-        "simulation at that cost\n",
-        s == 0 ? "" : "\n", name_of(truth).substr(1), truth.tally.trials,
-        fixed(1e3 * truth.seconds_per_trial, 2));
-    for (std::size_t first = 0; first < chart.curves.size(); first += 4)  // as many fit in a line
-      out += block_of(chart, s, first, std::min(first + 4, chart.curves.size()));
+        "\nStart{}: {} full trials, {} ms each. Each cell has seconds, TV of the exact chain, and "
+        "TV "
+        "of\ndirect simulation at that cost.\n",
+        name_of(truth).substr(1), truth.tally.trials, fixed(1e3 * truth.seconds_per_trial, 2));
+    for (std::size_t first = 0; first < chart.curves.size(); first += kBeside)
+      out += block_of(chart, s, first, std::min(first + kBeside, chart.curves.size()));
     out += "\n" + words_of(chart, s);
   }
   out +=
-      "\nSampling, bins: the parts of the last line's TV that come from the matrix's trials and "
-      "from its\n"
-      "states. Seconds: CPU time of one thread, one matrix and one prediction. TV: against the "
-      "full trials,\n"
-      "whose noise both share; the chain's a mean over up to 8 matrices of different trials.\n";
+      "\nsampling, bins: the parts of the last line's TV that come from the matrix's trials and "
+      "from\n"
+      "its states. Seconds: CPU time of one thread for one matrix and one prediction. The chain's "
+      "TV\n"
+      "is a mean over up to 8 matrices of different trials.\n";
   for (const ChainCurve& c : chart.curves)
     if (c.trials.empty())
       out += fmt::format("{}: no point, {} rows of {} trials exceed --runs-limit {}.\n", name_of(c),

@@ -22,8 +22,10 @@ struct ChainErrorResult {
 void describe(Fields& out, const ChainErrorResult& result);
 /// For each start a line for each answer of each point (exact, walks), then direct simulation.
 [[nodiscard]] std::string csv_of(const lattice::ChainErrorChart& chart);
-/// For each start a table of points, trials a row by bins, and what it comes to in words.
-[[nodiscard]] std::string table_of(const lattice::ChainErrorChart& chart);
+/// The first screen: what the chart says for each start. And what --details adds: for each start a
+/// table of points, trials a row by bins, and what limits them.
+[[nodiscard]] std::string answer_text(const lattice::ChainErrorChart& chart);
+[[nodiscard]] std::string details_text(const lattice::ChainErrorChart& chart);
 /// Two panels for each start, total variation and 1 - corrcoef over seconds.
 [[nodiscard]] Figure figure_of(const lattice::ChainErrorChart& chart);
 

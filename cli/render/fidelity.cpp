@@ -37,7 +37,7 @@ double share(std::int64_t part, const FieldTally& of) {
 /// "Start 0, 0, 15: active is enough: ..."
 std::string sentence(const FidelityOfStart& s) {
   const auto about = [](const char* name, const PairedChange& c) {
-    return fmt::format("{} has TV {} +- {} where chance makes {} (p {})", name,
+    return fmt::format("{} has TV {} +- {} (chance {}, p {})", name,
                        fixed(c.apart.total_variation, 4), fixed(c.uncertainty(), 4),
                        fixed(c.in_pairs.floor_total_variation, 4),
                        p_text(c.in_pairs.p_total_variation));
@@ -46,9 +46,10 @@ std::string sentence(const FidelityOfStart& s) {
       "active is enough",
       fmt::format("{} trials cannot tell whether active is enough", s.runs[0].tally.trials),
       "active is not enough"};
-  return fmt::format("Start {}, {}, {}: {}: {}, {}.", digits(s.start.x), digits(s.start.vx),
-                     digits(s.start.vy), words[static_cast<int>(s.active_is())],
-                     about("remember", *s.runs[1].change), about("all", *s.runs[2].change));
+  return wrapped(fmt::format("Start {}, {}, {}: {}: {}, {}.", digits(s.start.x), digits(s.start.vx),
+                             digits(s.start.vy), words[static_cast<int>(s.active_is())],
+                             about("remember", *s.runs[1].change),
+                             about("all", *s.runs[2].change)));
 }
 
 void describe(Fields& out, const FidelityVariant& v, const FidelityRun& run) {
@@ -142,59 +143,67 @@ std::string csv_of(const FidelityStudy& study) {
   return csv.text();
 }
 
-std::string table_of(const FidelityStudy& study) {
-  TextTable table({{"   d   vx   vy"},
-                   {"fidelity (method)", -18, 0, "", "  | "},
-                   {"ms", 7, 2},
-                   {"trapped", 9, 2, "%"},
-                   {"departed", 10, 2, "%"},
-                   {"cut off |", 11, 2, "% |"},
-                   {"changed", 8, 1, "%"},
-                   {"TV", 8, 4},
-                   {"floor", 8, 4},
-                   {"pairs", 8, 4},
-                   {"p", 8},
-                   {"p pairs", 8},
-                   {"corrcoef", 10, 4},
-                   {"RMSE", 8, 3}});
+std::string answer_text(const FidelityStudy& study) {
+  std::string out;
+  for (const FidelityOfStart& s : study.starts) out += sentence(s);
+  return out +
+         wrapped(fmt::format(
+             "From {} trials for each start and field.fidelity, all with the same random numbers. "
+             "TV: "
+             "total variation of the final gates from those with active beams. Active is enough "
+             "where TV with its uncertainty (+-) is at most {}.",
+             study.trials, digits(lattice::kSmallChange)));
+}
+
+std::string details_text(const FidelityStudy& study) {
+  const TextColumn start{"   d   vx   vy"}, name{"fidelity (method)", -18, 0, "", "  | "};
+  TextTable endings({start,
+                     name,
+                     {"ms", 8, 2},
+                     {"trapped", 10, 2, "%"},
+                     {"departed", 11, 2, "%"},
+                     {"cut off", 10, 2, "%"}}),
+      changes({start,
+               name,
+               {"changed", 8, 1, "%"},
+               {"TV", 8, 4},
+               {"floor", 8, 4},
+               {"pairs", 8, 4},
+               {"p", 7},
+               {"p pairs", 8},
+               {"corrcoef", 9, 4},
+               {"RMSE", 7, 3}});
   for (const FidelityOfStart& s : study.starts)
     for (std::size_t v = 0; v < study.variants.size(); ++v) {
       const FidelityRun& run = s.runs[v];
       const FieldTally& t = run.tally;
-      std::vector<TextCell> cells{start_text(dynamics::disc_section(), dynamics::entry_of(s.start)),
-                                  study.variants[v].name(),
-                                  1e3 * run.seconds_per_trial,
-                                  100.0 * share(t.trapped(), t),
-                                  100.0 * share(t.left_field(), t),
-                                  100.0 * share(t.cut_off(), t)};
-      if (run.change) {
-        const lattice::Comparison &a = run.change->apart, &p = run.change->in_pairs;
-        cells.insert(cells.end(),
-                     {100.0 * run.change->changed, a.total_variation, a.floor_total_variation,
-                      p.floor_total_variation, p_text(a.p_total_variation),
-                      p_text(p.p_total_variation), a.corrcoef, a.rmse_per_100});
-      }
-      table.row(cells);
+      const std::string at = start_text(dynamics::disc_section(), dynamics::entry_of(s.start)),
+                        variant = study.variants[v].name();
+      endings.row({at, variant, 1e3 * run.seconds_per_trial, 100.0 * share(t.trapped(), t),
+                   100.0 * share(t.left_field(), t), 100.0 * share(t.cut_off(), t)});
+      if (!run.change) continue;
+      const lattice::Comparison &a = run.change->apart, &p = run.change->in_pairs;
+      changes.row({at, variant, 100.0 * run.change->changed, a.total_variation,
+                   a.floor_total_variation, p.floor_total_variation, p_text(a.p_total_variation),
+                   p_text(p.p_total_variation), a.corrcoef, a.rmse_per_100});
     }
   const auto step = [](const FidelityVariant& v) {
     return fmt::format("{} ({})", step_text(v), v.scene.gate.run.method);
   };
-  std::string out = fmt::format(
-      "{} trials per start and line, the same noise in all of them; step {}, {}.\n"
-      "Against the first line: share of trials that end in another gate; total variation (TV),\n"
-      "what chance gives between independent samples (floor) and between samples that share their\n"
-      "noise (pairs), with p-values; corrcoef and RMSE (trials per 100). ms: wall clock per trial, "
-      "{},\n"
-      "least of {} interleaved repeats.\n\n"
-      "{}\n"
-      "Active is enough where TV is at most {} with its uncertainty (+-) added, and\n"
-      "not enough where it is more with that taken off: what chance makes of pairs 95 times in\n"
-      "100, and 3 trials of {} that may yet show what none did.\n",
-      study.trials, step(study.variants.front()), step(study.variants.back()),
-      counted(study.threads, "thread", "threads"), lattice::kFidelityRepeats, table.text(),
-      digits(lattice::kSmallChange), study.trials);
-  for (const FidelityOfStart& s : study.starts) out += sentence(s) + "\n";
-  return out;
+  return fmt::format(
+      "\nThe step is {}, {}. ms: wall-clock time per trial, {}, least of {} repeats\nin "
+      "turn.\n\n{}\n"
+      "Compared with the first line of the start. changed: trials that end in another gate. TV: "
+      "total\n"
+      "variation of the final gates; floor: what chance gives between independent samples; pairs: "
+      "what\n"
+      "chance gives between samples with the same noise. RMSE: trials per 100.\n\n{}\n"
+      "The uncertainty of TV is what chance makes of pairs 95 times in 100, and 3 trials of {} "
+      "more.\n"
+      "Active is not enough where TV less its uncertainty is more than {}.\n",
+      step(study.variants.front()), step(study.variants.back()),
+      counted(study.threads, "thread", "threads"), lattice::kFidelityRepeats, endings.text(),
+      changes.text(), study.trials, digits(lattice::kSmallChange));
 }
 
 std::vector<std::string> complaints(const FidelityStudy& study) {

@@ -20,8 +20,10 @@ struct FidelityResult {
 void describe(Fields& out, const FidelityResult& result);
 /// A line for each start and variant.
 [[nodiscard]] std::string csv_of(const lattice::FidelityStudy& study);
-/// A line for each start and variant, and a sentence for each start: whether active is enough.
-[[nodiscard]] std::string table_of(const lattice::FidelityStudy& study);
+/// The first screen: for each start, whether active is enough. And what --details adds: a line for
+/// each start and variant.
+[[nodiscard]] std::string answer_text(const lattice::FidelityStudy& study);
+[[nodiscard]] std::string details_text(const lattice::FidelityStudy& study);
 /// A sentence for each variant in which faults were seen.
 [[nodiscard]] std::vector<std::string> complaints(const lattice::FidelityStudy& study);
 /// Total variation against `active`, and what a trial costs, start by start.

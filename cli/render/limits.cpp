@@ -190,46 +190,62 @@ std::string setting_of(const dynamics::Remedy& remedy) {
 std::string sentence_of(const MethodLimits& m) {
   const bool is_fine = m.verdict == Verdict::fine;
   const Limit* const limit = is_fine ? m.nearest() : &m.limits.front();
-  if (!limit) return fmt::format("  {:<9}no fault at the values tried\n", m.method);
+  if (!limit) return fmt::format("  {:<9}shows no fault at the values tried\n", m.method);
   const dynamics::Sign& sign = dynamics::sign_of(limit->verdict);
-  return fmt::format(
-      "  {:<9}{}: {}{}; {}\n", m.method,
-      is_fine ? fmt::format("{} {}", limit->axis.name, cell_of(*limit, m)) : "here", sign.words,
-      sign.key.empty() ? "" : fmt::format(" ({})", sign.key),
-      limit->remedy ? "take " + setting_of(*limit->remedy) : "nothing that was tried helps");
+  return wrapped(
+      fmt::format(
+          "  {:<9}{}: {}{}; {}", m.method,
+          is_fine ? fmt::format("{} {}", limit->axis.name, cell_of(*limit, m)) : "here", sign.words,
+          sign.key.empty() ? "" : fmt::format(" ({})", sign.key),
+          limit->remedy ? "take " + setting_of(*limit->remedy) : "nothing that was tried helps"),
+      std::string(11, ' '));
 }
 
 }  // namespace
 
-std::string table_of(const LimitsResult& result) {
-  std::vector<TextColumn> columns{
-      {"", -kFit, 0, "", "  "}, {"its own", kFit, 0, "", "  "}, {"here", -kFit, 0, "", "  "}};
-  for (const Limit& limit : result.limits.front().limits)
-    columns.push_back(
-        {std::string(limit.axis.name.substr(limit.axis.name.find('_') + 1)), kFit, 0, "", "  "});
-  TextTable table(columns);
-  std::string lines;
-  for (const MethodLimits& m : result.limits) {
-    std::vector<TextCell> cells{m.method, quantity(m.own.value, m.own.unit(), 3),
-                                dynamics::name_of(m.verdict)};
-    for (const Limit& limit : m.limits) cells.emplace_back(cell_of(limit, m));
-    table.row(cells);
-    lines += sentence_of(m);
-  }
+std::string answer_text(const LimitsResult& result) {
   const std::string types =
       result.other_types.empty()
           ? ""
           : fmt::format(", not of type {}", fmt::join(result.other_types, " or "));
-  return fmt::format(
-      "{}: where each method breaks near the numbers of the scene (its own gate{}; {} trials a "
-      "point)\n{}"
-      "x3: a fault at 3 times the scene's number, none at the values tried before; /3: at a third; "
-      "-: "
-      "none from a hundredth\nto 100 times (step: from a quarter to one draw of the random force); "
-      "lever: share of the beam, graze: of the radius,\nbelow which there are faults at the "
-      "scene's "
-      "step. The nearest fault, its sign, a remedy:\n{}",
-      result.label, types, result.scene.options.trials, table.text(), lines);
+  std::string text = wrapped(
+      fmt::format("{}: where each method breaks near the numbers of the scene (its own gate{}; {} "
+                  "at each point)",
+                  result.label, types, counted(result.scene.options.trials, "trial", "trials")));
+  for (const MethodLimits& m : result.limits) text += sentence_of(m);
+  return text +
+         "x3: at 3 times the scene's number; /3: at a third of it; here: at the scene's own "
+         "numbers.\n";
+}
+
+std::string details_text(const LimitsResult& result) {
+  const auto& first = result.limits.front().limits;
+  constexpr std::size_t kBeside = 6;  // limits that fit into the width of a screen
+  std::string text;
+  for (std::size_t begin = 0; begin < first.size(); begin += kBeside) {
+    const std::size_t end = std::min(begin + kBeside, first.size());
+    std::vector<TextColumn> columns{
+        {"", -kFit, 0, "", "  "}, {"its own", kFit, 0, "", "  "}, {"here", -kFit, 0, "", "  "}};
+    for (std::size_t k = begin; k < end; ++k)
+      columns.push_back({std::string(first[k].axis.name.substr(first[k].axis.name.find('_') + 1)),
+                         kFit, 0, "", "  "});
+    TextTable table(columns);
+    for (const MethodLimits& m : result.limits) {
+      std::vector<TextCell> cells{m.method, quantity(m.own.value, m.own.unit(), 3),
+                                  dynamics::name_of(m.verdict)};
+      for (std::size_t k = begin; k < end; ++k) cells.emplace_back(cell_of(m.limits[k], m));
+      table.row(cells);
+    }
+    text += "\n" + table.text();
+  }
+  return text +
+         "x3: a fault at 3 times the scene's number, and none at the values tried before. -: no "
+         "fault\n"
+         "from a hundredth to 100 times (step: from a quarter to one draw of the random force). "
+         "lever:\n"
+         "share of the beam, graze: share of the radius, below which there are faults at the "
+         "scene's\n"
+         "step.\n";
 }
 
 std::string figure_name(dynamics::LimitNumber number) {

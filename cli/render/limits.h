@@ -25,8 +25,10 @@ struct LimitsResult {
 void describe(Fields& out, const LimitsResult& result);
 /// A line for each point.
 [[nodiscard]] std::string csv_of(const std::vector<dynamics::FinishedMap>& maps);
-/// How far each method is from its nearest faults, by what they are recognised, and what to do.
-[[nodiscard]] std::string table_of(const LimitsResult& result);
+/// The first screen: the nearest fault of each method, its sign, and what to do. And what --details
+/// adds: how far each method is from the faults of every number.
+[[nodiscard]] std::string answer_text(const LimitsResult& result);
+[[nodiscard]] std::string details_text(const LimitsResult& result);
 
 /// "stiffness.svg"
 [[nodiscard]] std::string figure_name(dynamics::LimitNumber number);

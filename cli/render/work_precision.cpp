@@ -218,20 +218,22 @@ std::string error_text(double value, double limit) {
 
 /// A line for each setting.
 std::string lines_of(const WorkPrecision& chart) {
-  TextTable table({{"", -22},
-                   {"", 11, 1},
-                   {"", 8},
-                   {"", -10, 0, "", "  "},
-                   {"", -10},
-                   {"", -10},
-                   {"", -10},
-                   {"", -11},
-                   {"", 8},
-                   {"", 0, 0, "", "  "}});
+  TextTable table({{"  setting", -23},
+                   {"us/trial", 9, 1},
+                   {"steps", 7},
+                   {"outcomes", -9, 0, "", "  "},
+                   {"+-", -9},
+                   {"chance", -9},
+                   {"columns", -9},
+                   {"exit (m)", -9},
+                   {"parted", 9},
+                   {"status", 0, 0, "", "  "}});
+  std::string refused;
   for (const ChartPoint& p : chart.points) {
     const std::string name = (p.setting.usual ? "* " : "  ") + p.setting.name();
     if (!p.ran()) {
-      table.row({name, "   refused: " + p.refusal});
+      table.row({name, "refused"});
+      refused += wrapped(name + " refused: " + p.refusal, "    ");
       continue;
     }
     const auto& [outcomes, columns, strong] = p.errors;
@@ -244,9 +246,7 @@ std::string lines_of(const WorkPrecision& chart) {
                error_text(strong.position, chart.position_limit()),
                percent(strong.parted_share(), 1.0, 2), dynamics::name_of(p.verdict)});
   }
-  return "  setting                us/trial   steps  outcomes  +-        chance    columns   "
-         "exit (m)   parted   status\n" +
-         table.rows();
+  return table.text() + refused;
 }
 
 std::string reference_text(const WorkPrecision& chart) {
@@ -255,17 +255,19 @@ std::string reference_text(const WorkPrecision& chart) {
     return percent(static_cast<double>(r[outcome]), static_cast<double>(chart.trials));
   };
   const auto against = [&](const dynamics::Setting& setting, const Errors& e) {
-    return fmt::format("  against {:<20} outcomes {}, columns {}, exit {}, parted {}\n",
-                       setting.name(), digits(e.outcomes.total_variation),
-                       digits(e.columns.total_variation), quantity(e.strong.position, "m"),
-                       percent(e.strong.parted_share(), 1.0, 3));
+    return wrapped(
+        fmt::format("  against {:<20} outcomes {}, columns {}, exit {}, parted {}", setting.name(),
+                    digits(e.outcomes.total_variation), digits(e.columns.total_variation),
+                    quantity(e.strong.position, "m"), percent(e.strong.parted_share(), 1.0, 3)),
+        "    ");
   };
-  return fmt::format(
-             "  reference {} ({}): traversed left {}, right {}, exited left {}, right {}, trapped "
-             "{}\n",
-             r.setting.name(), dynamics::name_of(r.verdict), share(Outcome::traversed_left),
-             share(Outcome::traversed_right), share(Outcome::exited_left),
-             share(Outcome::exited_right), share(Outcome::trapped)) +
+  return wrapped(fmt::format("  reference {} ({}): traversed left {}, right {}, exited left {}, "
+                             "right {}, trapped {}",
+                             r.setting.name(), dynamics::name_of(r.verdict),
+                             share(Outcome::traversed_left), share(Outcome::traversed_right),
+                             share(Outcome::exited_left), share(Outcome::exited_right),
+                             share(Outcome::trapped)),
+                 "    ") +
          against(r.second, r.own) + against(r.other_method, r.other);
 }
 
@@ -306,26 +308,61 @@ std::string csv_of(const std::vector<WorkPrecision>& charts) {
   return out;
 }
 
-std::string table_of(const WorkPrecision& chart) {
-  const ChartPoint* cheapest = chart.cheapest();
-  return fmt::format(
-      "{}: {} trials per setting, {} timed\n{}{}"
-      "  cheapest setting without faults, outcomes within {}: {}\n",
-      chart.label, chart.trials, chart.timed_trials, reference_text(chart), lines_of(chart),
-      digits(chart.params.run.tolerance),
-      cheapest ? cheapest->setting.name() : "none shown; more --trials may show one");
+namespace {
+
+/// The default setting of each method, a line each.
+std::string usual_lines(const WorkPrecision& chart) {
+  TextTable table({{"  default setting", -25},
+                   {"us/trial", 10, 1},
+                   {"error of outcomes", 20},
+                   {"status", 0, 0, "", "  "}});
+  for (const ChartPoint& p : chart.points)
+    if (p.setting.usual && p.ran())
+      table.row({"  " + p.setting.name(), p.least_microseconds(),
+                 error_text(p.errors.outcomes.total_variation, chart.outcome_bound(p.errors)),
+                 dynamics::name_of(p.verdict)});
+    else if (p.setting.usual)
+      table.row({"  " + p.setting.name(), "refused"});
+  return table.text();
 }
 
-std::string work_precision_legend(std::int64_t rounds) {
-  return fmt::format(
-      "* usual: the method's default. us/trial: least of {} rounds on one thread, {}\n"
-      "outcomes, columns: total variation from the reference, of the outcomes and of the crossing\n"
-      "states; +-: its standard error; chance: what chance alone would show; <: not told from no "
-      "error.\n"
-      "exit (m): median distance at the exit; parted: share of exits that took another course, "
-      "these count\n"
-      "as infinitely far. status: ok, or the worst fault seen.\n",
-      rounds, machine());
+}  // namespace
+
+std::string answer_text(const std::vector<WorkPrecision>& charts) {
+  std::string text;
+  for (const WorkPrecision& chart : charts) {
+    const ChartPoint* cheapest = chart.cheapest();
+    const std::string allowed = digits(chart.params.run.tolerance);
+    text += wrapped(
+        cheapest ? fmt::format("{}: the fastest setting without faults, with outcomes within {} of "
+                               "the reference, is {} ({} us per trial).",
+                               chart.label, allowed, cheapest->setting.name(),
+                               fixed(cheapest->least_microseconds(), 1))
+                 : fmt::format("{}: no setting without faults was shown to have outcomes within {} "
+                               "of the reference; more --trials may show one.",
+                               chart.label, allowed));
+  }
+  if (charts.size() == 1) text += usual_lines(charts.front());
+  return text + wrapped(fmt::format(
+                    "From {} trials for each setting, with the random numbers of the reference. "
+                    "Outcomes differ by total variation; <: not told from no error.",
+                    charts.front().trials));
+}
+
+std::string details_text(const std::vector<WorkPrecision>& charts, std::int64_t rounds) {
+  std::string text;
+  for (const WorkPrecision& chart : charts)
+    text += fmt::format("\n{}: {} trials per setting, {} timed\n{}{}", chart.label, chart.trials,
+                        chart.timed_trials, reference_text(chart), lines_of(chart));
+  return text +
+         wrapped(fmt::format("\n* default of the method. us/trial: least of {} on one thread, {}",
+                             counted(rounds, "round", "rounds"), machine())) +
+         "outcomes, columns: total variation from the reference, of the outcomes and of the "
+         "crossing\n"
+         "states; +-: its standard error; chance: what chance alone would show; <: not told from "
+         "no\n"
+         "error. exit (m): median distance at the exit; parted: share of exits that took another\n"
+         "course, which count as infinitely far. status: ok, or the worst fault seen.\n";
 }
 
 namespace {

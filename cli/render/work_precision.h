@@ -22,10 +22,12 @@ void describe(Fields& out, const ChartResult& result);
 void describe(Fields& out, const dynamics::WorkPrecision& chart);
 /// A line for each setting of each scene.
 [[nodiscard]] std::string csv_of(const std::vector<dynamics::WorkPrecision>& charts);
-/// The reference, a line for each setting, and the cheapest one that will do.
-[[nodiscard]] std::string table_of(const dynamics::WorkPrecision& chart);
-/// What the columns of such tables mean.
-[[nodiscard]] std::string work_precision_legend(std::int64_t rounds);
+/// The first screen: the fastest setting that will do, and of one scene the defaults of the
+/// methods. And what --details adds: the reference, and a line for each setting; `rounds` of
+/// timing.
+[[nodiscard]] std::string answer_text(const std::vector<dynamics::WorkPrecision>& charts);
+[[nodiscard]] std::string details_text(const std::vector<dynamics::WorkPrecision>& charts,
+                                       std::int64_t rounds);
 /// A row for each scene: time against the error of the outcomes, and
 /// against where trials end.
 [[nodiscard]] Figure figure_of(const std::vector<dynamics::WorkPrecision>& charts);

@@ -33,7 +33,7 @@ holds '.starts[0].summary | .cheapest_near_best.seconds <= .best.seconds' charts
   --set run.method=moreau --set run.step_s=0.02 -o charts/t --quiet >charts/t.txt 2>/dev/null
 holds '.starts[0] | .truth.floor.total_variation as $noise | .trees | length >= 2 and (map(.total_variation < .error_95 + 2 * $noise and .gate_runs > 0 and .seconds > 0) | all)' charts/t/chain.json
 [ "$(grep -c ',tree,' charts/t/chain.csv)" = "$(jq '.starts[0].trees | length' charts/t/chain.json)" ] || fail "chart chain: not one line per tree in chain.csv"
-grep -q 'Trees (predict --accuracy): TV ' charts/t.txt || fail "chart chain: no word on trees"
+grep -q '^Trees (predict --accuracy): TV ' charts/t.txt || fail "chart chain: no word on trees"
 # Times aside, the same on one thread.
 chart -o charts/b --threads 1 --quiet >/dev/null 2>&1
 timeless='.starts[0].truth.final_gates, (.points[] | del(.build_s) | .starts[] |= del(.exact_s, .walks_10000_s, .walks_1000000_s))'

@@ -39,7 +39,7 @@ expect 0 '^Start 0, 0, 15: active is enough: .* 0.0000 +- 0.0300 ' "$gatewalk" c
 holds '.starts[0].active_is_enough == true and (.starts[0].runs | map(.step_s == 0.02) | all)' new/chart/fidelity.json
 # The step is said, and what it does to moreau.
 expect 0 '^gatewalk: .*(moreau), step 0.02 s: .* sank into a beam' "$gatewalk" chart field $one_gate --trials 100 -o new/chart --quiet
-expect 0 'step 0.02 s (moreau), 0.02 s (stable)' "$gatewalk" chart field $one_gate --trials 5 -o new/chart
+expect 0 'step 0.02 s (moreau), 0.02 s (stable)' "$gatewalk" chart field $one_gate --trials 5 -o new/chart --details
 }
 
 finish

@@ -30,7 +30,7 @@ grep -q '^"a,b",stable,run.step_s,' quoted/chart.csv || fail "chart.csv: a comma
   fail "chart: no setting is below a billionth of R: $(jq -c '[.scenes[0].settings[] | [.method, .value, .errors.strong.position_m.median]]' exact.json)"
 grep -q 'half or more parted' exact/chart.svg && fail "chart: exact settings are called parted"
 # The table shows the least of the times, and chance beside the error.
-"$gatewalk" chart methods "$scenes/stiff.toml" -o times --trials 50 --repeats 3 --methods event --json times.json >times.txt 2>/dev/null
+"$gatewalk" chart methods "$scenes/stiff.toml" -o times --trials 50 --repeats 3 --methods event --details --json times.json >times.txt 2>/dev/null
 for i in 0 1 2 3 4 5 6 7; do
   # awk rounds a double, as the program does; the shell's printf rounds another number half-way between two.
   least=$(value ".scenes[0].settings[$i].microseconds_per_trial.rounds | min" times.json | awk '{ printf "%.1f", $1 }')
