@@ -28,12 +28,12 @@ struct ExportCommand : Options {
   using Options::Options;
   TextOption matrix = positional("matrix", "matrix file written by gatewalk build", true);
   TextOption second = second_scene();
-  TextOption output = main_output_file("FILE", "what to write", Options::Content::binary);
-  Option gate =
-      add_flag("gate", ".mtx, .csv, .npz: the matrix of one gate; its last column is trapped");
-  Option counts = add_flag("counts", "with --gate: numbers of runs, not probabilities");
-  TextOption type =
-      add_text("type", "NAME", "with --gate: of gates of that type of the table [terrain]");
+  TextOption output = main_output_file("FILE", "the file to write", Options::Content::binary);
+  Option gate = add_flag(
+      "gate", "for .mtx, .csv, .npz: write the matrix of one gate; its last column is trapped");
+  Option counts = add_flag("counts", "with --gate: write numbers of runs, not probabilities");
+  TextOption type = add_text(
+      "type", "NAME", "with --gate: the matrix of gates of this type of the table [terrain]");
   TextsOption start = add_starts(*this, "the scene's start");
   Option seed_given = add_seed("seed of trials of a start that a matrix of trees does not know");
   Asked asked{.path = matrix, .scene = second, .starts = start};
@@ -142,7 +142,7 @@ Exported export_field(const ExportCommand& options, ExportForm form) {
            .transitions = std::ssize(chain.target),
            .first_ending = chain.ends(),
            .made_by = options.provenance(s)},
-          fmt::format("{} states, {} transitions; state 0 is {}, the last {} are endings\n",
+          fmt::format("{} states, {} transitions. State 0 is {}; the last {} states are endings.\n",
                       chain.size(), chain.target.size(),
                       from.state ? from.state->bin
                                  : lattice::title_of(s.problem.map().section, s.starts.front()),
@@ -184,12 +184,11 @@ Exported export_gate(const ExportCommand& options, ExportForm form) {
   const std::vector<std::int64_t> per_run =
       options.counts ? counts_per_run_of(options, file, t) : std::vector<std::int64_t>();
   write_table(options, form, table, names, names, states_csv(file, per_run));
-  std::string text = fmt::format("{} states of one gate, {} entries; the last column is trapped\n",
+  std::string text = fmt::format("{} states of one gate, {} entries. The last column is trapped.\n",
                                  t.space.size(), table.entries.size());
   if (std::count(per_run.begin(), per_run.end(), 2) > 0)
     text += fmt::format(
-        "runs are counted twice, as they were and as their mirror images: counts_per_run in "
-        "{}.states.csv says in which rows\n",
+        "Some rows count each run and its mirror image: see counts_per_run in {}.states.csv.\n",
         stem_of(options.output.value()));
   return {{.states = t.space.size(),
            .transitions = std::ssize(table.entries),
@@ -213,8 +212,31 @@ Exported export_trials(const ExportCommand& options) {
   options.write(output, lattice::has_ending(output, ".npz") ? npz_of(all) : text_of(all));
   return {
       {.states = space.size(), .trajectories = std::ssize(all), .made_by = options.provenance(s)},
-      fmt::format("{} trajectories through {} states; {} is trapped\n", all.size(), space.size(),
-                  space.size())};
+      fmt::format("{} trajectories through {} states. State {} is trapped.\n", all.size(),
+                  space.size(), space.size())};
+}
+
+/// How other programs read the file.
+std::string how_to_read(ExportForm form, const std::string& output) {
+  switch (form) {
+    case ExportForm::umb:
+      return "PRISM (from 4.10) and Storm (from 1.12) read this file.\n";
+    case ExportForm::drn:
+      return "Storm reads this file.\n";
+    case ExportForm::prism:
+      return fmt::format("PRISM reads this file; {0}.sta and {0}.lab are beside it.\n",
+                         stem_of(output));
+    case ExportForm::npz:
+      return "Python reads this file with scipy.sparse.load_npz.\n";
+    case ExportForm::matrix_market:
+      return "Python reads this file with scipy.io.mmread.\n";
+    case ExportForm::csv:
+      return "The states are in " + stem_of(output) + ".states.csv.\n";
+    case ExportForm::trajectories:
+      break;
+  }
+  return "deeptime and PyEMMA take such trajectories; the states are in " + stem_of(output) +
+         ".states.csv.\n";
 }
 
 }  // namespace
@@ -222,21 +244,25 @@ Exported export_trials(const ExportCommand& options) {
 int run_export(const Arguments& arguments) {
   ExportCommand options(
       "export MATRIX.nc [SCENE] -o FILE [options]",
-      "Writes a chain for other programs, by the ending of FILE:\n"
+      "Writes a chain for other programs. The ending of FILE says for which one:\n"
       "  .umb              PRISM (from 4.10), Storm (from 1.12)\n"
       "  .drn              Storm\n"
       "  .tra              PRISM, with .sta and .lab beside it\n"
-      "  .mtx              Matrix Market, with .states.csv beside it, as of all below\n"
-      "  .csv              from,to,probability, by names of states\n"
+      "  .mtx              Matrix Market; this and all below with .states.csv beside the file\n"
+      "  .csv              from,to,probability, with names of states\n"
       "  .npz              compressed rows, for scipy.sparse.load_npz\n"
-      "  .dtrajs           a line for each trial, the states that it went through (deeptime, "
-      "PyEMMA)\n"
+      "  .dtrajs           a line for each trial, with the states it visited (deeptime, PyEMMA)\n"
       "  .dtrajs.npz       the same as arrays of numpy\n"
-      "All but the last two are of the whole field. A state is a gate, the state in which it is\n"
-      "entered and, where field.max_gates limits them, how many were entered before. Endings are\n"
-      "states that are never left: trapped, crossed, left_side, right_side, went_back, cut_off,\n"
-      "never_sampled. With --gate the matrix of one gate is written. All count from 0 (.mtx: 1).",
+      "All but the last two have the chain of the whole field. A state is then a gate, the way in "
+      "which a body enters\n"
+      "the gate and, where field.max_gates sets a limit, the number of gates before. Endings are "
+      "absorbing states:\n"
+      "trapped, crossed, left_side, right_side, went_back, cut_off, never_sampled. --gate writes "
+      "the "
+      "matrix of one gate.\n"
+      "States count from 0 (.mtx: from 1).",
       "gatewalk export matrix.nc --set field.max_gates=0 -o field.umb");
+  options.most_used({"output", "gate", "counts", "set", "start"});
   if (!options.parse(arguments)) return kFine;
   const ExportForm form = export_form(options.output.value());
   check_files_beside(options, form);
@@ -261,7 +287,7 @@ int run_export(const Arguments& arguments) {
   const Exported exported = options.gate                       ? export_gate(options, form)
                             : form == ExportForm::trajectories ? export_trials(options)
                                                                : export_field(options, form);
-  options.give_out(exported.result, exported.text);
+  options.give_out(exported.result, exported.text + how_to_read(form, options.output.value()));
   return kFine;
 }
 

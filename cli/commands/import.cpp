@@ -24,33 +24,46 @@ auto read_file(const Read& read) {
   }
 }
 
+/// Commands that take the chain, if it has a start.
+std::vector<std::string> next_of(const std::string& output, bool has_start) {
+  const std::string file = shell_quoted(output);
+  if (!has_start) return {"gatewalk show " + file + "  # shows states and rows"};
+  return {"gatewalk predict " + file + "  # predicts how walks end",
+          "gatewalk analyze " + file + "  # gives visits, paths and time scales"};
+}
+
 }  // namespace
 
 int run_import(const Arguments& arguments) {
   Options options(
       "import FILE --states STATES.csv -o MATRIX.nc [options]",
-      "Makes a matrix file of a Markov chain from elsewhere, for predict, analyze, walk, export:\n"
-      "counts or probabilities of one cell (.mtx, .csv: from,to,count or from,to,probability; "
-      ".npz\n"
-      "of scipy), states x states or states x (states + 1), the last column trapped; or\n"
-      "trajectories (.dtrajs: a line each, states between blanks; .npz: an array each), whose "
-      "last\n"
-      "state may be the number of states: trapped; -1 is a gap. Whole numbers are counts, from\n"
-      "which error bars follow. STATES.csv says by which move from cell to cell each state is "
-      "entered:\n"
-      "state,move_x,move_y (columns to the right, rows ahead; and if wanted name, face;\n"
-      "counts_per_run: 2 where a run is counted with its mirror image, as in counts of trees that\n"
-      "export wrote: error bars then count it once).",
+      "Makes a matrix file from a Markov chain of yours, for predict, analyze, walk and export.\n"
+      "FILE has counts or probabilities of one cell: .mtx; .csv with from,to,count or "
+      "from,to,probability; .npz of scipy.\n"
+      "The matrix is states x states, or states x (states + 1) with the last column trapped. FILE "
+      "can also have\n"
+      "trajectories: .dtrajs, a line each with blanks between states; or .npz, an array each. The "
+      "last state of a\n"
+      "trajectory may be the number of states, which means trapped; -1 is a gap. Whole numbers are "
+      "counts and give error\n"
+      "bars.\n"
+      "STATES.csv has a line for each state, with the move by which the state is entered: "
+      "state,move_x,move_y (columns to\n"
+      "the right, rows ahead). Optional columns are name, face and counts_per_run: 2 where counts "
+      "hold each run and its\n"
+      "mirror image, as gatewalk export writes them for trees; error bars then count the run once.",
       "gatewalk import counts.mtx --states states.csv --start 0 --set field.rows=5 -o chain.nc");
-  const TextOption file_given = options.positional("file", "the matrix or the trajectories", true);
-  const TextOption table_of_states = options.input_file("states", "the table of states");
+  const TextOption file_given = options.positional("file", "the matrix, or the trajectories", true);
+  const TextOption table_of_states =
+      options.input_file("states", "the table of states, with the move that enters each");
   const TextOption output_given =
       options.main_output_file("MATRIX.nc", "the matrix file to write", Options::Content::binary);
   const TextOption start_given = options.add_text(
       "start", "STATE", "the state in which walks start: its name, or its number from 0");
   const NumberOption width = options.add_number("width", "M", "width of a cell, m (default: 1)");
   const NumberOption length =
-      options.add_number("length", "M", "its length along the way, m (default: 1)");
+      options.add_number("length", "M", "length of a cell along the way, m (default: 1)");
+  options.most_used({"states", "output", "start", "set", "json"});
   if (!options.parse(arguments)) return kFine;
   if (!table_of_states)
     throw UsageError("missing --states STATES.csv: which move enters each state");
@@ -95,16 +108,14 @@ int run_import(const Arguments& arguments) {
   const std::vector<std::int64_t> per_run = lattice::counts_per_run(file);
   if (std::count(per_run.begin(), per_run.end(), 2) > 0)
     lines +=
-        "runs are counted with their mirror images (counts_per_run): intervals count each run "
-        "once\n";
+        "Runs are counted with their mirror images (counts_per_run); intervals count each run "
+        "once.\n";
   const std::string table = summary_table(file, output) + lines;
   options.give_out(
       ImportedMatrix{{output, std::move(file)}, std::move(understood), options.provenance()},
-      table);
+      {table, "", next_of(output, cells.start.has_value())});
   if (matrix.probabilities)
-    options.warn(path +
-                 " has probabilities: nothing says how certain they are, so that predictions "
-                 "have no error bars");
+    options.warn(path + " has probabilities, not counts: predictions have no error bars");
   return kFine;
 }
 

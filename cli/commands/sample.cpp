@@ -41,18 +41,20 @@ std::vector<Sample> samples() {
 int run_sample(const Arguments& arguments) {
   Options options(
       "sample [NAME] [options]",
-      "Writes a ready file to begin with: a scene, tracks of bodies with the cells that cut them,\n"
-      "recorded passages, an experiment's counts. Without NAME it says which there are.",
+      "Writes a ready file to begin with: a scene, tracks of bodies and the cells that cut them, "
+      "recorded passages, or\n"
+      "counts of an experiment. Without NAME, sample lists all files.",
       "gatewalk sample walker -o mine.toml");
-  const TextOption name = options.positional("name", "which one", false);
+  const TextOption name = options.positional("name", "name of the sample", false);
   const TextOption output =
       options.output_file("output", "FILE", "the file to write (default: standard output)");
   options.without_scene("a sample is written as it is");
   if (!options.parse(arguments)) return kFine;
   const std::vector<Sample> all = samples();
   if (!name) {
-    if (output) throw UsageError("-o without NAME: which sample?");
-    options.give_out(SampleResult{all}, table_of(all));
+    if (output) throw UsageError("-o without NAME: name a sample (gatewalk sample lists all)");
+    options.give_out(SampleResult{all},
+                     {table_of(all), "", {"gatewalk sample walker -o walker.toml  # writes one"}});
     return kFine;
   }
   const std::string given = name.value();

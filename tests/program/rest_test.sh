@@ -58,7 +58,7 @@ holds '.start_state.bin == "up"' predict.json
 holds '[.starts[] | [.start.name, .start_state.bin]] == [["up", "up"], ["right", "right"]]' two.json
 expect 0 '^start right$' "$gatewalk" predict half.nc --start up --start right
 holds '[.starts[].name] == ["up"]' analyze.json
-expect 0 'state 0 is up, ' "$gatewalk" export half.nc -o half.drn
+expect 0 'State 0 is up; ' "$gatewalk" export half.nc -o half.drn
 # Also where the numbers of a face's states have gaps.
 printf 'state,name,move_x,move_y\n0,up,0,1\n1,right,1,0\n2,up_again,0,1\n3,up_last,0,1\n' >gaps.csv
 printf 'from,to,count\nup,up_last,5\nup_last,up_again,5\nup_again,right,3\nright,up,1\n' >gaps.from.csv
