@@ -119,7 +119,10 @@ int run_help(const std::vector<std::string>& words) {
   const std::string name = words[0] + (n == 2 ? " " + words[1] : "");
   const Command* const command = find_command(name);
   if (!command) return kWrongUse;
-  if (words.size() != n + 1 || words[n] != "--result") return command->run({"--help"});
+  if (words.size() == n) return command->run({"--help"});
+  if (words.size() > n + 1 || words[n] != "--result")
+    throw UsageError(fmt::format("help {} takes --result, and nothing else: not '{}'", name,
+                                 words[words[n] == "--result" ? n + 1 : n]));
   for (const ResultOf& of : results())
     if (of.command == std::string_view(command->name)) {
       write_text_atomically("-", result_page(of));

@@ -468,9 +468,10 @@ std::string known_key(const std::string& given, const std::string& origin) {
   for (const SceneKey& key : scene_keys()) {
     const std::string units = units_instead(given, key.key);
     if (units.empty()) continue;
+    // The key itself with a wrong unit; else another key may be nearer: forces.random_rate_hz.
     const std::string_view closest = closest_key(given);
-    if (!closest.starts_with(given) &&
-        edit_distance(given.substr(0, kLongestCompared), closest) > 1)
+    if (closest == key.key || (!closest.starts_with(given) &&
+                               edit_distance(given.substr(0, kLongestCompared), closest) > 1))
       throw SceneError(origin + ": unknown key " + printable(given) + ": " + std::string(key.key) +
                        " may end in " + units + " instead");
   }

@@ -126,6 +126,11 @@ TEST(Units, ErrorsSpeakTheUserSpelling) {
   EXPECT_EQ(scene_refusal("", {"forces.propulsion_lbf=3"}),
             "--set forces.propulsion_lbf=3: unknown key forces.propulsion_lbf: forces.propulsion_N "
             "may end in _kN, _N, _mN, _uN or _nN instead");
+  EXPECT_EQ(scene_refusal("[body]\nradius_s = 3\n"),
+            "bad.toml:2: unknown key body.radius_s: body.radius_m may end in _km, _m, _cm, _mm, "
+            "_um or _nm instead");
+  EXPECT_EQ(scene_refusal("[body]\nraduis_cm = 3\n"),
+            "bad.toml:2: unknown key body.raduis_cm; the closest known key is body.radius_m");
   EXPECT_EQ(scene_refusal("[forces]\nrandom_mN = -3\n"),
             "bad.toml:2: forces.random_mN = -3 is not permitted: must lie in [0, 1e+103] mN");
   EXPECT_EQ(scene_refusal("[start]\nx_cm = 2500\n"),

@@ -64,6 +64,7 @@ for words in 'chart --help' 'help chart' 'chart -h'; do
 done
 "$gatewalk" help chart field | cmp -s - <("$gatewalk" chart field --help) || fail "help chart field is not chart field --help"
 expect 0 '^The result of gatewalk chart field, as --json writes it' "$gatewalk" help chart field --result
+expect 2 "^gatewalk: help chart field takes --result, and nothing else: not 'extra'$" "$gatewalk" help chart field extra
 "$gatewalk" fly 2>&1 | grep -q 'did you mean' && fail "fly is no misspelled command"
 
 # simulate is lattice under another name; what the result keeps of it is one name.
