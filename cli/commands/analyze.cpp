@@ -301,18 +301,17 @@ std::vector<std::string> next_of(const Options& options, const lattice::Source& 
 }  // namespace
 
 int run_analyze(const Arguments& arguments) {
-  Options options(
-      "analyze SCENE|MATRIX.nc [SCENE] [options]",
-      "Answers: which numbers of the scene change the chance to cross most, how long bodies take, "
-      "how much work that\n"
-      "needs, which gates they visit, which paths lead across, and how likely other starts are to "
-      "cross. The answers\n"
-      "come from the chain of the field. analyze simulates gate runs until the error bar is as "
-      "small as --accuracy. A\n"
-      "matrix of trees brings its own gate runs. A matrix of bins is used as it is; it gives no "
-      "intervals for times and\n"
-      "work.",
-      "gatewalk analyze scenes/field.toml --target left_side --json analysis.json");
+  Options options("analyze SCENE|MATRIX.nc [SCENE] [options]",
+                  "Finds which numbers of the scene change the chance to cross most, and says how "
+                  "long bodies take,\n"
+                  "how much work that needs, which gates they visit, which paths lead across, and "
+                  "how likely other\n"
+                  "starts are to cross. The answers come from the chain of the field. analyze "
+                  "simulates gate runs\n"
+                  "until the error bar is as small as --accuracy. A matrix of trees brings its own "
+                  "gate runs. A\n"
+                  "matrix of bins is used as it is; it gives no intervals for times and work.",
+                  "gatewalk analyze scenes/field.toml --target left_side --json analysis.json");
   const TextOption path = options.positional(
       "matrix", "a scene (-: standard input), or a matrix file written by gatewalk build", true);
   const TextOption scene = options.second_scene();

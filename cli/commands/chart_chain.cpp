@@ -34,13 +34,12 @@ std::vector<double> factors_of(const NumbersOption& given, lattice::BinsChoice::
 int run_chart_chain(const Arguments& arguments) {
   Options options(
       "chart chain SCENE -o DIR [options]",
-      "Answers: how large the chain's error is for its cost, and when direct simulation is "
-      "better.\n"
-      "chart chain compares matrices of coarser and finer bins with 10 to 10000 trials a row, and "
-      "trees (predict\n"
-      "--accuracy), with the full dynamics and with direct simulation at the same cost. It writes "
-      "chain.csv, chain.json\n"
-      "and chain.svg into DIR.",
+      "Shows how large the chain's error is for its cost, and when direct simulation is better. "
+      "chart\n"
+      "chain compares matrices of coarser and finer bins with 10 to 10000 trials a row, and trees\n"
+      "(predict --accuracy), with the full dynamics and with direct simulation at the same cost. "
+      "It\n"
+      "writes chain.csv, chain.json and chain.svg into DIR.",
       "gatewalk chart chain scenes/field.toml -o results/chain --truth-trials 1e5");
   options.scene();
   const std::vector<std::string> files{"chain.csv", "chain.json", "chain.svg"};

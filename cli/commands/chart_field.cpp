@@ -5,22 +5,22 @@
 namespace gatewalk::cli {
 
 int run_chart_field(const Arguments& arguments) {
-  Options options(
-      "chart field SCENE -o DIR [options]",
-      "Answers: whether it is enough that only the beams of the body's own gate move "
-      "(field.fidelity = active).\n"
-      "chart field simulates the full dynamics at every field.fidelity with the same noise, and "
-      "compares final gates and\n"
-      "cost with beams that remember, and with the beams of neighbouring gates. It uses method "
-      "moreau at the scene's\n"
-      "run.step_s, and ignores run.method and field.fidelity of the scene. One more line has the "
-      "default method. With a\n"
-      "long step, moreau sinks into beams; then a warning asks for a smaller run.step_s. The "
-      "command "
-      "writes fidelity.csv,\n"
-      "fidelity.json and, with gnuplot, fidelity.svg into DIR.",
-      "gatewalk chart field scenes/field.toml --trials 2000 --set run.step_s=0.001 -o "
-      "results/fidelity");
+  Options options("chart field SCENE -o DIR [options]",
+                  "Tests whether it is enough that only the beams of the body's own gate move "
+                  "(field.fidelity =\n"
+                  "active). chart field simulates the full dynamics at every field.fidelity with "
+                  "the same noise, and\n"
+                  "compares final gates and cost with beams that remember, and with the beams of "
+                  "neighbouring gates.\n"
+                  "It uses method moreau at the scene's run.step_s, and ignores run.method and "
+                  "field.fidelity of the\n"
+                  "scene. One more line has the default method. With a long step, moreau sinks "
+                  "into beams; then a\n"
+                  "warning asks for a smaller run.step_s. The command writes fidelity.csv, "
+                  "fidelity.json and, with\n"
+                  "gnuplot, fidelity.svg into DIR.",
+                  "gatewalk chart field scenes/field.toml --trials 2000 --set run.step_s=0.001 -o "
+                  "results/fidelity");
   options.scene();
   options.add_trials_and_seed("trials per start and fidelity");
   const std::vector<std::string> files{"fidelity.csv", "fidelity.json", "fidelity.svg"};

@@ -10,18 +10,19 @@
 
 namespace gatewalk::cli {
 int run_chart_limits(const Arguments& arguments) {
-  Options options(
-      "chart limits SCENE -o DIR [options]",
-      "Answers: where each time-stepping method breaks near the numbers of a scene, how you "
-      "recognise it, and what helps.\n"
-      "chart limits maps a method's step against one number of the scene at a time: stiffness and "
-      "damping of the beams,\n"
-      "their mass, random force, speed of the start, restitution, impulse threshold, first contact "
-      "near a joint, grazing a\n"
-      "tip. Each point simulates the gate from the scene's start with every method, with the noise "
-      "of a reference. The\n"
-      "command writes limits.csv, limits.json and a figure for each number.",
-      "gatewalk chart limits scenes/walker.toml -o limits --quick");
+  Options options("chart limits SCENE -o DIR [options]",
+                  "Shows where each time-stepping method breaks near the numbers of a scene, how "
+                  "you recognise it,\n"
+                  "and what helps. chart limits maps a method's step against one number of the "
+                  "scene at a time:\n"
+                  "stiffness and damping of the beams, their mass, random force, speed of the "
+                  "start, restitution,\n"
+                  "impulse threshold, first contact near a joint, grazing a tip. Each point "
+                  "simulates the gate from\n"
+                  "the scene's start with every method, with the noise of a reference. The command "
+                  "writes limits.csv,\n"
+                  "limits.json and a figure for each number.",
+                  "gatewalk chart limits scenes/walker.toml -o limits --quick");
   options.scene();
   std::vector<std::string> files{"limits.csv", "limits.json"};
   for (const auto& info : dynamics::limit_numbers()) files.push_back(figure_name(info.number));

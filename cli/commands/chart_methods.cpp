@@ -73,13 +73,14 @@ std::vector<std::string> chosen_methods(const TextOption& given) {
 int run_chart_methods(const Arguments& arguments) {
   Options options(
       "chart methods SCENE... -o DIR [options]",
-      "Answers: which time-stepping method is fastest for an accuracy.\n"
+      "Shows which time-stepping method is fastest for an accuracy.\n"
       "chart methods measures the time per trial on one thread, and the error against a reference "
-      "with the same noise,\n"
-      "for several settings of each method. It writes chart.csv and chart.json after each scene, "
-      "and chart.svg in the end.\n"
-      "With 1e5 trials a scene takes about ten minutes; --trials 2000 --repeats 3 gives a first "
-      "look in one.",
+      "with\n"
+      "the same noise, for several settings of each method. It writes chart.csv and chart.json "
+      "after each\n"
+      "scene, and chart.svg in the end. With 1e5 trials a scene takes about ten minutes; --trials "
+      "2000\n"
+      "--repeats 3 gives a first look in one.",
       "gatewalk chart methods scenes/field.toml scenes/stiff.toml -o results/chart --trials 1e4");
   const TextsOption scenes =
       options.positional_list("scene", "scene files (TOML); a scene is called by its file's name");

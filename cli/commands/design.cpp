@@ -46,16 +46,15 @@ std::vector<std::string> next_of(const Options& options) {
 }  // namespace
 
 int run_design(const Arguments& arguments) {
-  Options options(
-      "design SCENE [options]",
-      "Answers: which gates of a field to change into other types of its table "
-      "[terrain], so that bodies\n"
-      "cross as often as possible. design finds the best map for a chain, simulates the "
-      "map in full, adds these\n"
-      "trials to the chain, and repeats. New trials then measure how often bodies cross "
-      "the changed field, and\n"
-      "the field as it is.",
-      "gatewalk design scenes/mixed.toml --changes 3 --types s,.");
+  Options options("design SCENE [options]",
+                  "Finds which gates of a field to change into other types of its table [terrain], "
+                  "so that bodies\n"
+                  "cross as often as possible. design finds the best map for a chain, simulates "
+                  "the map in full, adds\n"
+                  "these trials to the chain, and repeats. New trials then measure how often "
+                  "bodies cross the changed\n"
+                  "field, and the field as it is.",
+                  "gatewalk design scenes/mixed.toml --changes 3 --types s,.");
   const TextOption path = options.scene();
   const CountOption changes =
       options.add_count("changes", "N", "change at most so many gates", "1");

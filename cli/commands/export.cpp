@@ -254,13 +254,12 @@ int run_export(const Arguments& arguments) {
       "  .dtrajs           a line for each trial, with the states it visited (deeptime, PyEMMA)\n"
       "  .dtrajs.npz       the same as arrays of numpy\n"
       "All but the last two have the chain of the whole field. A state is then a gate, the way in "
-      "which a body enters\n"
-      "the gate and, where field.max_gates sets a limit, the number of gates before. Endings are "
-      "absorbing states:\n"
-      "trapped, crossed, left_side, right_side, went_back, cut_off, never_sampled. --gate writes "
-      "the "
-      "matrix of one gate.\n"
-      "States count from 0 (.mtx: from 1).",
+      "which a\n"
+      "body enters the gate and, where field.max_gates sets a limit, the number of gates before. "
+      "Endings\n"
+      "are absorbing states: trapped, crossed, left_side, right_side, went_back, cut_off, "
+      "never_sampled.\n"
+      "--gate writes the matrix of one gate. States count from 0 (.mtx: from 1).",
       "gatewalk export matrix.nc --set field.max_gates=0 -o field.umb");
   options.most_used({"output", "gate", "counts", "set", "start"});
   if (!options.parse(arguments)) return kFine;

@@ -204,19 +204,17 @@ std::vector<std::string> next_of(const FitCommand& options, const FittedScene& f
 int run_fit(const Arguments& arguments) {
   FitCommand options(
       "fit SCENE SEEN.csv [MORE.csv ...] --free KEY=LOW:HIGH [options]",
-      "Answers: which values of a scene's numbers explain an experiment. fit gives the posterior "
-      "of "
-      "each number, if\n"
-      "all values of its range are equally likely before. It simulates full trials at points of "
-      "the "
-      "ranges, with more\n"
-      "points where the counts are likely.\n"
+      "Finds which values of a scene's numbers explain an experiment. fit gives the posterior "
+      "of each\n"
+      "number, if all values of its range are equally likely before. It simulates full trials at "
+      "points\n"
+      "of the ranges, with more points where the counts are likely.\n"
       "The counts have the columns of validate --observed, and belong to one start. Lines of "
-      "trials "
-      "may have time_s, the\n"
-      "time at which a body left the field. Recorded passages (runs.csv) are simulated from where "
-      "each one began. Of\n"
-      "cells of a program, fit finds numbers of the program: parameters.KEY.",
+      "trials may\n"
+      "have time_s, the time at which a body left the field. Recorded passages (runs.csv) are "
+      "simulated\n"
+      "from where each one began. Of cells of a program, fit finds numbers of the program:\n"
+      "parameters.KEY.",
       "gatewalk fit scenes/field.toml counts.csv --free forces.propulsion_N=5:9 --free "
       "forces.random_N=10:40");
   options.add_details("the search, the checks of the posterior, and the time-stepping method");

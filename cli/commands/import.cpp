@@ -37,21 +37,23 @@ std::vector<std::string> next_of(const std::string& output, bool has_start) {
 int run_import(const Arguments& arguments) {
   Options options(
       "import FILE --states STATES.csv -o MATRIX.nc [options]",
-      "Makes a matrix file from a Markov chain of yours, for predict, analyze, walk and export.\n"
-      "FILE has counts or probabilities of one cell: .mtx; .csv with from,to,count or "
-      "from,to,probability; .npz of scipy.\n"
-      "The matrix is states x states, or states x (states + 1) with the last column trapped. FILE "
-      "can also have\n"
-      "trajectories: .dtrajs, a line each with blanks between states; or .npz, an array each. The "
-      "last state of a\n"
-      "trajectory may be the number of states, which means trapped; -1 is a gap. Whole numbers are "
-      "counts and give error\n"
-      "bars.\n"
-      "STATES.csv has a line for each state, with the move by which the state is entered: "
-      "state,move_x,move_y (columns to\n"
-      "the right, rows ahead). Optional columns are name, face and counts_per_run: 2 where counts "
-      "hold each run and its\n"
-      "mirror image, as gatewalk export writes them for trees; error bars then count the run once.",
+      "Makes a matrix file from a Markov chain of yours, for predict, analyze, walk and export. "
+      "FILE has\n"
+      "counts or probabilities of one cell: .mtx; .csv with from,to,count or from,to,probability; "
+      ".npz of\n"
+      "scipy. The matrix is states x states, or states x (states + 1) with the last column "
+      "trapped. FILE\n"
+      "can also have trajectories: .dtrajs, a line each with blanks between states; or .npz, an "
+      "array\n"
+      "each. The last state of a trajectory may be the number of states, which means trapped; -1 "
+      "is a\n"
+      "gap. Whole numbers are counts and give error bars.\n"
+      "STATES.csv has a line for each state, with the move by which the state is entered:\n"
+      "state,move_x,move_y (columns to the right, rows ahead). Optional columns are name, face "
+      "and\n"
+      "counts_per_run: 2 where counts hold each run and its mirror image, as gatewalk export "
+      "writes them\n"
+      "for trees; error bars then count the run once.",
       "gatewalk import counts.mtx --states states.csv --start 0 --set field.rows=5 -o chain.nc");
   const TextOption file_given = options.positional("file", "the matrix, or the trajectories", true);
   const TextOption table_of_states =

@@ -37,15 +37,15 @@ std::vector<std::string> next_of(const Options& options, std::int64_t trials) {
 
 int run_landscape(const Arguments& arguments) {
   Options options("landscape SCENE -o DIR [options]",
-                  "Answers: how high the energy barrier of one gate is, and where a body can get "
+                  "Finds how high the energy barrier of one gate is, and where a body can get "
                   "stuck before it.\n"
                   "landscape computes the potential energy of body and beams over the gate, Eqs. "
-                  "(14) and (15) of the paper,\n"
-                  "with beams deflected forward. It finds the path whose highest point is lowest, "
-                  "and compares this pass with\n"
-                  "the energy of the start and of the basin on the way. It writes landscape.csv, "
-                  "landscape.json and\n"
-                  "landscape.svg.",
+                  "(14) and (15) of the\n"
+                  "paper, with beams deflected forward. It finds the path whose highest point is "
+                  "lowest, and compares\n"
+                  "this pass with the energy of the start and of the basin on the way. It writes "
+                  "landscape.csv,\n"
+                  "landscape.json and landscape.svg.",
                   "gatewalk landscape scenes/single_gate.toml -o landscape --trials 1000");
   options.scene();
   const std::vector<std::string> files{"landscape.csv", "landscape.json", "landscape.svg"};

@@ -111,10 +111,10 @@ int run_passages(const Arguments& arguments) {
   PassagesCommand options(
       "passages TRACKS... --cell CELL.toml -o RUNS.csv [options]",
       "Cuts the tracks of your animals or robots at the borders of cells into passages; gatewalk "
-      "build makes a chain of\n"
-      "them. Options give what the file does not say: units, frames per second, columns. A body "
-      "that is in a cell\n"
-      "during a gap or a jump of its track counts as lost there.",
+      "build\n"
+      "makes a chain of them. Options give what the file does not say: units, frames per second, "
+      "columns.\n"
+      "A body that is in a cell during a gap or a jump of its track counts as lost there.",
       "gatewalk passages tracks.csv --cell cell.toml -o runs.csv --fastest 2 --fps 120 "
       "--metres-per-unit 0.001 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,"
       "y=POSITION_Y");

@@ -226,21 +226,19 @@ int plan_start(const PlanCommand& options, lattice::Source s) {
 int run_plan(const Arguments& arguments) {
   PlanCommand options(
       "plan SCENE [options]",
-      "Answers: which action a body should take in each gate, by how it enters, to cross as often "
-      "as possible.\n"
-      "The actions are tables of the scene, such as\n"
+      "Finds which action a body should take in each gate, by how it enters, to cross as often as\n"
+      "possible. The actions are tables of the scene, such as\n"
       "  [actions.push]\n"
       "  forces.propulsion_N = 9\n"
-      "An action sets keys of forces and beams while a body takes it, or parameters.KEY of a cell "
-      "program. An empty\n"
-      "table is the scene as it is. plan finds the best policy for a chain, simulates the policy "
-      "in "
-      "full, adds these\n"
-      "trials to the chain, and repeats. New trials then measure how often the policy crosses, and "
-      "how often each\n"
-      "action crosses when bodies always take it.\n"
+      "An action sets keys of forces and beams while a body takes it, or parameters.KEY of a cell\n"
+      "program. An empty table is the scene as it is. plan finds the best policy for a chain, "
+      "simulates\n"
+      "the policy in full, adds these trials to the chain, and repeats. New trials then measure "
+      "how often\n"
+      "the policy crosses, and how often each action crosses when bodies always take it.\n"
       "Of a scene without actions, plan finds the start from which bodies cross most often, in a "
-      "terrain in any column.",
+      "terrain\n"
+      "in any column.",
       "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 --set "
       "actions.fast.forces.propulsion_N=9");
   options.add_details("each action taken all the time, and what each column or method gives");

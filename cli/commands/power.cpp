@@ -36,13 +36,14 @@ std::vector<std::string> next_of(const Options& options, const lattice::Source& 
 int run_power(const Arguments& arguments) {
   Options options(
       "power SCENE|MATRIX.nc [options]",
-      "Answers: how many trials an experiment needs, or what N trials can show (--trials N).\n"
+      "Says how many trials an experiment needs, or what N trials can show (--trials N).\n"
       "power predicts the endings and counts the trials that detect a shift of an ending (exact "
-      "binomial test), or a\n"
-      "total variation of the final gates (simulated experiments, with the test of gatewalk "
-      "validate "
-      "--observed).\n"
-      "--versus compares two scenes, or two groups of animals, with equally many trials of each.",
+      "binomial\n"
+      "test), or a total variation of the final gates (simulated experiments, with the test of "
+      "gatewalk\n"
+      "validate --observed). --versus compares two scenes, or two groups of animals, with equally "
+      "many\n"
+      "trials of each.",
       "gatewalk power scenes/robot.toml --trials 60 --versus "
       "beams.stiffness_left_Nm_per_rad=0.3");
   const TextOption path = options.scene();

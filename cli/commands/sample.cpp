@@ -39,12 +39,11 @@ std::vector<Sample> samples() {
 }  // namespace
 
 int run_sample(const Arguments& arguments) {
-  Options options(
-      "sample [NAME] [options]",
-      "Writes a ready file to begin with: a scene, tracks of bodies and the cells that cut them, "
-      "recorded passages, or\n"
-      "counts of an experiment. Without NAME, sample lists all files.",
-      "gatewalk sample walker -o mine.toml");
+  Options options("sample [NAME] [options]",
+                  "Writes a ready file to begin with: a scene, tracks of bodies and the cells that "
+                  "cut them, recorded\n"
+                  "passages, or counts of an experiment. Without NAME, sample lists all files.",
+                  "gatewalk sample walker -o mine.toml");
   const TextOption name = options.positional("name", "name of the sample", false);
   const TextOption output =
       options.output_file("output", "FILE", "the file to write (default: standard output)");

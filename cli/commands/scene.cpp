@@ -26,10 +26,10 @@ int run_scene(const Arguments& arguments) {
   Options options(
       "scene [SCENE] [options]",
       "Shows what a scene means in words, and every key with its value, unit, range and source: a "
-      "line of the file,\n"
-      "--set, the paper (a default), or derived from the other keys. scene also says which numbers "
-      "no walking animal or\n"
-      "robot reaches. Without a file, the scene is what --set gives.",
+      "line of\n"
+      "the file, --set, the paper (a default), or derived from the other keys. scene also says "
+      "which\n"
+      "numbers no walking animal or robot reaches. Without a file, the scene is what --set gives.",
       "gatewalk scene --new --set body.mass_kg=0.25 --set body.radius_m=0.08 "
       "--set forces.propulsion_N=0.8 -o mine.toml");
   const TextOption given =

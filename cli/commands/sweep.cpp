@@ -57,12 +57,12 @@ std::vector<std::string> next_of(const Options& options, const SweepResult& resu
 int run_sweep(const Arguments& arguments) {
   Options options(
       "sweep SCENE [options]",
-      "Answers: how the runs through one gate end when numbers of the scene change.\n"
+      "Shows how the runs through one gate end when numbers of the scene change.\n"
       "sweep simulates the gate many times at every point of a grid over any keys, and counts how "
-      "the runs end. Values\n"
-      "are from:step:to or a list; the grid has all combinations. A scene may bring a grid in a "
-      "table [sweep]; --vary\n"
-      "adds a key to that grid, or replaces the values of a key.",
+      "the\n"
+      "runs end. Values are from:step:to or a list; the grid has all combinations. A scene may "
+      "bring a\n"
+      "grid in a table [sweep]; --vary adds a key to that grid, or replaces the values of a key.",
       "gatewalk sweep scenes/single_gate.toml --vary forces.propulsion_N=4:1:9 "
       "--vary forces.random_N=0,10,20 --trials 1000 --csv sweep.csv");
   const TextOption path = options.scene();

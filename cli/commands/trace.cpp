@@ -104,17 +104,16 @@ std::vector<std::string> next_of(const TraceCommand& options, bool across_field)
 }  // namespace
 
 int run_trace(const Arguments& arguments) {
-  TraceCommand options(
-      "trace SCENE [options]",
-      "Shows single runs: trace records every step with positions, velocities, beams, forces, "
-      "contacts and energies.\n"
-      "A run is the same as in gatewalk gate with this seed and number (with --field or --policy: "
-      "as in gatewalk\n"
-      "lattice). --replay writes a page that plays the runs, --video a film of the first run. CSV "
-      "and NetCDF keep all\n"
-      "steps.",
-      "gatewalk trace scenes/soft_left.toml --trials 20 --only 'traversed left' "
-      "--replay runs.html --csv runs.csv");
+  TraceCommand options("trace SCENE [options]",
+                       "Shows single runs: trace records every step with positions, velocities, "
+                       "beams, forces, contacts\n"
+                       "and energies. A run is the same as in gatewalk gate with this seed and "
+                       "number (with --field or\n"
+                       "--policy: as in gatewalk lattice). --replay writes a page that plays the "
+                       "runs, --video a film of\n"
+                       "the first run. CSV and NetCDF keep all steps.",
+                       "gatewalk trace scenes/soft_left.toml --trials 20 --only 'traversed left' "
+                       "--replay runs.html --csv runs.csv");
   options.add_details("more runs, what the columns mean, and the numbers of the scene");
   options.most_used({"field", "trials", "only", "replay", "csv"});
   if (!options.parse(arguments)) return kFine;
