@@ -23,7 +23,7 @@ void require_two(std::size_t count, const std::string& source, const std::string
         source, count, as_it_is));
 }
 
-/// The program's cell while a body takes an action.
+/// The program's cell with the parameters that a body has while it takes `action`.
 std::shared_ptr<const dynamics::Cell> cell_with(const lattice::Terrain::Type& action,
                                                 const ProgramCell& program) {
   std::unique_ptr<ProgramCell> cell = program.with({});
@@ -77,7 +77,7 @@ Actions actions_of(const Options& options, const lattice::Scene& scene,
     const auto from = lattice::RunsFrom::everywhere;
     const bool first = all.actions.empty();
     all.methods.push_back(
-        first ? settle_method(options, taken, from)  // says what keys do, once
+        first ? settle_method(options, taken, from)  // warns of keys without effect, once
               : lattice::settle_method(taken, from, options.seed(), options.work()));
     if (all.methods.back() && !first) options.warn(complaint(*all.methods.back()));
     all.actions.push_back({action.name, lattice::problem_with_all_types(taken)});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What bodies may do in a field: tables [actions] of a scene, or of a file of cells that a program
-/// carries out.
+/// The actions among which a body chooses in a field: tables [actions] of a scene, or of a file of
+/// cells that a program simulates.
 
 #include <optional>
 #include <string>
@@ -16,23 +16,28 @@
 
 namespace gatewalk::cli {
 
-/// In the order of their names.
+/// The actions of a field, in the order of their names.
 struct Actions {
-  std::vector<lattice::Scene> scenes{};                    // of gates: while each is taken
-  std::vector<lattice::Action> actions{};                  // with problems of these, from a start
-  std::vector<std::optional<lattice::Settled>> methods{};  // where a scene leaves them to a pilot
+  std::vector<lattice::Scene> scenes{};                    // for scenes of gates: the scene under
+                                                           // each action
+  std::vector<lattice::Action> actions{};                  // each action with its problem (cells,
+                                                           // map, start)
+  std::vector<std::optional<lattice::Settled>> methods{};  // chosen by a pilot where a scene asks
+                                                           // for it
   PolicyField made_for{};
 
   [[nodiscard]] std::vector<std::string> names() const;
 };
-/// Throws UsageError for fewer than two.
+/// The actions of a scene of gates, with bodies that start at `start`. Throws UsageError for fewer
+/// than two actions.
 [[nodiscard]] Actions actions_of(const Options& options, const lattice::Scene& scene,
                                  const dynamics::Entry& start);
-/// Of a scene, or of cells of a program, from its start. Throws UsageError also for numbers that
-/// the program does not have, or does not permit.
+/// Throws std::runtime_error if the field, or its number of actions, is too large for a policy
+/// file. To be called before any work.
 [[nodiscard]] Actions actions_of(const Options& options, const lattice::Source& s);
 
-/// Of the field's policies, before there are any: as of a PolicyField.
+/// Throws std::runtime_error for a field that is too large for a policy file. Needs no actions, so
+/// that it can run before any work.
 void require_file_for(const lattice::Source& s);
 
 }  // namespace gatewalk::cli

@@ -78,7 +78,7 @@ lattice::BinsChoice bins_choice(const TextOption& bins, const lattice::Scene& sc
     throw UsageError(
         fmt::format("--bins {}: must be paper, tree, auto, or a factor > 0 such as 2", text));
   (void)dynamics::refined(dynamics::table3_space(scene.gate),
-                          choice.factor);  // refuses other factors
+                          choice.factor);  // throws for other factors
   return choice;
 }
 
@@ -165,7 +165,7 @@ void add_starts(const Options& options, lattice::SceneMatrix& m, const std::stri
 
 namespace {
 
-/// Whether the scene is given a push, or compared with others of another push.
+/// Whether the scene sets forces.propulsion_N, or the command varies that key.
 bool is_about_push(const Options& options, const lattice::Scene& scene) {
   const std::string push = "forces.propulsion_N";
   if (scene.named.contains(push)) return true;
@@ -217,7 +217,7 @@ lattice::SceneMatrix read_matrix(const Options& options, const std::string& path
   const lattice::SourceFile& file = options.file(path);
   lattice::SceneMatrix m =
       lattice::scene_matrix(file.matrix(), file.own_scene(), path, scene, overrides);
-  if (scene)  // a matrix's own scene names every key
+  if (scene)  // a matrix's own scene names every key, so none is a mistake
     for (const std::string& text :
          lattice::keys_without_effect(m.scene, lattice::RunsFrom::everywhere))
       options.warn(text);

@@ -10,7 +10,7 @@ namespace gatewalk::cli {
 StartedChain chain_from_start(const Options& options, lattice::Source& s) {
   if (s.is_recorded() && s.pool) {
     auto kernel = lattice::kernel_of(s.problem.map(), *s.pool, s.accuracy.per_leaf);
-    const int row = kernel.space.size();  // of the start, behind those of the kernel
+    const int row = kernel.space.size();  // the start's row stands behind the kernel's rows
     return {lattice::chain_of(
                 kernel, s.problem.map(), s.problem.field,
                 lattice::first_rows(kernel, s.problem.map(), *s.pool,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The chain of a matrix and the state in which bodies start: walks draw from it, export writes it.
+/// The chain of a matrix together with the state in which bodies start, as walk and export need it.
 
 #include "cli/render/start.h"
 #include "cli/source_options.h"
@@ -11,13 +11,13 @@ namespace gatewalk::cli {
 struct StartedChain {
   markov::FieldChain chain;
   markov::Start start;
-  std::optional<ShownState> state;  // in which bodies start; of recorded runs a row of their own
-  bool clean;                       // the runs behind it
-  dynamics::StateSpace space;       // of the chain's states; a start of its own is behind them
+  std::optional<ShownState> state;  // the state in which bodies start; none for recorded runs
+  bool clean;                       // whether the runs behind the chain showed no faults
+  dynamics::StateSpace space;       // states of the chain; a recorded start has a row after them
 };
 
-/// Of a matrix: of a scene, in which the start becomes a state (trials are added for one that it
-/// does not know, which is said), or of recorded runs. Throws UsageError.
+/// The chain of a matrix of a scene, of recorded runs or of an import. For a start that a scene's
+/// matrix lacks, gate runs are simulated and added, and a remark says so. Throws UsageError.
 [[nodiscard]] StartedChain chain_from_start(const Options& options, lattice::Source& s);
 
 }  // namespace gatewalk::cli

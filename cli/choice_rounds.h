@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What plan and design have in common: rounds of choosing by a chain, which run the scene in full.
+/// Options that plan and design share. Both commands choose by a chain, simulate the choice in
+/// full, add these runs to the chain, and repeat.
 
 #include <string>
 
@@ -9,13 +10,14 @@
 
 namespace gatewalk::cli {
 
-/// What is asked of them.
+/// The options that plan and design share.
 struct ChoiceRounds {
   TextsOption starts;
   AskedAccuracy accuracy;
 };
 
-/// Declares --start, --accuracy, --gate-runs and others; `also` ends the help of --start.
+/// Declares --start, --accuracy, --gate-runs, --seed, --checkpoint and --strict; `also` ends the
+/// help text of --start.
 inline ChoiceRounds add_choice_rounds(Options& options, const std::string& also = "") {
   const TextsOption starts = options.add_texts(
       "start", "D,VX,VY",
@@ -31,7 +33,7 @@ inline ChoiceRounds add_choice_rounds(Options& options, const std::string& also 
   return {starts, {accuracy, gate_runs}};
 }
 
-/// Puts these options into a lattice::PlanOptions, or a struct with the same members. Throws
+/// Puts the options' values into a lattice::PlanOptions, or a struct with the same members. Throws
 /// UsageError.
 template <class How>
 void take_choice_rounds(const Options& options, const ChoiceRounds& asked, How& how) {
@@ -42,7 +44,7 @@ void take_choice_rounds(const Options& options, const ChoiceRounds& asked, How& 
   if (asked.accuracy.gate_runs) how.most_runs = asked.accuracy.gate_runs.value(1000);
 }
 
-/// Warns where the rounds of choosing ended before the choice was settled.
+/// Warns if --gate-runs ended the rounds before the choice was settled.
 inline void warn_of_choice_rounds(const Options& options, const lattice::ChoiceSummary& search) {
   if (!search.settled)
     options.warn("choosing was not finished after " + std::to_string(search.gate_runs) +

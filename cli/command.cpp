@@ -30,7 +30,7 @@ std::string memory_advice;
 constexpr const char *kMostUsed = "Options that most people need", *kOthers = "Other options",
                      *kOutput = "Output", *kHowItRuns = "How it runs";
 
-/// Options that cannot change a result, left out of the recorded command.
+/// Whether an option cannot change the result. The recorded command leaves these options out.
 bool shapes_nothing(const std::string& name) {
   return name == "threads" || name == "quiet" || name == "json" || name == "csv" ||
          name == "output" || name == "strict" || name == "figure" || name == "netcdf" ||
@@ -38,7 +38,8 @@ bool shapes_nothing(const std::string& name) {
          name == "resume" || name == "max-time" || name == "shard" || name == "part";
 }
 
-/// Of an option that is meant to be given once, the last one counts; says so.
+/// Of an option that takes one value but is given several times, keeps the last. Returns a remark
+/// for each such option.
 Strings keep_last(std::vector<po::option>& given, const po::options_description& all) {
   Strings remarks;
   std::map<std::string, std::size_t> times;
@@ -62,8 +63,9 @@ Strings keep_last(std::vector<po::option>& given, const po::options_description&
   return remarks;
 }
 
-/// Of a key that settings KEY=VALUE of one option give more than once, in whatever unit, the last
-/// one counts; says so. (What is no key of a scene is refused by who reads it.)
+/// A remark for each key that the KEY=VALUE settings of one option give more than once, in any
+/// unit: the last one counts. Returns none for keys that no scene has; the scene's reader refuses
+/// these.
 Strings repeated_keys(const std::string& option, const Strings& settings) {
   std::map<std::string, Strings> given;  // by key
   for (const std::string& setting : settings) {
@@ -81,7 +83,7 @@ Strings repeated_keys(const std::string& option, const Strings& settings) {
   return remarks;
 }
 
-/// Of the options that there are, those with which a command needs less memory.
+/// The options among `offered` that reduce the memory of a command, in words.
 std::string advice(const po::options_description& offered) {
   constexpr std::array<std::pair<const char*, const char*>, 7> kSmaller{
       {{"gate-runs", "--gate-runs N with a smaller N"},
@@ -97,7 +99,7 @@ std::string advice(const po::options_description& offered) {
   return all;
 }
 
-/// What the words of a command cannot be read as, and what is allowed instead.
+/// The message for a command line that Boost could not parse: what is wrong, and what is allowed.
 std::string mistake_in(const po::error& error, const po::options_description& offered,
                        const Strings& words) {
   const bool takes_tables = offered.find_nothrow("cell", false) != nullptr;
@@ -134,7 +136,7 @@ std::string mistake_in(const po::error& error, const po::options_description& of
         syntax->kind() == Syntax::empty_adjacent_parameter)
       return given + " needs a value";
   }
-  return error.what();  // our own validators'
+  return error.what();  // a message of our own validators
 }
 
 }  // namespace
@@ -221,7 +223,7 @@ Options::Options(std::string synopsis, std::string about, std::string example)
 }
 
 Options::~Options() {
-  // The result is there, unless something was thrown.
+  // The result is complete unless an exception is passing.
   const bool is_done = std::uncaught_exceptions() == state_->thrown_before;
   try {
     if (state_->kept && is_done) state_->kept->done();
@@ -230,7 +232,7 @@ Options::~Options() {
       if (const std::string name = backup.settle(); !name.empty())
         kept += (kept.empty() ? "what was there is kept as " : ", ") + name;
     if (talk()) warn(kept);
-  } catch (const std::exception&) {  // the files are in order, nobody is told
+  } catch (const std::exception&) {  // the files are in order; only the message is lost
   }
 }
 
@@ -466,12 +468,13 @@ bool Options::parse(const Arguments& arguments) {
   offered.add(state_->own).add(state_->shared);
   all.add(offered).add(state_->hidden);
   using namespace po::command_line_style;
-  const int style = unix_style & ~allow_guessing;  // an abbreviation is a typing error
+  const int style = unix_style & ~allow_guessing;  // an abbreviated option is an error
   const Strings& given = arguments.words;
   for (std::size_t i = 1; i < given.size() && state_->no_scene.empty(); ++i)
     if (given[i - 1] == "--set" && !given[i].starts_with("--") &&
         given[i].find('=') == Strings::value_type::npos)
-      (void)lattice::keys_set_by(given[i]);  // refuses it, before its value counts as an argument
+      (void)lattice::keys_set_by(given[i]);  // throws for a setting without "=" before Boost takes
+                                             // it for an argument
   po::parsed_options parsed(&all);
   Strings remarks;
   try {
@@ -506,7 +509,7 @@ bool Options::parse(const Arguments& arguments) {
   check_values_given();
   check_files();
   if (const std::int64_t n = threads.value(0, 1024); n > 0) {
-    // Lives until the program ends.
+    // The limit lives until the program ends.
     static const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                            static_cast<std::size_t>(n));
   }
@@ -523,7 +526,7 @@ bool Options::parse(const Arguments& arguments) {
         std::any_of(state_->output_files.begin(), state_->output_files.end(),
                     [&](const State::Output& o) { return o.name == option.string_key; }) ||
         (option.string_key == "output" && !state_->needs_output.empty());
-    // Of the result of all parts.
+    // Options that a merge of all parts may change.
     const bool is_of_whole = option.string_key == "strict" || option.string_key == "details";
     Strings& words = is_output || is_of_whole ? state_->words.outputs : state_->words.shaping;
     if (option.position_key >= 0) {
@@ -615,7 +618,7 @@ dynamics::Work Options::work() const {
       state_->kept = kept_run(*this, *state_->divided);
       state_->work = kept_work(*this, *state_->work, state_->kept.get());
     }
-    // One of all processes writes.
+    // Only the first of several MPI processes writes.
     for (const TextOption& file : {output, passages})
       if (!is_first_rank() && file)
         state_->values.find(file.name())->second.value() = std::string("/dev/null");

@@ -15,7 +15,8 @@
 namespace gatewalk::cli {
 namespace {
 
-/// None for what cannot be lost: pipes, devices, nothing at all.
+/// The identity of a regular file; none for a pipe, a device or a missing file, which nothing can
+/// overwrite.
 std::optional<FileId> id_of(int rc, const struct stat& found) {
   if (rc != 0 || !S_ISREG(found.st_mode)) return {};
   return FileId(found.st_dev, found.st_ino);
@@ -29,7 +30,7 @@ Options::NamedFile::NamedFile(std::string shown_as, std::string file)
   id_ = path == "-" ? id_of(::fstat(STDOUT_FILENO, &found), found)
                     : id_of(::stat(path.c_str(), &found), found);
   if (id_ || path == "-") return;
-  std::error_code error;  // then the place stays empty
+  std::error_code error;  // on an error the place stays empty
   place_ = std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
 }
 
@@ -43,7 +44,7 @@ std::vector<Options::NamedFile> Options::inputs() const {
   const auto add = [&](const std::string& name, const std::string& path) {
     if (path.empty() || path == "-") return;
     files.emplace_back(name + " " + path, path);
-    if (!files.back().is_regular()) return;  // what a pipe holds is read only once
+    if (!files.back().is_regular()) return;  // a pipe can be read only once
     if (const std::string map = this->file(path).toml().map_file(); !map.empty())
       files.emplace_back(fmt::format("{} (the map of {})", map, path), map);
   };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What an Options object knows, for the files that carry out its functions: command.cpp what is
-/// declared and given, command_files.cpp the files that are named, command_output.cpp what is given
-/// out.
+/// The state of an Options object, shared by the files that define its functions: command.cpp
+/// (declaring and parsing), command_files.cpp (files that are named) and command_output.cpp
+/// (results).
 
 #include <sys/types.h>
 
@@ -28,7 +28,7 @@ namespace gatewalk::cli {
 namespace po = boost::program_options;
 using Strings = std::vector<std::string>;
 
-/// A whole number on the command line, up to kMostCount either way.
+/// A whole number on the command line, from -kMostCount to kMostCount.
 struct Count {
   std::int64_t value = 0;
 };
@@ -40,7 +40,7 @@ struct Number {
 struct Seed {
   std::uint64_t value = 1;
 };
-/// An option as users write it.
+/// The option as users write it: -o or --name.
 [[nodiscard]] inline std::string shown(const std::string& name) {
   return name == "output" ? "-o" : "--" + name;
 }
@@ -50,16 +50,16 @@ struct Seed {
   return name;
 }
 
-/// A regular file by what no other one has, whatever its names.
+/// The identity of a regular file (device, inode), the same for all its names.
 using FileId = std::pair<dev_t, ino_t>;
 
-/// A file by how the command line names it.
+/// A file with the name that the command line gives it.
 struct Options::NamedFile {
   std::string name, path;
 
   NamedFile(std::string shown_as, std::string file);
-  /// By identity, so that links and other spellings do not hide it; by place where there is none
-  /// yet.
+  /// Whether both are one file. Existing files are compared by identity, so that links and other
+  /// spellings do not hide a clash; a file that does not exist yet is compared by its path.
   [[nodiscard]] bool is_same(const NamedFile& other) const;
   [[nodiscard]] bool is_regular() const { return id_.has_value(); }
 
@@ -70,9 +70,9 @@ struct Options::NamedFile {
 
 struct Options::State {
   std::string synopsis, about, example;
-  std::string details_shown;           // with --details, in words
-  std::vector<std::string> most_used;  // options, the first on the help page
-  /// The command's name, one word or two: what the synopsis begins with, "chart field SCENE ...".
+  std::string details_shown;           // what --details shows, in words
+  std::vector<std::string> most_used;  // in the order of the help page
+  /// The command's name, one word or two: the beginning of the synopsis, "chart field SCENE ...".
   [[nodiscard]] std::string name() const {
     return synopsis.substr(0, synopsis.find_first_not_of("abcdefghijklmnopqrstuvwxyz ") - 1);
   }
@@ -84,14 +84,15 @@ struct Options::State {
   po::variables_map values;
   std::vector<po::option> given;
   std::string canonical;
-  std::string no_scene;  // why there is no --set, if there is none
+  std::string no_scene;  // the reason why the command has no --set; empty if it has
   std::optional<dynamics::Work> work;
   std::function<void(const std::string&)> warned;
   std::function<void(const Description&)> given_out;
   std::shared_ptr<const dynamics::Cell> cell;
-  std::map<std::string, std::shared_ptr<const lattice::SourceFile>> files;  // open, by path
+  std::map<std::string, std::shared_ptr<const lattice::SourceFile>> files;  // open files, by path
 
-  std::optional<std::set<std::string>> divided;  // stages; none: nothing is kept
+  std::optional<std::set<std::string>> divided;  // stages that parts divide; none: no pieces are
+                                                 // kept
   CommandWords words;
   std::unique_ptr<KeptRun> kept;
   int thrown_before = std::uncaught_exceptions();
@@ -101,11 +102,11 @@ struct Options::State {
     Content content = Content::text;
   };
   std::vector<Output> output_files{{"json", Content::text}};
-  std::vector<std::string> folder_files;  // what is written into the folder of --output
+  std::vector<std::string> folder_files;  // files in the folder of --output
   std::vector<std::pair<std::string, std::function<std::string(const std::string&)>>> reads;
-  bool has_table = false;                 // --csv is that of all commands
+  bool has_table = false;                 // whether --csv is the one that all commands share
   std::map<std::string, Backup> backups;  // by the file that is replaced
-  std::string needs_output;               // what to call the value of -o, if it must be given
+  std::string needs_output;               // the value of -o on the help page, if -o must be given
 
   template <class T>
   void add(const std::string& name, po::typed_value<T>* value, const std::string& shown,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Every command as a function (commands.def); its arguments are the words behind its name, what it
-/// returns is the exit status.
+/// Every command as a function (commands.def). Its arguments are the words after the command's
+/// name; it returns the exit status.
 
 #include <iterator>
 #include <string_view>
@@ -17,8 +17,8 @@ namespace gatewalk::cli {
 #undef COMMAND
 #undef GROUP
 
-/// A command, whose name has one word or two (chart field); or, without a function, the name of the
-/// group that begins.
+/// A command, whose name has one word or two (chart field). Without a function: the heading of the
+/// group of commands that follows.
 struct Command {
   const char *name, *summary;
   int (*run)(const Arguments& arguments);
@@ -35,7 +35,7 @@ inline constexpr Command kCommandsAndGroups[] = {
   std::erase_if(all, [](const Command& c) { return !c.run; });
   return all;
 }
-/// The command of that name, if there is one.
+/// The command of that name; null if there is none.
 [[nodiscard]] inline const Command* command_named(std::string_view name) {
   for (const Command& c : kCommandsAndGroups)
     if (c.run && name == c.name) return &c;

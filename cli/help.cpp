@@ -24,7 +24,7 @@ struct Page {
   std::string name, summary;
   CommandHelp help;
 
-  /// Both words of the name; none behind a name of one word.
+  /// The words of the command's name; second() is empty for a name of one word.
   [[nodiscard]] std::string first() const { return name.substr(0, name.find(' ')); }
   [[nodiscard]] std::string second() const {
     return name.size() > first().size() ? name.substr(first().size() + 1) : "";
@@ -55,7 +55,7 @@ std::string day() {
 
 // ---- Manual pages ----
 
-/// Text as it stands in a manual page.
+/// Text escaped for a manual page.
 std::string roff(const std::string& text) {
   std::string out;
   bool at_start = true;
@@ -130,7 +130,7 @@ std::string manual(const std::vector<Page>& all) {
 
 // ---- Completion ----
 
-/// In single quotes of a shell.
+/// Text in single quotes of a shell.
 std::string in_quotes(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -142,13 +142,13 @@ std::string one_line(std::string text) {
   return text;
 }
 
-/// A name as a pattern of `case`.
+/// A name as a pattern of the shell's `case`.
 std::string pattern(const std::string& name) {
   const std::size_t blank = name.find(' ');
   return blank == name.npos ? name : name.substr(0, blank) + "\\" + name.substr(blank);
 }
 
-/// The pages whose names have two words, by the first of them: chart.
+/// Pages of commands with two words in their name, by the first word (chart).
 std::map<std::string, std::vector<const Page*>> families(const std::vector<Page>& all) {
   std::map<std::string, std::vector<const Page*>> found;
   for (const Page& page : all)
@@ -209,7 +209,7 @@ std::string for_zsh(const std::vector<Page>& all) {
   std::string text =
       "#compdef gatewalk\n# Completion of gatewalk for zsh.\n_gatewalk() {\n"
       "  local -a commands=(\n";
-  const auto plain = [](const std::string& words) {  // of _arguments: : and [] mean something
+  const auto plain = [](const std::string& words) {  // : [ and ] have a meaning in _arguments
     std::string out;
     for (const char c : one_line(words)) {
       if (c == ':' || c == '[' || c == ']' || c == '\\') out += '\\';

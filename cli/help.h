@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Manual pages, completion for shells and the description of results, of what commands say of
-/// themselves.
+/// Manual pages, shell completion, and descriptions of results and scenes, generated from the
+/// commands themselves.
 
 #include <string>
 
 namespace gatewalk::cli {
 
-/// Writes into `share`, as packages install them: man/man1/gatewalk*.1, completions for bash, zsh
-/// and fish, the schemas of results (gatewalk/schemas), and tables of the keys of results and of
-/// scenes (doc/gatewalk/results.md and scene.md). Pages are of the day that SOURCE_DATE_EPOCH says,
-/// else of today.
-/// Throws std::runtime_error.
+/// Writes into `share` the files that packages install: man/man1/gatewalk*.1, completions for bash,
+/// zsh and fish, the schemas of results (gatewalk/schemas), and tables of the keys of results and
+/// of scenes (doc/gatewalk/results.md and scene.md). Pages carry the date of SOURCE_DATE_EPOCH, or
+/// today's. Throws std::runtime_error.
 void write_help(const std::string& share);
 
 }  // namespace gatewalk::cli

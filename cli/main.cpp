@@ -53,7 +53,8 @@ void print_help(std::ostream& out) {
          "--resume continues, 141 the reader of a pipe has closed it (| head)\n";
 }
 
-/// The command of that name; without one says so, and which may be meant.
+/// The command of that name. For an unknown name, prints an error with a suggestion and returns
+/// null.
 const Command* find_command(const std::string& name) {
   if (const Command* const named = command_named(name)) return named;
   std::cerr << "gatewalk: no command '" << name << "'";
@@ -73,7 +74,7 @@ const Command* find_command(const std::string& name) {
   return nullptr;
 }
 
-/// How many of the words are the name of a command, which has one or two (chart field).
+/// How many of the words form the name of a command: one or two (chart field).
 std::size_t words_of_name(const std::vector<std::string>& words) {
   return words.size() > 1 && command_named(words[0] + " " + words[1]) ? 2 : 1;
 }
@@ -87,15 +88,15 @@ std::string charts() {
   return lines;
 }
 
-/// Commands that have another name since version 2.0. `chart` is renamed where the word behind it
-/// is no chart.
+/// Commands that were renamed in version 2.0. The rename of `chart` applies where the next word
+/// names no chart.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kRenamed{
     {{"chart-chain", "chart chain"},
      {"chart-field", "chart field"},
      {"stability", "chart limits SCENE"},
      {"chart", "chart methods"}}};
 
-/// Refuses a command by its old name, with the words that it has now.
+/// Throws UsageError for a command's old name; the message gives the new one.
 void refuse_old_name(const std::vector<std::string>& words) {
   const auto* const old = std::find_if(kRenamed.begin(), kRenamed.end(),
                                        [&](const auto& r) { return r.first == words[0]; });
@@ -112,7 +113,7 @@ void refuse_old_name(const std::vector<std::string>& words) {
   throw UsageError(line);
 }
 
-/// The page of a command, or of its result; `words`: its name, and --result.
+/// Prints the page of a command, or of its result. `words`: the command's name, and --result.
 int run_help(const std::vector<std::string>& words) {
   refuse_old_name(words);
   const std::size_t n = words_of_name(words);
@@ -172,7 +173,7 @@ int run(const std::vector<std::string>& words) {
 
 std::terminate_handler usual_end = nullptr;
 
-/// Where there is no memory left for words either.
+/// Ends the program when no memory is left to build a message.
 [[noreturn]] void end_without_memory() {
   try {
     if (std::current_exception()) std::rethrow_exception(std::current_exception());
@@ -194,9 +195,9 @@ int main(int argc, char** argv) {
   using namespace gatewalk;
   cli::usual_end = std::set_terminate(cli::end_without_memory);
   cli::install_interrupt_handler();
-  std::signal(SIGPIPE, SIG_IGN);  // a warning that nobody reads must not end what writes files
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe must not end a run that writes files
   const cli::RanksScope scope;
-  // One of all processes speaks, but for what goes wrong in one alone.
+  // Of several MPI processes only the first prints, except errors that occur in one process alone.
   std::streambuf* const err = std::cerr.rdbuf();
   if (!cli::is_first_rank()) {
     std::cerr.rdbuf(nullptr);

@@ -10,7 +10,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// Options that belong to the scene, so that another command takes them over.
+/// Options that belong to the scene, so that a proposed command takes them over.
 constexpr std::array<std::string_view, 4> kOfScene{"set", "start", "cell-program", "cell-timeout"};
 
 constexpr std::string_view kBefore = "Next: ";  // in front of a line
@@ -22,7 +22,8 @@ std::string_view option_of(std::string_view word) {
   return word.substr(0, word.find('='));
 }
 
-/// As a person writes it: "--set forces.random_N=2"; with = where the value looks like an option.
+/// The option as a person writes it: "--set forces.random_N=2", but with = where the value looks
+/// like an option.
 std::string written(const std::string& word) {
   const std::size_t equals = word.find('=');
   if (option_of(word).empty() || equals == word.npos) return shell_quoted(word);

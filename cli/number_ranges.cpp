@@ -20,7 +20,8 @@ std::string parameter_of(const lattice::NumberRange& range) {
   return range.key.substr(lattice::kParameters.size());
 }
 
-/// The ranges of numbers of a program. Throws UsageError for those that it does not permit.
+/// The ranges given for parameters of a program. Throws UsageError for a parameter or value that
+/// the program does not permit.
 std::vector<lattice::NumberRange> ranges_in_program(const Options& options,
                                                     const lattice::Source& s,
                                                     const std::vector<std::string>& given,
@@ -53,7 +54,7 @@ std::vector<lattice::NumberRange> ranges_in_program(const Options& options,
   return ranges;
 }
 
-/// The problem with the program's cell at a point of the ranges.
+/// The problem whose cells have the program's parameters at a point of the ranges.
 lattice::Problem program_at(const NumberRanges& ranges, const lattice::Source& s,
                             const std::vector<double>& point) {
   std::vector<dynamics::Cell::Number> numbers;
@@ -115,7 +116,7 @@ lattice::ProblemAt problem_at(const NumberRanges& ranges, const lattice::Source&
         types == CellTypes::all ? lattice::RunsFrom::all_types : lattice::RunsFrom::everywhere;
     lattice::Problem problem = lattice::problem_without_cells(scene, from);
     if (scene.gate.run.method != "auto") lattice::put_cells(problem, scene, from);
-    return problem;  // without cells while the method is not chosen
+    return problem;  // has no cells while the method is still to be chosen
   };
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Numbers of a scene of gates, or of a program that carries out cells, which vary, each over a
-/// range: of analyze --over and fit --free.
+/// Numbers that vary, each over a range, for analyze --over and fit --free: numbers of a scene of
+/// gates, or parameters of a program that simulates cells.
 
 #include <optional>
 #include <string>
@@ -15,22 +15,23 @@ namespace gatewalk::cli {
 
 struct NumberRanges {
   std::vector<lattice::NumberRange> each;
-  std::optional<lattice::RangedScene> scene{};  // of gates; else of a program
+  std::optional<lattice::RangedScene> scene{};  // for gates; none for a program
 };
 
-/// The source over the ranges of this option, at most so many; none without it. Throws UsageError
-/// and SceneError.
+/// The ranges that `option` gives, at most `most`; none without the option. Throws UsageError and
+/// SceneError.
 [[nodiscard]] std::optional<NumberRanges> ranges_of(const Options& options,
                                                     const lattice::Source& s,
                                                     const TextsOption& option, int most);
 
-/// The scene of gates at a point of the ranges, started where the source is and by the method that
-/// was chosen for it.
+/// The scene of gates at a point of the ranges, with the source's start and the method that was
+/// chosen for the source.
 [[nodiscard]] lattice::Scene scene_at(const NumberRanges& ranges, const lattice::Source& s,
                                       const std::vector<double>& point);
-/// Types of cells: those that stand in the map, or all of the scene in their order.
+/// Which types of gates a problem has: those in the map, or all of the scene in their order.
 enum class CellTypes { of_the_map, all };
-/// The problem at each point of the ranges; what it is given must outlive it.
+/// A function that gives the problem at a point of the ranges. `ranges` and `s` must outlive that
+/// function.
 [[nodiscard]] lattice::ProblemAt problem_at(const NumberRanges& ranges, const lattice::Source& s,
                                             CellTypes types = CellTypes::of_the_map);
 

@@ -24,14 +24,14 @@ namespace {
 constexpr std::size_t kMostBytes = 2'000'000;
 constexpr std::int64_t kMostGates = 441, kMostNumbers = 400'000;
 
-/// What is said of every start.
+/// The prediction for every state in which a body may start.
 struct PageStates {
   dynamics::StateSpace space;
   lattice::StartStates states;
   std::int64_t gate_runs = 0;
 };
 
-/// Through which a start may be.
+/// The faces through which a body may enter the first gate.
 std::vector<int> start_faces(const lattice::Source& s) {
   if (s.scene) return {s.problem.start.face};
   std::vector<int> all(s.problem.map().section.faces.size());
@@ -39,7 +39,7 @@ std::vector<int> start_faces(const lattice::Source& s) {
   return all;
 }
 
-/// Every state of a matrix of bins, by gatewalk predict's own answers.
+/// Every state of a matrix of bins, with the answers of gatewalk predict.
 PageStates states_of_bins(const Options& options, const lattice::Source& s) {
   const dynamics::Transitions& own = s.file->transitions;
   const dynamics::StateSpace& space = own.space;
@@ -75,7 +75,7 @@ PageStates states_of_trees(const lattice::Source& s, const lattice::RunPool& poo
           pool.gate_runs()};
 }
 
-/// The chain of the source's first start; of trees with groups.
+/// The chain from the source's first start. A chain of trees has groups, for its intervals.
 lattice::AnalysedChain chain_from(const lattice::Source& s, const lattice::RunPool& pool) {
   return lattice::analysed_chain(s.problem, pool, pool.first_row(s.starts.front()),
                                  s.accuracy.per_leaf);
@@ -87,12 +87,13 @@ lattice::AnalysedChain chain_from(const lattice::Source& s) {
       lattice::chain_start(s.file->transitions.space, s.problem.field, *s.starts.front()).start);
 }
 
-/// Of the source's file, if it has one; `chain` is that of its pool now.
+/// The states of the source's file, if it has one. `chain` is the chain of the source's pool, which
+/// may have grown since the file was read.
 PageStates states_of(const Options& options, const lattice::Source& s,
                      const std::optional<lattice::RunPool>& of_file,
                      const lattice::AnalysedChain& chain, const lattice::ChainOutcomes& outcomes) {
   if (!s.pool) return states_of_bins(options, s);
-  // First runs of a start change no other state.
+  // The first runs of a new start change no other state.
   if (!of_file || of_file->trials() == s.pool->trials())
     return states_of_trees(s, *s.pool, chain, outcomes);
   const lattice::AnalysedChain before = chain_from(s, *of_file);
@@ -100,7 +101,7 @@ PageStates states_of(const Options& options, const lattice::Source& s,
                          lattice::chain_outcomes(before, s.problem.field, options.work()));
 }
 
-/// What gatewalk analyze says of this chain.
+/// The analysis of this chain, as gatewalk analyze makes it.
 AnalysedField analysis_of(const Options& options, const lattice::Source& s,
                           const lattice::AnalysedChain& chain) {
   return {.shown = ShownField(s),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The page of an answer, --page: what predict and analyze say, for all starts.
+/// The interactive page that --page writes: the results of predict and analyze for all starts.
 
 #include <optional>
 #include <vector>
@@ -13,22 +13,23 @@ namespace gatewalk::cli {
 
 /// Declares --page.
 TextOption add_page(Options& options);
-/// Throws UsageError, before any work, for what cannot have a page.
+/// Throws UsageError, before any work, for a source that cannot have a page.
 void check_page(const TextOption& page, const lattice::Source& s);
 
-/// The runs of a matrix of trees as its file has them, for write_page: to be called before others
-/// are added to the pool. None of others, and without --page.
+/// A copy of the runs in a file of trees, for write_page. To be called before the command adds runs
+/// to the pool. Returns nullopt without --page, and for a source that is no file of trees.
 [[nodiscard]] std::optional<lattice::RunPool> runs_of_file(const TextOption& page,
                                                            const lattice::Source& s);
 
-/// Every start that was predicted, with its answer, for write_page.
+/// Every predicted start with its answer, for write_page.
 [[nodiscard]] std::vector<PageAnswer> page_answers(const lattice::PooledPrediction& prediction);
 [[nodiscard]] std::vector<PageAnswer> page_answers(const lattice::Prediction& prediction,
                                                    const lattice::Source& s);
 
-/// Writes the page, if it is asked for. Starts' states are those of the file, if there is one, else
-/// of the chain that the answer comes from. `analysis`: gatewalk analyze's, made here if it is
-/// null. Throws std::runtime_error for what is larger than 2 MB even without what can be left out.
+/// Writes the page if --page asks for it. The states of starts are those of the file, if there is
+/// one, else those of the chain behind the answer. `analysis` is gatewalk analyze's result; null:
+/// it is computed here. Throws std::runtime_error if the page would exceed 2 MB even without its
+/// optional parts.
 void write_page(const Options& options, const TextOption& file, const lattice::Source& s,
                 const std::optional<lattice::RunPool>& of_file,
                 const std::vector<PageAnswer>& starts, const AnalysedField* analysis = nullptr);

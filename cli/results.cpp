@@ -31,7 +31,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// `example`: a result whose lists have an item wherever this cannot be one made by default.
+/// `example`: a result whose lists have an item wherever an item cannot be made by default.
 template <class Result>
 ResultOf of(const char* command, Result example = {}) {
   return {command, [example = std::move(example)](Fields& out) { describe(out, example); }};
@@ -42,14 +42,14 @@ dynamics::StateSpace states() {
   return {section, std::vector<dynamics::Tree>(section.faces.size())};
 }
 
-/// With a gate of another type.
+/// An example file with a second type of gate.
 lattice::MatrixFile matrix_file() {
   const dynamics::Transitions t(states());
   return {.transitions = t, .text = {{"title", ""}}, .types = {{"", t}}};
 }
 ShownMatrix shown_matrix() { return {"", matrix_file()}; }
 
-/// Of gates, or of cells that are not ours.
+/// The result for gates, or for cells of recorded runs and programs.
 void describe_build(Fields& out) {
   out.either(
       true, [](Fields& f) { describe(f, MadeMatrix{.file = matrix_file(), .states = {}}); },
@@ -133,7 +133,7 @@ FoundStart found_start() {
   return example;
 }
 
-/// Of a scene with actions, and of one without.
+/// The result for a scene with actions, or without.
 void describe_plan(Fields& out) {
   out.either(
       true, [](Fields& f) { describe(f, plan()); }, [](Fields& f) { describe(f, found_start()); });
@@ -189,7 +189,7 @@ TraceResult trace() {
 
 lattice::FieldTally no_trials() { return lattice::FieldTally(lattice::FieldParams()); }
 
-/// With one point, the best of its start.
+/// An example with one point, the best of its start.
 ChainErrorResult chain_error() {
   ChainErrorResult example;
   example.chart.curves.push_back({.space = matrix_file().transitions.space});
@@ -209,7 +209,7 @@ FidelityResult fidelity() {
   return example;
 }
 
-/// Of a scene, or of recorded runs.
+/// The result for a scene, or for recorded runs.
 void describe_validate(Fields& out) {
   const lattice::EndingShares none{std::array<double, markov::kEndings>{}};
   ValidateResult of_scene{.shown = lattice::Scene()};
@@ -233,7 +233,7 @@ void describe_validate(Fields& out) {
 
 const std::vector<ResultOf>& results() {
   static const std::vector<ResultOf> all{
-      // One in each line.
+      // One result in each line.
       of("analyze", analyze()),
       {"build", describe_build},
       of("chart chain", chain_error()),

@@ -20,10 +20,11 @@
 namespace gatewalk::cli {
 namespace {
 
-using lattice::kParameters;  // --set parameters.KEY=VALUE
+using lattice::kParameters;  // for --set parameters.KEY=VALUE
 using lattice::Source;
 
-/// Those of the program, and those of the cell file.
+/// The values of --set that name the program's parameters, or those that name keys of the cell
+/// file.
 std::vector<std::string> overrides_of(const Options& options, bool of_program) {
   std::vector<std::string> chosen;
   for (const std::string& text : options.overrides())
@@ -46,7 +47,7 @@ std::vector<dynamics::Cell::Number> parameters_of(const Options& options) {
   return set;
 }
 
-/// The cell that carries bodies through: the one given, or that of --cell-program.
+/// The cell that moves bodies: the caller's object, or the program of --cell-program.
 std::shared_ptr<const dynamics::Cell> cell_of(const Options& options, const AskedProgram& program) {
   const std::vector<dynamics::Cell::Number> set = parameters_of(options);
   if (!options.cell()) {
@@ -59,7 +60,8 @@ std::shared_ptr<const dynamics::Cell> cell_of(const Options& options, const Aske
   return options.cell();
 }
 
-/// Its starts and its accuracy are those asked for; warns of what it cannot tell.
+/// Gives the source the starts and the accuracy that the options ask for, and warns of what the
+/// source cannot tell.
 void take_options(const Options& options, const Asked& asked, Source& s) {
   if (s.is_recorded())
     refuse({asked.accuracy.gate_runs}, "for " + s.path +
@@ -71,13 +73,13 @@ void take_options(const Options& options, const Asked& asked, Source& s) {
   for (const std::string& text : of_starts) options.warn(text);
 }
 
-/// The scene with --versus on top of --set.
+/// The scene with the values of --versus added to those of --set.
 Source open_other(const Options& options, const Source& s, const std::vector<std::string>& versus) {
   std::vector<std::string> overrides = options.overrides();
   overrides.insert(overrides.end(), versus.begin(), versus.end());
   try {
     return Source::open(options.file(s.path), {.overrides = std::move(overrides)});
-  } catch (const lattice::SceneError& e) {  // it names overrides as --set gives them
+  } catch (const lattice::SceneError& e) {  // names overrides as --set, so the text is mended
     const std::string what = e.what();
     for (const std::string& key : versus)
       if (what.starts_with("--set " + key))
@@ -93,7 +95,7 @@ void require_same_size(const lattice::FieldParams& now, const lattice::FieldPara
         "sizes cannot be compared");
 }
 
-/// Recorded runs of another group of bodies.
+/// The source of another group's recorded runs, to be compared with the first.
 Source other_group(const Options& options, const Asked& asked, const Source& s,
                    const lattice::SourceFile& file) {
   if (!s.is_recorded() || s.is_imported || has_cell(options, asked.program) || !file.is_of_cells())
@@ -126,7 +128,7 @@ Source open_source(const Options& options, const Asked& asked) {
     how.overrides = options.overrides();
   }
   if (!file.is_matrix())
-    (void)accuracy_of(options, asked.accuracy, {});  // refused before a cell program is started
+    (void)accuracy_of(options, asked.accuracy, {});  // throws before a cell program is started
   else if (!how.cell && !file.is_of_cells())
     warn_of_faults(options, *file.matrix(), file.path());
   Source s = Source::open(file, how);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The options of a command that say what is asked about, as a lattice::Source.
+/// The options that say what a command asks about, opened as a lattice::Source.
 
 #include <initializer_list>
 #include <optional>
@@ -11,63 +11,66 @@
 
 namespace gatewalk::cli {
 
-/// --cell-program and --cell-timeout.
+/// The options --cell-program and --cell-timeout.
 struct AskedProgram {
   TextOption command;
   NumberOption timeout;
 };
-/// Declares them.
+/// Declares --cell-program and --cell-timeout.
 AskedProgram add_cell_program(Options& options);
-/// Whether bodies are carried by cells that are not ours: --cell-program, or a cell given.
+/// Whether the user's own cells move the bodies: a program (--cell-program) or the caller's object.
 [[nodiscard]] bool has_cell(const Options& options, const AskedProgram& program);
 
-/// What a command asks about, by those options that it has.
+/// What a command asks about, by those of these options that the command has.
 struct Asked {
-  TextOption path;     // a scene, a matrix, ...
-  TextOption scene{};  // of a matrix: another one
+  TextOption path;     // a scene, a matrix or a cell file
+  TextOption scene{};  // another scene, for a matrix
   AskedProgram program{};
   TextsOption starts{};
   AskedAccuracy accuracy{};
 };
 
-/// Opens it, with --set, and warns of what its file or its runs cannot tell. Throws UsageError and
-/// as what reads it.
+/// Opens the scene, matrix or cell file with --set, and warns of what its runs cannot tell. Throws
+/// UsageError and what lattice::Source::open throws.
 [[nodiscard]] lattice::Source open_source(const Options& options, const Asked& asked);
 
-/// A scene of gates, or cells of a program, with one start: `made` ("a plan is made") is for it.
-/// Throws UsageError.
+/// Opens a scene of gates, or a program's cells, with one start. `made` completes the message for
+/// several starts ("a plan is made"). Throws UsageError, also for a matrix.
 [[nodiscard]] lattice::Source field_to_run(const Options& options, const Asked& asked,
                                            const std::string& made);
 
-/// The scene or matrix of power --versus; none without it. Throws UsageError.
+/// The scene or matrix that power --versus compares with; none without the option. Throws
+/// UsageError.
 [[nodiscard]] std::optional<lattice::Source> versus(const Options& options, const Asked& asked,
                                                     const TextsOption& versus,
                                                     const lattice::Source& s);
 
-/// Chooses the method that a scene leaves to a pilot, and says what the scene leaves out. To be
-/// called when all options have been looked at.
+/// Chooses the numerical method if the scene asks for method = "auto", and warns of keys without
+/// effect. To be called after all options have been read, because the choice runs a pilot.
 void choose_method(const Options& options, lattice::Source& s);
 
-/// lattice::predict; warns where the accuracy was not reached.
+/// lattice::predict. Warns if the accuracy was not reached.
 [[nodiscard]] lattice::PooledPrediction predict(const Options& options, lattice::Source& s);
 
-/// Of what a warning is, where several starts are given: "start d 0 m: "; else nothing.
+/// The beginning of a warning about one of several starts, "start d 0 m: "; empty for one start.
 [[nodiscard]] std::string where(const lattice::Source& s, std::size_t start);
 
-/// What a program says of its cell, in one line, by which cells are told apart.
+/// The cell's description of itself in one line: faces, coordinates, costs, parameters. Two cells
+/// with different lines are different cells.
 [[nodiscard]] std::string text_of(const dynamics::Cell& cell);
 
-/// "scenes/field.toml --set forces.random_N=20": the words that ask another command about the same.
-/// Empty for standard input, which cannot be read again.
+/// The arguments with which another command is asked about the same source, such as
+/// "scenes/field.toml --set forces.random_N=20". Empty for standard input, which cannot be read
+/// again.
 [[nodiscard]] std::string asked_again(const Options& options, const Asked& asked);
-/// A line of Screen::next: "gatewalk predict scenes/field.toml  # WHAT_FOR", which a shell runs as
-/// it stands. Without WHAT_FOR where the line would be longer than 100 characters.
+/// A line of Screen::next, which a shell can run: "gatewalk predict scenes/field.toml  # WHAT_FOR".
+/// The comment is left out if the line would have more than 100 characters.
 [[nodiscard]] std::string next_step(const std::string& command, const std::string& what_for);
 
-/// Why a command that simulates new bodies refuses the matrix at `path`.
+/// The message of a command that simulates new bodies, for a matrix at `path`, which it refuses.
 [[nodiscard]] std::string needs_scene(const std::string& path);
 
-/// Refuses these options, if they are given: they have no meaning `where` ("for bins: ...").
+/// Throws UsageError if one of these options is given; `where` completes the message ("for bins").
 void refuse(std::initializer_list<Option> options, const std::string& where);
 
 }  // namespace gatewalk::cli
