@@ -24,7 +24,7 @@ template <class Number>
 using Grid = Eigen::Array<Number, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 std::string shown(double x) { return std::isfinite(x) ? json_number(x) : ""; }
-/// Yes is 1, no 0.
+/// 1 for true, 0 for false.
 template <std::integral T>
 std::string shown(T n) {
   return fmt::format("{:d}", n);
@@ -95,14 +95,14 @@ class NumberFields final : public Fields {
 
  private:
   struct Row {
-    std::string quantity, cells{};  // i,j,value,low_95,high_95
+    std::string quantity, cells{};  // the text "i,j,value,low_95,high_95"
   };
-  struct Scope {  // an object, or a list with the item that is told now
+  struct Scope {  // an object, or a list with its current item
     std::string name;
     bool is_list;
-    std::size_t first, first_of_item;  // rows
+    std::size_t first, first_of_item;  // indices into rows_
     std::size_t items = 0;
-    std::string called{};  // what the item says that its name is
+    std::string called{};  // the item's key or name
   };
 
   void put_before(std::size_t first, const std::string& name) {
@@ -141,7 +141,7 @@ class NumberFields final : public Fields {
   void add(const std::string& name, const std::vector<T>* list) {
     for (std::size_t i = 0; i < list->size(); ++i) put(name, shown(i), "", shown((*list)[i]));
   }
-  /// Lists in a list; also pairs in one.
+  /// A list of lists, or of pairs.
   template <class List>
   requires requires(List x) { shown(x[0]); }
   void add(const std::string& name, const std::vector<List>* rows) {
@@ -164,12 +164,12 @@ class NumberFields final : public Fields {
         put(fmt::format("{}.{}.{}", name, gate / all->columns, gate % all->columns), shown(i), "",
             shown(all->numbers[gate * each + i]));
   }
-  // Words are left out.
+  // The table leaves words out.
   void add(const std::string&, std::string_view) {}
   void add(const std::string&, const std::vector<std::string>*) {}
   void add(const std::string&, const TextRows*) {}
   void add(const std::string&, const Json*) {}
-  void add(const std::string&, const GateLimits*) {}  // they stand beside their grid
+  void add(const std::string&, const GateLimits*) {}  // written with the grid of the numbers
 
   std::vector<Row> rows_;
   std::vector<Scope> scopes_;

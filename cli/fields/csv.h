@@ -11,10 +11,10 @@
 
 namespace gatewalk::cli {
 
-/// A field: in quotation marks where it needs them.
+/// A field of a CSV file, in quotation marks where it needs them.
 [[nodiscard]] std::string csv_text(const std::string& text);
 
-/// A table line by line: numbers with seven digits, what is no number empty, whole numbers whole.
+/// A CSV table, built line by line. Numbers have seven digits, integers all; NaN is an empty field.
 class Csv {
  public:
   explicit Csv(const std::string& header) : text_(header + "\n") {}
@@ -39,11 +39,11 @@ class Csv {
   std::string text_;
 };
 
-/// CSV with a line for each number of the result: quantity,i,j,value,low_95,high_95. The quantity
-/// is the way of keys to it ("endings.crossed"; items of lists by their key or name, else by their
-/// number from 0), i and j where in a list (row and column of a table) it stands, from 0, and
-/// low_95 and high_95 its 95 % interval. Yes is 1, no 0; null and what is no finite number is
-/// empty; words are left out, and so is made_by.
+/// A CSV table with a line for each number of the result: quantity,i,j,value,low_95,high_95.
+/// `quantity` is the path of keys ("endings.crossed"), in which items of lists stand by their key
+/// or name, else by their number from 0. i and j are the indices in a list (row and column of a
+/// grid), from 0; low_95 and high_95 are the limits of the 95 % interval. True is 1 and false 0;
+/// null and non-finite numbers are empty fields. Texts and made_by are left out.
 [[nodiscard]] std::string table_of_numbers(const Description& describe);
 
 }  // namespace gatewalk::cli

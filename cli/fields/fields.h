@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 /// A result described once, key by key: describe(Fields&, const Result&) names each key with its
-/// unit and meaning and gives its value. What takes the fields makes of them the result's JSON
-/// (json.h), a table of its numbers (numbers.h) or the schema of all such results (schema.h).
+/// unit and meaning and gives its value. Classes derived from Fields turn this description into the
+/// result's JSON (json.h), a table of its numbers (csv.h) or the schema of all such results
+/// (schema.h).
 
 #include <array>
 #include <cmath>
@@ -24,32 +25,32 @@
 
 namespace gatewalk::cli {
 
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  // null
-using Interval = std::array<double, 2>;  // 95 %, from and to; NaN: there is none
-/// None where it is NaN.
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  // null in JSON
+using Interval = std::array<double, 2>;  // limits of a 95 % interval; NaN: none
+/// The interval; nullopt if its limits are NaN.
 [[nodiscard]] inline std::optional<Interval> known(const Interval& limits) {
   return std::isfinite(limits[0]) ? std::optional(limits) : std::nullopt;
 }
 
-/// A key of a result with what its readers must know of it. It is used in the call that it is made
-/// for: texts are not copied.
+/// A key of a result, with what a reader of the result must know. Texts are not copied, so the
+/// object must not outlive the call for which it is made.
 struct ResultKey {
   std::string_view key, unit, meaning;
-  std::string_view varies{};  // how the key is shown where it differs among results: "mean_<cost>"
-  std::optional<double> least{}, most{};  // of numbers
-  std::vector<std::string> words{};       // of texts: one of these
-  std::string_view shared_as{};           // objects and lists that are defined once, by this name
-  std::string_view interval{};            // meaning of KEY_95; else "95 % interval of KEY"
+  std::string_view varies{};  // the key as shown if it differs among results: "mean_<cost>"
+  std::optional<double> least{}, most{};  // bounds of numbers
+  std::vector<std::string> words{};       // the texts allowed
+  std::string_view shared_as{};           // name by which a schema defines the object or list once
+  std::string_view interval{};            // meaning of KEY_95; empty: "95 % interval of KEY"
 };
 
-/// The key of numbers: with a unit, "1" for shares, counts and ratios.
+/// The key of a number, with its unit: "1" for shares, counts and ratios.
 struct Field : ResultKey {
   Field(std::string_view name, std::string_view in, std::string_view what)
       : ResultKey{name, in, what} {}
   [[nodiscard]] Field varying(std::string_view shown) const {
     return with(&ResultKey::varies, shown);
   }
-  /// What KEY_95 means, where it is not simply the 95 % interval of the number.
+  /// Sets the meaning of KEY_95, if it is not simply the 95 % interval of the number.
   [[nodiscard]] Field bounded_by(std::string_view what) const {
     return with(&ResultKey::interval, what);
   }
@@ -65,7 +66,7 @@ struct Field : ResultKey {
   }
 };
 
-/// The key of flags, texts, objects and lists, which have no unit.
+/// The key of a flag, text, object or list, which has no unit.
 struct Label : ResultKey {
   Label(std::string_view name, std::string_view what) : ResultKey{name, {}, what} {}
   [[nodiscard]] Label varying(std::string_view shown) const {
@@ -73,20 +74,20 @@ struct Label : ResultKey {
     changed.varies = shown;
     return changed;
   }
-  /// A text that is one of these words.
+  /// Declares that the text is one of these words.
   [[nodiscard]] Label one_of(std::vector<std::string> allowed) const {
     Label changed = *this;
     changed.words = std::move(allowed);
     return changed;
   }
-  /// What KEY_95 means, where it is not simply the 95 % intervals of the numbers.
+  /// Sets the meaning of KEY_95, if it is not simply the 95 % intervals of the numbers.
   [[nodiscard]] Label bounded_by(std::string_view what) const {
     Label changed = *this;
     changed.interval = what;
     return changed;
   }
-  /// An object or a list that stands in many places: a schema defines it once, by this name (by
-  /// its key if there is none).
+  /// Declares that the object or list stands in many places, so that a schema defines it once. Its
+  /// name there is `name`, or the key if `name` is empty.
   [[nodiscard]] Label shared(std::string_view name = {}) const {
     Label changed = *this;
     changed.shared_as = name.empty() ? key : name;
@@ -94,17 +95,19 @@ struct Label : ResultKey {
   }
 };
 
-using TextRows = std::vector<std::vector<std::optional<std::string>>>;  // none: null
+using TextRows = std::vector<std::vector<std::optional<std::string>>>;  // nullopt: null
 using NumberRows = std::vector<std::vector<double>>;
-using GateLimits = std::array<markov::CellProbabilities, 2>;  // 95 % intervals: from and to
+using GateLimits = std::array<markov::CellProbabilities, 2>;  // lower and upper limits of 95 %
+                                                              // intervals
 
-/// As many numbers for each gate, one gate behind another, row by row from the start's side on.
+/// Several numbers for each gate, the same number of them for every gate. Gates stand one after the
+/// other, row by row from the start's side on.
 struct GateNumbers {
   std::size_t rows, columns;
   std::vector<double> numbers;
 };
 
-/// A value that takes fields; none: null.
+/// The value of a field; std::monostate: null.
 using Value =
     std::variant<std::monostate, double, std::int64_t, std::uint64_t, bool, std::string_view,
                  Interval, const std::vector<double>*, const std::vector<std::int64_t>*,
@@ -112,25 +115,25 @@ using Value =
                  const std::vector<Interval>*, const Json*, const markov::CellProbabilities*,
                  const markov::CellCounts*, const GateLimits*, const GateNumbers*>;
 
-/// What a value may be, whatever it is in one result.
+/// The kind of value that a field has in all results.
 enum class ValueKind {
-  number,  // or null where it is NaN or infinite
-  count,   // whole
+  number,  // null if NaN or infinite
+  count,   // an integer
   flag,
   text,
-  interval,      // 95 %; or null
+  interval,      // a 95 % interval, or null
   range,         // from and to
-  numbers,       // a list, of numbers or null
-  counts,        // a list
-  number_rows,   // a list of lists, of numbers or null
-  texts,         // a list
-  text_rows,     // a list of lists, of texts or null
-  given,         // a number, or else a text
-  givens,        // a list of these
-  intervals,     // a list
-  points,        // a list
-  grid,          // of numbers: rows and columns; or null
-  grid_95,       // of intervals: rows and columns; or null
+  numbers,       // a list of numbers or null
+  counts,        // a list of integers
+  number_rows,   // a list of lists of numbers or null
+  texts,         // a list of texts
+  text_rows,     // a list of lists of texts or null
+  given,         // a number if the text is one, else the text
+  givens,        // a list of such values
+  intervals,     // a list of intervals
+  points,        // a list of pairs of numbers
+  grid,          // rows and columns of numbers, or null
+  grid_95,       // rows and columns of intervals, or null
   gate_numbers,  // rows and columns of lists
 };
 
@@ -149,39 +152,39 @@ class Fields {
   void count(const Field& f, T n) {
     leaf(f, ValueKind::count, false, whole(n));
   }
-  /// None: null.
+  /// A count; nullopt: null.
   template <std::integral T>
   void count(const Field& f, const std::optional<T>& n) {
     leaf(f, ValueKind::count, true, n ? whole(*n) : Value());
   }
   void flag(const Label& l, bool yes) { leaf(l, ValueKind::flag, false, yes); }
-  /// None: null.
+  /// A flag; nullopt: null.
   template <std::same_as<std::optional<bool>> Yes>
   void flag(const Label& l, const Yes& yes) {
     leaf(l, ValueKind::flag, true, yes ? Value(*yes) : Value());
   }
   void text(const Label& l, std::string_view words) { leaf(l, ValueKind::text, false, words); }
-  /// None: null.
+  /// A text; nullopt: null.
   template <std::same_as<std::optional<std::string>> Words>
   void text(const Label& l, const Words& words) {
     leaf(l, ValueKind::text, true, words ? Value(std::string_view(*words)) : Value());
   }
-  /// The interval of a number that is not in the result itself (none: null); `estimate` gives that
-  /// of one that is.
+  /// A 95 % interval whose number is not in the result; nullopt: null. For a number in the result,
+  /// use estimate().
   void interval(const Field& f, const std::optional<Interval>& limits) {
     leaf(f, ValueKind::interval, true, value_of(limits));
   }
-  /// From and to, of what is no estimate.
+  /// A range from one number to another, which is no estimate.
   void range(const Field& f, const Interval& ends) { leaf(f, ValueKind::range, false, ends); }
   void numbers(const Field& f, const std::vector<double>& x) {
     leaf(f, ValueKind::numbers, false, &x);
   }
-  /// None: null.
+  /// A list of numbers; nullopt: null.
   template <std::same_as<std::optional<std::vector<double>>> Numbers>
   void numbers(const Field& f, const Numbers& x) {
     leaf(f, ValueKind::numbers, true, x ? Value(&*x) : Value());
   }
-  /// Lists of numbers, which may differ in length.
+  /// A list of lists of numbers, which may differ in length.
   void number_rows(const Field& f, const NumberRows& rows) {
     leaf(f, ValueKind::number_rows, false, &rows);
   }
@@ -191,7 +194,7 @@ class Fields {
   void texts(const Label& l, const std::vector<std::string>& t) {
     leaf(l, ValueKind::texts, false, &t);
   }
-  /// None: null.
+  /// A list of texts; nullopt: null.
   template <std::same_as<std::optional<std::vector<std::string>>> Texts>
   void texts(const Label& l, const Texts& t) {
     leaf(l, ValueKind::texts, true, t ? Value(&*t) : Value());
@@ -200,7 +203,7 @@ class Fields {
   void text_rows(const Label& l, const TextRows& rows) {
     leaf(l, ValueKind::text_rows, false, &rows);
   }
-  /// What a user gave as text: a number where it is one.
+  /// A text that a user gave, written as a number if it is one.
   void given(const Field& f, std::string_view text) { leaf(f, ValueKind::given, false, text); }
   void givens(const Field& f, const std::vector<std::string>& t) {
     leaf(f, ValueKind::givens, false, &t);
@@ -217,35 +220,36 @@ class Fields {
   }
   void grid(const Field& f, const markov::CellCounts& n) { leaf(f, ValueKind::grid, true, &n); }
   void no_grid(const Field& f) { leaf(f, ValueKind::grid, true, {}); }
-  /// A number for each gate, and behind them as KEY_95 their intervals; null if no gate has one.
+  /// A number for each gate, followed by their intervals as KEY_95; KEY_95 is null if no gate has
+  /// one.
   void grid(const Field& f, const markov::CellProbabilities& x, const GateLimits& limits) {
     bounded(f, ValueKind::grid, &x, ValueKind::grid_95,
             limits[0].isFinite().any() ? Value(&limits) : Value());
   }
   void grid(const Field&, const markov::CellProbabilities&,
-            GateLimits&&) = delete;  // they must outlive the call
+            GateLimits&&) = delete;  // the limits must outlive the call
   void no_estimated_grid(const Field& f) {
     bounded(f, ValueKind::grid, {}, ValueKind::grid_95, {});
   }
   void gate_numbers(const Field& f, const GateNumbers& n) {
     leaf(f, ValueKind::gate_numbers, false, &n);
   }
-  /// None: null.
+  /// Several numbers for each gate; nullopt: null.
   template <std::same_as<std::optional<GateNumbers>> Numbers>
   void gate_numbers(const Field& f, const Numbers& n) {
     leaf(f, ValueKind::gate_numbers, true, n ? Value(&*n) : Value());
   }
-  /// A number, and behind it as KEY_95 its 95 % interval in the same unit (none: null).
+  /// A number, followed by its 95 % interval as KEY_95 in the same unit; nullopt: null.
   void estimate(const Field& f, double x, const std::optional<Interval>& limits) {
     bounded(f, ValueKind::number, x, ValueKind::interval, value_of(limits));
   }
-  /// A count among `of`; KEY_95 is `of` times the interval of its share (none: null).
+  /// A count among `of`. KEY_95 is the 95 % interval of the share, times `of`; nullopt: null.
   template <std::integral T>
   void counted(const Field& f, T n, double of, const std::optional<Interval>& share) {
     bounded(f, ValueKind::count, whole(n), ValueKind::interval,
             share ? value_of(Interval{of * (*share)[0], of * (*share)[1]}) : Value());
   }
-  /// An object whose numbers have their intervals in a second one behind it, KEY_95.
+  /// An object whose numbers have their 95 % intervals in a second object after it, KEY_95.
   template <class Describe>
   void estimates(const Label& l, Describe describe) {
     enter(l, Shape::object, "");
@@ -260,8 +264,8 @@ class Fields {
     describe(*this);
     leave();
   }
-  /// The object where there is one, else null. `describe` also takes what it points to; the schema
-  /// is told of one that is made by default, if need be.
+  /// The object if there is one, else null. `describe` is given the object. A schema describes an
+  /// object made by default if there is none and the type permits it.
   template <class Result, class Describe>
   void maybe(const Label& l, const Result& result, Describe describe) {
     if (!result && !is_schema()) return leaf(l, ValueKind::text, true, {});
@@ -273,7 +277,7 @@ class Fields {
       describe(*this, Object{});
     leave();
   }
-  /// An object, or words that stand in its place.
+  /// An object, or a text in its place.
   template <class Describe>
   void object_or_text(const Label& l, const std::optional<std::string>& words, Describe describe) {
     if (words && !is_schema()) return leaf(l, ValueKind::text, false, std::string_view(*words));
@@ -281,7 +285,7 @@ class Fields {
     describe(*this);
     leave();
   }
-  /// A number (null where it is NaN or infinite), or an object that stands in its place.
+  /// A number (null if NaN or infinite), or an object in its place.
   template <class Describe>
   void number_or_object(const Field& f, const std::optional<double>& x, Describe describe) {
     if (x && !is_schema()) return leaf(f, ValueKind::number, false, *x);
@@ -289,18 +293,19 @@ class Fields {
     describe(*this);
     leave();
   }
-  /// An object for each item. The schema is told of one that is made by default, if need be.
+  /// A list with an object for each item. A schema describes an item made by default if the list is
+  /// empty and the type permits it.
   template <std::ranges::range Items, class Describe>
   void list(const Label& l, const Items& items, Describe describe) {
     list(l, &items, "", describe);
   }
-  /// The list where there is one, else null.
+  /// The list if there is one, else null.
   template <std::ranges::range Items, class Describe>
   void list(const Label& l, const std::optional<Items>& items, Describe describe) {
     if (!items && !is_schema()) return leaf(l, ValueKind::text, true, {});
     list(l, items ? &*items : nullptr, "null", describe);
   }
-  /// The same with the numbers 0 to n - 1 as items.
+  /// A list with an object for each of the numbers 0 to n - 1.
   template <class Describe>
   void list_of(const Label& l, std::size_t n, Describe describe) {
     enter(l, Shape::list, "");
@@ -310,7 +315,8 @@ class Fields {
     }
     leave();
   }
-  /// An object that stands as JSON in a file, such as another result; `describe` tells its schema.
+  /// An object that is already JSON, such as another result from a file; `describe` gives its
+  /// schema.
   template <class Describe>
   void as_kept(const Label& l, const Json& json, Describe describe) {
     if (is_schema())
@@ -318,7 +324,7 @@ class Fields {
     else
       leaf(l, ValueKind::text, false, &json);
   }
-  /// What not every result has: described where it is there. The schema takes it in any case.
+  /// Keys that not every result has: described if `there`, and always for a schema.
   template <class Describe>
   void optional(bool there, Describe describe) {
     if (!there && !is_schema()) return;
@@ -328,7 +334,7 @@ class Fields {
     --optional_;
     end_optional();
   }
-  /// A key of results that have a value for it.
+  /// A key that stands only in results with a value for it.
   template <class Value>
   void if_any(const Field& f, const std::optional<Value>& x) {
     optional(x.has_value(), [&](Fields& out) {
@@ -351,7 +357,7 @@ class Fields {
   void if_any(const Label& l, const std::optional<std::string>& x) {
     optional(x.has_value(), [&](Fields& out) { out.text(l, x.value_or("")); });
   }
-  /// One of two descriptions, both of keys beside each other; they may share some.
+  /// One of two alternative sets of keys; a key may be in both.
   template <class First, class Second>
   void either(bool is_first, First first, Second second) {
     begin_either();
@@ -360,18 +366,18 @@ class Fields {
     if (!is_first || is_schema()) second(*this);
     end_either();
   }
-  /// All that results may have is asked for: what is described only makes a schema.
+  /// Whether a schema is being made, so that every key that results may have must be described.
   [[nodiscard]] virtual bool is_schema() const { return false; }
 
  protected:
   enum class Shape { object, list };
   virtual void leaf(const ResultKey& key, ValueKind kind, bool may_be_null, const Value& value) = 0;
-  /// `also`: "null", "string" or "number" (or null), what may stand in its place.
+  /// `also`: what may stand in place of the object or list: "null", "string" or "number" (or null).
   virtual void open(const ResultKey& key, Shape shape, std::string_view also) = 0;
-  /// A value and its 95 % limits, which are of the same form.
+  /// A value, followed by its 95 % limits, which have the same shape.
   virtual void bounded(const Field& f, ValueKind kind, const Value& value, ValueKind limits_kind,
                        const Value& limits);
-  virtual void next() = 0;  // an item of a list
+  virtual void next() = 0;  // the next item of a list
   virtual void close() = 0;
   virtual void begin_optional() {}
   virtual void end_optional() {}
@@ -402,7 +408,7 @@ class Fields {
     Value value;
   };
   struct LimitsOfObject {
-    int optional;  // optional_ where the object begins
+    int optional;  // optional_ at the beginning of the object
     std::vector<Limits> all;
   };
   template <std::integral T>
@@ -427,8 +433,8 @@ class Fields {
   }
   void put_limits(const Label& l, const std::optional<LimitsOfObject>& limits);
 
-  int optional_ = 0;  // > 0: not every result has what is described now
-  // Objects and lists that are not complete, innermost last, with the limits that are to be put.
+  int optional_ = 0;  // > 0: not every result has the keys being described
+  // Objects and lists not yet closed, innermost last, with the limits that are still to be written.
   std::vector<std::optional<LimitsOfObject>> opened_ =
       std::vector<std::optional<LimitsOfObject>>(1);
 };

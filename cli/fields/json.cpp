@@ -11,10 +11,10 @@
 namespace gatewalk::cli {
 namespace {
 
-/// null for what JSON has no number for.
+/// The number; null if JSON cannot represent it.
 Json or_null(double x) { return std::isfinite(x) ? Json(x) : Json(); }
 
-/// While it lives, this thread has no other locale than C.
+/// Sets the C locale for this thread during the object's life.
 class PlainLocale {
  public:
   PlainLocale() : before_(::uselocale(plain())) {}
@@ -30,7 +30,7 @@ class PlainLocale {
   locale_t before_;
 };
 
-/// Fields as JSON, keys in the order in which they are described.
+/// Writes fields as JSON, with keys in the order in which they are described.
 class JsonFields final : public Fields {
  public:
   [[nodiscard]] Json take() && { return std::move(result_); }
@@ -50,7 +50,7 @@ class JsonFields final : public Fields {
     open_.push_back(&put(key, shape == Shape::list ? Json::array() : Json::object()));
   }
   void next() override {
-    if (!open_.back()->is_array()) open_.pop_back();  // the item before
+    if (!open_.back()->is_array()) open_.pop_back();  // the previous item
     open_.back()->push_back(Json::object());
     open_.push_back(&open_.back()->back());
   }
@@ -130,13 +130,13 @@ class JsonFields final : public Fields {
   }
 
   Json result_ = Json::object();
-  std::vector<Json*> open_;  // objects and lists that are not complete, innermost last
+  std::vector<Json*> open_;  // objects and lists not yet closed, innermost last
 };
 
 }  // namespace
 
 Json parsed_json(std::string_view text) {
-  const PlainLocale guard;  // nlohmann reads by strtod, and takes decimal points for one byte
+  const PlainLocale guard;  // nlohmann reads by strtod and takes the decimal point for one byte
   return Json::parse(text, nullptr, false);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// JSON by name only, for headers: nlohmann's own is long to compile.
+/// Declares the type Json for headers; nlohmann's own header takes long to compile.
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// JSON as a value, for what reads it; json.h writes JSON. The functions of both are in json.cpp.
+/// JSON as a value, for code that reads it; json.h writes JSON. json.cpp defines the functions of
+/// both.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,18 +12,18 @@
 
 namespace gatewalk::cli {
 
-/// Of a text; one that is_discarded() where it is no JSON.
+/// Parses a text. The value is_discarded() if the text is not JSON.
 [[nodiscard]] Json parsed_json(std::string_view text);
 
-/// Of what is described, to read in it or to change it.
+/// A described result as a JSON value, to be read or changed.
 [[nodiscard]] Json json_of(const Description& describe);
 
-/// NaN for null.
+/// The number; NaN for null.
 [[nodiscard]] inline double number_in(const Json& json) {
   return json.is_null() ? kUnknown : json.get<double>();
 }
 
-/// As json_text writes it.
+/// The value as text, written as json_text writes it.
 [[nodiscard]] std::string text_of(const Json& json, int indent = 2);
 
 }  // namespace gatewalk::cli

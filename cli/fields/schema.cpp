@@ -14,21 +14,21 @@
 namespace gatewalk::cli {
 namespace {
 
-/// A key of results and what it may hold.
+/// A key of results, and what its value may be.
 struct Node {
   std::string key, unit, meaning, varies, also;
   std::optional<double> least, most;
   std::vector<std::string> words;
   bool is_always_there = true, may_be_null = false;
-  std::string shared{};  // where its keys are defined; empty: here
+  std::string shared{};  // name of the shared definition of its keys; empty: defined here
   enum class Form { leaf, object, list } form = Form::leaf;
-  ValueKind kind = ValueKind::number;  // of a leaf
+  ValueKind kind = ValueKind::number;  // for leaves
   std::vector<std::unique_ptr<Node>> keys{};
-  std::vector<std::string> either{};  // keys of which the results with `either_or` have none
+  std::vector<std::string> either{};  // keys that results with the keys `either_or` lack
   std::vector<std::string> either_or{};
-  // Keys that only some of several descriptions of an object have are not always there.
-  int described = 0;     // how often what stands in it was described, ...
-  int described_in = 0;  // ... and the last time that of its object had this key
+  // An object may be described several times. Keys that not every description has are optional.
+  int described = 0;     // how often the keys inside were described
+  int described_in = 0;  // the latest description of the enclosing object with this key
 
   Node* find(std::string_view name) {
     const auto found =
@@ -93,11 +93,11 @@ class SchemaFields final : public Fields {
  private:
   struct Scope {
     Node* node;
-    int optional;                      // > 0: not every result has the keys that come
-    std::vector<std::string>* keys{};  // takes them where they are alternatives
+    int optional;                      // > 0: not every result has the keys that follow
+    std::vector<std::string>* keys{};  // collects the keys of an alternative
   };
 
-  /// A key that both of two alternatives have is always there.
+  /// Marks a key of both alternatives as one that is always there.
   void keep_if_in_both(Node& key) {
     Node& node = *scopes_.back().node;
     const auto has = [&](const std::vector<std::string>& keys) {
@@ -148,8 +148,8 @@ std::string list_of(const std::vector<std::string>& texts) {
   return "[" + list + "]";
 }
 
-/// How a ValueKind is called, and what the schema says of it: its type, to which "null" is added
-/// where the value may be null, and what stands behind the type; without a type all that it says.
+/// The name of a ValueKind and its text in the schema: the type, to which "null" is added if the
+/// value may be null, and what follows the type. Without a type, `rest` is the whole text.
 struct KindText {
   const char *words, *type, *rest;
 };
@@ -181,7 +181,7 @@ constexpr KindText kKinds[] = {
 static_assert(std::size(kKinds) == static_cast<std::size_t>(ValueKind::gate_numbers) + 1);
 const KindText& text_of(ValueKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
 
-/// The words of the schema for a leaf: "type": "integer", "minimum": 0
+/// The schema of a leaf: "type": "integer", "minimum": 0
 std::string type_of(const Node& node) {
   const auto& [words, type, rest] = text_of(node.kind);
   std::string text = rest;
@@ -196,14 +196,14 @@ std::string type_of(const Node& node) {
   return text;
 }
 
-/// The key, or "mean_<cost>" as a regular expression: "mean_.+".
+/// The key, or for "mean_<cost>" the regular expression "mean_.+".
 std::string expression_of(const Node& node) {
   if (node.varies.empty()) return node.key;
   const std::size_t from = node.varies.find('<'), to = node.varies.find('>');
   return node.varies.substr(0, from) + ".+" + node.varies.substr(to + 1);
 }
-/// The keys of `object` that vary so as a regular expression: without those of another kind that it
-/// would match, such as "mean_<cost>_95".
+/// The regular expression of a key that varies. It excludes other keys of `object` that the
+/// expression would also match, such as "mean_<cost>_95".
 std::string pattern_of(const Node& node, const Node& object) {
   const std::size_t from = node.varies.find('<'), to = node.varies.find('>');
   const std::string before = node.varies.substr(0, from), behind = node.varies.substr(to + 1);
@@ -217,14 +217,14 @@ std::string pattern_of(const Node& node, const Node& object) {
   }
   return "^" + (others.empty() ? "" : "(?!" + others + ")") + expression_of(node) + "$";
 }
-/// Whether any key is meant: "<cost>".
+/// Whether the key may be any text: "<cost>".
 bool is_any(const Node& node) {
   return node.varies.starts_with('<') && node.varies.find('>') + 1 == node.varies.size();
 }
 
 std::string schema_text(const Node& node, const std::string& indent, bool says_what);
 
-/// "properties": {...}, "required": [...], ... of an object, behind its type.
+/// The schema of an object after its type: "properties": {...}, "required": [...], ...
 std::string keys_text(const Node& node, const std::string& indent) {
   std::string fixed, patterns, others = "false";
   std::vector<std::string> required;
@@ -315,8 +315,8 @@ void add_lines(const Node& node, const std::string& before, std::vector<KeyLine>
   }
 }
 
-/// The text in lines of at most `width` bytes where words allow it, `indent` before each but the
-/// first.
+/// The text in lines of at most `width` bytes, broken between words. All lines but the first begin
+/// with `indent`.
 std::string in_lines(const std::string& text, std::size_t width, const std::string& indent) {
   std::string lines, line;
   for (std::size_t at = 0; at < text.size();) {

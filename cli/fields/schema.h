@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What the results of commands may hold, as JSON Schema (draft 2020-12) and as pages of help.
+/// What the results of commands may hold, as JSON Schema (draft 2020-12) and as help pages.
 
 #include <string>
 #include <string_view>
@@ -13,28 +13,28 @@ namespace gatewalk::cli {
 /// A command whose result is described.
 struct ResultOf {
   const char* command;
-  Description result;  // of a schema: every key that results may have
+  Description result;  // describes every key that results may have
 };
-/// By name.
+/// The results of all commands, by the command's name.
 [[nodiscard]] const std::vector<ResultOf>& results();
-/// The command's name in names of files: "chart-field".
+/// The command's name as used in names of files: "chart-field".
 [[nodiscard]] std::string file_name_of(std::string_view command);
 
-/// The schema of the command's results as the text of a file: the type of each key, whether it is
-/// always there, its unit ("unit") and its meaning ("description").
+/// The schema of the command's results, as the text of a file. For each key: its type, whether it
+/// is always there, its unit ("unit") and its meaning ("description").
 [[nodiscard]] std::string schema_of(const ResultOf& of);
 
-/// A key of results: "rows[].chain" is that of each item of the list "rows".
+/// A key of results. "rows[].chain" is the key "chain" of each item of the list "rows".
 struct KeyLine {
   std::string path, type, unit, meaning;
   bool is_always_there;
 };
-/// Keys under a name: the command, or the key of an object that the results of many commands have.
+/// Keys under a heading: a command, or the key of an object that several commands' results have.
 struct KeyList {
   std::string name;
   std::vector<KeyLine> keys;
 };
-/// The keys of a command's results, and behind them those of each shared object that they have.
+/// The keys of a command's results, followed by those of each shared object in these results.
 [[nodiscard]] std::vector<KeyList> keys_of(const ResultOf& of);
 
 /// The page of `gatewalk help COMMAND --result`.

@@ -38,12 +38,12 @@ std::string digits(double x, int significant) { return fmt::format("{:.{}g}", x,
 std::string scientific(double x, int decimals) { return fmt::format("{:.{}e}", x, decimals); }
 
 std::string wrapped(std::string_view text, std::string_view indent) {
-  const auto columns = [](std::string_view words) {  // characters of UTF-8, not bytes
+  const auto columns = [](std::string_view words) {  // counts characters of UTF-8, not bytes
     return static_cast<std::size_t>(
         std::count_if(words.begin(), words.end(), [](char c) { return (c & 0xC0) != 0x80; }));
   };
   std::string lines, line;
-  bool is_empty = true;  // but for its indent
+  bool is_empty = true;  // apart from the indent
   while (!text.empty()) {
     // Blanks in front of a word stay with it, so that the first line may be indented.
     const std::size_t word = text.find_first_not_of(' ');

@@ -9,14 +9,14 @@
 namespace gatewalk::cli {
 namespace {
 
-/// Characters of UTF-8.
+/// The number of UTF-8 characters.
 int length_of(std::string_view text) {
-  // A character of UTF-8 is as wide as its first byte alone.
+  // Counts the first byte of each character; continuation bytes are 10xxxxxx.
   return static_cast<int>(
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-/// Text padded on the left or (negative width) on the right.
+/// Text padded with blanks to `width`: on the left, or for a negative width on the right.
 std::string padded(const std::string& text, int width) {
   const std::string space(static_cast<std::size_t>(std::max(0, std::abs(width) - length_of(text))),
                           ' ');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Tables of a command's text: columns are declared once, rows are values.
+/// Text tables: columns are declared once, rows are values.
 
 #include <concepts>
 #include <limits>
@@ -12,19 +12,19 @@
 
 namespace gatewalk::cli {
 
-/// Width of a column that is as wide as its widest line. kFit aligns text on the right, -kFit on
-/// the left.
+/// A width for TextColumn: as wide as the column's widest line. kFit aligns text on the right,
+/// -kFit on the left.
 constexpr int kFit = std::numeric_limits<int>::max();
 
 /// A column of a TextTable.
 struct TextColumn {
   std::string heading = {};
-  /// In characters. Positive: text stands on the right, negative: on the left, 0: as it is.
-  /// Longer text is not cut and moves the rest of its line.
+  /// Width in characters: positive aligns text on the right, negative on the left, 0 does not
+  /// align. Longer text is not cut and moves the rest of its line.
   int width = 0;
-  int decimals = 0;         ///< of floating-point numbers
-  std::string unit = {};    ///< stands behind each floating-point number
-  std::string before = {};  ///< stands in front of the column in each line, the heading included
+  int decimals = 0;         ///< decimals of floating-point numbers
+  std::string unit = {};    ///< follows each floating-point number
+  std::string before = {};  ///< precedes the column in each line, including the heading
 };
 
 /// What a cell of a table shows: words, an integer, or a number with its column's decimals.
@@ -54,21 +54,21 @@ class TextTable {
  public:
   explicit TextTable(std::vector<TextColumn> columns) : columns_(std::move(columns)) {}
 
-  /// Adds a line. A line with fewer cells than the table has columns ends behind its last cell.
+  /// Adds a line. A line with fewer cells than columns ends after its last cell.
   void row(const std::vector<TextCell>& cells);
 
-  /// The line of headings; none where no column has a heading.
+  /// The line of headings; empty if no column has a heading.
   [[nodiscard]] std::string header() const;
   /// The lines that were added.
   [[nodiscard]] std::string rows() const;
-  /// Headings and rows.
+  /// Headings and lines.
   [[nodiscard]] std::string text() const { return header() + rows(); }
 
  private:
   using Line = std::vector<std::string>;
   [[nodiscard]] Line headings() const;
   [[nodiscard]] std::string text_of(const Line& line) const;
-  /// The width of a column; negative: text stands on the left.
+  /// The width of a column; negative: text is aligned on the left.
   [[nodiscard]] int width_of(std::size_t column) const;
 
   std::vector<TextColumn> columns_;
