@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr int kMostBackups = 99;
 
-/// A second name of a file, or a copy where the file system knows no second names. False when
-/// `to` is there already. Throws std::system_error.
+/// Keeps the file `from` also as `to`: by a hard link, or a copy if the file system has none.
+/// Returns false if `to` exists already. Throws std::system_error.
 bool kept_as(const std::string& from, const std::string& to) {
   if (::link(from.c_str(), to.c_str()) == 0) return true;
   if (errno == EEXIST) return false;
@@ -31,11 +31,11 @@ bool kept_as(const std::string& from, const std::string& to) {
   std::error_code error;
   if (fs::copy_file(from, to, error)) return true;
   if (error == std::errc::file_exists) return false;
-  ::unlink(to.c_str());  // half a copy
+  ::unlink(to.c_str());  // remove the incomplete copy
   throw std::system_error(error);
 }
 
-/// False also when one of them cannot be read.
+/// Whether two files hold the same bytes; false if one of them cannot be read.
 bool have_same_bytes(const std::string& a, const std::string& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What an output replaces is kept.
+/// Keeps a copy of a file that an output replaces.
 
 #include <string>
 
 namespace gatewalk::cli {
 
-/// The file at a path that is about to be replaced, kept beside it as PATH.~1~: under the first of
-/// 99 numbers that is free. Nothing is kept of an empty file, a pipe or a device.
+/// The file at a path before it is replaced, kept beside it as PATH.~1~ or under the first free
+/// number up to 99. An empty file, a pipe or a device is not kept.
 class Backup {
  public:
   /// Throws std::runtime_error naming the file when it cannot be kept.
@@ -16,8 +16,9 @@ class Backup {
   Backup(const Backup&) = delete;
   Backup& operator=(const Backup&) = delete;
 
-  /// To be called when the path has been written, or could not be. Returns the backup's name; empty
-  /// when there is none, and when the path holds the same bytes as before: then the backup goes.
+  /// Ends the backup; to be called when the path has been written, or could not be. Returns the
+  /// backup's name. If the path holds the same bytes as before, removes the backup and returns an
+  /// empty text.
   std::string settle() noexcept;
 
  private:

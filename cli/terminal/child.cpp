@@ -15,7 +15,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// Everything in a file; false, with errno, when it cannot be read.
+/// Reads a whole file into `text`; returns false, with errno set, when it cannot be read.
 bool read_all(std::FILE* file, std::string& text) {
   std::rewind(file);
   char part[4096];
@@ -23,9 +23,10 @@ bool read_all(std::FILE* file, std::string& text) {
   return std::ferror(file) == 0;
 }
 
-/// As here, but with numbers as they are in scripts for gnuplot, and arguments of ffmpeg.
+/// This program's environment with the C locale, in which numbers have a decimal point, as
+/// gnuplot's scripts and ffmpeg's arguments need.
 std::vector<char*> plain_environment() {
-  static char locale[] = "LC_ALL=C";  // which counts before all others
+  static char locale[] = "LC_ALL=C";  // LC_ALL overrides all other locale variables
   std::vector<char*> all{locale};
   for (char* const* at = environ; *at != nullptr; ++at)
     if (!std::string_view(*at).starts_with("LC_ALL=")) all.push_back(*at);
@@ -36,7 +37,7 @@ std::vector<char*> plain_environment() {
 }  // namespace
 
 File scratch_file() {
-  // In memory: gnuplot and ffmpeg end well when a disk is full under what they write.
+  // A file in memory, so that gnuplot and ffmpeg can finish even when the disk is full.
   const int id = ::memfd_create("gatewalk", MFD_CLOEXEC);
   File file(id < 0 ? nullptr : ::fdopen(id, "w+b"), std::fclose);
   if (!file && id >= 0) ::close(id);
@@ -67,7 +68,7 @@ Child::Child(std::vector<std::string> arguments, int in, const std::string& miss
                            plain_environment().data());
   ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&files);
-  if (error != 0) id_ = 0;  // not said to be left alone
+  if (error != 0) id_ = 0;  // posix_spawnp may leave it undefined
   if (error == ENOENT) throw std::runtime_error(missing);
   if (error != 0) fail("it does not start", error);
 }

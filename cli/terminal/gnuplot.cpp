@@ -26,7 +26,7 @@ std::string drawn(const std::string& script) {
     throw std::runtime_error(std::string("gnuplot cannot be run: its script cannot be written: ") +
                              std::strerror(errno));
   std::rewind(in.get());
-  // As a named file, so that gnuplot's complaints have line numbers and any error ends it.
+  // The script as a named file, so that gnuplot's messages have line numbers and any error ends it.
   Child gnuplot({"gnuplot", "/dev/stdin"}, ::fileno(in.get()),
                 "gnuplot was not found; it draws the figures (Debian: gnuplot-nox)");
   return gnuplot.output();
@@ -34,7 +34,8 @@ std::string drawn(const std::string& script) {
 
 namespace {
 
-// One column of a journal, 3.5 inches, for a sheet; others are larger by as much.
+// Width in print: one column of a journal (3.5 inches) for a sheet, in proportion for other
+// figures.
 double printed_inches(const Figure& f) { return 3.5 * f.width / Sheet::kWidth; }
 
 enum class Kind { svg, pdf, png, other };
@@ -44,11 +45,11 @@ Kind kind_of(const std::string& path) {
   return path.ends_with(".png") ? Kind::png : Kind::other;
 }
 
-/// Of a font's size in gnuplot's cairo terminals, for one point of the picture: Pango takes a
-/// point for 96/72 of theirs.
+/// Font scale for gnuplot's cairo terminals that makes a point of the font one point of the
+/// picture: Pango takes a point for 96/72 of a terminal's point.
 constexpr double kPangoPoint = 0.75;
 
-/// gnuplot's words for a picture of f, as large as its kind has it.
+/// gnuplot's terminal for a figure, in the size that this kind of file has.
 std::string terminal_of(Kind kind, const Figure& f) {
   const std::string look = fmt::format(" font 'sans,{}' background '#ffffff' enhanced", f.font);
   if (kind == Kind::svg) return fmt::format("svg size {},{}{}", f.width, f.height, look);
@@ -65,7 +66,7 @@ std::string terminal_of(Kind kind, const Figure& f) {
                      digits(kPangoPoint * grown), scale, scale);
 }
 
-/// As it stands in XML.
+/// The text escaped for XML.
 std::string in_xml(const std::string& text) {
   std::string out;
   for (const char c : text)
@@ -78,7 +79,7 @@ std::string in_xml(const std::string& text) {
   return out;
 }
 
-/// What stands between two texts becomes another; unchanged where they are not found.
+/// Replaces the text between `begin` and `end`; changes nothing where these are not found.
 void replace_between(std::string& text, const std::string& begin, const std::string& end,
                      const std::string& inside) {
   const std::size_t first = text.find(begin);
@@ -87,8 +88,8 @@ void replace_between(std::string& text, const std::string& begin, const std::str
   if (to != std::string::npos) text.replace(from, to - from, inside);
 }
 
-/// The paper and what is drawn on it in no colour of its own (gnuplot writes these as `black`),
-/// light or dark as the reader's screen is.
+/// A style for SVG that follows the reader's light or dark mode. It colours the background and what
+/// gnuplot draws in its default colour (`black`).
 constexpr char kLightOrDark[] = R"(
 <style>
 svg { color-scheme: light dark }
@@ -109,8 +110,7 @@ std::string svg_with(std::string svg, const AboutFigure& about) {
   return svg;
 }
 
-/// A text of PDF; of other than ASCII characters as UTF-8, with the mark that says so (ISO
-/// 32000-2).
+/// A text string of PDF: ASCII characters, or UTF-8 with a byte order mark (ISO 32000-2).
 std::string in_pdf(const std::string& text) {
   const bool ascii = std::none_of(text.begin(), text.end(), [](char c) { return (c & 0x80) != 0; });
   std::string out = ascii ? "(" : "(\xEF\xBB\xBF";
@@ -121,15 +121,16 @@ std::string in_pdf(const std::string& text) {
   return out + ")";
 }
 
-/// The number after the last `key`.
+/// The number after the last `key` in the file.
 long number_after(const std::string& pdf, const std::string& key) {
   const std::size_t at = pdf.rfind(key);
   if (at == std::string::npos) throw std::runtime_error("gnuplot wrote a PDF without " + key);
   return std::strtol(pdf.c_str() + at + key.size(), nullptr, 10);
 }
 
-/// With an update at its end, as ISO 32000-1, 7.5.6 has it: another document information.
-/// Unchanged where its cross-references are no plain table, as those of newer libraries may be.
+/// The PDF with other document information, as an incremental update at its end (ISO 32000-1,
+/// 7.5.6). Returns it unchanged if its cross-references are no plain table, as newer libraries may
+/// write.
 std::string pdf_with(std::string pdf, const AboutFigure& about) {
   if (pdf.find("\ntrailer") == std::string::npos) return pdf;
   const long size = number_after(pdf, "/Size"), root = number_after(pdf, "/Root"),
@@ -145,7 +146,7 @@ std::string pdf_with(std::string pdf, const AboutFigure& about) {
       pdf, info, object, size, root, info, previous, table);
 }
 
-/// Four bytes, the highest first.
+/// The number as four bytes, the highest first.
 std::string bytes(std::uint32_t n) {
   std::string out;
   for (const int shift : {24, 16, 8, 0}) out += static_cast<char>(n >> shift & 0xff);
@@ -159,10 +160,10 @@ std::string png_chunk(const std::string& type_and_data) {
          bytes(crc.checksum());
 }
 
-/// With texts and the density of its points behind the header (PNG specification, 11.3).
+/// The PNG with texts and its resolution after the header (PNG specification, 11.3).
 std::string png_with(std::string png, const AboutFigure& about) {
   constexpr std::size_t kHeader = 8 + 25;
-  constexpr std::uint32_t kPerMetre = 11811;  // 300 to the inch
+  constexpr std::uint32_t kPerMetre = 11811;  // 300 dots per inch
   if (png.size() < kHeader) throw std::runtime_error("gnuplot wrote no PNG");
   const auto text = [](const std::string& key, const std::string& value) {
     return png_chunk("iTXt" + key + std::string(5, '\0') + value);

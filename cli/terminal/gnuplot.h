@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Figures, drawn by gnuplot.
+/// Draws figures with gnuplot.
 
 #include <string>
 
@@ -8,19 +8,19 @@
 
 namespace gatewalk::cli {
 
-/// What gnuplot writes to its standard output when it runs `script` (plain text): the figure itself
-/// when the script sets a terminal and no output, to be handed to write_text_atomically. Throws
-/// std::runtime_error with gnuplot's words when it fails or is missing.
+/// Runs gnuplot on `script` (plain text) and returns its standard output. A script that sets a
+/// terminal and no output gives the figure itself, for write_text_atomically. Throws
+/// std::runtime_error with gnuplot's messages when it fails or is missing.
 [[nodiscard]] std::string drawn(const std::string& script);
 
-/// Throws std::runtime_error when gnuplot is missing: before minutes of work, not after.
+/// Throws std::runtime_error when gnuplot is missing. To be called before long work.
 void require_gnuplot();
 
-/// Draws into `path`, which is replaced as a whole or left as it was: SVG; PDF, a sheet 3.5
-/// inches wide; or PNG of 300 dots to the inch at that width. Throws std::invalid_argument for
-/// another end of its name.
+/// Draws a figure into `path`: an SVG, a PDF 3.5 inches wide, or a PNG of 300 dots per inch at that
+/// width, by the ending of the name. The file is replaced as a whole or left as it was. Throws
+/// std::invalid_argument for another ending.
 void draw(const std::string& path, const Figure& figure, const AboutFigure& about);
-/// Whether that name has an end that draw() knows.
+/// Whether draw() knows the ending of this name.
 [[nodiscard]] bool can_be_drawn(const std::string& path);
 
 }  // namespace gatewalk::cli

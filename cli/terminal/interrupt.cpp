@@ -17,7 +17,7 @@ namespace {
 std::atomic<bool> asked_to_stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "touched from a signal handler");
 
-// Written before it is pointed to: a signal handler reads it.
+// The signal handler reads this text, so it is written before is_kept is set.
 std::array<char, 4608> kept_text{};
 std::atomic<bool> is_kept{false};
 
@@ -26,11 +26,11 @@ void on_signal(int) {
     markov::remove_unfinished_file();
     ::_exit(stopped_status());
   }
-  ::alarm(1);  // work that does not come in batches is given a second
+  ::alarm(1);  // a second for work that does not come in batches
 }
 
 void on_alarm(int) {
-  // Only async-signal-safe calls here.
+  // Only async-signal-safe calls are allowed here.
   markov::remove_unfinished_file();
   const char* const text = is_kept ? kept_text.data() : kCutShortText;
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
@@ -42,13 +42,13 @@ void on_alarm(int) {
 void install_interrupt_handler() {
   struct sigaction action = {};
   action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART;  // a write under way goes on
+  action.sa_flags = SA_RESTART;  // a write under way continues
   sigemptyset(&action.sa_mask);
   struct sigaction alarm_action = action;
   alarm_action.sa_handler = on_alarm;
   ::sigaction(SIGALRM, &alarm_action, nullptr);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) {
-    // What was ignored by whoever started us stays so: nohup, jobs in the background of a script.
+    // A signal that was ignored at the start stays ignored: nohup, background jobs of a script.
     struct sigaction inherited = {};
     ::sigaction(signal, nullptr, &inherited);
     if (inherited.sa_handler != SIG_IGN) ::sigaction(signal, &action, nullptr);

@@ -23,8 +23,8 @@ std::atomic<bool> has_lost_reader{false};
 
 void write_to_stdout(std::string_view text) {
   const markov::IgnoreBrokenPipe guard;
-  errno = EIO;  // stands when std::cout had failed before
-  // Flush first: what was printed before comes before.
+  errno = EIO;  // the error to report if std::cout had failed before
+  // Flushes first, so that earlier output comes before `text`.
   if (std::cout.flush() && std::fflush(stdout) == 0 && markov::write_all(STDOUT_FILENO, text))
     return;
   const std::string reason =

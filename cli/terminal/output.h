@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Writing results so that a reader never sees half of one.
+/// Writes results so that a reader never sees half a file.
 
 #include <string>
 #include <string_view>
@@ -15,16 +15,16 @@ void write_text_atomically(const std::string& path, std::string_view text);
 /// Whether the reader of a pipe went away while text was written to it.
 [[nodiscard]] bool reader_went_away();
 
-/// Throws std::runtime_error, as write_text_atomically would, when `path` cannot be written to: to
-/// be asked before long work, not after it.
+/// Throws std::runtime_error, as write_text_atomically would, when `path` cannot be written. To be
+/// called before long work.
 void require_writable(const std::string& path);
 
-/// Throws std::runtime_error when `name` is no folder that files can be made in, and could not be
-/// made one. Makes none.
+/// Throws std::runtime_error when `name` is neither a folder that files can be written into nor the
+/// name of a folder that could be made. Makes none.
 void require_possible_folder(const std::string& name);
 
-/// The folder for a command's files, made if need be. Throws std::runtime_error when `name` is no
-/// folder that can be written to.
+/// Makes the folder `name` for a command's files if there is none. Throws std::runtime_error when
+/// files cannot be written into it.
 void require_folder(const std::string& name);
 
 }  // namespace gatewalk::cli

@@ -22,7 +22,7 @@ double seconds_between(std::chrono::steady_clock::time_point a,
   return std::chrono::duration<double>(b - a).count();
 }
 
-/// "0:07", "12:34", "1:02:03".
+/// A time in minutes or hours: "0:07", "12:34", "1:02:03".
 std::string clock_text(double seconds) {
   constexpr double kDay = 86400.0;
   if (!(seconds < 100.0 * kDay)) return "over 100 days";
@@ -31,7 +31,7 @@ std::string clock_text(double seconds) {
                       : fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-/// "some 40 s", "some 3 min", "some 5 h".
+/// A rough time: "some 40 s", "some 3 min", "some 5 h".
 std::string rough_duration(double seconds) {
   constexpr double kMinute = 60.0, kHour = 3600.0, kDay = 24.0 * kHour;
   if (!(seconds < 100.0 * kDay)) return "over 100 days";
@@ -46,7 +46,8 @@ int whole_percent(std::int64_t done, std::int64_t total) {
   return static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total));
 }
 
-/// Columns of the terminal, so that the line never wraps and leaves a trail.
+/// Columns of the terminal. The progress line is cut to fit, because a wrapped line could not be
+/// redrawn in place.
 std::size_t terminal_columns() {
   winsize size = {};
   return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
@@ -86,7 +87,7 @@ void Progress::redraw(std::int64_t done, Clock::time_point now) {
 
   const double elapsed = seconds_between(start_, now);
   const double rate = static_cast<double>(done) / elapsed;
-  const double left = static_cast<double>(total_ - done) / rate;  // inf while nothing is done
+  const double left = static_cast<double>(total_ - done) / rate;  // infinite while nothing is done
   std::string line =
       fmt::format("{} {:3}%  {:.3g}/s  {} elapsed, {} left", label_, whole_percent(done, total_),
                   rate, clock_text(elapsed), clock_text(left));
@@ -99,7 +100,8 @@ void Progress::redraw(std::int64_t done, Clock::time_point now) {
 void Progress::write_line(std::int64_t done, Clock::time_point now) {
   const double elapsed = seconds_between(start_, now);
   const double left =
-      elapsed * static_cast<double>(total_ - done) / static_cast<double>(done);  // inf at first
+      elapsed * static_cast<double>(total_ - done) / static_cast<double>(done);  // infinite while
+                                                                                 // nothing is done
   if (!estimated_ && done > 0 && 30 * (now - start_) >= lines_.every) {
     estimated_ = true;
     if (elapsed + left > std::chrono::duration<double>(lines_.every).count()) {
@@ -123,8 +125,9 @@ void Progress::finish() {
 dynamics::Work watched_work(bool show_progress, const Progress::Lines& lines, bool stops) {
   struct Watched {
     Progress progress;
-    std::string what;       // the part in hand; empty: none
-    std::int64_t most = 0;  // done; checks at the end of a part begin at its start again
+    std::string what;       // the current part; empty: none
+    std::int64_t most = 0;  // most items done so far: checks at the end of a part start from its
+                            // beginning again
   };
   const std::shared_ptr<Watched> watched(new Watched{{"", 0, show_progress, lines}, {}});
   return {[watched, stops](std::string_view what, std::int64_t done, std::int64_t total) {

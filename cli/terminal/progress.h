@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Long work in pieces: lines that say how far it is, and a place to stop between pieces.
+/// Progress messages of long work, and stopping it between two pieces.
 
 #include <chrono>
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace gatewalk::cli {
 
-/// How far long work is. At a terminal one line on standard error, redrawn in place at most 5 times
-/// a second. Elsewhere (a log, a batch job) lines: once a part has worked for a thirtieth of
-/// `every`, how long it takes if that is longer than `every`; then, each `every`, how far it is.
-/// Nothing unless `enabled`. Not for several threads at once.
+/// Reports how far long work is. At a terminal: one line on standard error, redrawn in place at
+/// most 5 times a second. In a log or a batch job: separate lines. Once a part has worked for a
+/// thirtieth of `every`, a line says how long the part takes, if that is longer than `every`; then
+/// one line each `every`. Reports nothing unless `enabled`. Not thread-safe.
 class Progress {
  public:
-  /// Elsewhere than at a terminal.
+  /// How progress is reported when standard error is no terminal.
   struct Lines {
     std::ostream* out = &std::cerr;
     std::chrono::milliseconds every = std::chrono::minutes(1);
@@ -30,17 +30,17 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Another part of the work, timed from now on.
+  /// Begins another part of the work; its time counts from now on.
   void begin(std::string label, std::int64_t total);
-  /// What is worked at from now on.
+  /// Names the part that is worked at from now on.
   void name(std::string label) { label_ = std::move(label); }
   void update(std::int64_t done);
-  /// The same where the total has changed.
+  /// update() with a new total.
   void update(std::int64_t done, std::int64_t total) {
     total_ = total;
     update(done);
   }
-  /// Clears the line of a terminal, if there is one. The destructor does the same.
+  /// Clears the progress line of a terminal. The destructor does the same.
   void finish();
 
  private:
@@ -57,8 +57,8 @@ class Progress {
   Clock::time_point last_line_;
 };
 
-/// Work whose progress is shown, if wanted, and that a first signal stops: Interrupted is thrown
-/// before the next piece.
+/// Work that reports its progress if wanted. After a first signal, Interrupted is thrown before the
+/// next piece, if `stops`.
 [[nodiscard]] dynamics::Work watched_work(bool show_progress, const Progress::Lines& lines = {},
                                           bool stops = true);
 
