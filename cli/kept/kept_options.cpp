@@ -24,7 +24,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// "90s", "45min", "3h", "2d". Throws UsageError.
+/// Seconds of "90s", "45min", "3h", "2d". Throws UsageError.
 double seconds_of(const std::string& text) {
   double number = 0.0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -38,7 +38,7 @@ double seconds_of(const std::string& text) {
       fmt::format("--max-time {}: must be a time, such as 90s, 45min, 3h or 2d", text));
 }
 
-/// What the file at `path` holds; `read`: what is in memory of it.
+/// Path, size and checksum of an input file; `read` is the part of it that is in memory.
 void describe_input(Fields& out, const std::string& path, const lattice::TomlFile& read) {
   std::uint64_t bytes = 0;
   uLong check = ::crc32_z(0, nullptr, 0);
@@ -50,7 +50,7 @@ void describe_input(Fields& out, const std::string& path, const lattice::TomlFil
     add(read.bytes().data(), read.bytes().size());
   } else {
     std::ifstream in(path, std::ios::binary);
-    in.exceptions(std::ios_base::badbit);  // what cannot be read is no end
+    in.exceptions(std::ios_base::badbit);  // a read error is not the end of the file
     std::vector<char> buffer(std::size_t{1} << 16);
     while (in.read(buffer.data(), std::ssize(buffer)), in.gcount() > 0)
       add(buffer.data(), static_cast<std::size_t>(in.gcount()));
@@ -62,7 +62,7 @@ void describe_input(Fields& out, const std::string& path, const lattice::TomlFil
 
 bool is_by_trials(const Options& options) { return options.part && !options.shard; }
 
-/// The scene as TOML; none where the command reads a matrix or recorded runs in its place.
+/// The scene as TOML; none if the command reads a matrix or recorded runs in place of a scene.
 std::optional<std::string> scene_of(const Options& options) {
   if (!options.scene_file) return {};
   try {
@@ -72,11 +72,11 @@ std::optional<std::string> scene_of(const Options& options) {
   }
 }
 
-/// The head of the file of pieces: what command they are of.
+/// The head of a file of pieces: the command whose pieces it holds.
 void describe_head(Fields& out, const Options& options) {
   const CommandWords& words = options.words();
   std::vector<std::string> shaping = words.shaping;
-  if (options.passages) shaping.emplace_back("--passages");  // what is kept has them
+  if (options.passages) shaping.emplace_back("--passages");  // the kept pieces include passages
   out.text({"version", "version of the program"}, kVersion);
   out.text({"commit", "commit of its sources"}, kCommit);
   out.text({"command", "name of the command"}, words.command);
@@ -101,10 +101,10 @@ void describe_head(Fields& out, const Options& options) {
   });
 }
 
-/// Where pieces are kept without being asked: beside the result. Empty where that is no file.
+/// The default file for pieces: beside the output file. Empty if the output is no file.
 std::string file_beside_result(const Options& options) {
   const CommandWords& words = options.words();
-  if (words.output_is_folder) return "";  // whose studies are not kept
+  if (words.output_is_folder) return "";  // their studies are not kept
   for (const TextOption& output : {options.output, options.csv, options.json})
     if (output && output.value() != "-") {
       const std::string path = output.value();
@@ -188,7 +188,7 @@ std::unique_ptr<KeptRun> kept_run(const Options& options, const std::set<std::st
   if (is_there && !is_kept && !(options.force && !plan.goes_on))
     throw UsageError(plan.file +
                      ": is there and holds no pieces of a run: name another file, or --force");
-  if (options.max_time && !ranks())  // which stop together
+  if (options.max_time && !ranks())  // several processes stop together, see kept_work
     plan.most_seconds = seconds_of(options.max_time.value());
   plan.head = json_text([&](Fields& out) { describe_head(out, options); }, -1);
   return std::make_unique<KeptRun>(std::move(plan));
@@ -200,7 +200,7 @@ dynamics::Work kept_work(const Options& options, dynamics::Work work, KeptRun* k
   if (!work.ranks) return work;
   const double most = options.max_time ? seconds_of(options.max_time.value())
                                        : std::numeric_limits<double>::infinity();
-  set_ranks_stop([most, since = dynamics::Stopwatch()] {  // all of them together
+  set_ranks_stop([most, since = dynamics::Stopwatch()] {  // stops all processes together
     return since.seconds() >= most || interrupted();
   });
   return work;

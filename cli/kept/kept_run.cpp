@@ -26,10 +26,10 @@ using dynamics::TrialRange;
 
 constexpr std::int64_t kMostParts = 1'000'000;
 
-/// Throws markov::BadFile unless a head has all that a run writes there.
+/// The head as JSON. Throws markov::BadFile unless it has all keys that a run writes there.
 Json checked_head(const std::string& path, const std::string& text) {
   const Json head = parsed_json(text);
-  // Another commit may have written other keys.
+  // Another commit may have written other keys, so messages name the commit.
   const std::string commit =
       head.is_object() && head.contains("commit") && head.at("commit").is_string()
           ? head.at("commit").get<std::string>()
@@ -80,7 +80,7 @@ std::string shown(TrialRange items) {
   return fmt::format("items {} to {}", items.first, end_of(items) - 1);
 }
 
-/// "1 of 8"; or which trials.
+/// The part of a run, in words: "part 1 of 8", or the numbers of its trials.
 std::string name_of_part(const Json& head) {
   if (head.contains("shard"))
     return fmt::format("part {} of {}", head["shard"][0].get<std::int64_t>(),
@@ -92,7 +92,7 @@ std::string name_of_part(const Json& head) {
   return "a run";
 }
 
-/// Which keys differ between two scenes as TOML.
+/// The keys that differ between two scenes, both TOML, a line each.
 std::string scene_difference(const std::string& there, const std::string& here) {
   try {
     const auto differences = lattice::physics_differences(lattice::parse_scene(here, "here"),
@@ -105,7 +105,7 @@ std::string scene_difference(const std::string& there, const std::string& here) 
   }
 }
 
-/// What of two heads differs; empty where they are of one command.
+/// What differs between two heads; empty if both belong to one command.
 std::string difference(const Json& there, const Json& here) {
   for (const char* key : {"version", "commit", "command"})
     if (there.at(key) != here.at(key))
@@ -117,7 +117,7 @@ std::string difference(const Json& there, const Json& here) {
                                  : "";
     return "the scene" + (keys.empty() ? " is another one" : ":" + keys);
   }
-  // Parts by the numbers of their trials differ in these.
+  // Parts that are given by trial numbers differ in these two options.
   const bool by_trials = there.contains("first_trial");
   const auto words = [&](const Json& head) {
     std::string all;
@@ -183,7 +183,7 @@ void KeptRun::read(std::size_t number) {
   const Json head = head_of(file), own = parsed_json(plan_.head);
   const bool goes_on = plan_.parts.empty();
   std::string differs = difference(head, own);
-  // What a file holds is shown, and no terminal shall obey it.
+  // The text comes from a file, so control characters, which a terminal would obey, are replaced.
   std::replace_if(
       differs.begin(), differs.end(),
       [](unsigned char c) { return (c < ' ' && c != '\n') || c == 127; }, '?');
@@ -210,7 +210,7 @@ void KeptRun::read(std::size_t number) {
                                      record.stage, name, known->second));
       continue;
     }
-    // What every part does is taken from one of them.
+    // Every part repeats the undivided stages; they are taken from one part.
     if (skips && !plan_.divided.contains(names_[record.stage])) continue;
     auto& pieces = found_[record.stage];
     const auto after = pieces.upper_bound(record.items.first);
@@ -260,7 +260,7 @@ void KeptRun::check_parts() const {
 
 TrialRange KeptRun::own_share(const dynamics::Stage& stage) const {
   if (!divides(stage)) return stage.items;
-  // Parts are stretches of all items of the stages that are divided as one.
+  // Part I of N is a contiguous stretch of the items of all divided stages, taken together.
   const auto bound = [&](std::int64_t i) {
     const std::int64_t of = plan_.shard->of;  // i * stage.of / of, without overflow
     const std::int64_t at = stage.of / of * i + stage.of % of * i / of;
@@ -342,7 +342,7 @@ void KeptRun::open() {
 }
 
 void KeptRun::give_up(const std::exception& e) {
-  // A file that was asked for must be right; of one that is our idea the run goes on without it.
+  // A file that the user asked for must work. Without the default file, the run goes on.
   if (plan_.at_once || plan_.goes_on) throw;
   plan_.warn(std::string(e.what()) + "; the run goes on, and could not be resumed");
   done();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A command's finished pieces: kept in a file while it runs, found there when it goes on, put
-/// together from the files of several machines.
+/// Keeps a command's finished pieces of work in a file while it runs, finds them there when the run
+/// is resumed, and joins the files of several machines.
 
 #include <cstdint>
 #include <functional>
@@ -20,25 +20,25 @@
 
 namespace gatewalk::cli {
 
-/// Part number `number` of `of`, from 1.
+/// Part `number` of `of`, counted from 1.
 struct Shard {
   std::int64_t number = 1, of = 1;
 };
-/// "3/8". Throws UsageError.
+/// Reads "3/8". Throws UsageError.
 [[nodiscard]] Shard shard_of(const std::string& text);
 
 /// What a run keeps and where.
 struct KeptPlan {
-  std::string head;              // JSON: what command this is, the same for all its runs
-  std::string file;              // empty: pieces are only read
-  bool at_once = true;           // the file is made with the first piece, or once it is a minute's
-  bool goes_on = false;          // with what the file holds
-  bool is_part = false;          // ends when its own items are done
-  std::optional<Shard> shard{};  // of the stages that are divided ...
-  std::set<std::string> divided{};   // ... these
-  std::vector<std::string> parts{};  // files that hold all pieces: none is done
-  bool writes = true;                // the file; else another process does
-  /// It stops, between two pieces, after so many.
+  std::string head;                  // JSON: the command, the same for all its runs
+  std::string file;                  // empty: pieces are only read
+  bool at_once = true;               // makes the file with the first piece; else after a minute
+  bool goes_on = false;              // with the pieces in the file
+  bool is_part = false;              // ends when its own items are done
+  std::optional<Shard> shard{};      // the part of the divided stages
+  std::set<std::string> divided{};   // names of the divided stages
+  std::vector<std::string> parts{};  // files with all pieces, of merge
+  bool writes = true;                // this process writes the file; else another does
+  /// Longest time of work (s); the run stops between two pieces.
   double most_seconds = std::numeric_limits<double>::infinity();
   std::function<void(const std::string&)> warn;
 };
@@ -50,8 +50,8 @@ struct PartDone {
 
 class KeptRun : public dynamics::KeptPieces {
  public:
-  /// Reads what files there are. Throws UsageError where they are of another command, scene or
-  /// version, which it names, overlap, or are not all there.
+  /// Reads the files of the plan. Throws UsageError, naming the difference, if they belong to
+  /// another command, scene or version, and if their pieces overlap or are incomplete.
   explicit KeptRun(KeptPlan plan);
   ~KeptRun() override = default;
   KeptRun(const KeptRun&) = delete;
@@ -64,7 +64,8 @@ class KeptRun : public dynamics::KeptPieces {
   [[nodiscard]] bool has_share(const dynamics::Stage& stage) const override;
   void end_part() override;
 
-  /// The result is there: the file goes, unless another run has put its own there.
+  /// Removes the file, because the result is written. A file that another run has put in its place
+  /// stays.
   void done();
 
  private:
@@ -89,11 +90,12 @@ class KeptRun : public dynamics::KeptPieces {
   Stages found_;
   std::map<std::uint32_t, std::string> names_;  // of the stages found
 
-  std::uint32_t stage_ = 0;  // at hand
+  std::uint32_t stage_ = 0;  // the current stage
   std::string what_;
-  dynamics::TrialRange own_;  // items of it
-  bool is_named_ = false;     // in the file
-  // A piece is done: a time limit ends no run before, or no number of runs would come to an end.
+  dynamics::TrialRange own_;  // its items in this part
+  bool is_named_ = false;     // whether its name is in the file
+  // Whether this run has done a piece. A time limit takes effect only then: otherwise runs with a
+  // short limit would never finish.
   bool goes_ahead_ = false;
 
   std::optional<PieceWriter> writer_;
@@ -102,18 +104,18 @@ class KeptRun : public dynamics::KeptPieces {
     dynamics::TrialRange items;
     std::string bytes;
   };
-  std::vector<Waiting> waiting_;  // until there is a file
+  std::vector<Waiting> waiting_;  // pieces until there is a file
   std::size_t waiting_bytes_ = 0;
   dynamics::Stopwatch since_start_;
 };
 
-/// What the command was whose pieces a file holds: all that a run writes there. Throws
-/// markov::BadFile where anything is missing or of another kind.
+/// The head of a file of pieces, which says what the command was. Throws markov::BadFile if a key
+/// is missing or of another kind.
 [[nodiscard]] Json head_of(const PieceFile& file);
-/// The same, of its first lines alone.
+/// The head of a file of pieces, read from its first lines alone. Throws as head_of().
 [[nodiscard]] Json head_in(const std::string& path);
 
-/// Which part each of these files holds.
+/// Each file with the part that it holds, in words.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> part_names(
     const std::vector<std::string>& parts);
 

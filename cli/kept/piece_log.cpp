@@ -23,8 +23,8 @@
 namespace gatewalk::cli {
 namespace {
 
-// A file begins with two lines: this name with the length and CRC-32 of the second one, which is
-// the head. Then records: a head of numbers as they are in memory, and the bytes.
+// A file begins with two lines: this name followed by the length and CRC-32 of the second line,
+// which is the head. Then records: a RecordHead, as it is in memory, and the bytes.
 constexpr char kFirstLine[] = "gatewalk pieces 1 ";
 constexpr char kByteOrder = std::endian::native == std::endian::little ? 'l' : 'b';
 
@@ -32,7 +32,7 @@ struct RecordHead {
   std::uint32_t mark, stage;
   std::int64_t first, count;
   std::uint64_t bytes;
-  std::uint32_t check, own_check;  // CRC-32 of the bytes; of the numbers before it
+  std::uint32_t check, own_check;  // CRC-32 of the bytes; of this head before own_check
 };
 static_assert(sizeof(RecordHead) == 40);
 constexpr std::uint32_t kMark = 0x43454950;
@@ -54,8 +54,8 @@ std::string first_line(std::string_view head) {
   throw std::runtime_error(path + ": cannot be written: " + std::strerror(errno));
 }
 
-/// What is read from the file in `read`. Throws std::runtime_error where it cannot be read, which
-/// is neither its end nor damage.
+/// What `read` reads from the file. Throws std::runtime_error for a read error, which is neither
+/// the end of the file nor damage.
 template <class Read>
 auto read_from(const std::string& path, Read read) try {
   std::ifstream in(path, std::ios::binary);
@@ -70,7 +70,7 @@ auto read_from(const std::string& path, Read read) try {
 
 bool PieceFile::is_one(const std::string& path) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe is read only once
+  if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe can be read only once
   std::ifstream in(path, std::ios::binary);
   std::string start(sizeof kFirstLine - 1, '\0');
   return in.read(start.data(), static_cast<std::streamsize>(start.size())) && begins(start);
@@ -97,7 +97,7 @@ std::string piece_head(const std::string& path) {
 
 PieceFile::PieceFile(const std::string& path) : path_(path), head_(piece_head(path)) {
   read_from(path, [&](std::istream& in) { read_records(in); });
-  // What was written last may be there in part, as zeros, after the power failed.
+  // After a power failure the last records may be incomplete or zeros; they are dropped.
   while (!records_.empty()) {
     try {
       (void)bytes_of(records_.back());
@@ -145,11 +145,11 @@ std::string PieceFile::bytes_of(const PieceRecord& record) const {
 }
 
 PieceWriter::PieceWriter(const std::string& path, std::string_view head) : path_(path) {
-  if (PieceFile::is_one(path)) {  // to be replaced
+  if (PieceFile::is_one(path)) {  // throws if another process writes the file to be replaced
     open();
     ::close(std::exchange(file_, -1));
   }
-  // As a whole: there is no file without its head.
+  // The file appears as a whole, so that none is without its head.
   markov::replace_file(path, first_line(head) + std::string(head) + "\n");
   open();
 }

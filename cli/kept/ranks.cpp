@@ -3,7 +3,7 @@
 
 namespace gatewalk::cli {
 
-// One process: without MPI. Builds with it link ranks_mpi.cpp, which comes first.
+// One process, without MPI. Builds with MPI link ranks_mpi.cpp, which takes precedence.
 RanksScope::RanksScope() = default;
 RanksScope::~RanksScope() = default;
 dynamics::Ranks* ranks() { return nullptr; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Processes of MPI that carry out one command together (mpirun -n 4 gatewalk ...), in builds with
+/// MPI processes that compute one command together (mpirun -n 4 gatewalk ...), in builds with
 /// -DGATEWALK_MPI=ON.
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace gatewalk::cli {
 
-/// While it lives, MPI is up, if mpirun or the like started this process.
+/// Keeps MPI running during its life, if mpirun or the like started this process.
 class RanksScope {
  public:
   RanksScope();
@@ -18,13 +18,13 @@ class RanksScope {
   RanksScope& operator=(const RanksScope&) = delete;
 };
 
-/// Null where there is one process.
+/// The MPI processes; null if there is only one process.
 [[nodiscard]] dynamics::Ranks* ranks();
-/// Of one process too.
+/// Whether this is the first process; true if there is only one.
 [[nodiscard]] bool is_first_rank();
-/// What each rank is asked at a safe point: whether to stop.
+/// Sets the function that each process asks at a safe point whether to stop. If one stops, all do.
 void set_ranks_stop(std::function<bool()> asked);
-/// Ends all processes, where this one failed alone; nothing where it is the only one.
+/// Ends all processes after a failure of this one; does nothing if it is the only one.
 void abort_ranks(int status);
 
 }  // namespace gatewalk::cli

@@ -68,7 +68,7 @@ std::unique_ptr<MpiRanks> mpi;
 }  // namespace
 
 RanksScope::RanksScope() {
-  // Alone there is no need of MPI, which takes its time to start.
+  // A single process does not start MPI, which takes time.
   bool is_started = false;
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
     is_started = is_started || std::getenv(name) != nullptr;
