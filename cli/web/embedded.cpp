@@ -8,14 +8,14 @@
 namespace {
 
 struct CarriedFile {
-  const char* name;  // nullptr behind the last one
+  const char* name;  // nullptr after the last file
   const char* begin;
   const char* end;
 };
 
 }  // namespace
 
-// Made by cli/web/embedded.cmake, an assembly file.
+// cli/web/embedded.cmake makes these as an assembly file.
 extern "C" const CarriedFile gatewalk_carried_files[];
 
 namespace gatewalk::cli {

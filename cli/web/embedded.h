@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Files that the program carries inside, so that it works from anywhere: cli/web's pages, the
-/// scenes.
+/// Files inside the program, so that it works from anywhere: the pages of cli/web, the scenes.
 
 #include <string>
 #include <string_view>
@@ -9,14 +8,14 @@
 
 namespace gatewalk::cli {
 
-/// A carried file, byte for byte: "report.js", "scenes/fig8.toml". Throws
-/// std::logic_error for a name that is not carried.
+/// An embedded file, byte for byte: "report.js", "scenes/fig8.toml". Throws std::logic_error for an
+/// unknown name.
 [[nodiscard]] std::string_view carried_file(std::string_view name);
 
-/// The names of all, in the order of the alphabet.
+/// The names of all embedded files, in alphabetical order.
 [[nodiscard]] std::vector<std::string> carried_files();
 
-/// False of a program built with GATEWALK_PAGES=OFF: it carries only the scenes.
+/// Whether the pages are embedded. Programs built with GATEWALK_PAGES=OFF have the scenes only.
 [[nodiscard]] bool has_pages();
 
 }  // namespace gatewalk::cli

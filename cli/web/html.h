@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What pages are put together with.
+/// Puts pages together.
 
 #include <functional>
 #include <map>
@@ -9,13 +9,13 @@
 
 namespace gatewalk::cli {
 
-/// Text as it stands in HTML, in an attribute too.
+/// The text escaped for HTML, also inside attributes.
 [[nodiscard]] std::string escaped(std::string_view text);
 
-/// JSON, as text, as it stands in a <script>: nothing in it can end the element.
+/// JSON text escaped for a <script> element, which no part of it can end.
 [[nodiscard]] std::string script_json(std::string_view json);
 
-/// `page` with each {{name}} replaced; what is put in is not looked at again. Throws
+/// `page` with each {{name}} replaced by its part. Inserted parts are not searched again. Throws
 /// std::logic_error for a name without a part.
 [[nodiscard]] std::string filled(std::string_view page,
                                  const std::map<std::string, std::string, std::less<>>& parts);
