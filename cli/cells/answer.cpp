@@ -21,7 +21,7 @@ double finite(std::string_view word, const std::string& name) {
   return x;
 }
 
-/// What words an answer has, for a message.
+/// The words that an answer of this fate must have, for a message.
 std::string form_of(const Section& section, std::string_view fate) {
   std::string form = "ID " + std::string(fate);
   if (fate == "left") {

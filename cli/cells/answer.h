@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A line that a cell program writes: how a passage ended (cli/site/reference/cell_program.md).
+/// A line that a cell program writes to say how a passage ended
+/// (cli/site/reference/cell_program.md).
 
 #include <array>
 #include <charconv>
@@ -12,7 +13,7 @@
 
 namespace gatewalk::cli {
 
-/// What a body carries: the program's own words.
+/// The memory that a body carries from cell to cell, in the program's own words.
 struct CarriedWords {
   std::uint16_t length;
   char text[480];
@@ -20,28 +21,28 @@ struct CarriedWords {
 };
 [[nodiscard]] CarriedWords carried_words(std::string_view words);
 
-/// The words of a line, as far as an answer has any.
+/// The words of a line, up to the number that an answer can have.
 struct AnswerWords {
   static constexpr std::size_t kMost = 4 + dynamics::kMostCoordinates + dynamics::kMostCosts;
   std::array<std::string_view, kMost> word;
-  std::size_t count = 0;  // of all
+  std::size_t count = 0;  // of all words of the line
 };
 [[nodiscard]] AnswerWords answer_words(std::string_view line);
 
-/// The whole word as a number; false where it is none.
+/// Reads the whole word as a number; returns false if the word is not one.
 template <class Number>
 [[nodiscard]] bool number_in(std::string_view word, Number& x) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
   return error == std::errc() && end == word.data() + word.size();
 }
 
-/// An answer that is none: what is wrong with it.
+/// What is wrong with a line that is not a valid answer.
 struct WrongAnswer {
   std::string what;
 };
 
-/// Moves the body on, as all words but the first one say, which is the passage's. Throws
-/// WrongAnswer.
+/// Moves the body as an answer says, and returns the passage. The answer's first word is the
+/// passage's id, which the caller reads. Throws WrongAnswer.
 [[nodiscard]] dynamics::Passage read_answer(const AnswerWords& words,
                                             const dynamics::Section& section, dynamics::Body& body);
 

@@ -21,13 +21,13 @@ using Keys = std::initializer_list<std::string_view>;
 
 [[noreturn]] void refuse_hello(const std::string& what) { throw std::invalid_argument(what); }
 
-/// Not empty, without blanks, so that it can stand in a line.
+/// Whether a text is not empty and has no blanks, so that it can be a word of a line.
 bool is_word(std::string_view text) {
   return !text.empty() && std::none_of(text.begin(), text.end(),
                                        [](unsigned char c) { return c <= ' ' || c == 127; });
 }
 
-/// A table of the line, or of one of its lists: which keys it may have, and what they hold.
+/// An object in the first line, or in one of its lists: checks the keys and reads their values.
 class HelloTable {
  public:
   HelloTable(const Json& json, std::string where, Keys keys)
@@ -88,7 +88,7 @@ double number_of(const Json& value, const std::string& where) {
   return value.get<double>();
 }
 
-/// "m s-1" as it stands in a key: "_m_per_s".
+/// The unit as part of a key: "m s-1" becomes "_m_per_s".
 std::string unit_in_key(const std::string& unit) {
   std::string key;
   for (std::size_t at = 0; at < unit.size();) {
@@ -132,7 +132,7 @@ void read_coordinates(const Json& list, dynamics::Section& section) {
   }
 }
 
-/// `symmetric`: so are the cells.
+/// `symmetric`: whether the cells are symmetric.
 void read_faces(const Json& list, dynamics::Section& section, bool symmetric) {
   std::vector<std::string> mirrors;
   for (const Json& one : list) {

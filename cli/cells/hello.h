@@ -17,18 +17,20 @@ inline constexpr int kProgramProtocol = 1, kMostNoise = 10'000;
 struct Hello {
   struct Parameter {
     dynamics::Cell::Number number;
-    double low, high;  // what is permitted
+    double low, high;  // permitted range
     [[nodiscard]] bool permits(double value) const { return low <= value && value <= high; }
-    [[nodiscard]] std::string range() const;  // "a number from 0 to 1"
+    [[nodiscard]] std::string range() const;  // in words: "a number from 0 to 1"
   };
   dynamics::Section section;
   bool symmetric = false;
-  int normals = 0, uniforms = 0;  // that a passage gets; one of both is 0
+  int normals = 0, uniforms = 0;  // random numbers that a passage gets; at least one of the two is
+                                  // 0
   std::vector<Parameter> parameters;
 };
 
-/// A passage's noise, number by number, to `take`; drawn first, so that a trial's first passage
-/// gets what other cells' bodies get. Returns its seed.
+/// Draws the noise of a passage, number by number, into `take`, and returns the passage's seed. The
+/// noise is drawn before the seed, so that a trial's first passage gets the same noise as in other
+/// cells.
 template <class Take>
 std::uint64_t draw_noise(const Hello& hello, dynamics::Random& random, Take take) {
   dynamics::Random::Normals normals;
@@ -41,7 +43,7 @@ std::uint64_t draw_noise(const Hello& hello, dynamics::Random& random, Take take
   return random.word();
 }
 
-/// Throws std::invalid_argument naming the key and what is allowed.
+/// Reads the first line. Throws std::invalid_argument naming the key and what is allowed.
 [[nodiscard]] Hello read_hello(std::string_view line);
 
 }  // namespace gatewalk::cli

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kKeptComplaints = 4000;  // bytes
 constexpr int kToldComplaints = 12;            // lines
-/// For a program that hung up to end by itself, and to say why (s).
+/// Time (s) that a program which closed its pipes gets to end by itself and to say why.
 constexpr double kGrace = 0.5;
 
 [[noreturn]] void refuse_start(const std::string& command, int error) {
@@ -34,7 +34,7 @@ struct Pipe {
   Descriptor read, write;
 };
 
-/// Neither end is inherited by any program unless it is asked for.
+/// A pipe that child processes do not inherit, except where it is passed to them.
 Pipe make_pipe(const std::string& command) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) refuse_start(command, errno);
@@ -45,8 +45,8 @@ void never_wait_at(const Descriptor& end) {
   ::fcntl(end.get(), F_SETFL, ::fcntl(end.get(), F_GETFL) | O_NONBLOCK);
 }
 
-/// `/bin/sh -c SCRIPT` in a process group (0: one of its own). `files`: its standard input, output
-/// and error; -1 is /dev/null.
+/// Starts `/bin/sh -c SCRIPT` in a process group (0: a new one). `files` are its standard input,
+/// output and error; -1 is /dev/null.
 pid_t start_shell(const std::string& script, const std::array<int, 3>& files, pid_t group,
                   const std::string& command) {
   posix_spawn_file_actions_t actions;
@@ -71,7 +71,7 @@ pid_t start_shell(const std::string& script, const std::array<int, 3>& files, pi
                 ? ::posix_spawn_file_actions_addopen(&actions, target, "/dev/null", O_RDWR, 0)
                 : ::posix_spawn_file_actions_adddup2(&actions, files[target], target);
   pid_t id = 0;
-  // Numbers have points, whatever locale a program takes; text stays UTF-8 where that is known.
+  // Decimal points in every program; text stays UTF-8 where that locale exists.
   std::string words[] = {"sh", "-c", "export LC_ALL=C.UTF-8; " + script};
   char* const arguments[] = {words[0].data(), words[1].data(), words[2].data(), nullptr};
   if (error == 0) error = ::posix_spawn(&id, "/bin/sh", &actions, &attributes, arguments, environ);
@@ -88,8 +88,8 @@ void collect(pid_t& id) {
   id = 0;
 }
 
-/// While it lives, a reader that went away is an error of this thread's write(), not the end of the
-/// process; other threads' signals are not touched.
+/// During the object's life, writing to a closed pipe fails in this thread's write() and does not
+/// end the process. Signals of other threads are not touched.
 class NoBrokenPipe {
  public:
   NoBrokenPipe() {
@@ -115,7 +115,7 @@ class NoBrokenPipe {
   bool was_pending_ = false;
 };
 
-/// The last lines, each on a line of its own, further in.
+/// The last lines of the text, indented, each on a line of its own.
 std::string last_lines(std::string_view text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.remove_suffix(1);
   std::size_t from = text.size();
@@ -188,15 +188,15 @@ std::optional<std::string> Process::ended() const {
 
 std::optional<std::string> Process::let_end(double seconds) {
   const auto until = Clock::now() + std::chrono::duration<double>(seconds);
-  std::string rest;  // nobody wants it
+  std::string rest;  // read and thrown away
   for (;;) {
-    const auto how = ended();  // asked first: what it wrote before is then there to be read
+    const auto how = ended();  // asked first, so that all output before the end can be read below
     if (output_.get() >= 0 && !read_some(output_, rest)) output_.close();
     read_complaints();
     rest.clear();
     if (how || Clock::now() >= until) return how;
     pollfd files[] = {{output_.get(), POLLIN, 0}, {errors_.get(), POLLIN, 0}};
-    ::poll(files, 2, 2);  // ms; its end itself cannot be waited for together with these
+    ::poll(files, 2, 2);  // ms; poll() cannot also wait for the end of the process
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Another program that is spoken to line by line: pipes to it, from it and for what it complains
-/// of.
+/// Runs another program and exchanges lines with it through pipes to its standard input, output and
+/// error.
 
 #include <sys/types.h>
 
@@ -13,7 +13,7 @@
 
 namespace gatewalk::cli {
 
-/// A file descriptor, closed at the end of the object's life.
+/// A file descriptor, closed by the destructor.
 class Descriptor {
  public:
   explicit Descriptor(int number = -1) : number_(number) {}
@@ -30,68 +30,70 @@ class Descriptor {
   int number_;
 };
 
-/// `/bin/sh -c COMMAND` and all that it starts, in a process group of its own. The group is killed
-/// at the end of the object's life, when the program fails, and when this program ends, however it
-/// does: a second shell in the group waits for that. Not for several threads at once.
+/// Runs `/bin/sh -c COMMAND` and all that it starts in a process group of its own. The group is
+/// killed by the destructor, when the program fails, and whenever this program ends: a second shell
+/// in the group waits for that. Not thread-safe.
 class Process {
  public:
-  /// `timeout_s`: how long a line is waited for. Throws std::runtime_error when it cannot be
-  /// started.
+  /// `timeout_s`: the longest wait for a line (s). Throws std::runtime_error when the program
+  /// cannot be started.
   Process(std::string command, double timeout_s);
-  /// It may end by itself within half a second.
+  /// Gives the program half a second to end by itself, then kills it.
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  /// The longest line that it may write.
+  /// The longest line that the program may write, in bytes.
   static constexpr std::size_t kMostLine = std::size_t{1} << 16;
 
-  /// What it has not read yet; to be added to.
+  /// The text that the program has not read yet. The caller appends to it.
   [[nodiscard]] std::string& out() { return out_; }
-  /// The time in which it must write a line begins now, as it does with each that it writes.
+  /// Starts the timeout for the program's next line. Each line that the program writes restarts it.
   void begin_to_wait() { waits_since_ = Clock::now(); }
-  /// Waits until it has written something or has read all of out(). Throws as fail() when it has
-  /// ended, closed its input or output, or has not written a line in time.
+  /// Waits until the program has written something, or has read all of out(). Throws as fail() if
+  /// the program has ended, has closed its input or output, or has not written a line in time.
   void exchange();
-  /// The next whole line that it has written, without its end: good until the next exchange().
-  /// None: there is no more. Throws as fail() for one that is too long.
+  /// The next whole line of the program's output, without its line end; valid until the next
+  /// exchange(). nullopt: no whole line is there. Throws as fail() for a line that is too long.
   [[nodiscard]] std::optional<std::string_view> line();
-  /// The same, waiting for it.
+  /// The next whole line of the program's output. Waits for it with exchange().
   [[nodiscard]] std::string_view wait_for_line();
 
-  /// Ends it and throws std::runtime_error: the command, what is wrong, its last lines on standard
-  /// error.
+  /// Kills the program and throws std::runtime_error with the command, `what`, and the program's
+  /// last lines on standard error.
   [[noreturn]] void fail(const std::string& what);
 
  private:
   using Clock = std::chrono::steady_clock;
 
   void write_some();
-  /// Appends what is there to `text`; false at the end of the file.
+  /// Appends what can be read to `text`; returns false at the end of the file.
   bool read_some(Descriptor& from, std::string& text);
   void read_complaints();
-  /// How the program itself has ended, in words; none: it runs. Its status is left to be collected.
+  /// How the program has ended, in words; nullopt if it runs. Does not collect its exit status.
   [[nodiscard]] std::optional<std::string> ended() const;
-  /// Reads on until it has ended by itself, but not for longer. As ended().
+  /// Reads on until the program has ended by itself, at most for `seconds`. Returns what ended()
+  /// returns.
   std::optional<std::string> let_end(double seconds);
-  /// For one that hung up: says how it ended, if it does.
+  /// Calls fail() for a program that has closed a pipe: says how it ended if it does, else
+  /// `else_it`.
   [[noreturn]] void fail_as_ended(const std::string& else_it);
-  /// Kills what is left of the group and collects its two shells.
+  /// Kills the process group and collects the exit status of both shells.
   void kill();
 
   std::string command_;
   double timeout_s_;
-  Descriptor in_, output_, errors_;  // our ends of its pipes
-  Descriptor life_;                  // its other end is at its end when this program is
+  Descriptor in_, output_, errors_;  // our ends of the program's pipes
+  Descriptor life_;                  // the watcher sees its other end close when this program ends
   pid_t watcher_ = 0, program_ = 0;  // 0: collected; the watcher leads the group
   std::string out_;
-  std::string text_;        // what it wrote
-  std::size_t taken_ = 0;   // of text_, by line()
-  std::string complaints_;  // the last ones
+  std::string text_;        // the program's output
+  std::size_t taken_ = 0;   // bytes of text_ that line() has returned
+  std::string complaints_;  // the last bytes of the program's standard error
   Clock::time_point waits_since_ = Clock::now();
 };
 
-/// Words of others in a message: the first `most` bytes, nothing that a terminal would obey.
+/// Text of another program for a message: its first `most` bytes, without control characters.
 [[nodiscard]] std::string excerpt(std::string_view text, std::size_t most = 200);
 
 }  // namespace gatewalk::cli

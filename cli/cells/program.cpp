@@ -26,8 +26,8 @@ using namespace dynamics;
 constexpr std::size_t kMostInFlight = 4096;
 constexpr std::size_t kMostOut = std::size_t{1} << 16;  // bytes that wait to be read
 constexpr std::string_view kNoMemory = "-";
-// With few outcomes one passage has the same by chance: but for the first, a new process answers at
-// least kEnough.
+// How many new processes repeat passages for the check that outcomes are the same. A few passages
+// may agree by chance, so each new process after the first repeats at least kEnough.
 constexpr int kMostStarts = 4;
 constexpr std::int64_t kEnough = 4;
 
@@ -44,7 +44,7 @@ void append_noise(std::string& line, const Hello& hello, Random& random) {
   line += noise;
 }
 
-/// ID FACE COORDINATES... SEED NOISE... MEMORY
+/// Appends the line ID FACE COORDINATES... SEED NOISE... MEMORY.
 void append_passage(std::string& line, const Hello& hello, std::uint64_t id, Body& body) {
   std::array<char, 32> digits;
   line.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), id).ptr);
@@ -57,8 +57,8 @@ void append_passage(std::string& line, const Hello& hello, std::uint64_t id, Bod
   line += '\n';
 }
 
-/// Which one is to be set. Throws std::invalid_argument for one that the program does not name, and
-/// for a value that it does not permit.
+/// The index of a parameter. Throws std::invalid_argument if the program does not have the
+/// parameter or does not permit the value.
 std::size_t parameter_of(const Hello& hello, const Cell::Number& wanted) {
   std::string all;
   for (std::size_t k = 0; k < hello.parameters.size(); ++k) {
@@ -74,7 +74,7 @@ std::size_t parameter_of(const Hello& hello, const Cell::Number& wanted) {
       fmt::format("cell program: it has no parameter '{}'{}", wanted.key, all));
 }
 
-/// Values of all parameters, of which some are set.
+/// Puts the values of some parameters into `values`, the values of all.
 void put(std::vector<double>& values, const Hello& hello, const std::vector<Cell::Number>& set) {
   for (const Cell::Number& number : set) values[parameter_of(hello, number)] = number.value;
 }
@@ -88,7 +88,7 @@ struct ProgramCell::Program {
   ProgramOptions options;
   Hello hello;
   std::string first_line;
-  // New processes that are to answer for others, yet.
+  // How many new processes may still repeat passages.
   mutable std::atomic<int> starts_again{kMostStarts};
 };
 
@@ -96,7 +96,7 @@ struct ProgramCell::Running {
   Running(const std::string& command, const ProgramOptions& options)
       : process(command, options.timeout_s) {}
   Process process;
-  std::uint64_t sent = 0;  // lines: no two have the same id
+  std::uint64_t sent = 0;  // lines sent, so that each passage gets its own id
 };
 
 ProgramCell::ProgramCell(std::string command, const ProgramOptions& options,
@@ -211,7 +211,7 @@ void ProgramCell::carry_out_once_more(const NextPassage& next, Health& health,
   const bool is_wasted = at_once < kEnough && program_->starts_again < kMostStarts;
   if (is_wasted || program_->starts_again <= 0 || program_->starts_again-- <= 0)
     return carry_out(next, health, at_once);
-  take().reset();  // there are never more of them than threads
+  take().reset();  // one process less, so that there are no more processes than threads
   carry_out_by(started(), next, health, at_once);
 }
 
@@ -219,16 +219,16 @@ void ProgramCell::carry_out_by(std::unique_ptr<Running> running, const NextPassa
                                Health& health, std::int64_t at_once) const {
   struct Slot {
     Body body{.entry = {}, .random = Random(Purpose::gate, {})};
-    std::optional<std::uint64_t> id{};  // of its line, until that is answered
+    std::optional<std::uint64_t> id{};  // id of the line that awaits an answer
   };
   const auto most = static_cast<std::size_t>(std::min(at_once, program_->options.in_flight));
   std::vector<Slot> slots;
-  std::deque<std::size_t> waiting;  // whose lines are to be written
+  std::deque<std::size_t> waiting;  // slots whose lines are still to be written
   for (Slot slot; slots.size() < most && next(slot.body, nullptr); slots.push_back(slot))
     waiting.push_back(slots.size());
   if (slots.empty()) return;
 
-  // It answers one half while we write the lines of the other.
+  // The program answers one half of the passages while we write the lines of the other half.
   const Hello& hello = program_->hello;
   if (!running) running = take();
   Process& process = running->process;
@@ -270,7 +270,7 @@ void ProgramCell::carry_out_by(std::unique_ptr<Running> running, const NextPassa
     }
   }
   const std::lock_guard lock(mutex_);
-  idle_.push_back(std::move(running));  // one in whose way something came is not kept
+  idle_.push_back(std::move(running));  // after an exception the process is not kept
 }
 
 }  // namespace gatewalk::cli

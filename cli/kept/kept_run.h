@@ -88,7 +88,7 @@ class KeptRun : public dynamics::KeptPieces {
   KeptPlan plan_;
   std::vector<PieceFile> files_;
   Stages found_;
-  std::map<std::uint32_t, std::string> names_;  // of the stages found
+  std::map<std::uint32_t, std::string> names_;  // names of the stages found
 
   std::uint32_t stage_ = 0;  // the current stage
   std::string what_;
