@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Files packed into one, by libarchive.
+/// Packs files into an archive and unpacks them, with libarchive.
 
 #include <cstddef>
 #include <string>
@@ -13,11 +13,12 @@ struct PackedFile {
 };
 
 enum class Packing { tar, zip };  // ustar; zip without compression
-/// The same files, the same bytes: they have no owner and no time. Throws std::runtime_error.
+/// Packs files. The same files give the same bytes, because owners and times are left out. Throws
+/// std::runtime_error.
 [[nodiscard]] std::string pack(Packing how, const std::vector<PackedFile>& files);
 
-/// The files in a zip. Throws std::runtime_error naming `path` for anything else, and for more than
-/// `most_bytes` in all.
+/// The files in a zip archive. Throws std::runtime_error naming `path` if the file is no zip
+/// archive or holds more than `most_bytes` in all.
 [[nodiscard]] std::vector<PackedFile> unpack(const std::string& path, std::size_t most_bytes);
 
 }  // namespace gatewalk::cli

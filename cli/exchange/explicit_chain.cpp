@@ -21,27 +21,27 @@ using markov::ExplicitChain;
 
 namespace {
 
-/// Shortest digits that give the number back; of a sum that rounding puts above 1, 1.
+/// A probability in the fewest digits that restore it. A sum that rounding puts above 1 becomes 1.
 std::string probability(double p) {
   std::array<char, 32> digits;
   return {digits.data(),
           std::to_chars(digits.data(), digits.data() + digits.size(), p < 1.0 ? p : 1.0).ptr};
 }
 
-/// One bit, of state `only`.
+/// A bit per state, in 64-bit words; only the bit of state `only` is set.
 std::string one_bit(std::int64_t states, std::int64_t only) {
   std::string bits(static_cast<std::size_t>((states + 63) / 64 * 8), '\0');
   bits[static_cast<std::size_t>(only / 8)] = static_cast<char>(1 << (only % 8));
   return bits;
 }
 
-/// How numbers of a file stand in it.
+/// The type and size of the numbers in a file of the archive.
 void describe_numbers(Fields& out, std::string_view type, int bits) {
   out.text({"type", "kind of the numbers"}, type);
   out.count({"size", "bit", "size of a number"}, bits);
 }
 
-/// What a Unified Markov Binary says of the chain in its other files.
+/// The index of a Unified Markov Binary, which says what the other files of the archive hold.
 void describe(Fields& out, const ExplicitChain& chain, const std::string& command) {
   out.count({"format-version", "1", "version of the format"}, 1);
   out.count({"format-revision", "1", "revision of this version"}, 0);
@@ -154,7 +154,8 @@ SparseTable table_of(const ExplicitChain& chain) {
 
 namespace {
 
-/// The start of a matrix that does not know it has a row of its own, behind the states.
+/// The name of the state in which a cell is entered. A start that the matrix lacks has its own row
+/// after all states, and is named "start".
 std::string entered_as(const ExplicitChain::State& state, const std::vector<std::string>& names) {
   const auto input = static_cast<std::size_t>(state.input);
   return input + 1 < names.size() ? names[input] : "start";

@@ -21,7 +21,7 @@ namespace {
 
 using lattice::shortest;
 
-/// "ahead", "right": what a move is called where nobody names the face.
+/// The name of a face that has none: its move, such as "ahead" or "right".
 std::string name_of_move(int x, int y) {
   if (x == 0 && y == 1) return "ahead";
   if (x == 0 && y == -1) return "back";
@@ -31,7 +31,7 @@ std::string name_of_move(int x, int y) {
   return fmt::format("move_{}_{}", sign(x), sign(y));
 }
 
-/// Faces in the order in which states name them.
+/// The first state of each face, in the order of the states.
 std::vector<const ForeignState*> faces_of(const std::vector<ForeignState>& states) {
   std::vector<const ForeignState*> faces;
   for (const ForeignState& s : states)
@@ -40,7 +40,8 @@ std::vector<const ForeignState*> faces_of(const std::vector<ForeignState>& state
   return faces;
 }
 
-/// As many steps as doubles of probabilities need, and no more than sums of all rows may have.
+/// How many steps of a whole number stand for probability 1: as many as doubles resolve, but so few
+/// that sums over all rows do not overflow.
 double steps_of(std::int64_t states) {
   int bits = 53;
   while (bits > 20 && std::ldexp(static_cast<double>(states) + 1.0, bits) > std::ldexp(1.0, 62))
@@ -48,10 +49,10 @@ double steps_of(std::int64_t states) {
   return std::ldexp(1.0, bits);
 }
 
-constexpr double kOff = 1e-9;  // by which the sum of a row of doubles may miss 1
+constexpr double kOff = 1e-9;  // how far the sum of a row of doubles may be from 1
 
-/// By how much rounding may have moved the sum of a row: by half a unit of the last digit of each
-/// number. Who writes one or two digits does so by hand, and means them.
+/// How far rounding may have moved the sum of a row: half a unit of the last digit of each number.
+/// Zero for numbers of one or two digits, which a person wrote and meant exactly.
 double rounding_of(const SparseTable& table, std::size_t begin, std::size_t end, bool floats) {
   constexpr int kFewestDigits = 3;
   if (table.precision.digits < kFewestDigits) return 0.0;
@@ -59,14 +60,14 @@ double rounding_of(const SparseTable& table, std::size_t begin, std::size_t end,
   for (std::size_t k = begin; k < end; ++k) {
     const double value = table.entries[k].value;
     if (value == 0.0) continue;
-    // Where trailing zeros are left out a number does not show its last digit; the table does, by
-    // digits behind the point or by digits from the first.
+    // A number without trailing zeros hides its last digit. The table shows it, by digits after the
+    // point or by significant digits.
     const double last =
         std::max(std::pow(10.0, -table.precision.decimals),
                  std::pow(10.0, std::floor(std::log10(value)) + 1.0 - table.precision.digits));
     most += 0.5 * std::max(last, floats ? double{std::numeric_limits<float>::epsilon()} : 0.0);
   }
-  constexpr double kTies = 1.0 + 1e-6;  // sums that are off by all of it
+  constexpr double kTies = 1.0 + 1e-6;  // for sums that are off by exactly this much
   return most * kTies;
 }
 
@@ -79,10 +80,10 @@ constexpr const char* kEffective =
     "sum, "
     "which makes probabilities, without error bars";
 
-/// The rows as whole numbers of such steps.
+/// Replaces the probabilities of each row by whole numbers of steps, which sum to steps_of().
 void in_steps(const std::string& path, SparseTable& table) {
   const double steps = steps_of(table.rows);
-  // Doubles that were floats, and texts of no more digits than floats have.
+  // Numbers that were floats, or texts with no more digits than floats have.
   const bool floats =
       table.precision.digits <= std::numeric_limits<float>::max_digits10 ||
       std::all_of(table.entries.begin(), table.entries.end(), [](const SparseTable::Entry& e) {
@@ -122,8 +123,8 @@ void in_steps(const std::string& path, SparseTable& table) {
   std::erase_if(table.entries, [](const SparseTable::Entry& e) { return e.value == 0.0; });
 }
 
-/// Whether all of a table of reals are whole numbers, as counts are; then says what it takes them
-/// for.
+/// Whether a table of reals holds whole numbers, as counts are. Notes in `understood` what the
+/// numbers are taken for.
 bool are_counts(SparseTable& table) {
   const auto is_whole = [](const SparseTable::Entry& e) { return e.value == std::floor(e.value); };
   if (table.entries.empty() || !std::all_of(table.entries.begin(), table.entries.end(), is_whole))
@@ -142,7 +143,7 @@ bool are_counts(SparseTable& table) {
   return counts;
 }
 
-/// Each step is a count; -1 is a gap, before and behind which a trajectory is another one.
+/// Counts each step of the trajectories. -1 is a gap, which cuts a trajectory into two.
 SparseTable counts_of(const std::string& path, const Trajectories& all, std::int64_t states) {
   constexpr std::int64_t kGap = -1;
   std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> counts;

@@ -51,7 +51,7 @@ void convert(std::string_view bytes, std::vector<To>& values) {
   }
 }
 
-/// Numbers of this type; false where there is none such.
+/// Reads an array's numbers of this type; returns false for a type that is not supported.
 bool put_numbers(const std::string& type, std::string_view bytes, NumpyArray& array) {
   std::vector<std::int64_t> whole;
   std::vector<double> real;
@@ -68,7 +68,7 @@ bool put_numbers(const std::string& type, std::string_view bytes, NumpyArray& ar
   else if (type == "i1")
     convert<std::int8_t>(bytes, whole);
   else if (type == "u8")
-    convert<std::uint64_t>(bytes, whole);  // those above 2^63 - 1 come out below 0
+    convert<std::uint64_t>(bytes, whole);  // numbers above 2^63 - 1 become negative
   else if (type == "u4")
     convert<std::uint32_t>(bytes, whole);
   else if (type == "u2")
@@ -91,7 +91,8 @@ NumpyArray array_of(const PackedFile& file, const std::string& path) {
   };
   const std::string_view bytes = file.bytes;
   if (!bytes.starts_with(kMagic) || bytes.size() < kPrefix + 2) refuse("is none of numpy");
-  const bool is_long = bytes[kMagic.size()] != '\x01';  // versions 2 and 3: four bytes of length
+  const bool is_long = bytes[kMagic.size()] != '\x01';  // versions 2 and 3 have a length of four
+                                                        // bytes
   const auto byte = [&](std::size_t at) {
     return std::size_t{static_cast<unsigned char>(bytes[at])};
   };
@@ -155,7 +156,7 @@ std::string npz_of(const std::vector<NumpyArray>& arrays) {
 
 std::vector<NumpyArray> read_npz(const std::string& path) {
   std::vector<NumpyArray> arrays;
-  std::size_t numbers = 0;  // 8 bytes each, however they are stored
+  std::size_t numbers = 0;  // numbers take 8 bytes each, in any file
   for (const PackedFile& file : unpack(path, kMostBytes)) {
     arrays.push_back(array_of(file, path));
     std::size_t count = 1;

@@ -25,10 +25,10 @@ namespace {
 constexpr std::string_view kLetters =
     "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
 constexpr double kMostGates = 1e6;
-constexpr std::size_t kMostPoints = 1000;  // a plan has its start
+constexpr std::size_t kMostPoints = 1000;  // a plan has one, its start
 constexpr int kPolicyFormat = 1;
 
-/// The first line that differs.
+/// The first line that differs, of both texts.
 std::string difference(const std::string& here, const std::string& there) {
   const auto [a, b] = std::mismatch(here.begin(), here.end(), there.begin(), there.end());
   const auto line = [](const std::string& text, std::string::const_iterator at) {
@@ -45,7 +45,7 @@ std::string bytes_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A whole number from -1 to `most`.
+/// Reads a whole number from -1 to `most`.
 int number_in(const Json& json, std::size_t most) {
   if (json.is_number_integer()) {
     const double number = json.get<double>();
@@ -158,7 +158,7 @@ void describe(Fields& out, const dynamics::Tree& tree, std::ptrdiff_t coordinate
              {tree.seen.begin(), tree.seen.begin() + coordinates});
 }
 
-/// The gates' decisions, each with a letter for each state.
+/// A text for each gate, with a letter for the action in each state.
 std::vector<std::string> rows_of(const lattice::Policy& policy) {
   const std::vector<std::uint16_t>& action = policy.decisions.action;
   const auto states = static_cast<std::size_t>(policy.space.size());
@@ -214,7 +214,7 @@ lattice::Policy read_policy(const std::string& path, const PolicyField& made_for
   throw markov::BadFile(path + ": " + e.what());
 } catch (const Json::exception& e) {
   throw markov::BadFile(path + ": is damaged: " + e.what());
-} catch (const std::invalid_argument& e) {  // of the state space
+} catch (const std::invalid_argument& e) {  // thrown by the state space
   throw markov::BadFile(path + ": is damaged: " + e.what());
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What a body does in each gate, as a file (JSON): made by `gatewalk plan`, run by `gatewalk
-/// lattice`.
+/// A policy, which says what a body does in each gate, as a JSON file. `gatewalk plan` writes it,
+/// `gatewalk lattice` runs it.
 
 #include <cstddef>
 #include <string>
@@ -14,28 +14,29 @@
 
 namespace gatewalk::cli {
 
-/// What a policy is made for, but the start, on which it does not depend.
+/// The scene or cells for which a policy is made, without the start, on which a policy does not
+/// depend.
 struct PolicyField {
-  std::string kind;  // "scene" or "cell": what the text is called in the file
+  std::string kind;  // "scene" or "cell", the text's key in the file
   std::string text;
   dynamics::Section section;  // of entries
   lattice::FieldParams field;
   std::size_t actions = 0;
-  std::string source;  // for messages
+  std::string source;  // file name for messages
 };
 [[nodiscard]] PolicyField policy_field(const lattice::Scene& scene);
-/// `told`: lines of what the program says of its cell while each action is taken.
+/// `told`: a line for each action with the program's description of its cell under this action.
 [[nodiscard]] PolicyField policy_field(const lattice::CellFile& cells, const std::string& told);
 
-/// Throws std::runtime_error for more actions, or more gates, than a file can hold.
+/// Throws std::runtime_error for more actions or gates than a policy file can hold.
 void require_file_for(const PolicyField& made_for);
-/// Text of the file: what it is made for, with its actions, the trees of ways to enter, a letter
-/// for the action in each state (gates by row and column, with a limit of gates also by how many
-/// were passed). Throws std::runtime_error for more than a file can hold.
+/// The text of a policy file: the scene or cells with their actions, the trees of entries, and a
+/// letter for the action in each state. Gates stand by row and column; with a limit of gates, also
+/// by the number of gates passed. Throws std::runtime_error if the policy is too large for a file.
 [[nodiscard]] std::string policy_text(const lattice::Policy& policy, const PolicyField& made_for);
 
-/// Throws markov::BadFile for a file that is damaged, and for one that was made for something that
-/// differs in anything but the start.
+/// Reads a policy file. Throws markov::BadFile for a damaged file, and for a policy that was made
+/// for a scene or cells that differ in more than the start.
 [[nodiscard]] lattice::Policy read_policy(const std::string& path, const PolicyField& made_for);
 
 }  // namespace gatewalk::cli

@@ -37,9 +37,9 @@ std::vector<std::string> lines_of_file(const std::string& path) {
   }
 }
 
-constexpr double kMostWhole = 9007199254740992.0;  // doubles hold all whole numbers up to it
+constexpr double kMostWhole = 9007199254740992.0;  // doubles hold all whole numbers up to here
 
-/// The whole text as a number.
+/// Reads the whole text as a number.
 bool read_number(const std::string& text, double& value) {
   std::string_view rest = text;
   const auto read = lattice::take_number(rest);
@@ -47,7 +47,7 @@ bool read_number(const std::string& text, double& value) {
   return read && rest.empty();
 }
 
-/// As a whole number, which may be written as 3, +3, 3.0 or 3e0.
+/// Reads the whole text as an integer, which may be written as 3, +3, 3.0 or 3e0.
 bool read_number(const std::string& text, std::int64_t& value) {
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
   if (read.ec == std::errc() && read.ptr == text.data() + text.size()) return true;
@@ -58,7 +58,7 @@ bool read_number(const std::string& text, std::int64_t& value) {
   return true;
 }
 
-/// Of a number's text.
+/// The digits and decimals of a number's text.
 SparseTable::Precision precision_of(std::string_view text) {
   const std::size_t e = std::min(text.find_first_of("eE"), text.size());
   const std::string_view mantissa = text.substr(0, e);
@@ -83,7 +83,7 @@ void note_precision(std::string_view number, SparseTable& table) {
   table.precision.decimals = std::max(table.precision.decimals, precision.decimals);
 }
 
-/// A number of the table: false where the text is none.
+/// Reads a number of the table and notes its precision; returns false if the text is no number.
 bool read_value(const std::string& text, SparseTable& table, double& value) {
   if (!read_number(text, value)) return false;
   note_precision(text, table);
@@ -95,7 +95,8 @@ std::vector<std::string> words_of(const std::string& line) {
   return {std::istream_iterator<std::string>(in), {}};
 }
 
-/// In order; entries of one place are added up, or, with the line of each, refused.
+/// Sorts the entries. Entries at the same place are added, or refused if `line_of` names their
+/// lines.
 void put_in_order(const std::string& path, SparseTable& table,
                   const std::vector<std::size_t>& line_of = {}) {
   std::vector<std::size_t> order(table.entries.size());
@@ -132,8 +133,8 @@ const NumpyArray* find(const std::vector<NumpyArray>& arrays, const std::string&
   return nullptr;
 }
 
-/// What the first line of a Matrix Market file says, in lower case; refused with what to do where
-/// the numbers are none of a chain.
+/// The words of a Matrix Market file's first line, in lower case. Throws, with advice, for numbers
+/// that cannot belong to a chain.
 std::vector<std::string> market_head(const std::string& path, const std::string& line) {
   std::vector<std::string> head = words_of(line);
   for (std::string& word : head) word = lattice::in_small_letters(word);
@@ -162,7 +163,7 @@ std::vector<std::string> market_head(const std::string& path, const std::string&
 }  // namespace
 
 std::string matrix_market_of(const SparseTable& table, std::string comment) {
-  for (char& c : comment)  // names of files may have anything
+  for (char& c : comment)  // names of files may hold any character
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
   std::string text = fmt::format("%%MatrixMarket matrix coordinate {} general\n% {}\n{} {} {}\n",
                                  table.whole ? "integer" : "real", comment, table.rows,
@@ -211,7 +212,8 @@ SparseTable read_matrix_market(const std::string& path) {
   const std::size_t sizes = dense ? 2 : 3;
   SparseTable table;
   table.whole = head[3] != "real";
-  std::int64_t promised = -1, seen = 0, row = 0, column = 0;  // the last two: next of an array
+  std::int64_t promised = -1, seen = 0, row = 0, column = 0;  // the last two: next place of a dense
+                                                              // array
   for (std::size_t k = 1; k < lines.size(); ++k) {
     if (lines[k].starts_with('%')) continue;
     const std::vector<std::string> words = words_of(lines[k]);
@@ -232,7 +234,7 @@ SparseTable read_matrix_market(const std::string& path) {
         promised = symmetric ? table.rows * (table.rows + 1) / 2 : table.rows * table.columns;
       continue;
     }
-    if (++seen > promised) continue;  // refused below
+    if (++seen > promised) continue;  // refused after the loop
     SparseTable::Entry e{row, column, 0.0};
     if (dense) {
       if (words.size() != 1 || !read_value(words[0], table, e.value))
@@ -364,7 +366,7 @@ SparseTable table_of(const std::string& path, const std::vector<NumpyArray>& arr
   if (shape.size() != 2 || shape[0] < 1 || shape[1] < 1) throw unfit();
   table.rows = shape[0];
   table.columns = shape[1];
-  // Lines are rows of csr, and columns of csc.
+  // Compressed lines are rows in csr and columns in csc.
   const bool by_column = *kind == "csc";
   std::vector<std::int64_t> line;
   if (*kind != "coo") {

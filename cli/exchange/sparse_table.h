@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Sparse matrices as other programs write and read them.
+/// Sparse matrices in the formats of other programs.
 
 #include <Eigen/SparseCore>
 #include <algorithm>
@@ -12,10 +12,10 @@
 
 namespace gatewalk::cli {
 
-/// Entries in the order of rows, within each of columns; no two at one place.
+/// A sparse matrix. Entries are sorted by row, then by column, without two at one place.
 struct SparseTable {
-  /// How finely numbers are written, at most: digits from the first that is not 0, and behind the
-  /// point. Of doubles and floats in binary the digits that tell any two apart.
+  /// The largest precision of the numbers in a file: significant digits, and digits after the
+  /// point. For binary doubles and floats, the digits that distinguish any two numbers.
   struct Precision {
     int digits = 0, decimals = 0;
   };
@@ -25,10 +25,10 @@ struct SparseTable {
   };
   std::int64_t rows = 0, columns = 0;
   std::vector<Entry> entries;
-  bool whole = false;          // written as whole numbers
-  bool probabilities = false;  // its file calls them so
+  bool whole = false;          // written as integers
+  bool probabilities = false;  // called probabilities in the file
   Precision precision{};
-  std::vector<std::string> understood{};  // what its reader decided, a sentence each
+  std::vector<std::string> understood{};  // what the reader decided, a sentence each
 };
 
 template <class Value>
@@ -41,8 +41,8 @@ template <class Value>
   return table;
 }
 
-/// The same with another order of its states, (n x n + 1): row k is that of states[k], and so are
-/// the columns but the last.
+/// The matrix with its states in another order, (n x n + 1). Row k becomes the row of states[k];
+/// the columns are reordered in the same way, except the last.
 template <class Matrix>
 [[nodiscard]] Matrix in_order(const Matrix& matrix, const std::vector<int>& states) {
   if (std::is_sorted(states.begin(), states.end())) return matrix;
@@ -59,33 +59,37 @@ template <class Matrix>
   return ordered;
 }
 
-/// Matrix Market's coordinate format, which counts from 1; `comment` on a line of its own.
+/// The matrix in Matrix Market's coordinate format, which counts from 1; `comment` stands on its
+/// own line.
 [[nodiscard]] std::string matrix_market_of(const SparseTable& table, std::string comment);
-/// from,to,VALUE with the names of rows and columns.
+/// A CSV table from,to,VALUE with the names of rows and columns.
 [[nodiscard]] std::string csv_of(const SparseTable& table, const std::vector<std::string>& rows,
                                  const std::vector<std::string>& columns, const std::string& value);
-/// As scipy.sparse.load_npz reads it: compressed rows.
+/// The matrix as compressed rows, as scipy.sparse.load_npz reads it.
 [[nodiscard]] std::string npz_of(const SparseTable& table);
 
-/// "coordinate" or "array"; "real", "integer" or "unsigned-integer"; "general" or "symmetric".
-/// Entries of one place are added up, as scipy does. These throw std::runtime_error naming file,
-/// line and what is allowed.
+/// Reads a Matrix Market file: "coordinate" or "array"; "real", "integer" or "unsigned-integer";
+/// "general" or "symmetric". Entries at the same place are added, as in scipy. Throws
+/// std::runtime_error naming file, line and what is allowed.
 [[nodiscard]] SparseTable read_matrix_market(const std::string& path);
-/// Columns from, to and count or probability, in any order; states by these names, or by their
-/// numbers from 0. `columns`: names of outputs, the first `rows` of which are those of the rows.
+/// Reads a CSV table with the columns from, to and count or probability, in any order. States are
+/// given by name or by number from 0. `columns` are the names of all columns of the matrix; its
+/// first `rows` names are those of the rows. Throws as read_matrix_market().
 [[nodiscard]] SparseTable read_csv(const std::string& path, std::int64_t rows,
                                    const std::vector<std::string>& columns);
-/// Of an .npz: compressed rows or columns, or coordinates, as scipy.sparse.save_npz writes them.
-/// Entries of one place are added up.
+/// Reads a sparse matrix from the arrays of an .npz file: compressed rows or columns, or
+/// coordinates, as scipy.sparse.save_npz writes them. Entries at the same place are added. Throws
+/// as read_matrix_market().
 [[nodiscard]] SparseTable table_of(const std::string& path, const std::vector<NumpyArray>& arrays);
 
-/// Sequences of states from 0: a line each, numbers between blanks or commas; or an array each of
-/// an .npz. -1 is a gap: where no state is known.
+/// Sequences of states, numbered from 0; -1 is a gap, where the state is unknown. In a text file
+/// each line is a sequence of numbers between blanks or commas; in an .npz file each array is one.
 using Trajectories = std::vector<std::vector<std::int64_t>>;
 [[nodiscard]] std::string text_of(const Trajectories& all);
 [[nodiscard]] std::string npz_of(const Trajectories& all);
 [[nodiscard]] Trajectories read_trajectories(const std::string& path);
-/// Of an .npz; and whether it holds such sequences, and no sparse matrix.
+/// The sequences in the arrays of an .npz file, and whether the arrays hold sequences rather than a
+/// sparse matrix.
 [[nodiscard]] Trajectories trajectories_of(const std::string& path, std::vector<NumpyArray> arrays);
 [[nodiscard]] bool hold_trajectories(const std::vector<NumpyArray>& arrays);
 

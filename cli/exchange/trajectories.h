@@ -8,9 +8,9 @@
 
 namespace gatewalk::cli {
 
-/// One for each trial: the state in which it started, that of each cell that it entered, and at the
-/// end, if it was trapped, the number of states. Runs that broke, and bodies that were lost from
-/// sight, end theirs.
+/// A sequence for each trial: the state at the start, the state in which each cell is entered, and
+/// at the end, for a trapped body, the number of states. A run that broke and a body that was lost
+/// from sight end their sequence.
 [[nodiscard]] Trajectories trajectories_of(const lattice::RunPool& pool,
                                            const dynamics::StateSpace& space);
 
