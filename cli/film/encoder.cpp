@@ -20,25 +20,26 @@ namespace {
 std::vector<std::string> ffmpeg_command(VideoFormat format, const std::string& title,
                                         double frames_per_second) {
   std::vector<std::string> command{"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-                                   "-xerror",  // else its status is 0 also when a write failed
-                                   // Pictures as cairo keeps them, without a header.
+                                   "-xerror",  // without it, ffmpeg reports success after a failed
+                                               // write
+                                   // Raw pictures as cairo stores them, without a header.
                                    "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size",
                                    fmt::format("{}x{}", kPictureWidth, kPictureHeight),
                                    "-framerate", fmt::format("{:f}", frames_per_second), "-i",
                                    "pipe:0", "-an"};
   const std::vector<std::string> mp4{
       "-c:v", "libx264", "-preset", "veryfast", "-crf", "20",
-      // Players take HD pictures for BT.709 ones.
+      // Players assume BT.709 colours for HD pictures.
       "-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p", "-colorspace", "bt709",
       "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv", "-metadata",
       "title=" + title,
-      // Its standard output is a file: the index can be moved to the front.
+      // ffmpeg's standard output is a file here, so that the index can be moved to the front.
       "-movflags", "+faststart", "-f", "mp4", "file:/dev/stdout"};
   const std::string ahead = std::to_string(kPaletteFrames);
   const std::vector<std::string> gif{
       "-filter_complex",
-      // The colours are known before the film begins, so that ffmpeg need not keep it in memory.
-      // Without dither what does not move stays the same, and costs nothing.
+      // The colours are chosen before the film begins, so that ffmpeg need not keep the film in
+      // memory. Without dither, parts that do not move stay the same and need no bytes.
       "[0:v]scale=800:-1:flags=area,split[a][b];[a]trim=end_frame=" + ahead +
           ",palettegen=max_colors=64[colours];[b]trim=start_frame=" + ahead +
           ",setpts=PTS-STARTPTS[film];[film][colours]paletteuse=dither=none:diff_mode=rectangle",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Pictures packed into a video by ffmpeg.
+/// Encodes pictures as a video with ffmpeg.
 
 #include <array>
 #include <cstdint>
@@ -13,10 +13,11 @@ namespace gatewalk::cli {
 
 enum class VideoFormat : std::uint8_t { mp4, gif };
 
-/// By the ending of a file's name, .mp4 or .gif. Throws std::invalid_argument for any other.
+/// The format by the ending of a file's name, .mp4 or .gif. Throws std::invalid_argument for
+/// others.
 [[nodiscard]] VideoFormat video_format(const std::string& path);
 
-/// Pictures from all over the film that go ahead of a GIF: its 64 colours are chosen from them.
+/// Pictures from all parts of the film that precede a GIF; its 64 colours are chosen from them.
 inline constexpr std::int64_t kPaletteFrames = 32;
 
 class Encoder {
@@ -24,18 +25,18 @@ class Encoder {
   /// Starts ffmpeg. Throws std::runtime_error when it is missing.
   Encoder(VideoFormat format, const std::string& title, double frames_per_second);
 
-  /// The next picture, as Picture draws it. False when ffmpeg reads no more. Throws Interrupted
-  /// after a signal.
+  /// Sends the next picture, as Picture draws it. Returns false when ffmpeg reads no more. Throws
+  /// Interrupted after a signal.
   [[nodiscard]] bool send(std::string_view picture) const { return sockets_.send(picture); }
 
-  /// No more pictures: the video. Throws std::runtime_error with ffmpeg's words when it failed,
-  /// Interrupted after a signal.
+  /// Ends the pictures and returns the video. Throws std::runtime_error with ffmpeg's messages when
+  /// ffmpeg failed, and Interrupted after a signal.
   [[nodiscard]] std::string finish();
 
  private:
-  /// Pictures on their way to ffmpeg. A pair of sockets and no pipe: when ffmpeg has gone away,
-  /// writing is an error without a signal, and one that does not read leaves time to look at
-  /// ctrl-C.
+  /// Sends pictures to ffmpeg through a pair of sockets. Unlike a pipe, sockets report an ffmpeg
+  /// that has ended as an error without a signal, and let us check for ctrl-C while ffmpeg does not
+  /// read.
   class Sockets {
    public:
     Sockets();
@@ -44,7 +45,7 @@ class Encoder {
     Sockets& operator=(const Sockets&) = delete;
 
     [[nodiscard]] int exit() const { return ends_[1]; }
-    void close_exit() { close(ends_[1]); }  // once ffmpeg holds it
+    void close_exit() { close(ends_[1]); }  // closed once ffmpeg holds it
     void close_entry() { close(ends_[0]); }
     [[nodiscard]] bool send(std::string_view bytes) const;
 

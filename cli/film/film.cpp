@@ -32,7 +32,8 @@ std::string label_of(const lattice::Recording& r, bool across_field, const dynam
                      across_field ? ", " + counted(r.gates, "gate", "gates") : "");
 }
 
-/// Without the random force, which a moment has had and a step will have.
+/// A step of a film without its random force, which belongs to the interval before a moment but
+/// after a step.
 FilmStep film_step(const lattice::Moment& m, const dynamics::Scale& scale) {
   const auto& [body, beams] = m.sample.state;
   const dynamics::Energies& e = m.energy;
@@ -78,7 +79,8 @@ Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings)
     const std::size_t last = r.moments.size() - 1;
     for (std::size_t i = 0; i <= last; ++i) {
       run.steps.push_back(film_step(r.moments[i], scale));
-      // A film's force holds until its next step, a sample's acted before it.
+      // A sample holds the force that acted before it; a film's step holds the force until the next
+      // step.
       if (last > 0)
         run.steps.back().random_force =
             seven_digits(r.moments[std::min(i + 1, last)].sample.random_force, scale.force());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What is drawn of runs, by the page that plays them (replay.h) and in videos (video.h).
+/// The data of runs that the replay page (replay.h) and videos (video.h) draw.
 
 #include <array>
 #include <optional>
@@ -11,18 +11,19 @@
 
 namespace gatewalk::cli {
 
-/// How things stand at the end of a step; work and losses since the run began.
+/// The state at the end of a step. Work and losses are sums since the run began.
 struct FilmStep {
-  double time = 0.0;                               // s, uneven steps allowed
+  double time = 0.0;                               // s; steps may be uneven
   int i_x = 0, i_y = 0;                            // the gate that the body is in
-  int type = 0;                                    // of Film::types, if there are
+  int type = 0;                                    // index into Film::types, if there are several
   dynamics::BodyState body;                        // in that gate's frame
-  std::array<double, 2> angle{};                   // rad, of its beams, > 0 deflected forward
-  std::array<dynamics::ContactMode, 2> contact{};  // holds until the next step
-  double random_force = 0.0;                       // N, the same
+  std::array<double, 2> angle{};                   // rad, of that gate's beams; > 0 deflected
+                                                   // forward
+  std::array<dynamics::ContactMode, 2> contact{};  // until the next step
+  double random_force = 0.0;                       // N, until the next step
   double body_energy = 0.0, beams_energy = 0.0;    // J, kinetic
   double elastic = 0.0;                            // J, of both beams
-  double work = 0.0;                               // J, of propulsion and random force
+  double work = 0.0;                               // J, by propulsion and random force
   double lost = 0.0, lost_in_hits = 0.0;           // J
 };
 
@@ -34,13 +35,13 @@ struct FilmRun {
 struct Film {
   std::string title;
   dynamics::GateParams gate;
-  std::optional<lattice::FieldGates> types{};  // of the field's gates, if there are several
-  std::vector<std::string> actions{};  // of a policy: type number t is taken with t % actions
-  lattice::FieldParams field{.columns = 1, .rows = 1};  // 1 x 1: a gate alone
+  std::optional<lattice::FieldGates> types{};  // gates of the field, if there are several types
+  std::vector<std::string> actions{};          // of a policy: the type number modulo this size
+  lattice::FieldParams field{.columns = 1, .rows = 1};  // 1 x 1: a single gate
   std::vector<FilmRun> runs;
 
   [[nodiscard]] double width() const { return gate.gate_width(); }   // m, of a gate
-  [[nodiscard]] double depth() const { return gate.gate_length(); }  // m, the same
+  [[nodiscard]] double depth() const { return gate.gate_length(); }  // m, of a gate
   /// The gate at (i_x, i_y) of the field.
   [[nodiscard]] const dynamics::GateParams& gate_at(int i_x, int i_y) const {
     return types ? types->at(i_x + field.start_column(), i_y) : gate;
@@ -49,17 +50,17 @@ struct Film {
   [[nodiscard]] const dynamics::GateParams& gate_of(const FilmStep& step) const {
     return types ? types->types()[static_cast<std::size_t>(step.type)] : gate;
   }
-  /// What the body does, of several actions.
+  /// The action that the body takes, under a policy.
   [[nodiscard]] const std::string& action_of(const FilmStep& step) const {
     return actions[static_cast<std::size_t>(step.type) % actions.size()];
   }
   [[nodiscard]] bool is_field() const { return field.columns * field.rows > 1; }
 };
 
-/// How fast a film plays what took `times_real` seconds for each of its own: "at 1/4 of real time".
+/// The speed of a film that plays `times_real` seconds in a second: "at 1/4 of real time".
 [[nodiscard]] std::string speed_words(double times_real);
 
-/// All runs as a film, with seven digits in the scene's own units.
+/// All runs as a film, in numbers of seven digits in the scene's own units.
 [[nodiscard]] Film film_of(const lattice::Scene& scene, const lattice::Recordings& recordings);
 
 }  // namespace gatewalk::cli

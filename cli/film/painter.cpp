@@ -88,7 +88,7 @@ void Painter::text(double x, double y, double size, std::string words, Colour c,
   cairo_set_font_size(cr_.get(), size);
   if (width_of(words) > std::abs(width)) {
     do {
-      // A character of UTF-8 goes as a whole.
+      // Removes whole characters of UTF-8, not single bytes.
       while (!words.empty() && (words.back() & 0xC0) == 0x80) words.pop_back();
       if (!words.empty()) words.pop_back();
     } while (!words.empty() && width_of(words + "…") > std::abs(width));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Shapes and words on a picture, drawn by cairo.
+/// Draws shapes and words on a picture with cairo.
 
 #include <cairo.h>
 
@@ -19,23 +19,24 @@ constexpr Colour rgb(int hex) {
   return {(hex >> 16) / 255.0, (hex >> 8 & 255) / 255.0, (hex & 255) / 255.0};
 }
 
-/// From one corner to the other.
+/// A rectangle, from one corner to the other.
 struct PictureBox {
   double x0, y0, x1, y1;
 };
 
-/// All places and sizes are in points of the picture, y downward.
+/// A picture to draw on. All places and sizes are in points of the picture, y downward.
 class Painter {
  public:
   Painter(int width, int height);
 
-  /// Rows of blue, green, red, nothing. Throws std::runtime_error when cairo could not draw.
+  /// The pixels in rows, four bytes each: blue, green, red, unused. Throws std::runtime_error when
+  /// cairo failed.
   [[nodiscard]] std::string_view pixels() const;
 
   void fill(const PictureBox& b, Colour c, double alpha = 1.0);
   void line(Point a, Point b, Colour c, double width, double alpha = 1.0);
   void arrow(Point a, Point b, Colour c, double thick);
-  /// Outlines; what is drawn of them comes next.
+  /// Outlines; a fill or stroke draws them next.
   void circle(Point p, double r);
   void move_to(Point p) { cairo_move_to(cr_.get(), p.x, p.y); }
   void line_to(Point p) { cairo_line_to(cr_.get(), p.x, p.y); }
@@ -43,11 +44,11 @@ class Painter {
   void fill(Colour c, double alpha = 1.0);
   void fill_and_stroke(Colour inside, double alpha, Colour edge, double width);
 
-  /// Text from x on, or up to x for a width below 0; what is wider than `width` loses its end.
+  /// Draws text from x on, or up to x for a width below 0. Text wider than `width` loses its end.
   void text(double x, double y, double size, std::string words, Colour c, bool bold = false,
             double width = 1e9);
 
-  /// While it lives, nothing is drawn outside of the box, and lines have round ends.
+  /// During the object's life, nothing is drawn outside of the box, and lines have round ends.
   class Clip {
    public:
     Clip(Painter& painter, const PictureBox& box);
@@ -58,7 +59,7 @@ class Painter {
    private:
     cairo_t* cr_;
   };
-  /// While it lives, lines have flat ends, and dashes of this length (0: none).
+  /// During the object's life, lines have flat ends and dashes of this length (0: no dashes).
   class FlatLines {
    public:
     explicit FlatLines(Painter& painter, double dash = 0.0);
@@ -75,7 +76,7 @@ class Painter {
   void colour(Colour c, double alpha) {
     cairo_set_source_rgba(cr_.get(), c.red, c.green, c.blue, alpha);
   }
-  [[nodiscard]] double width_of(const std::string& words) const;  // in the font that is set
+  [[nodiscard]] double width_of(const std::string& words) const;  // in the current font
 
   int height_;
   std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface_;

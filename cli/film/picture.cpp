@@ -21,7 +21,7 @@ using dynamics::Side;
 constexpr std::array<const char*, 3> kContactNames{"free", "hit", "held"};
 constexpr double kRightEdge = kPictureWidth - 32.0;  // of the panel
 
-// Those of web/replay.js.
+// The same colours as in web/replay.js.
 constexpr Colour kText = rgb(0x1b1f24), kMuted = rgb(0x59626d), kLine = rgb(0xd5dae0),
                  kPaper = rgb(0xffffff), kStage = rgb(0xf5f7f9), kBlue = rgb(0x0072b2),
                  kRed = rgb(0xc8401c), kOrange = rgb(0xd98300), kGrey = rgb(0x7b858f),
@@ -30,7 +30,7 @@ constexpr Colour kText = rgb(0x1b1f24), kMuted = rgb(0x59626d), kLine = rgb(0xd5
 
 constexpr Colour colour_of(Side side) { return side == kLeft ? kBlue : kRed; }
 
-/// A text for the picture: with a true minus sign.
+/// The text with a true minus sign.
 std::string with_minus(std::string text) {
   if (const std::size_t minus = text.starts_with('>') ? 1 : 0; text[minus] == '-')
     text.replace(minus, 1, "−");
@@ -57,7 +57,8 @@ Picture::Picture(const Film& film, const FilmRun& run, double pace, bool labels)
   const auto few =
       draws.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(draws.size() - 1));
   std::nth_element(draws.begin(), few, draws.end());
-  // The larger of propulsion and of what few draws exceed spans two radii.
+  // The longer of two arrows spans two radii: propulsion, and the random force that few draws
+  // exceed.
   if (const double strong = std::max(*few, std::abs(film.gate.forces.propulsion)); strong > 0.0)
     arrow_ = 2.0 * film.gate.body.radius / strong;
 }
@@ -71,7 +72,7 @@ std::string_view Picture::draw(double time) {
   const PictureBox all = bounds();
   constexpr PictureBox kArea{32, 92, 920, kPictureHeight - 28};
   if (film_.is_field()) {
-    // The field on the left, what the following camera sees on the right.
+    // The field on the left, and on the right what a camera sees that follows the body.
     const double fit = (kArea.y1 - kArea.y0) * (all.x1 - all.x0) / (all.y1 - all.y0);
     const double middle = kArea.x0 + std::clamp(fit, 120.0, 440.0);
     stage({kArea.x0, kArea.y0, middle, kArea.y1}, now, all);
@@ -89,7 +90,7 @@ std::string_view Picture::draw(double time) {
   return painter_.pixels();
 }
 
-/// The field, or one gate with all places that the run visits.
+/// The area to show (m): the field, or a single gate with all places that the run visits.
 PictureBox Picture::bounds() const {
   const double margin = 3.0 * unit_.length, radius = film_.gate.body.radius;
   if (film_.is_field())
@@ -107,8 +108,7 @@ PictureBox Picture::bounds() const {
   return {-half - margin, low - margin, half + margin, high + margin};
 }
 
-/// The body among the beams in a part of the picture, which shows at least the part `seen` (m) of
-/// the world.
+/// Draws the body among the beams into `box`, which shows at least the area `seen` (m).
 void Picture::stage(const PictureBox& box, const Scenery& s, const PictureBox& seen) {
   const double scale =
       std::min((box.x1 - box.x0) / (seen.x1 - seen.x0), (box.y1 - box.y0) / (seen.y1 - seen.y0));
@@ -127,7 +127,7 @@ void Picture::stage(const PictureBox& box, const Scenery& s, const PictureBox& s
   if (labels_) rule(view);
 }
 
-/// Borders of the gates in sight, and their beams at rest. Of a gate alone only its sides are
+/// Draws the borders of the gates in sight and their beams at rest. A single gate has only side
 /// borders.
 void Picture::gates(const View& view, const Scenery& s) {
   const auto& [box, centre, scale, thick] = view;
@@ -164,7 +164,7 @@ void Picture::gates(const View& view, const Scenery& s) {
       }
 }
 
-/// Where the body has been: all of it faintly, the last part strongly.
+/// Draws the body's track: all of it faintly, its last part strongly.
 void Picture::trail(const View& view, const Scenery& s) {
   painter_.circle(view(run_.place(0)), 3.5);
   painter_.stroke(kMuted, 1.5);
@@ -180,12 +180,12 @@ void Picture::trail(const View& view, const Scenery& s) {
     painter_.line_to(view(s.body));
     painter_.stroke(kText, width, 0.5);
   };
-  const double wake = 1.5 * unit_.time;  // of the trail is drawn strongly
+  const double wake = 1.5 * unit_.time;  // time of the track that is drawn strongly
   draw(0, 1.6);
   draw(run_.at(s.time - wake).i, 2.2);
 }
 
-/// A beam of the gate that the body is in, with what touches it and its last hit.
+/// Draws a beam of the gate that the body is in, with its contact and its last hit.
 void Picture::moving_beam(const View& view, const Scenery& s, Side side) {
   const FilmStep& step = run_.steps()[s.at.i];
   const Segment beam = beam_of(film_, step, side, s.angle[side]);
@@ -201,7 +201,7 @@ void Picture::moving_beam(const View& view, const Scenery& s, Side side) {
   }
   if (!s.last_hit[side]) return;
   const FilmStep& hit = run_.steps()[*s.last_hit[side]];
-  // time of the run for which a hit stays to be seen
+  // time of the run for which a hit stays visible
   const double flash = 0.25 * std::max(1.0, pace_) * unit_.time;
   const double grown = (s.time - hit.time) / flash;
   if (grown > 1.0) return;
@@ -223,7 +223,7 @@ void Picture::forces(const View& view, const Scenery& s) {
   painter_.fill(kEdge);
 }
 
-/// A rule: the longest of 1, 2, 5, 10, ... m that takes a fifth of the width.
+/// Draws a scale bar: the longest of 1, 2, 5, 10, ... m that takes at most a fifth of the width.
 void Picture::rule(const View& view) {
   const auto& [box, centre, scale, thick] = view;
   const double wanted = 0.2 * (box.x1 - box.x0) / scale,
@@ -237,7 +237,7 @@ void Picture::rule(const View& view) {
                 2.0);
 }
 
-/// Time, contacts, forces and energies, from x on: bars of now, words and numbers of `said`.
+/// Draws time, contacts, forces and energies from x on. Bars show `now`, words and numbers `said`.
 void Picture::panel(double x, const Scenery& now, const Scenery& said) {
   text(x, 124, 40, with_minus(reading(now.time, "s", 0.01 * unit_.time)), kText, true);
   if (now.time >= run_.end())
@@ -262,7 +262,7 @@ void Picture::panel(double x, const Scenery& now, const Scenery& said) {
        now, said);
 }
 
-/// What the lines and arrows of the stage are, with their numbers; y is that of the last row after
+/// Draws the legend of lines and arrows with their numbers; y becomes that of the last row after
 /// it.
 void Picture::legend(double x, double& y, const Scenery& said) {
   const auto words = [&](const std::string& name, const std::string& value) {

@@ -15,21 +15,22 @@ inline constexpr int kPictureWidth = 1280, kPictureHeight = 720;  // points
 class Picture {
  public:
   /// `pace`: units of the scene's time in a second of the film. Without `labels` there are no
-  /// words, numbers and rule. Throws std::invalid_argument as Playback does.
+  /// words, numbers and scale bar. Throws std::invalid_argument as Playback does.
   Picture(const Film& film, const FilmRun& run, double pace, bool labels);
 
   [[nodiscard]] const Playback& playback() const { return run_; }
 
-  /// The picture at a time (s): rows of blue, green, red, nothing; valid until the next one.
+  /// The picture at a time (s) in rows of four bytes a pixel: blue, green, red, unused. Valid until
+  /// the next call.
   [[nodiscard]] std::string_view draw(double time);
 
  private:
-  /// Part of the world (m), drawn into a part of the picture.
+  /// An area of the world (m), drawn into a part of the picture.
   struct View {
-    PictureBox box;  // of the picture
+    PictureBox box;  // part of the picture
     Point centre;    // m
     double scale;    // points per m
-    double thick;    // of a beam
+    double thick;    // points, of a beam
     [[nodiscard]] Point operator()(Point p) const {
       return {0.5 * (box.x0 + box.x1) + (p.x - centre.x) * scale,
               0.5 * (box.y0 + box.y1) - (p.y - centre.y) * scale};
@@ -50,7 +51,7 @@ class Picture {
   struct Bar {
     const char* name;
     double FilmStep::*energy;
-    double most;  // J, its full length
+    double most;  // J, at the bar's full length
     Colour colour;
   };
   void bars(double x, double& y, const char* heading, const std::vector<Bar>& bars,
@@ -68,7 +69,7 @@ class Picture {
   bool labels_;
   Painter painter_{kPictureWidth, kPictureHeight};
   double arrow_ = 0.0;                 // m per N
-  double stored_ = 0.0, moved_ = 0.0;  // J, the bars' full lengths
+  double stored_ = 0.0, moved_ = 0.0;  // J, at the bars' full lengths
 };
 
 }  // namespace gatewalk::cli

@@ -96,8 +96,8 @@ Scenery Playback::scenery(double time) const {
             .angle = before.angle,
             .contact = before.contact,
             .last_hit = {}};
-  // In another gate other beams are the moving ones: those left behind keep their last angle until
-  // then.
+  // In another gate other beams move. Until then, the beams that the body leaves keep their last
+  // angle.
   const bool same_gate = after.i_x == before.i_x && after.i_y == before.i_y;
   for (const Side side : {kLeft, kRight}) {
     if (same_gate) s.angle[side] = now([&](std::size_t i) { return steps_[i].angle[side]; });

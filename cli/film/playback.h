@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Where everything is in a film at any time, between its steps too; by the rules of
-/// web/replay.js.
+/// The state of a film at any time, also between its steps, by the same rules as web/replay.js.
 
 #include <array>
 #include <optional>
@@ -22,27 +21,28 @@ struct Segment {
 /// A beam of gate (i_x, i_y) at an angle (rad), in the field's frame (m).
 [[nodiscard]] Segment beam_of(const Film& film, int i_x, int i_y, dynamics::Side side,
                               double angle);
-/// The same of the gate that a step is in.
+/// A beam, at an angle (rad), of the gate in which a step is; in the field's frame (m).
 [[nodiscard]] Segment beam_of(const Film& film, const FilmStep& step, dynamics::Side side,
                               double angle);
-/// The point of that beam which is nearest to the body with its centre at `body`; all in the
-/// field's frame (m).
+/// The point of a beam that is nearest to a body with its centre at `body`; all in the field's
+/// frame (m).
 [[nodiscard]] Point nearest_point(const Film& film, const FilmStep& step, dynamics::Side side,
                                   double angle, Point body);
 
-/// The last step at or before a time, and how far it is from there to the next.
+/// A time between two steps: the last step i at or before it, the next step j, and the fraction of
+/// the way from i to j.
 struct Between {
   std::size_t i = 0, j = 0;
   double part = 0.0;
 
-  /// `value` is that of a step, by its number.
+  /// Interpolates `value`, a function of a step's number.
   template <class Value>
   [[nodiscard]] double operator()(const Value& value) const {
     return value(i) + part * (value(j) - value(i));
   }
 };
 
-/// Everything at one time.
+/// The state at one time.
 struct Scenery {
   double time;  // s
   Between at;
@@ -50,14 +50,14 @@ struct Scenery {
   Point body;                   // m, in the field's frame
   std::array<double, 2> angle;  // rad
   std::array<dynamics::ContactMode, 2> contact;
-  std::array<std::optional<std::size_t>, 2> last_hit;  // step; none so far
+  std::array<std::optional<std::size_t>, 2> last_hit;  // step of the last hit; none so far
 };
 
-/// One run of a film, which must outlive it.
+/// Plays one run of a film. The film must outlive this object.
 class Playback {
  public:
-  /// Throws std::invalid_argument for a run without steps, steps that go back in time, and numbers
-  /// that are none.
+  /// Throws std::invalid_argument for a run without steps, steps that go back in time, and
+  /// non-finite numbers.
   Playback(const Film& film, const FilmRun& run);
 
   [[nodiscard]] const std::vector<FilmStep>& steps() const { return steps_; }
@@ -68,9 +68,9 @@ class Playback {
 
   [[nodiscard]] Between at(double time) const;
   [[nodiscard]] Scenery scenery(double time) const;
-  /// The body's mean place around a time: what a calm camera looks at (m).
+  /// The body's mean place around a time (m), at which a calm camera looks.
   [[nodiscard]] Point calm_place(double time) const;
-  /// A number of a step, between steps.
+  /// A number of a step, interpolated between steps.
   [[nodiscard]] double value(const Between& at, double FilmStep::*member) const {
     return at([&](std::size_t i) { return steps_[i].*member; });
   }

@@ -52,7 +52,8 @@ constexpr Array kArrays[] = {
      [](Step s) { return s.lost_in_hits; }},
 };
 
-/// `more` adds keys to a run: it is called with the run's fields and its number, from 0.
+/// Describes a film. `more` adds keys to a run; it is called with the run's fields and number, from
+/// 0.
 template <class More>
 void describe(Fields& out, const Film& film, More more) {
   const dynamics::GateParams& p = film.gate;

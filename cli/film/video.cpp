@@ -11,7 +11,8 @@
 namespace gatewalk::cli {
 namespace {
 
-/// Units of the scene's time in a second of the film. Throws std::invalid_argument.
+/// Units of the scene's time in a second of the film. Throws std::invalid_argument for a wrong
+/// speed or frame rate.
 double pace_of(const Film& film, const VideoOptions& options) {
   if (options.speed && (!(*options.speed > 0.0) || !std::isfinite(*options.speed)))
     throw std::invalid_argument("a video's speed must be above 0");
@@ -47,7 +48,8 @@ void write_video(const std::string& path, const Film& film, const VideoOptions& 
   const double start = picture.playback().start(), end = picture.playback().end(),
                step = pace * dynamics::scale_of(film.gate).time / frames_per_second;
   const auto frames = static_cast<std::int64_t>(std::ceil((end - start) / step - 1e-9)) + 1 +
-                      static_cast<std::int64_t>(frames_per_second);  // the last one stands
+                      static_cast<std::int64_t>(frames_per_second);  // the last picture stands for
+                                                                     // a second
   bool reads = true;
   if (format == VideoFormat::gif)
     for (std::int64_t k = 0; k < kPaletteFrames && reads; ++k)

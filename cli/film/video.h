@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A single run as a film that plays everywhere.
+/// Writes a single run as a video file.
 
 #include <optional>
 #include <string>
@@ -13,17 +13,17 @@ namespace gatewalk::cli {
 
 struct VideoOptions {
   std::optional<double> speed =
-      std::nullopt;  // seconds of the run in a second of the film; none: the unit of time
-  std::optional<double> frames_per_second = std::nullopt;  // none: 50, of a GIF 10
-  bool labels = true;  // words, numbers and the rule; without them scenes alike look the same
+      std::nullopt;  // seconds of the run in a second of the video; none: the scene's unit of time
+  std::optional<double> frames_per_second = std::nullopt;  // none: 50, or 10 for a GIF
+  bool labels = true;  // words, numbers and the scale bar; without them similar scenes look the
+                       // same
 };
 
-/// Writes the first run of a film, drawn by cairo, packed by ffmpeg: as MP4 (H.264, yuv420p,
-/// 1280 x 720) or as GIF (800 x 450, repeats for ever), by the ending of `path`. The last picture
-/// stands for a second. `path` is replaced as a whole or left as it was. Throws
-/// std::invalid_argument for a film, a name or options that make no sense, std::runtime_error when
-/// ffmpeg is missing or fails or the file cannot be written; `work` is told of every picture and
-/// may stop it.
+/// Writes the first run of a film, drawn by cairo and encoded by ffmpeg, as MP4 (H.264, yuv420p,
+/// 1280 x 720) or GIF (800 x 450, repeats for ever), by the ending of `path`. The last picture
+/// stands for a second. `path` is replaced as a whole or left as it was. `work` is told of every
+/// picture and may stop. Throws std::invalid_argument for an unusable film, name or options, and
+/// std::runtime_error when ffmpeg is missing or fails or the file cannot be written.
 void write_video(const std::string& path, const Film& film, const VideoOptions& options = {},
                  const dynamics::Work& work = {});
 
