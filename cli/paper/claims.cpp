@@ -14,7 +14,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// The text with its values; nothing where one of them is missing.
+/// The text with its values; nullopt if one of them is missing.
 std::optional<std::string> filled(std::string_view text, const Measured& measured) {
   std::string out;
   for (;;) {

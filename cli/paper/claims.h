@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The claims of the paper's abstract and of Secs. II and III beside what was found.
+/// The claims of the paper's abstract and of Secs. II and III, each with the result found here.
 
 #include <concepts>
 #include <map>
@@ -16,30 +16,30 @@ namespace gatewalk::cli {
 
 struct Claim {
   const char* id = "";
-  const char* where = "";  // in the paper
+  const char* where = "";  // place in the paper
   std::string claim, paper, ours;
   Verdict verdict = Verdict::cannot_tell;
   std::string why;       // may be empty
-  const char* see = "";  // a section of the report
+  const char* see = "";  // id of a section of the report
 };
 
-/// The section of the report with Table IV: Claim::see of the claims about its starts.
+/// The section of the report with Table IV, to which the claims about its starts point.
 inline constexpr const char* kTable4 = "table4";
 
-/// All of them, in the order of the report.
+/// All claims, in the order of the report.
 [[nodiscard]] std::vector<Claim> claims_of(const Findings& f);
-/// Throws std::out_of_range for a claim that there is not.
+/// The claim of this id. Throws std::out_of_range for an unknown id.
 [[nodiscard]] Claim claim_of(std::string_view id, const Findings& f);
 
 [[nodiscard]] std::string csv_of(const std::vector<Claim>& claims);
-/// All claims, each with its verdict, the paper's value and ours.
+/// A text table of all claims, each with its verdict, the paper's value and ours.
 [[nodiscard]] std::string table_of(const std::vector<Claim>& claims);
-/// Table IV beside the values found here, and the other claims that differ.
+/// A text table: Table IV beside the values found here, and the other claims that differ.
 [[nodiscard]] std::string summary_of(const std::vector<Claim>& claims);
 
-// ---- The table that they come from
+// ---- The table of claims
 
-/// A measured value as a claim's texts have it. Without one the sentence is left out.
+/// A measured value as it stands in a claim's texts. A sentence whose value is missing is left out.
 struct Said {
   std::variant<std::monostate, double, std::string> held;
 
@@ -58,19 +58,19 @@ struct Measured {
   Verdict verdict;
   Values values;
 };
-/// By a trend, with more values than its own.
+/// The trend's verdict and values, together with the values `more`.
 [[nodiscard]] Measured measured(const Trend& trend, Values more, bool wiggles = false);
 
-/// A claim and what it is held against. In all texts {name} stands for a measured value, {name:2}
-/// for a number with two decimals.
+/// A claim and the measurement that tests it. In all texts {name} stands for a measured value,
+/// {name:2} for a number with two decimals.
 struct ClaimRow {
   struct Place {
-    const char *id, *where, *see;  // where in the paper, in which section of the report
+    const char *id, *where, *see;  // id; place in the paper; section of the report
   } place;
   const char* text;
   struct Sides {
     const char *paper, *ours;
-    Measured (*measure)(const Findings&);  // what is measured, and the verdict by its rule
+    Measured (*measure)(const Findings&);  // measures, and gives the verdict
   } sides;
   std::vector<const char*> why;  // sentences
 };

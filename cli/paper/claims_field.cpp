@@ -13,7 +13,8 @@
 namespace gatewalk::cli {
 namespace {
 
-/// The pair of Table IV here, and how far the paper's is from it, in standard deviations.
+/// The corrcoef and RMSE found here for a start of Table IV, and how many standard deviations away
+/// the paper's values are.
 struct Reading {
   Repeats ours;
   double corrcoef_off, rmse_off;
@@ -30,7 +31,8 @@ struct Reading {
   }
 };
 
-/// A start on an edge of its bin is a start at random in one of two bins.
+/// Whether a start lies on an edge of its bin, so that chance decides to which of two bins it
+/// belongs.
 bool on_an_edge(const ValidatedStart& start) {
   using namespace dynamics;
   const Bins bins = table3_space({}).bins()[Boundary::enter];
@@ -44,7 +46,7 @@ template <std::size_t kStart>
 Measured table4_row(const Findings& f) {
   const ValidatedStart& start = f.field.starts.at(kStart);
   const Reading exact(start.exact, start), walks(start.walks, start);
-  const bool enough = start.repeats >= 50,  // to say what is two standard deviations off
+  const bool enough = start.repeats >= 50,  // enough to tell two standard deviations
       neither = !exact.fits() && !walks.fits();
   return {verdict_of(enough && neither, enough && exact.fits() && walks.fits(), enough),
           {{"start", start.label()},
@@ -70,7 +72,7 @@ Measured accuracy(const Findings& f) {
     least = std::min(least, s.rmse);
     most = std::max(most, s.rmse);
     within += s.finding != lattice::Finding::own_error;
-    // An error of the chain that 100 trials show.
+    // The chain's error is visible in 100 trials.
     visible += s.exact.rmse.mean - s.exact.rmse_floor > 2 * s.exact.rmse.sd;
   }
   const std::int64_t starts = std::ssize(f.field.starts);
@@ -95,7 +97,8 @@ Measured speed_up(const Findings& f) {
            {"walks_powers", std::log10(10.0 / (100 * walk))}}};
 }
 
-/// A share of crossings that the paper says is below a limit, and the same at other random forces.
+/// Tests that a share of crossings lies below the paper's limit, and adds the shares at other
+/// random forces.
 Measured below(double limit, const Findings& f, Share (Crossings::*share)() const) {
   const Share ours = (f.field.crossings.*share)();
   std::string others;

@@ -44,7 +44,7 @@ Measured escape(const Findings& f) {
 Measured steep(const Findings& f) {
   const bool downhill = f.steep.fine.downhill();
   const Share share = f.steep.measured.traversed_share();
-  // "Always" is 100 of the paper's 100 trials, or all trials where there are more.
+  // "Always" means 100 of the paper's 100 trials, or all trials if there are more.
   Verdict verdict = downhill ? against(kPaperTrials, share) : Verdict::differs;
   if (verdict == Verdict::reproduced && share.part < share.whole) verdict = Verdict::agrees;
   return {verdict,
@@ -53,11 +53,11 @@ Measured steep(const Findings& f) {
            {"at_9", 100 * fig8_at(f, 50, 9, 0).traversed_share().value}}};
 }
 
-/// Moments of runs within the beams' reach.
+/// Counts moments of runs within the beams' reach.
 struct Moments {
   std::int64_t looked = 0;
-  std::int64_t below = 0;      // the landscape, by more than 0.5 J
-  std::int64_t explained = 0;  // moments below it, but not below that of one beam alone
+  std::int64_t below = 0;      // moments more than 0.5 J below the landscape
+  std::int64_t explained = 0;  // of these, not below the landscape of one beam alone
 
   void look_at(const TracedRun& run) {
     for (std::size_t i = 0; i < run.t.size(); ++i) {
@@ -67,7 +67,7 @@ struct Moments {
       ++looked;
       if (!(run.potential[i] < height - 0.5)) continue;
       ++below;
-      // Without the beam that is least deflected, measured by what the landscape assumes of it.
+      // Leaves out the beam that lags most behind the deflection that the landscape assumes.
       const bool left_missing = left - run.elastic_left[i] > right - run.elastic_right[i];
       explained += run.potential[i] > height - (left_missing ? left : right) - 0.5;
     }

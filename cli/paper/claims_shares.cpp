@@ -15,10 +15,10 @@ namespace {
 using AxisValues = std::vector<double>;
 const AxisValues kDampings{50, 10}, kForces{4, 5, 6, 7, 8, 9}, kPaperRandom{0, 10, 20, 30, 40},
     kWideRandom{0, 10, 20, 30, 40, 50, 60};
-// Of Table II, with the left beam's stiffness.
+// The axes of Table II; the left beam's stiffness is the third.
 const AxisValues kForcesOf12{7, 8}, kRandomOf12{10, 20, 30, 40, 50, 60};
 
-/// What a function of each place on an axis is.
+/// The share at each place on an axis.
 template <class Of>
 std::vector<Share> along(const AxisValues& axis, Of of_place) {
   std::vector<Share> shares;
@@ -44,7 +44,7 @@ Measured rises_with_propulsion(const Findings& f) {
                           {"high", fig8_at(f, 50, 9, 20).traversed_share()}});
 }
 
-/// Shares over the random force, and which of them is the highest.
+/// Shares along the random force, and the place of the highest.
 struct Peak {
   std::vector<Share> s;
   std::ptrdiff_t at =
@@ -134,7 +134,7 @@ Measured exits_grow(const Findings& f) {
 
 // ---- Figs. 9 and 12
 
-/// With the beams of Fig. 9A.
+/// The point with the equal beams of Fig. 9A.
 const PaperPoint& equal_beams(const Findings& f) {
   return f.tried_method.at({{"run.method", "stable"}, {kDamping, 50}});
 }
@@ -171,7 +171,7 @@ Measured accord(const Findings& f) {
   Trend trend;
   std::string shown;
   for (const double damping : kDampings) {
-    std::multimap<double, Share> held_back;  // by height: the share that does not traverse
+    std::multimap<double, Share> held_back;  // share that does not traverse, by barrier height
     for (const auto& [k, landscape] : f.barriers) {
       const double height = landscape.fine.from_basin.barrier();
       const Share s = fig12_at(f, damping, 7, 10, k).traversed_share();
@@ -225,7 +225,7 @@ Measured alike(const Findings& f) {
   return {rare_and_even(all, right), {{"all", all}, {"right", right}, {"n", right.whole}}};
 }
 
-/// `printed` % by the left beam, with these beams.
+/// Tests that kPrinted % traverse by the left beam, with these beams.
 template <int kLeft, int kDampers, int kPrinted>
 Measured by_left_beam(const Findings& f) {
   const Share ours = fig12_at(f, kDampers, 7, 10, kLeft).left_share();
@@ -233,7 +233,7 @@ Measured by_left_beam(const Findings& f) {
 }
 
 Measured right_share_falls(const Findings& f, const AxisValues& randoms, bool strong) {
-  constexpr std::int64_t kLeast = 10;  // of fewer there is no share to speak of
+  constexpr std::int64_t kLeast = 10;  // with fewer traversals a share says little
   Trend trend;
   for (const double damping : kDampings)
     for (const double force : kForcesOf12)

@@ -10,7 +10,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// As the paper prints them; an index has kSmallFont in letters of either size.
+/// Symbols as the paper prints them. An index has kSmallFont in letters of either size.
 constexpr std::pair<const char*, const char*> kSymbols[] = {{"F_prop", "{/:Italic F}_{/=12 prop}"},
                                                             {"k_L", "{/:Italic k}_{/=12 L}"},
                                                             {"k_R", "{/:Italic k}_{/=12 R}"},

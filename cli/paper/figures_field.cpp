@@ -18,9 +18,9 @@ namespace {
 /// A final gate.
 struct Cell {
   double i_x, i_y;
-  std::int64_t trials;                       // that ended there
-  double dynamics, chain;                    // shares
-  double departed_dynamics, departed_chain;  // of these shares: left the field from there
+  std::int64_t trials;                       // trials that ended there
+  double dynamics, chain;                    // shares of all trials
+  double departed_dynamics, departed_chain;  // the parts of these shares that left the field
 };
 
 /// The final gates of a start, row by row.
@@ -40,7 +40,7 @@ Figure drawn_fig11(const std::string& start, std::vector<Cell> cells, std::int64
   Panels out = paper_panels();
   Rows* const maps[] = {&out.data("$dynamics"), &out.data("$chain"), &out.data("$difference")};
   Rows& pairs = out.data("$pairs");
-  double most = 0.0, largest = 1e-6, highest = 0.0;  // %, points, root of %
+  double most = 0.0, largest = 1e-6, highest = 0.0;  // %, percentage points, square root of %
   for (const Cell& c : cells) {
     most = std::max({most, 100.0 * c.chain, 100.0 * c.dynamics});
     largest = std::max(largest, 100.0 * std::abs(c.dynamics - c.chain));
@@ -72,7 +72,7 @@ Figure drawn_fig11(const std::string& start, std::vector<Cell> cells, std::int64
     map.border = 15;
     map.x = {"", -4.5, 4.5, "4"};
     map.y = {"", -0.5, 8.5, "4", "", i == 0};
-    // Where the maps of shares end, below them; and of the difference.
+    // A colour bar below the maps of shares, and one below the map of differences.
     const auto bar_with = [&](int first, int last, const std::string& tics) {
       map.colours->bar = {left_of(first), left_of(last) + kWide, bar, bar + 10};
       map.colours->tics = tics + " font ',12' scale 0.5 offset 0,0.4";
@@ -136,10 +136,10 @@ Section fig11(const Findings& f) {
 
 namespace {
 
-/// A whole number, negative ones as gnuplot sets them.
+/// A whole number, with gnuplot's minus sign if it is negative.
 std::string with_minus(double x) { return (x < 0 ? "−" : "") + fixed(std::abs(x), 0); }
 
-/// Four starts: means with bars, floors and the paper's, from column `first` of the rows on.
+/// Draws the four starts: means with bars, floors and the paper's values, from column `first` on.
 void draw_table4(Panel& panel, const Rows& rows, int first) {
   const auto column = [&](int i) { return std::to_string(first + i); };
   panel.draw(rows, fmt::format("($1-0.12):{}:{}", column(0), column(1)), "yerrorlines",
@@ -150,7 +150,7 @@ void draw_table4(Panel& panel, const Rows& rows, int first) {
              "floor: a perfect chain, by chance alone");
 }
 
-/// From the least to the largest of some numbers, NaN aside.
+/// The range of numbers, ignoring NaN.
 struct AxisRange {
   double low = HUGE_VAL, high = -HUGE_VAL;
   void see(double x) {
@@ -161,7 +161,7 @@ struct AxisRange {
     return fixed(low, decimals) + " to " + fixed(high, decimals);
   }
 };
-/// How many of the starts.
+/// Counts starts that have a property.
 struct Among {
   int part = 0, whole = 0;
   void see(bool one) {
@@ -202,7 +202,7 @@ Section table4(const Findings& f) {
             s.total_variation_floor);
     rows.add(starts.size(), corrcoef.mean, corrcoef.sd, corrcoef_floor, s.paper_corrcoef, rmse.mean,
              rmse.sd, rmse_floor, s.paper_rmse);
-    rows.gap();  // nothing joins two starts
+    rows.gap();  // a gap, so that no line joins two starts
     starts.push_back(
         fmt::format("{}, {}, {}", with_minus(s.d), with_minus(s.vx), with_minus(s.vy)));
   }

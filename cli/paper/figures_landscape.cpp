@@ -23,7 +23,7 @@ Section fig5() {
     const dynamics::Landscape& landscape;
     const Eigen::ArrayXXd& energy;
     double left, top;
-    const char* colour;  // of its section
+    const char* colour;  // of its section's curve
   };
   constexpr double kLeft = 58, kRight = 258, kUpper = 50, kLower = 352;
   const ShownMap panels[] = {{"A", "A, B  elastic energy", "k_L = k_R = 400 N m/rad", equal,
@@ -33,7 +33,7 @@ Section fig5() {
                              {"D", "D  with the propulsion", "F_prop = 7 N, k_L = k_R = 400", equal,
                               equal.total, kLeft, kLower, kThirdColour}};
   constexpr double kCeiling = 500.0;  // J
-  constexpr std::size_t kStep = 4;    // of what is drawn, that of the numbers
+  constexpr std::size_t kStep = 4;    // the CSV has every fourth point of the picture
   constexpr int kHigh = 662;
   Csv csv("panel,x_m,y_m,energy_J");
   Panels out = paper_panels();

@@ -14,7 +14,7 @@ namespace gatewalk::cli {
 
 namespace {
 
-/// Percent for a cell of a map, none as "0".
+/// A percentage in a cell of a map; "0" for none.
 std::string short_share(double share) { return share == 0.0 ? "0" : short_percent(share); }
 
 }  // namespace
@@ -110,15 +110,15 @@ Section fig8(const Findings& f) {
 }
 
 Section fig12(const Findings& f) {
-  constexpr std::int64_t kFew = 10;  // traversed; of fewer no share is shown
-  int grey = 0;                      // cells of so few
+  constexpr std::int64_t kFew = 10;  // traversals; below this number no share is shown
+  int grey = 0;                      // cells with fewer traversals
   Csv csv(
       "damping_Nms_per_rad,propulsion_N,random_N,k_left_Nm_per_rad,trials,successes,right,low,"
       "high");
   constexpr double kLeft = 68, kRight = 256, kWide = 172, kTop = 62, kNext = 232, kTall = 180;
   const int height = static_cast<int>(kTop + kNext + kTall + 86);
   const std::vector<double> stiffnesses = f.fig12.values(kLeftStiffness);
-  const double half = 0.5 * (stiffnesses.at(1) - stiffnesses[0]);  // of a cell
+  const double half = 0.5 * (stiffnesses.at(1) - stiffnesses[0]);  // half a cell
   Panels out = paper_panels();
   out.say(as_printed("past the right beam, % of the traversed; k_R = 500 N m/rad"), 8, 18);
   out.say(as_printed(fmt::format(

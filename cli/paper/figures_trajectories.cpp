@@ -13,7 +13,7 @@ namespace gatewalk::cli {
 
 namespace {
 
-/// How far a run sinks below the landscape (J).
+/// How far a run sinks below the landscape, at most (J).
 double depth_of(const TracedRun& run) {
   double depth = 0.0;
   for (std::size_t i = 0; i < run.t.size(); ++i)
@@ -21,7 +21,7 @@ double depth_of(const TracedRun& run) {
   return depth;
 }
 
-/// A sample of a trajectory's colour, on one of the maps', with words.
+/// Adds a sample of a trajectory's colour, on one of the map's colours, with a label.
 void add_sample(Panel& panel, const Sheet& sheet, const char* colour, const std::string& text,
                 double left, double middle) {
   const auto line = [&](const char* width, const char* ink) {
@@ -38,12 +38,12 @@ void add_sample(Panel& panel, const Sheet& sheet, const char* colour, const std:
   panel.say(as_printed(text), left + 44, middle, kSmallFont);
 }
 
-constexpr char kWay[] = "#ffffff", kOther[] = "#ff9d5c";  // of tracks over maps
+constexpr char kWay[] = "#ffffff", kOther[] = "#ff9d5c";  // colours of tracks over maps
 
 }  // namespace
 
 Section fig6(const Findings& f) {
-  constexpr double kBelow = 1.0;  // J, drawn as below the landscape
+  constexpr double kBelow = 1.0;  // J; less does not count as below the landscape
   const auto dives = std::count_if(f.fig6.runs.begin(), f.fig6.runs.end(),
                                    [](const TracedRun& r) { return depth_of(r) > kBelow; });
   // The run that sinks deepest below the landscape.
@@ -123,7 +123,7 @@ Section fig6(const Findings& f) {
 
 namespace {
 
-/// One of Fig. 9's panels: which study, with which beams.
+/// A panel of Fig. 9: the study, and its beams.
 struct TracedPanel {
   const Trace& study;
   double k_left, damping;

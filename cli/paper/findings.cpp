@@ -67,7 +67,7 @@ void read(dynamics::GridPasses& grid, const Json& json) {
   read(grid.from_basin, json.at("from_basin"));
 }
 
-/// As in Table IV, against the exact chain or against walks.
+/// Reads the repeats of Table IV, `against` the exact chain or walks.
 void read(Repeats& repeats, const Json& json, const std::string& against) {
   const auto mean_and_sd = [&](const std::string& key) {
     return MeanAndSd{number_or_nan(json.at(against + key).at("mean")),
@@ -108,14 +108,14 @@ void read(ValidatedStart& s, const Json& json) {
   s.exact_seconds = seconds.at("exact");
 }
 
-/// At least one of them.
+/// Reads a list of at least one item.
 template <class Item>
 void read_some(std::vector<Item>& items, const Json& json) {
   for (const Json& item : json) read(items.emplace_back(), item);
   (void)json.at(0);
 }
 
-/// What one of `count` trials or walks per start took on average.
+/// Mean time (s) of one of `count` trials or walks per start.
 double seconds_per(const Validation& v, double ValidatedStart::*seconds, std::int64_t count) {
   double sum = 0.0;
   for (const ValidatedStart& s : v.starts) sum += s.*seconds;
@@ -152,7 +152,7 @@ Share share_by_bodies(std::int64_t part, std::int64_t events, std::int64_t bodie
   if (events <= bodies) return share_of(part, events);
   const double value = static_cast<double>(part) / static_cast<double>(events);
   Share s = share_of(std::llround(value * static_cast<double>(bodies)), bodies);
-  s.value = value;  // not as rounded
+  s.value = value;  // from the counts, not the rounded value of the JSON
   return s;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What the studies behind the paper's figures and claims gave, read from their JSON: so a report
-/// that was interrupted goes on with what is there.
+/// The results of the studies behind the paper's figures and claims, read from the studies' JSON.
+/// An interrupted report therefore continues with the studies that are done.
 
 #include <array>
 #include <cmath>
@@ -19,13 +19,13 @@ namespace gatewalk::cli {
 
 // ---- sweep
 
-/// How trials of one gate ended: traversals and exits as the paper counts them.
+/// How the trials of one gate ended, with traversals and exits as the paper counts them.
 struct Outcomes : dynamics::GateTally {
   [[nodiscard]] Share traversed_share() const { return share_of(traversed(), trials); }
   [[nodiscard]] Share left_share() const {
     return share_of((*this)[dynamics::Outcome::traversed_left], trials);
   }
-  /// Right of those that pushed more past one beam (Fig. 12).
+  /// The share of right traversals among the left and right ones (Fig. 12).
   [[nodiscard]] Share right_share() const {
     const std::int64_t right = (*this)[dynamics::Outcome::traversed_right];
     return share_of(right, (*this)[dynamics::Outcome::traversed_left] + right);
@@ -33,7 +33,7 @@ struct Outcomes : dynamics::GateTally {
 };
 
 struct PaperPoint : Outcomes {
-  Json place;  // the varied keys of the scene: {"run.method": "stable", "forces.random_N": 10}
+  Json place;  // the varied keys: {"run.method": "stable", "forces.random_N": 10}
 
   [[nodiscard]] double number(const char* key) const { return place.at(key).get<double>(); }
   [[nodiscard]] std::string text(const char* key) const;  // "7", "0.004", "stable"
@@ -51,21 +51,22 @@ struct Sweep {
 struct TracedRun {
   std::string label, ending;
   std::int64_t trial = 0, hits = 0;
-  std::vector<double> t, x, y;  // s, m, m; an entry for every step, as in all that follow
+  std::vector<double> t, x, y;  // s, m, m; like all lists below, an entry for every step
   std::vector<double> potential, elastic_left, elastic_right;      // J
-  std::vector<double> landscape, landscape_left, landscape_right;  // J; nan: no way to stand
+  std::vector<double> landscape, landscape_left, landscape_right;  // J; NaN: the disc has no place
+                                                                   // there
 };
 
 struct Trace {
   std::int64_t trials = 0;
-  std::vector<TracedRun> runs;  // that end as wanted, at least one
+  std::vector<TracedRun> runs;  // those with the ending asked for, at least one
 };
 
 // ---- landscape
 
-/// The passes without the landscapes that they lead over: coarse is the paper's grid.
+/// The passes of a landscape, without the landscape's points. `coarse` is the paper's grid.
 struct LandscapeStudy : dynamics::Passes {
-  Outcomes measured;  // of its trials, if there are any
+  Outcomes measured;  // of trials, if the study has any
 };
 
 // ---- validate
@@ -74,7 +75,7 @@ struct MeanAndSd {
   double mean = 0.0, sd = 0.0;
 };
 
-/// As in Table IV: 100 trials against the exact chain, or against 100 walks.
+/// Means over repeats of 100 trials, as in Table IV, against the exact chain or against 100 walks.
 struct Repeats {
   MeanAndSd corrcoef, rmse;  // rmse: trials per 100
   double corrcoef_floor = 0.0, rmse_floor = 0.0;
@@ -82,27 +83,28 @@ struct Repeats {
 
 struct ValidatedStart {
   double d = 0.0, vx = 0.0, vy = 0.0;                                 // m, m/s, m/s
-  double paper_corrcoef = std::nan(""), paper_rmse = paper_corrcoef;  // of Table IV, if it has it
-  std::int64_t repeats = 0;                                           // of 100 trials
+  double paper_corrcoef = std::nan(""), paper_rmse = paper_corrcoef;  // of Table IV; NaN: none
+  std::int64_t repeats = 0;                                           // repeats of 100 trials
   Repeats exact, walks;
   double corrcoef = 0.0, rmse = 0.0;  // all trials against the exact chain
   double total_variation = 0.0, total_variation_floor = 0.0;
   lattice::Finding finding = lattice::Finding::within_trials;
   std::vector<std::vector<double>> counts, chain;  // (rows x columns): trials; shares
-  std::vector<std::vector<double>> departed_counts, departed_chain;  // of these: left the field
+  std::vector<std::vector<double>> departed_counts, departed_chain;  // the part of these that left
+                                                                     // the field
   double cut_off = 0.0;                                              // share of the trials
   double dynamics_seconds = 0.0, walks_seconds = 0.0, exact_seconds = 0.0;
 
   [[nodiscard]] std::string label() const;  // "d = 0 m, v = (0, 15) m/s"
 };
 
-/// A share of events of which a body may have several, alike or not: its interval is that of as
-/// many trials as there are bodies (or events, if fewer), as if a body's were all alike.
+/// A share of events when a body may have several events. The interval is that of as many trials as
+/// there are bodies (or events, if fewer), as if all events of a body were alike.
 [[nodiscard]] Share share_by_bodies(std::int64_t part, std::int64_t events, std::int64_t bodies);
 
 struct Crossings {
   std::int64_t rt_and_lt = 0, clamped = 0, between_gates = 0;
-  std::int64_t bodies = 0;  // whose crossings these are
+  std::int64_t bodies = 0;  // bodies with these crossings
   [[nodiscard]] Share clamped_share() const {
     return share_by_bodies(clamped, between_gates, bodies);
   }
@@ -115,7 +117,7 @@ struct Validation {
   std::int64_t trials = 0, walks = 0;  // per start
   std::vector<ValidatedStart> starts;
   Crossings crossings;
-  std::string markov;  // whether the chain forgets what counts, in words
+  std::string markov;  // whether the chain loses relevant memory, in words
   double matrix_seconds = 0.0;
 
   [[nodiscard]] double seconds_per_trial() const;
@@ -124,21 +126,21 @@ struct Validation {
 
 // ---- All of them
 
-/// What the studies gave; members as these are called (studies.cpp).
+/// The results of all studies. Members have the names of the studies (studies.cpp).
 struct Findings {
   Sweep fig8, fig12, paper_method;
-  /// With k_L = k_R = 500, what could make 13 % and 8 %.
+  /// Studies with k_L = k_R = 500 of what could explain 13 % and 8 %.
   Sweep tried_method, tried_step, tried_restitution, tried_rate, tried_start, tried_random,
       tried_propulsion;
   Trace fig6, fig9_500, fig9_300, fig9_100, exits;
-  Json crossing;  // a film (film/replay.h) with more
+  Json crossing;  // a film (film/replay.h) and more keys
   LandscapeStudy fig5_symmetric, steep;
-  std::map<int, LandscapeStudy> barriers;  // by k_L; fewer in a quick run
+  std::map<int, LandscapeStudy> barriers;  // by k_L; a quick run has fewer
   Validation field, field_paper_method, field_no_drag;
   std::map<int, Validation> field_random;  // by Rm: 10, 20, 40 N
 };
 
-// What a study's JSON says. They throw std::exception where it says something else.
+// Read the JSON of a study. They throw std::exception if it is not as expected.
 void read(Sweep& sweep, const Json& json);
 void read(Trace& trace, const Json& json);
 void read(LandscapeStudy& study, const Json& json);

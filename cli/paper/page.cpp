@@ -27,12 +27,12 @@ struct Mark {
 };
 constexpr std::array<Mark, 4> kMarks = {
     {{"reproduced", "✓"}, {"agrees", "≈"}, {"unknown", "?"}, {"differs", "≠"}}};
-/// What differs comes first.
+/// Order of the verdicts on the page: claims that differ come first.
 constexpr std::array kOrder{Verdict::differs, Verdict::cannot_tell, Verdict::agrees,
                             Verdict::reproduced};
 Mark mark_of(Verdict v) { return kMarks[static_cast<std::size_t>(v)]; }
 
-/// Whether a word is a quantity with an index as the paper prints it: k_L, F_prop.
+/// Whether a word is a quantity with an index, as k_L or F_prop.
 bool has_index(std::string_view word) {
   constexpr std::array<std::string_view, 6> kIndices = {"L", "R", "x", "y", "prop", "rand"};
   return word.size() > 2 && std::string_view("kFivE").find(word[0]) != std::string_view::npos &&
@@ -40,7 +40,7 @@ bool has_index(std::string_view word) {
          std::find(kIndices.begin(), kIndices.end(), word.substr(2)) != kIndices.end();
 }
 
-/// Words as they stand in HTML; an index as the paper prints it: k_L as k<sub>L</sub>.
+/// Words as HTML, with indices as the paper prints them: k_L as k<sub>L</sub>.
 std::string words(const std::string& plain) {
   const auto in_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   const std::string html = escaped(plain);
@@ -57,8 +57,8 @@ std::string words(const std::string& plain) {
   return out;
 }
 
-/// The same, with nothing broken apart at a line's end that belongs together: "46.0 % [45.3, 46.7]"
-/// between % and [ only.
+/// Values as HTML, which a line break must not split: "46.0 % [45.3, 46.7]" may break only between
+/// % and [.
 std::string values(const std::string& plain) {
   std::string out;
   const std::string all = words(plain);
@@ -74,7 +74,7 @@ std::string values(const std::string& plain) {
   return out;
 }
 
-/// An element that closes itself: <p class="why">...</p> from element("p class=\"why\"", ...).
+/// An HTML element with its end tag: <p class="why">...</p> from element("p class=\"why\"", ...).
 std::string element(std::string_view opening, std::string_view inside) {
   return fmt::format("<{}>{}</{}>\n", opening, inside, opening.substr(0, opening.find(' ')));
 }
@@ -94,7 +94,7 @@ std::string badge(Verdict v) {
                  fmt::format("<i aria-hidden=\"true\">{}</i>{}", mark_of(v).symbol, name_of(v)));
 }
 
-/// Tells of each verdict that claims have, and how many.
+/// Calls `tell` with each verdict that claims have, and the number of these claims.
 template <class Tell>
 void each_verdict(const std::vector<Claim>& claims, Tell tell) {
   for (const Verdict v : kOrder)
@@ -104,7 +104,7 @@ void each_verdict(const std::vector<Claim>& claims, Tell tell) {
       tell(v, n);
 }
 
-/// How many claims got each verdict, as a bar.
+/// A bar of how many claims got each verdict.
 std::string tally_of(const std::vector<Claim>& claims) {
   std::string bar;
   each_verdict(claims, [&](Verdict v, std::int64_t n) {
@@ -113,7 +113,7 @@ std::string tally_of(const std::vector<Claim>& claims) {
   return element("div class=\"bar\" aria-hidden=\"true\"", bar);
 }
 
-/// Buttons that leave the claims of one verdict (report.css does it).
+/// Buttons that show the claims of one verdict only; report.css hides the others.
 std::string filter_of(const std::vector<Claim>& claims) {
   const auto button = [](const char* id, const std::string& label, const char* checked) {
     return element("label",
@@ -127,7 +127,7 @@ std::string filter_of(const std::vector<Claim>& claims) {
   return out;
 }
 
-/// Every claim, folded, those that differ first.
+/// All claims, folded, those that differ first.
 std::string folded(const std::vector<Claim>& claims,
                    const std::map<std::string, std::string>& headings) {
   std::string out;
@@ -148,7 +148,7 @@ std::string folded(const std::vector<Claim>& claims,
   return out;
 }
 
-/// A picture as it stands in an attribute: the whole file, nothing to be fetched.
+/// A picture as an attribute: the whole SVG as data, so that nothing is fetched.
 std::string picture(const std::string& svg, const std::string& alt) {
   std::string url = "data:image/svg+xml,";
   for (const char c : svg) switch (c) {
@@ -170,7 +170,7 @@ std::string picture(const std::string& svg, const std::string& alt) {
   return fmt::format("<img src=\"{}\" alt=\"{}\">", url, escaped(alt));
 }
 
-/// A command whose words stay whole where a line ends.
+/// A command in which lines break only between words.
 std::string command(const std::string& line) {
   std::string out;
   std::istringstream in(line);
@@ -179,7 +179,7 @@ std::string command(const std::string& line) {
   return element("code", out);
 }
 
-/// A picture with what made it.
+/// A picture with the command that made it.
 std::string figure(const std::string& file, const std::string& alt, const std::string& caption,
                    const FigureText& figure_text) {
   return element("figure", element(fmt::format("a href=\"{}\"", escaped(file)),
@@ -197,7 +197,7 @@ std::string first_screen(const std::vector<Report::First>& first, const FigureTe
   return out;
 }
 
-/// What made a section, and its files.
+/// The commands that made a section, and its files.
 std::string made_with(const Report::Section& s) {
   std::string commands, files;
   for (const std::string& c : s.commands) commands += command(c);
@@ -258,7 +258,7 @@ std::string report_page(const Report& report, const FigureText& figure_text) {
   std::map<std::string, std::string> headings;
   std::string contents, sections;
   for (const Report::Section& s : report.sections) {
-    // "Fig. 8: traversal of ..." is "Fig. 8" where room is short.
+    // Where room is short, "Fig. 8: traversal of ..." is shortened to "Fig. 8".
     if (!headings.emplace(s.id, s.heading.substr(0, s.heading.find(':'))).second)
       throw std::invalid_argument(fmt::format("two sections \"{}\"", s.id));
     contents +=

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The report of a reproduction as one page for a browser, with all that it needs inside.
+/// The report of a reproduction as a single page for a browser, without other files.
 
 #include <functional>
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace gatewalk::cli {
 
-/// The text of an SVG by its name.
+/// Returns the text of an SVG by its name.
 using FigureText = std::function<std::string(const std::string&)>;
 
-/// The page (HTML); only the replay and the switch between light and dark need JavaScript. Throws
-/// std::invalid_argument for a claim that names no section, for two sections of one name, and what
-/// figure_text throws.
+/// The page (HTML). Only the replay and the switch between light and dark need JavaScript. Throws
+/// std::invalid_argument for a claim whose section is missing and for two sections of one name, and
+/// what figure_text throws.
 [[nodiscard]] std::string report_page(const Report& report, const FigureText& figure_text);
 
 }  // namespace gatewalk::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The report of a reproduction: report.json, and what its page shows.
+/// The report of a reproduction, as report.json and its page show it.
 
 #include <string>
 #include <vector>
@@ -12,15 +12,15 @@
 namespace gatewalk::cli {
 
 struct Report {
-  /// A picture that the page begins with; a command of the studies drew it.
+  /// A picture at the beginning of the page, drawn by a command of the studies.
   struct First {
     std::string figure, alt, caption, command;
   };
-  /// A figure and its numbers, or a film.
+  /// A section of the page: a figure and its numbers, or a film.
   struct Section {
     std::string id, heading;
     std::vector<std::string> text;
-    std::string alt;  // what is seen, in words
+    std::string alt;  // what the figure shows, in words
     std::vector<std::string> commands, files;
     Json film;  // film/replay.h; null: none
   };
@@ -46,7 +46,7 @@ struct Report {
 };
 inline constexpr int kReportSeed = 1;
 
-/// The result of `reproduce`.
+/// Describes the result of `reproduce`.
 void describe(Fields& out, const Report& report);
 
 }  // namespace gatewalk::cli

@@ -44,7 +44,7 @@ constexpr std::array<const char*, 5> kScenes{"scenes/single_gate.toml", "scenes/
                                              "scenes/fig8.toml", "scenes/fig12.toml",
                                              "scenes/field.toml"};
 
-/// Which build this is: a commit alone does not tell two builds of changed sources apart.
+/// The build's identity. A commit alone does not distinguish two builds of changed sources.
 std::string build_id() {
   const char* const self = "/proc/self/exe";
   std::error_code error;
@@ -52,17 +52,17 @@ std::string build_id() {
                      std::filesystem::last_write_time(self, error).time_since_epoch().count());
 }
 
-/// A file of the folder; nothing where it cannot be read.
+/// A file of the folder; nullopt if it cannot be read.
 std::optional<std::string> file_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return std::nullopt;
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
-/// Discarded where it cannot be read, or is no JSON.
+/// A file of the folder as JSON; discarded if it cannot be read or is not JSON.
 Json read_json(const std::string& path) { return parsed_json(file_text(path).value_or("")); }
 
-/// Throws UsageError when a scene in the working folder, called `folder`, would be replaced that is
-/// neither what the program carries nor what an earlier report was made with.
+/// Throws UsageError if a scene in the working folder, called `folder`, would be replaced although
+/// it is the user's own: neither the program's scene nor one of an earlier report.
 void require_no_scene_of_ones_own(const std::string& folder) {
   const Json::json_pointer place("/made_by/scenes");
   const Json old = read_json("report.json"),
@@ -77,7 +77,7 @@ void require_no_scene_of_ones_own(const std::string& folder) {
           name));
 }
 
-/// Nobody else works in this folder while it lives.
+/// Locks the current folder against other processes during the object's life.
 class FolderLock {
  public:
   explicit FolderLock(const std::string& folder)
@@ -98,7 +98,7 @@ class FolderLock {
   int fd_;
 };
 
-/// Work in a folder, and back from there.
+/// Changes to a folder, and back in the destructor.
 class InFolder {
  public:
   explicit InFolder(const std::string& folder) { std::filesystem::current_path(folder); }
@@ -113,13 +113,13 @@ class InFolder {
   std::filesystem::path before_ = std::filesystem::current_path();
 };
 
-/// What the studies gave.
+/// The results of all studies.
 struct Results {
   Findings findings;
-  double seconds = 0.0;  // of all of them
+  double seconds = 0.0;  // of all studies
 };
 
-/// A finished study on record.
+/// A finished study, as recorded in data/done.json.
 struct Record {
   std::string study, command, program, remarks;
   double seconds = 0.0;
@@ -137,7 +137,7 @@ void describe(Fields& out, const std::vector<Record>& records) {
     });
 }
 
-/// The records of data/done.json, but for those that lack something or have it of another type.
+/// The records of data/done.json, without those that lack a key or have one of another type.
 std::vector<Record> read_records() {
   std::vector<Record> records;
   const Json done = read_json(kDone);
@@ -152,12 +152,12 @@ std::vector<Record> read_records() {
   return records;
 }
 
-/// The studies on record. Every finished one is there at once, so a run that is stopped goes on
-/// from there; none is while it is made anew.
+/// The records of finished studies. Each is written at once, so that an interrupted run continues
+/// from there. A study has no record while it is run again.
 class Records {
  public:
-  /// Takes the result of a study. False when it is not done yet, or by another command or program,
-  /// or cannot be read any more.
+  /// Takes the result of a study. Returns false if the study is not done, was run by another
+  /// command or build, or cannot be read.
   [[nodiscard]] bool take(const Study& s, Findings& findings) const {
     try {
       const Record& known = of(s);
@@ -166,11 +166,11 @@ class Records {
         if (*word == "--figure" && !std::filesystem::exists(*(word + 1))) return false;
       take_file(s, findings);
       return true;
-    } catch (const std::exception&) {  // a file of another run, or half a one, is no result
+    } catch (const std::exception&) {  // another run's file, or an incomplete one
       return false;
     }
   }
-  /// Carries a study out, puts it on record and takes its result.
+  /// Runs a study, records it and takes its result.
   void make(const Study& s, const dynamics::Work& work, Findings& findings) {
     if (std::erase_if(done_, [&](const Record& r) { return r.study == s.name; }) > 0) write();
     const dynamics::Stopwatch watch;
@@ -179,7 +179,7 @@ class Records {
     done_.push_back({s.name, s.text(), build_id(), remarks, watch.seconds()});
     write();
   }
-  /// Throws std::out_of_range if the study is not on record.
+  /// The record of a study. Throws std::out_of_range if there is none.
   [[nodiscard]] const Record& of(const Study& s) const {
     return done_.at(
         static_cast<std::size_t>(std::ranges::find(done_, s.name, &Record::study) - done_.begin()));
@@ -187,14 +187,14 @@ class Records {
 
  private:
   static std::string file_of(const Study& s) { return "data/" + s.name + ".json"; }
-  /// Throws std::exception for a file that is no result of the study.
+  /// Takes a study's file. Throws std::exception if the file is not a result of the study.
   static void take_file(const Study& s, Findings& findings) {
     const Json data = read_json(file_of(s));
     (void)data.at("made_by");
     if (s.take) s.take(findings, data);
   }
-  /// Returns its remarks: the paper's own scheme shows faults and says so; that belongs to the
-  /// study, not to this run.
+  /// Runs the study's command and returns its warnings. They belong to the study: the paper's own
+  /// scheme, for example, shows faults.
   static std::string run(const Study& s, const dynamics::Work& work) {
     std::string remarks;
     Arguments arguments = s.arguments;
@@ -213,7 +213,7 @@ class Records {
   std::vector<Record> done_ = read_records();
 };
 
-/// Carries out what is not done yet, and takes what all of them gave.
+/// Runs the studies that are not done, and takes the results of all.
 Results carry_out(const std::vector<Study>& studies, bool talk, bool each) {
   Records records;
   Results results;
@@ -263,7 +263,7 @@ std::vector<Report::Scene> write_scenes() {
   return scenes;
 }
 
-/// What the page begins with.
+/// The paragraphs at the beginning of the page.
 std::vector<std::string> lead_of(const Report& r) {
   std::vector<std::string> lead{
       "The results of the paper, Figs. 5, 6, 8, 9, 11, 12 and Table IV, and what its abstract "
@@ -319,7 +319,7 @@ Report report_of(const Results& results, const std::vector<Study>& studies, bool
   return r;
 }
 
-/// Throws std::runtime_error.
+/// The SVG of this name in the folder. Throws std::runtime_error.
 std::string drawn_figure(const std::string& name) {
   if (auto text = file_text(name)) return *text;
   throw std::runtime_error("cannot read " + name);
@@ -339,7 +339,7 @@ Report reproduce(const ReproductionOptions& options) {
   require_folder(folder + "/data");
   require_folder(folder + "/scenes");
   require_gnuplot();
-  // The commands are recorded as they work inside the folder.
+  // The studies' commands are recorded with file names that are valid inside the folder.
   const InFolder inside(folder);
   const FolderLock lock(folder);
   if (const Json old = read_json("report.json");
@@ -350,7 +350,7 @@ Report reproduce(const ReproductionOptions& options) {
   if (!std::filesystem::exists(kDone)) write_text_atomically(kDone, "{}\n");
   const std::vector<Study> studies = paper_studies(options.quick);
   const std::vector<Report::Scene> scenes = write_scenes();
-  // No old page beside new figures, should this be stopped between them.
+  // An old page must not stand beside new figures if the run stops between them.
   std::filesystem::remove("report.html");
   Report r =
       report_of(carry_out(studies, options.talk, options.each), studies, options.quick, scenes);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Everything of the paper, made again in a folder.
+/// Reproduces everything in the paper, in a folder.
 
 #include <string>
 
@@ -9,18 +9,18 @@
 namespace gatewalk::cli {
 
 struct ReproductionOptions {
-  std::string folder;  // is made if there is none
+  std::string folder;  // made if missing
   bool quick = false;  // fewer trials
-  bool talk = true;    // progress, and which studies were done before
-  bool each = false;   // a line on standard output for every study
-  bool force = false;  // also in a folder with files of others
+  bool talk = true;    // shows progress, and which studies were done before
+  bool each = false;   // prints a line for every study
+  bool force = false;  // allows a folder that holds other files
 };
 
-/// Runs the studies that are not done yet, inside the folder, and writes the figures, claims.csv,
-/// report.json and report.html; the working folder of the program is then that folder, because the
-/// studies are commands whose files are recorded as they are named in it. Throws UsageError for a
-/// folder that holds something of the user's own or a full report that --quick would replace,
-/// std::runtime_error when a study fails or another program works in the folder, Interrupted.
+/// Runs the studies that are not done yet and writes the figures, claims.csv, report.json and
+/// report.html into the folder. Meanwhile the folder is the program's working folder, so that the
+/// recorded commands work inside it. Throws UsageError for a folder with files of the user's own or
+/// with a full report that --quick would replace, std::runtime_error when a study fails or another
+/// program works in the folder, and Interrupted.
 [[nodiscard]] Report reproduce(const ReproductionOptions& options);
 
 }  // namespace gatewalk::cli

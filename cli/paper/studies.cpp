@@ -30,7 +30,7 @@ using Words = std::vector<std::string>;
 
 using Take = std::function<void(Findings&, const Json&)>;
 
-/// Into a member of the findings, or an entry of such a member.
+/// Puts a study's result into a member of the findings, or into an entry of a map there.
 template <class Finding>
 Take into(Finding Findings::*member) {
   return [member](Findings& f, const Json& json) { f.*member = found_in<Finding>(json); };
@@ -46,7 +46,7 @@ Words operator+(Words words, const Words& more) {
   return words;
 }
 
-/// The studies so far, and how each kind of them is written down.
+/// A list of studies, with functions that add each kind of study.
 struct Studies {
   bool quick;
   std::vector<Study> list = {};
@@ -64,7 +64,7 @@ struct Studies {
                           "data/" + name + ".csv"},
         static_cast<double>(points * trials) * kTrial, into(member));
   }
-  /// Of Fig. 9A's beams, over `more`.
+  /// Adds a sweep over `more` with the beams of Fig. 9A.
   void tried(const std::string& name, Sweep Findings::*member, std::int64_t points,
              const Words& more) {
     sweep(name, member, points, quick ? 200 : 10000,
@@ -87,8 +87,8 @@ struct Studies {
   }
 };
 
-/// Figs. 8 and 12, the grids of Tables I and II, Fig. 8 further to the right; what could make 13 %
-/// and 8 % of Fig. 9.
+/// Adds the sweeps: the grids of Tables I and II for Figs. 8 and 12, with larger random forces for
+/// Fig. 8, and what could explain the 13 % and 8 % of Fig. 9.
 void add_sweeps(Studies& s) {
   const Words damping{"--vary", "beams.damping_Nms_per_rad=50,10"};
   s.sweep("fig8", &Findings::fig8, 84, s.quick ? 1000 : 10000,
@@ -117,7 +117,7 @@ void add_sweeps(Studies& s) {
           Words{kSoft, "--vary", "run.method=paper,event"} + damping);
 }
 
-/// Trajectories: with k_L = 500 hardly anybody gets through, so many are asked.
+/// Adds the trajectories. With k_L = 500 few bodies traverse, so these studies have many trials.
 void add_traces(Studies& s) {
   s.trace("fig9_500", into(&Findings::fig9_500), s.quick ? 3000 : 5000,
           {kSoft, "--set", set(kLeftStiffness, 500), "--set", set(kDamping, 50), "--only",
@@ -135,7 +135,7 @@ void add_traces(Studies& s) {
   s.trace("crossing_ways", nullptr, 20, {kField, "--field", "--figure", "crossing.svg"});
 }
 
-/// Fig. 5, the barriers behind Fig. 9, and where the basin ends.
+/// Adds the landscapes: Fig. 5, the barriers behind Fig. 9, and where the basin ends.
 void add_landscapes(Studies& s) {
   s.landscape("fig5_symmetric", into(&Findings::fig5_symmetric),
               {kGate, "--set", set(kPropulsion, 7)});
@@ -150,7 +150,8 @@ void add_landscapes(Studies& s) {
                s.quick ? "500" : "10000"});
 }
 
-/// Fig. 11, Table IV, crossings, times; what the page begins with.
+/// Adds the validations: Fig. 11, Table IV, crossings, times; and the prediction with which the
+/// page begins.
 void add_validations(Studies& s) {
   s.add("prediction", run_predict, "predict",
         {kField, "--accuracy", s.quick ? "0.05" : "0.01", "--seed", "1", "--figure",

@@ -12,25 +12,25 @@
 
 namespace gatewalk::cli {
 
-/// One command of this program, as the report prints it. Its result goes to data/NAME.json.
+/// A command of this program, as the report prints it. Its result goes to data/NAME.json.
 struct Study {
   std::string name;
   int (*run)(const Arguments& arguments) = nullptr;
   std::string command;                 // "sweep"
   std::vector<std::string> arguments;  // without --json and --quiet
-  std::int64_t cost = 1;               // expected seconds times 100, for the time that is left
-  /// Takes what the report needs of that result. Throws as findings.h; null: nothing.
+  std::int64_t cost = 1;               // expected time in 0.01 s, to estimate the time left
+  /// Takes what the report needs from the result. Throws as findings.h; null: takes nothing.
   std::function<void(Findings&, const Json&)> take = nullptr;
 
   [[nodiscard]] std::string text() const;  // "gatewalk sweep scenes/fig8.toml ..."
 };
 
-/// All of them, in the order in which they are run.
+/// All studies, in the order in which they are run.
 [[nodiscard]] std::vector<Study> paper_studies(bool quick);
 
-/// KEY=VALUE for --set; whole values without a fraction.
+/// KEY=VALUE for --set; an integer value has no fraction.
 [[nodiscard]] std::string set(const char* key, double value);
-/// The scene's physics, from a scene that the program carries.
+/// The gate's parameters in a scene that the program carries.
 [[nodiscard]] dynamics::GateParams gate_of(const char* scene,
                                            const std::vector<std::string>& overrides = {});
 /// Points of the grids of Figs. 8 and 12.

@@ -47,7 +47,7 @@ Verdict Places::verdict(bool enough, bool strict) const {
 }
 
 Verdict rare_and_even(const Share& traversed, const Share& right) {
-  constexpr std::int64_t kLeft = 13, kRight = 8;  // the paper's
+  constexpr std::int64_t kLeft = 13, kRight = 8;  // per cent in the paper
   const double rare = share_of(kLeft + kRight, kPaperTrials).high;
   const double uneven = 2.0 * std::sqrt(0.25 / static_cast<double>(kLeft + kRight));
   const bool differs =
@@ -58,7 +58,7 @@ Verdict rare_and_even(const Share& traversed, const Share& right) {
 }
 
 namespace {
-/// The least number of trials so far; 0: of none.
+/// Updates the least number of trials so far; 0: none yet.
 void note_trials(std::int64_t& least, std::int64_t trials) {
   least = least == 0 ? trials : std::min(least, trials);
 }
@@ -91,7 +91,7 @@ void Trend::add(const std::vector<double>& axis, const std::vector<Share>& s,
 
 Verdict Trend::verdict(bool wiggles) const {
   const bool enough = least_trials_ >= kEnoughTrials, most_up = 2 * up > series;
-  // On enough trials chance does not make a fall that the paper's 100 would show.
+  // With enough trials, a fall that the paper's 100 trials would show is not due to chance.
   const bool falls = wiggles ? falling > 0 && falling >= rising : seen > 0;
   return verdict_of(more_than_chance(down, series) || (enough && (!most_up || falls)),
                     enough && (wiggles || lower == 0), enough);
