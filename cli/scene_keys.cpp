@@ -16,7 +16,7 @@ namespace gatewalk::cli {
 namespace {
 
 using lattice::KeyInfo;
-using Settings = std::map<std::string, std::string>;  // values as TOML has them, by key
+using Settings = std::map<std::string, std::string>;  // by key: values as TOML
 
 constexpr const char* kBeginOfPage = R"(# Scenes: the keys
 
@@ -58,12 +58,12 @@ std::vector<KeyInfo> keys_of_scene(const Settings& settings) {
   return lattice::describe(lattice::parse_scene(text, "scene"));
 }
 
-/// A scene with a body of its own, from which all that it leaves out follows.
+/// Settings of a scene with its own body, from which all other keys follow.
 Settings own_body() {
   return {{"body.mass_kg", "1.0"}, {"body.radius_m", "1.0"}, {"forces.propulsion_N", "1.0"}};
 }
 
-/// By key that follows from others: these.
+/// For each key that follows from others, these other keys.
 std::map<std::string, std::vector<std::string>> origins_of_keys() {
   const Settings given = own_body();
   const std::vector<KeyInfo> here = keys_of_scene(given);
@@ -85,7 +85,7 @@ std::map<std::string, std::vector<std::string>> origins_of_keys() {
   return origins;
 }
 
-/// "> 0" for "(0, 1e+100]", whose end is no limit to anybody.
+/// The range on the page: "> 0" for "(0, 1e+100]", whose upper end limits nobody.
 std::string range_on_page(const std::string& range) {
   constexpr std::string_view kNoLimit = ", 1e+100]";
   if (!range.ends_with(kNoLimit)) return range;

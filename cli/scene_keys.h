@@ -6,9 +6,8 @@
 
 namespace gatewalk::cli {
 
-/// Every key of a scene, in Markdown, a table for each section of the file: unit, permitted range,
-/// default, the keys that it follows from where it is left out, and meaning. The text is the same
-/// for each call.
+/// Every key of a scene as Markdown tables, one for each section of the file: unit, permitted
+/// range, default, the keys from which the key follows if it is left out, and meaning.
 [[nodiscard]] std::string scene_keys_in_markdown();
 
 }  // namespace gatewalk::cli

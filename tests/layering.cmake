@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 cmake_minimum_required(VERSION 3.25)
 
-# Who may include whom, folder by folder: a folder's own files, and those of the folders named. Fails naming
-# the file and the line.
+# Which folder may include which: a folder's own files, and those of the folders listed for it. Fails naming the file
+# and the line.
 set(libraries dynamics/base dynamics/cells dynamics/disc dynamics/disc/methods dynamics/disc/study markov markov/predict markov/formats lattice lattice/text lattice/statistics lattice/field lattice/pool lattice/study lattice/gates lattice/scene lattice/scene/study lattice/recorded lattice/source)
 set(folders ${libraries} cli/cells cli/terminal cli/web cli/fields cli/render cli/exchange cli/film cli/paper cli/kept cli/commands cli/python cli)
 
@@ -14,7 +14,7 @@ set(allowed_dynamics/disc/study dynamics/base dynamics/cells dynamics/disc dynam
 set(allowed_markov)
 set(allowed_markov/predict markov)
 set(allowed_markov/formats markov)
-# Trials, pools, chains and studies know no disc: only scenes do.
+# Trials, pools, chains and studies do not know discs; only scenes do.
 set(cells dynamics/base dynamics/cells markov markov/formats)
 set(disc dynamics/disc dynamics/disc/methods dynamics/disc/study)
 set(allowed_lattice/text)
@@ -29,7 +29,7 @@ set(allowed_lattice/scene lattice/gates ${any_cells} ${disc})
 set(allowed_lattice/scene/study lattice/scene lattice/gates ${any_cells} ${disc})
 set(allowed_lattice/recorded lattice/scene ${any_cells})
 set(allowed_lattice/source lattice/recorded lattice/scene ${any_cells} ${disc})
-# Beside lattice's own cells only because it reads JSON and starts programs.
+# A cell like those of lattice, but in cli because it reads JSON and starts programs.
 set(allowed_cli/cells dynamics/base dynamics/cells cli/fields cli/render)
 set(allowed_cli/terminal dynamics/base markov/formats cli/fields cli/render)
 set(allowed_cli/web cli/fields)
@@ -42,7 +42,7 @@ set(allowed_cli/kept dynamics/base markov/formats lattice/text lattice/scene lat
 set(allowed_cli/commands ${folders})
 set(allowed_cli/python ${folders})
 set(allowed_cli ${folders})
-# Umbrella headers name all of their module.
+# Umbrella headers include all of their module.
 set(umbrellas markov/markov.h lattice/lattice.h)
 
 set(broken "")
@@ -71,7 +71,7 @@ foreach(file ${all})
     string(APPEND broken "\n  ${file}: its folder has no line in layering.cmake")
   endif()
 endforeach()
-# Computation knows no JSON and no terminal.
+# The libraries use neither JSON nor the terminal.
 file(GLOB_RECURSE below RELATIVE ${ROOT} ${ROOT}/dynamics/*.[ch]* ${ROOT}/markov/*.[ch]* ${ROOT}/lattice/*.[ch]*)
 foreach(file ${below})
   file(STRINGS ${ROOT}/${file} lines REGEX "nlohmann|<iostream>|isatty|program_options")

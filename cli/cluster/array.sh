@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# A gatewalk command in parts, as a job array of Slurm, and a job that merges them:
+# Runs a gatewalk command in parts, as a job array of Slurm, followed by a job that merges the parts:
 #   cli/cluster/array.sh PARTS FOLDER COMMAND ...      e.g. array.sh 100 run1 lattice scene.toml --trials 1e8 --json all.json
-# FOLDER gets the parts and what they print. A part that is stopped (time limit, pre-emption) goes on where it was, by
-# itself a few times. Where parts were lost (cancelled, a node that failed),
+# FOLDER gets the parts and their output. A part that is stopped (time limit, pre-emption) resumes by itself, up to
+# ten times. If parts were lost (cancelled, a node that failed), this command runs them again, and then merges:
 #   cli/cluster/array.sh --again FOLDER
-# runs those that merge names as missing or not finished, and merges after them.
-# SBATCH_* variables (partition, account, time) are sbatch's own; GATEWALK names the program.
+# It runs the parts that merge reports as missing or not finished.
+# sbatch reads SBATCH_* variables (partition, account, time); GATEWALK names the program.
 set -euo pipefail
 here=$(realpath "$(dirname "$0")")
 export GATEWALK=${GATEWALK:-gatewalk}
@@ -26,7 +26,7 @@ else
   printf '%s\0' "$@" >"$folder/command"
 fi
 parts=$(<"$folder/parts")
-# Slurm sends SIGUSR1 two minutes before the time limit: gatewalk keeps what is done.
+# Slurm sends SIGUSR1 two minutes before the time limit; gatewalk then stops and keeps its finished pieces.
 array=$(sbatch --parsable --job-name=gatewalk --array="${only:-1-$parts}" --requeue --signal=B:USR1@120 \
   --output="$folder/part%a.log" --open-mode=append --export=ALL "$here/part.sh" "$folder")
 merge=$(sbatch --parsable --job-name=gatewalk-merge --dependency="afterok:$array" --kill-on-invalid-dep=yes \

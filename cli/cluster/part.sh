@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Part SLURM_ARRAY_TASK_ID of the command in FOLDER; stopped, it goes on the next time.   part.sh FOLDER
+# Runs part SLURM_ARRAY_TASK_ID of the command in FOLDER; resumes a part that was stopped.   part.sh FOLDER
 set -uo pipefail
 folder=$1 i=$SLURM_ARRAY_TASK_ID
 mapfile -d '' -t command <"$folder/command"
@@ -9,7 +9,7 @@ mapfile -d '' -t command <"$folder/command"
 trap 'kill -USR1 $!' USR1
 wait $!
 status=$?
-[ $status -le 128 ] || { wait $!; status=$?; }  # a signal ended the first wait
-# 75: there was not enough time.
+[ $status -le 128 ] || { wait $!; status=$?; }  # the signal ended only the first wait
+# Status 75: the time was up before the part was done.
 if [ $status = 75 ] && [ "${SLURM_RESTART_COUNT:-0}" -lt 10 ]; then scontrol requeue "${SLURM_ARRAY_JOB_ID}_$i"; fi
 exit $status

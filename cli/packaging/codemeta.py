@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""codemeta.py CITATION.cff: writes on standard output what codemeta.json says, from the citation file."""
+"""codemeta.py CITATION.cff: prints codemeta.json, made from the citation file."""
 
 import json
 import sys
@@ -9,7 +9,7 @@ import yaml
 
 
 def codemeta(citation):
-    """The terms of CodeMeta 2.0 that have an equivalent in the Citation File Format."""
+    """CodeMeta 2.0 as a dict: the terms that the Citation File Format also has."""
     return {
         "@context": "https://doi.org/10.5063/schema/codemeta-2.0",
         "@type": "SoftwareSourceCode",

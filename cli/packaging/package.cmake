@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-# What `cmake --install` and `cpack -G DEB` install: the program with manual pages, completion, scenes and
-# examples; the libraries with their headers, for CMake and pkg-config; the Python module.
+# What `cmake --install` and `cpack -G DEB` install: the program with manual pages, completion, scenes and examples; the
+# libraries with their headers, for CMake and pkg-config; the Python module.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS gatewalk COMPONENT program)
-# Manual pages, completion and schemas are written by the program itself.
+# The program itself writes manual pages, completion and schemas.
 install(CODE "
   execute_process(COMMAND \"$<TARGET_FILE:gatewalk>\" help --write \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\"
     COMMAND_ERROR_IS_FATAL ANY)
@@ -40,8 +40,8 @@ set(libpng "")
 if(GATEWALK_VIDEO)
   set(libpng "libpng >= 1.6, ")
 endif()
-# Its prefix is where the file itself lies, so that it stays true for cmake --install --prefix DIR and for a folder that
-# is moved; an absolute CMAKE_INSTALL_LIBDIR or CMAKE_INSTALL_INCLUDEDIR stands where it is.
+# The prefix is relative to the .pc file, so that it stays valid for cmake --install --prefix DIR and for a folder that
+# is moved. An absolute CMAKE_INSTALL_LIBDIR or CMAKE_INSTALL_INCLUDEDIR stays absolute.
 set(pc_prefix "${CMAKE_INSTALL_PREFIX}")
 if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
   file(RELATIVE_PATH pc_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
@@ -74,7 +74,7 @@ if(GATEWALK_PYTHON)
     PATTERN __pycache__ EXCLUDE PATTERN *.so EXCLUDE)
 endif()
 
-# Packages for Debian: one each for who runs it, who builds on it, who calls it from Python.
+# Three Debian packages: for users of the program, for C++ developers, for Python.
 set(components "program;dev")
 if(GATEWALK_PYTHON)
   list(APPEND components python)
@@ -87,7 +87,7 @@ foreach(component ${components})
   string(TOUPPER ${component} upper)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${names_${component}})
   install(FILES ${packaging}/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${names_${component}} COMPONENT ${component})
-  # As Debian wants it: packed as far as can be, without a time.
+  # Debian's policy: compressed with gzip -9, without a time.
   install(CODE "
     set(folder \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/doc/${names_${component}}\")
     file(COPY_FILE \"${packaging}/changelog\" \"\${folder}/changelog\")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# Puts the pages and the scenes into `target`: an assembly file takes the bytes in
-# as they are (.incbin), with a table of names that cli/web/embedded.cpp reads.
+# Embeds the pages and the scenes into `target`: an assembly file includes their bytes (.incbin) and has a table of
+# names, which cli/web/embedded.cpp reads.
 
-# carry(NAME PATH): the program knows the file PATH as NAME.
+# carry(NAME PATH): embeds the file PATH under NAME.
 function(carry name path)
   if(NOT EXISTS ${path})
     message(FATAL_ERROR "${path} is missing.")
