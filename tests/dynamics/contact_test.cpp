@@ -154,8 +154,8 @@ TEST(Nearest, MirroredSceneGivesMirroredBits) {
   }
 }
 
-// S13: at r = L the tangential contact hands over to the tip, at r = 0 to the pin. A step of delta
-// along the beam moves the contact point by delta and turns n by delta / dist.
+// At r = L the tangential contact hands over to the tip, at r = 0 to the pin. A step of delta along
+// the beam moves the contact point by delta and turns n by delta / dist.
 TEST(Nearest, HandsOverContinuously) {
   const GateParams p;
   Draw draw(3);
@@ -293,7 +293,8 @@ GateState hit(const GateParams& p, const Touch& t, double e, GateState s,
   return s;
 }
 
-// S3 in fractions: mu = 1/11.8, J = 135/59, v' = 750/59, w' = 97.2/59, dE = -202.5/59.
+// A tangential hit at 15 m/s, 15 m from the joint, in fractions: mu = 1/11.8, J = 135/59, v' =
+// 750/59, w' = 97.2/59, dE = -202.5/59.
 TEST(Impact, TangentialHitOfTheKnownAnswers) {
   const GateParams p;
   GateState s;
@@ -311,7 +312,7 @@ TEST(Impact, TangentialHitOfTheKnownAnswers) {
     return 0.5 * g.body.vy * g.body.vy + 0.5 * p.beams.inertia() * w * w;
   };
   EXPECT_NEAR(energy(after) - energy(s), -202.5 / 59, 1e-12);  // 112.5 J are known to 1.4e-14
-  // The decimal values of S3.
+  // The same values in decimals.
   EXPECT_NEAR(j, 2.2881, 5e-5);
   EXPECT_NEAR(after.body.vy, 12.7119, 5e-5);
   EXPECT_NEAR(after.beams[kLeft].omega, 1.64746, 5e-6);
@@ -515,7 +516,8 @@ TEST(Impact, LimitsAreWallAndPin) {
 
 // ---- Both beams at once ----
 
-// S5: J = (1+e) v / (2/M + r^2/I), dE = -6.328125 J. All numbers are binary fractions but r^2/I.
+// A symmetric double hit: J = (1+e) v / (2/M + r^2/I), dE = -6.328125 J. All numbers are binary
+// fractions but r^2/I.
 TEST(DoubleImpact, OfTheKnownAnswersIsSymmetric) {
   const GateParams p;
   Touch t;

@@ -209,8 +209,8 @@ double total_variation(const GateTally& a, const GateTally& b) {
   return distance;
 }
 
-// Requirement 14: the default step is converged. A twentieth of the step, with the same noise,
-// changes at most 1 % of the outcomes net.
+// The default step is converged. A twentieth of the step, with the same noise, changes at most 1 %
+// of the outcomes net.
 TEST(GateTrials, OutcomesAreConvergedInTheStep) {
   GateParams p = test::study(10.0);
   const GateTally coarse = run_gate_trials(p, {}, 1, {0, 2000});

@@ -97,7 +97,7 @@ TEST(Event, HasNeitherStepNorThreshold) {
   }
 }
 
-// ---- S6: Zeno ----
+// ---- Zeno: infinitely many hits in a finite time ----
 
 /// A disc driven upwards by F = 6 N from `height` below something that does not move. The first hit
 /// is after t0; flight n lasts 2 t0 e^n and rises height e^2n; all flights together last t0 (1 + e)
@@ -361,7 +361,7 @@ TEST(Event, StableConvergesToIt) {
   }
 }
 
-// ---- S7: energy ----
+// ---- Energy ----
 
 /// Energy, work and losses of a ride, each from a source of its own: the work from displacements,
 /// the losses by damping and drag by quadrature over the motion, the losses of hits from the law.
@@ -481,10 +481,10 @@ TEST(EnergyLedger, EventAddsUp) {
               .asked = 10'000});
 }
 
-// ---- S14 ----
+// ---- Grazing ----
 
-// S14, side: the disc is thrown down onto a beam at 4 m/s from 1 m above it, while 8 N pull it up,
-// and turns where it touches: J = 1.8 sqrt(2 a R delta) / (1/M + r^2/I).
+// Grazing the side: the disc is thrown down onto a beam at 4 m/s from 1 m above it, while 8 N pull
+// it up, and turns where it touches: J = 1.8 sqrt(2 a R delta) / (1/M + r^2/I).
 TEST(Grazing, EventHitsTheSideOnlyBelowTheRadius) {
   GateParams p = event(test::free_rods());
   p.forces.propulsion = 8.0;

@@ -76,7 +76,7 @@ TEST_P(FixedStep, CountsTheWorkItDoes) {
   EXPECT_EQ(near.watch.evaluations, near.p.run.method == "penalty" ? 300 : 200);
 }
 
-// ---- S6: Zeno ----
+// ---- Zeno: infinitely many hits in a finite time ----
 
 // A disc driven upwards by 6 N onto the left joint, first hit at 2 m/s, comes to rest after hit n
 // where 2 e^n < h F / M; sustained contact is no new hit. `moreau` rests in an overlap of at most

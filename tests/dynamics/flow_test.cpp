@@ -173,7 +173,7 @@ TEST(BeamLaw, BackwardsUndoesForwards) {
   }
 }
 
-// S1 in decimals, with the paper's beam.
+// A free beam with the paper's numbers, in decimals.
 TEST(BeamFlow, FreeBeamOfTheKnownAnswers) {
   const GateParams p;
   const double k = 400.0 / p.beams.inertia(), d = 50.0 / p.beams.inertia();

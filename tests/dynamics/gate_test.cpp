@@ -112,7 +112,7 @@ TEST_P(Gate, TrappedMeansTheWholeTimeLimit) {
   }
 }
 
-// S15: without contact v_x is the sum of one impulse F_i * 0.02 s per hold, for any step...
+// Without contact v_x is the sum of one impulse F_i * 0.02 s per hold, for any step...
 TEST_P(Gate, LateralSpeedIsTheSumOfItsDrawsAtAnyStep) {
   p.forces.random = 20.0;
   p.beams.joint_x = 1e5;

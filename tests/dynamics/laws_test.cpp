@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, EnergyInSteps, methods_that(stepping), method_
 
 // ---- Free motion ----
 
-// S1: two released beams, compared with the closed form of a damped oscillator.
+// Two released beams, compared with the closed form of a damped oscillator.
 TEST_P(AnyMethod, FreeBeamFollowsItsClosedForm) {
   const MethodLaws& m = GetParam();
   GateParams p = by({});
@@ -104,7 +104,7 @@ TEST_P(AnyMethod, FreeBeamFollowsItsClosedForm) {
             .limit = 0.1});
 }
 
-// S2. Each step rounds angle and speed by an eps or so.
+// An undamped beam keeps its energy. Each step rounds angle and speed by an eps or so.
 TEST_P(ExactHits, FreeBeamKeepsItsEnergyWithoutDamping) {
   for (const double step : {0.02, 0.004}) {
     GateParams p = by({}, step);
@@ -210,8 +210,8 @@ TEST_P(AnyMethod, RandomForceSpreadsAFreeBodyAlikeAtAnyStep) {
 
 // ---- Single hits ----
 
-// S3 in a gate: 135/59, 750/59, 97.2/59, after 2 ms of 4. In mid-step the overlap is 5 mm, for
-// methods that detect contact by overlap.
+// A tangential hit at 15 m/s, 15 m from the joint: J = 135/59, then 750/59 and 97.2/59, after 2 ms
+// of 4. In mid-step the overlap is 5 mm, for methods that detect contact by overlap.
 TEST_P(ExactHits, TangentialHitOfTheKnownAnswers) {
   const double y = GetParam().at_mid_step ? 19.975 : 19.97, place = GetParam().place;
   Ride ride(by(test::free_rods(), 0.004), at_rest(-10.0, y, 0.0, 15.0));
@@ -225,7 +225,7 @@ TEST_P(ExactHits, TangentialHitOfTheKnownAnswers) {
   EXPECT_NEAR(ride.s.beams[kLeft].theta, 0.002 * 97.2 / 59, place / 15);
 }
 
-// S5 in a gate: beams that overlap so that the disc meets both 15 m from their joints.
+// A symmetric double hit: beams that overlap so that the disc meets both 15 m from their joints.
 TEST_P(ExactHits, SymmetricDoubleHitOfTheKnownAnswers) {
   GateParams p = by(test::free_rods(), 0.004);
   p.beams.joint_x = 15.0;
@@ -243,7 +243,7 @@ TEST_P(ExactHits, SymmetricDoubleHitOfTheKnownAnswers) {
   EXPECT_EQ(ride.s.body.vx, 0.0);
 }
 
-// S3, S4: the first hits of rides without forces, 500 and more each of side, tip and pin, with any
+// The first hits of rides without forces, 500 and more each of side, tip and pin, with any
 // restitution. All motion is straight, so the hit can be reconstructed from outside: where the two
 // lines of the body cross, or in the middle of the step. There the impulse is along the normal and
 // restitution holds; the angular momentum about the joint and the energy, except for the law's
@@ -406,7 +406,8 @@ TEST_P(EnergyInSteps, EnergyCreatedFallsWithTheStep) {
 
 // ---- Symmetry ----
 
-// S8. Equal and unequal beams, weak and strong noise, from the middle and from anywhere.
+// Mirror images of trials: equal and unequal beams, weak and strong noise, from the middle and from
+// anywhere.
 TEST_P(BothAlike, MirrorImagesHaveTheSameBits) {
   const std::vector<double> tolerances =
       GetParam().name == "event" ? std::vector{1e-2, 1e-7} : std::vector{1e-2};
@@ -524,8 +525,8 @@ TEST_P(AnyMethod, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
-// S10: elastic, without damping and drag. With its velocities reversed the disc returns through
-// four to ten hits, from any start.
+// Time reversal: elastic, without damping and drag. With its velocities reversed the disc returns
+// through four to ten hits, from any start.
 TEST_P(ExactHits, ReturnsToTheStart) {
   GateParams p = by(test::study(0.0), 0.004);
   p.forces.random = 0.0;

@@ -98,7 +98,7 @@ void expect_interpolated(const GateParams& p, const Contacts& c) {
   EXPECT_LE(c.exit_rate, 1e-9 + jump * h / 12);
 }
 
-// Requirement 6: in whole trials, held contacts stay closed, at rest and pushing; others stay open.
+// In whole trials, held contacts stay closed, at rest and pushing; others stay open.
 TEST_P(HeldContacts, NeitherDriftNorPull) {
   std::vector<double> tolerances{GateParams{}.run.event_tolerance};
   if (GetParam().name == "event") tolerances.push_back(1e-6);
@@ -170,7 +170,7 @@ TEST_P(HeldContacts, PlasticAndElasticTrialsAreHealthy) {
   }
 }
 
-// ---- S9: stiff and heavy beams ----
+// ---- Stiff and heavy beams ----
 
 // Law: the energy in a spring never exceeds the work of the propulsion.
 TEST_P(StiffWall, IsHardlyMoved) {
@@ -250,7 +250,7 @@ TEST_P(HeldContacts, BeamsThatAreTooFastAreRefused) {
   EXPECT_EQ(refused(p), GetParam().fastest_key == "run.step_s" ? "" : GetParam().fastest_key);
 }
 
-// ---- S11 - S14: near-singular starts ----
+// ---- Near-singular starts ----
 
 TEST_P(HeldContacts, NearSingularStartsAreNoTrouble) {
   const int starts = usual_or_full(GetParam().near_starts.usual, GetParam().near_starts.full);
@@ -283,7 +283,7 @@ TEST_P(EveryMethod, ComesBackFiniteFromTheCentreOfABeam) {
     EXPECT_EQ(trouble(p, *method, at_rest(x, 30.0), draw).not_finite, 0) << x;
 }
 
-// S14, tip: the disc moves straight up at 10 m/s past the free end at x = 0, with a closest
+// Grazing the tip: the disc moves straight up at 10 m/s past the free end at x = 0, with a closest
 // approach of R (1 +- delta). At the hit n = (1 - delta, -sqrt(2 delta - delta^2)), and the law
 // gives the rest. Within the method's contact distance there may be a hit or none, and J is next to
 // nothing there.
@@ -317,10 +317,10 @@ TEST_P(HeldContacts, ATipIsHitOnlyBelowTheRadius) {
 
 // ---- Any scene ----
 
-// Requirement 12: random scenes over the whole range: soft and stiff, light and heavy, plastic and
-// elastic. They are refused by name, or run to an end (marked if `broken`) within the permitted
-// work. For `event`, over all 10^5 scenes, the worst overlap is 1e-4 m, in a state interpolated at
-// the exit; 3 are above 1e-6 m. `stable` keeps 1e-8 m in nearly all.
+// Random scenes over the whole range: soft and stiff, light and heavy, plastic and elastic. They
+// are refused by name, or run to an end (marked if `broken`) within the permitted work. For
+// `event`, over all 10^5 scenes, the worst overlap is 1e-4 m, in a state interpolated at the exit;
+// 3 are above 1e-6 m. `stable` keeps 1e-8 m in nearly all.
 TEST_P(HeldContacts, RunAnySceneThatIsAccepted) {
   const bool event = GetParam().name == "event";
   const int scenes = usual_or_full(GetParam().scenes.usual, GetParam().scenes.full);

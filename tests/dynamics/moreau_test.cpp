@@ -93,7 +93,7 @@ TEST(Moreau, ImpulseKnowsTheImplicitSpring) {
   EXPECT_NEAR(gap_rate(t, ride.s.body, ride.s.beams[kLeft]), 0.0, 64 * kEps * 15);
 }
 
-// ---- S7: energy ----
+// ---- Energy ----
 
 // Equal restitutions cannot create energy; Newton's law with different ones can. 20000 double hits
 // without forces.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: MIT
+// - (d - k h) h / I, 3000 steps at 10 % off by e^-2.9 and e^2.9.
 #include "dynamics/disc/methods/paper.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ GateParams euler(GateParams p, double step = 0.004) {
   return p;
 }
 
-// S2: without damping each step multiplies the energy by 1 + k h^2 / I; 3000 steps by 2.513.
+// Without damping each step multiplies the energy by 1 + k h^2 / I; 3000 steps by 2.513.
 TEST(Paper, FreeBeamGainsEnergyWithoutDamping) {
   GateParams p = euler(quiet_gate());
   p.beams.damping = 0.0;
@@ -51,8 +51,7 @@ TEST(Paper, FreeBeamGainsEnergyWithoutDamping) {
   EXPECT_NEAR(ride.watch.energy_created, (growth - 1) * before, 1e-9);  // and the ledger sees it
 }
 
-// S17: explicit Euler is stable only for h < d / k: a step multiplies the energy's envelope by
-// 1 - (d - k h) h / I, 3000 steps at 10 % off by e^-2.9 and e^2.9.
+// Explicit Euler is stable only for h < d / k: a step multiplies the energy's envelope by
 TEST(Paper, FreeBeamIsUnstableBeyondEulersLimit) {
   for (const double factor : {0.9, 1.1}) {
     GateParams p = euler(quiet_gate());
@@ -94,8 +93,9 @@ TEST(Paper, StepIsExplicitEuler) {
   EXPECT_NEAR(ride.s.beams[kRight].omega, 0.4 + (400 * 0.3 - 50 * 0.4) / inertia * h, 4 * kEps);
 }
 
-// S5 one beam after the other, left first: J = 135/59, then 1.8 (750/59) / 11.8; omega = 0.72 J.
-// The paper's asymmetry: 1.647 and 1.396 rad/s instead of 1.519 for both at once.
+// The symmetric double hit, one beam after the other, left first: J = 135/59, then 1.8 (750/59) /
+// 11.8; omega = 0.72 J. The paper's asymmetry: 1.647 and 1.396 rad/s instead of 1.519 for both at
+// once.
 TEST(Paper, DoubleHitIsSequential) {
   GateParams p = euler(test::free_rods());
   p.beams.joint_x = 15.0;  // the disc meets both beams 15 m from their joints
@@ -175,8 +175,7 @@ TEST(Paper, HasNoFormulaForTheJoint) {
   EXPECT_EQ(ride.s.body.vy, 3.0);  // nothing is done
 }
 
-// S7 and the table of scenes that break methods: the method's faults occur, and Health reports
-// each.
+// In scenes that break the paper's method, the method's faults occur, and Health reports each.
 TEST(Paper, HealthShowsItsFaults) {
   const GateParams p = euler(test::study(10.0));
   const Health health = run_gate_trials(p, {}, 1, {0, 1000}).health;

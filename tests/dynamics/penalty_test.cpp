@@ -35,7 +35,7 @@ GateParams penalty(GateParams p, double step = 0.004) {
 
 // ---- Free motion ----
 
-// S2: without damping a step conserves I omega^2 + k theta (theta - h omega). The energy oscillates
+// Without damping a step conserves I omega^2 + k theta (theta - h omega). The energy oscillates
 // about this quantity by w0 h / 2, 1.009-fold, and does not grow.
 TEST(Penalty, FreeBeamKeepsItsInvariantWithoutDamping) {
   GateParams p = quiet_gate();
@@ -124,9 +124,9 @@ TEST(Penalty, RestitutionOnABeamConverges) {
   }
 }
 
-// S4: the force acts on the joint only with the lever of the contact point, so the angular momentum
-// is conserved to round-off (numbers up to 1000, 500 steps and more). The energy, on an elastic
-// tip, is conserved in the limit. Measured errors: 4.7, 3.0 and 1.7 %.
+// A hit of the tip: the force acts on the joint only with the lever of the contact point, so the
+// angular momentum is conserved to round-off (numbers up to 1000, 500 steps and more). The energy,
+// on an elastic tip, is conserved in the limit. Measured errors: 4.7, 3.0 and 1.7 %.
 TEST(Penalty, ElasticTipHitKeepsAngularMomentumAndNearlyEnergy) {
   double last = 1.0;
   for (const double step : {0.004, 0.002, 0.001}) {
@@ -154,8 +154,8 @@ TEST(Penalty, ElasticTipHitKeepsAngularMomentumAndNearlyEnergy) {
   }
 }
 
-// S5: the law gives 10.78125. Independent contacts are a little too hard when both push: measured
-// 10.68 to 10.84 over the phase, at any step. Both beams get the same bits.
+// The symmetric double hit: the law gives 10.78125. Independent contacts are a little too hard when
+// both push: measured 10.68 to 10.84 over the phase, at any step. Both beams get the same bits.
 TEST(Penalty, SymmetricDoubleHitIsSymmetricAndNearlyTheLaws) {
   for (const double step : {0.004, 0.001, 0.00025}) {
     GateParams p = penalty(test::free_rods(), step);
@@ -178,7 +178,7 @@ TEST(Penalty, SymmetricDoubleHitIsSymmetricAndNearlyTheLaws) {
   }
 }
 
-// ---- S9, S17: limits ----
+// ---- Limits of stiffness, mass and step ----
 
 // No springs, no damping, elastic: free rods between which the disc bounces conserve their energy
 // in the limit. Measured mean loss or gain 0.46 % at 0.004 s, 0.13 % at 0.001 s.

@@ -41,7 +41,7 @@ class Requirement : public testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(Methods, Requirement, testing::Values("event", "stable"),
                          [](const auto& i) { return std::string(i.param); });
 
-// Requirement 9: each limit alone and, for restitution, both ends of both; runs have no fault.
+// Each limit alone and, for restitution, both ends of both; runs have no fault.
 TEST_P(Requirement, LimitsHaveNoFaults) {
   struct Limit {
     const char* name;
@@ -83,8 +83,8 @@ TEST_P(Requirement, LimitsHaveNoFaults) {
             .cases = runs});
 }
 
-// Requirement 14 at the default step; `event` has no step, so its tolerance is halved. Measured
-// with 2000 trials: 0.0015 and 0.0025; chance alone would show 0.0012 and 0.0028.
+// Half the default step changes the output hardly. `event` has no step, so its tolerance is halved.
+// Measured with 2000 trials: 0.0015 and 0.0025; chance alone would show 0.0012 and 0.0028.
 TEST_P(Requirement, HalvingTheStepKeepsTheOutput) {
   const std::int64_t n = usual_or_full(2000, 20'000);
   double outcomes = 0.0, columns = 0.0, chance = 0.0, changed = 0.0;
@@ -118,10 +118,10 @@ TEST_P(Requirement, HalvingTheStepKeepsTheOutput) {
   record("share of trials in another output state", changed, none);
 }
 
-// Requirement 15: the impulse threshold, or its counterpart in `event`, ten times as high and as
-// low under the same noise. Trials of which c change determine a probability to sqrt(c) / n. At its
-// step of 0.02 s `stable` has a threshold of 0.2 N s (stable.h); with 2 N s, hits at over 1 m/s
-// become constraints, which is another gate. Measured 0.14.
+// The impulse threshold, or its counterpart in `event`, ten times as high and as low under the same
+// noise. Trials of which c change determine a probability to sqrt(c) / n. At its step of 0.02 s
+// `stable` has a threshold of 0.2 N s (stable.h); with 2 N s, hits at over 1 m/s become
+// constraints, which is another gate. Measured 0.14.
 TEST_P(Requirement, OutcomesHardlyDependOnTheThreshold) {
   const std::int64_t n = usual_or_full(1000, 20'000);
   for (const double factor : {10.0, 0.1}) {

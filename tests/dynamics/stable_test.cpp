@@ -34,7 +34,7 @@ TEST(Stable, PlasticHitLeavesNoNormalSpeed) {
   EXPECT_NEAR(gap_rate(ride.touch(kLeft), ride.s.body, ride.s.beams[kLeft]), 0.0, 0.03);
 }
 
-// ---- S6: Zeno ----
+// ---- Zeno: infinitely many hits in a finite time ----
 
 /// A disc driven upwards onto something that does not move: F = 6 N, first hit at v0 = 2 m/s after
 /// t0 = 1/3 s; flight n lasts 2 t0 e^n, all flights together t0 (1 + e) / (1 - e).
@@ -132,7 +132,7 @@ TEST(Zeno, BouncingEndsInAHoldAtThePredictedHit) {
             .cases = scenes});
 }
 
-// The printed numbers of S6: 9 t0 at e = 0.8, the threshold is reached at impact 21.
+// By hand: all flights last 9 t0 at e = 0.8, and the threshold is reached at hit 21.
 TEST(Zeno, NumbersOfTheKnownAnswers) {
   const Bouncing b{0.8, 0.004, 0.04};
   EXPECT_NEAR(b.zeno_time(), 3.0, 1e-12);

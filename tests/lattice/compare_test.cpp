@@ -335,8 +335,8 @@ TEST(Compare, DrawsFromTheExactDistributionAreExact) {
   EXPECT_NEAR(c.floor_total_variation, 3.0 / 16, 4 * 0.25 / 100);
 }
 
-// Requirement 28: under the null, p-values are uniform. 300 splits; Kolmogorov's 0.1 % point, plus
-// the steps of 1/200 that 199 draws cause. TV has ties, which only make p larger.
+// Under the null, p-values are uniform. 300 splits; Kolmogorov's 0.1 % point, plus the steps of
+// 1/200 that 199 draws cause. TV has ties, which only make p larger.
 TEST(Compare, PValuesAreUniformUnderTheNull) {
   const CellProbabilities p = hill(1.5);
   Draw draw(5);

@@ -32,7 +32,7 @@ bool same(const BodyState& a, const BodyState& b) {
          test::same_bits(a.vy, b.vy);
 }
 
-/// A free, damped, underdamped beam after t seconds, in closed form (scene S1).
+/// A free, damped, underdamped beam after t seconds, in closed form.
 BeamState swung(double k, double d, double inertia, const BeamState& s, double t) {
   const double a = d / (2 * inertia), w = std::sqrt(k / inertia - a * a);
   const double c = (s.omega + a * s.theta) / w;

@@ -56,7 +56,7 @@ inline void measured(const Figure& f) {
           ",\"cases\":" + std::to_string(f.cases) + ",\"asked\":" + std::to_string(f.asked) + "}");
 }
 
-/// Scenario S5: the speeds after the symmetric double hit.
+/// The symmetric double hit: speeds of the disc (m/s) and of both beams (rad/s) after it.
 inline void measured_double_hit(std::string_view method, double vy, double left, double right) {
   const double error =
       std::max({std::abs(vy - 10.78125), std::abs(left - 1.51875), std::abs(right - 1.51875)});
@@ -74,7 +74,7 @@ inline void measured_double_hit(std::string_view method, double vy, double left,
             .limit = 1e-13});
 }
 
-/// Requirement 6: `gap` in radii, `pull` in N, the worst of `held` checks.
+/// Contacts that are held: the worst gap (radii) and the worst pull (N) of `held` checks.
 inline void measured_held(std::string_view method, double gap, double pull, std::int64_t held) {
   measured({.requirement = 6,
             .method = method,
@@ -92,7 +92,8 @@ inline void measured_held(std::string_view method, double gap, double pull, std:
             .cases = held});
 }
 
-/// Requirement 8. Call it after the comparison, which stops at the first trial that differs.
+/// Mirrored trials have the same bits. To be called after the comparison, which stops at the first
+/// trial that differs.
 inline void measured_mirror(std::string_view method, std::int64_t trials, std::int64_t asked) {
   measured({.requirement = 8,
             .method = method,
@@ -104,7 +105,7 @@ inline void measured_mirror(std::string_view method, std::int64_t trials, std::i
             .asked = asked});
 }
 
-/// Requirement 11, for each of five kinds of starts.
+/// Near-singular starts give no NaN and no penetration; called for each of five kinds of starts.
 inline void measured_trouble(std::string_view method, const dynamics::GateParams& p,
                              const std::vector<Trouble>& seen) {
   int not_finite = 0;
@@ -132,7 +133,7 @@ inline void measured_trouble(std::string_view method, const dynamics::GateParams
             .asked = 200'000});
 }
 
-/// Requirement 12, and the longest time for requirement 4.
+/// Random scenes end without NaN and do not hang; also the longest time of one of them.
 struct AnyScenes {
   int scenes, refused, broken, escaped, hung;
   double slowest;  // s of CPU
