@@ -15,7 +15,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// What the page makes of a code again (cli/web/answer.js).
+/// The text that the page makes of a share's code (cli/web/answer.js).
 std::string shown(std::uint16_t code) {
   if (code <= 10'000) {
     char text[16];
@@ -47,7 +47,7 @@ lattice::Scene open_scene() {
   return scene;
 }
 
-/// A chain of so many trials.
+/// A chain made of `trials` trials.
 class Made {
  public:
   explicit Made(std::int64_t trials)
@@ -71,7 +71,7 @@ TEST(StartStates, SayWhatPredictSaysOfTheirStates) {
   for (std::size_t i = 0; i < states.states.size(); i += 7) {
     const lattice::StartState& s = states.states[i];
     const dynamics::Entry start = m.chain.space.range(s.first_leaf).middle();
-    // A start without runs of its own begins with those of its leaf.
+    // A start without first runs of its own has the row of its leaf.
     const auto asked =
         lattice::predict_whole(m.problem, m.pool, {start}, dynamics::kEntriesPerLeaf, 1);
     for (std::size_t e = 0; e < markov::kEndings; ++e) {
@@ -92,7 +92,8 @@ TEST(StartStates, AreJoinedWhereTheyAreTooMany) {
   const auto few = lattice::start_states(m.problem, m.pool, m.chain, m.outcomes, {0},
                                          dynamics::kEntriesPerLeaf, 15 * 10);
   EXPECT_LE(few.states.size(), 10U);
-  // The same runs, and so the same mean over all; more of them know more.
+  // Joined states have the same runs, and so the same mean; states with more runs have narrower
+  // intervals.
   const auto mean = [](const lattice::StartStates& s) {
     double runs = 0.0, sum = 0.0, width = 0.0;
     for (const lattice::StartState& one : s.states) {

@@ -25,7 +25,7 @@ std::string bytes_of(const fs::path& path) {
 TEST(WebFiles, CarriesEverySceneByteForByte) {
   int scenes = 0;
   for (const auto& entry : fs::directory_iterator(kRoot / "scenes")) {
-    if (entry.is_directory()) continue;  // examples for other programs
+    if (entry.is_directory()) continue;  // skips a folder: example programs
     const std::string name = "scenes/" + entry.path().filename().string();
     EXPECT_TRUE(carried_file(name) == bytes_of(entry.path())) << name;
     ++scenes;

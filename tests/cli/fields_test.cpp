@@ -15,7 +15,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// A result with one number, one interval and one map: all that a new result needs is below.
+/// A result with one number, one interval and one map, and all the code that a new result needs.
 struct TrialResult {
   double speed = 0.0;
   Interval limits{};
@@ -75,7 +75,7 @@ TEST(Fields, WhatIsNoNumberIsNull) {
             R"({"a":null,"b":null,"c":1.0,"c_95":null,"d":null,"e":null,"f":null})");
 }
 
-/// Every kind of thing that may hold others; `is_full`: with all that is optional.
+/// Describes each kind of object and list; with `is_full`, all optional parts too.
 Description all_parts(bool is_full) {
   return [is_full](Fields& out) {
     const std::vector<int> items = is_full ? std::vector{1, 2} : std::vector<int>();
@@ -143,7 +143,7 @@ TEST(Fields, TheSchemaIsThatOfAllResultsWhateverTheExampleHas) {
   EXPECT_EQ(keys["by"]["additionalProperties"]["unit"], "J");
 }
 
-/// What is no number, or a list of lists.
+/// Describes values that are neither numbers nor lists of numbers.
 void describe_others(Fields& out) {
   out.text_rows({"best", "in each gate"}, {{"a", std::nullopt}, {"b", "a"}});
   out.given({"step", "its own", "as it was given"}, "0.5");
@@ -161,7 +161,7 @@ TEST(Fields, TextsOfGatesWhatAUserGaveAndPlaces) {
   EXPECT_EQ(keys["way_m"]["items"]["maxItems"], 2);
 }
 
-/// Intervals of an object, which may hold others, and of a map.
+/// Describes the intervals of an object, which holds another object, and of a map.
 void describe_estimates(Fields& out) {
   static const markov::CellProbabilities map{{0.5, 1.0}};
   static const GateLimits limits{map - 0.25, map + 0.25};
@@ -238,7 +238,7 @@ TEST(Fields, TheTableOfNumbersCallsItemsByTheirNamesAndLeavesOutWordsAndOrigin) 
             "by_gate.0.1,1,,4.0,,\n");
 }
 
-/// The path without its first "_95" at the end of a key.
+/// The path without the first "_95" at the end of a key.
 std::string without_95(std::string path) {
   for (std::size_t at = path.find("_95"); at != path.npos; at = path.find("_95", at + 1))
     if (const char next = path.size() > at + 3 ? path[at + 3] : '.'; next == '.' || next == '[')
@@ -250,9 +250,10 @@ std::string without_95(std::string path) {
 std::string last_key(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
 TEST(Fields, EveryResultHasItsIntervalsBesideTheirNumbers) {
-  // Intervals of what is not in the result: seen less predicted, and what a null model gives.
+  // Intervals whose number is not in the result: observed minus predicted, and a null model's
+  // range.
   const std::set<std::string> alone{"excess_95", "excess_95.<way>", "time_scales_chance_95"};
-  // Bounds, a number each.
+  // Keys ending in _95 that are upper bounds, not intervals.
   const std::set<std::string> bounds{"error_95", "kernel_error_95", "worst_kernel_error_95",
                                      "corrcoef_95", "rmse_per_100_95"};
   int intervals = 0;

@@ -8,7 +8,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// What `work` throws, empty if nothing.
+/// The message that `work` throws; empty if none.
 template <class Work>
 std::string complaint_of(Work work) {
   try {

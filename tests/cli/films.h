@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Small films, made by hand: the body goes straight ahead and pushes the beams aside.
+/// Small films made by hand: the body goes straight ahead and pushes the beams aside.
 
 #include <algorithm>
 #include <cmath>
@@ -11,12 +11,12 @@
 
 namespace gatewalk::cli {
 
-/// The film as its page reads it.
+/// The film as the replay page reads it.
 inline Json json_of(const Film& film) {
   return json_of([&](Fields& out) { describe(out, film); });
 }
 
-/// `steps` steps of 0.02 s; the body moves 0.5 m in each, a gate is 60 m deep.
+/// `steps` steps of 0.02 s. The body moves 0.5 m in each; a gate is 60 m deep.
 inline Film small_film(int steps = 50) {
   using dynamics::ContactMode;
   Film film;
@@ -48,7 +48,7 @@ inline Film small_film(int steps = 50) {
   return film;
 }
 
-/// Through three gates of a field of 3 x 3.
+/// The body goes through three gates of a field of 3 x 3.
 inline Film small_field_film() {
   Film film = small_film(330);
   film.title = "A small field";
@@ -56,7 +56,7 @@ inline Film small_field_film() {
   return film;
 }
 
-/// The same with shorter beams and more push in the middle row.
+/// A small field film whose middle row has shorter beams and more propulsion.
 inline Film small_mixed_film() {
   Film film = small_field_film();
   dynamics::GateParams other = film.gate;

@@ -49,7 +49,7 @@ Printed printed(const CellProbabilities& shares) {
   return p;
 }
 
-// Counts and an exact share: the five endings by name, in a fixed order, with Jeffreys' intervals.
+// Counts and an exact share: the endings by name, in a fixed order, with Jeffreys intervals.
 TEST(Endings, AreNamedWithTheirIntervals) {
   const std::array<std::int64_t, markov::kEndings> counts{700, 1,  120, 119,
                                                           0,   60, 0};  // by markov::Ending
@@ -67,7 +67,7 @@ TEST(Endings, AreNamedWithTheirIntervals) {
   const std::string text = endings_text(shares, "of 1000 trials");
   EXPECT_EQ(text.substr(0, text.find('\n')), "crossed       0.10 %  [0.01, 0.47]  of 1000 trials");
   EXPECT_NE(text.find("\nleft side    12.00 %  [10.10, 14.12]\n"), std::string::npos) << text;
-  // Without intervals, and shares that two decimals would hide.
+  // Shares without intervals, of which one is too small for two decimals.
   EXPECT_EQ(endings_text(lattice::EndingShares({0.5, 1.23e-7, 0, 0, 0, 0, 0}), "x").substr(0, 23),
             "crossed    1.2e-05 %  x");
   const lattice::EndingShares without({0.5, 0.5, 0, 0, 0, 0, 0});
@@ -84,7 +84,7 @@ TEST(Endings, LabelsOfStartsKeepTheirDigits) {
   EXPECT_EQ(own.header, "        d   vx    vy");
   EXPECT_EQ(own.texts[0], "      4.3  5.1  10.2");
   EXPECT_EQ(own.texts[1], " -0.00125    0    15");
-  // Another face is told.
+  // Starts through other faces add a column with the face.
   const StartTexts sides(disc, {{0, {1, 2, 3}}, {dynamics::left_deflect, {4, 5, 6}}});
   EXPECT_EQ(sides.header, " face   d   vx   vy");
   EXPECT_EQ(sides.texts[1], "   LD   4    5    6");
@@ -101,7 +101,7 @@ TEST(MapOf, SmallFieldsAreShownWhole) {
             "  i_x      -1      0      1\n");
 }
 
-// Visits of walks that circle for long, for each 100 bodies: a blank before each number.
+// Visits per 100 bodies by walks that circle for long: a blank stands before each number.
 TEST(MapOf, LargeNumbersStandApart) {
   CellProbabilities visits = CellProbabilities::Zero(2, 3);
   visits(0, 1) = 25000.5;
@@ -148,7 +148,7 @@ TEST(MapOf, WideSharesAreShownInBlocksAroundTheStart) {
   }
 }
 
-// What rounding may have made is shown as 0; a share beyond the bound is shown, however small.
+// A share within the rounding error is shown as 0; a share above it is shown, however small.
 TEST(FinalGates, SharesWithinRoundingAreNone) {
   markov::FinalDistribution f;
   constexpr auto kCut = static_cast<std::size_t>(markov::Ending::cut_off),

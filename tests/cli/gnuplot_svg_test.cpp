@@ -28,7 +28,7 @@ struct DrawSvg : ::testing::Test {
   }
 };
 
-// gnuplot itself looks: a kill while it draws leaves nothing behind but the old figure.
+// gnuplot looks into the folder while it draws: a kill then leaves only the old figure there.
 TEST_F(DrawSvg, NothingLiesInTheFolderWhileItDraws) {
   const std::string listing = "system('ls -A " + folder.string() + " | tr \"\\n\" \" \"')";
   draw(figure,

@@ -29,8 +29,8 @@ TEST(Imported, RefusesCountsWhoseSumIsNoCount) {
     file.close();
     return read_foreign(path, states).table.entries.size();
   };
-  EXPECT_EQ(read(60), 60U * kStates);                     // 4.2e18
-  EXPECT_THROW((void)read(kStates), std::runtime_error);  // 4.9e18, and 2^62 is 4.6e18
+  EXPECT_EQ(read(60), 60U * kStates);                     // 4.2e18 in all
+  EXPECT_THROW((void)read(kStates), std::runtime_error);  // 4.9e18 in all; 2^62 is 4.6e18
 }
 
 TEST(Imported, ShowsStatesInTheOrderOfTheirTable) {
@@ -40,7 +40,7 @@ TEST(Imported, ShowsStatesInTheOrderOfTheirTable) {
   const ForeignMatrix matrix{{3, 4, {{0, 1, 5.0}, {1, 2, 4.0}, {2, 3, 1.0}}, true}};
   lattice::MatrixFile file = matrix_file(transitions_of(matrix, states, cells), states, {});
   const dynamics::StateSpace& space = file.transitions.space;
-  // Those of one face stand together: up, again, aside.
+  // The file keeps states of one face together: up, again, aside.
   EXPECT_EQ(file.state_names, (std::vector<std::string>{"up", "again", "aside", "trapped"}));
   EXPECT_EQ(lattice::shown_order(space), (std::vector<int>{0, 2, 1}));
   EXPECT_EQ(lattice::shown_number(space, 1), 2);
@@ -51,7 +51,7 @@ TEST(Imported, ShowsStatesInTheOrderOfTheirTable) {
   EXPECT_EQ(counts.coeff(2, 3), 1);
   EXPECT_EQ(lattice::named_state(file, "1")->at[0], 1.0);
   EXPECT_EQ(lattice::named_state(file, "aside")->face, lattice::named_state(file, "1")->face);
-  // Other numbers than one of each state are none of a table.
+  // Numbers that are not a permutation of the states are refused.
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::vector<double>& wrong :
        {std::vector<double>{0, 0, 1}, {0, 2}, {0, 2, 3}, {-1, 0, 1}, {0, 1.5, 1}, {0, nan, 1}}) {
@@ -65,7 +65,8 @@ TEST(Imported, TakesRowsAsFarOffAsRoundingMakesThem) {
   std::vector<ForeignState> states;
   for (int s = 0; s < kStates; ++s) states.push_back({std::to_string(s), "ahead", 0, 1});
   const std::string path = testing::TempDir() + "imported_rounded.csv";
-  // A row of whole units of the last digit. From seven digits on a float's rounding is larger.
+  // A row whose numbers are multiples of the last digit. With seven digits or more, a float's
+  // rounding would be larger.
   const auto read = [&](const std::vector<std::int64_t>& units, int digits) {
     std::ofstream file(path);
     file << "from,to,probability\n";
@@ -93,7 +94,7 @@ TEST(Imported, TakesRowsAsFarOffAsRoundingMakesThem) {
       for (const double x : p) total += units.emplace_back(std::llround(x / sum * one));
       off += total != std::llround(one) ? 1 : 0;
       EXPECT_TRUE(read(units, digits).probabilities) << n << " of " << digits << " digits";
-      // Half a unit each is the most: one more is no rounding.
+      // Rounding can move a sum by half a unit for each number, not by one more.
       units.front() += std::llround(one) - total + n / 2 + 1;
       EXPECT_THROW((void)read(units, digits), std::runtime_error) << n << " of " << digits;
     }

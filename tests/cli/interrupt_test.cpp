@@ -10,7 +10,7 @@
 namespace gatewalk::cli {
 namespace {
 
-// Each in a child process: a flag that is set stays set.
+// Each test runs in a child process, because the flag of a signal stays set.
 
 TEST(InterruptDeathTest, FirstSignalIsOnlyNoted) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {

@@ -8,7 +8,7 @@
 namespace gatewalk::cli {
 namespace {
 
-// On a machine of either order.
+// Holds on machines of either byte order.
 TEST(LittleEndian, BytesAreAsFilesHaveThem) {
   EXPECT_EQ(all_little_endian(std::vector<std::uint16_t>{0x0102, 3}), std::string("\2\1\3\0", 4));
   EXPECT_EQ(all_little_endian(std::vector<std::int64_t>{-2}), "\xfe\xff\xff\xff\xff\xff\xff\xff");

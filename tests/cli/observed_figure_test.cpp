@@ -13,7 +13,7 @@ using lattice::EndingShares;
 using lattice::FieldTally;
 using markov::Ending;
 
-/// Lines of a data block of a figure: "share row low high".
+/// The lines "share row low high" of a data block of a figure.
 std::vector<std::array<double, 4>> block(const Figure& figure, const std::string& name) {
   const std::string head = "$" + name + " << EOD\n";
   const std::size_t begin = figure.commands.find(head);
@@ -57,7 +57,7 @@ struct Experiment {
   static EndingShares none() { return EndingShares(std::array<double, markov::kEndings>{}); }
 };
 
-// Jeffreys' interval of 5 in 10 is [0.224, 0.776] (Brown, Cai and DasGupta 2001, table 5).
+// The Jeffreys interval of 5 in 10 is [0.224, 0.776] (Brown, Cai and DasGupta 2001, table 5).
 TEST(ObservedFigure, EndingsWithTheirIntervals) {
   const Experiment e;
   const Figure figure = figure_of(e.c, e.v, e.field);
@@ -75,7 +75,8 @@ TEST(ObservedFigure, EndingsWithTheirIntervals) {
   EXPECT_EQ(block(figure, "observed_gates").size(), 0U) << "no gates were counted";
 }
 
-// Of 24 gates those 20 with most, by whoever says so, and the others together.
+// Of 24 gates, the figure shows the 20 with the largest share, by trials or by chain, and the rest
+// together.
 TEST(ObservedFigure, GatesInWhichMostEnd) {
   Experiment e;
   e.c.seen.endings = {};

@@ -24,12 +24,13 @@
 #include "cli/terminal/backup.h"
 #include "cli/terminal/interrupt.h"
 
-// These stand in front of the C library's in this test program: the k-th call can be made to fail.
+// In this test program these functions replace the C library's, so that the k-th call can fail.
 namespace {
 struct Faults {
-  int fsync = 0, rename = 0;       // 0: none, k: the k-th from now
-  int link = 0;                    // so many: the file system knows no second names
-  std::function<void()> at_fsync;  // what happens before a sync
+  int fsync = 0, rename = 0;       // 0: none fails; k: the k-th from now fails
+  int link = 0;                    // number of calls that fail, as on a file system without hard
+                                   // links
+  std::function<void()> at_fsync;  // called before a sync
 } faults;
 
 bool strikes(int& countdown, int error) {
@@ -107,7 +108,7 @@ std::string refusal(const std::string& path, std::string_view text) {
   return "(written)";
 }
 
-/// Files of root are out of reach while it lives, also for root.
+/// During the object's life, files of root are out of reach, even if root runs the test.
 class Unprivileged {
  public:
   Unprivileged() : old_(::geteuid()) {
@@ -140,7 +141,7 @@ TEST_F(Output, TakesANameAsLongAsAFileCanHave) {
 }
 
 TEST_F(Output, IsNotStoppedByWhatAKilledProcessLeft) {
-  for (int i = 0; i < 200; ++i) {  // all names that this program takes first
+  for (int i = 0; i < 200; ++i) {  // takes all names that this program tries first
     const std::string name = std::to_string(::getpid()) + "-" + std::to_string(i);
     std::ofstream(path(".gatewalk-" + name + ".tmp")) << "left";
   }
@@ -204,7 +205,7 @@ TEST_F(Output, RefusesTargetsThatAreNoRegularFile) {
 
 TEST_F(Output, WritesIntoAPipe) {
   ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
-  fs::create_symlink("pipe", path("link"));  // as /dev/fd/63 of a shell's >(command) is one
+  fs::create_symlink("pipe", path("link"));  // as /dev/fd/63 of a shell's >(command)
   const std::string text(200'000, 'x');      // more than a pipe holds
   for (const char* name : {"pipe", "link"}) {
     std::string seen;
@@ -245,7 +246,7 @@ TEST_F(Output, SaysBeforehandWhatCannotBeWritten) {
   EXPECT_NE(complaint(deep).find("File name too long"), std::string::npos);
   EXPECT_NE(complaint("/proc/gatewalk").find("/proc/gatewalk: cannot be written"),
             std::string::npos);
-  EXPECT_EQ(names(), (std::vector<std::string>{"a", "folder"}));  // nothing stays behind
+  EXPECT_EQ(names(), (std::vector<std::string>{"a", "folder"}));  // no temporary file stays behind
 }
 
 TEST_F(Output, AFolderIsPossibleWhereItCanBeMade) {
@@ -266,7 +267,7 @@ TEST_F(Output, AFolderIsPossibleWhereItCanBeMade) {
   EXPECT_NE(complaint(path("a/" + std::string(256, 'n') + "/b")).find("cannot be made"),
             std::string::npos);
   EXPECT_NE(complaint("").find("empty"), std::string::npos);
-  EXPECT_EQ(names(), std::vector<std::string>{"file"});  // and none was made
+  EXPECT_EQ(names(), std::vector<std::string>{"file"});  // no folder was made
 }
 
 TEST_F(Output, NamesAFolderThatIsMissing) {
@@ -338,7 +339,7 @@ TEST_F(Output, AFolderThatCannotBeSyncedIsNoSilentSuccess) {
   EXPECT_EQ(names(), std::vector<std::string>{"a"});
 }
 
-// ---- What an output replaces
+// ---- Backups of files that an output replaces
 
 TEST_F(Output, WhatIsReplacedIsKeptUnderTheFirstFreeNumber) {
   for (const std::string text : {"first", "second", "third"}) {
@@ -418,7 +419,8 @@ TEST_F(Output, WhatCannotBeKeptIsRefused) {
 
 TEST_F(Output, AFileThatMayHaveNoSecondNameIsCopied) {
   write_text_atomically(path("a"), "old");
-  faults.link = 3;  // of the first, and of the second under the first's name and its own
+  faults.link = 3;  // fails for the first backup, then for the second under both names that it
+                    // tries
   Backup old(path("a"));
   Backup another(path("a"));
   write_text_atomically(path("a"), "new");
@@ -470,7 +472,8 @@ TEST_F(UnfinishedDeathTest, AWriteThatTakesTooLongAfterASignalLeavesTheOldFileAl
 
 // ---- Standard output, in a child process
 
-/// Ends with 0 and the text on descriptor `out`, or with 3 and the reason on standard error.
+/// Writes the text to descriptor `out` and exits with 0, or with 3 and the reason on standard
+/// error.
 [[noreturn]] void child_writes_to(int out, std::string_view text) {
   ::dup2(out, STDOUT_FILENO);
   const std::string what = refusal("-", text);

@@ -19,8 +19,8 @@ TEST(PaperFigures, SymbolsAreSetAsThePaperPrintsThem) {
   EXPECT_EQ(as_printed("the paper's").quoted(), "'the paper''s'");
 }
 
-// A line at what the paper says of the first group stands beside its two rows only, and on the
-// axis.
+// The paper's value of the first group is a line beside the two rows of that group only, and a mark
+// on the axis.
 TEST(PaperFigures, AMarkConcernsItsOwnGroup) {
   const Share share{0.01, 0.005, 0.02};
   const Figure f =

@@ -55,7 +55,7 @@ TEST(Findings, WhatIsMissingOrOfAnotherKindIsNoResult) {
   refused(Json());
 }
 
-// Downhill from the place of the basin on: the way from there is that place alone.
+// The path goes downhill from the basin's place on, so the path from the basin is that place alone.
 TEST(Findings, AWayDownhillHasNoBarrier) {
   const auto study = found_in<LandscapeStudy>(Json::parse(R"({"passes": [
     {"grid_m": 0.5,
@@ -87,7 +87,7 @@ TEST(Findings, ATraceHasAnEntryForEveryStep) {
   EXPECT_THROW((void)found_in<Trace>(json), std::runtime_error);
 }
 
-// Half a second in each of two starts of 100 trials, 30 ms in each of 1000 walks.
+// Half a second for each of two starts of 100 trials, 30 ms for each of 1000 walks.
 TEST(Findings, SecondsOfATrialAndOfAWalk) {
   Validation v;
   v.trials = 100;
@@ -101,7 +101,7 @@ TEST(Findings, SecondsOfATrialAndOfAWalk) {
   EXPECT_DOUBLE_EQ(v.seconds_per_walk(), 3e-5);
 }
 
-// A body's crossings are no independent trials: many of one body count as one.
+// The crossings of one body are not independent trials: many of one body count as one.
 TEST(Findings, CrossingsHaveTheIntervalOfTheirBodies) {
   const Crossings many{.rt_and_lt = 101, .clamped = 200, .between_gates = 400, .bodies = 100};
   EXPECT_EQ(many.clamped_share().low, share_of(50, 100).low);

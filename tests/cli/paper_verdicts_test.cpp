@@ -21,8 +21,8 @@ TEST(PaperVerdict, OfANumberCountedIn100Trials) {
   EXPECT_EQ(against(52, share_of(0, 0)), Verdict::cannot_tell);
 }
 
-// Fewer trials widen our interval: what was reproduced or different becomes unsure, never the other
-// way round.
+// Fewer trials widen our interval. A claim that was reproduced or different then becomes unsure,
+// never the reverse.
 TEST(PaperVerdict, FewerTrialsAreNeverSurer) {
   EXPECT_EQ(against(52, share_of(46, 100)), Verdict::cannot_tell);
   EXPECT_EQ(against(52, share_of(23, 50)), Verdict::cannot_tell);
@@ -46,16 +46,17 @@ TEST(PaperVerdict, OfATrend) {
   EXPECT_EQ(verdict({0.1, 0.2, 0.3, 0.4}, 10000), Verdict::reproduced);
   EXPECT_EQ(verdict({0.4, 0.3, 0.2, 0.1}, 10000), Verdict::differs);
   EXPECT_EQ(verdict({0.3, 0.3, 0.3, 0.3}, 10000), Verdict::differs);  // it does not rise
-  EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000), Verdict::differs);  // a fall that 100 trials show
+  EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000), Verdict::differs);  // 100 trials would show this
+                                                                      // fall
   EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000, true),
-            Verdict::reproduced);  // if the paper allows it
+            Verdict::reproduced);  // the paper allows the fall
   EXPECT_EQ(verdict({0.01, 0.05, 0.03, 0.6}, 10000),
-            Verdict::agrees);  // a fall that they do not
+            Verdict::agrees);  // 100 trials would not show this fall
   EXPECT_EQ(verdict({0.1, 0.2, 0.3, 0.4}, 100),
             Verdict::cannot_tell);  // too few trials to say "never falls"
 }
 
-// A slide that no step of which shows: 100 trials tell its ends apart.
+// A slow fall: 100 trials tell its ends apart, but not two neighbours.
 TEST(PaperVerdict, ATrendFallsBetweenAnyTwoPlaces) {
   EXPECT_EQ(verdict({0.2, 0.6, 0.53, 0.46, 0.39, 0.7}, 10000), Verdict::differs);
   EXPECT_EQ(verdict({0.2, 0.6, 0.57, 0.54, 0.51, 0.7}, 10000), Verdict::agrees);
@@ -80,7 +81,7 @@ TEST(PaperVerdict, MostSeriesOfATrendMustRise) {
   EXPECT_EQ(of(5), Verdict::reproduced);
 }
 
-// 17 of 1000 trials: 17 / (17 / 1000.0) is a little less than 1000, and means 1000.
+// 17 of 1000 trials: 17 / (17 / 1000.0) is slightly below 1000, and must count as 1000.
 TEST(PaperVerdict, TrialsBehindSharesOfFewAreRounded) {
   Trend trend;
   trend.add({1, 2}, {share_of(1, 17), share_of(17, 17)}, {17 / 1000.0, 17 / 1000.0});
@@ -100,10 +101,10 @@ TEST(PaperVerdict, OfARiseAndAFall) {
       dip{0.3, 0.0, 0.5, 0.2};
   EXPECT_EQ(rise_then_fall({both}, 10000), Verdict::reproduced);
   EXPECT_EQ(rise_then_fall({both}, 100), Verdict::cannot_tell);
-  // That nothing rises is seen on enough trials.
+  // Enough trials show that nothing rises.
   EXPECT_EQ(rise_then_fall({flat, flat}, 10000), Verdict::differs);
   EXPECT_EQ(rise_then_fall({flat, flat}, 100), Verdict::cannot_tell);
-  // What 100 trials would show is against it, however many series do as said.
+  // A contradiction that 100 trials would show decides, however many series agree.
   EXPECT_EQ(rise_then_fall({both, both, both, only_down}, 10000), Verdict::differs);
   EXPECT_EQ(rise_then_fall({both, only_up}, 10000), Verdict::differs);
   EXPECT_EQ(rise_then_fall({both, again}, 10000), Verdict::differs);
@@ -135,7 +136,7 @@ TEST(PaperVerdict, RareAndEven) {
   EXPECT_EQ(rare_and_even(share_of(0, 10000), share_of(0, 0)), Verdict::cannot_tell);
 }
 
-/// What Fig. 8's and Fig. 12's studies give when the outcomes are these.
+/// The findings of Figs. 8 and 12 if the outcomes are these.
 Findings found(std::int64_t trials, std::int64_t (*left)(double force, double random),
                std::int64_t (*right)(double force, double random)) {
   Findings f;
@@ -156,7 +157,7 @@ Findings found(std::int64_t trials, std::int64_t (*left)(double force, double ra
   return f;
 }
 
-// Where nothing of what the paper says is seen, enough trials say so and few do not.
+// If nothing of the paper's statement is seen, enough trials say that it differs; few cannot tell.
 TEST(PaperClaims, WhatIsSeenNowhereDiffers) {
   const auto none = [](double, double) { return std::int64_t{0}; };
   const auto verdicts = [](const Findings& f) {
@@ -177,7 +178,7 @@ TEST(PaperClaims, BothSidesAlikeIsNotTheSofterSide) {
   EXPECT_EQ(claim_of("softer_side", found(10000, some, none)).verdict, Verdict::reproduced);
 }
 
-// Table IV's pair is judged by standard deviations that some repeats must tell.
+// The verdict on Table IV needs a standard deviation, and so enough repeats.
 TEST(PaperClaims, AStartOfFewRepeatsIsNotJudged) {
   ValidatedStart start;
   start.paper_corrcoef = 0.9;
@@ -192,7 +193,7 @@ TEST(PaperClaims, AStartOfFewRepeatsIsNotJudged) {
   EXPECT_EQ(claim_of("table4_2", f).verdict, Verdict::differs);
 }
 
-// Sentences without their value are left out, numbers have the digits that the text asks for.
+// Sentences without their value are left out; numbers have the digits that the text asks for.
 TEST(PaperClaims, TextsHoldWhatWasMeasured) {
   Findings f;
   f.fig9_300.runs.resize(4);
@@ -224,7 +225,7 @@ TEST(PaperClaims, ALittleLessThanAlwaysAgrees) {
   EXPECT_EQ(verdict_of_steep(10000, false), Verdict::differs);
 }
 
-// Shares of few: what 100 trials of all would show of them depends on how few they are.
+// Shares of a subset of the trials: what 100 trials would show depends on the size of the subset.
 TEST(PaperVerdict, OfATrendOfSharesOfFew) {
   const std::vector<Share> s = shares({0.05, 0.6, 0.3, 0.5}, 1000);
   Trend many, few;

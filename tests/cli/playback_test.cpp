@@ -55,7 +55,7 @@ TEST(Playback, BeamsAreThoseOfTheirGatesType) {
   EXPECT_EQ(beam_of(film, 1, 2, kLeft, 0.0).tip.x, 50.0);
   const Point tip = nearest_point(film, step_in(film, 0, 1), kLeft, 0.0, {0.0, 90.0});
   EXPECT_NEAR(tip.x, -10.0, 1e-12);
-  // A policy may choose another type there.
+  // A policy may choose another type in the same gate.
   FilmStep chosen = step_in(film, 0, 0);
   EXPECT_EQ(beam_of(film, chosen, kLeft, 0.0).tip.x, 0.0);
   EXPECT_EQ(film.gate_of(chosen).forces.propulsion, film.gate.forces.propulsion);
@@ -90,7 +90,7 @@ TEST(Playback, GoesStraightFromStepToStep) {
   EXPECT_EQ(play.scenery(9.0).body.y, 60.0) << "and after its end";
 }
 
-// On the way into another gate the beams left behind keep their last angle.
+// While the body moves into another gate, the beams of the old gate keep their last angle.
 TEST(Playback, BeamsLeftBehindStand) {
   const Film film = three_steps();
   const Playback play(film, film.runs[0]);
@@ -103,7 +103,7 @@ TEST(Playback, BeamsLeftBehindStand) {
   EXPECT_EQ(play.scenery(3.0).i_y, 1);
 }
 
-// The mean place within 0.75 s before and after, less at the ends: 20 m/s, then 10 m/s.
+// The mean place within 0.75 s before and after, less at the ends. Speeds: 20 m/s, then 10 m/s.
 TEST(Playback, ACalmCameraLooksAtTheMeanPlace) {
   const Film film = three_steps();
   const Playback play(film, film.runs[0]);

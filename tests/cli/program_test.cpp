@@ -36,7 +36,7 @@ std::string saying(const std::string& more = "") {
          R"({"name": "N", "move": [0, -1]}])" +
          more + "}'; ";
 }
-/// Whose answer to every line is what a shell makes of `answer`.
+/// A program that answers every line with what a shell makes of `answer`.
 std::string answering(const std::string& answer, const std::string& more = "") {
   return saying(more) + "while read -r id face s seed memory; do [ -z \"$id\" ] || " + answer +
          "; done";
@@ -54,7 +54,7 @@ Passage pass_at(const Cell& cell, double s) {
   return cell.pass(body);
 }
 
-/// All first passages of 40 trials, on `threads` threads.
+/// The first passages of 40 trials, computed on `threads` threads.
 std::vector<Passage> passages_of(const Cell& cell, int threads = 1) {
   std::vector<Passage> all(40);
   test::on_threads(threads, [&] {
@@ -75,7 +75,7 @@ std::vector<Passage> passages_of(const Cell& cell, int threads = 1) {
   return all;
 }
 
-/// What is said of a program whose cell is started and used.
+/// The error message when the cell of this program is started and used.
 std::string error_of(const std::string& command, const ProgramOptions& options = {}) {
   try {
     const ProgramCell cell(command, options);
@@ -90,7 +90,7 @@ void expect_error(const std::string& command, const std::vector<std::string>& pa
   const std::string error = error_of(command, options);
   for (const std::string& part : parts)
     EXPECT_NE(error.find(part), error.npos) << "no '" << part << "' in: " << error;
-  // Nothing is left behind: neither a process nor a zombie.
+  // Neither a process nor a zombie is left.
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
   EXPECT_EQ(errno, ECHILD);
 }
@@ -105,7 +105,7 @@ bool ends_soon(pid_t id) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   return !runs(id);
 }
-/// A file that a program writes process ids into.
+/// A file into which a program writes process ids.
 class IdFile {
  public:
   IdFile()
@@ -166,7 +166,7 @@ TEST(ProgramCell, MemoryIsCarriedAndForgotten) {
   EXPECT_EQ(cell.pass(body).costs[0], 2.0);
   cell.forget(body);
   EXPECT_EQ(cell.pass(body).costs[0], 1.0);
-  // The longest that is carried comes back whole.
+  // The longest memory that a body can carry comes back whole.
   const std::string longest(480, 'm');
   const ProgramCell full(answering("case $memory in -) echo $id left S 0 1 " + longest + ";; " +
                                    longest + ") echo $id left S 0 2 -;; *) exit 1;; esac"));
@@ -219,7 +219,7 @@ TEST(ProgramCell, SameBitsHoweverItIsCarriedOut) {
 }
 
 TEST(ProgramCell, AnswersMayComeInAnyOrder) {
-  // A batch from its last line to its first, when the empty line asks for it.
+  // This program answers a batch from its last line to its first, when the empty line asks for it.
   const ProgramCell backwards(saying() +
                               "all=; while read -r id face s seed memory; do if [ -n \"$id\" ]; "
                               "then all=\"$id left S $seed 1 -\n"
@@ -357,7 +357,8 @@ TEST(ProgramCell, AnswersThatAreNone) {
   wrong("77777 left S $s 1 -", "its first word is not the id of a passage that is under way");
   wrong("", "its first word is not the id");
   wrong("Loading the model", "its first word is not the id");
-  wrong("\"$id left S $s 1 -\n$id left S $s 1 -\"", "its first word is not the id");  // twice
+  wrong("\"$id left S $s 1 -\n$id left S $s 1 -\"", "its first word is not the id");  // answers
+                                                                                      // twice
   wrong("$id left S $s 1 " + std::string(481, 'm'),
         "its memory has 481 bytes; at most 480 are carried");
   expect_error(answering("head -c 100000 /dev/zero | tr '\\0' x"),
@@ -375,7 +376,7 @@ TEST(ProgramCell, ProgramsThatEnd) {
                {"closed its standard input", "deaf"});
   expect_error(saying() + "exec >&-; sleep 1000", {"closed its standard output"});
   expect_error("exec >&-; sleep 1000", {"closed its standard output while a line was awaited"});
-  // Only the last lines are told, and nothing that a terminal would obey.
+  // The message has only the last lines, and no control characters.
   const std::string error = error_of(
       "i=0; while [ $i -lt 1000 ]; do echo line $i >&2; i=$((i+1)); done; printf 'red\\033[31m' "
       ">&2; exit 1");
@@ -390,7 +391,7 @@ TEST(ProgramCell, ProgramsThatHang) {
   expect_error(answering("sleep 1000"), {"it wrote no line for"}, soon);
   expect_error(answering("{ echo stuck >&2; trap '' TERM INT HUP; while :; do :; done; }"),
                {"it wrote no line for", "stuck"}, soon);
-  // However much it writes elsewhere, or of a line that never ends.
+  // Output to standard error, or a line that never ends, does not count as a line.
   expect_error(saying() + "while :; do echo noise; done >&2", {"it wrote no line for", "noise"},
                soon);
   expect_error(saying() + "while :; do printf x; sleep 0.01; done", {"it wrote no line for"}, soon);
@@ -398,14 +399,14 @@ TEST(ProgramCell, ProgramsThatHang) {
 }
 
 TEST(ProgramCell, ComplaintsOfAHealthyProgramDoNoHarm) {
-  // More than a pipe holds, before and between answers.
+  // The program writes more than a pipe holds, before and between answers.
   const ProgramCell cell("yes | head -c 300000 >&2; " +
                          answering("{ head -c 100000 /dev/zero >&2; echo $id left S $s 1 -; }"));
   for (const Passage& passage : passages_of(cell)) EXPECT_EQ(passage.next.at[0], 0.25);
 }
 
 TEST(ProgramCell, MoreThanPipesHoldIsUnderWayBothWays) {
-  // It does not read while it cannot write.
+  // The program does not read while it cannot write.
   const ProgramCell cell(saying(R"(, "uniforms": 50)") +
                              "while read -r id face s more; do [ -z \"$id\" ] || "
                              "echo $id left S $s 1 " +
@@ -494,7 +495,7 @@ TEST(ProgramCellDeathTest, ProgramsEndWithUsHoweverWeEnd) {
     const IdFile file;
     EXPECT_EXIT(
         {
-          // Deaf to all, and it never reads again.
+          // The program ignores all signals and never reads again.
           const ProgramCell cell("trap '' INT TERM HUP PIPE; echo $$ >" + file.path() + "; " +
                                  saying() + "while :; do :; done");
           std::raise(signal);
@@ -516,7 +517,7 @@ TEST(ProgramCell, TheExampleInPython) {
   const ProgramCell cell("python3 " GATEWALK_PROGRAMS "/pillars.py");
   EXPECT_EQ(check_cell(cell, {{0, {0.1, 0.3}}, {2, {-0.2, -0.4}}}, {.trials = 60, .cells = 4}),
             std::vector<std::string>{});
-  // Pillars that are not there turn nobody round.
+  // Pillars of radius 0 turn no body round.
   const ProgramCell open("python3 " GATEWALK_PROGRAMS "/pillars.py", {},
                          {{"radius_m", 0.0}, {"turning_rad_per_sqrt_s", 0.0}});
   const Passage straight = pass_at(open, 0.0);
@@ -532,7 +533,8 @@ TEST(ProgramCell, HasOtherValuesInProcessesOfItsOwn) {
   EXPECT_EQ(straight->numbers()[0].value, 0.0);
   EXPECT_EQ(straight->numbers()[1].value, 0.0);
   EXPECT_NEAR(pass_at(*straight, 0.0).costs[0], 1.0, 1e-12);
-  EXPECT_GT(std::abs(pass_at(cell, 0.0).costs[0] - 1.0), 1e-6);  // its own are as they were
+  EXPECT_GT(std::abs(pass_at(cell, 0.0).costs[0] - 1.0), 1e-6);  // the first cell's parameters did
+                                                                 // not change
   EXPECT_THROW((void)cell.with({{"turning", 0.0}}), std::invalid_argument);
 }
 
@@ -542,7 +544,7 @@ TEST(ProgramCell, TheGateInChipmunk) {
   EXPECT_EQ(
       check_cell(cell, {{0, {0.0, 0.0, 15.0}}, {1, {15.0, -5.0, 5.0}}}, {.trials = 40, .cells = 3}),
       std::vector<std::string>{});
-  // Our own gate under the same forces.
+  // Our own gate with the same forces.
   GateParams p;
   p.forces.propulsion = 7.0;
   p.forces.random = 50.0;

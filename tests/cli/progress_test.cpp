@@ -55,9 +55,9 @@ TEST(WatchedWorkDeathTest, WorkThatIsDoneStaysDone) {
       testing::ExitedWithCode(7), "");
 }
 
-// ---- The line
+// ---- The line at a terminal
 
-/// What `work` writes to standard error when that is a terminal of `columns` columns.
+/// What `work` writes to standard error if this is a terminal of `columns` columns.
 std::string on_terminal(unsigned short columns, const std::function<void()>& work) {
   const int master = ::posix_openpt(O_RDWR | O_NOCTTY);
   if (master < 0 || ::grantpt(master) != 0 || ::unlockpt(master) != 0) return "(no terminal)";
@@ -90,7 +90,7 @@ TEST(Progress, SaysHowFarItIsAndClearsTheLine) {
     std::this_thread::sleep_for(milliseconds(250));
     progress.update(100);
     progress.finish();
-    progress.finish();  // once is enough
+    progress.finish();  // the destructor does not clear the line again
   });
   EXPECT_TRUE(std::regex_match(
       text, std::regex(
@@ -144,9 +144,9 @@ TEST(Progress, StaysSilentWhereThereIsNoTerminal) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-// ---- Lines, where standard error is no terminal
+// ---- Lines, if standard error is no terminal
 
-/// What `work` writes to the stream it is given, with standard error in a file.
+/// What `work` writes to its stream, with standard error in a file.
 std::string in_lines(milliseconds every, const std::function<void(const Progress::Lines&)>& work) {
   std::ostringstream out;
   testing::internal::CaptureStderr();
@@ -188,7 +188,7 @@ TEST(ProgressLines, SayNothingWhereUnwanted) {
             "");
 }
 
-// Many short parts are no reason to be silent; a part that comes again is timed anew.
+// Many short parts also give lines in time. A part that comes again is timed anew.
 TEST(ProgressLines, ComeInTimeAcrossShortParts) {
   const std::string text = in_lines(milliseconds(200), [](const Progress::Lines& lines) {
     const dynamics::Work work = watched_work(true, lines);

@@ -50,7 +50,7 @@ TEST(Quantity, HasAnExponentBeyondAllPrefixes) {
   EXPECT_EQ(quantity(3e25, "m"), "3e+25 m");
 }
 
-// Whatever the size: what is shown is the number within its digits, and never zero.
+// For numbers of any size, the text is within 0.06 % of the number, and never zero.
 TEST(Quantity, NeverLosesANumber) {
   for (int exponent = -40; exponent <= 40; ++exponent)
     for (const double digits : {1.0, 1.2344, 5.5555, 9.9949, 9.9996}) {
@@ -70,7 +70,7 @@ TEST(Quantity, NeverLosesANumber) {
     }
 }
 
-// In the paper's scenes what counts is a tenth of a joule: plain joules with one decimal.
+// In the paper's scenes a tenth of a joule matters: plain joules with one decimal.
 TEST(Reading, HasOneUnitAndTheSameDecimals) {
   EXPECT_EQ(reading(312.52, "J", 0.1), "312.5 J");
   EXPECT_EQ(reading(20000.0, "J", 0.1), "20000.0 J");

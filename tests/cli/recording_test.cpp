@@ -91,8 +91,8 @@ TEST(Recording, CsvHasALineForEachMomentAndFitsTheLandscape) {
   EXPECT_GT(modes["held"], 3);
 }
 
-// A film's force holds until the next step; a sample's acted before it.
-/// Of the first run.
+// A film's step holds the force until the next step; a sample holds the force that acted before it.
+/// The details of the first run.
 Json details_of(const lattice::Scene& s, const Recordings& recordings) {
   return json_of([&](Fields& out) {
     describe_details(out, recordings, recordings.runs[0], dynamics::scale_of(s.gate).energy());
@@ -123,7 +123,7 @@ lattice::Scene in_other_units(lattice::Scene s, const Twin& twin) {
   return s;
 }
 
-/// What recordings are in other units.
+/// The recordings in other units.
 Recordings in_other_units(Recordings recordings, const Twin& twin) {
   const double time = twin.of(0, 1, 0), force = twin.of(1, -2, 1), joule = twin.of(2, -2, 1);
   const auto scale = [&](dynamics::Energies& e) {
@@ -152,7 +152,7 @@ Recordings in_other_units(Recordings recordings, const Twin& twin) {
   return recordings;
 }
 
-/// A film without what is said in words, which name numbers with their units.
+/// The film without texts, because texts contain numbers with units.
 Json without_words(const Film& film) {
   Json json = json_of(film);
   json.erase("title");
@@ -160,7 +160,7 @@ Json without_words(const Film& film) {
   return json;
 }
 
-/// Lines of CSV have the numbers of other ones times what their units are, to their seven digits.
+/// Checks that lines of CSV are `others` times the factors of their units, to seven digits.
 void expect_same_numbers(const std::vector<std::vector<std::string>>& lines,
                          const std::vector<std::vector<std::string>>& others, const Twin& twin) {
   ASSERT_EQ(others.size(), lines.size());
@@ -182,7 +182,7 @@ void expect_same_numbers(const std::vector<std::vector<std::string>>& lines,
   EXPECT_GT(compared, 1000u);
 }
 
-// In other units a film has the same numbers times these, to the last bit.
+// In other units a film has the same numbers times the units' factors, to the last bit.
 TEST(Recording, InOtherUnitsHasTheSameNumbers) {
   for (const auto& [s, across] :
        {std::pair{scene("x_m = 1.5\n"), false}, {lattice::parse_scene("", "field.toml"), true}}) {

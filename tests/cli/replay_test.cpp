@@ -25,7 +25,7 @@ TEST(Html, FilledLooksAtThePageOnce) {
   EXPECT_THROW((void)filled("{{a", {{"a", "A"}}), std::logic_error);
 }
 
-/// The film that a page holds.
+/// The film in a page.
 Json film_in(const std::string& page) {
   const std::string opening = "<script type=\"application/json\" id=\"film\">";
   const std::size_t begin = page.find(opening) + opening.size();

@@ -59,13 +59,13 @@ TEST(ReportPage, PrintsIndicesAndKeepsNumbersTogether) {
   EXPECT_EQ(count(page, "46.0&nbsp;% [45.3,&nbsp;46.7]"), 1u);
 }
 
-// What differs is read first.
+// Claims that differ stand first.
 TEST(ReportPage, PutsWhatDiffersOnTop) {
   const std::string page = page_of(sample());
   EXPECT_LT(page.find("id=\"claim-c2\""), page.find("id=\"claim-c1\""));
 }
 
-// Text of a report is text: it can neither become markup nor end the script that holds the data.
+// Text of a report is escaped: it can neither become markup nor end the script with the data.
 TEST(ReportPage, TextStaysText) {
   Report report = sample();
   const std::string plain = page_of(report);
@@ -77,7 +77,7 @@ TEST(ReportPage, TextStaysText) {
   EXPECT_EQ(count(page, "</script"), count(plain, "</script"));
 }
 
-// An error rather than an empty place on the page.
+// Wrong reports give an error rather than an empty place on the page.
 TEST(ReportPage, RefusesWhatItDoesNotKnow) {
   Report report = sample();
   report.claims[0].see = "nowhere";

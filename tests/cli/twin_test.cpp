@@ -34,7 +34,7 @@ class TwinCommands : public testing::Test {
     return (folder_ / name).string();
   }
 
-  /// A rescaled scene: every key that the file names; the rest is left to the program.
+  /// Writes a rescaled scene, with every key that the file names; the other keys must follow.
   [[nodiscard]] std::string rescaled(const lattice::Scene& scene, const Twin& twin,
                                      const std::string& name) const {
     std::ofstream out(path(name));
@@ -63,7 +63,7 @@ class TwinCommands : public testing::Test {
   fs::path folder_;
 };
 
-/// Not the result of a computation, or of a clock.
+/// Whether a key is not compared: its value is a clock's, or not computed from the scene.
 bool is_told(const std::string& key) {
   for (const char* told :
        {"seconds", "made_by", "speed_ratio", "threads", "matrix", "microseconds", "work_per_trial"})
@@ -71,8 +71,8 @@ bool is_told(const std::string& key) {
   return false;
 }
 
-/// Numbers of `b` are those of `a` times the power of the unit that their key names; texts may hold
-/// numbers.
+/// Checks that numbers of `b` are those of `a` times the factor of the unit in their key, also
+/// numbers within texts.
 void expect_twins(const Json& a, const Json& b, const Twin& twin, const std::string& key) {
   ASSERT_EQ(a.type(), b.type()) << key;
   if (a.is_object()) {
@@ -100,7 +100,7 @@ TEST_F(TwinCommands, GiveTheSameNumbersInOtherUnits) {
   struct Line {
     const char* name;
     int (*run)(const Arguments&);
-    std::vector<std::string> words;  // behind the scene or matrix
+    std::vector<std::string> words;  // words after the scene or matrix
     bool of_matrix;
   };
   const std::vector<Line> lines{
@@ -137,10 +137,10 @@ TEST_F(TwinCommands, GiveTheSameNumbersInOtherUnits) {
   std::size_t number = 0;
   for (const Twin& twin : test::twins()) {
     SCOPED_TRACE(testing::Message() << twin);
-    const bool every = number++ % 5 == 0;  // what takes long
+    const bool every = number++ % 5 == 0;  // slow commands run for one twin in five
     const std::string file = rescaled(scene, twin, "twin.toml");
     expect_twins(built, build(file, other_matrix, "paper"), twin, "build");
-    // A pilot of 2000 trials: not for all.
+    // The pilot of 2000 trials runs for one twin only.
     if (number == 10)
       expect_twins(automatic, build(file, path("auto.nc"), "auto"), twin, "build auto");
     for (std::size_t i = 0; i < lines.size(); ++i) {

@@ -20,8 +20,8 @@
 #include "cli/terminal/interrupt.h"
 #include "tests/cli/films.h"
 
-// What fontconfig keeps to the program's end is no leak of ours (read by the address sanitizer
-// alone).
+// fontconfig keeps memory to the program's end, which is no leak of ours. Only the address
+// sanitizer reads this function.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
 
 namespace gatewalk::cli {
@@ -47,7 +47,7 @@ class Video : public testing::Test {
   [[nodiscard]] std::ptrdiff_t files() const {
     return std::distance(fs::directory_iterator(folder_), fs::directory_iterator{});
   }
-  /// A folder that stands alone in PATH, with an ffmpeg that does as told.
+  /// Puts a script named ffmpeg into a folder that is the only one in PATH.
   void instead_of_ffmpeg(const std::string& script) {
     fs::create_directory(folder_ / "bin");
     std::ofstream(path("bin/ffmpeg")) << "#!/bin/sh\n" << script << "\n";
@@ -74,7 +74,7 @@ std::string bytes_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// What ffprobe says of a video, "name=value" by lines, with its pictures counted one by one.
+/// What ffprobe says of a video, a line "name=value" each; it counts the pictures one by one.
 std::string probed(const std::string& path) {
   const File nothing = scratch_file();
   Child ffprobe({"ffprobe", "-v", "error", "-count_frames", "-show_streams", "-show_format", path},
@@ -93,7 +93,7 @@ TEST(Film, SaysHowFastItPlays) {
   EXPECT_EQ(speed_words(1.0 / 3.0), "at 1/3 of real time");
   EXPECT_EQ(speed_words(0.0731), "at 0.0731 of real time");
   EXPECT_EQ(speed_words(4.0), "at 4 times real time");
-  // Its first picture shows the same scene at any speed, under other words.
+  // At any speed the first picture shows the same scene, but other words.
   const Film film = small_film();
   const auto first = [&](double speed, bool labels) {
     return video_frame(film, 0.0, {.speed = speed, .labels = labels});
@@ -103,7 +103,7 @@ TEST(Film, SaysHowFastItPlays) {
 }
 
 TEST_F(Video, IsOneThatPlaysEverywhere) {
-  write_video(path("a.mp4"), small_film());  // 1 s, then a second that stands
+  write_video(path("a.mp4"), small_film());  // 1 s of film, then the last picture for a second
   const std::string words = probed(path("a.mp4"));
   for (const char* fact : {"codec_name=h264", "pix_fmt=yuv420p", "width=1280", "height=720",
                            "r_frame_rate=50/1", "color_space=bt709", "nb_streams=1"})
@@ -120,7 +120,8 @@ TEST_F(Video, IsAGifByTheEndingOfItsName) {
   const std::string words = probed(path("a.gif"));
   for (const char* fact : {"codec_name=gif", "width=800", "height=450"})
     EXPECT_NE(words.find(std::string("\n") + fact + "\n"), words.npos) << fact << "\n" << words;
-  EXPECT_NEAR(number(words, "duration"), 2.08, 0.05);  // 1 s, then a second that stands
+  EXPECT_NEAR(number(words, "duration"), 2.08, 0.05);  // 1 s of film, then the last picture for a
+                                                       // second
   EXPECT_EQ(complaint_of(path("a.avi")), path("a.avi") + ": a video is FILE.mp4 or FILE.gif");
   EXPECT_EQ(files(), 1);
 }
@@ -132,7 +133,7 @@ TEST_F(Video, SpeedAndFramesPerSecond) {
   EXPECT_NEAR(number(words, "duration"), 3.1, 0.001);
 }
 
-/// The mean of red, green and blue of the picture at a time, in a box of it.
+/// The mean red, green and blue in a box of the picture at a time.
 std::array<double, 3> mean_colour(const std::string& path, double time, const std::string& box) {
   const File nothing = scratch_file();
   Child ffmpeg({"ffmpeg", "-v", "error", "-i", path, "-ss", std::to_string(time), "-frames:v", "1",
@@ -147,18 +148,18 @@ std::array<double, 3> mean_colour(const std::string& path, double time, const st
 
 TEST_F(Video, ShowsTheBodyMovingAndTheBeamsInTheirColours) {
   write_video(path("a.mp4"), small_film());
-  // At rest the beams lie across the stage's middle: blue on the left, red on the right.
+  // At rest the beams lie across the middle of the stage: blue on the left, red on the right.
   const auto left = mean_colour(path("a.mp4"), 0.0, "60:4:400:327");
   const auto right = mean_colour(path("a.mp4"), 0.0, "60:4:500:327");
   EXPECT_GT(left[2], left[0] + 80) << "left beam";
   EXPECT_GT(right[0], right[2] + 80) << "right beam";
-  // Where the body was at the start there is bare ground at the end.
+  // The place where the body was at the start is bare ground at the end.
   const std::string start = "20:20:490:590";
   EXPECT_GT(mean_colour(path("a.mp4"), 1.5, start)[0],
             mean_colour(path("a.mp4"), 0.0, start)[0] + 5);
 }
 
-/// How many bytes of two pictures differ.
+/// The number of bytes in which two pictures differ.
 std::size_t differing(const std::string& a, const std::string& b) {
   EXPECT_EQ(a.size(), b.size());
   std::size_t n = 0;
@@ -166,7 +167,7 @@ std::size_t differing(const std::string& a, const std::string& b) {
   return n;
 }
 
-// In other units the same pictures, point by point, but for words and numbers.
+// In other units the pictures are the same, point by point, except for words and numbers.
 TEST_F(Video, ASceneInOtherUnitsLooksTheSame) {
   for (const Film& film : {small_film(100), small_field_film()}) {
     const double end = film.runs[0].steps.back().time;
@@ -188,7 +189,7 @@ TEST_F(Video, ASceneInOtherUnitsLooksTheSame) {
   }
 }
 
-// Unless told otherwise a film takes as long as in the scene's own units; told so, as it is told.
+// By default a film takes as long as in the scene's own units; `speed` overrides this.
 TEST_F(Video, PaceIsTheScenes) {
   const test::Twin slow{.time = -5};
   const Film film = in_other_units(small_film(), slow);
@@ -208,7 +209,7 @@ TEST_F(Video, MissingFfmpegIsSaidAndLeavesNothing) {
 TEST_F(Video, FailuresCarryFfmpegsWordsAndLeaveTheOldFile) {
   std::ofstream(path("a.mp4")) << "old";
   instead_of_ffmpeg("echo no disk, no film >&2; exit 3");
-  // Enough pictures for it to go away in their middle.
+  // Enough pictures for ffmpeg to end in the middle of them.
   EXPECT_EQ(complaint_of(path("a.mp4"), small_film(50)), "ffmpeg failed: no disk, no film");
   EXPECT_EQ(bytes_of(path("a.mp4")), "old");
   instead_of_ffmpeg("exit 0");
@@ -218,7 +219,7 @@ TEST_F(Video, FailuresCarryFfmpegsWordsAndLeaveTheOldFile) {
 }
 
 TEST_F(Video, AFileThatCannotBeWrittenIsSaidAtOnce) {
-  ::setenv("PATH", "/nonexistent", 1);  // before ffmpeg is looked for
+  ::setenv("PATH", "/nonexistent", 1);  // the error comes before ffmpeg is looked for
   EXPECT_NE(complaint_of(path("none/a.mp4")).find("No such file or directory"), std::string::npos);
 }
 
@@ -244,7 +245,7 @@ TEST_F(Video, RefusesAFilmThatMakesNoSense) {
 using VideoDeathTest = Video;
 
 TEST_F(VideoDeathTest, CtrlCEndsItAndLeavesNothing) {
-  // With an ffmpeg that reads nothing, and with one that does not end.
+  // One ffmpeg reads nothing, the other does not end.
   for (const char* script : {"exec /bin/sleep 60", "/bin/cat >/dev/null; exec /bin/sleep 60"}) {
     instead_of_ffmpeg(script);
     EXPECT_EXIT(

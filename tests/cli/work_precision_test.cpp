@@ -16,8 +16,8 @@ using dynamics::Outcome;
 using dynamics::Verdict;
 using dynamics::WorkPrecision;
 
-/// 100 trials, one to six of each outcome; a setting whose error stands out, one whose error does
-/// not, one that was refused.
+/// 100 trials, one to six of each outcome; a setting whose error is significant, one whose error is
+/// not, and one that was refused.
 WorkPrecision sample() {
   WorkPrecision chart;
   chart.label = "one, two";
@@ -77,12 +77,12 @@ TEST(WorkPrecisionCsv, HasTheSameFieldsInEveryLine) {
   const auto commas = std::count(line.begin(), line.end(), ',');
   for (int i = 0; std::getline(lines, line); ++i) {
     EXPECT_TRUE(line.starts_with("\"one, two\",")) << line;
-    // One comma within the name, and one within the reason of the third.
+    // One comma stands within the name, and one within the reason of the third.
     EXPECT_EQ(std::count(line.begin(), line.end(), ','), commas + 1 + (i == 2)) << line;
   }
 }
 
-/// What the figure of a chart says, as gnuplot's script.
+/// Whether the figure of a chart contains these words, as gnuplot's script.
 bool says(const WorkPrecision& chart, const std::string& words) {
   return figure_of(std::vector{chart}).commands.find(words) != std::string::npos;
 }
