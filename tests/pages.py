@@ -9,7 +9,8 @@ Blocks of sh and python run as a whole; the text block that follows shows what t
 whose first line begins with "$ " each such line is a command, and the lines up to the next one show what it prints
 (errors too). Without such lines anything may be printed. A command must be refused (status 2) if its lines are one that
 begins with "gatewalk: " and further ones that are indented; else it must end well. "[...]" stands for anything, on a
-line of its own for any lines. A file that the page shows by cat is made unless it exists.
+line of its own for any lines, at the end of a line also for nothing. A file that the page shows by cat is made unless
+it exists.
 
 --renew changes only output that does not match. Output without a line "[...]" is replaced whole. Else each line is
 replaced by the next printed line that begins with the same words, up to the first number or bracket; "[...]" stands
@@ -35,9 +36,8 @@ def fail(text, *rest):
 
 def as_pattern(shown):
     lines = [r"(?:.*\n)*?" if line.strip() == ELSE else
-             ".*".join(re.escape(part.rstrip() if k == last else part)
-                       for k, part in enumerate(line.split(ELSE))) + r"[ \t]*\n"
-             for line in shown.splitlines() for last in [line.count(ELSE)]]
+             ".*".join(map(re.escape, re.sub(r"[ \t]+(?=\[\.\.\.\]$)", "", line.rstrip()).split(ELSE))) + r"[ \t]*\n"
+             for line in shown.splitlines()]
     return "".join(lines)
 
 
