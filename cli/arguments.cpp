@@ -24,7 +24,7 @@
 namespace gatewalk::cli {
 TextsOption add_starts(Options& options, const std::string& by_default) {
   const std::string help = fmt::format(
-      "start at x = D m, y = 0 with this velocity in m/s (may be repeated; default: {})",
+      "a start at x = D m, y = 0 with the velocity (VX, VY) in m/s; may be repeated (default: {})",
       by_default);
   return options.add_texts("start", "D,VX,VY", help);
 }
@@ -48,12 +48,12 @@ std::vector<dynamics::Entry> starts_of(const TextsOption& given, const lattice::
 TextOption add_bins(Options& options) {
   return options.add_text(
       "bins", "paper|FACTOR|auto|tree",
-      "the chain's states: tree: grown over the entries that full trials make, until --accuracy is "
-      "reached; paper: Table III's, in the scene's own units; FACTOR: these with so many times the "
-      "bins per axis (2 makes 696 states, 0.5 makes 23); auto: bins at the quantiles of what "
-      "bodies do in a pilot. Default: the scene's table [bins], else tree; with runs per state "
-      "asked for: paper where the gate has the paper's proportions and these bins resolve what "
-      "bodies do, else auto");
+      "states of the chain. tree: trees over the entries of full trials, grown until --accuracy is "
+      "reached; paper: the bins of Table III, in the scene's own units; FACTOR: those bins, FACTOR "
+      "times as many per axis (2 makes 696 states, 0.5 makes 23); auto: bins at the quantiles of "
+      "entries in pilot trials. Default: the scene's table [bins], else tree. If runs per state "
+      "are "
+      "asked for: paper, or auto where the paper's bins do not suit the gate or its bodies");
 }
 
 lattice::BinsChoice bins_choice(const TextOption& bins, const lattice::Scene& scene,
@@ -86,11 +86,12 @@ AskedAccuracy add_accuracy(Options& options, const std::string& by_default) {
   const NumberOption accuracy = options.add_number(
       "accuracy", "A",
       fmt::format(
-          "trials are added until the final gates are right within a total variation of A, 95 "
-          "times in 100 (0.02: of 100 bodies 2 end in another gate than said; default: {})",
+          "error bar to reach: trials are added until the final gates are within a total variation "
+          "of A of the truth, 95 times in 100; with 0.02, 2 of 100 bodies end in another gate than "
+          "predicted (default: {})",
           by_default));
   return {accuracy, options.add_count("gate-runs", "N",
-                                      "but not many more gate runs than N, whatever the accuracy")};
+                                      "stop soon after N gate runs, whatever the accuracy")};
 }
 
 lattice::AccuracyOptions accuracy_of(const Options& options, const AskedAccuracy& asked,
@@ -123,9 +124,8 @@ void fix_trials(const Options& options, const AskedAccuracy& asked, lattice::Acc
 void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>& own) {
   if (own && own->differs())
     options.warn(fmt::format(
-        "the full trials end otherwise than their chain says: {} in total variation of the final "
-        "gates, where chance makes {} ({}). Bodies may remember more from gate to gate than the "
-        "states hold: trust gatewalk lattice",
+        "the chain differs from its own full trials (total variation {}, chance {}, {}): trust "
+        "gatewalk lattice",
         fixed(own->total_variation, 4), fixed(own->chance_total_variation, 4), p_words(own->p)));
 }
 
@@ -135,8 +135,10 @@ void warn_of(const Options& options, const lattice::PooledPrediction& prediction
   double worst = 0.0;
   for (const lattice::StartAnswer& a : prediction.starts)
     worst = std::max(worst, a.error.total_variation);
-  options.warn(fmt::format("the accuracy asked for, {}, was not reached: the error bar is {}",
-                           digits(accuracy), fixed(worst, 4)));
+  options.warn(
+      fmt::format("the accuracy of {} was not reached, the error bar is {}; --gate-runs "
+                  "allows more runs",
+                  digits(accuracy), fixed(worst, 4)));
 }
 
 void warn_of_range(const Options& options, const lattice::MatrixFile& file, const std::string& path,
@@ -201,7 +203,7 @@ lattice::States states_of(const Options& options, const lattice::Scene& scene,
       lattice::states_of(scene, choice, starts, options.seed(), options.work());
   if (states.replaced)
     options.warn(
-        "Table III's bins do not resolve how bodies move in this scene; takes --bins auto");
+        "the bins of Table III are too coarse for this scene: --bins auto is used instead");
   return states;
 }
 
@@ -231,8 +233,8 @@ lattice::ChainStart checked_start(const Options& options, const dynamics::StateS
   const lattice::ChainStart start = lattice::start_in_bins(space, field, entry, name);
   if (start.beyond)
     options.warn(
-        fmt::format("{} lies beyond every entry that the bins were made from, {}; the prediction "
-                    "is that of the outermost bin. A matrix of a scene with this start suits it",
+        fmt::format("{} lies beyond every entry that the bins were made from, {}: build a matrix "
+                    "from a scene with this start",
                     name, lattice::entry_bins(space, entry.face)));
   return start;
 }
@@ -255,9 +257,8 @@ lattice::ChainStart ready_start(const Options& options,
   if (space.has_trees() && !own_state) {
     const auto& runs = matrices[static_cast<std::size_t>(problem.start_type())].trials;
     options.warn(fmt::format(
-        "{} is no state of its own: its row is that of its leaf, {}, {} runs in all, and as noisy "
-        "as so few are",
-        name, text_of(space.section(), range), runs[static_cast<std::size_t>(start.start.input)]));
+        "{} is no state of its own: its row is that of the leaf {}, with {} runs only", name,
+        text_of(space.section(), range), runs[static_cast<std::size_t>(start.start.input)]));
   }
   const auto on_edge = [](const std::array<double, 2>& edges, double v) {
     return edges[0] < edges[1] && (v == edges[0] || v == edges[1]);
@@ -266,9 +267,8 @@ lattice::ChainStart ready_start(const Options& options,
   for (std::size_t axis = 0; axis < space.section().coordinates.size(); ++axis)
     on_an_edge = on_an_edge || on_edge(range.at[axis], entry.at[axis]);
   if (on_an_edge)
-    options.remark(
-        fmt::format("{} lies on an edge of its bin, {}; its prediction is that of the whole bin",
-                    name, text_of(space.section(), range)));
+    options.remark(fmt::format("{} lies on an edge of its bin, {}; the whole bin is predicted",
+                               name, text_of(space.section(), range)));
   return start;
 }
 

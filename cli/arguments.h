@@ -24,8 +24,8 @@ namespace gatewalk::cli {
 /// Declares --start; `by_default` is the help text for the start without this option.
 TextsOption add_starts(Options& options,
                        const std::string& by_default =
-                           "the scene's start; in the paper's field, in whatever units, with "
-                           "the paper's start, the four of Table IV");
+                           "the scene's start; for the paper's field with the paper's start, in "
+                           "any units, the four of Table IV");
 /// The starts given by --start in a scene of gates; empty without --start. Throws
 /// std::invalid_argument for a malformed start.
 [[nodiscard]] std::vector<dynamics::Entry> given_starts(const TextsOption& given);

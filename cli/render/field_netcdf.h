@@ -11,8 +11,8 @@
 namespace gatewalk::cli {
 
 inline constexpr const char* kNetcdfHelp =
-    "write the shares of all that end, are trapped and depart in each gate as NetCDF-4, of fields "
-    "of any size (JSON has maps of up to 100000 gates)";
+    "write for each gate the shares of bodies that end there, are trapped there or depart from it, "
+    "as NetCDF-4, for fields of any size (JSON has maps of up to 100000 gates)";
 
 /// The bytes of a file with final_gates, trapped_gates and departed_gates (start x i_y x i_x),
 /// final_gates_low and _high where all have them, the endings, the starts (NaN: as bodies were seen

@@ -5,9 +5,9 @@
 
 paper_matrix m.nc
 # Other bins than the paper's: recorded in the file, and every command takes them.
-expect 0 '696 x 697 matrix' "$gatewalk" build "$scenes/field.toml" --trials 1 --bins 2 --seed 1 -o fine.nc
-expect 0 '23 x 24 matrix' "$gatewalk" build "$scenes/field.toml" --trials 5 --bins 0.5 --seed 1 -o coarse.nc
-expect 0 'bins  *2.0' "$gatewalk" show fine.nc --row 695
+expect 0 '696 rows, 697 columns' "$gatewalk" build "$scenes/field.toml" --trials 1 --bins 2 --seed 1 -o fine.nc
+expect 0 '23 rows, 24 columns' "$gatewalk" build "$scenes/field.toml" --trials 5 --bins 0.5 --seed 1 -o coarse.nc
+expect 0 'bins  *2.0' "$gatewalk" show fine.nc --row 695 --details
 "$gatewalk" show coarse.nc --json coarse.json --quiet
 holds '.text.bins == "0.5" and .inputs == 23 and (.rows | length) == 23' coarse.json
 for bins in fine coarse; do

@@ -18,7 +18,7 @@ for file in walk predict lattice; do
   holds '[.departed_gates[:8][][1:8][]] | add == 0' ends-$file.json
 done
 # Where along each side: the same bodies, by place in metres; the same of the dynamics beside the chain.
-"$gatewalk" predict "$scenes/field.toml" --accuracy 0.1 --json ends-trees.json 2>/dev/null >trees.txt
+"$gatewalk" predict "$scenes/field.toml" --accuracy 0.1 --details --json ends-trees.json 2>/dev/null >trees.txt
 for file in predict lattice trees; do
   holds '(.exits | keys_unsorted) == ["crossed", "left_side", "right_side"] and [.exits[] | length] == [9, 9, 9]' ends-$file.json
   holds '(.endings | add) as $all | .endings as $e | .exits | to_entries | all(((.value | map(.share) | add) - $e[.key] / $all | fabs) < 1e-12)' ends-$file.json

@@ -65,7 +65,7 @@ printf 'from,to,count\nup,up_last,5\nup_last,up_again,5\nup_again,right,3\nright
 "$gatewalk" import gaps.from.csv --states gaps.csv --start up_last --set field.rows=2 --set field.max_gates=20 -o gaps.nc --quiet 2>/dev/null
 "$gatewalk" show gaps.nc --quiet --json show.json --force
 holds '[.rows[].name] == ["up", "right", "up_again", "up_last"]' show.json
-for name in up up_again up_last right; do expect 0 "^start: $name\$" "$gatewalk" predict gaps.nc --start $name; done
+for name in up up_again up_last right; do expect 0 "^State of the chain at the start: $name\$" "$gatewalk" predict gaps.nc --details --start $name; done
 
 # A part of a side is no more than the side.
 parts='. as $a | [.exits | to_entries[] | .key as $side | .value[] | .share_95[1] <= $a.endings_95[$side][1] + 1e-12 and .share_95[0] <= $a.endings_95[$side][0] + 1e-12] | all'
