@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What the installed headers declare (types with their members, functions, constants) is what tests/files/api.txt says:
-# a change there may break the programs of others, and has a line in CHANGELOG.md.
+# The installed headers declare what tests/files/api.txt lists: types with their members, functions, constants. A change
+# of the list may break users' programs, and needs a line in CHANGELOG.md.
 #   tests/api_test.sh BUILD ROOT [--renew]      --renew: writes the list anew
 set -euo pipefail
 root=$2 list=$2/tests/files/api.txt

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What becomes of results when the system fails: call number k of read, write, fsync, fdatasync, rename, ftruncate, link, close,
-# opening and creating a file, starting a process or a thread fails, once and from then on, for the first MOST calls; so
-# does getting memory; of every command but chart limits, chart chain and reproduce, which take minutes and write as chart methods does.
-# /dev/full, a full disk, a quota, a folder that cannot be written, little memory, few files, no locale, no HOME, closed
-# outputs. Never a silent success, never a damaged file.
-#   [CALLS=...] [COMMANDS='show|walk'] faults.sh GATEWALK ROOT [MOST]    of these alone; MOST: 12
-# Memory is asked for 10^5 times: there k begins at 1000, and each is a fifth larger than the one before.
+# Tests every command while the system fails: call number k of read, write, fsync, fdatasync, rename, ftruncate, link,
+# close, opening or creating a file, starting a process or a thread fails, once or from then on, for the first MOST
+# calls; getting memory fails likewise. Left out are chart limits, chart chain and reproduce, which take minutes and
+# write as chart methods does. Also tests /dev/full, a full disk, a quota, a folder that cannot be written, little
+# memory, few files, no locale, no HOME, closed outputs. A command must never fail silently or leave a damaged file.
+#   [CALLS=...] [COMMANDS='show|walk'] faults.sh GATEWALK ROOT [MOST]    only these calls and commands; MOST: 12
+# Programs ask for memory 10^5 times, so for memory k begins at 1000, and each k is a fifth larger than the one before.
 here=$(realpath "$(dirname "$0")")
 most=${3:-12}
 . "$here/program/preamble.sh" "$1" "$2"
@@ -15,9 +15,9 @@ for tool in cc jq ffprobe addr2line ncdump; do command -v "$tool" >/dev/null || 
 cc -shared -fPIC -O1 -o faults.so "$here/faults.c" -ldl || exit 1
 runs=0 kept_old= seconds=120
 declare -A failed in_library
-# Where a library gets no memory it may lay out a file otherwise: what is in it counts, but for the checksum of its bytes.
+# Without memory a library may lay out a file in another way: its content is compared, not its checksum.
 content() { { ncdump "$1" || echo "no dump of $1"; } | sed 's/^netcdf .*//; /^\t*:checksum = /d'; }
-# What charts time is not the same twice.
+# The times in charts differ from run to run.
 untimed() { grep -v '"machine"' "$1" | sed -E 's/[0-9.]+(e[-+]?[0-9]+)?/N/g; s/ +/ /g'; }
 same() {
   case $1 in
@@ -27,18 +27,18 @@ same() {
     *) cmp -s "$1" "$2" ;;
   esac || fail "$2 is not $1, of a run without a fault (${call-} ${k-}${ever:+ and after it})"
 }
-# whole_film ONE OTHER: as wide, high and long, to its last byte (the trailer of a GIF).
+# whole_film ONE OTHER: both films have the same width, height and length, up to the last byte (the trailer of a GIF).
 frames_of() { ffprobe -v error -count_frames -show_entries stream=width,height,nb_read_frames -of csv "$1"; }
 whole_film() {
   [ "$(tail -c 1 "$2")" = ";" ] && [ "$(frames_of "$1")" = "$(frames_of "$2")" ] || fail "$2 is no whole film (${call-} ${k-})"
 }
-# each_old FILE..., each_whole FILE...: all as before the run; those that are not as before are as after a whole one.
+# each_old FILE..., each_whole FILE...: all are as before the run; or those that changed are as after a complete run.
 each_old() { for f in "$@"; do cmp -s "$f" <(echo old) || return 1; done; }
 each_whole() { for f in "$@"; do each_old "$f" || same "one/$f" "$f"; done; }
 has_checkpoint() { [[ $* != "build recorded"* ]] && "$gatewalk" "$1" --help | grep -q -e ' --checkpoint'; }  # no runs are made of recorded ones
 
-# survives OUTPUTS COMMAND...: an old output stays as it was, or the new one is whole; a status of 0 means that all are new.
-# With `begun`, a checkpoint's name, each run goes on from a copy of it; with kept_old=1 old files get another name.
+# survives OUTPUTS COMMAND...: an old output is unchanged, or the new one is whole; a status of 0 means that all are
+# new. If `begun` names a checkpoint, each run resumes a copy of it; with kept_old=1 old files are renamed.
 begun=
 survives() {
   local outputs call k ever error status left keep=()
@@ -49,7 +49,7 @@ survives() {
   rm -rf "${outputs[@]}" one && mkdir one
   "$gatewalk" "$@" --quiet >/dev/null 2>err.txt || fail "$* ($(cat err.txt))"
   for f in "${outputs[@]}"; do mkdir -p "$(dirname "one/$f")" && mv "$f" "one/$f"; done
-  # once K: the command, with the call that fails; sets status.
+  # once K: runs the command while call K fails; sets status.
   once() {
     for f in "${outputs[@]}"; do echo old >"$f"; done
     rm -rf seen pieces
@@ -64,21 +64,21 @@ survives() {
     [ $status != 137 ] || [ "$call ${outputs[*]}" = "malloc trace.gif" ] || fail "$call $1 failed, and no end: ${command[*]}"
     [ -z "$kept_old" ] || for f in "${outputs[@]}"; do each_old "$f" || each_old "$f.~1~" || fail "$call $1 failed, and $f is lost: ${command[*]}"; done
   }
-  # A library crashed, or ended the program: that is no success, and no file is damaged either. Counted by library.
-  # With memory only HDF5 does, which cannot close a file; or libraries that have not begun yet.
+  # A library crashed or ended the program. The command then fails without damage to files; crashes are counted by
+  # library. While there is memory, only HDF5 crashes, which cannot close a file, or a library that has just started.
   in_a_library() {
     local where
     [ $status -gt 2 ] || return 1
     where=$(cat crash 2>/dev/null || echo "status $status")
     [ $status != 137 ] || where="libfontconfig.so, which did not end,"
-    # Destructors of nlohmann's JSON need memory; and operator[] of a null value leaves without any what they cannot destroy.
+    # nlohmann's JSON needs memory in destructors, and operator[] of a null value leaves what they cannot destroy.
     [[ $where != "gatewalk "* ]] || ! addr2line -Cfe "$gatewalk" ${where#gatewalk } | grep -qE 'nlohmann.*(::destroy|::~)' ||
       where="libjson.so, destructors,"
     [ "$call" = malloc ] && [[ $where = lib*.so* ]] || [[ $where = @(libhdf5|libnetcdf|"libraries.so as they begin")* ]] || return 1
     where="$where where $call failed"
     in_library[$where]=$((${in_library[$where]-0} + 1))
   }
-  resumed() {  # what was kept serves
+  resumed() {  # the kept pieces can be resumed
     [ -e pieces ] || return 0
     "$gatewalk" "${command[@]}" --quiet --force --checkpoint pieces --resume >/dev/null 2>err.txt ||
       fail "not resumed after $call $k: ${command[*]} ($(cat err.txt))"
@@ -92,7 +92,7 @@ survives() {
         once "$k"
         if [ $status = 0 ]; then
           for f in "${outputs[@]}"; do same "one/$f" "$f"; done
-          # A library may open a file or start a process that it can do without; a result that is not on the disk is none.
+          # A library may do without some file or process. A result that is not on the disk does not count as written.
           case $call in write | fsync | rename) [ ! -e seen ] || fail "$call $k failed ($error), and status 0: $*" ;; esac
         elif in_a_library; then
           each_whole "${outputs[@]}"
@@ -104,7 +104,7 @@ survives() {
         left=$(find . -name '.gatewalk-*')
         [ -z "$left" ] || { fail "$call $k failed, and temporary files stay: $* ($left)"; find . -name '.gatewalk-*' -delete; }
         resumed
-        [ -e seen ] || break  # there are no more such calls
+        [ -e seen ] || break  # the command makes no more such calls
       done
     done
   done
@@ -115,7 +115,7 @@ survives() {
       once $k
       [ -e seen ] || break
       case $status in
-        # Without memory for its configuration fontconfig takes other letters, and seldom says so.
+        # Without memory for its configuration fontconfig takes another font, usually without a message.
         0) for f in "${outputs[@]}"; do
           case $f in
             *.gif) whole_film "one/$f" "$f" ;;
@@ -129,7 +129,7 @@ survives() {
       [ $status = 0 ] || each_whole "${outputs[@]}"
       resumed
     done
-  done 2>/dev/null  # the shell's own words about crashes
+  done 2>/dev/null  # the shell's own messages about crashes
   rm -rf "${outputs[@]}" pieces
   find . -name ".gatewalk-*" -delete
   echo "$runs runs: $1"
@@ -176,8 +176,8 @@ survives 'runs.csv runs.json' passages tracks.csv --cell cell.toml --fps 10 --me
 survives recorded.nc build recorded.csv --cell cell.toml -o recorded.nc
 survives 'out/fidelity.csv out/fidelity.json' chart field "${field[@]}" --trials 5 -o out
 survives 'out/chart.csv out/chart.json' chart methods "$scenes/soft_left.toml" --trials 20 --repeats 1 --methods stable,moreau -o out
-# Runs that go on from what an earlier one kept.
-# halfway COMMAND...: keeps its first piece of work in `begun`.
+# Runs that resume a checkpoint.
+# halfway COMMAND...: runs the command's first piece of work, kept in `begun`.
 halfway() {
   rm -f begun
   "$gatewalk" "$@" --checkpoint begun --max-time 0.001s --quiet 2>err.txt
@@ -189,7 +189,7 @@ survives lattice.json lattice "${field[@]}" --trials 1000 --json lattice.json
 halfway build "${field[@]}" --accuracy 0.1 -o tree.nc
 survives tree.nc build "${field[@]}" --accuracy 0.1 -o tree.nc
 begun=
-# Old files get another name.
+# Old files are renamed.
 kept_old=1
 survives lattice.json lattice "${field[@]}" --trials 200 --json lattice.json
 kept_old=
@@ -211,7 +211,7 @@ else
   [ ! -e new.json ] || fail "a full disk under the checkpoint: a result without a word"
   umount small
 fi
-# Root may write everywhere but into a folder that is mounted so.
+# Root may write everywhere except into a folder that is mounted read-only.
 mkdir forbidden && chmod 500 forbidden
 if [ ! -w forbidden ]; then
   expect 2 'Permission denied' "$gatewalk" "${one[@]}" --json forbidden/x.json
@@ -221,7 +221,7 @@ elif mount -t tmpfs -o ro none forbidden 2>/dev/null; then
 else
   fail "not tried: a folder that cannot be written"
 fi
-# A machine that gives little: the same result, or a word.
+# A machine with few resources gives the same result, or a message.
 "$gatewalk" "${one[@]}" --json one.json --force || fail "${one[*]}"
 poor() { # WORDS...: before the program
   local words status
@@ -243,7 +243,7 @@ poor closed
 for files in 4 6 8 12 20; do poor limited -n $files; done
 for size in 0 1 4; do poor limited -f $size; done  # blocks of 1 KB: what a quota does
 for stack in 64 256 1024; do poor limited -s $stack; done 2>/dev/null
-# Little memory: said, with what would help; the old file stays.
+# With little memory a message says which option would help; the old file stays.
 echo old >big.nc
 (ulimit -v 400000; "$gatewalk" build "${field[@]}" --accuracy 0.001 --starts all -o big.nc --force --quiet --threads 1 >/dev/null 2>err.txt; [ $? = 1 ]) || fail "out of memory: another status"
 grep -q 'out of memory' err.txt || fail "out of memory without a word: $(cat err.txt)"

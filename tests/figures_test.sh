@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The pictures of --figure, of every command that has one: made in every format, and read by tests/web/figures_test.mjs.
-#   tests/figures_test.sh GATEWALK SOURCES FOLDER KEPT, where tests/program keeps what studies drew
+# The figures of --figure: each command that has one draws it in every format, and tests/web/figures_test.mjs reads it.
+#   tests/figures_test.sh GATEWALK SOURCES FOLDER KEPT      KEPT: where tests/program keeps the figures of studies
 set -euo pipefail
 gatewalk=$1 scenes=$2/scenes out=$3 kept=$4
 rm -rf "$out"

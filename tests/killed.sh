@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Runs that are killed at any moment and go on. Sourced behind tests/program/preamble.sh, whose `fail` it uses.
+# Functions for runs that are killed at any moment and resumed. Sourced after tests/program/preamble.sh (`fail`).
 # shellcheck shell=bash
 
 field=("$scenes/field.toml" --seed 5)
@@ -12,9 +12,9 @@ same() {
 }
 command -v jq >/dev/null || { echo "needs jq" >&2; exit 2; }
 kills=0 resumable=0
-# killed OUTPUT SECONDS KILLS COMMAND...: the command, which writes OUTPUT, in one go; then killed with -9 at a random
-# moment of SECONDS, about what it takes, and resumed, until it was killed KILLS times in all. Each result must be that
-# of the run in one go, no file may be damaged, and the checkpoint goes when the result is there.
+# killed OUTPUT SECONDS KILLS COMMAND...: runs the command, which writes OUTPUT, without interruption. Then kills it
+# with -9 at a random moment within SECONDS (about its running time) and resumes it, KILLS times in all. Each result
+# must equal that of the uninterrupted run, no file may be damaged, and no checkpoint may remain after the result.
 killed() {
   local output=$1 seconds=$2 wanted=$3 pid status killed=0 runs=0
   shift 3
@@ -37,13 +37,13 @@ killed() {
     [ $status = 137 ] || fail "status $status of $* ($(cat err.txt))"
     killed=$((killed + 1))
     [ ! -s pieces ] || resumable=$((resumable + 1))
-    # Killed between the result and the end of the checkpoint: both are whole.
+    # Killed after the result was written and before the checkpoint was removed: both files are whole.
     [ ! -e "$output" ] || { same "one-$output" "$output" && rm -f "$output"; }
   done
   [ $killed = "$wanted" ] || fail "killed $killed times only: $*"
   "$gatewalk" "$@" --quiet --checkpoint pieces --resume >/dev/null 2>err.txt || fail "resumed: $* ($(cat err.txt))"
   same "one-$output" "$output"
   [ ! -e pieces ] || fail "the checkpoint is still there: $*"
-  rm -f "$output" .gatewalk-*  # the latter of what was killed while it replaced a file
+  rm -f "$output" .gatewalk-*  # temporary files of a run killed while it replaced a file
   kills=$((kills + killed))
 }

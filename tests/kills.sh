@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Kills every kind of run with -9 at N random moments, 125 each by default, and resumes it: tests/kills.sh GATEWALK ROOT [N]
+# Kills every kind of run with -9 at N random moments (125 each by default) and resumes it: tests/kills.sh GATEWALK ROOT
+# [N]
 n=${3:-125}
 here=$(realpath "$(dirname "$0")")
 . "$here/program/preamble.sh" "$1" "$2"

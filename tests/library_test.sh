@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # A project of its own finds the installed libraries, and compiles and runs the examples of cli/site/guides/library.md
-# with nothing added. Each installed header is in one of them. The page's examples for programs inside the source tree
-# find the root's headers too. A cell that is not ours (tests/library) goes all the way.
+# without further settings. Each installed header occurs in an example. The page's examples for programs inside the
+# source tree also find the headers that are not installed. tests/library runs a cell of its own through the whole
+# library.
 #   library_test.sh BUILD ROOT CXX
 set -euo pipefail
 build=$1 root=$(realpath "$2") compiler=$3

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# No number of ours is read or written by the process's locale: what the C library's strtod, scanf and printf and the
-# standard library's streams do. Looks at what compiled code refers to, function by function (nm -u would say it by file).
+# No number of ours is read or written with the process's locale, as strtod, scanf, printf and the standard library's
+# streams would do. Checks which symbols the compiled code refers to, function by function (nm -u knows only files).
 #   locale_symbols.sh BUILD ROOT COMPILER
 set -euo pipefail
 export LC_ALL=C
@@ -9,10 +9,11 @@ build=$(realpath "$1") root=$(realpath "$2")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# Streams with float, double and long double, by mangled names; C's functions, also as _FORTIFY_SOURCE and C99 call them.
+# Streams with float, double and long double, by mangled names; C functions, also by their names under _FORTIFY_SOURCE
+# and C99.
 c='(strto(f|d|ld)(_l)?|atof|(__isoc[0-9]+_)?v?[fsw]*scanf|(__)?v?[adfsnw]*printf(_chk)?|strfmon)'
 streams='_ZNSo9_M_insertI[fde]E.*|_ZNSolsE[fde]|_ZNSi10_M_extractI[fde]E.*|_ZNSirsER[fde]'
-# Allowed in functions of libraries that headers bring, each by its name:
+# Allowed in functions of libraries' headers, each by its name:
 allowed='^_ZNK?('
 allowed+='5boost4math8policies'           # words of its exceptions, in domains where none is thrown
 allowed+='|8nlohmann.*5lexer.*scan_number'  # strtod: of parsed_json alone, below, in the locale of C
@@ -33,7 +34,7 @@ found_in() {
     }' | sort -u
 }
 
-# It finds them.
+# The check finds a forbidden call.
 cat >"$work/trial.cpp" <<'END'
 #include <cstdio>
 #include <cstdlib>

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Ranks of MPI share a run: the bits of one process, on 1 to 4 of them; they stop together, and a run goes on that lost
-# one.   mpi_test.sh GATEWALK ROOT GATEWALK_MPI
+# MPI processes share a run: 1 to 4 of them give the bits of one process. They stop together, and a run that lost a
+# process can be resumed.   mpi_test.sh GATEWALK ROOT GATEWALK_MPI
 here=$(realpath "$(dirname "$0")")
 with_mpi=$(realpath "$3")
 . "$here/program/preamble.sh" "$1" "$2"
 . "$here/killed.sh"
 
-# on N COMMAND...: as root too, and on more ranks than there are processors. With a sanitizer, Open MPI keeps memory to the
-# end, in modules that are gone by then: it cannot be told from ours by name.
+# on N COMMAND...: also as root, and on more processes than there are processors. Under a sanitizer, Open MPI's leaks
+# cannot be told from ours by name, because its modules are unloaded at the end.
 on() {
   local n=$1
   shift
@@ -33,18 +33,18 @@ shared 3 bins.nc build "${field[@]}" --bins paper --trials 30 -o bins.nc
 shared 3 lattice.json lattice "${field[@]}" --trials 3000 --json lattice.json
 shared 3 rare.json rare "${field[@]}" --set run.method=moreau --row 3 --accuracy 0.1 --json rare.json
 shared 3 validate.json validate "${field[@]}" --bins paper --matrix-trials 20 --trials 1000 --null-draws 99 --json validate.json
-# What it prints is printed once.
+# Output is printed once.
 [ "$(on 3 lattice "${field[@]}" --trials 100 | grep -c crossed)" = 1 ] || fail "not one table of three ranks"
 on 2 lattice "${field[@]}" --trials 0 >out.txt 2>&1 && fail "--trials 0 is not refused"
 [ "$(grep -c 'must be at least 1' out.txt)" = 1 ] || fail "not one complaint: $(cat out.txt)"
 
-# Stopped together, resumed by other numbers of ranks, and by one process.
+# Stopped together, then resumed by other numbers of processes, and by one.
 long=(lattice "${field[@]}" --trials 60000 --json long.json)
 "$gatewalk" "${long[@]}" --quiet && mv long.json one-long.json
 on 3 "${long[@]}" --checkpoint pieces --max-time 1s >out.txt 2>&1 && fail "--max-time: status 0"
 [ "$(grep -c 'kept in pieces' out.txt)" = 1 ] || fail "--max-time: $(cat out.txt)"
 on 2 "${long[@]}" --checkpoint pieces --resume --max-time 1s >out.txt 2>&1
-# A rank that is lost ends all; what was done is kept.
+# A process that is lost ends all; the finished pieces are kept.
 on 3 "${long[@]}" --checkpoint pieces --resume >out.txt 2>&1 &
 sleep 1.5
 pkill -KILL -n -f "^$with_mpi lattice.*pieces" || fail "no rank to kill"

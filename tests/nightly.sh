@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What takes too long for every change, each in a build folder of its own (build-odr, build-alone ...):
+# Checks that take too long for every change, each in its own build folder (build-odr, build-alone ...):
 #   tests/nightly.sh [odr] [alone] [small] [debug] [clang] [address] [thread] [reproducible] [fuzz] [coverage]
-# All without an argument.
+# Without an argument, all of them.
 # odr    links the whole program with -flto -Wodr: no name may have two definitions. Without optimisation,
 #        which inlines functions before their types are compared. Two definitions within one batch of
 #        sources are an error of the compiler; the linker compares the batches.
@@ -26,8 +26,8 @@
 # coverage  which lines and branches of dynamics, markov and lattice the ordinary tests run (clang; a branch is a condition,
 #        true or false): results/reliability/coverage.csv; the log lists what none runs.
 #        Fails under 95 % of lines or 90 % of branches.
-# Whether tests see a mistake in a line that they run: tests/mutants.py.
-# What a step prints is in nightly-STEP.log; of one that fails the end is shown.
+# tests/mutants.py checks whether tests notice a mistake in a line that they run. The output of a step goes to
+# nightly-STEP.log; the end of a failed step's log is shown.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . ./.ci/prepare

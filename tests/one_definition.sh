@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# A struct, class, union or enum has one definition: two of one name in one namespace, in different files,
-# break the program without a word (the linker takes one of them for both). tests/one_definition.sh ROOT
-# reads the sources under ROOT; tests/nightly.sh odr asks the compiler as well.
+# Each struct, class, union or enum has one definition. Two of one name in one namespace, in different files, break the
+# program without a message, because the linker takes either. tests/one_definition.sh ROOT reads the sources under ROOT;
+# tests/nightly.sh odr asks the compiler as well.
 set -euo pipefail
 
 # Prints "NAME: FILE:LINE FILE:LINE" for each name that two of the files define.

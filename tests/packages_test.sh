@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What is installed: Debian packages that lintian finds no error in and whose bytes do not depend on the time, manual
-# pages without warnings, completion in three shells, a consumer that asks pkg-config.   packages_test.sh BUILD ROOT
+# Installed files: Debian packages pass lintian and have bytes that do not depend on the time; manual pages have no
+# warnings; completion works in three shells; pkg-config serves a project.   packages_test.sh BUILD ROOT
 set -euo pipefail
 build=$(realpath "$1") root=$(realpath "$2")
 for tool in lintian man zsh fish pkg-config; do command -v $tool >/dev/null || { echo "$tool is not installed"; exit 77; }; done
@@ -41,7 +41,7 @@ fish -c "source $share/fish/vendor_completions.d/gatewalk.fish; complete -C 'gat
 installed/usr/bin/gatewalk --version | grep -q gatewalk || fail "the program"
 [ -s $share/gatewalk/scenes/robot.toml ] || fail "no scenes"
 PYTHONPATH=installed/usr/lib/python3/dist-packages /usr/bin/python3 -c 'import gatewalk; print(gatewalk.__version__)' || fail "python"
-# A consumer with nothing but pkg-config.
+# A project that uses pkg-config alone.
 cmake --install "$build" --prefix "$work/prefix" >/dev/null
 cat >own.cpp <<'END'
 #include <cstdio>

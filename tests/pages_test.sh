@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Runs pages (pages.py), each in an empty folder.   pages_test.sh GATEWALK ROOT PYTHON [--renew] PAGE...
-# PYTHON must find the module gatewalk. --renew writes into the pages what is printed now. Without a page: whether
-# pages.py finds wrong pages.
+# Runs the commands of pages (pages.py), each page in an empty folder.   pages_test.sh GATEWALK ROOT PYTHON [--renew]
+# PAGE... PYTHON must find the module gatewalk. --renew writes the present output into the pages. Without a page: checks
+# that pages.py finds wrong pages.
 set -euo pipefail
 gatewalk=$(realpath "$1") root=$(realpath "$2") python=$3
 shift 3

@@ -1,18 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Whether two programs of gatewalk write the same results: JSON, CSV, NetCDF, tables, figures and pages of many command
-# lines, byte by byte, but for what names the program itself (version, commit) and what was timed. The help page of every
-# command and the schemas are compared too. Of figures the data are compared beside the picture: the blocks that gnuplot
-# gets. They are compared for PDF and PNG as well, and where the picture shows times. Of an SVG the words are compared and
-# what is seen: its pixels as gnuplot draws the same script into a PNG.
+# Compares the results of two builds of gatewalk on many command lines, byte by byte: JSON, CSV, NetCDF, tables, figures
+# and pages, except for the program's version and commit, and measured times. Help pages and schemas are compared too.
+# For a figure, gnuplot's data blocks are compared besides the picture, also for PDF and PNG, and where a picture shows
+# times. For an SVG, its words are compared, and the pixels that gnuplot draws with the same script into a PNG.
 #   tests/same_results.sh [--lines PATTERN] [--hashes FILE] [--other-byte-order] OLD NEW [SCENES]
 # OLD, NEW: programs; SCENES: folder of scenes (scenes/); PATTERN: only the lines that this regular expression finds;
-# FILE: gets a hash of what OLD writes for each line. With --other-byte-order NEW reads matrices that it made itself, as
-# netCDF 4.9 reads only those of its own order (netcdf-c, issue 2670), and h5dump, which reads both, shows them.
-# Schemas are those that a program writes (help --write); of older programs those that are installed with it
-# (../share/gatewalk/schemas beside it), else those of the sources that its build folder names.
-# Status 1: some differ; 2: nothing was compared.
-# To see that it finds what it should, change a constant in a copy of the sources, say kQuantile in
+# FILE: gets a hash of OLD's output for each line. With --other-byte-order NEW reads matrices that it made itself,
+# because netCDF 4.9 reads only files of its own order (netcdf-c, issue 2670); h5dump, which reads both, compares them.
+# Schemas are those that a program writes (help --write); older programs use those installed with them
+# (../share/gatewalk/schemas), or else those of the sources that their build folder names. Status 1: some results
+# differ; 2: nothing was compared.
+# To test this script, change a constant in a copy of the sources, such as kQuantile in
 # lattice/statistics/group_spread.cpp, and compare the programs.
 set -euf
 pattern=. hashes='' other_order='' tools=(jq ncdump gnuplot)

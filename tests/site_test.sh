@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The documentation site: it is built without a warning, its links lead somewhere, nothing comes from outside, nothing
-# is missing, and a browser shows it light, dark, narrow, by keyboard.
-# Then faults are put into it, which must be found.   site_test.sh PROGRAM PYTHONPATH OUT
+# The documentation site: it is built without a warning, its links work, nothing is loaded from elsewhere, nothing is
+# missing, and a browser shows it light, dark, narrow and by keyboard. Faults that are put into it must be found.
+#   site_test.sh PROGRAM PYTHONPATH OUT
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 program=$(realpath "$1") modules=$(realpath "$2") out=$3

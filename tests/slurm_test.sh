@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# cli/cluster on a Slurm of four virtual nodes on this machine: parts, one cancelled, one lost with its node, run again,
-# merged: the bits of one run.   slurm_test.sh GATEWALK ROOT; status 77 where Slurm is not installed.
+# cli/cluster on a Slurm of four virtual nodes on this machine: parts of which one is cancelled and one lost with its
+# node are run again and merged, and give the bits of one run.   slurm_test.sh GATEWALK ROOT; status 77 without Slurm.
 set -u
 gatewalk=$(realpath "$1") root=$(realpath "$2")
 for program in /usr/sbin/slurmctld /usr/sbin/slurmd /usr/sbin/munged; do
@@ -55,7 +55,7 @@ CommunicationParameters=NoInAddrAny
 NodeName=n[1-4] NodeHostname=$host NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + 4))] CPUs=1 RealMemory=500 State=UNKNOWN
 PartitionName=all Nodes=n[1-4] Default=YES MaxTime=60 State=UP
 C
-# The program of the jobs: while "held" is there, parts 1 and 2 stop in the middle, so that they are surely lost there.
+# The program of the jobs: while the file "held" exists, parts 1 and 2 stop midway, so that they are lost there.
 cat >held.sh <<H
 #!/bin/sh
 if [ -e $D/held ]; then
@@ -81,7 +81,7 @@ merged() { [ "$(left "$merge")" = 0 ]; }
 
 read -r array merge < <("$root/cli/cluster/array.sh" 8 run1 "${command[@]}")
 waited started
-scancel "${array}_1"                   # by somebody
+scancel "${array}_1"                   # by a user
 pkill -KILL -f -- "--shard 2/8 --part $D" # and one whose node is lost with all that runs on it
 waited ended
 waited merged
