@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# analyze: from a scene and from its file.   analyze_test.sh GATEWALK ROOT
+# Tests analyze, from a scene and from its matrix file: the keys that scripts rely on, and the mean times and works of trials.
+#   analyze_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# analyze: from a scene and from its file, the keys that scripts rely on; lattice takes as long.
 fast=(--set run.method=moreau --set field.rows=4 --set forces.propulsion_N=8.5)
 "$gatewalk" analyze "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --runs 300 --trials 4000 --json analysis.json --quiet
 holds '.endings_95.crossed[0] < .endings.crossed and .endings.trapped > 0.3' analysis.json

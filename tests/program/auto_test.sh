@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# run.method = "auto": what was chosen is named, on what evidence, and is the same everywhere.   auto_test.sh GATEWALK ROOT
+# Tests run.method = "auto": the result names the chosen method and its evidence, the same on any number of threads.
+#   auto_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# run.method = "auto": the result names what was chosen, on what evidence; any number of threads.
 auto="$scenes/field.toml --set run.method=auto --set run.time_limit_s=2"
 # shellcheck disable=SC2086
 {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What an output replaces is kept, whatever it is, and where is said in one line; --force keeps nothing.   backups_test.sh GATEWALK ROOT
+# An existing output of any kind is kept before it is replaced, and one line says where; --force keeps nothing.
+#   backups_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 seed() { "$gatewalk" gate "$scenes/single_gate.toml" --trials 20 --seed "$@"; }

@@ -1,10 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Other bins than the paper's: recorded in the file, taken by every command.   bins_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 paper_matrix m.nc
-# Other bins than the paper's: recorded in the file, and every command takes them.
 expect 0 '696 rows, 697 columns' "$gatewalk" build "$scenes/field.toml" --trials 1 --bins 2 --seed 1 -o fine.nc
 expect 0 '23 rows, 24 columns' "$gatewalk" build "$scenes/field.toml" --trials 5 --bins 0.5 --seed 1 -o coarse.nc
 expect 0 'bins  *2.0' "$gatewalk" show fine.nc --row 695 --details

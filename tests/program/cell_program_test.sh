@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Cell programs whose answers depend on more than the passage are refused; right ones cost few passages more.
+# Cell programs whose answers depend on more than the passage are refused; for correct ones the check costs few
+# passages.
 #   cell_program_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# chart chain: errors of a chain against its cost.   chart_chain_test.sh GATEWALK ROOT
+# Tests chart chain: the chain's error against its cost.   chart_chain_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 echo text >m.nc  # a file where a folder was asked for

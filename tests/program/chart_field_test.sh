@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# chart field, and what fidelities need.   chart_field_test.sh GATEWALK ROOT
+# Tests chart field, and which methods the kinds of field.fidelity need.   chart_field_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 echo text >m.nc  # a file where a folder was asked for

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# chart limits: where methods break near the numbers of a scene.   chart_limits_test.sh GATEWALK ROOT
+# Tests chart limits: where methods fail near the numbers of a scene.   chart_limits_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 # Nine numbers, five methods; the table fits a screen.

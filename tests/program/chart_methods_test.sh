@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# chart methods: speed against accuracy of the methods.   chart_methods_test.sh GATEWALK ROOT
+# Tests chart methods: speed against accuracy of the methods.   chart_methods_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 echo text >gate.json  # a file where a folder was asked for

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Walks that circle long or for ever, and the intervals of imported chains: no share without an answer or a bound, no
-# interval without its share.   circles_test.sh GATEWALK ROOT
+# Walks that circle for long or for ever, and imported chains: each share has an answer or a bound, and lies within its
+# interval.
+#   circles_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 cat >states.csv <<'END'
 state,name,move_x,move_y

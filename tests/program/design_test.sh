@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# design: which gates of a field to change.   design_test.sh GATEWALK ROOT
+# Tests design: which gates of a field to change.   design_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 small=("$scenes/mixed.toml" --set run.method=moreau --set field.rows=3 --changes 2 --types s,.)

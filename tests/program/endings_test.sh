@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Endings and their intervals, in every result about a field.   endings_test.sh GATEWALK ROOT
+# Endings with their intervals stand in every result about a field, first in every table; counts and probabilities add
+# up.
+#   endings_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 paper_matrix m.nc
-# Endings: in every result about a field, first in every table, as counts or probabilities that add up.
 "$gatewalk" walk m.nc --walks 3000 --json ends-walk.json --quiet
 "$gatewalk" predict m.nc --json ends-predict.json --quiet
 "$gatewalk" lattice "$scenes/field.toml" --trials 150 --json ends-lattice.json --quiet

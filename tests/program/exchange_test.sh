@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Chains to and from other programs: what is written is read back the same; an own matrix answers like ours; errors
-# name the place.   exchange_test.sh GATEWALK ROOT
+# Chains to and from other programs: export and import give the same chain, an imported matrix answers like ours, and
+# errors name the place.
+#   exchange_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 paper_matrix p.nc
 "$gatewalk" build "$scenes/field.toml" --gate-runs 500 -o tree.nc --quiet >/dev/null 2>&1

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# validate --observed: the counts of an experiment.   experiment_test.sh GATEWALK ROOT
+# Tests validate --observed with an experiment's counts: read as people write them, compared with dynamics and chain,
+# one verdict.
+#   experiment_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 paper_matrix m.nc
-# An experiment's counts: read as people write them, held against dynamics and chain, one verdict.
 "$gatewalk" lattice "$scenes/field.toml" --trials 60 --seed 77 --json sixty.json --quiet
 jq -r '["ending", "count"], (.endings | to_entries[] | [.key, .value]) | @csv' sixty.json >ends.csv
 jq -r '["gate_x", "gate_y", "count"], (.final_gates | to_entries[] | .key as $y | .value | to_entries[] | [.key - 4, $y, .value]) | @csv' sixty.json >gates.csv

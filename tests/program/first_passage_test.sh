@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# analyze --first-passage: committors and mean first passage times.   first_passage_test.sh GATEWALK ROOT
+# Tests analyze --first-passage: committors and mean first passage times.   first_passage_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 # A fair game, won at row 4: from row n of 4 it is won with (n + 1) / 5, and those who win play (25 - (n + 1)^2) / 3 games.

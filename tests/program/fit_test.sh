@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# fit: which numbers of a scene an experiment speaks for.   fit_test.sh GATEWALK ROOT
+# Tests fit: the numbers of a scene that explain an experiment.   fit_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 # An experiment whose push is known.

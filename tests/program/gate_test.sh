@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# gate: counts, methods, warnings, a better method beside.   gate_test.sh GATEWALK ROOT
+# Tests gate: counts, methods, warnings, and a better method beside the scene's.   gate_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 # gate: counts add up; --json - is JSON and nothing else.

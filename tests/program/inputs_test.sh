@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# No output may be an input, under whatever name.   inputs_test.sh GATEWALK ROOT
+# No output may be an input, under any name: the command refuses it before any work and leaves the input unchanged.
+#   inputs_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 paper_matrix m.nc
-# No output may be an input, under whatever name: refused before any work, the input as it was.
 mkdir -p safe/folder
 cp "$scenes/single_gate.toml" safe/own.toml
 cp m.nc safe/m.nc

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Signals: status 130, a clear word, the old files unchanged.   interrupt_test.sh GATEWALK ROOT
+# After a signal the status is 130, a message says so, and old files are unchanged.   interrupt_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 paper_matrix m.nc

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# landscape: the grid and its passes, in any units.   landscape_test.sh GATEWALK ROOT
+# Tests landscape: the grid and its passes, in any units.   landscape_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 # landscape: the paper's grid, the pass of its equal beams, three files.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# predict: large fields, and rows of other gates.   large_field_test.sh GATEWALK ROOT
+# Tests predict with large fields, and with rows of other gates.   large_field_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 paper_matrix m.nc

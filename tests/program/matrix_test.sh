@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# build, show, walk, predict: a matrix of the paper's bins.   matrix_test.sh GATEWALK ROOT
+# Tests build, show, walk, predict and lattice with a matrix of the paper's bins.   matrix_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# build, show, walk, predict, lattice.
 expect 0 '87 rows, 88 columns' "$gatewalk" build "$scenes/field.toml" --trials 20 --seed 1 -o m.nc
 expect 0 'rows without runs   0' "$gatewalk" show m.nc --rows
 "$gatewalk" build "$scenes/field.toml" --trials 20 --seed 1 -o m1.nc --threads 1 --quiet

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Matrix files that earlier versions wrote are read, and what they hold gives what it gave, without new runs.   old_files_test.sh GATEWALK ROOT
+# Matrix files of earlier versions are read, and give the same results as then, without new runs.
+#   old_files_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 files=$(dirname "$scenes")/tests/files
 shopt -s nullglob

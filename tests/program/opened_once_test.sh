@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# A scene file is opened once by every command.   opened_once_test.sh GATEWALK ROOT
+# Every command opens a scene file once.   opened_once_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 command -v python3 >/dev/null || { echo "needs python3"; exit 1; }
 

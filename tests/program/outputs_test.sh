@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What cannot be written is said before the work; files keep their modes; pipes work.   outputs_test.sh GATEWALK ROOT
+# An output that cannot be written is refused before the work; files keep their modes; pipes work.
+#   outputs_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 paper_matrix m.nc

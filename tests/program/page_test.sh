@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The page of an answer, --page: what is refused, what is written.   page_test.sh GATEWALK ROOT
+# Tests --page, the interactive page of an answer: what is refused, and what is written.   page_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 small=(--set run.method=moreau --set field.columns=3 --set field.rows=3)
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# --shard, --first-trial, merge: parts of a run make the bits of one.   parts_test.sh GATEWALK ROOT
+# Tests --shard, --first-trial and merge: the parts of a run give the bits of the whole run.
+#   parts_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 # What the commands write, but for times and for the list of parts.

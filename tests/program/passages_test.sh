@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# passages: tracks from a lab become recorded runs.   passages_test.sh GATEWALK ROOT
+# Tests passages: tracks from a lab become recorded runs.   passages_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 cat >cell.toml <<'END'

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# A reader that goes away (| head -1) is no failure.   pipe_test.sh GATEWALK ROOT
+# A reader that closes its pipe (| head -1) is no failure.   pipe_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 # unread COMMAND...: its standard output is a pipe without a reader, with a SIGPIPE that ends processes as usual and with

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# plan: which action to take in each gate.   plan_test.sh GATEWALK ROOT
+# Tests plan: which action to take in each gate.   plan_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 actions=(--set actions.slow.forces.propulsion_N=6 --set actions.fast.forces.propulsion_N=9)

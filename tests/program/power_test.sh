@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# power: how many trials.   power_test.sh GATEWALK ROOT
+# Tests power: the trials that an experiment needs, the shifts that some trials detect, two scenes.
+#   power_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# power: how many trials; what so many show; two scenes.
 power=(power "$scenes/field.toml" --accuracy 0.05)
 "$gatewalk" "${power[@]}" --trials 60 --versus beams.stiffness_left_Nm_per_rad=200 --versus beams.stiffness_right_Nm_per_rad=200 --details --json power.json >power.txt 2>err.txt || fail "power: $(cat err.txt)"
 holds '.power == 0.8 and .level == 0.05 and .trials == 60 and .error_95 <= 0.05 and ((.endings | add) - 1 | fabs) < 1e-6' power.json

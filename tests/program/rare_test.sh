@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# rare: the chance of every row.   rare_test.sh GATEWALK ROOT
+# Tests rare: the probability of reaching each row, beside the chain's and that of direct trials.
+#   rare_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# rare: every row's chance, the chain's beside it, as often as is asked for by direct trials.
 expect 0 '^Chance to enter row 4: ' "$gatewalk" rare "$scenes/field.toml" --set run.method=moreau --row 4 --accuracy 0.2 --gate-runs 40000 --trials 500 --json rare.json
 holds '.row == 4 and (.rows | length) == 4 and .probability > 0 and .probability_95[0] < .probability and .probability < .probability_95[1] and .chain > 0 and .relative_standard_error <= 0.2 and .gate_runs > 1000 and .rows[0].direct_entered > 0 and .rows[0].direct_entered_95[0] > 0 and .chain_seconds < .seconds' rare.json
 expect 2 'must lie between 0 and 1' "$gatewalk" rare "$scenes/field.toml" --accuracy 5

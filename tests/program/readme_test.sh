@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The commands in the tables of README and of the guides' index, as they are printed there; README's length.
+# README and the guides' index: the commands in their tables run as printed, and README is not too long.
 #   readme_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

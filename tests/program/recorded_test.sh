@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Recorded runs, and cells of another program.   recorded_test.sh GATEWALK ROOT
+# Tests recorded runs, and cells of another program.   recorded_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 tracks=$scenes/tracks
 

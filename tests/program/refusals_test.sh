@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What can be known wrong is refused before the runs: within a second of work, in front of hours of it.
-#   refusals_test.sh GATEWALK ROOT
+# Wrong input is refused before the runs: within a second of work, not after hours.   refusals_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 paper_matrix m.nc

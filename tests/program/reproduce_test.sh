@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# reproduce: everything is there, what is done is not done again.   reproduce_test.sh GATEWALK ROOT
+# Tests reproduce: the report is complete, each claim has a verdict, and finished studies are not run again.
+#   reproduce_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# Everything is there, each claim has a verdict; what is done is not done again; the page asks nobody.
 done_studies() { jq 'if type == "object" then length else 0 end' paper/data/done.json 2>/dev/null || echo 0; }
 mkdir -p paper/data
 echo '[1]' >paper/data/done.json  # an odd record stops nothing

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What the endings leave out has a name, in the table, in JSON and in a warning; and one thing has one number.
+# Shares that the endings leave out are named in the table, in JSON and in a warning, each number once.
 #   rest_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# cli/results.md and cli/scene.md, which list the keys of results and of scenes, are what the program says: a change of a
-# key is seen in them.   results_test.sh GATEWALK ROOT
+# cli/results.md and cli/scene.md list the keys of results and of scenes as the program does, so that a change of a key
+# is seen.
+#   results_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 "$gatewalk" help --write share || fail "help --write"

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# --checkpoint, --resume, --max-time: what is done is not lost, and what goes on gives the bits of a run that was never
-# stopped.   resume_test.sh GATEWALK ROOT
+# Tests --checkpoint, --resume and --max-time: finished work is kept, and a resumed run gives the bits of an
+# uninterrupted one.
+#   resume_test.sh GATEWALK ROOT
 here=$(realpath "$(dirname "$0")")
 . "$here/preamble.sh"
 

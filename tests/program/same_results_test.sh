@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# same_results.sh finds no difference where there is none, and all that there are.   same_results_test.sh GATEWALK ROOT
+# Tests tests/same_results.sh: it finds every difference, and none where there is none.
+#   same_results_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 same_results=$scenes/../tests/same_results.sh

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Samples: each is what it says, and the commands that need one take it; and a result as a table of numbers.
+# Tests sample: each sample is what it says, and the commands that need one read it. Also tests results as a table of
+# numbers.
 #   sample_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 

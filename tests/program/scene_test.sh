@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# scene: every key with its source; nothing of the user's is lost.   scene_test.sh GATEWALK ROOT
+# Tests scene: every key with its source, a scene of the user's own, and no loss of what the user wrote.
+#   scene_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# gatewalk scene: every key with its source; a scene of one's own; nothing of the user's is lost.
 printf 'body.mass_kg = 0.25\nbody.radius_m = 0.08\nforces.propulsion_N = 0.8\n' >mine.toml
 expect 0 '^body.radius_m  *0.08  *m  *mine.toml:2$' "$gatewalk" scene mine.toml
 "$gatewalk" scene mine.toml --json keys.json --quiet

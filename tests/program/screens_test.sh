@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# A command's first screen has at most fifteen lines for one start and no line over 100 characters, also with --details;
-# it says what to do next, and what it says runs.   screens_test.sh GATEWALK ROOT
+# A command's first screen has at most 15 lines for one start, and no line over 100 characters, also with --details. The
+# proposed commands run.
+#   screens_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 cp -r "$scenes"/*.toml "$scenes/observed.csv" "$scenes/tracks" .

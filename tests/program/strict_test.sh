@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# --strict: status 1 for a result that is not clean.   strict_test.sh GATEWALK ROOT
+# With --strict a result that is not clean gives status 1; the result is written all the same.
+#   strict_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 paper_matrix m.nc
@@ -8,7 +9,6 @@ paper_matrix m.nc
 "$gatewalk" build "$scenes/field.toml" --set run.method=paper --trials 5 -o paper.nc --quiet >/dev/null 2>&1
 expect 0 'paper.nc: the method showed faults: .* of [0-9]* gate runs' "$gatewalk" walk paper.nc --quiet --json paper-walk.json
 holds '.matrix_status.clean == false' paper-walk.json
-# --strict: status 1 for a result that is not clean, which is written all the same.
 expect 1 'strict: .* the exit status is 1; the result is written' "$gatewalk" gate "$scenes/single_gate.toml" --set run.method=paper --trials 200 --json strict.json --quiet --strict
 cmp -s strict.json paper.json || fail "--strict: another result"
 expect 0 'traversed' "$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 3 --strict

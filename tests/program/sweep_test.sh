@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# sweep: a point is what gate gives for its keys.   sweep_test.sh GATEWALK ROOT
+# Tests sweep: a point is what gate gives for its keys. Values as from:step:to, as lists, and from the scene's own grid.
+#   sweep_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# sweep: a point is what gate gives for those keys; from:step:to and lists; the scene's own grid.
 "$gatewalk" sweep "$scenes/single_gate.toml" --trials 60 --seed 5 --vary forces.propulsion_N=8:0.5:9 \
   --vary run.method=stable,moreau --csv sweep.csv --json sweep.json --quiet 2>/dev/null || fail "sweep"
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 60 --seed 5 --set forces.propulsion_N=8.5 --json point.json --quiet

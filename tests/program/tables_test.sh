@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Tables as users have them: each way of writing one gives the same result, or a sentence.   tables_test.sh GATEWALK ROOT
+# Tables as users write them: each way of writing one gives the same result, or an error in a sentence.
+#   tables_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 cat >cell.toml <<'END'

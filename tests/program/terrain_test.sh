@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Gates of several types.   terrain_test.sh GATEWALK ROOT
+# Gates of several types: one file has a matrix for each, and chain and dynamics see the same field.
+#   terrain_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# Gates of several types: a matrix for each in one file, the same field for chain and dynamics.
 mixed="$scenes/mixed.toml --set run.method=moreau"
 expect 0 '^terrain.types.u.forces.propulsion_N  *8.0 ' "$gatewalk" scene $mixed
 "$gatewalk" scene $mixed --json mixed.json --quiet

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# trace: the trials that gate and lattice count.   trace_test.sh GATEWALK ROOT
+# Tests trace: the trials that gate and lattice count; CSV, NetCDF and JSON agree; pages and files are complete.
+#   trace_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# trace: the trials that `gate` counts; CSV, NetCDF and JSON say the same; pages and files are whole.
 expect 0 'traversed left' "$gatewalk" trace "$scenes/soft_left.toml" --trials 12 --seed 1 --csv runs.csv --netcdf runs.nc --json runs.json --replay runs.html
 "$gatewalk" gate "$scenes/soft_left.toml" --trials 12 --seed 1 --json counted.json --quiet
 jq -s '(.[0].runs | map(.ending)) as $e | .[1] | [.traversed_left, .exited_left, .exited_right, .trapped] == ([("traversed left", "exited left", "exited right", "trapped") as $x | $e | map(select(. == $x)) | length])' runs.json counted.json |

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Chains of trees: as accurate as asked for, one file for all commands.   trees_test.sh GATEWALK ROOT
+# Predictions from a scene, and chains of trees: as accurate as asked for, and one file for all commands.
+#   trees_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 paper_matrix m.nc  # bins, beside them
-# Predictions from a scene, and chains of trees: as accurate as asked for, one file for all commands.
 fast=(--set run.method=moreau --set run.step_s=0.02)
 "$gatewalk" predict "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --json direct.json --threads 1 --quiet >/dev/null 2>&1
 "$gatewalk" predict "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --json direct2.json --threads 2 --quiet >/dev/null 2>&1

@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Help, wrong use, and the command that was meant.   usage_test.sh GATEWALK ROOT
+# Tests help, wrong use, and suggestions of the command that was meant.   usage_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# Help and wrong use.
 expect 0 'usage: gatewalk' "$gatewalk" --help
 expect 0 '^gatewalk [0-9]' "$gatewalk" --version
 expect 0 '^gatewalk [0-9]' "$gatewalk" -V

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# validate: the chain beside the full dynamics.   validate_test.sh GATEWALK ROOT
+# Tests validate: the chain beside the full dynamics, with one verdict that no p-value contradicts.
+#   validate_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 paper_matrix m.nc
-# validate: endings and one verdict that no p-value beside it contradicts.
 "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 300 --walks 500 --start 4.3,5.1,10.2 --start 0,0,15 --details --json ends-validate.json >ends-validate.txt 2>/dev/null
 head -1 ends-validate.txt | grep -q '^The chain .* the full dynamics from ' || fail "validate: the verdict does not come first"
 grep -q '^   d   vx    vy  *p  *differs most  *trials, %  chain, %  final gates: TV  by chance$' ends-validate.txt || fail "validate: no header of the starts"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# One word for one thing; large fields; which states.   words_test.sh GATEWALK ROOT
+# The same word for the same thing in every command; large fields; numbers of states.   words_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 paper_matrix m.nc
