@@ -41,20 +41,20 @@ expect 2 'keeps no gate runs' "$gatewalk" analyze bins.nc --accuracy 0.1
 holds '.costs.all | .trials == 500 and .mean_time_s > 0 and .quantiles_time_s[0] < .quantiles_time_s[4]' lattice_costs.json
 holds '([.costs | to_entries[] | select(.key != "all") | .value.trials] | add) == 500' lattice_costs.json
 
-# Starts: at most 300 of them, those entered most.
+# The list of starts has at most the 300 that are entered most.
 holds '(.starts | length) == 300 and .starts_in_all > 300 and ([.starts[].runs] | min) > 0' analysis.json
 expect 0 "the 300 of $(jq .starts_in_all analysis.json) ways to enter" "$gatewalk" analyze fast.nc --runs 0 --details
 holds '(.starts | length) == .starts_in_all' bins.json
 
-# A face that leads back, without limit of gates. A gambler who wins with 0.4, and has 1 of 5: (r - 1) / (r^5 - 1) with
-# r = 1.5 is 16/211, and games are n / 0.2 - 5 / 0.2 of it.
+# A face leads back, and there is no limit of gates. This is a gambler who has 1 of 5 and wins with probability 0.4:
+# with r = 1.5 the probability is (r - 1) / (r^5 - 1) = 16/211, and the games are n / 0.2 - 5 / 0.2 times that.
 printf 'state,name,move_x,move_y\n0,won,0,1\n1,lost,0,-1\n' >games.csv
 printf 'from,to,count\nwon,won,2\nwon,lost,3\nlost,won,2\nlost,lost,3\n' >ruin.csv
 "$gatewalk" import ruin.csv --states games.csv --start 0 --set field.rows=4 --set field.columns=1 --set field.max_gates=0 -o ruin.nc --quiet
 "$gatewalk" analyze ruin.nc --json ruin.json --quiet || fail "analyze of a face that leads back"
 holds '(.target_probability - 16 / 211 | fabs) < 1e-12 and (.expected_gates - (5 - 25 * 16 / 211) | fabs) < 1e-10' ruin.json
 
-# The mean time of few bodies has no interval, and says why: no group may have seen those that take long.
+# With few bodies the mean time has no interval, and says why: a group may have missed the slowest bodies.
 cat >short.toml <<'END'
 [body]
 mass_kg = 2.427
@@ -92,7 +92,7 @@ holds '.by_ending.trapped | .probability < 0.5 and .mean_time_s > 3 and .mean_ti
 holds '.by_ending.right_side | .probability > 0.7 and .mean_time_s_95[0] < .mean_time_s and .mean_time_s < .mean_time_s_95[1]' short.json
 tr '\n' ' ' <short.txt | grep -q 'These means have no interval: .*trapped,  *[0-9]* runs, *fewer than 100' || fail "analyze: no word of a mean of few runs"
 
-# How much of the variance each number makes over its range.
+# The share of each number in the variance over its range.
 over=(analyze "$scenes/field.toml" --set run.method=moreau --set field.rows=2 --accuracy 0.2 --runs 0 --quiet)
 ranges=(--over forces.propulsion_N=4:9 --over beams.mass_kg=0.1:0.11)
 "$gatewalk" "${over[@]}" "${ranges[@]}" --over-trials 30000 --json over.json --figure over.svg || fail "--over"
@@ -113,14 +113,14 @@ expect 2 'at most 4 numbers' "$gatewalk" "${over[@]}" "${ranges[@]}" --over a=1:
 expect 2 'must be at least 4096' "$gatewalk" "${over[@]}" "${ranges[@]}" --over-trials 4000
 expect 2 'is for --over' "$gatewalk" "${over[@]}" --over-trials 50000
 expect 2 'is for a scene, or a program.s cells, whose numbers vary' "$gatewalk" analyze fast.nc "${ranges[@]}"
-# The start is on the map of visits and on that of starts: a ring each, black on white (gnuplot's symbol gpPt5 in an SVG).
+# The start is a ring on the map of visits and on that of starts, black on white (gnuplot's symbol gpPt5 in an SVG).
 rings() { grep -o "#gpPt5' transform='translate([0-9.,]*)[^/]*color='rgb(  0,   0,   0)'" "$1" | sed 's/.*translate(\([0-9.]*\),\([0-9.]*\)).*/\1 \2/'; }
 for start in -12,0,15 12,0,15 12,0,25; do
   "$gatewalk" analyze "$scenes/field.toml" --set run.method=moreau --accuracy 0.1 --runs 0 --target left_side --start=$start --figure start.svg --quiet >/dev/null
   rings start.svg >"rings_$start.txt"
   [ "$(wc -l <"rings_$start.txt")" = 2 ] || fail "not two rings for the start $start: $(cat "rings_$start.txt")"
 done
-# Further to the right both are; faster only that on the map of starts, higher up.
+# A start further right moves both rings; a faster start moves only the ring on the map of starts, upwards.
 paste rings_-12,0,15.txt rings_12,0,15.txt rings_12,0,25.txt | awk '!($3 > $1) || NR == 1 && !($4 == $2 && $5 == $3 && $6 == $4) ||
   NR == 2 && $6 >= $4 { exit 1 }' || fail "rings are not where bodies start: $(paste rings_*.txt)"
 

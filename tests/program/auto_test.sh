@@ -32,14 +32,14 @@ for command in predict "analyze --runs 0" "rare --row 2 --gate-runs 4000" power 
   holds '(.method // .actions[0].method) | .asked == "auto" and .pilot_starts == 9' auto-tree.json
 done
 expect 0 '' "$gatewalk" power $auto --accuracy 0.2 --versus forces.propulsion_N=9
-# A matrix of a method by name is not what "auto" stands for; nor is one of another tolerance.
+# "auto" does not read a matrix made with a named method, or with another tolerance.
 "$gatewalk" build "$scenes/field.toml" --set run.time_limit_s=2 --trials 1 -o named.nc --quiet >/dev/null
 expect 2 'run.method: auto here, stable by name there' "$gatewalk" predict named.nc $auto
 expect 2 'run.tolerance: 0.01 here, 0.005 there' "$gatewalk" predict auto.nc $auto --set run.tolerance=0.01
 for tolerance in 0.99e-4 1.01 nan -1; do
   expect 2 "run.tolerance = .* must lie in \[1e-04, 1\]" "$gatewalk" gate $auto --set run.tolerance=$tolerance
 done
-# No exact method takes such beams; and one that does shows faults at such a speed: refused, and said.
+# No exact method takes such beams; and a method that does shows faults at this speed: refused with a message.
 expect 2 'run.method = "auto" is not permitted for this scene: no method is exact' "$gatewalk" gate $auto --set beams.mass_kg=1e-6 --set beams.stiffness_left_Nm_per_rad=1e12
 too_fast="--set beams.stiffness_right_Nm_per_rad=1e12 --set run.time_limit_s=0.02 --set start.vy_m_per_s=1e10"
 expect 0 'even the most accurate setting shows faults' "$gatewalk" gate $auto $too_fast --trials 5 --quiet --json auto-faulty.json

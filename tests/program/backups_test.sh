@@ -32,7 +32,7 @@ seed 1 --json empty.json --quiet
 for i in $(seq 4 99); do : >a.json.~$i~; done
 expect 2 'json: a.json: is there, and so are 99 backups of it' seed 6 --json a.json
 seed 5 --json - --quiet | cmp -s - a.json || fail "a refused command wrote"
-# Each file of a study's folder, figures too.
+# Each file of a study's folder is kept, figures too.
 few() { "$gatewalk" sweep "$scenes/single_gate.toml" --trials 5 --vary forces.random_N=0,20 --seed "$@"; }
 few 1 --csv s.csv --json s.json --quiet
 few 2 --csv s.csv --json s.json >/dev/null 2>err.txt

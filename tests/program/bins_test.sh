@@ -20,7 +20,7 @@ done
 jq -s '.[0].rows == .[1].rows' m.json m1.json | grep -q true || fail "--bins 1 is not the paper's matrix"
 for bins in 0 -1 nan 1e9; do expect 2 'bins' "$gatewalk" build "$scenes/field.toml" --bins $bins -o x.nc; done
 
-# States from a pilot: the default of any other field. Twins, in other units, have the same matrix.
+# Bins from a pilot are the default of any other field. Twins, in other units, have the same matrix.
 cat >cm.toml <<'END'
 [body]
 mass_kg = 0.25
@@ -53,21 +53,21 @@ holds '.state_space.resolution.unresolved_variance | [.d, .vx, .vy] | all(. > 0 
 cmp -s auto.nc auto2.nc || fail "build: bins from a pilot depend on the threads"
 expect 0 '^States: .* pilot trials' "$gatewalk" show auto.nc --details
 "$gatewalk" show auto.nc --json auto-show.json --quiet
-# Where the scene is symmetric, so are its bins: EN's states, by d, then vx, turned about.
+# A symmetric scene has symmetric bins: EN's states in the order of d, then vx, are mirrored.
 holds '[.rows[] | select(.boundary == "EN") | .vx_m_per_s] | flatten | unique | map(. + 0) | . == (map(-.) | sort)' <(jq '.rows |= .[:-1]' auto-show.json)
 expect 0 '^State of the chain at the start: EN d 0 m, vx 0 m/s, vy 0.4 m/s' "$gatewalk" predict auto.nc --details
 expect 0 'beyond every entry that the bins were made from' "$gatewalk" predict auto.nc --start 0,0,9 --quiet
-# A warning, and the way out, where the bins given do not resolve what bodies do.
+# If the bins do not resolve how bodies move, a warning says so, and what to do.
 expect 0 'the bins are too coarse.*--bins auto' "$gatewalk" build cm.toml --set "bins.EN_vx_m_per_s=[-90, 90]" --set "bins.RD_vx_m_per_s=[-90, 0]" --set "bins.LD_vx_m_per_s=[0, 90]" --trials 1 -o own.nc --quiet
 expect 2 'has a table \[bins\]' "$gatewalk" build cm.toml --set "bins.EN_vx_m_per_s=[-1, 1]" --bins auto -o x.nc
 expect 2 'no meaning beside --matrix' "$gatewalk" validate cm.toml --matrix auto.nc --bins auto
 expect 2 'must be paper, tree, auto' "$gatewalk" build cm.toml --bins many -o x.nc
-# validate without --start: a scene's own start, but for the paper's field with the paper's start.
+# validate without --start takes the scene's own start; in the paper's field with the paper's start, Table IV's starts.
 "$gatewalk" validate cm.toml --trials 100 --matrix-trials 2 --json own.json --quiet
 holds '(.starts | map(.start.vy_m_per_s)) == [0.4] and .state_space.bins == "auto"' own.json
 "$gatewalk" validate "$scenes/field.toml" --set start.x_m=3 --matrix m.nc --trials 20 --json own.json --quiet
 holds '(.starts | map(.start.d_m)) == [3]' own.json
-# Edges of one's own travel with the matrix, and another scene's are a difference.
+# A scene's own edges are stored with the matrix; another scene's edges count as a difference.
 { cat "$scenes/field.toml"; printf '[bins]\nEN_d_m = [-25, -5, 5, 25]\nEN_vx_m_per_s = [-20, 0, 20]\n'; } >bins.toml
 expect 0 'transition matrix of 68 states (68 rows, 69 columns' "$gatewalk" build bins.toml --trials 2 -o bins.nc --json bins.json
 holds '.bins == "scene" and .state_space.outermost_bins == "closed"' bins.json

@@ -10,13 +10,13 @@ field = { columns = 1, rows = 3, max_gates = 20 }
 start = { face = "S", s_m = 0.0 }
 cell = { width_m = 1.0, length_m = 1.0, faces = [{ name = "S", move = [0, 1] }], coordinates = [{ name = "s", unit = "m" }] }
 END
-# Who enters goes on with a chance of 0.6, else stays; where it goes on and when is always the same, so that only the
-# chance tells. But for "process", whose times tell that another process answered; "seldom" answers one passage of four
-# otherwise in every other process.
+# A body goes on with probability 0.6, otherwise it is trapped. Where and when it goes on is always the same, so only
+# this probability can differ. With "process" the times show which process answered; with "seldom" every other process
+# answers one passage of four in another way.
 cat >program.py <<'END'
 import os, random, sys
 how, number = sys.argv[1], 0
-while how == "seldom":  # the how manieth process it is
+while how == "seldom":  # the number of this process
     try:
         os.mkdir(f"{sys.argv[2]}/{number}")
         break
@@ -57,19 +57,19 @@ for threads in 1 3; do
     grep -q 'Seed the generator with the seed of each passage' out.txt || fail "$how: no way out: $(cat out.txt)"
   done
 done
-# Also where one passage has the same answer by chance in three of four processes. One thread: each run is the same.
+# The check also works if a passage has the same answer in three of four processes. With one thread runs are the same.
 for seed in 1 2 3 4; do
   rm -rf started && mkdir started
   expect 1 'answers the same passage in two ways' run seldom --trials 1000 --threads 1 --seed $seed
 done
-# Few passages, one at a time too: the first four are seen once more.
+# With few passages, also one at a time: the first four are repeated.
 expect 1 'answers the same passage in two ways' run state --trials 4 --threads 1
 expect 1 'answers the same passage in two ways' run state --trials 100000 --threads 2
 for command in predict analyze validate; do
   expect 1 'answers the same passage in two ways' "$gatewalk" $command cell.toml --cell-program "python3 $work/program.py clock" --quiet
 done
 
-# A right one has the same result on any number of threads; 0.6^3 cross.
+# A correct program has the same result on any number of threads; 0.6^3 cross.
 for trials in 1 20 100 3000; do
   run right --trials $trials --threads 1 --json one.json --force >/dev/null || fail "a right program, $trials trials"
   run right --trials $trials --threads 3 --json three.json --force >/dev/null || fail "a right program on three threads"

@@ -3,8 +3,8 @@
 # Tests chart field, and which methods the kinds of field.fidelity need.   chart_field_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-echo text >m.nc  # a file where a folder was asked for
-# Fidelities need their method; the chart leaves CSV and JSON behind also when there is no gnuplot.
+echo text >m.nc  # a file in the place of a folder
+# A fidelity is refused with a method that cannot do it; the chart leaves CSV and JSON behind even without gnuplot.
 expect 2 'field.fidelity = "all" is not permitted with run.method = "stable"' "$gatewalk" lattice "$scenes/field.toml" --set field.fidelity=all
 expect 2 'one of "active", "remember", "all"' "$gatewalk" lattice "$scenes/field.toml" --set field.fidelity=most
 expect 2 'missing -o' "$gatewalk" chart field "$scenes/field.toml"
@@ -29,7 +29,7 @@ rm new/chart/*
 expect 1 'gnuplot was not found.*are written' env PATH=/nonexistent "$gatewalk" chart field "$scenes/field.toml" -o new/chart --trials 5 --start 0,0,15
 [ "$(ls new/chart | xargs)" = "fidelity.csv fidelity.json" ] || fail "chart field without gnuplot left $(ls new/chart)"
 
-# One gate has no neighbours: no trial changes, and it takes 3/0.03 trials to know that few would.
+# One gate has no neighbours, so no trial changes; it takes 3/0.03 trials to know that few would.
 one_gate="$scenes/field.toml --set field.columns=1 --set field.rows=1 --set run.step_s=0.02 --start 0,0,15"
 # shellcheck disable=SC2086
 {
@@ -37,7 +37,7 @@ expect 0 '^Start 0, 0, 15: 99 trials cannot tell .* 0.0000 +- 0.0303 ' "$gatewal
 holds '.starts[0].active_is_enough == null' new/chart/fidelity.json
 expect 0 '^Start 0, 0, 15: active is enough: .* 0.0000 +- 0.0300 ' "$gatewalk" chart field $one_gate --trials 100 -o new/chart
 holds '.starts[0].active_is_enough == true and (.starts[0].runs | map(.step_s == 0.02) | all)' new/chart/fidelity.json
-# The step is said, and what it does to moreau.
+# The step is named, with its effect on moreau.
 expect 0 '^gatewalk: .*(moreau), step 0.02 s: .* sank into a beam' "$gatewalk" chart field $one_gate --trials 100 -o new/chart --quiet
 expect 0 'step 0.02 s (moreau), 0.02 s (stable)' "$gatewalk" chart field $one_gate --trials 5 -o new/chart --details
 }

@@ -17,7 +17,7 @@ holds '.methods[1] | .setting == "run.step_s" and .value == 0.02 and .limits[0].
 [ "$(awk -F, '{ print NF }' maps/limits.csv | sort -u)" = 23 ] || fail "chart limits: uneven lines in limits.csv"
 [ "$(awk -F, '$7 == 1' maps/limits.csv | wc -l)" = 35 ] || fail "chart limits: the scene is not in each of its maps"
 
-# The scene's own point is what gate says of it, and its sign stands in gate's warning.
+# The verdict at the scene's own point is that of gate, and its sign stands in gate's warning.
 faults='{runs, runs_penetrating_over_1_percent, runs_creating_energy, runs_beyond_the_stability_bound, runs_not_finite, impacts, worst_penetration_m}'
 for k in 0 1 2 3 4; do
   method=$(value ".methods[$k].name" maps/limits.json) sign=$(value ".methods[$k] | select(.status != \"outcomes off\") | .sign" maps/limits.json)
@@ -25,14 +25,14 @@ for k in 0 1 2 3 4; do
   jq -s "(.[0].methods[$k].health | $faults) == (.[1].status | $faults)" maps/limits.json gate.json | grep -q true || fail "$method: gate reports other faults"
   grep -q -F -e "$sign" gate.err || [ -z "$sign" ] || fail "$method: gate does not warn: $sign"
 done
-holds '[.methods[] | .status] | unique | length > 1' maps/limits.json  # some are fine, some are not
+holds '[.methods[] | .status] | unique | length > 1' maps/limits.json  # the methods differ
 
-# What the table says helps is taken as it is printed, and helps.
+# The remedy in the table can be given as printed, and helps.
 line=$(grep -m 1 '^  moreau .*step x5: .*; take run.step_s = ' table.txt) || fail "chart limits: moreau has no finer step"
 "$gatewalk" gate "$scenes/field.toml" --set run.method=moreau --set "run.step_s=${line##* = }" --set run.time_limit_s=3 --trials 8 --json helped.json --quiet >/dev/null ||
   fail "a step that helps is refused: $line"
 holds '.status.clean' helped.json
-# Each number of the result has a line of its own in the table of numbers.
+# Each number of the result has its own line in the table of numbers.
 "$gatewalk" chart limits "$scenes/single_gate.toml" -o maps --force --quick --trials 1 --set run.time_limit_s=1 --csv numbers.csv --quiet
 [ -z "$(cut -d, -f1-3 numbers.csv | sort | uniq -d)" ] || fail "chart limits: equal names in numbers.csv: $(cut -d, -f1-3 numbers.csv | sort | uniq -d | head -n 2)"
 # A tolerance that no map has.
@@ -40,11 +40,12 @@ for tolerance in 1e-20 1e5; do
   expect 0 'where each method breaks' "$gatewalk" chart limits "$scenes/single_gate.toml" -o maps --force --quick --trials 1 --set run.time_limit_s=1 --set run.event_tolerance_m=$tolerance
 done
 
-# What the scene has not is left out: damping, and the speed of a start at rest. The old figures go.
+# What the scene does not have is left out: damping, and the speed of a start at rest. Old figures are removed.
 expect 0 'undamped: where each method breaks' "$gatewalk" chart limits "$scenes/undamped.toml" -o maps --force "${short[@]}"
 holds '[.maps[].number] | unique == ["beam_mass", "graze", "impulse_threshold", "lever", "random_force", "restitution", "stiffness"]' maps/limits.json
 [ "$(ls maps/*.svg | wc -l)" = 7 ] || fail "chart limits beside old figures: $(ls maps)"
-# Of a field with gates of several types the scene's own is charted, and that is said. A step of the scene is that of all methods.
+# In a field with several types of gates the scene's own is charted, with a message. A step of the scene holds for all
+# methods.
 expect 0 'its own gate, not of type s or u;' "$gatewalk" chart limits "$scenes/mixed.toml" -o mixed "${short[@]}" --set run.step_s=0.01 --set forces.random_N=0
 grep -q 'has no effect here: one gate is run' out.txt || fail "chart limits: silent about types of gates"
 holds '.types_not_charted == ["s", "u"] and [.methods[0:4][] | .value == 0.01] == [true, true, true, true]' mixed/limits.json

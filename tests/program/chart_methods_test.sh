@@ -3,8 +3,8 @@
 # Tests chart methods: speed against accuracy of the methods.   chart_methods_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-echo text >gate.json  # a file where a folder was asked for
-# chart methods: a line per scene, method and setting; wrong use is said before any work.
+echo text >gate.json  # a file in the place of a folder
+# A line for each scene, method and setting; wrong use is refused before any work.
 "$gatewalk" chart methods "$scenes/field.toml" "$scenes/stiff.toml" -o charts --trials 20 --repeats 1 --seed 2 --quiet >/dev/null 2>chart.err ||
   fail "chart: $(head -n 3 chart.err)"
 [ "$(wc -l <charts/chart.csv)" = 83 ] || fail "chart.csv has $(wc -l <charts/chart.csv) lines"
@@ -22,17 +22,17 @@ grep -q 'half or more parted' charts/chart.svg || fail "chart.svg is silent abou
 cp "$scenes/stiff.toml" "a,b.toml"
 "$gatewalk" chart methods "a,b.toml" -o quoted --trials 20 --repeats 1 --methods stable --quiet >/dev/null
 grep -q '^"a,b",stable,run.step_s,' quoted/chart.csv || fail "chart.csv: a comma in a name makes two fields"
-# Every line as long as the first, reasons in quotes aside.
+# Every line has as many fields as the first, apart from commas in quoted reasons.
 [ "$(sed -E 's/"[^"]*"//' charts/chart.csv | awk -F, '{ print NF }' | sort -u | wc -l)" = 1 ] || fail "chart.csv: uneven lines"
-# Settings with the reference's bits have a place in the figure: the disc misses every beam.
+# Settings with the reference's bits have a place in the figure: here the disc misses every beam.
 "$gatewalk" chart methods "$scenes/undamped.toml" -o exact --trials 20 --repeats 1 --methods stable,event --quiet --json - >exact.json
 [ -n "$(value '.scenes[0].settings[] | select(.errors.strong.position_m.median.below? == 1e-8) | .value' exact.json)" ] ||
   fail "chart: no setting is below a billionth of R: $(jq -c '[.scenes[0].settings[] | [.method, .value, .errors.strong.position_m.median]]' exact.json)"
 grep -q 'half or more parted' exact/chart.svg && fail "chart: exact settings are called parted"
-# The table shows the least of the times, and chance beside the error.
+# The table shows the least time, and the error by chance beside the error.
 "$gatewalk" chart methods "$scenes/stiff.toml" -o times --trials 50 --repeats 3 --methods event --details --json times.json >times.txt 2>/dev/null
 for i in 0 1 2 3 4 5 6 7; do
-  # awk rounds a double, as the program does; the shell's printf rounds another number half-way between two.
+  # awk rounds a double as the program does; the shell's printf rounds differently half-way between two numbers.
   least=$(value ".scenes[0].settings[$i].microseconds_per_trial.rounds | min" times.json | awk '{ printf "%.1f", $1 }')
   grep -E -A8 'us/trial .* chance' times.txt | tail -n +$((i + 2)) | head -n 1 | grep -q " $least " || fail "chart: setting $i: not $least us in the table"
 done
@@ -47,7 +47,7 @@ expect 2 'gate.json' "$gatewalk" chart methods "$scenes/field.toml" -o gate.json
 for name in csv json svg; do
   expect 2 'are the same file' "$gatewalk" chart methods "$scenes/field.toml" -o charts --trials 1 --json charts/../charts/chart.$name
 done
-# A scene that the reference method refuses is named before the first trial of the others.
+# A scene that the reference method refuses is named before the first trial of the other scenes.
 sed -E 's/^stiffness_left_Nm_per_rad.*/stiffness_left_Nm_per_rad = 1e12/; s/^method = .*/method = "paper"/' \
   "$scenes/field.toml" >rigid.toml
 expect 2 'rigid.toml: no reference' timeout 20 "$gatewalk" chart methods "$scenes/field.toml" rigid.toml -o charts --trials 1e7

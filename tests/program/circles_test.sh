@@ -17,7 +17,7 @@ import() { "$gatewalk" import "$1" --states states.csv --start 0 --set field.row
 within='def inside: .[0] as $s | .[1] as $i | $s <= 0 or $s >= 1 or ($i[0] < $s and $s < $i[1]);
   . as $all | [(.endings | keys[]) as $k | [$all.endings[$k], $all.endings_95[$k]] | inside] | all'
 
-# 3 of 4 go right, and come out ahead after some 10^3 to 10^9 rounds; by hand they all cross in the end.
+# 3 of 4 go right, and come out ahead after about 10^3 to 10^9 rounds; by hand, all cross in the end.
 for others in 999 999999 999999999; do
   printf 'from,to,count\nahead,right,75\nahead,back,25\nright,left,1000\nleft,right,%d\nleft,ahead,1\nback,ahead,10\n' "$others" >long.csv
   import long.csv long.nc 3
@@ -30,13 +30,13 @@ for others in 999 999999 999999999; do
     holds '.left_out_matrices == 0' long.json
   done
 done
-# A sum that was asked for by name, and stopped early, says so: each interval holds what is left.
+# A sum that stops early because its solver was named says so, and each interval includes the rest.
 printf 'from,to,count\nahead,right,75\nahead,back,25\nright,left,1000\nleft,right,999999\nleft,ahead,1\nback,ahead,10\n' >long.csv
 import long.csv long.nc 3
 expect 0 'were still walking when the sum was stopped' "$gatewalk" predict long.nc --solver propagate --json long.json
 holds '.still_walking as $left | .endings_95.crossed[0] <= 0.75 and .endings_95.crossed[1] >= 0.75 and $left > 0.5' long.json
 
-# Half of them get into two states that lead to nowhere else.
+# Half of the walks get into two states without a way out.
 printf 'from,to,count\nahead,right,50\nahead,trapped,50\nright,left,1000\nleft,right,1000\n' >never.csv
 import never.csv never.nc 2
 expect 0 'still walking in states without a way out: 50' "$gatewalk" predict never.nc --details --json never.json
@@ -47,8 +47,8 @@ expect 2 "solver march .*solvers auto and klu" "$gatewalk" predict long.nc --sol
 holds '.still_walking as $left | .endings.cut_off == 0 and $left > 0 and .still_walking_95[0] < $left and $left < .still_walking_95[1]' walked.json
 holds '([.final_gates[][]] | add) == 20 - .still_walking and .final_gates == .trapped_gates' walked.json
 
-# Sums that would stop with walks under way are no answer. Half of the walks circle for ever; a walk to and fro in
-# 501 columns leaves after 251^2 gates, which are more than are added up.
+# A sum that would stop with walks under way gives no answer. Half of the walks circle for ever. A walk to and fro in
+# 501 columns leaves after 251^2 gates, more than a sum adds up.
 expect 0 'visits, times and costs are not known: 50 % of the walks' "$gatewalk" analyze never.nc --json analyzed.json
 holds '.expected_gates == null and (.why_no_interval.expected_gates | startswith("50 %")) and .endings.trapped == 0.5 and .still_walking == 0.5' analyzed.json
 holds '[.expected_visits[][] | . == null] | all' analyzed.json
@@ -57,19 +57,19 @@ printf 'from,to,count\nright,right,50\nright,left,50\nleft,left,50\nleft,right,5
 expect 0 'visits, times and costs are not known' "$gatewalk" analyze fro.nc --paths 0 --json fro.json
 holds '.expected_gates == null and (.endings.left_side + .endings.right_side - 1 | fabs) < 1e-6 and .still_walking < 1e-6' fro.json
 
-# One run of a row that half of the walks pass: it excludes hardly anything, however many runs the start has.
+# A row that half of the walks pass has a single run. It excludes hardly anything, however many runs the start has.
 printf 'from,to,count\nahead,right,50000\nahead,trapped,50000\nright,ahead,1\n' >few.csv
 import few.csv few.nc 1
 "$gatewalk" predict few.nc --json few.json --quiet || fail "predict few.nc"
 holds '.endings.crossed == 0.5 and .endings_95.crossed[0] < 0.1 and .endings_95.crossed[1] <= 1' few.json
 
-# Counts that no experiment has are no error.
+# Counts that no experiment could give are no error.
 printf 'from,to,count\nahead,ahead,300000000052\nahead,trapped,30000000004\n' >many.csv
 import many.csv many.nc 2
 "$gatewalk" predict many.nc --json many.json --quiet || fail "predict many.nc"
 holds "$within" many.json
 
-# Counts of trees: a run is counted with its mirror image, and import knows it. Of trajectories each run once.
+# Trees count a run together with its mirror image, and import knows it. In trajectories each run counts once.
 "$gatewalk" build "$scenes/field.toml" --accuracy 0.05 -o tree.nc --quiet >/dev/null 2>&1
 "$gatewalk" predict tree.nc --first-runs 0 --json own.json --quiet
 start=$(jq .start_state.input own.json)
@@ -82,9 +82,9 @@ for file in g.mtx runs.dtrajs; do
   holds "$within" $file.json
 done
 expect 0 'intervals count each run once' "$gatewalk" import g.mtx --states g.states.csv --start "$start" -o back.nc --force
-# (States stand in another order: intervals are of other draws.)
+# (The states have another order, so the intervals come from other draws.)
 jq -s '[.[] | .endings.trapped, (.endings_95.trapped | .[1] - .[0]), .endings.cut_off] as [$a, $wa, $ca, $b, $wb, $cb] | (($a - $b) | fabs) < 1e-12 and (($ca - $cb) | fabs) < 1e-12 and (($wb / $wa - 1) | fabs) < 0.15' own.json g.mtx.json | grep -q true || fail "counts come back with other shares or intervals: $(jq -c '[.endings.trapped, .endings_95.trapped]' own.json g.mtx.json)"
-# The runs without their mirror images: the same within their error, with intervals about as wide.
+# Without the mirror images the result is the same within its error, with intervals about as wide.
 jq -s '[.[] | .endings.trapped, (.endings_95.trapped | .[1] - .[0])] as [$a, $wa, $b, $wb] | (($a - $b) | fabs) < $wa / 2 and $wb < 1.7 * $wa and $wb > 0.7 * $wa' own.json runs.dtrajs.json | grep -q true || fail "trajectories: $(jq -c '[.endings.trapped, .endings_95.trapped]' own.json runs.dtrajs.json)"
 "$gatewalk" export back.nc --gate --counts -o again.mtx --quiet >/dev/null
 cmp -s g.states.csv again.states.csv || [ "$(head -n 1 again.states.csv | grep -c ',counts_per_run$')" = 1 ] || fail "counts_per_run is lost"

@@ -8,7 +8,8 @@ expect 0 '^Chance to cross the changed field: [0-9.]* \[[0-9., ]*\] % in 385 new
 holds '.gain_95[0] > 0 and .gain - (.crossed - .before.crossed) < 1e-12 and .gain - (.crossed - .before.crossed) > -1e-12 and .trials == 385 and .become == ["s", "."] and (.changes | length) == 2 and .changes[0].gate_x == 0 and ([.changes[].to] | unique) == ["s"]' design.json
 holds '(.map | length) == 3 and .by_chain.optima[0].crossed >= .by_chain.optima[-1].crossed and ([.by_chain.optima[].searches] | add) == 9 and (.by_chain.best_change | length) == 3 and .by_chain.best_change[0][4] > 0' design.json
 grep -q 'best change of a gate' design.svg || fail "no map of changes"
-# What is written is the changed scene, which crosses as often in full. It has no key that is warned of and that nobody gave.
+# The file is the changed scene, which crosses as often in full trials. It has no key that causes a warning and that
+# nobody gave.
 expect 0 '^crossed' "$gatewalk" lattice changed.toml --trials 10
 ! grep 'has no effect' out.txt || fail "design writes what its own reader warns of"
 expect 0 'run.event_tolerance_m has no effect' "$gatewalk" design "${small[@]}" --set run.event_tolerance_m=0.02 --accuracy 0.2 -o given.toml
@@ -16,7 +17,7 @@ grep -q '^event_tolerance_m = 0.02$' given.toml || fail "design leaves out what 
 "$gatewalk" scene changed.toml --quiet --json scene.json
 "$gatewalk" lattice changed.toml --trials 4000 --quiet --json full.json
 jq -s '.[0] as $d | (.[1].endings.crossed / .[1].trials) as $full | $full > $d.crossed_95[0] - 0.03 and $full < $d.crossed_95[1] + 0.03' design.json full.json | grep -q true || fail "the changed scene crosses otherwise"
-# The same bits on one thread; what is kept is taken up again; harder to cross.
+# One thread gives the same bits; kept pieces are resumed; the opposite aim, harder to cross.
 same() { jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' "$1" "$2" | grep -q true || fail "$3"; }
 "$gatewalk" design "${small[@]}" --accuracy 0.05 --threads 1 --checkpoint kept --quiet --json one.json
 same design.json one.json "design: other results on one thread"
@@ -24,14 +25,14 @@ same design.json one.json "design: other results on one thread"
 same design.json again.json "design: other results when resumed"
 "$gatewalk" design "${small[@]}" --accuracy 0.05 --least --quiet --json least.json
 holds '.least and .crossed <= .before.crossed and .gain <= 0' least.json
-# A type that stands nowhere is piloted too; another start is written.
+# A type that stands in no gate is piloted too; the file has another start if one was given.
 sed -E 's/^random = .*/map = [".........", "........."]/; /^seed = 5/d' "$scenes/mixed.toml" >plain.toml
 "$gatewalk" design plain.toml --set run.method=auto --set field.rows=2 --types s --start 1,0,12 --accuracy 0.2 --quiet --json auto.json -o started.toml
 holds '.start.d_m == 1 and .method.asked == "auto" and .method.pilot_starts > 0' auto.json
 expect 0 '^start.x_m  *1' "$gatewalk" scene started.toml
-# Without a limit of gates; not finished.
+# Without a limit of gates; a search that is not finished.
 expect 0 'choosing was not finished after' "$gatewalk" design "${small[@]}" --set field.max_gates=0 --accuracy 0.1 --gate-runs 1000
-# No change helps: only the types that are worst.
+# If no change helps, only the types are listed that are worst.
 sed -E 's/^random = .*/map = ["sssssssss", "sssssssss"]/; /^seed = 5/d' "$scenes/mixed.toml" >soft.toml
 expect 0 'No change that was simulated in full lets bodies cross more often' "$gatewalk" design soft.toml --set run.method=moreau --set field.rows=2 --types . --accuracy 0.1
 expect 2 'all cells have the type that they may become' "$gatewalk" design soft.toml --set field.rows=2 --types s

@@ -15,7 +15,7 @@ holds '((.endings | add) + .never_sampled - 1 | fabs) < 1e-12 and .endings.trapp
 for file in walk predict lattice; do
   holds '(.walks // .trials // 1) as $all | .endings as $e | .endings_95 | to_entries | all(.value[0] <= $e[.key] and $e[.key] <= .value[1] and .value[0] >= 0 and .value[1] <= $all)' ends-$file.json
   holds '((.trapped_gates | flatten | add) - .trapped | fabs) < 1e-12 and ((.departed_gates | flatten | add) - .departed | fabs) < 1e-12' ends-$file.json
-  # Who left was last in the last row or an outer column.
+  # A body that left was last in the last row or an outer column.
   holds '[.departed_gates[:8][][1:8][]] | add == 0' ends-$file.json
 done
 # Where along each side: the same bodies, by place in metres; the same of the dynamics beside the chain.
@@ -41,11 +41,11 @@ for args in "walk m.nc" "predict m.nc" "lattice $scenes/field.toml"; do
   grep -i 'left the field' first.txt && fail "$args: a second word for departed"
 done
 "$gatewalk" predict m.nc --quiet --details | grep -q '^Rounding and unfinished walks change all shares' || fail "predict: no numerical bound"
-# More runs a row, narrower intervals; also a matrix of 10^6 runs a row is resampled at once.
+# More runs per row give narrower intervals; a matrix of 10^6 runs per row is also resampled at once.
 "$gatewalk" build "$scenes/field.toml" --trials 1 -o one.nc --quiet >/dev/null
 "$gatewalk" predict one.nc --json ends-one.json --quiet
 holds '.endings_95.trapped | .[1] - .[0] > 0.2' ends-one.json
-# A field too large for many predictions has none, and says so.
+# A field too large for many predictions has no intervals, and says so.
 expect 0 'the field is too large' "$gatewalk" predict m.nc --set field.max_gates=1446 --set field.columns=301 --set field.rows=301 --quiet
 
 "$gatewalk" lattice "$scenes/field.toml" --trials 100 --seed 1 --json lattice.json --quiet

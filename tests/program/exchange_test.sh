@@ -7,7 +7,7 @@
 paper_matrix p.nc
 "$gatewalk" build "$scenes/field.toml" --gate-runs 500 -o tree.nc --quiet >/dev/null 2>&1
 
-# The field's chain in every format has the same states and transitions.
+# The field's chain has the same states and transitions in every format.
 for form in umb drn tra mtx csv npz; do
   "$gatewalk" export p.nc --set field.max_gates=0 -o field.$form --json field.json --force --quiet >/dev/null || fail "export $form"
   [ -s field.$form ] || fail "field.$form is empty"
@@ -19,7 +19,7 @@ done
 [ "$(wc -l <field.states.csv)" = "$(($(jq .states field.json) + 1))" ] || fail "lines of field.states.csv"
 "$gatewalk" export p.nc --set field.max_gates=0 -o again.npz --quiet >/dev/null && cmp -s field.npz again.npz || fail "the same chain, other bytes"
 
-# Counts of one gate come back bit for bit, by every format; the chain answers the same.
+# The counts of one gate come back bit for bit from every format, and the chain gives the same answer.
 "$gatewalk" predict p.nc --json ours.json --quiet
 start=$(jq .start_state.input ours.json)
 for form in mtx csv npz; do
@@ -31,7 +31,7 @@ for form in mtx csv npz; do
   [ "$(jq -cS '[.endings, .endings_95, .final_gates]' back.json)" = "$(jq -cS '[.endings, .endings_95, .final_gates]' ours.json)" ] ||
     fail "$form: the imported chain answers otherwise"
 done
-# Probabilities have no error bars, and say so.
+# Probabilities have no error bars, with a message.
 "$gatewalk" export p.nc --gate -o q.csv --quiet >/dev/null
 expect 0 'have no error bars' "$gatewalk" import q.csv --states g.states.csv --start "$start" -o q.nc
 expect 0 'the matrix holds probabilities, not counts' "$gatewalk" predict q.nc --json q.json
@@ -39,7 +39,7 @@ jq -s '[.[0].endings[], .[1].endings[]] as $e | [range(5) | ($e[.] - $e[. + 5]) 
   fail "probabilities: another answer"
 holds '.matrix_sampling.replicates == 0' q.json
 
-# A chain of one's own, by names; and by trajectories, of which each step is a count.
+# A chain of the user's own: by names of states; and by trajectories, in which each step is a count.
 cat >s.csv <<'END'
 state,name,move_x,move_y
 0,up,0,1
@@ -55,11 +55,11 @@ for command in predict analyze "walk --walks 1000" "show --rows"; do
   for matrix in own steps; do "$gatewalk" ${command%% *} $matrix.nc $(printf '%s' "${command#"${command%% *}"}") --json $matrix.json --quiet 2>/dev/null || fail "$command $matrix.nc"; done
   [ "$(jq -cS 'del(.made_by, .text, .seconds, .file, .matrix)' own.json)" = "$(jq -cS 'del(.made_by, .text, .seconds, .file, .matrix)' steps.json)" ] || fail "$command: steps are not their counts"
 done
-# Of such a chain there are no trials, with which it could be compared or planned.
+# An imported chain has no trials, so it cannot be validated or planned.
 expect 2 '^gatewalk: own.nc: is a chain that was made elsewhere: there are no trials to hold it against' "$gatewalk" validate own.nc
 expect 2 '^gatewalk: own.nc: is a chain that was made elsewhere: its error bars are of its counts, not of trials' "$gatewalk" power own.nc
 for command in walk predict; do ! "$gatewalk" $command own.nc 2>&1 | grep 'gatewalk validate' || fail "$command: sends to what refuses the chain"; done
-# A start is a state, by its name or number, and answers as one that import was told.
+# A start is a state, by its name or number, and gives the same answer as the start that import was given.
 for start in 0 1 2; do
   "$gatewalk" import own.csv --states s.csv --start $start --set field.rows=2 --set field.columns=3 -o from.nc --force --quiet >/dev/null 2>&1
   "$gatewalk" predict from.nc --json from.json --quiet
@@ -71,7 +71,7 @@ done
 expect 2 'has no state of that name or number' "$gatewalk" predict own.nc --start 3
 "$gatewalk" export own.nc --gate --counts -o named.csv --quiet >/dev/null
 [ "$(cat named.csv)" = "$(sed 's/^up_again,1,/up_again,aside,/' own.csv)" ] || fail "names or order of states are lost: $(cat named.csv)"
-# States have one order everywhere: that of their table, though those of one face stand together in the file.
+# States have the order of their table everywhere, although the file keeps states of one face together.
 [ "$(cut -d, -f1-5 named.states.csv)" = "$(printf 'state,name,face,move_x,move_y\n0,up,ahead,0,1\n1,aside,right,1,0\n2,up_again,ahead,0,1')" ] || fail "order: $(cat named.states.csv)"
 for form in mtx csv npz; do
   "$gatewalk" export own.nc --gate --counts -o once.$form --force --quiet >/dev/null
@@ -85,7 +85,7 @@ expect 0 '^ *2 *4 *up_again$' "$gatewalk" show own.nc --row 1
 expect 0 'start takes a name, or a number from 0' "$gatewalk" show own.nc
 "$gatewalk" predict own.nc --start aside --json start.json --quiet
 holds '.starts[0].start_state | .input == 1 and .bin == "aside"' start.json
-# Names with commas and quotes are quoted as RFC 4180 has it, in all CSV.
+# Names with commas and quotes are quoted as in RFC 4180, in all CSV.
 printf 'state,name,move_x,move_y\n0,"fast, ahead",0,1\n1,"the ""right""",1,0\n' >quoted.csv
 printf '0 1 0 0 2\n' >quoted.dtrajs
 "$gatewalk" import quoted.dtrajs --states quoted.csv --start 0 --set field.rows=1 --set field.columns=1 --set field.max_gates=0 -o quoted.nc --quiet >/dev/null
@@ -97,11 +97,11 @@ expect 0 '4 counted steps' "$gatewalk" import q.csv --states q.states.csv --star
 
 expect 2 'has no \[start\]' bash -c "'$gatewalk' import own.csv --states s.csv -o nowhere.nc && '$gatewalk' predict nowhere.nc"
 
-# Trials as trajectories: a trial ends as it ended, and its counts are those of its runs.
+# Trials as trajectories: each ends as its trial ended, and the counts are those of the runs.
 "$gatewalk" export tree.nc -o t.dtrajs --json t.json --quiet
 [ "$(wc -l <t.dtrajs)" = "$(jq .trajectories t.json)" ] || fail "trajectories"
 [ "$(tr ' ' '\n' <t.dtrajs | grep -c .)" = "$(($(ncdump -h tree.nc | sed -n 's/^\trun = \([0-9]*\) ;/\1/p') + $(wc -l <t.dtrajs)))" ] || fail "steps of the trajectories"
-# They come with the table of states that import needs; the counts of their steps are those of the lines.
+# The trajectories come with the table of states that import needs; the counts of steps are those of the lines.
 awk '{ for (k = 2; k <= NF; ++k) print $(k - 1) + 1, $k + 1 }' t.dtrajs | sort | uniq -c | awk '{ print $2, $3, $1 }' | sort -n -k1,1 -k2,2 >steps.txt
 "$gatewalk" import t.dtrajs --states t.states.csv --start 0 -o t.nc --quiet >/dev/null || fail "import of t.dtrajs"
 "$gatewalk" export t.nc --gate --counts -o steps.mtx --quiet >/dev/null
@@ -115,7 +115,8 @@ expect 2 'import keeps the counts of their steps' "$gatewalk" export t.nc -o no.
 expect 2 'is written beside -o' "$gatewalk" export tree.nc -o z.dtrajs --json z.states.csv
 expect 2 'keeps no trials' "$gatewalk" export p.nc -o p.dtrajs
 
-# As others write them. By hand: counts 5 2 1 1 / 3 0 0 1 / 3 0 0 1 of states up, aside, up_again and trapped.
+# Files as other programs write them. By hand: counts 5 2 1 1 / 3 0 0 1 / 3 0 0 1 of states up, aside, up_again,
+# trapped.
 taken() { # TEXT FILE CONTENT
   printf '%b' "$3" >"$2"
   expect 0 "$1" "$gatewalk" import "$2" --states s.csv --start 0 --set field.rows=2 --set field.columns=3 -o taken.nc --force --json taken.json
@@ -136,13 +137,14 @@ taken 'symmetric: ' a.mtx "$head integer symmetric\n3 3 3\n1 1 4\n2 1 2\n3 1 1\n
 taken 'symmetric: ' a.mtx '%%MatrixMarket matrix array integer symmetric\n3 3\n4\n2\n1\n0\n0\n0\n' && is 'up,up,4 up,aside,2 up,up_again,1 aside,up,2 up_again,up,1' 'symmetric array'
 taken '17 counted steps' A.CSV 'from,to,count\nup,up,5.0\nup,aside,+2\nup,up_again,1e0\nup,trapped,1\naside,up,3\naside,trapped,1\nup_again,up,3\nup_again,trapped,1\n' && is "$counts" 'numbers of a spreadsheet'
 taken 'probabilities' a.mtx "$head real general\n3 4 4\n1 1 +0.5\n1 4 +5.0E-01\n2 1 1\n3 1 1\n" && is 'up,up,0.5 up,trapped,0.5 aside,up,1 up_again,up,1' plus
-# A third with six digits is a third; with those of floats too. One number that is no rounding of it is refused (below).
+# A third with six digits counts as a third, also with a float's digits. A number that is no rounding of it is refused
+# (below).
 thirds='up,up,0.3333333333333333 up,aside,0.3333333333333333 up,trapped,0.3333333333333333'
 for third in 0.333333 3.33333e-01 0.333 0.33333334 0.3333333432674408; do
   taken 'rows sum to 1 but for the rounding of their numbers (row 0 (counted from 0) to ' a.csv "from,to,probability\nup,up,$third\nup,aside,$third\nup,trapped,$third\n"
   sed -E '1d; s/(0.333333333333333)[0-9]*/\13/' taken.csv | tr '\n' ' ' | grep -qx "$thirds " || fail "$third: $(cat taken.csv)"
 done
-# Each row a single 1: what the numbers are written as decides.
+# If each row is a single 1, the type of the numbers decides between counts and probabilities.
 taken 'each row is a single 1, a real: probabilities' a.mtx "$head real general\n3 4 3\n1 2 1.0\n2 3 1\n3 1 1\n"
 holds '.state_space.probabilities' taken.json
 taken '3 counted steps' a.mtx "$head integer general\n3 4 3\n1 2 1\n2 3 1\n3 1 1\n"
@@ -153,7 +155,7 @@ printf '3 3\n0 1 1\n1 0 0.25\n1 2 0.75\n' >one.tra
 sed -e '1cfrom,to,probability' -e 's/ /,/g' one.tra >tra.csv
 expect 0 probabilities "$gatewalk" import tra.csv --states s.csv -o tra.nc
 
-# What is wrong is said, and where.
+# An error names what is wrong, and where.
 wrong() { # TEXT FILE CONTENT
   printf '%b' "$3" >"$2"
   expect 2 "$1" "$gatewalk" import "$2" --states s.csv -o no.nc

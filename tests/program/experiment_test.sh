@@ -22,11 +22,11 @@ holds '.observed.smallest_difference | .power == 0.8 and .level == 0.05 and .fin
 head -1 observed.txt | grep -q '^The 60 observed trials agree with the full dynamics (p = .*) and with the chain (p = ' || fail "validate --observed: the verdict does not come first"
 grep -q '^and the smallest shift that 60 trials detect with 80 % power' observed.txt || fail "validate --observed: a column is not explained"
 grep -q '^From 60 observed trials and 2000 trials of the full dynamics. Quote the first p' observed.txt || fail "validate --observed: which p to quote"
-# All else is as without it.
+# Everything else is the same as without --observed.
 "$gatewalk" "${beside[@]}" --trials 2000 --start 0,0,15 --json without.json --quiet
 jq -S 'walk(if type == "object" then del(.seconds, .speed_ratio, .made_by, .observed) else . end)' observed.json >with.txt
 jq -S 'walk(if type == "object" then del(.seconds, .speed_ratio, .made_by) else . end)' without.json | cmp -s - with.txt || fail "--observed changes what validate says beside it"
-# One table alone; the number of trials follows; a difference in plain words.
+# One table is enough; the number of trials follows from it; a difference is said in plain words.
 printf 'ending,count\ncrossed,60\n' >far.csv
 fast=("$scenes/field.toml" --set run.method=moreau --set run.step_s=0.02)
 "$gatewalk" build "${fast[@]}" --trials 20 -o fast.nc --quiet >/dev/null 2>&1
@@ -40,7 +40,8 @@ expect 0 'trials 100: take 1200 or more for 60 observed' "$gatewalk" "${beside[@
 expect 0 'no row for .*left side, which counts as 0' "$gatewalk" "${beside[@]}" --trials 2000 --observed far.csv
 
 refused() { printf "$2" >bad.csv; expect 2 "$1" timeout 20 "$gatewalk" validate "$scenes/field.toml" --matrix-trials 1e12 --observed bad.csv; }
-# A line per trial says the same as tables of counts; who went back is left out, and said before the run.
+# A line for each trial gives the same as tables of counts. Bodies that went back are left out, with a warning before
+# the run.
 "$gatewalk" lattice "$scenes/field.toml" --set field.max_gates=0 --trials 60 --seed 77 --json departed.json --quiet
 jq -r '"trial,ending,gate_x,gate_y", ([.trapped_gates | to_entries[] | .key as $y | .value | to_entries[] | .key as $x | range(.value) | ["trapped", $x - 4, $y]] + [.departed_gates | to_entries[] | .key as $y | .value | to_entries[] | .key as $x | range(.value) | [(if $y == 8 then "crossed" elif $x == 0 then "left side" else "right_side" end), $x - 4, $y]] | to_entries[] | "\(.key),\(.value[0]),\(.value[1]),\(.value[2])")' departed.json >lines.csv
 { cat lines.csv; echo 'roach 61,went back,,'; } >back.csv
@@ -52,17 +53,17 @@ grep -q '^gatewalk: 1 of 61 trials went back, .* left out' err.txt || fail "vali
 "$gatewalk" "${free[@]}" --observed ends0.csv --observed gates0.csv --json tables.json --quiet
 jq -s 'map(.observed | del(.files, .went_back)) | .[0] == .[1]' lines.json tables.json | grep -q true || fail "validate --observed: lines of trials are not their counts"
 holds '.observed | .trials == 60 and .went_back == 1' lines.json
-# Without a limit of gates nothing is cut off, which no interval and no row leaves open.
+# Without a limit of gates no body is cut off, and no interval or row allows for it.
 "$gatewalk" "${free[@]}" --set field.max_gates=0 --observed ends0.csv --details --json free.json >free.txt 2>err.txt
 holds '.observed | .endings_95.cut_off == [0, 0] and (.smallest_difference.endings_percentage_points | has("cut_off") | not)' free.json
 grep -q '^trapped .* / ' free.txt && ! grep -q '^cut off' free.txt || fail "validate --observed: a row of who cannot be cut off"
 refused 'bad.csv:3: trial "1" was given in line 2 already' 'trial,ending\n1,crossed\n1,trapped\n'
-# Too few trials: said before any run (that would take for ever).
+# Too few trials cause a warning before any run (the run would take for ever).
 printf 'trial,ending\n1,crossed\n2,trapped\n' >two.csv
 timeout 10 "$gatewalk" validate "$scenes/field.toml" --matrix-trials 1e12 --observed two.csv --trials 30 >out.txt 2>err.txt
 grep -q '^gatewalk: 2 trials detect a shift of more than 50 points' err.txt || fail "validate --observed: two trials: $(cat err.txt)"
 grep -q 'trials 30: take 40 or more for 2 observed' err.txt || fail "validate --observed: --trials 30 for 2: $(cat err.txt)"
-# Refused before any work, naming file, line, column and what is allowed.
+# Wrong tables are refused before any work, naming file, line, column and what is allowed.
 refused 'bad.csv:1: unknown column "gatex": the columns must be trial,ending' 'gatex,gate_y,count\n'
 refused 'bad.csv:1: the columns must be' 'gate_x,count\n0,1\n'
 refused 'bad.csv:2: column gate_x: "5" is not permitted: must be a whole number from -4 to 4 (field.columns = 9)' 'gate_x,gate_y,count\n5,0,1\n'
@@ -77,7 +78,7 @@ unlimited 'bad.csv:3: a body cannot have been cut off: field.max_gates = 0' 'end
 unlimited 'bad.csv:2: a body cannot have been cut off: field.max_gates = 0' 'trial,ending\n1,cut off\n'
 refused 'bad.csv: has no trial' 'ending,count\ntrapped,0\n'
 refused 'bad.csv: is empty' ''
-# Two recordings of one experiment are added up: 120 trials, those of both.
+# Two recordings of one experiment are added: 120 trials, those of both.
 expect 0 '^The 120 observed trials ' "$gatewalk" "${beside[@]}" --trials 2000 --observed ends.csv --observed far.csv --json both.json
 jq -s '.[0].observed.endings.crossed == .[1].observed.endings.crossed + 60' both.json observed.json | grep -q true || fail "two recordings: $(jq -c .observed.endings both.json)"
 printf 'trial,ending\n1,crossed\n' >line.csv

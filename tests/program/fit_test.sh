@@ -3,7 +3,7 @@
 # Tests fit: the numbers of a scene that explain an experiment.   fit_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# An experiment whose push is known.
+# An experiment with a known propulsion.
 small=("$scenes/field.toml" --set run.method=moreau --set field.rows=4)
 "$gatewalk" lattice "${small[@]}" --set forces.propulsion_N=7.2 --trials 300 --seed 11 --quiet --json truth.json
 jq -r '"ending,count", (.endings | to_entries[] | select(.key != "broken") | "\(.key),\(.value)")' truth.json >endings.csv
@@ -19,18 +19,18 @@ awk -F, 'NR > 1 { sum += $1 } END { print sum / (NR - 1) }' draws.csv >mean.txt
 jq --argjson m "$(cat mean.txt)" -e '.numbers[0].mean - $m | . < 1e-4 and . > -1e-4' fit.json >/dev/null || fail "draws of another mean"
 for f in best.toml best-1.toml best-2.toml; do "$gatewalk" scene $f --quiet --json scene.json || fail "$f is no scene"; done
 ! cmp -s best-1.toml best-2.toml || fail "scenes are alike"
-# Recordings of one experiment are added up: two files of half the counts each are the whole.
+# Recordings of one experiment are added: two files with half of the counts each give the same as the whole.
 awk -F, 'NR == 1 { print; next } { print $1 "," int($2 / 2) }' endings.csv >half.csv
 awk -F, 'NR == 1 { print; next } { print $1 "," $2 - int($2 / 2) }' endings.csv >rest.csv
 "$gatewalk" fit "${small[@]}" half.csv rest.csv "${free[@]}" --trials 16384 --quiet --json parts.json
 jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' fit.json parts.json | grep -q true || fail "fit: two files are not their sum"
 expect 2 'half.csv: is given twice' "$gatewalk" fit "${small[@]}" half.csv half.csv "${free[@]}"
-# A file of final gates and one of endings, of which nothing says what belongs together: as the gates alone.
+# Final gates in one file and endings in another, without their connection: the result is that of the gates alone.
 jq -r '"gate_x,gate_y,count", (.final_gates | to_entries[] | .key as $y | .value | ((length - 1) / 2) as $middle | to_entries[] | "\(.key - $middle),\($y),\(.value)")' truth.json >gates.csv
 "$gatewalk" fit "${small[@]}" gates.csv "${free[@]}" --trials 16384 --quiet --json gates.json
 expect 0 'the endings are left out: nothing says which of them belong' "$gatewalk" fit "${small[@]}" gates.csv endings.csv "${free[@]}" --trials 16384 --quiet --json pair.json
 jq -s '.[0].numbers == .[1].numbers' gates.json pair.json | grep -q true || fail "fit: gates and endings are not the gates"
-# Lines of trials; two numbers of which one cannot be told; the same on one thread and when resumed.
+# Lines of trials; two numbers of which one cannot be determined; the same on one thread and after a resume.
 printf 'trial,ending,gate_x,gate_y\na,crossed,0,3\nb,trapped,0,1\nc,trapped,0,2\nd,crossed,1,3\ne,left side,-4,2\nf,crossed,0,3\n' >lines.csv
 both=("${free[@]}" --free contact.impulse_threshold_Ns=0.04:0.041 --trials 24576)
 expect 0 '^these data cannot tell contact.impulse_threshold_Ns: ' "$gatewalk" fit "${small[@]}" lines.csv "${both[@]}" --checkpoint kept --json two.json --figure two.svg
@@ -39,7 +39,7 @@ same() { jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .secon
 same two.json one.json "fit: other results on one thread"
 "$gatewalk" fit "${small[@]}" lines.csv "${both[@]}" --checkpoint kept --resume --quiet --force --json again.json
 same two.json again.json "fit: other results when resumed"
-# Times of who left the field tell the drag, of which endings say little.
+# The times at which bodies left determine the drag, which endings hardly do.
 fast=("${small[@]}" --set forces.propulsion_N=14)
 "$gatewalk" trace "${fast[@]}" --set forces.drag_Ns_per_m=0.12 --field --trials 90 --seed 11 --quiet --json traced.json
 jq -r '"trial,ending,time_s", (.runs[] | [.trial, .ending, if .ending == "trapped" or .ending == "cut off" then "" else .t[-1] end] | map(tostring) | join(","))' traced.json >timed.csv
@@ -53,21 +53,21 @@ jq -s '.[0].numbers[0].sd < 0.2 * .[1].numbers[0].sd' timed.json untimed.json | 
 expect 0 'times are not looked at here; gatewalk fit does' "$gatewalk" validate "${fast[@]}" --observed timed.csv --trials 200 --accuracy 0.1
 printf 'trial,ending,time_s\na,trapped,\nb,crossed,\n' >none.csv
 expect 2 'none.csv:3: column time_s: nothing is not permitted' "$gatewalk" fit "${fast[@]}" none.csv "${drag[@]}"
-# No number of the range explains them; the likeliest lies beyond its end.
+# No number in the range explains the counts; the likeliest lies beyond the range's end.
 printf 'gate_x,gate_y,count\n-4,0,50\n4,3,50\n' >odd.csv
 expect 1 'no numbers in these ranges explain the counts' "$gatewalk" fit "${small[@]}" odd.csv "${free[@]}" --trials 16384 --strict
 expect 2 'free forces.propulsion_N=-1:1: ' "$gatewalk" fit "${small[@]}" odd.csv --free forces.propulsion_N=-1:1
 expect 0 'likely to lie beyond 6.5, where its range ends' "$gatewalk" fit "${small[@]}" endings.csv --free forces.propulsion_N=4:6.5 --trials 16384
-# All crossed: the posterior falls from the range's end as the 300th power of the chance to cross. Of 8000 trials 33 cross at 5 N
-# and 129 at 6 N, so that its sd is some 1 / (300 ln(129 / 33)) = 0.0024 N.
+# All crossed: the posterior falls from the range's end as the 300th power of the probability to cross. Of 8000 trials
+# 33 cross at 5 N and 129 at 6 N, so its sd is about 1 / (300 ln(129 / 33)) = 0.0024 N.
 printf 'ending,count\ncrossed,300\n' >all.csv
 "$gatewalk" fit "${small[@]}" all.csv --free forces.propulsion_N=4:6 --trials 16384 --quiet --json all.json
 holds '.p < 0.001 and (.numbers[0].sd | . > 0.0015 and . < 0.004) and .numbers[0].goes_on_above and .outside <= 0.01' all.json
-# What hardly ever happens there is no reason to be sure.
+# An ending that hardly ever happens gives no certainty.
 "$gatewalk" fit "${small[@]}" all.csv --free forces.propulsion_N=3:4 --trials 16384 --quiet --json all.json --force
 holds '.p < 0.001 and .numbers[0].sd > 0.02' all.json
 
-# Passages tell more than endings do: each is carried out from where it began. Costs but the time may be left out.
+# Passages determine more than endings: each is simulated from where it began. Costs other than the time may be missing.
 "$gatewalk" lattice "${small[@]}" --set forces.propulsion_N=7.2 --trials 300 --seed 11 --quiet --passages runs.csv --cell-file cell.toml --json again.json --force
 expect 0 '^[0-9]* observed passages; ' "$gatewalk" fit "${small[@]}" runs.csv "${free[@]}" --trials 100000 --json passages.json
 holds '.of == "passages" and (.numbers[0] | .median_95[0] < 7.2 and 7.2 < .median_95[1] and .median_95[1] - .median_95[0] < 0.3) and .settled and .p > 0.01' passages.json
@@ -80,13 +80,14 @@ cut -d, -f1-10 bare.csv >timeless.csv
 expect 2 'column time_s is missing: the columns must be body,trial,in,d,vx,vy,out,out_d,out_vx,out_vy,time_s; there are' "$gatewalk" fit "${small[@]}" timeless.csv "${free[@]}"
 expect 2 'says nothing of passages' "$gatewalk" fit "${small[@]}" bare.csv --free start.vy_m_per_s=10:20
 expect 2 'observed ones need [0-9]* trials or more' "$gatewalk" fit "${small[@]}" bare.csv "${free[@]}" --trials 16384
-# Whatever the order of the lines, without costs, and beside a passage that was lost: the same numbers.
+# The order of lines, missing costs, and a lost passage beside the others do not change the numbers.
 { sed 's/^1,1,/lost,1,/' lost.csv; sed -n '2,$p' bare.csv | awk -F, '{ print ($1 * 7919) % 1009 "," NR "," $0 }' | sort -t, -k1,1n -k2,2n | cut -d, -f3-; } >other.csv
 expect 0 '^gatewalk: 1 of [0-9]* passages were lost' "$gatewalk" fit "${small[@]}" other.csv "${free[@]}" --trials 100000 --json other.json
 jq -s '.[0].numbers == .[1].numbers' passages.json other.json | grep -q true || fail "fit: order, costs or a lost passage matter"
 expect 2 'bare.csv: has passages, of which fit takes one file' "$gatewalk" fit "${small[@]}" bare.csv other.csv "${free[@]}"
 expect 2 'start has no meaning for passages' "$gatewalk" fit "${small[@]}" bare.csv "${free[@]}" --start 0,0,15
-# A program's numbers, by how trials ended and by passages, which say where bodies entered. hopper.py in awk, which starts at once.
+# A program's numbers, by endings and by passages, which say where bodies entered. hopper.py in awk, which starts at
+# once.
 cat >hopper.awk <<'END'
 BEGIN { p = 2; print "{\"gatewalk\": 1, \"uniforms\": 2, \"parameters\": {\"push_J\": [2, 1, 3]}, \"costs\": [{\"key\": \"time_s\", \"unit\": \"s\"}, {\"key\": \"work_J\", \"unit\": \"J\"}], \"coordinates\": [{\"name\": \"s\", \"unit\": \"m\", \"scale\": 0.1}], \"faces\": [{\"name\": \"S\", \"move\": [0, 1]}]}"; fflush() }
 NF == 0 { fflush(); next }
@@ -101,7 +102,7 @@ holds '.of == "passages" and (.numbers[0] | .key == "parameters.push_J" and .tol
 jq -r '"ending,count", (.endings | to_entries[] | select(.key != "broken") | "\(.key),\(.value)")' hops.json >ends.csv
 "$gatewalk" fit "${hopper[@]}" ends.csv "${push[@]}" --json ended.json
 holds '.of == "trials" and (.numbers[0] | .median_95[0] < 1.4 and 1.4 < .median_95[1])' ended.json
-# Sobol indices of such a number: all of the variance is its own.
+# The Sobol index of a single number: all of the variance is its own.
 "$gatewalk" analyze "${hopper[@]}" --over parameters.push_J=1:3 --over-trials 4000 --runs 0 --quiet --json over.json
 holds '.variance_shares.numbers[0] | .key == "parameters.push_J" and .total_95[1] > 0.9' over.json
 expect 2 'unknown column "d"' "$gatewalk" fit "${hopper[@]}" bare.csv --free parameters.push_J=1:3

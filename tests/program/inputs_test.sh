@@ -55,7 +55,7 @@ destroys "$gatewalk" chart methods own.toml chart.json -o .
 destroys "$gatewalk" chart methods own.toml m.nc -o folder --json own.toml
 destroys "$gatewalk" chart field fidelity.svg -o .
 destroys "$gatewalk" chart chain chain.csv -o "$PWD"
-# Nor may two outputs be one, nor standard output another file of the command.
+# Two outputs may not be the same file, and standard output may not be another file of the command.
 destroys "$gatewalk" trace own.toml --csv folder/new --json link/folder/new
 destroys "$gatewalk" landscape own.toml -o folder --json folder/landscape.json
 destroys "$gatewalk" build own.toml -o link/new.nc --json new.nc
@@ -72,7 +72,7 @@ expect 2 'is not empty and holds no report, .* choose another folder, or give --
 [ "$(find folder -type f)" = folder/scenes/field.toml ] || fail "reproduce, refused, wrote $(find folder -type f)"
 expect 2 'would be replaced; choose another folder' "$gatewalk" reproduce -o folder --quick --force
 [ "$(cat folder/scenes/field.toml)" = '# my own' ] || fail "reproduce replaced a scene of the user's own"
-# Nor a file that a scene names, wherever the scene itself is named.
+# The map that a scene names may not be an output, wherever the scene is named.
 mkdir maps
 printf '.s.\n...\n' >maps/map.csv
 cp maps/map.csv maps/other.csv

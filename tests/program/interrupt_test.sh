@@ -7,7 +7,7 @@ paper_matrix m.nc
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 20 --json gate.json --quiet
 "$gatewalk" lattice "$scenes/field.toml" --trials 20 --json lattice.json --quiet
 "$gatewalk" chart methods "$scenes/stiff.toml" -o charts --trials 20 --repeats 1 --methods stable --quiet >/dev/null
-# Ctrl-C: within 2 s, status 130, a clear word, the old file unchanged.
+# Ctrl-C: within 2 s, status 130, a message, the old file unchanged.
 for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
                "build $scenes/field.toml --trials 1e7 -o m.nc" \
                "lattice $scenes/field.toml --trials 1e9 --json lattice.json" \
@@ -30,7 +30,7 @@ for command in "gate $scenes/single_gate.toml --trials 1e9 --json gate.json" \
   [ "$before" = "$(cat gate.json m.nc lattice.json $(find charts -type f | sort) | cksum)" ] || fail "ctrl-C changed a file: $command"
 done
 
-# SIGHUP ends like ctrl-C; a signal that was ignored at the start stays ignored.
+# SIGHUP ends a run like ctrl-C; a signal that was ignored at the start stays ignored.
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 1e9 --json gate.json >out.txt 2>&1 &
 pid=$!
 sleep 1

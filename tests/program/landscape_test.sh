@@ -3,7 +3,7 @@
 # Tests landscape: the grid and its passes, in any units.   landscape_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# landscape: the paper's grid, the pass of its equal beams, three files.
+# The paper's grid, the pass of its equal beams, three files.
 "$gatewalk" landscape "$scenes/single_gate.toml" -o land --trials 20 --quiet --set beams.stiffness_left_Nm_per_rad=500 \
   --set beams.stiffness_right_Nm_per_rad=500 >land.txt || fail "landscape"
 holds '.passes[0].from_start.barrier_J | . > 32 and . < 32.1' land/landscape.json
@@ -15,7 +15,7 @@ expect 0 '' "$gatewalk" landscape "$scenes/single_gate.toml" -o land --quiet --b
 expect 2 'must be both' "$gatewalk" landscape "$scenes/single_gate.toml" -o land --beam top
 expect 2 'must lie in' "$gatewalk" landscape "$scenes/single_gate.toml" -o land --spacing 0
 expect 2 'missing -o' "$gatewalk" landscape "$scenes/single_gate.toml"
-# In other units (lengths / 4^5, masses * 4^2) the same grid and passes; videos keep the scene's own pace.
+# In other units (lengths / 4^5, masses * 4^2) the grid and the passes are the same; videos keep the scene's own pace.
 twin="--set body.radius_m=0.009765625 --set body.mass_kg=16 --set beams.length_m=0.0244140625 --set beams.mass_kg=1.6 --set beams.damping_Nms_per_rad=0.000762939453125
   --set beams.joint_x_m=0.0244140625 --set beams.joint_y_m=0.029296875 --set run.traverse_y_m=0.0634765625
   --set beams.stiffness_left_Nm_per_rad=0.00762939453125 --set beams.stiffness_right_Nm_per_rad=0.00762939453125

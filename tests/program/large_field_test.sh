@@ -4,7 +4,7 @@
 . "$(dirname "$0")/preamble.sh"
 
 paper_matrix m.nc
-# A large field: a map that fits a screen, JSON with every gate, two routes.
+# A large field: a map that fits a screen, JSON with every gate, two solvers.
 large="--set field.max_gates=0 --set field.columns=301 --set field.rows=301"
 # shellcheck disable=SC2086
 {
@@ -12,11 +12,11 @@ expect 0 '^elsewhere in the 301 x 301 gates: 0.0' "$gatewalk" predict --details 
 [ "$(wc -l <out.txt)" -lt 50 ] || fail "predict: $(wc -l <out.txt) lines for a large field"
 holds '(.final_gates | length == 301 and (map(length) | unique == [301])) and (([.final_gates[][]] | add) - 1 | fabs) < 1e-11' large.json
 "$gatewalk" walk m.nc $large --walks 20000 --json large-walk.json --quiet
-# Rows of 20000 walks: mean distance by chance below 0.01.
+# Rows of 20000 walks: the mean distance by chance is below 0.01.
 jq -s '[[.[0].final_gates[] | add], [.[1].final_gates[] | add / 20000]] | transpose | map(.[0] - .[1] | fabs) | add / 2 < 0.02' large.json large-walk.json |
   grep -q true || fail "walk and predict disagree on a large field"
 }
-# Rows of other gates: below them nothing changes; a copy of the base changes nothing; two routes agree.
+# Rows of other gates do not change the rows below them; a copy of the base changes nothing; two solvers agree.
 "$gatewalk" build "$scenes/field.toml" --trials 20 --seed 1 --set beams.stiffness_left_Nm_per_rad=2000 -o stiff.nc --quiet >/dev/null
 cp m.nc copy.nc
 for limit in 13 0; do

@@ -22,21 +22,21 @@ for file in predict free klu; do
   holds '.rounding_at_most > 1e-15 and .error_at_most == .still_walking + .rounding_at_most and .error_at_most < 1e-11' $file.json
 done
 expect 0 '^Rounding and unfinished walks change all shares together by at most [0-9.]*e-1[0-9].$' "$gatewalk" predict m.nc --details
-# As many resampled matrices stand behind the intervals, however the rows are solved.
+# The intervals rest on the same number of resampled matrices with every solver.
 for solver in auto klu; do
   "$gatewalk" predict m.nc --set field.max_gates=0 --set field.rows=12 --solver $solver --json $solver.json --quiet
   holds '.matrix_sampling.replicates == 999 and .steps == 0' $solver.json
 done
-# A key that shapes nothing in a matrix of this method is no difference.
+# A key without effect on a matrix of this method is no difference.
 expect 0 '^trapped' "$gatewalk" predict m.nc "$scenes/field.toml" --set run.tolerance=0.01 --set run.event_tolerance_m=1e-4
 expect 2 'forces.random_N' "$gatewalk" walk m.nc "$scenes/field.toml" --set forces.random_N=12
 expect 2 'max_gates' "$gatewalk" predict m.nc --solver klu
 expect 2 'is a matrix' "$gatewalk" gate m.nc
 expect 2 'start.y_m' "$gatewalk" predict m.nc --set start.y_m=5
-# What cannot be taken at face value is said, even under --quiet.
+# Warnings are printed even under --quiet.
 for command in walk predict; do expect 2 'the start lies outside the chain' "$gatewalk" $command m.nc --set start.vy_m_per_s=-5; done
 
-# Several starts: an entry each, in order, as each alone; none given: the scene's.
+# Several starts give an entry each, in order, with the same numbers as alone; without --start: the scene's.
 expect 0 '^start d 4 m, vx 5 m/s, vy 10.5 m/s$' "$gatewalk" predict m.nc --start 0,0,15 --start 4,5,10.5 --json starts.json
 [ "$(grep -c '^trapped' out.txt)" = 2 ] || fail "predict: not a result per start"
 expect 2 'start d 0 m, vx 0 m/s, vy -3 m/s lies outside the chain.s bins, EN d \[-25, 25\] m, .*--bins auto .*\[bins\]' "$gatewalk" predict m.nc --start 0,0,15 --start 0,0,-3
@@ -58,7 +58,7 @@ expect 2 'inside the gate' "$gatewalk" predict m.nc --start 25,0,15
 # Damaged files.
 head -c 5000 m.nc >cut.nc
 expect 2 'cut.nc: checksum does not match: cut short, damaged or altered since it was written$' "$gatewalk" show cut.nc
-# A count changed by another program: refused, the row is named.
+# A count that another program changed is refused, naming the row.
 ncdump m.nc | sed -E '/^ count = /s/= ([0-9]+)/= 77/' >altered.cdl && ncgen -4 -o altered.nc altered.cdl
 expect 2 'row 0 .*add up to' "$gatewalk" predict altered.nc
 

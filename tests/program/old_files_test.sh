@@ -14,7 +14,7 @@ for packed in "$files"/version_*/*.nc.gz; do
     cmp -s - "${packed%.nc.gz}.json" || fail "$packed: another answer than it gave"
 done
 [ -n "${packed-}" ] || fail "there are no files"
-# A later version is refused, not guessed at.
+# A file of a later version is refused, not guessed at.
 "$gatewalk" build "$scenes/field.toml" --trials 1 -o new.nc --quiet >/dev/null
 [ "$(ncdump -h new.nc | grep -c 'format_version = 2')" = 1 ] || fail "another version than 2"
 finish

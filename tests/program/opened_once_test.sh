@@ -7,7 +7,7 @@ command -v python3 >/dev/null || { echo "needs python3"; exit 1; }
 # times_opened FILE COMMAND...: how often the command opens the file, as inotify counts it.
 cat >times_opened.py <<'END'
 import ctypes, os, struct, subprocess, sys
-IN_OPEN, IN_CLOSE = 0x20, 0x18  # closes keep opens apart, which inotify would join
+IN_OPEN, IN_CLOSE = 0x20, 0x18  # closes separate opens, which inotify would join
 libc = ctypes.CDLL(None, use_errno=True)
 fd = libc.inotify_init1(os.O_NONBLOCK)
 if libc.inotify_add_watch(fd, sys.argv[1].encode(), IN_OPEN | IN_CLOSE) < 0:
@@ -43,7 +43,7 @@ once power $file --gate-runs 500 --accuracy 0.3 --versus forces.random_N=40 --js
 once sweep $file --vary forces.random_N=10,20 --trials 5 --json out.json --force
 once trace $file --trials 1 --csv out.csv --force
 
-# Also where it names a map, which no output may be.
+# Also a scene that names a map, which no output may be.
 file=map.toml
 printf '.s.\n...\n' >map.csv
 printf 'run.method = "moreau"\nfield = { columns = 3, rows = 2 }\n[terrain]\nmap_file = "map.csv"\n[terrain.types.s.forces]\npropulsion_N = 6\n' >$file

@@ -6,7 +6,7 @@
 
 paper_matrix m.nc
 "$gatewalk" gate "$scenes/single_gate.toml" --trials 200 --seed 3 --json gate.json --quiet
-# What cannot be written or is out of range is said before the work, naming the option.
+# An output that cannot be written, or a value out of range, is refused before the work, naming the option.
 long=$(printf 'n%.0s' $(seq 256))
 quick() { expect 2 "$1" timeout 20 "$gatewalk" "${@:2}"; }
 quick 'json: .*File name too long' gate "$scenes/field.toml" --trials 1e9 --json "$long"
@@ -34,7 +34,7 @@ for set in 'forces.random_N=1' ' forces.random_N = 1' 'forces . random_N=1' 'for
   quick 'has no effect: forces.random_N is varied' sweep "$scenes/field.toml" --vary forces.random_N=1,2 --set "$set"
 done
 
-# Modes of files stay; a new file follows the umask. Pipes and devices are written into.
+# Files keep their modes; a new file follows the umask. Pipes and devices are written into.
 (umask 027; "$gatewalk" gate "$scenes/single_gate.toml" --trials 5 --json mode.json --quiet; "$gatewalk" build "$scenes/single_gate.toml" --trials 1 -o mode.nc --quiet >/dev/null)
 [ "$(stat -c %a mode.json mode.nc | xargs)" = '640 640' ] || fail "modes of new files: $(stat -c %a mode.json mode.nc | xargs)"
 chmod 600 mode.json mode.nc
@@ -73,7 +73,7 @@ expect 2 'zeros.nc: not a NetCDF-4 file' bash -c "ulimit -v ${most:=2000000}; $g
 expect 2 'large.nc: has 3221225472 bytes, more than' bash -c "ulimit -v $most; $gatewalk show large.nc"
 rm zeros.nc large.nc
 
-# Names that are no UTF-8 stop no command.
+# Names that are not UTF-8 stop no command.
 odd=$(printf 'odd\377')
 cp "$scenes/field.toml" "$odd.toml"
 expect 0 'traversed' "$gatewalk" gate "$odd.toml" --trials 5 --json odd.json

@@ -4,7 +4,7 @@
 . "$(dirname "$0")/preamble.sh"
 small=(--set run.method=moreau --set field.columns=3 --set field.rows=3)
 
-# Refused before any work, and nothing is left.
+# Refused before any work, without leaving a file.
 expect 2 'fields of up to 441 gates, this one has 101 x 9' "$gatewalk" predict "$scenes/field.toml" --page p.html --set field.columns=101
 expect 2 'cannot go to standard output' "$gatewalk" predict "$scenes/field.toml" --page -
 expect 2 'are the same file' "$gatewalk" predict "$scenes/field.toml" --page p.html --json p.html
@@ -14,7 +14,7 @@ paper_matrix m.nc
 expect 2 'row has no meaning beside --page' "$gatewalk" predict m.nc --row 1=m.nc --page p.html
 [ ! -e p.html ] || fail "a page is left by a command that was refused"
 
-# Beside JSON; the command is the same with and without a page; what was there is kept.
+# Beside JSON; the recorded command is the same with and without a page; an old page is kept.
 run() { "$gatewalk" "$1" "$scenes/field.toml" "${small[@]}" --accuracy 0.2 "${@:2}" --json "$1.json" --quiet; }
 run predict --page p.html || fail "predict --page"
 grep -q '<script type="application/json" id="data">{' p.html || fail "no data in the page"
@@ -29,7 +29,7 @@ echo old >p.html
 expect 0 'kept as p.html.~1~' "$gatewalk" analyze "$scenes/field.toml" "${small[@]}" --accuracy 0.2 --runs 0 --page p.html
 grep -q 'id="data"' p.html || fail "analyze --page"
 
-# Cells that are not ours; without a limit of cells; too few bodies for error bars.
+# Cells of another program; without a limit of cells; too few bodies for error bars.
 expect 0 'bodies' "$gatewalk" build "$scenes/tracks/runs.csv" --cell "$scenes/tracks/cell.toml" -o few.nc
 expect 0 'no error bars' "$gatewalk" predict few.nc --page few.html
 grep -q '"can_run":false' few.html || fail "recorded runs: the page promises others"

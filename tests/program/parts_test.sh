@@ -4,7 +4,7 @@
 #   parts_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# What the commands write, but for times and for the list of parts.
+# What the commands write, without times and the list of parts.
 plain() { jq -S 'walk(if type == "object" then del(.parts, .seconds, .run_seconds, .direct_seconds, .chain_seconds, .speed_ratio) else . end)' "$1"; }
 same() {
   case $1 in
@@ -12,7 +12,7 @@ same() {
     *) cmp -s "$1" "$2" ;;
   esac || fail "$2 is not $1, of one run"
 }
-# divided PARTS OUTPUT COMMAND...: the command, which writes OUTPUT, in one run and in parts.
+# divided PARTS OUTPUT COMMAND...: runs the command, which writes OUTPUT, in one run and in parts.
 divided() {
   local parts=$1 output=$2 i
   shift 2
@@ -49,7 +49,7 @@ if command -v python3 >/dev/null; then
   divided 2 cell.nc build pillars.toml "${program[@]}" --trials 200 -o cell.nc
 fi
 
-# Parts by the numbers of their trials: any of them, also those of another machine's run later on.
+# Parts by trial numbers, in any division, also of a later run on another machine.
 one=(lattice "${field[@]}" --quiet)
 "$gatewalk" "${one[@]}" --trials 300 --json one.json
 for range in 0:100 250:50 100:150; do
@@ -58,7 +58,7 @@ done
 "$gatewalk" merge from* -o all.json --quiet
 same one.json all.json
 holds '[.made_by.parts[].holds] == ["trials 0 to 99", "trials 100 to 249", "trials 250 to 299"]' all.json
-# In any order, and where only the default says how many.
+# In any order, and with the default number of trials.
 "$gatewalk" "${one[@]}" --first-trial 0 --part usual0 2>/dev/null
 "$gatewalk" "${one[@]}" --first-trial 100 --trials 200 --part usual100 2>/dev/null
 for order in "usual0 usual100" "usual100 usual0"; do
@@ -66,11 +66,11 @@ for order in "usual0 usual100" "usual100 usual0"; do
   "$gatewalk" merge $order -o usual.json --quiet --force
   holds '.trials == 300' usual.json
 done
-# Without --part a result of these trials.
+# Without --part the result is that of these trials.
 "$gatewalk" "${one[@]}" --first-trial 250 --trials 50 --json last.json
 "$gatewalk" merge from250 -o again.json --quiet
 same last.json again.json
-# The outputs that the parts were told of, others, and the table.
+# The outputs that the parts were given, other outputs, and the table.
 "$gatewalk" "${one[@]}" --trials 300 --json told.json --shard 1/2 --part a 2>/dev/null
 "$gatewalk" "${one[@]}" --trials 300 --json told.json --shard 2/2 --part b 2>/dev/null
 expect 0 'crossed' "$gatewalk" merge a b -- --netcdf field.nc
@@ -78,7 +78,7 @@ expect 0 'crossed' "$gatewalk" merge a b -- --netcdf field.nc
 expect 0 '' "$gatewalk" merge b a -o other.json --quiet
 same told.json other.json
 
-# What is missing, twice, or of another run is named.
+# Parts that are missing, given twice, or of another run are named.
 "$gatewalk" "${one[@]}" --trials 300 --shard 1/3 --part c 2>/dev/null
 "$gatewalk" "${one[@]}" --trials 300 --shard 3/3 --part d 2>/dev/null
 expect 2 'missing: part 2 of 3' "$gatewalk" merge c d -o x.json
@@ -96,19 +96,19 @@ head -c -60 d >cut
 expect 2 "missing: part 2 of 3; not finished: cut (part 3 of 3); .* --shard 2/3, 3/3 and --resume" "$gatewalk" merge c cut -o x.json
 expect 2 'field.toml: holds no pieces of a run' "$gatewalk" merge c "$scenes/field.toml" -o x.json
 expect 2 'cannot be read' "$gatewalk" merge c nosuch -o x.json
-# A part is a checkpoint as well; it is no matrix.
+# A part is also a checkpoint; it is no matrix.
 expect 2 'd: holds what an earlier run has done' "$gatewalk" "${one[@]}" --trials 300 --shard 3/3 --part d
 expect 0 'd is done' "$gatewalk" "${one[@]}" --trials 300 --shard 3/3 --part d --resume
 expect 2 'd: holds part 3 of 3, and this is part 2 of 3' "$gatewalk" "${one[@]}" --trials 300 --shard 2/3 --part d --resume
 expect 2 'MATRIX d: holds pieces of a run: gatewalk merge' "$gatewalk" predict d
-# Faults count where one of the parts was to be strict, as in one run.
+# Faults count if one of the parts was strict, as in one run.
 loose=(lattice "$scenes/field.toml" --set run.method=moreau --set run.step_s=0.02 --trials 1000 --strict --json strict.json --quiet)
 "$gatewalk" "${loose[@]}" --force >/dev/null 2>&1
 one_status=$?
 for i in 1 2; do "$gatewalk" "${loose[@]}" --shard $i/2 --part strict$i 2>/dev/null; done
 "$gatewalk" merge strict1 strict2 --quiet --force >/dev/null 2>&1
 [ $? = $one_status ] && [ $one_status = 1 ] || fail "merge forgets --strict"
-# A part of another program's cell is told.
+# A part of another program's cell is named.
 if command -v python3 >/dev/null; then
   cp "$scenes/programs/pillars.py" own.py
   own=(lattice pillars.toml --cell-program "python3 own.py" --trials 40 --quiet)
@@ -117,7 +117,7 @@ if command -v python3 >/dev/null; then
   "$gatewalk" "${own[@]}" --shard 2/2 --part own2 2>/dev/null
   expect 2 'own1: is of another run, there: .*radius_m = 0.3.*; here: .*radius_m = 0.2' "$gatewalk" merge own1 own2 -o x.json
 fi
-# A file that is somebody else's is not taken; nor one behind --.
+# A file of somebody else is not replaced; merge refuses options of parts after --.
 echo precious >notes.txt
 expect 2 'notes.txt: is there and holds no pieces' "$gatewalk" "${one[@]}" --json x.json --checkpoint notes.txt
 expect 2 'notes.txt: is there and holds no pieces' "$gatewalk" "${one[@]}" --shard 1/2 --part notes.txt
@@ -125,14 +125,14 @@ expect 2 'notes.txt: is there and holds no pieces' "$gatewalk" "${one[@]}" --sha
 expect 2 'has no meaning in merge' "$gatewalk" merge c d -- --shard 1/2
 expect 2 'name the same output' "$gatewalk" merge a b -o x.json --json y.json
 expect 2 'must be at least 16' "$gatewalk" build "${field[@]}" --bins tree --trials 10 -o x.nc
-# Each part gets on under a time limit, also with what all parts do.
+# Each part makes progress under a time limit, also with the stages that all parts do.
 part=(rare "${field[@]}" --row 4 --split-trials 2000 --shard 2/2 --part late --quiet --threads 1)
 status=75
 for _ in $(seq $((${SANITIZED:+20 *} 20))); do "$gatewalk" "${part[@]}" --max-time $((${SANITIZED:+3 +} 1))s --resume >/dev/null 2>&1; status=$?; [ $status = 75 ] || break; done
 [ $status = 0 ] || fail "part 2 under --max-time: status $status"
-# A part that another commit wrote, with other keys; one whose inputs are no files.
+# A part of another commit, with other keys; one whose inputs are not files.
 "$gatewalk" "${one[@]}" --trials 300 --shard 1/2 --part whole --quiet 2>/dev/null
-# changed PART SED-COMMAND: with another second line, and its checksum.
+# changed PART SED-COMMAND: changes the second line, and its checksum.
 changed() {
   sed -n 2p whole | sed "$2" | tr -d '\n' >head.txt
   check=$(gzip -c head.txt | tail -c 8 | od -An -tx4 -N4 | tr -d ' ')

@@ -34,8 +34,8 @@ columns = 3
 rows = 3
 max_gates = 9
 END
-# Two bodies in mm, 100 frames a second: a goes up at 0.5 m/s and to the right at 0.2, b to the left at 0.1; a
-# is not seen in frame 60, b is unsure of in frame 30; they swap in frame 90.
+# Two bodies in mm, 100 frames a second: a goes up at 0.5 m/s and to the right at 0.2, b to the left at 0.1. Body a is
+# missing in frame 60, b is uncertain in frame 30; the names swap in frame 90.
 awk 'BEGIN {
   for (f = 0; f < 120; f++) for (b = 0; b < 2; b++) {
     who = f < 90 ? b : 1 - b
@@ -71,7 +71,7 @@ table=(spots.csv --fps 100 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=PO
 "$gatewalk" passages "${table[@]}" -o runs.csv --json runs.json --figure tracks.svg >table.txt 2>err.txt || fail "passages: $(cat err.txt)"
 "$gatewalk" passages dlc.csv --fps 100 "${shared[@]}" -o dlc_runs.csv --json dlc.json || fail "passages: DeepLabCut"
 "$gatewalk" passages movement.nc "${shared[@]}" -o nc_runs.csv --json nc.json || fail "passages: movement"
-# Bodies come in the file's order, which is the other way round here.
+# Bodies stand in the file's order, which is reversed here.
 for file in dlc nc; do sort "${file}_runs.csv" | cmp -s - <(sort runs.csv) || fail "passages: $file has other runs"; done
 holds '.endings == {left: 9, trapped: 0, lost: 6} and .lost_by == {gap: 2, jump: 2, end: 2}' runs.json
 holds '.trials == 6 and .passages == 15 and .left_by == {S: 7, W: 1, E: 1}' runs.json
@@ -89,14 +89,15 @@ grep -q '<svg' tracks.svg && grep -q 'lost 6' tracks.svg || fail "passages: no p
 for words in '3 rows of descriptions and units' 'y grows upwards' 'local fits of' '^noise: ' 'A crossing counts only if' 'lost  *6' 'gap 2, jump 2'; do
   grep -q "$words" table.txt || fail "passages: no '$words' in $(cat table.txt)"
 done
-# Seen from above: the other way is up, and a face for it is missing.
+# Seen from above, the other direction is up, and it lacks a face.
 expect 2 'by a move of (0, -1).*: no face of cell.toml has that move' "$gatewalk" passages "${table[@]}" -o x.csv --y-down
 "$gatewalk" passages "${table[@]}" -o x.csv --lattice 5,9 --origin=0,-30 --window 0.07s --bridge 1 --json x.json || fail "passages: options"
 holds '.window_frames == 7 and .lost_by == {gap: 0, jump: 2, end: 2}' x.json
 [ "$(grep -c , runs.csv)" = 16 ] || fail "passages: $(wc -l <runs.csv) lines"
 
-# Cells are those of [field], from the origin on: rows 0 to 2, columns 0 to 2, until y = 0.3 m after 0.56 s. Each body
-# enters row 1 and row 2 before; a also column 1, and b column 2 from column 3, before its first row: y = 0.02 + 0.5 t.
+# Cells are those of [field], from the origin on: rows 0 to 2, columns 0 to 2, until y = 0.3 m after 0.56 s. Before,
+# each body enters row 1 and row 2; a also column 1, and b column 2 from column 3, before its first row: y = 0.02 + 0.5
+# t.
 field=("${table[@]/all/3,3}")
 "$gatewalk" passages "${field[@]}" -o given.csv --json given.json || fail "passages: --lattice 3,3"
 own=()
@@ -112,8 +113,8 @@ sed '/^\[field\]/,$d' cell.toml >no_field.toml
 expect 2 'no_field.toml does not say how many cells there are: give columns and rows of \[field\], or --lattice' \
   "$gatewalk" passages "${own[@]}" -o x.csv --cell no_field.toml
 
-# A chain of known law: of 625 bodies a fifth stays in each of four rows, 0.8^4 = 40.96 % cross. Two rows' lengths of
-# open ground before them are no cells.
+# A chain with a known law: of 625 bodies a fifth stays in each of four rows, so 0.8^4 = 40.96 % cross. Two rows of open
+# ground before them are no cells.
 sed 's/columns = 3/columns = 1/; s/rows = 3/rows = 4/; s/symmetric = true/symmetric = true\ntrapped_after_s = 2/' cell.toml >law.toml
 awk 'BEGIN {
   print "body,t_ms,x_cm,y_cm"
@@ -130,7 +131,7 @@ grep -q 'column t_ms is in ms, by its name: converted to s' law.txt && grep -q '
 "$gatewalk" build law_runs.csv --cell law.toml -o law.nc --quiet 2>err.txt && "$gatewalk" predict law.nc --json law.json --force --quiet 2>err.txt || fail "predict: a known law"
 holds '(.endings.crossed - 0.4096 | fabs) < 1e-12' law.json
 
-# What a file does not say, and what makes no sense.
+# Information that a file lacks, and settings that make no sense.
 lacks() { expect 2 "$1" "$gatewalk" passages "${@:2}" -o x.csv --cell cell.toml; }
 lacks 'which column is what (there are LABEL, TRACK_ID, .*): --columns.*frames per second: --fps N.*--metres-per-unit' spots.csv --fastest 1
 lacks '--confidence X' spots.csv --fastest 1 --fps 100 "${scale[@]}" --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y,confidence=QUALITY
@@ -160,6 +161,6 @@ expect 2 'nosuch.csv' "$gatewalk" passages nosuch.csv "${table[@]:1}" -o x.csv
 expect 2 'empty.csv: is empty' "$gatewalk" passages empty.csv "${table[@]:1}" -o x.csv
 kept tracks.svg
 
-# Its table is CSV by any name but another format's.
+# The table is CSV under any name, except the ending of another format.
 expect 2 '^gatewalk: -o runs.XLSX: no .xlsx is written; tables are CSV, which spreadsheets read: a name in .csv$' "$gatewalk" passages x.csv --cell c.toml -o runs.XLSX
 finish

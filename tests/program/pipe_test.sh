@@ -3,8 +3,8 @@
 # A reader that closes its pipe (| head -1) is no failure.   pipe_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# unread COMMAND...: its standard output is a pipe without a reader, with a SIGPIPE that ends processes as usual and with
-# one that is ignored, as some services have it. Quiet, with the status of a process that SIGPIPE ended.
+# unread COMMAND...: runs the command with a pipe without a reader as standard output; SIGPIPE ends processes as usual,
+# or is ignored, as in some services. The command must be quiet and have the status of a process that SIGPIPE ended.
 unread() {
   local handler status
   for handler in - ''; do
@@ -44,17 +44,17 @@ unread "$gatewalk" walk m.nc
 unread "$gatewalk" build "$scenes/field.toml" --trials 2 --bins paper -o b.nc --force
 [ -s b.nc ] || fail "no matrix without a reader of the table"
 
-# What goes elsewhere is written all the same.
+# Other outputs are written all the same.
 unread "$gatewalk" gate "$scenes/field.toml" --trials 20 --json other.json --force
 "$gatewalk" gate "$scenes/field.toml" --trials 20 --json read.json >/dev/null
 cmp -s other.json read.json || fail "no other files without a reader"
-# So is a named pipe that nobody reads to its end.
+# So is an output beside a named pipe that nobody reads to its end.
 mkfifo named
 head -c 1 named >/dev/null &
 timeout 20 "$gatewalk" trace "$scenes/field.toml" --field --trials 20 --csv named --quiet 2>err.txt
 [ $? = 141 ] || fail "a named pipe without a reader"
 [ -s err.txt ] && fail "a named pipe: $(cat err.txt)"
-# Standard input that nobody ends is not read for a name that cannot stand for it.
+# An endless standard input is not read for an argument that cannot mean it.
 mkfifo open
 sleep 60 >open &
 waiting() { expect "$@" <open; }
@@ -67,7 +67,7 @@ kill %%
 # A failure keeps its status.
 (exec "$gatewalk" gate none.toml 2>/dev/null) | true
 [ "${PIPESTATUS[0]}" = 2 ] || fail "a failure beside a reader that went away"
-# A device that is full is a failure still.
+# A full device is still a failure.
 expect 1 'No space left on device' bash -c '"$1" gate "$2" --trials 20 >/dev/full' _ "$gatewalk" "$scenes/field.toml"
 
 finish

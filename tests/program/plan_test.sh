@@ -10,18 +10,18 @@ holds '.crossed > 0 and .crossed_95[0] < .crossed and .crossed < .crossed_95[1] 
 # At the start each trial takes one action.
 holds '[.actions[].taken[0][4]] | add | . > 0.999999 and . < 1.000001' plan.json
 grep -q 'most frequent action' plan.svg || fail "no map of actions"
-# An action all the time is the field with its keys. Over itself a plan gains nothing, which is no estimate.
+# A single action is the field with its keys. A plan gains nothing over itself, and this zero is no estimate.
 holds '[.actions[] | .crossed - .crossed_95[0] > 0 and (.gain_95 == null or .gain_95[0] < .gain and .gain < .gain_95[1])] | all' plan.json
 grep -q '^The best policy found takes fast all the time.$' out.txt || fail "this plan is to be one action: $(head -n 2 out.txt)"
 holds '.actions[0].gain == 0 and .actions[0].gain_95 == null and .actions[1].gain_95 != null and .by_gate.gain == 0 and .by_gate.gain_95 == null' plan.json
 [ "$(grep -c ' 0.00  *100.0 %$\| 0.00$' out.txt)" = 2 ] || fail "the gain of a plan over itself: $(grep -e fast -e 'gate alone' out.txt)"
-# The same bits on one thread, and from a scene's own tables; what is kept is taken up again.
+# The same bits on one thread, and from a scene's own tables; kept pieces are resumed.
 { cat "$scenes/field.toml"; printf '[actions.slow]\nforces.propulsion_N = 6\n[actions.fast]\nforces.propulsion_N = 9\n'; } >own.toml
 "$gatewalk" plan own.toml --set run.method=moreau --set field.rows=3 --accuracy 0.1 --threads 1 --checkpoint kept --quiet --json own.json
 jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' plan.json own.json | grep -q true || fail "plan: other results on one thread"
 "$gatewalk" plan own.toml --set run.method=moreau --set field.rows=3 --accuracy 0.1 --checkpoint kept --resume --quiet --force --json again.json
 jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' plan.json again.json | grep -q true || fail "plan: other results when resumed"
-# Other commands leave the actions alone.
+# Other commands ignore the actions.
 "$gatewalk" gate own.toml --trials 20 --quiet --json with.json
 "$gatewalk" gate "$scenes/field.toml" --trials 20 --quiet --json without.json
 jq -s '.[0].fates == .[1].fates' with.json without.json | grep -q true || fail "a scene's actions change its gate"
@@ -31,7 +31,7 @@ holds '.actions == ["fast", "slow", "wait"]' scene.json
 # Gates of several types; an action that is the scene as it is.
 expect 0 '^Chance to cross: ' "$gatewalk" plan "$scenes/mixed.toml" --set run.method=moreau --set field.max_gates=30 --set actions.fast.forces.propulsion_N=12 --set actions.wait={} --accuracy 0.2 --json mixed.json
 holds '.most_taken | length == 9' mixed.json
-# The policy is a file, which the full dynamics runs: as often as the plan says, the same at every go.
+# The full dynamics runs the policy file: it crosses as often as the plan says, the same in every run.
 { cat "$scenes/field.toml"; printf '[actions.left]\nbeams.stiffness_left_Nm_per_rad = 200\n[actions.right]\nbeams.stiffness_right_Nm_per_rad = 200\n'; } >sides.toml
 sides=(sides.toml --set run.method=moreau --set field.rows=4 --set field.max_gates=6)
 "$gatewalk" plan "${sides[@]}" --accuracy 0.05 --quiet --json sides.json --policy sides.policy.json --gate-policy gates.policy.json
@@ -40,18 +40,18 @@ expect 0 '^crossed' "$gatewalk" lattice "${sides[@]}" --policy sides.policy.json
 jq -s '.[0].crossed_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' sides.json run.json | grep -q true || fail "the policy crosses less or more often than planned"
 "$gatewalk" lattice "${sides[@]}" --policy sides.policy.json --trials 2000 --seed 3 --threads 1 --quiet --json again.json --force
 cmp -s run.json again.json || fail "a policy runs otherwise on one thread"
-# It can be watched: the very same trials; the film knows what is done in each step.
+# The same trials can be filmed; the film names the action of each step.
 "$gatewalk" trace "${sides[@]}" --policy sides.policy.json --trials 30 --seed 3 --quiet --json watched.json --replay watched.html
 "$gatewalk" lattice "${sides[@]}" --policy sides.policy.json --trials 30 --seed 3 --quiet --force --json few.json
 jq -s '(.[0].runs | map(.ending) | group_by(.) | map({key: (.[0] | gsub(" "; "_")), value: length}) | from_entries) == (.[1].endings | with_entries(select(.value > 0)))' watched.json few.json | grep -q true || fail "other trials are watched than counted"
 holds '.actions == ["left", "right"] and (.runs | map(.type | unique) | add | unique) == [0, 1] and .title == "sides.toml: actions left, right"' watched.json
 expect 2 'start.y_m' "$gatewalk" trace "${sides[@]}" --set start.y_m=1 --policy sides.policy.json
 expect 2 'sides.policy.json: was made for another scene: ' "$gatewalk" trace own.toml --policy sides.policy.json
-# Who knows the gate alone: a policy too.
+# A policy that depends on the gate alone.
 holds '.by_gate.crossed > 0 and .by_gate.gain_95[0] <= .by_gate.gain and (.by_gate.action | length) == 4 and (.by_gate.action[0] | length) == 9 and (.by_gate.action | add | unique | inside(["left", "right"]))' sides.json
 "$gatewalk" lattice "${sides[@]}" --policy gates.policy.json --trials 2000 --seed 3 --quiet --json run.json --force
 jq -s '.[0].by_gate.crossed_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' sides.json run.json | grep -q true || fail "the policy by gates crosses less or more often than planned"
-# Policies that take less, from the plan's own on; the one that is written crosses so often.
+# Policies that cost less, beginning with the plan's own; the one that is written crosses as often as asked for.
 least=("$scenes/field.toml" --set run.method=moreau --set field.rows=2 --set actions.slow.forces.propulsion_N=5 --set actions.fast.forces.propulsion_N=11 --accuracy 0.05)
 expect 0 '^Policies that take less (work of the propulsion), with the same random numbers:$' "$gatewalk" plan "${least[@]}" --least work_J --points 4 --json least.json
 holds '.least == "work_J" and (.front | length) > 1 and (.front | length) <= 4 and .front[0].crossed == .crossed and .front[0].price == 0 and (.front | map(.price) | . == sort) and (.front | map(.chosen) | any | not)' least.json
@@ -65,14 +65,14 @@ expect 0 'none of these policies crosses so often' "$gatewalk" plan "${least[@]}
 expect 2 "'heat_J' is none of time_s, forward_m, work_J, random_work_J, lost_J" "$gatewalk" plan "${least[@]}" --least heat_J
 expect 2 '--points: only with --least' "$gatewalk" plan "${least[@]}" --points 3
 expect 2 '--chance: must lie between 0 and 1' "$gatewalk" plan "${least[@]}" --least time_s --chance 1
-# What is best in the worst case, and how bad that is.
+# The best policy in the worst case, and its probability there.
 expect 0 "^Worst case, each row of the chain 1.96 standard errors worse: [0-9.]* % cross.$" "$gatewalk" plan "${sides[@]}" --accuracy 0.05 --robust --json robust.json --policy robust.policy.json
 holds '.worst_case >= 0 and .worst_case < .crossed_95[1] and .chain == null' robust.json
 holds 'has("worst_case") | not' sides.json
 "$gatewalk" lattice "${sides[@]}" --policy robust.policy.json --trials 2000 --seed 3 --quiet --json run.json --force
 jq -s '.[0].crossed_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' robust.json run.json | grep -q true || fail "the robust policy crosses less or more often than planned"
 expect 2 '--robust: not with --least' "$gatewalk" plan "${least[@]}" --robust --least time_s
-# One action all the time is the scene with its keys.
+# A single action is the scene with its keys.
 "$gatewalk" lattice "${small[@]:0:5}" "${actions[@]}" --policy fast.json --trials 300 --quiet --json policy.json
 "$gatewalk" lattice "${small[@]:0:5}" --set forces.propulsion_N=9 --trials 300 --quiet --json keys.json
 jq -s '.[0].final_gates == .[1].final_gates and .[0].endings == .[1].endings' policy.json keys.json | grep -q true || fail "one action all the time is not the scene with its keys"
@@ -85,7 +85,7 @@ done
 echo '{}' >bad.json
 expect 2 'bad.json: is no policy that gatewalk plan --policy wrote' "$gatewalk" lattice "${sides[@]}" --policy bad.json
 # What cannot be planned.
-# Without actions: the best start, in a terrain in any column; the chance that trials from there have.
+# Without actions: the best start, in a terrain in any column, with the probability of trials from there.
 expect 0 '^  best .* start d -*[0-9.]* m, vx 0 m/s, vy [0-9.]* m/s, i_x -*[0-4]$' "$gatewalk" plan "$scenes/mixed.toml" --set run.method=moreau --set field.rows=4 --accuracy 0.05 --json start.json --figure start.svg
 holds '.is_own == false and .gain_95[0] > 0 and .crossed > .own.crossed and (.starts | length) == 9 and (.starts[0].chance | length) == 40 and (.starts[0].chance[0] | length) == 40 and ([.starts[].chance[][]] | min >= 0 and max <= 1)' start.json
 grep -q 'by the chain; x: best' start.svg || fail "no map of starts"
@@ -106,25 +106,25 @@ expect 2 'a plan is made for one start' "$gatewalk" plan own.toml --start 0,0,15
 expect 2 'actions.a.contact.restitution is not permitted: a body cannot choose it' "$gatewalk" plan own.toml --set actions.a.contact.restitution=0.5
 "$gatewalk" build "$scenes/field.toml" --accuracy 0.2 -o tree.nc --quiet
 expect 2 'is a matrix (HDF5), and this command simulates new bodies: give a scene' "$gatewalk" plan tree.nc
-# Nobody can cross.
+# No body can cross.
 expect 0 'none of 25 trials crossed: too rare to choose by' "$gatewalk" plan own.toml --set run.method=moreau --set field.max_gates=2 --accuracy 0.2
 
-# Cells of another program, whose own numbers are the actions. Here the chances are known: a hopper that pushes as the
-# ground wants gets on 9 times of 10, else 3 times of 10, and comes down on either ground as likely. Three rows of it are
-# crossed with 0.9^3 = 0.729 at best; with one push, right for the start's ground or wrong, 0.9 or 0.3 times 0.6^2.
+# Cells of another program, whose numbers are the actions, with known probabilities. A hopper with the push that the
+# ground wants goes on 9 times of 10, else 3 times of 10, and lands on either ground equally often. It crosses three
+# rows with 0.9^3 = 0.729 at best; with a single push, right or wrong for the first ground, with 0.9 or 0.3 times 0.6^2.
 if command -v python3 >/dev/null; then
   cp "$scenes/programs/hopper.toml" .
   hopper=(hopper.toml --cell-program "python3 $scenes/programs/hopper.py")
   expect 0 '^Choosing the action by how a body enters gains ' "$gatewalk" plan "${hopper[@]}" --seed 2 --json hops.json --policy hops.policy.json --gate-policy push.policy.json --threads 2
   holds '[.actions[].name] == ["gently", "hard"] and .trials == 2401 and .best_alone == "hard" and .settled' hops.json
   holds '(.crossed - 0.729 | fabs) < 0.03 and (.actions[0].crossed - 0.108 | fabs) < 0.02 and (.actions[1].crossed - 0.324 | fabs) < 0.03 and (.by_gate.crossed - 0.324 | fabs) < 0.03' hops.json
-  # The first one is always taken on hard ground.
+  # The first action is always taken on hard ground.
   holds '.most_taken[0] == [null, "hard", null] and .actions[0].taken[0][1] == 0' hops.json
   "$gatewalk" lattice "${hopper[@]}" --policy hops.policy.json --trials 4000 --seed 3 --quiet --json hopped.json --threads 2
   jq -s '(.[0].crossed_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02) and .[1].actions == ["gently", "hard"] and .[1].methods == null and (.[1].made_by.cell | contains("[actions.hard]\nparameters.push_J = 3.0"))' hops.json hopped.json | grep -q true || fail "a program's policy crosses less or more often than planned"
   "$gatewalk" lattice "${hopper[@]}" --policy push.policy.json --trials 4000 --seed 3 --quiet --json push.json
   holds '.endings.crossed / .trials - 0.324 | fabs < 0.03' push.json
-  # The same bits on one thread, from --set, and when kept pieces are taken up again; which others' are not.
+  # The same bits on one thread, from --set, and after resuming kept pieces; pieces of another run are refused.
   "$gatewalk" lattice "${hopper[@]}" --policy hops.policy.json --trials 4000 --seed 3 --quiet --json again.json --force --threads 1
   cmp -s hopped.json again.json || fail "a program's policy runs otherwise on one thread"
   sed '/^\[actions/,$d' hopper.toml >bare.toml
@@ -141,14 +141,14 @@ if command -v python3 >/dev/null; then
   expect 2 'other: ' "$gatewalk" plan "${hopper[@]}" --seed 2 --checkpoint other --resume
   expect 2 'hops.policy.json: was made for another cell: "parameters.push_J = 2.5" here, "parameters.push_J = 3.0" there' "$gatewalk" lattice "${hopper[@]}" --policy hops.policy.json
   mv hopper.toml.old hopper.toml
-  # Numbers that no action has are part of what a policy was made for; an empty action is the cell as it is.
+  # Numbers that no action has also belong to a policy; an empty action is the cell as it is.
   expect 0 '^  1 as_it_is  ' "$gatewalk" plan "${bare[@]}" --set parameters.push_J=3 --set actions.gently.parameters.push_J=1 --set 'actions.as_it_is={}' --policy as.policy.json --json as.json
   holds '(.actions[0].crossed - 0.324 | fabs) < 0.03 and (.crossed - 0.729 | fabs) < 0.03' as.json
   expect 2 'as.policy.json: was made for another cell: .*push_J = 2.*push_J = 3' "$gatewalk" lattice "${bare[@]}" --set parameters.push_J=2 --set actions.gently.parameters.push_J=1 --set 'actions.as_it_is={}' --policy as.policy.json
-  # Costs are those of the cell: the push that gets on best also takes least time for each crossing.
+  # Costs are those of the cell: the push that goes on most often also takes least time per crossing.
   expect 0 '^No policy was found that takes less for each crossing (time_s).$' "$gatewalk" plan "${hopper[@]}" --accuracy 0.05 --least time_s --points 3
   expect 2 "'lost_J' is none of time_s, work_J" "$gatewalk" plan "${hopper[@]}" --least lost_J
-  # Other commands leave the actions alone, and a matrix keeps them.
+  # Other commands ignore the actions, and a matrix keeps them.
   "$gatewalk" lattice "${hopper[@]}" --trials 200 --quiet --json with.json --force
   "$gatewalk" lattice "${bare[@]}" --trials 200 --quiet --json without.json --force
   jq -s '.[0].final_gates == .[1].final_gates' with.json without.json | grep -q true || fail "actions change the cells of a program"
@@ -162,7 +162,7 @@ if command -v python3 >/dev/null; then
   expect 2 'is a table, and no scene' "$gatewalk" plan "$scenes/tracks/runs.csv"
   expect 2 'over: says where bodies may start, such as --over start.s_m=0:1' "$gatewalk" plan "${bare[@]}"
   expect 2 'over: start.z_m is none of start.s_m' "$gatewalk" plan "${bare[@]}" --over start.z_m=0:1
-  # With a push of 1 J it gets on best from the left.
+  # With a push of 1 J it goes on most often from the left.
   "$gatewalk" plan "${bare[@]}" --set parameters.push_J=1 --over start.s_m=-0.5:0.5 --accuracy 0.05 --quiet --json start.json --force
   holds '.start.s_m < 0 and .crossed > 0.25 and .crossed < 0.4 and .own.crossed < 0.2 and .gain_95[0] > 0 and (.starts | length) == 1 and (.starts[0].chance | length) == 1' start.json
   expect 2 'bare.toml: has 1 tables' "$gatewalk" plan "${bare[@]}" "${pushes[@]:0:2}"
@@ -172,7 +172,7 @@ if command -v python3 >/dev/null; then
   expect 2 'actions.hard.parameters.push_J = "3" is not permitted: must be a number' "$gatewalk" plan "${hopper[@]}" --set 'actions.hard.parameters.push_J="3"'
   expect 2 'actions.hard.forces.propulsion_N is not permitted: an action of cells has numbers of the program' "$gatewalk" plan "${hopper[@]}" --set actions.hard.forces.propulsion_N=9
   expect 2 'actions.hard.parameters.push_J is not permitted\|unknown key' "$gatewalk" plan "$scenes/field.toml" --set actions.hard.parameters.push_J=3
-  # A policy of gates is none of cells, and the other way round.
+  # A policy of gates does not run in cells, nor the reverse.
   expect 2 'sides.policy.json: was made for cells of another kind' "$gatewalk" lattice "${hopper[@]}" --policy sides.policy.json
   expect 2 'hops.policy.json: was made for cells of another kind' "$gatewalk" lattice "${sides[@]}" --policy hops.policy.json
   for change in '.action[0] = "0"' 'del(.cell)' '.trees[0].axis[0] = 1' '.action[0] |= sub("[01]"; "2")'; do

@@ -12,7 +12,7 @@ cd "$work" || exit 1
 failures=0
 
 fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
-# expect STATUS TEXT COMMAND...: exit status, and TEXT (a grep pattern) in what it prints.
+# expect STATUS TEXT COMMAND...: checks the exit status, and TEXT (a grep pattern) in the output.
 expect() {
   local status=$1 text=$2
   shift 2
@@ -23,9 +23,9 @@ expect() {
 }
 value() { jq -r "$1" "$2"; }
 holds() { [ "$(jq "$1" "$2")" = true ] || fail "$1 does not hold in $2: $(jq -c 'del(.made_by)' "$2" | head -c 400)"; }
-# paper_matrix FILE: 20 runs from each of the paper's 87 states.
+# paper_matrix FILE: builds a matrix with 20 runs from each of the paper's 87 states.
 paper_matrix() { "$gatewalk" build "$scenes/field.toml" --trials 20 --seed 1 -o "$1" --quiet >/dev/null || exit 1; }
-# kept FILE...: for tests that look at them.
+# kept FILE...: keeps files for tests that look at them.
 kept() { [ -z "$keep" ] || { rm -rf "$keep" && mkdir -p "$keep" && cp -r "$@" "$keep"; } || fail "nothing kept in $keep"; }
 finish() {
   [ $failures = 0 ] || exit 1

@@ -8,7 +8,7 @@ expect 0 '^Chance to enter row 4: ' "$gatewalk" rare "$scenes/field.toml" --set 
 holds '.row == 4 and (.rows | length) == 4 and .probability > 0 and .probability_95[0] < .probability and .probability < .probability_95[1] and .chain > 0 and .relative_standard_error <= 0.2 and .gate_runs > 1000 and .rows[0].direct_entered > 0 and .rows[0].direct_entered_95[0] > 0 and .chain_seconds < .seconds' rare.json
 expect 2 'must lie between 0 and 1' "$gatewalk" rare "$scenes/field.toml" --accuracy 5
 expect 0 'the relative standard error of 0.01 needs more' "$gatewalk" rare "$scenes/field.toml" --set run.method=moreau --row 12 --accuracy 0.01 --gate-runs 20000
-# Where nobody can move: an upper bound, soon.
+# If no body can move, the result is an upper bound, soon.
 expect 0 '^Chance to enter row 2: at most 0.000369 (two-sided 95 %): none of 10000 trials did.$' "$gatewalk" rare "$scenes/field.toml" --set run.method=moreau --set forces.propulsion_N=0 --set forces.random_N=0 --set start.vy_m_per_s=0 --row 2 --gate-runs 10000 --json none.json
 holds '.probability == 0 and .probability_95[0] == 0 and .probability_95[1] > 3.68e-4 and .probability_95[1] < 3.7e-4 and .reached == false' none.json
 expect 0 '^Chance to enter row 3: ' "$gatewalk" rare "$scenes/mixed.toml" --set run.method=moreau --row 3 --accuracy 0.2 --gate-runs 40000 --trials 500 --json rare.json

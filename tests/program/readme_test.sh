@@ -4,7 +4,7 @@
 #   readme_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# What the words in capitals stand for.
+# Values for the words in capitals.
 for sample in field mixed cell tracks observed; do
   "$gatewalk" sample $sample -o $sample.toml --quiet || fail "sample $sample"
 done
@@ -20,13 +20,13 @@ named() {
 }
 commands=$("$gatewalk" --help | awk '/^usage/ { list = 1; next } list && /^  [a-z]/ { print $1 }')
 
-# runs WORDS...: it ends well, or is at work after a while; what is wrong is said at once.
+# runs WORDS...: the command succeeds, or is still at work after a while; wrong use would fail at once.
 runs() {
   timeout --foreground 3 "$gatewalk" "$@" --quiet --force >out.txt 2>&1 </dev/null
   local status=$?
   [ $status = 0 ] || [ $status = 124 ] || [ $status = 130 ] || fail "$page: status $status: gatewalk $* ($(head -n 3 out.txt))"
 }
-# rows PAGE AT_LEAST: its table "I want" names so many commands, and each works.
+# rows PAGE AT_LEAST: its table "I want" names at least so many commands, and each works.
 rows() {
   local page=$1 seen=0 words name with without
   while read -r words; do
@@ -50,7 +50,7 @@ rows README.md 8
 rows cli/site/guides/index.md 30
 [ "$(wc -w <"$scenes/../README.md")" -le 900 ] || fail "README.md has $(wc -w <"$scenes/../README.md") words"
 
-# It would see a wrong row.
+# The check finds a wrong row.
 failures_before=$failures
 page=none
 runs passages tracks.csv --cell cell.toml -o runs.csv >/dev/null

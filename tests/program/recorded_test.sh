@@ -4,7 +4,7 @@
 . "$(dirname "$0")/preamble.sh"
 tracks=$scenes/tracks
 
-# Few bodies: an answer, but no error bars, which is said.
+# Few bodies: an answer without error bars, with a message.
 expect 0 '^Recorded: 12 bodies, 12 trials, 40 passages; 31 left their cell, 7 were trapped, 2 lost.$' \
   "$gatewalk" build "$tracks/runs.csv" --cell "$tracks/cell.toml" -o few.nc --json build.json
 holds '.recorded.bodies == 12 and .recorded.lost == 2 and .inputs == 9' build.json
@@ -26,7 +26,7 @@ expect 2 '16 bodies or more' "$gatewalk" power few.nc
 expect 2 'whose runs were recorded' "$gatewalk" analyze few.nc --trials 100
 expect 2 'is a matrix' "$gatewalk" rare few.nc
 
-# Many bodies that are alike: each goes up with chance 3/4 or is trapped, so 0.75^2 cross two rows.
+# Many equal bodies: each goes up with probability 3/4 or is trapped, so 0.75^2 cross two rows.
 cat >coin.toml <<'END'
 [cell]
 width_m = 0.1
@@ -65,8 +65,8 @@ holds '.expected_gates_95[0] < 1.75 and .expected_gates_95[1] > 1.75 and ((.expe
 expect 0 'trials needed' "$gatewalk" power coin.nc --json power.json
 holds '.from_prediction.endings.crossed[2].trials > 10' power.json
 
-# Five coordinates, of which a and b matter: a body goes on with chance 0.9 where they have the same sign, else 0.3, and
-# each of the two keeps its sign with chance 0.8. So 0.2619 cross three rows; without a and b it would be 0.6^3.
+# Five coordinates, of which a and b matter: a body goes on with probability 0.9 if they have the same sign, else 0.3,
+# and each keeps its sign with probability 0.8. So 0.2619 cross three rows; without a and b it would be 0.6^3.
 {
   sed 's/^rows = 2/rows = 3/' coin.toml | sed '/^\[\[cell.coordinates/,/^scale/d'
   for name in a b c d e; do printf '[[cell.coordinates]]\nname = "%s"\nunit = "1"\n' $name; done
@@ -113,7 +113,7 @@ holds '.memory.runs == 0 and (.memory.verdict | test("cannot be asked"))' halves
 "$gatewalk" validate coin.nc --json again.json --quiet --threads 1 >/dev/null
 [ "$(jq -c '[.halves, .p, .memory]' halves.json)" = "$(jq -c '[.halves, .p, .memory]' again.json)" ] ||
   fail "validate: another number of threads, another answer"
-# Half of the bodies mostly go up, the others mostly do not: what no chain of states predicts.
+# Half of the bodies mostly go up, the others mostly do not, which no chain of states predicts.
 awk 'BEGIN { srand(4); print "body,trial,in,s,out,out_s,time_s"
   for (b = 0; b < 400; ++b) { s = int(1000 * rand()) / 1e4
     for (k = 0; k < 6; ++k) {
@@ -125,8 +125,8 @@ holds '.differs and .p < 0.05' unlike.json
 expect 2 'two halves need 32 bodies at least, these are 12' "$gatewalk" validate few.nc
 expect 2 'has no meaning for' "$gatewalk" validate coin.nc --trials 100
 
-# Two types without a map: the first one stands everywhere, also where bodies were seen to begin in the other. Of cells
-# that trap none and all, whatever the entry.
+# Two types without a map: the first stands everywhere, also where bodies began in the other. One type of cells traps no
+# body, the other traps all.
 cat >types.toml <<'END'
 [cell]
 width_m = 0.1
@@ -160,7 +160,7 @@ expect 0 'type hard' "$gatewalk" build types.csv --cell types.toml -o types.nc
 holds '.endings.crossed > 0.999' types.json
 expect 0 '^One half of the bodies' "$gatewalk" validate types.nc --null-draws 99
 expect 0 'crossed' "$gatewalk" analyze types.nc
-# Cells that are symmetric do not make starts so: all of these enter on the right side, and leave to the left.
+# Symmetric cells do not make starts symmetric: all bodies enter on the right side, and leave to the left.
 cat >sides.toml <<'END'
 [cell]
 width_m = 0.1
@@ -190,10 +190,10 @@ awk 'BEGIN { print "body,trial,in,s,out,out_s,time_s"; for (b = 0; b < 100; ++b)
 "$gatewalk" build sides.csv --cell sides.toml -o sides.nc --quiet >/dev/null 2>&1
 "$gatewalk" predict sides.nc --json sides.json --quiet >/dev/null 2>&1
 holds '.endings.left_side == 1 and .endings.right_side == 0' sides.json
-# In millimetres, where metres are said.
+# In millimetres, in place of metres.
 awk -F, -v OFS=, 'NR > 1 { $4 *= 1000 } { print }' sides.csv >mm.csv
 expect 0 's is up to 39.8 m, and a cell is 0.1 m large: is it in metres' "$gatewalk" build mm.csv --cell sides.toml -o mm.nc
-# What is easily taken for a scene.
+# Files that are easily taken for a scene.
 expect 2 'is a table, and no scene: .* gatewalk build TABLE --cell' "$gatewalk" predict sides.csv
 expect 2 'is a table, and no scene' "$gatewalk" build sides.csv -o x.nc
 expect 2 'has cells of another kind, \[cell\]: --cell-program' "$gatewalk" predict sides.toml
@@ -214,12 +214,12 @@ done
 expect 2 'more arguments than the command takes (gatewalk passages cuts several recordings into one RUNS.csv); see' "$gatewalk" build sides.csv mm.csv --cell sides.toml -o x.nc
 expect 2 'there is no option --cell here: gatewalk build TABLE --cell CELL.toml -o MATRIX.nc makes a matrix of recorded runs; see' "$gatewalk" power sides.csv --cell sides.toml
 expect 0 'none on record: runs were recorded' "$gatewalk" show sides.nc
-# Nothing is run, so nothing is divided or stopped.
+# Nothing is simulated, so nothing can be divided or stopped.
 expect 2 'shard has no meaning' "$gatewalk" validate types.nc --shard 1/2 --part x
 expect 2 'max-time has no meaning' "$gatewalk" build sides.csv --cell sides.toml -o x.nc --max-time 1s
-# What was run is not changed any more.
+# Keys of recorded runs can no longer be changed.
 expect 2 'has its runs, and only keys of field, terrain and start can be set' "$gatewalk" predict sides.nc --set cell.symmetric=false
-# Simulated trials of a scene with terrain, as recorded runs, come back.
+# Simulated trials of a scene with terrain come back as recorded runs.
 "$gatewalk" lattice "$scenes/mixed.toml" --set run.method=moreau --trials 300 --passages mixed.csv --cell-file mixed.toml --quiet >/dev/null
 expect 0 '300 bodies' "$gatewalk" build mixed.csv --cell mixed.toml -o mixed.nc
 
@@ -247,18 +247,18 @@ if command -v python3 >/dev/null; then
   expect 2 "no parameter 'radius'" "$gatewalk" predict pillars.toml --cell-program "$pillars" --set parameters.radius=0.2
   expect 0 'bodies' "$gatewalk" build pillars.toml --cell-program "$pillars" --accuracy 0.1 -o pillars.nc
   expect 0 '^went back' "$gatewalk" predict pillars.nc --json kept.json
-  # The same runs, whether they are in a file or not; other starts add some.
+  # The same runs, from a file or not; other starts add some.
   [ "$(jq -c .final_gates pillars.json)" = "$(jq -c .final_gates kept.json)" ] || fail "the file's runs are others"
   expect 0 '^start W' "$gatewalk" predict pillars.nc --cell-program "$pillars" --start W:0.1,0.2 --json west.json
   holds '.reached and .gate_runs > 0' west.json
-  # A figure has who went back.
+  # A figure shows bodies that went back.
   "$gatewalk" predict pillars.nc --figure pillars.svg --quiet >/dev/null && grep -q 'went back' pillars.svg || fail "the figure leaves out who went back"
-  # So many first runs and no other trials, for the starts that the file does not know.
+  # For starts that the file lacks, --first-runs gives their number, without other trials.
   "$gatewalk" predict pillars.nc --cell-program "$pillars" --start W:0.1,0.2 --start S:0.3,0 --first-runs 40 \
     --json first.json --quiet >/dev/null || fail "predict of pillars.nc with 40 first runs"
   holds '.gate_runs == 80 and ([.starts[].first_runs] == [40, 40])' first.json
   expect 2 'holds runs of the program with its own' "$gatewalk" predict pillars.nc --cell-program "$pillars" --set parameters.radius_m=0.2
-  # Its cell must be that of the file.
+  # The program's cell must be that of the file.
   sed 's/unit = "m"$/unit = "cm"/; s/s_m/s_cm/' pillars.toml >cm.toml
   expect 2 'the unit of s is m of its cell, cm in cm.toml' "$gatewalk" predict cm.toml --cell-program "$pillars"
   sed 's/move = \[0, -1\]/move = [0, -2]/' pillars.toml >moves.toml

@@ -11,7 +11,8 @@ mkdir folder
 field=$scenes/field.toml
 actions=(--set actions.slow.forces.propulsion_N=6 --set actions.fast.forces.propulsion_N=9)
 
-# before COMMAND... -- WRONG...: each list of words WRONG makes it exit with 2 within 2 s of CPU, naming one of the words.
+# before COMMAND... -- WRONG...: with each list of words WRONG the command exits with 2 within 2 s of CPU, naming one of
+# them.
 before() {
   local command=() wrong
   while [ "$1" != -- ]; do command+=("$1"); shift; done
@@ -68,7 +69,7 @@ before chart limits "$field" -o charts --trials 1e5 -- "${figures[@]}" "${keys[@
 before reproduce -o report -- "${outputs[@]}"
 ls | grep -qx -e land -e charts -e report && fail "a refused command made its folder: $(ls)"
 
-# Values that --vary gives are named as the user gave them.
+# Values of --vary are named as the user gave them.
 expect 2 '^gatewalk: --vary forces.random_N=1,-1: forces.random_N = -1 is not permitted' "$gatewalk" sweep "$field" --vary forces.random_N=1,-1
 
 finish

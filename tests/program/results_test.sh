@@ -12,7 +12,7 @@ for page in results scene; do
 cp DIR/doc/gatewalk/$page.md cli/$page.md
 $difference"
 done
-# Each key of a scene is there once, and what follows from others is what gatewalk scene derives.
+# Each key of a scene occurs once, and the keys that follow from others are those that gatewalk scene derives.
 keys=$("$gatewalk" scene --set body.mass_kg=1 --set body.radius_m=1 --set forces.propulsion_N=1 --json - --quiet |
   jq -r '.keys[] | "\(.key) \(.source == "derived")"')
 [ "$(wc -l <<<"$keys")" -gt 25 ] || fail "gatewalk scene has $(wc -l <<<"$keys") keys"

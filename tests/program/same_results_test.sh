@@ -12,7 +12,7 @@ printf '#!/bin/sh\nexec "%s" "$@" --set contact.restitution=0.79\n' "$gatewalk" 
 chmod +x changed
 expect 1 '^0 command lines with the same results, 4 with others$' "$same_results" --lines "$lines" "$gatewalk" changed
 [ "$(grep -c '^DIFFERS: gatewalk ' out.txt)" = 4 ] || fail "same_results.sh: not a word on each line"
-# What differs in one number of a CSV, one line of a page of help, one word of a schema, one datum of a figure.
+# Differences in one number of a CSV, one line of a help page, one word of a schema, one datum of a figure.
 lines='^0 (gate field.toml --trials 300|help gate$|schema gate.schema.json)'
 expect 0 '^3 command lines with the same results, 0 with others$' "$same_results" --lines "$lines" "$gatewalk" "$gatewalk"
 mkdir -p other/{bin,plot}
@@ -31,12 +31,12 @@ printf '#!/bin/sh\nsed "/ << EOD/{n;s/[0-9]/9/2}" | PATH=${PATH#*:} gnuplot "$@"
 chmod +x other/plot/gnuplot
 printf '#!/bin/sh\nPATH="%s:$PATH" exec "%s" "$@"\n' "$PWD/other/plot" "$gatewalk" >other/bin/gatewalk
 other 'gate field.toml' 'figure-1.data'
-# Schemas that a program does not have are not compared, which is said.
+# Schemas that a program lacks are not compared, with a message.
 printf '#!/bin/sh\n[ "$2" != --write ] || exit 1\nexec "%s" "$@"\n' "$gatewalk" >bare && chmod +x bare
 expect 0 'schemas are not compared: .*/bare has none beside it' "$same_results" --lines "$lines" "$gatewalk" bare
 grep -q '^2 command lines with the same results, 0 with others$' out.txt || fail "same_results.sh: without schemas"
 lines='^0 (scene own.toml --json|gate own|trace own|lattice own)'
-# One that fails where it should not, and one that does nothing.
+# A program that fails wrongly, and a program that does nothing.
 expect 1 '^0 command lines with the same results, 4 with others$' "$same_results" --lines "$lines" "$gatewalk" /bin/false
 expect 1 '^0 command lines with the same results, 4 with others$' "$same_results" --lines "$lines" /bin/true /bin/true
 expect 2 'no line has' "$same_results" --lines nothing-like-it "$gatewalk" "$gatewalk"

@@ -19,7 +19,7 @@ expect 2 'which sample?' "$gatewalk" sample -o x.toml
 cmp -s mine.toml "$scenes/walker.toml" || fail "sample -o"
 expect 0 'kept as mine.toml.~1~' "$gatewalk" sample field -o mine.toml
 
-# Tracks become passages, these a chain; counts are held against the model.
+# Tracks become passages, and passages a chain; counts are compared with the model.
 for name in tracks runs observed; do "$gatewalk" sample $name -o $name.csv; done
 "$gatewalk" sample cell -o cell.toml
 expect 0 'in 48 trials' "$gatewalk" passages tracks.csv --cell cell.toml -o passages.csv --fps 10 --metres-per-unit 0.001 \
@@ -30,7 +30,7 @@ expect 0 'crossed' "$gatewalk" predict passages.nc --start W:0.01,0.1,0.1
 expect 0 '12 bodies' "$gatewalk" build runs.csv --cell cell.toml -o runs.nc
 expect 0 'observed' "$gatewalk" validate "$scenes/field.toml" --observed observed.csv --trials 200 --accuracy 0.2
 
-# --csv has every number of the JSON, with its limits, and no other.
+# --csv has every number of the JSON with its limits, and no other.
 "$gatewalk" predict "$scenes/field.toml" --accuracy 0.2 --json p.json --csv p.csv --quiet >out.txt || fail "predict --csv"
 [ -s out.txt ] && fail "--csv --quiet prints: $(cat out.txt)"
 head -n 1 p.csv | grep -qx 'quantity,i,j,value,low_95,high_95' || fail "names of columns: $(head -n 1 p.csv)"
@@ -48,7 +48,7 @@ csv_value() { awk -F, -v key="$1" '$1","$2","$3 == key { print $4","$5","$6 }' p
   fail "exits: $(csv_value exits.left_side.2.share,,)"
 "$gatewalk" gate "$scenes/field.toml" --csv - --quiet >gate.csv
 "$gatewalk" gate "$scenes/field.toml" --json gate.json --quiet
-# Limits of a count are counts, here as in JSON.
+# The limits of a count are counts, as in JSON.
 [ "$(grep '^trapped,' gate.csv)" = "$(jq -r '[.trapped, .trapped_95[]] | map(tostring) | "trapped,,," + join(",")' gate.json)" ] || fail "$(cat gate.csv)"
 for command in "gate $scenes/field.toml" "lattice $scenes/field.toml --trials 50" "validate $scenes/field.toml --trials 50 --walks 700 --accuracy 0.2" "walk walk.nc"; do
   [ -e walk.nc ] || paper_matrix walk.nc

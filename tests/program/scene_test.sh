@@ -16,10 +16,10 @@ echo '# edited' >>full.toml
 expect 0 'kept as full.toml.~1~$' "$gatewalk" scene mine.toml --new -o full.toml
 [ "$(tail -n 1 full.toml.~1~)" = '# edited' ] || fail "scene --new: an edited scene is lost"
 expect 0 'mine.toml leaves out [1-9][0-9]* keys: .* .gatewalk scene mine.toml shows them.$' "$gatewalk" gate mine.toml --trials 10
-# What the file leaves out follows from the file, whatever is overridden.
+# Keys that the file leaves out follow from the file, whatever is overridden.
 "$gatewalk" scene mine.toml --set forces.propulsion_N=1.6 --json set.json --quiet
 holds '[.keys[] | select(.key == "beams.stiffness_left_Nm_per_rad") | .value][0] == "0.31999999999999995"' set.json
-# People read seven digits, programs all of them; a value of the file is written as it was given.
+# The table has seven digits, JSON all; a value of the file is written as it was given.
 "$gatewalk" scene mine.toml --set forces.propulsion_N=1.6 >set.txt
 grep -q '^beams.stiffness_left_Nm_per_rad  *0.32  *N m/rad  *derived$' set.txt || fail "scene: a number in full length: $(grep stiffness_left set.txt)"
 printf 'body.radius_m = 0.0812345678901\n' >long.toml
@@ -28,16 +28,16 @@ printf 'body.radius_m = 0.0812345678901\n' >long.toml
 grep -h '[0-9]\.[0-9]*[1-9][0-9]\{7,\}' set.txt long.txt && fail "scene: more than seven digits"
 grep -q '^radius_m = 0.0812345678901 ' long-new.toml || fail "scene --new: a value of the file was rounded"
 grep -o ', in [[(][^])]*' long-new.toml | grep '[0-9]\.[0-9]*[1-9][0-9]\{7,\}' && fail "scene --new: a range in full length"
-# A field longer than the gates that may be visited is not crossed, and why is said.
+# A field longer than its limit of gates cannot be crossed, with the reason.
 expect 0 'field.max_gates = 13 is less than field.rows = 20' "$gatewalk" lattice "$scenes/field.toml" --set field.rows=20 --trials 10
-# Other units: the scene is the same, both values are shown; two of one quantity are refused.
+# Other units: the scene is the same, both values are shown; two units for one key are refused.
 printf 'body.mass_g = 250\nbody.radius_cm = 8\nforces.propulsion_mN = 800\n' >units.toml
 expect 0 '^body.radius_m  *0.08  *m  *units.toml:2 .radius_cm = 8.$' "$gatewalk" scene units.toml
 "$gatewalk" scene units.toml --json units.json --quiet
 jq -s '.[0].scene == .[1].scene' keys.json units.json | grep -q true || fail "scene: other units make another scene"
 printf 'body.radius_m = 0.08\n' >>units.toml
 expect 2 '^gatewalk: units.toml:4: body.radius_m = 0.08 is the same quantity as body.radius_cm = 8 .units.toml:2.' "$gatewalk" scene units.toml
-# What the numbers mean, and that they are nobody's robot: a worked example and three keys of a small body.
+# The meaning of the numbers, and that they fit no robot: a worked example and three keys of a small body.
 expect 0 'the beams hold the push of 0.24 N at 25.3 degrees' "$gatewalk" scene "$scenes/walker.toml"
 "$gatewalk" scene "$scenes/walker.toml" --json walker.json --quiet
 holds '.meaning | .far_from_walkers == [] and .top_speed_m_per_s > 0.29 and .top_speed_m_per_s < 0.31' walker.json
@@ -45,8 +45,8 @@ holds '.meaning | .far_from_walkers == [] and .top_speed_m_per_s > 0.29 and .top
 holds '[.meaning.far_from_walkers[].name] == ["froude", "push_per_weight", "random_per_weight", "draws_per_body_length", "passages_waited"]' small.json
 expect 0 'no walking animal or robot is like this scene: .*, and [1-9] more .gatewalk scene mine.toml says why.$' "$gatewalk" gate mine.toml --trials 10
 expect 2 'figure has no meaning beside --new' "$gatewalk" scene mine.toml --new --figure three.svg
-# A push in the file changes what is left out, by an option it does not: said where pushes are given, with the numbers to
-# write; not where the file has these numbers, nor where no push is given.
+# A push in the file changes the keys that are left out, an override does not. A message with the numbers to write
+# appears if a push is given; not if the file has these numbers.
 printf 'body.mass_kg = 0.25\nbody.radius_m = 0.08\n' >bare.toml
 follows='the beams, the random force and the drag follow the push: fix them .*beams.stiffness_left_Nm_per_rad = 0.0064,'
 expect 0 "$follows" "$gatewalk" gate bare.toml --set forces.propulsion_N=0.03 --trials 10
@@ -62,7 +62,7 @@ for line in "bare.toml" "fixed.toml --set forces.propulsion_N=0.03" "$scenes/rob
   # shellcheck disable=SC2086
   "$gatewalk" gate $line --trials 10 2>&1 | grep 'before you compare pushes' && fail "gate $line: nothing follows the push, or none is given"
 done
-# The step where a body creeps over what its beams resist with: at 1 % of the stiffness, not at 25 %.
+# The step at which a body creeps over its beams' resistance: at 1 % of the stiffness, not at 25 %.
 creep='--set forces.random_N=0 --set forces.drag_Ns_per_m=7 --set beams.damping_Nms_per_rad=1 --set run.time_limit_s=1000 --set start.vy_m_per_s=1'
 "$gatewalk" scene "$scenes/field.toml" $creep --json creep.json --quiet
 at=$(jq '400 * 7 / .meaning.resistance_N' creep.json)

@@ -12,7 +12,7 @@ field = { columns = 5, rows = 3 }
 END
 # Shapes of screens: how many lines, how wide, and how they end.
 wide() { awk -v most=100 'length($0) > most' "$1" | head -n 1; }
-# first LINES COMMAND...: the first screen has at most so many lines besides a map of gates, and Next lines; kept in screen.txt.
+# first LINES COMMAND...: the first screen has at most so many lines, besides a map and Next lines; kept in screen.txt.
 first() {
   local most=$1 lines
   shift
@@ -25,7 +25,7 @@ first() {
   tail -n 1 screen.txt | grep -q -e '--details shows ' || fail "does not say that there are details: $*"
   sed -n 's/^\(Next: \|      \)gatewalk /gatewalk /p' screen.txt >>next.txt
 }
-# screens COMMAND...: its first screen, and the whole one, which has all of the first but for the advice on details.
+# screens COMMAND...: the first screen, and the whole one, which has all of the first except the hint to --details.
 screens() {
   first 15 "$@"
   "$gatewalk" "$@" --force --details >whole.txt 2>/dev/null || { fail "$* --details" && return; }
@@ -33,7 +33,7 @@ screens() {
   [ "$(wc -l <whole.txt)" -gt "$(wc -l <screen.txt)" ] || fail "--details shows nothing more: $*"
   grep -q -e '--details shows ' whole.txt && fail "--details advises --details: $*"
   grep -v -e '--details shows ' -e '^Next: ' -e '^      ' screen.txt | grep -v -x -F -f whole.txt >missing.txt
-  # What was timed differs from run to run.
+  # Times differ from run to run.
   grep -v ' [0-9.]* s\b' missing.txt && fail "--details leaves out what the first screen has: $*: $(head -n 1 missing.txt)"
 }
 
@@ -58,7 +58,7 @@ screens predict few.nc
 screens rare small.toml --row 2 --accuracy 0.3
 screens validate small.toml --matrix tree.nc --trials 40 --null-draws 99 --memory
 screens validate field.toml --observed observed.csv --trials 1200 --accuracy 0.3 --null-draws 99
-# Several starts: the answer of each, the rest once.
+# Several starts: the answer for each, and the rest once.
 first 23 predict small.toml --accuracy 0.3 --start 0,0,15 --start 4.3,5.1,10.2
 [ "$(grep -c '^crossed' screen.txt)" = 2 ] && [ "$(grep -c '^The 95 % intervals' screen.txt)" = 1 ] || fail "predict: several starts: $(cat screen.txt)"
 screens validate field.toml --accuracy 0.3 --trials 40 --null-draws 99
@@ -70,14 +70,14 @@ screens build passages.csv --cell tracks/cell.toml -o bodies.nc
 screens predict bodies.nc
 screens validate bodies.nc --null-draws 99
 head -n 1 screen.txt | grep -q '^One half of the bodies ' || fail "validate: no verdict of the halves"
-# A chain that was made elsewhere.
+# An imported chain.
 printf 'from,to,count\n0,0,4\n0,1,3\n0,2,2\n1,0,2\n1,1,6\n1,2,1\n' >counts.csv
 printf 'state,move_x,move_y\n0,0,1\n1,1,0\n' >states.csv
 "$gatewalk" import counts.csv --states states.csv --start 0 --set field.rows=3 --set field.columns=3 -o own.nc --quiet >/dev/null
 screens show own.nc
 screens walk own.nc --walks 50
 screens predict own.nc
-# What to do next runs, a shell's own comment behind it; with less accuracy where that takes long.
+# The proposed commands run in a shell, with their comments; with less accuracy where they take long.
 sort -u next.txt >all.txt
 [ "$(wc -l <all.txt)" -ge 15 ] || fail "few lines of advice: $(cat all.txt)"
 gatewalk() {
@@ -94,11 +94,11 @@ export -f gatewalk
 while read -r line; do
   bash -c "$line" >out.txt 2>err.txt </dev/null || fail "advice does not run: $line: $(head -n 1 err.txt)"
 done <all.txt
-# From standard input nothing can be asked again.
+# Standard input cannot be read again, so no command is proposed.
 "$gatewalk" gate - --trials 5 <small.toml >screen.txt 2>/dev/null
 grep -q 'gatewalk .* -' screen.txt && fail "asks standard input again: $(cat screen.txt)"
 
-# What is not what it is taken for.
+# Files of another kind than expected.
 for command in validate gate lattice rare trace scene; do expect 2 'tree.nc: is a matrix (HDF5), and .* scene' "$gatewalk" $command tree.nc; done
 for command in show walk; do expect 2 'a matrix is not read from standard input' "$gatewalk" $command -; done
 expect 2 'there is no option --trials (did you mean --walks?)' "$gatewalk" walk bins.nc --trials 5

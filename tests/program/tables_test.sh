@@ -26,7 +26,7 @@ columns = 3
 rows = 3
 max_gates = 9
 END
-# Two bodies go up through the middle column, in mm, 50 frames a second, and are seen a tenth of a mm off.
+# Two bodies go up through the middle column, in mm, 50 frames a second, with an error of a tenth of a mm.
 awk 'BEGIN { srand(3); print "body,frame,x,y"
   for (f = 0; f < 80; f++) for (b = 1; b < 3; b++)
     printf "%d,%d,%.3f,%.3f\n", b, f, 130 + 20 * b + rand() / 5, 10 + 4 * f + rand() / 5 }' >plain.csv
@@ -56,7 +56,7 @@ awk -F, 'NR == 1 { print "scorer;n;n;n;n;n;n\nindividuals;1;1;1;2;2;2\nbodyparts
   { gsub(/[.]/, ","); split($0, f, ","); v = f[3] "," f[4] ";" f[5] "," f[6] ";0" } $1 == 1 { line = $2 ";" v; next } { print line ";" v }' \
   plain.csv >pose.csv && same pose 'coords z left out' --fps 50
 
-# Missing is missing, however it is spelled; so is who has no body.
+# A missing value is recognised in any spelling; so is a row without a body.
 gaps=(--json gaps.json --bridge 1)
 : >want.json
 for nothing in '' NA None null '<NA>' N/A '#N/A' NaN inf - -inf '#DIV/0!' missing; do
@@ -66,7 +66,7 @@ for nothing in '' NA None null '<NA>' N/A '#N/A' NaN inf - -inf '#DIV/0!' missin
   holds '.tracks.places_without_number == 1 and .tracks.bodies == 2' gaps.json
 done
 
-# What is no table is named by its first bytes; what a table lacks by what there is.
+# A file that is no table is named by its first bytes; a missing column by the columns that exist.
 refused() { expect 2 "$2" passages "$1" "${columns[@]}" -o x.csv; }
 iconv -t UTF-16 plain.csv >utf16.csv && refused utf16.csv 'is text in UTF-16: save it as UTF-8'
 gzip -k plain.csv && refused plain.csv.gz 'is packed by gzip: unpack it'
@@ -81,7 +81,7 @@ passages plain.csv plain.csv "${columns[@]}" -o x.csv 2>err.txt && fail "one fil
 cp plain.csv PLAIN.CSV && passages plain.csv PLAIN.CSV "${columns[@]}" -o both.csv >/dev/null || fail "two recordings"
 cut -d, -f1 both.csv | sort -u | tr '\n' ' ' | grep -qx 'PLAIN/1 PLAIN/2 body plain/1 plain/2 ' || fail "two recordings: $(cut -d, -f1 both.csv | sort -u)"
 
-# Where nothing was seen, it says why.
+# If nothing was seen, the message says why.
 awk -F, 'BEGIN { OFS = "," } NR > 1 { $2 *= 5 } { print }' plain.csv >stride.csv
 expect 2 'frames go up by 5 .*--bridge 4 bridges them' passages stride.csv --columns "${columns[1]}" --fps 250 -o x.csv
 awk -F, 'NR == 1 || $2 % 10 != 7' plain.csv >lossy.csv

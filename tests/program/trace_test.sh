@@ -11,7 +11,7 @@ jq -s '(.[0].runs | map(.ending)) as $e | .[1] | [.traversed_left, .exited_left,
 [ "$(tail -n +2 runs.csv | wc -l)" = "$(jq '[.runs[].t | length] | add' runs.json)" ] || fail "trace: CSV and JSON have other samples"
 head -n 1 runs.csv | grep -q '^trial,time_s,gate_x,gate_y,x_m,y_m,' || fail "trace: other columns: $(head -n 1 runs.csv)"
 ncdump -v row_size runs.nc | tr -d ' \n;}' | grep -q "row_size=$(jq -r '[.runs[].t | length] | join(",")' runs.json)" || fail "trace: NetCDF has other runs"
-# As the CF conventions have trajectories.
+# Trajectories as in the CF conventions.
 for attribute in ':Conventions = "CF-1.10"' ':featureType = "trajectory"' 'run_trial:cf_role = "trajectory_id"' \
   'row_size:sample_dimension = "sample"' 'field_x_m:axis = "X"' 'x_m:coordinates = "time_s field_x_m field_y_m"'; do
   ncdump -h runs.nc | grep -q "$attribute" || fail "trace: NetCDF without $attribute"
@@ -42,12 +42,12 @@ expect 2 "'left field': a run ends as one of: crossed, left side, right side, tr
 expect 2 "'departed': a run ends as one of" "$gatewalk" trace "$scenes/soft_left.toml" --only departed
 "$gatewalk" trace "$scenes/soft_left.toml" --set run.time_limit_s=0.5 --video short.gif --quiet >/dev/null && [ "$(head -c 6 short.gif)" = GIF89a ] ||
   fail "trace: no GIF"
-# It says how fast it plays: on its pictures, in the table and in JSON; by default in the scene's own unit of time.
+# A film says how fast it plays, in its pictures, the table and JSON; by default in the scene's own unit of time.
 "$gatewalk" trace "$scenes/soft_left.toml" --set run.time_limit_s=0.2 --video slow.gif --video-speed 0.25 --json slow.json >slow.txt
 grep -q '^slow.gif: plays at 1/4 of real time$' slow.txt || fail "a film does not say its speed: $(cat slow.txt)"
 holds '.video_speed == 0.25' slow.json
 expect 0 '^real.gif: plays in real time$' "$gatewalk" trace "$scenes/soft_left.toml" --set run.time_limit_s=0.2 --video real.gif
-# The way out of the limit of steps works, whatever it is.
+# The proposed remedy for the limit of steps works, whatever it is.
 "$gatewalk" trace "$scenes/field.toml" --field --trials 900 --csv many.csv >out.txt 2>&1 && fail "more than 500 000 steps are recorded"
 fit=$(sed -n 's/.*: give --trials \([0-9]*\), --only ENDING, a smaller field.max_gates, a longer run.step_s or a shorter run.time_limit_s$/\1/p' out.txt)
 "$gatewalk" trace "$scenes/field.toml" --field --trials "$fit" --csv many.csv >/dev/null || fail "--trials '$fit' is no way out of $(cat out.txt)"

@@ -4,7 +4,7 @@
 #   trees_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-paper_matrix m.nc  # bins, beside them
+paper_matrix m.nc  # bins, for comparison
 fast=(--set run.method=moreau --set run.step_s=0.02)
 "$gatewalk" predict "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --json direct.json --threads 1 --quiet >/dev/null 2>&1
 "$gatewalk" predict "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --json direct2.json --threads 2 --quiet >/dev/null 2>&1

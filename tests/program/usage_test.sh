@@ -19,7 +19,7 @@ while read -r command; do
 done <commands.txt
 expect 2 'missing SCENE' "$gatewalk" gate
 expect 2 'missing -o' "$gatewalk" build "$scenes/field.toml"
-expect 2 'there is no option' "$gatewalk" gate "$scenes/field.toml" --tri 5       # nothing is guessed
+expect 2 'there is no option' "$gatewalk" gate "$scenes/field.toml" --tri 5       # abbreviations are refused
 expect 2 '^gatewalk: there is no option --trails (did you mean --trials?); see gatewalk gate --help$' "$gatewalk" gate "$scenes/field.toml" --trails 5
 expect 2 '^gatewalk: --trials needs a value; see' "$gatewalk" gate "$scenes/field.toml" --trials
 expect 2 '^gatewalk: --quiet takes no value; see' "$gatewalk" gate "$scenes/field.toml" --quiet=3
@@ -29,7 +29,7 @@ expect 2 '^gatewalk: --threads 1025: must be at least 0 and at most 1024' "$gate
 for number in abc nan inf 0,1; do
   expect 2 "^gatewalk: --accuracy: '$number' is not a number" "$gatewalk" predict "$scenes/field.toml" --accuracy $number
 done
-# A blank instead of = makes an argument of the value.
+# With a blank in place of =, the value becomes an argument.
 for command in gate predict; do
   expect 2 '^gatewalk: --set body.mass_g: must be KEY=VALUE, for example' "$gatewalk" $command "$scenes/field.toml" --set body.mass_g 5
 done
@@ -50,7 +50,7 @@ expect 0 'exit status: 0 fine, 1 failure (with --strict' "$gatewalk" --help
 expect 2 'did you mean build?' "$gatewalk" biuld
 expect 2 'did you mean predict?' "$gatewalk" help predictt
 expect 2 'did you mean chart field?' "$gatewalk" chart_field
-# Names of before 2.0 are answered with the new line.
+# Names from before 2.0 are answered with the new command.
 for old in 'chart-chain=chart chain' 'chart-field=chart field' 'stability=chart limits SCENE' 'chart=chart methods'; do
   expect 2 "^gatewalk: ${old%=*} is now: gatewalk ${old#*=} a.toml 'b c.toml' -o DIR --seed=2\$" "$gatewalk" ${old%=*} a.toml 'b c.toml' -o DIR --seed=2
   [ "$(wc -l <out.txt)" = 1 ] || fail "${old%=*}: $(cat out.txt)"
@@ -66,7 +66,7 @@ expect 0 '^The result of gatewalk chart field, as --json writes it' "$gatewalk" 
 expect 2 "^gatewalk: help chart field takes --result, and nothing else: not 'extra'$" "$gatewalk" help chart field extra
 "$gatewalk" fly 2>&1 | grep -q 'did you mean' && fail "fly is no misspelled command"
 
-# simulate is lattice under another name; what the result keeps of it is one name.
+# simulate is another name of lattice; the result records one name.
 for name in lattice simulate; do "$gatewalk" $name "$scenes/field.toml" --trials 20 --json $name.json --quiet || fail "$name"; done
 cmp lattice.json simulate.json || fail "simulate is not lattice"
 holds '.made_by.command | startswith("gatewalk lattice ")' simulate.json
@@ -80,7 +80,7 @@ grep -q '^gatewalk: merge has no result of its own' err.txt || fail "help merge 
 grep -q "'simulate:another name of lattice'" share/zsh/vendor-completions/_gatewalk || fail "zsh does not complete simulate"
 grep -q "^    simulate) options='.*--passages" share/bash-completion/completions/gatewalk || fail "bash does not complete simulate"
 
-# Of an option given twice the last one counts, and that is said; options that may be repeated are lists.
+# If an option is given twice, the last one counts, with a remark; options that may be repeated are lists.
 "$gatewalk" gate "$scenes/field.toml" --trials 1 --seed 3 --trials 20 --seed 4 --set forces.random_N=3 --set forces.propulsion_N=4 --json twice.json >table.txt 2>err.txt
 "$gatewalk" gate "$scenes/field.toml" --trials 20 --seed 4 --set forces.random_N=3 --set forces.propulsion_N=4 --json once.json >/dev/null 2>&1
 jq -s '(.[0] | del(.made_by.command)) == (.[1] | del(.made_by.command))' twice.json once.json | grep -q true || fail "an option given twice: not the last one"
@@ -88,7 +88,7 @@ holds '.made_by.command | test("--seed 4") and (test("--seed 3") | not) and test
 grep -q '^gatewalk: --trials is given 2 times: the last one counts, 20$' err.txt || fail "an option given twice is not said: $(cat err.txt)"
 "$gatewalk" gate "$scenes/field.toml" --trials 1 --trials 20 --quiet >/dev/null 2>err.txt
 [ -s err.txt ] && fail "--quiet: $(cat err.txt)"
-# So it is with the keys of --set, in any unit; different keys are no remark.
+# The same holds for the keys of --set, in any unit; different keys cause no remark.
 sets=(--set forces.propulsion_N=8 --set forces.random_N=3)
 expect 0 '^gatewalk: --set gives forces.propulsion_N 2 times: the last one counts, forces.propulsion_mN=9000$' \
   "$gatewalk" gate "$scenes/field.toml" --trials 20 "${sets[@]}" --set forces.propulsion_mN=9000 --json twice.json
@@ -98,7 +98,7 @@ holds '.made_by.scene | test("propulsion_N = 9.0\n")' twice.json
 expect 2 'unknown key beams.stiffness_mNm_per_rad; the closest known keys are beams.stiffness_left_Nm_per_rad and beams.stiffness_right_Nm_per_rad$' \
   "$gatewalk" gate "$scenes/field.toml" --set beams.stiffness_mNm_per_rad=9
 
-# A scene from standard input is that of a file, for every command that reads one.
+# A scene from standard input equals that of a file, for every command that reads one.
 "$gatewalk" gate - --trials 20 --seed 4 --json dash.json --quiet <"$scenes/field.toml"
 "$gatewalk" gate "$scenes/field.toml" --trials 20 --seed 4 --json file.json --quiet
 jq -s '(.[0] | del(.made_by)) == (.[1] | del(.made_by)) and .[0].made_by.scene == .[1].made_by.scene' dash.json file.json | grep -q true || fail "a scene from standard input is another one"
@@ -111,7 +111,7 @@ done
 # power reads its scene twice.
 expect 2 'versus: field.columns and field.rows must stay' "$gatewalk" power - --versus field.rows=5 <"$scenes/field.toml"
 
-# Out of memory: which option would help, and status 1.
+# Out of memory: the message says which option would help; status 1.
 [ -n "${SANITIZED-}" ] || expect 1 '^gatewalk: out of memory; .*larger --accuracy.*fewer --threads.*--set field.rows' \
   bash -c 'ulimit -v 170000; exec "$@"' _ "$gatewalk" predict "$scenes/field.toml" --threads 1 --accuracy 0.3 --set field.columns=2001 --set field.rows=2001 --set field.max_gates=0
 

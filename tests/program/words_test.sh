@@ -10,11 +10,11 @@ field=$scenes/field.toml
 for name in 'left side' left_side; do
   expect 0 'left side' "$gatewalk" analyze m.nc --target "$name" --runs 0
 done
-# Without a limit of gates nobody is cut off: 0, not what rounding leaves.
+# Without a limit of gates no body is cut off: the share is 0, without a rounding error.
 "$gatewalk" predict m.nc --set field.max_gates=0 --json free.json >free.txt
 holds '.endings.cut_off == 0 and .cut_off == 0 and .rounding_at_most > 0' free.json
 
-# NetCDF has the maps of any field, JSON those of up to 100000 gates, and says so.
+# NetCDF has the maps of any field, JSON those of up to 100000 gates, with a message.
 "$gatewalk" predict m.nc --start 0,0,15 --start 4,5,10 --netcdf two.nc --json two.json --quiet
 ncdump -v final_gates,i_x,crossed two.nc >dump.txt
 grep -q 'final_gates(start, i_y, i_x)' dump.txt && grep -q 'start = 2 ;' dump.txt && grep -q 'final_gates:units = "1"' dump.txt || fail "netcdf: no final gates"
@@ -48,7 +48,7 @@ for row in 0 86; do
 done
 expect 2 'row 87: must be at least 0 and at most 86' "$gatewalk" show m.nc --row 87
 
-# A chain has field.fidelity "active": another one is refused, never ignored.
+# A chain has field.fidelity "active"; another one is refused, not ignored.
 "$gatewalk" build "$field" --trials 2 --set run.method=moreau --set run.step_s=0.005 -o moreau.nc --quiet >/dev/null
 for command in predict walk analyze; do
   expect 2 'set field.fidelity=all: field.fidelity = "all" is not permitted for a chain: it has "active"' "$gatewalk" $command moreau.nc --set field.fidelity=all
