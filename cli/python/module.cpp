@@ -32,11 +32,12 @@ namespace {
 
 namespace py = pybind11;
 
-/// One command at a time: NetCDF's files are read and written by one thread, and a command is one
-/// of its process. Whoever waits hears Ctrl-C. A process that was forked meanwhile has its own.
+/// Admits one command at a time, because NetCDF files are read and written by one thread, and a
+/// command belongs to its process. A waiting thread hears Ctrl-C. A forked process has its own
+/// turn.
 class Turn {
  public:
-  /// With the GIL held. Throws UsageError within a command.
+  /// Needs the GIL. Throws UsageError if called within a command.
   Turn() {
     if (is_mine_ || is_in_cell())
       throw cli::UsageError(
@@ -71,7 +72,7 @@ class Turn {
 };
 thread_local bool Turn::is_mine_ = false;
 
-/// What a matrix file holds; its arrays are views of it.
+/// The content of a matrix file. Python's arrays are views of it.
 class Matrix {
  public:
   explicit Matrix(const std::string& path)
@@ -92,7 +93,7 @@ class Matrix {
   }
   [[nodiscard]] const std::map<std::string, std::string>& text() const { return file().text; }
 
-  /// (data, indices, indptr, shape) of the counts or of the probabilities, rows compressed.
+  /// (data, indices, indptr, shape) of the counts or probabilities, in compressed rows.
   static py::tuple csr(const py::object& self, const std::string& type, bool probabilities) {
     const auto& matrix = self.cast<const Matrix&>();
     const auto found = matrix.types_.find(type);
@@ -113,8 +114,8 @@ class Matrix {
     };
     return probabilities ? of(found->second.probabilities) : of(found->second.counts);
   }
-  /// Of the states, as rows and columns of csr(): names, if they have some, faces, and low and high
-  /// of each coordinate.
+  /// The states in the order of csr()'s rows and columns: names (if they have any), faces, and the
+  /// low and high of each coordinate.
   [[nodiscard]] py::dict states() const {
     const dynamics::StateSpace& space = file().transitions.space;
     const auto n = static_cast<py::ssize_t>(space.size());
@@ -138,7 +139,7 @@ class Matrix {
       }
     return all;
   }
-  /// By face: name, and the move that enters by it.
+  /// For each face: its name, and the move by which bodies enter through it.
   [[nodiscard]] py::list faces() const {
     py::list all;
     for (const dynamics::Face& f : file().transitions.space.section().faces)
@@ -167,7 +168,8 @@ const cli::Command& command_of(const std::string& name) {
   return *command;
 }
 
-/// (name, value as shown, kind, is a file, may be repeated) of each.
+/// For each option of a command: name, value as shown, kind, whether it is a file, whether it may
+/// be repeated.
 py::list options(const std::string& name) {
   py::list all;
   cli::Arguments arguments{};
@@ -211,8 +213,8 @@ py::tuple run(const std::string& name, std::vector<std::string> words, const py:
   return py::make_tuple(status, result);
 }
 
-/// The keys of a command's results: name of each list, and its keys with type, unit, meaning and
-/// whether all results have them.
+/// The keys of a command's results: the name of each list, and its keys with type, unit, meaning
+/// and whether all results have them.
 py::list result_keys(const std::string& command) {
   py::list all;
   for (const cli::ResultOf& of : cli::results()) {
@@ -227,7 +229,7 @@ py::list result_keys(const std::string& command) {
   return all;
 }
 
-/// Complaints about a cell, from starts (face, coordinates).
+/// What is wrong with a cell, tested from these starts (face, coordinates).
 std::vector<std::string> check_cell(const py::object& cell,
                                     const std::vector<std::pair<int, std::vector<double>>>& starts,
                                     std::int64_t trials, int cells, std::uint64_t seed) {
@@ -259,7 +261,7 @@ PYBIND11_MODULE(_core, m) {
   error(std::common_type<markov::BadFile>(), "BadFile", PyExc_ValueError);
   static PyObject* const usage_error =
       error(std::common_type<cli::UsageError>(), "UsageError", PyExc_ValueError).release().ptr();
-  // As main() has it: wrong use.
+  // Wrong use gives the same messages as in main().
   pybind11::register_exception_translator([](std::exception_ptr thrown) {
     try {
       std::rethrow_exception(thrown);

@@ -28,7 +28,7 @@ py::array_t<T> table(std::size_t rows, std::size_t columns) {
   return py::array_t<T>({static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns)});
 }
 
-/// What the cell gave as `name`: an array of that shape.
+/// The value that the cell returned as `name`, checked to be an array of this shape.
 template <class T>
 py::array_t<T, py::array::c_style | py::array::forcecast> given(const py::handle& value,
                                                                 const char* name, std::size_t rows,

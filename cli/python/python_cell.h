@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A cell that a Python object carries bodies through, many at once.
+/// A cell whose passages a Python object simulates, many at once.
 
 #include <pybind11/pybind11.h>
 
@@ -15,10 +15,10 @@ namespace gatewalk::python {
 /// `cell` has _hello(), the first line of a cell program (cli/site/reference/cell_program.md), and
 /// _passes(face, at, seed, noise, memory) -> (out, at, costs, memory), all arrays with a row per
 /// body: face (int32) and out (int64) number faces, out is -1 for trapped, -2 for broken. Both are
-/// called with the GIL held; what they raise ends the run.
+/// called with the GIL held; their exceptions end the run.
 class PythonCell : public dynamics::Cell {
  public:
-  /// With the GIL held. Throws std::invalid_argument for a cell that is none.
+  /// Needs the GIL. Throws std::invalid_argument if `cell` does not describe a valid cell.
   explicit PythonCell(pybind11::object cell);
   ~PythonCell() override;
   PythonCell(const PythonCell&) = delete;
@@ -29,7 +29,7 @@ class PythonCell : public dynamics::Cell {
   [[nodiscard]] dynamics::Passage pass(dynamics::Body& body) const override;
   void carry_out(const dynamics::NextPassage& next, dynamics::Health& health,
                  std::int64_t at_once) const override;
-  /// Without memory: zeros.
+  /// Gives the body an empty memory: zeros.
   void begin(dynamics::Body& body) const override;
   [[nodiscard]] std::vector<Number> numbers() const override;
   [[nodiscard]] std::unique_ptr<Cell> with(std::size_t number, double times) const override;
@@ -43,7 +43,7 @@ class PythonCell : public dynamics::Cell {
   int memory_ = 0;  // numbers that a body carries from cell to cell
 };
 
-/// Whether this thread is in pass_ of a cell.
+/// Whether this thread is inside pass_ of a cell.
 [[nodiscard]] bool is_in_cell();
 
 }  // namespace gatewalk::python

@@ -21,7 +21,7 @@ namespace {
 namespace py = pybind11;
 using cli::ValueKind;
 
-/// An array of this shape of numbers that stand row by row.
+/// An array of this shape from numbers that stand row by row.
 template <class Number>
 py::object array_of(const Number* numbers, auto... shape) {
   py::array_t<double> all({static_cast<py::ssize_t>(shape)...});
@@ -60,7 +60,7 @@ template <class Number>
 requires std::is_arithmetic_v<Number> py::object python_of(const std::vector<Number>* list) {
   return array_of(list->data(), list->size());
 }
-/// Rows that differ in length are a list of arrays.
+/// Rows of different lengths become a list of arrays.
 template <class Row>
 requires std::same_as<typename Row::value_type, double> py::object python_of(
     const std::vector<Row>* rows) {
@@ -97,7 +97,7 @@ py::object of_given(std::string_view text) {
   const cli::Json number = cli::parsed_json(text);
   return number.is_number() ? python_of(&number) : python_of(text);
 }
-/// An array if all are numbers.
+/// An array if all texts are numbers, else a list.
 py::object of_givens(const std::vector<std::string>& texts) {
   py::list all;
   bool are_numbers = !texts.empty();
@@ -139,7 +139,7 @@ class PythonFields final : public cli::Fields {
   void close() override { open_.pop_back(); }
 
  private:
-  struct Scope {  // an object, or a list with the item that is described now
+  struct Scope {  // an object, or a list with its current item
     py::list items{};
     py::dict object{};
   };
