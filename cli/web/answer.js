@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The page of an answer (gatewalk predict --page): a start that is moved, and what the chain says of it.
-// All numbers were made by the program (cli/render/answer_page.h); the page looks them up.
+// The interactive page of an answer (gatewalk predict --page): a movable start, and the chain's prediction for it.
+// The program computed all numbers (cli/render/answer_page.h); the page looks them up.
 'use strict';
 
 const kSvg = 'http://www.w3.org/2000/svg';
@@ -31,18 +31,18 @@ async function unpacked(text, kind) {
   return new kArrays[kind](plain.buffer);
 }
 
-/** {share, low, high}: codes by end, then place. */
+/** {share, low, high}: codes of shares, by end, then by place. */
 async function table(packed, places) {
   const of = {places};
   for (const key of Object.keys(packed)) of[key] = await unpacked(packed[key], 'u16');
   return of;
 }
 
-// ---- Shares, as the program prints them
+// ---- Shares as the program prints them
 
 const kNone = 65535, kSmall = 10001, kDigits = 90;
 
-/** Per cent. */
+/** The share of a code, in per cent. */
 function percentOf(code) {
   if (code === kNone) return NaN;
   if (code < kSmall) return code / 100;
@@ -50,7 +50,7 @@ function percentOf(code) {
   return Number(`${digits}e-${power + 1}`);
 }
 
-/** Two digits as C++ prints them: 0.0012, 5.3e-05. */
+/** A number with two digits as C++ prints it: 0.0012, 5.3e-05. */
 function twoDigits(value) {
   if (value >= 1e-4) return String(Number(value.toPrecision(2)));
   return value.toExponential(1).replace(/\.0(?=e)/, '').replace(/e-(\d)$/, 'e-0$1');
@@ -63,7 +63,7 @@ function textOf(code) {
 
 const short = (percent) => (percent === 0 ? '' : percent < 0.05 ? '<.1' : percent < 9.95 ? percent.toFixed(1)
     : percent.toFixed(0));
-/** Four digits. */
+/** A number with four digits. */
 const plain = (value) => (value === null || !Number.isFinite(value) ? '-' : String(Number(value.toPrecision(4))));
 const unitOf = (unit) => (unit === '1' ? '' : unit.replace(/ s-1$/, '/s').replace('m s-1', 'm/s'));
 const minus = (text) => text.replace(/^-/, '−');
@@ -85,7 +85,7 @@ class Answer {
     this.axes = data.section.coordinates;
     this.cellWord = data.gate ? 'gate' : 'cell';
     this.start = {face: data.starts[0].face, at: [...(data.starts[0].at ?? this.axes.map(() => 0))]};
-    this.seenStart = !data.starts[0].at;  // "as seen": no entry of its own
+    this.seenStart = !data.starts[0].at;  // "as seen": drawn from first entries
     this.cell = data.start_column;
     this.shows = 'start';
     this.target = data.analysis.target ?? 'crossed';
@@ -95,11 +95,11 @@ class Answer {
     this.update();
   }
 
-  // ---- Which state a start is in
+  // ---- The state of a start
 
   faceOf(face) { return this.data.states.faces.findIndex((f) => f.face === face); }
 
-  /** {leaf, beyond}: as StateSpace::index_of. */
+  /** {leaf, beyond} of an entry, as StateSpace::index_of gives them. */
   leafAt(face, at) {
     const f = this.faces[this.faceOf(face)];
     const beyond = at.some((x, axis) => x < f.seen[axis][0] || x > f.seen[axis][1]);
@@ -118,7 +118,7 @@ class Answer {
     return {leaf: f.first + leaf, beyond};
   }
 
-  /** From and to along each axis, of all leaves of a state. */
+  /** The range of a state (all its leaves) along each axis. */
   rangeOf(state) {
     const all = this.axes.map(() => [Infinity, -Infinity]);
     for (const f of this.faces) for (let i = 0; i < f.ranges.length; ++i) {
@@ -130,7 +130,7 @@ class Answer {
     return all;
   }
 
-  /** The start's own answer where it has one, else that of its state; place -1: none. */
+  /** The answer for a start if it has its own, else that of its state; place -1: none. */
   answer() {
     const {starts, states} = this.data, own = this.ownStart();
     if (own >= 0) return {place: states.count + own, own: starts[own]};
@@ -162,12 +162,12 @@ class Answer {
     });
   }
 
-  /** A disc starts inside its gate: no further from the middle than this. */
+  /** The largest distance of a disc's start from the middle of its gate. */
   wall(axis) {
     return this.data.gate && axis === 0 ? this.data.cell_m[0] / 2 : Infinity;
   }
 
-  /** A step of a field, so that some hundred make its range. */
+  /** The step of an input, about a hundredth of its range. */
   stepOf(axis) {
     const [low, high] = this.ranges[axis];
     return 10 ** Math.floor(Math.log10((high - low) / 50));
@@ -207,7 +207,7 @@ class Answer {
     return first + at.map((x) => String(x)).join(',');
   }
 
-  // ---- What is built once
+  // ---- Parts that are built once
 
   build() {
     const {data} = this;
@@ -260,14 +260,14 @@ class Answer {
           'aria-describedby': `unit-${axis}`,
         oninput: (e) => {
           const x = e.target.value === '' ? NaN : Number(e.target.value);
-          const inside = Math.abs(x) <= this.wall(axis);  // false of NaN
+          const inside = Math.abs(x) <= this.wall(axis);  // false for NaN
           e.target.setAttribute('aria-invalid', String(!inside));
           if (!inside) return;
           const at = [...this.start.at];
           at[axis] = x;
           this.move(at);
         },
-        onkeydown: (e) => {  // without a browser's own step of 1
+        onkeydown: (e) => {  // replaces the browser's own step of 1
           const by = {ArrowUp: 1, ArrowDown: -1, PageUp: 10, PageDown: -10}[e.key];
           if (!by) return;
           e.preventDefault();
@@ -460,7 +460,7 @@ class Answer {
     this.overlay.append(element('svg:circle', {cx: x, cy: y, r: 5}));
   }
 
-  // ---- What follows the start and the chosen cell
+  // ---- Parts that follow the start and the chosen cell
 
   update() {
     const answer = this.answer();
@@ -481,7 +481,7 @@ class Answer {
     }, 600);
   }
 
-  /** What the endings leave out, beyond what their rounding makes. */
+  /** Shares that the endings leave out, if larger than their rounding. */
   updateRest({place}) {
     const rest = place < 0 ? 0
         : this.data.endings.reduce((left, _, e) => left - within(this.endings, e, place).percent, 100);
@@ -529,7 +529,7 @@ class Answer {
     note.replaceChildren(...says);
   }
 
-  /** The name of a state, between what its entries lie, and how many there are. */
+  /** A state's name, the range of its entries, and their number. */
   stateWords({leaf, state = this.ofLeaf[leaf]}) {
     const {chain, states} = this.data, name = this.data.section.faces[this.start.face].name;
     const range = this.rangeOf(state);
@@ -592,7 +592,7 @@ class Answer {
   }
 }
 
-/** A row each: name, bar with whisker, number. */
+/** Rows of name, bar with whisker, and number. */
 function shareRows(place, names, target = null) {
   const rows = names.map((n) => {
     const bar = element('i'), whisker = element('b'), number = element('span', {class: 'number'});
@@ -679,7 +679,7 @@ class Drawing {
   px(x) { return (x - this.x0) * this.scale; }
   py(y) { return (this.y1 - y) * this.scale; }
 
-  /** Drags `group`, and its keys: left and right along one axis, up and down along the other. */
+  /** Lets the user move `group` by dragging and by arrow keys, each direction along one axis. */
   listen(group, moved, [across, up]) {
     const {answer} = this;
     let offset = null;
@@ -738,7 +738,7 @@ class Drawing {
     };
     say(this.place, 0, `${axes[0].name} ${d} ${unitOf(axes[0].unit)}`);
     say(this.speed, 1, `${axes[1].name} ${vx}, ${axes[2].name} ${vy} ${unitOf(axes[1].unit)}`);
-    // The state: between which places and velocities its entries lie.
+    // The state: the range of its entries' places and velocities.
     const known = state !== undefined && state >= 0;
     for (const box of [this.stateBox, this.speedBox]) box.setAttribute('visibility', known ? 'visible' : 'hidden');
     if (!known) return;
@@ -747,7 +747,7 @@ class Drawing {
       return [Math.max(from, least), Math.min(to, most)];
     });
     const put = (box, x0, y0, x1, y1) => {
-      const least = 3;  // points, to be seen
+      const least = 3;  // points, to be visible
       const at = {x: this.px(x0), y: this.py(y1), width: Math.max(least, (x1 - x0) * this.scale),
           height: Math.max(least, (y1 - y0) * this.scale)};
       for (const [key, value] of Object.entries(at)) box.setAttribute(key, value);
@@ -760,7 +760,7 @@ class Drawing {
 
 // ---- Reading
 
-/** What a face's tree needs to be walked through: where the part above a cut begins, leaves, their ranges. */
+/** Prepares a face's tree for look-ups: where the part above each cut begins, the leaves, their ranges. */
 async function readFace(face, axes) {
   if (!face.axis) {
     let ranges = [[]];
@@ -772,7 +772,7 @@ async function readFace(face, axes) {
   const cutOf = new Float64Array(axis.length), above = new Int32Array(axis.length), leaf = new Int32Array(axis.length),
       ranges = [];
   let cut = 0;
-  const open = [];  // nodes whose part above is still to come, with that part's range
+  const open = [];  // nodes whose upper part is still to come, with its range
   let range = Array.from({length: axes}, () => [-Infinity, Infinity]);
   for (let node = 0; node < axis.length; ++node) {
     const a = axis[node];

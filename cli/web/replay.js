@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A run of the body among the beams, to be watched: gatewalkReplay(element, film) builds the whole
-// animation inside `element` and answers {play, pause, seek, key}. cli/film/replay.h says what a film holds.
-// All of it lives in a shadow tree, so neither styles nor names can clash with the page around it.
+// Animates runs of a body among beams: gatewalkReplay(element, film) builds the animation inside `element` and
+// returns {play, pause, seek, key}. cli/film/replay.h describes a film. The animation lives in a shadow tree, so
+// that styles and names cannot clash with the page around it.
 'use strict';
 
 const gatewalkReplay = (() => {
@@ -26,9 +26,9 @@ const gatewalkReplay = (() => {
   const kContacts = ['free', 'hit', 'held'];
   // In the scene's own units of time:
   const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 5, 10];  // a second
-  const kFlash = 0.25;    // for which a hit stays to be seen, longer where the run goes fast
-  const kSmooth = 0.75;   // before and after over which the following camera takes the mean place
-  const kWake = 1.5;      // of the trail drawn strongly
+  const kFlash = 0.25;    // a hit stays visible; longer at high speed
+  const kSmooth = 0.75;   // before and after, for the mean place of the following camera
+  const kWake = 1.5;      // of the track that is drawn strongly
 
   const kStyle = `
     :host { display: block; }
@@ -78,7 +78,7 @@ const gatewalkReplay = (() => {
 
   // ---- What a film must hold
 
-  /** Faults that forbid showing the film, and what is only left out of it. */
+  /** Faults that prevent showing the film, and parts that are only left out. */
   function examined(film) {
     const faults = [], remarks = [];
     if (film === null || typeof film !== 'object' || Array.isArray(film))
@@ -152,9 +152,9 @@ const gatewalkReplay = (() => {
     else if (film.actions) faults.push(`${where}type is missing`);
   }
 
-  // ---- Where everything is at a time
+  // ---- The state at a time
 
-  /** Adds to a run what is asked for at every frame: global places, their running integrals, the last hit. */
+  /** Adds to a run what every frame needs: places in the field, their running integrals, the last hit. */
   function prepared(run, film) {
     const [width, depth] = film.gate_m;
     const X = run.x.map((x, i) => x + width * run.gx[i]);
@@ -173,7 +173,7 @@ const gatewalkReplay = (() => {
       lastHit: {left: lastHits(run.contact_left), right: lastHits(run.contact_right)}};
   }
 
-  /** The last entry at or before time t. */
+  /** The index of the last entry at or before time t. */
   function indexAt(t, time) {
     let low = 0, high = t.length - 1;
     while (low < high) {
@@ -189,7 +189,7 @@ const gatewalkReplay = (() => {
     const step = run.t[j] - run.t[i];
     const part = step > 0 ? Math.min(1, Math.max(0, (time - run.t[i]) / step)) : 0;
     const between = (values) => values[i] + part * (values[j] - values[i]);
-    // In another gate other beams are the moving ones: those left behind keep their last angle until then.
+    // In another gate other beams move. Until then, the beams that the body leaves keep their last angle.
     const sameGate = run.gx[i] === run.gx[j] && run.gy[i] === run.gy[j];
     const angle = (values) => (sameGate ? between(values) : values[i]);
     const state = {time, i, gx: run.gx[i], gy: run.gy[i], X: between(run.X), Y: between(run.Y),
@@ -199,7 +199,7 @@ const gatewalkReplay = (() => {
     return state;
   }
 
-  /** The body's mean place around a time: what a calm camera looks at. */
+  /** The body's mean place around a time, at which a calm camera looks. */
   function calmPlace(run, time, scale) {
     const smooth = kSmooth * scale.time_s;
     const low = Math.max(run.t[0], time - smooth), high = Math.min(run.t[run.end], time + smooth);
@@ -214,12 +214,12 @@ const gatewalkReplay = (() => {
     return [mean(run.sumX, run.X), mean(run.sumY, run.Y)];
   }
 
-  /** What a gate has otherwise than the others; `types` are listed for a field of several. */
+  /** The numbers in which a gate differs; `types` lists them in a field of several types. */
   function typeOf(film, gx, gy) {
     return film.types?.[film.type_of_gate[gy * film.columns + gx + film.start_column]] ?? {};
   }
 
-  /** The same of the gate that the body is in at a step; a policy chooses its type. */
+  /** The numbers of the gate that the body is in at a step; a policy chooses its type. */
   function typeAt(film, run, i) {
     return run.type ? film.types[run.type[i]] : typeOf(film, run.gx[i], run.gy[i]);
   }
@@ -228,7 +228,7 @@ const gatewalkReplay = (() => {
     return typeAt(film, run, state.i).propulsion_N ?? run.propulsion_N;
   }
 
-  /** Joint and tip of a beam in a gate; at rest both lie on the line between the joints. */
+  /** Joint and tip of a beam in a gate. At rest the tip lies on the line between the joints. */
   function beamOf(film, gx, gy, side, angle, type = typeOf(film, gx, gy)) {
     const sign = side === 'left' ? 1 : -1, length = type.beam_m ?? film.beam_m;
     const x = -sign * film.joint_x_m + film.gate_m[0] * gx, y = film.joint_y_m + film.gate_m[1] * gy;
@@ -241,7 +241,7 @@ const gatewalkReplay = (() => {
     return [x0 + part * dx, y0 + part * dy];
   }
 
-  /** What the camera sees of the whole: the field, or one gate with all places that the runs visit. */
+  /** The area that a full view shows: the field, or a single gate with all places that the runs visit. */
   function boundsOf(film, runs) {
     const [width, depth] = film.gate_m, margin = 3 * film.scale.length_m;
     if (film.columns * film.rows > 1) {
@@ -266,7 +266,7 @@ const gatewalkReplay = (() => {
   /** A whole number with a true minus sign, and no minus before zero. */
   const whole = (x) => minus(String(Math.round(x) || 0));
 
-  /** What a unit can be shown as, from small to large: [how much it is, its name]. */
+  /** The units in which a unit's numbers can be shown, from small to large: [size, name]. */
   function sizesOf(unit) {
     const sizes = [...'afpnµm'].map((prefix, i) => [10 ** (3 * i - 18), prefix + unit]);
     sizes.push([1, unit]);
@@ -276,26 +276,26 @@ const gatewalkReplay = (() => {
   }
   const largestWithin = (unit, most) => sizesOf(unit).findLast(([size]) => size <= most * (1 + 1e-9)) ?? [1, unit];
 
-  /** The unit in which numbers up to `most` are short, as cli/render/quantity.h says. */
+  /** The unit in which numbers up to `most` are short: readable_unit of cli/render/quantity.h. */
   function readableUnit(unit, most) {
     if (most === 0 || (most >= 0.01 && most < 1e4)) return [1, unit];
     const found = largestWithin(unit, most);
     return most / found[0] < 1e4 ? found : [1, unit];
   }
 
-  /** "15 m", "20.12 mJ": a number with so many significant digits at most. */
+  /** "15 m", "20.12 mJ": a number with at most this many significant digits. */
   function quantity(x, unit, significant = 4) {
     const rounded = Number(x.toPrecision(significant)), [size, name] = readableUnit(unit, Math.abs(rounded));
     return `${minus(String(Number((rounded / size).toPrecision(significant))))} ${name}`;
   }
 
-  /** The unit and the decimals of many numbers of a kind, of which `step` is what counts: as cli/render/quantity.h says. */
+  /** The unit and decimals of numbers whose smallest relevant difference is `step`: reading() of cli/render/quantity.h. */
   function readingUnit(unit, step) {
     const power = Math.round(Math.log10(step)), last = 10 ** power, typical = 100 * last;
     const plain = power >= -4 && power <= 0;
     let [size, name] = plain ? [1, unit] : largestWithin(unit, typical);
     name = ` ${name}`;
-    if (!plain && (typical / size < 0.9 || typical / size > 999)) {  // beyond all prefixes
+    if (!plain && (typical / size < 0.9 || typical / size > 999)) {  // no prefix is large or small enough
       const exponent = 3 * Math.floor((power + 2) / 3);
       size = 10 ** exponent;
       name = `e${exponent} ${unit}`;
@@ -303,7 +303,7 @@ const gatewalkReplay = (() => {
     return {size, name, decimals: Math.max(0, Math.round(Math.log10(size / last)))};
   }
 
-  /** One of them. What is not zero is not shown as zero: "<0.1 J". */
+  /** The text of one such number. A number other than zero is not shown as zero: "<0.1 J". */
   function reading(x, {size, name, decimals}) {
     let text = (x / size).toFixed(decimals);
     if (Number(text) === 0) {
@@ -313,7 +313,7 @@ const gatewalkReplay = (() => {
     return minus(text) + name;
   }
 
-  /** What a scene's readings are in: a hundredth of its unit of time counts, a tenth of its other units. */
+  /** Units of a scene's readings, exact to a hundredth of its unit of time and a tenth of its other units. */
   function unitsOf({length_m: length, mass_kg: mass, time_s: time}, runs) {
     const force = mass * length / (time * time);
     const joules = (keys) => {
@@ -329,7 +329,7 @@ const gatewalkReplay = (() => {
   }
   const largest = (values) => values.reduce((a, b) => Math.max(a, b), 0);
 
-  /** How a run went, for somebody who does not see it. */
+  /** A description of a run for users who do not see it. */
   function told(run, film, units) {
     const degrees = (angles) => Math.round(largest(angles) * 180 / Math.PI);
     const joules = (energy) => reading(energy, units.energies[1]);
@@ -368,7 +368,7 @@ const gatewalkReplay = (() => {
     ctx.clearRect(0, 0, w, h);
     ctx.lineCap = 'round'; ctx.lineJoin = 'round';
 
-    // Borders of the gates, and the beams at rest of those in sight. Of a gate alone only its sides are borders.
+    // Borders of the gates in sight, and their beams at rest. A single gate has only side borders.
     const first = -Math.floor(film.columns / 2);
     const x0 = cx - 0.5 * w / scale, x1 = cx + 0.5 * w / scale, y0 = cy - 0.5 * h / scale, y1 = cy + 0.5 * h / scale;
     const columns = [Math.max(first, Math.floor(x0 / width - 0.5)), Math.min(first + film.columns - 1, Math.ceil(x1 / width + 0.5))];
@@ -395,7 +395,7 @@ const gatewalkReplay = (() => {
         }
     ctx.globalAlpha = 1;
 
-    // The trail: all of it faintly, the last part strongly.
+    // The track: all of it faintly, the last part strongly.
     const trail = (from, colour, size, alpha) => {
       ctx.beginPath();
       let lastX = px(run.X[from]), lastY = py(run.Y[from]);
@@ -419,7 +419,7 @@ const gatewalkReplay = (() => {
     ctx.globalAlpha = 0.88; ctx.fillStyle = c.disc; ctx.fill(); ctx.globalAlpha = 1;
     ctx.strokeStyle = c.edge; ctx.lineWidth = Math.max(1.2, Math.min(2, 0.4 * unit)); ctx.stroke();
 
-    // Its gate's beams, with what touches.
+    // The beams of the body's gate, with their contacts.
     for (const side of ['left', 'right']) {
       const beam = beamOf(film, state.gx, state.gy, side, state[side], typeAt(film, run, state.i)), colour = side === 'left' ? c.blue : c.red;
       const held = state.contact[side] === 2;
@@ -460,7 +460,7 @@ const gatewalkReplay = (() => {
     ctx.beginPath(); ctx.arc(px(state.X), py(state.Y), Math.max(1.5, 0.6 * thick), 0, 2 * Math.PI);
     ctx.fillStyle = c.edge; ctx.fill();
 
-    // A rule: the longest of 1, 2, 5, 10, ... m that takes a fifth of the width.
+    // A scale bar: the longest of 1, 2, 5, 10, ... m that takes at most a fifth of the width.
     const wanted = 0.2 * w / scale, power = 10 ** Math.floor(Math.log10(wanted));
     const length = power * [5, 2, 1].find((k) => k * power <= wanted);
     ctx.globalAlpha = 0.85; ctx.fillStyle = c.stage; ctx.fillRect(6, h - 32, length * scale + 12, 28); ctx.globalAlpha = 1;
@@ -470,7 +470,7 @@ const gatewalkReplay = (() => {
     ctx.strokeStyle = c.muted; ctx.lineWidth = 2; ctx.lineCap = 'butt'; ctx.stroke();
   }
 
-  /** 1, 2 or 5 times a power of ten that cuts `span` into at most `most` parts. */
+  /** A step that cuts `span` into at most `most` parts: 1, 2 or 5 times a power of ten. */
   function tickStep(span, most) {
     const power = 10 ** Math.floor(Math.log10(span / most));
     return power * [1, 2, 5, 10].find((k) => k * power >= 0.999 * span / most);
@@ -478,7 +478,7 @@ const gatewalkReplay = (() => {
 
   const kLeft = 46, kRight = 8, kTop = 6, kBottom = 24;  // the chart's frame, in points
 
-  /** The energies' range (J): from zero or below to the largest, and never nothing. */
+  /** The energies' range (J), never empty: from zero or below to the largest. */
   function energyRange(run, keys, scale) {
     let low = 0, high = 0;
     for (const key of keys) for (const e of run[key]) { if (e > high) high = e; if (e < low) low = e; }
@@ -487,7 +487,7 @@ const gatewalkReplay = (() => {
     return [low, low + mass * length * length / (time * time)];
   }
 
-  /** Energies over time; what is still to come is faint. */
+  /** Draws the energies over time; the future is faint. */
   function drawChart(ctx, w, h, c, font, run, keys, scale, unitOfEnergy, time) {
     const t0 = run.t[0], t1 = run.t[run.end], span = t1 - t0 || scale.time_s;
     const [low, high] = energyRange(run, keys, scale);
@@ -542,7 +542,7 @@ const gatewalkReplay = (() => {
     return element;
   }
 
-  /** A short piece of a line, for a legend. */
+  /** A short line for a legend. */
   function swatch(colour, dash, arrow) {
     const box = made('span');
     box.innerHTML = `<svg width="26" height="10" aria-hidden="true"><path d="M1 5H${arrow ? 18 : 25}" stroke="var(--${colour})" ` +
@@ -581,7 +581,8 @@ const gatewalkReplay = (() => {
     const bounds = boundsOf(film, runs), unit = film.scale.time_s, units = unitsOf(film.scale, runs);
     let run = runs[0], time = run.t[0], playing = false, last = 0, colours = {}, font = 'sans-serif', frame = 0;
 
-    // The arrows' scale is one for all runs: the larger of propulsion and of what few draws exceed spans two radii.
+    // All runs have the same scale of arrows. The longer of two spans two radii: propulsion, and the random force that
+    // few draws exceed.
     const draws = runs.flatMap((r) => r.random_N.map(Math.abs)).sort((a, b) => a - b);
     const strong = Math.max(draws[Math.floor(0.95 * (draws.length - 1))], ...runs.map((r) => Math.abs(r.propulsion_N)));
     const arrow = strong > 0 ? 2 * film.radius_m / strong : 0;
@@ -640,8 +641,8 @@ const gatewalkReplay = (() => {
       return [ctx, w, height];
     };
     const put = (node, text) => { if (node.textContent !== text) node.textContent = text; };
-    // While it plays, words and numbers change at most ten times a second and a hit is named for a moment, so that
-    // they can be read; at rest they are those of the very step.
+    // While a run plays, words and numbers change at most ten times a second, and a hit is named for a moment, so that
+    // they can be read. At rest they are those of the step shown.
     const contactWord = (state, side) => {
       const hit = run.lastHit[side][state.i];
       return kContacts[playing && state.contact[side] === 0 && hit >= 0 && state.time - run.t[hit] < 0.1 * Number(speed.value) * unit ? 1 : state.contact[side]];
@@ -680,7 +681,7 @@ const gatewalkReplay = (() => {
     }
 
     function tick(now) {
-      // A page that was hidden goes on where it was, and does not leap.
+      // After the page was hidden, the run continues where it was.
       time = Math.min(run.t[run.end], time + Math.min(0.1, Math.max(0, now - last) / 1000) * Number(speed.value) * unit);
       last = now;
       if (time >= run.t[run.end]) { pause(); put(said, `Ended: ${run.ending}`); return; }
@@ -709,7 +710,7 @@ const gatewalkReplay = (() => {
     function choose(index) {
       run = runs[index];
       time = run.t[0];
-      slider.min = run.t[0] / unit; slider.max = run.t[run.end] / unit;  // a slider keeps few digits of small numbers
+      slider.min = run.t[0] / unit; slider.max = run.t[run.end] / unit;  // in units: a slider keeps few digits of small numbers
       put(words, told(run, film, units));
       stage.setAttribute('aria-label', `Animation of the body among the beams. ${told(run, film, units)}`);
       panels.forEach(({canvas, title, unit: joules, keys}) => canvas.setAttribute('aria-label', `${title} over time. At the end: ` +
@@ -717,7 +718,7 @@ const gatewalkReplay = (() => {
       show();
     }
 
-    /** True when the key was one of ours. */
+    /** Handles a key; returns whether the key is one of ours. */
     function key(event) {
       if (event.defaultPrevented || event.ctrlKey || event.altKey || event.metaKey) return false;
       const at = event.composedPath()[0], tag = at.tagName;
@@ -749,7 +750,7 @@ const gatewalkReplay = (() => {
       canvas.addEventListener('pointermove', (event) => { if (canvas.hasPointerCapture(event.pointerId)) jump(event); });
     }
 
-    /** Dark or light is what `color-scheme` says around us: the page's switch, or the system's. */
+    /** Dark or light follows the surrounding `color-scheme`: the page's switch, or the system's. */
     function watchTheme(changed) {
       const system = window.matchMedia('(prefers-color-scheme: dark)');
       const look = () => {
@@ -771,7 +772,7 @@ const gatewalkReplay = (() => {
     });
     choose(0);
     new ResizeObserver(show).observe(stageBox);
-    // Out of sight it rests.
+    // Out of sight the animation pauses.
     new IntersectionObserver(([entry]) => {
       if (entry.intersectionRatio === 0 && playing) pause();
     }, {threshold: [0, 0.5]}).observe(stage);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The report's animation, and links to claims; all else is there without it.
+// The report's animation, and links to claims. Everything else works without this script.
 'use strict';
 
 for (const box of document.querySelectorAll('.replay'))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The switch between light and dark of a page with #theme; without it the page is as the reader's system is.
+// Switches a page with #theme between light and dark. Without the switch the page follows the reader's system.
 'use strict';
 
 (() => {
