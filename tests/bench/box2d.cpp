@@ -8,8 +8,8 @@
 namespace gatewalk::bench {
 namespace {
 
-/// Box2D wants moving things of 0.1 to 10 m: its unit of length is 10 m here. Times and masses
-/// stay, so forces are in 10 N and torques in 100 N m.
+/// Box2D expects moving bodies of 0.1 to 10 m, so its unit of length is 10 m here. Times and masses
+/// are unchanged, so forces are in 10 N and torques in 100 N m.
 constexpr double kUnit = 10.0;
 constexpr float length(double metres) { return static_cast<float>(metres / kUnit); }
 
@@ -35,7 +35,7 @@ class Box2D final : public Engine, b2ContactListener {
       fixture.restitutionThreshold = 0.0F;
       fixture.filter.groupIndex = -1;
       beams_[side]->CreateFixture(&fixture);
-      // An edge has no mass of its own: a uniform rod about its joint.
+      // An edge has no mass: the beam is a uniform rod about its joint.
       const b2MassData rod{static_cast<float>(p.beams.mass), 0.5F * tip,
                            static_cast<float>(p.beams.inertia() / (kUnit * kUnit))};
       beams_[side]->SetMassData(&rod);
@@ -48,7 +48,8 @@ class Box2D final : public Engine, b2ContactListener {
     def.allowSleep = false;
     disc_ = world_.CreateBody(&def);
     b2CircleShape circle;
-    circle.m_radius = length(p.body.radius) - b2_polygonRadius;  // the edge's skin makes it up
+    circle.m_radius = length(p.body.radius) - b2_polygonRadius;  // the edge's skin adds the
+                                                                 // difference
     b2FixtureDef fixture;
     fixture.shape = &circle;
     fixture.friction = 0.0F;
@@ -65,7 +66,8 @@ class Box2D final : public Engine, b2ContactListener {
                             p_.beams.damping * hinges_[side]->GetJointSpeed();
       beams_[side]->ApplyTorque(static_cast<float>(torque / (kUnit * kUnit)), true);
     }
-    world_.Step(static_cast<float>(p_.run.step), 8, 3);  // iterations as its manual suggests
+    world_.Step(static_cast<float>(p_.run.step), 8, 3);  // numbers of iterations from Box2D's
+                                                         // manual
     const b2Vec2 at = disc_->GetPosition();
     return {.x = at.x * kUnit, .y = at.y * kUnit};
   }

@@ -53,8 +53,8 @@ void write_mtx(const std::string& path, std::int64_t rows, std::int64_t columns,
     out << e.row() + 1 << ' ' << e.col() + 1 << ' ' << e.value() << '\n';
 }
 
-/// The chain over a whole field as one matrix. States: (cell, input), then trapped in each cell,
-/// then left the field from each cell; the last two are absorbing.
+/// Writes the chain over a whole field as one matrix. States: (cell, input), then "trapped" in each
+/// cell, then "left the field" from each cell; the last two kinds are absorbing.
 void write_global(const std::string& path, const Chain& chain, const Field& field) {
   const std::int64_t n = chain.inputs(), cells = std::int64_t{field.columns} * field.rows;
   Entries entries;
@@ -75,7 +75,7 @@ void write_global(const std::string& path, const Chain& chain, const Field& fiel
   write_mtx(path, states, states, entries);
 }
 
-/// Final cells, then trapped, left the field, cut off.
+/// Writes the final cells, then the shares trapped, left the field and cut off.
 void write_answer(const std::string& path, const FinalDistribution& d) {
   auto out = file(path);
   for (const double p : d.final_cells.reshaped<Eigen::RowMajor>()) out << p << '\n';

@@ -25,8 +25,9 @@ namespace {
 using namespace gatewalk::markov;
 using Solver = PredictOptions::Solver;
 
-/// `states` of which each goes to eight others, and is trapped with chance `leave`. They move to
-/// the right, to the left, ahead and back in turn; or not at all, so that walks circle in one cell.
+/// A chain of `states`, each of which leads to eight others and is trapped with probability
+/// `leave`. If `moves`, states move to the right, left, ahead and back in turn; else walks circle
+/// in one cell.
 Chain circling(int states, double leave, bool moves) {
   test::Words words(3);
   std::vector<Exit> exits;
@@ -48,7 +49,7 @@ Chain circling(int states, double leave, bool moves) {
   return Chain::from_probabilities(p, exits);
 }
 
-/// The least of several.
+/// The least time (s) of several runs.
 double seconds(const std::function<void()>& run) {
   double least = INFINITY;
   for (double all = 0.0; all < 0.3;) {

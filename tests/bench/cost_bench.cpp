@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-/// cost_bench STUDY ...: one measurement a process, so that its peak of memory is its own. Prints
+/// cost_bench STUDY ...: one measurement per process, so that the peak of memory is its own. Prints
 /// lines of CSV; run.sh writes the headers.
 ///   size trials METHOD N THREADS | size rows FACTOR THREADS | size lattice METHOD N THREADS
 ///   size walks MATRIX N THREADS | size field MATRIX SIDE GATES
-///                study,what,size,threads,seconds,peak_MiB,note
-///   evaluations  evaluations of gaps and forces per trial, by method
-///   registers SCENES  time of a trial by `stable` in the registers of each instruction set, and
-///   plainly lanes N      outcomes of N trials in lanes beside those of the plain methods budget
-///   MATRIX  full dynamics to a total variation of 0.01 beside one exact prediction
+///       prints study,what,size,threads,seconds,peak_MiB,note
+///   evaluations        evaluations of gaps and forces per trial, by method
+///   registers SCENES   time of a trial by `stable` for each instruction set, and without lanes
+///   lanes N            outcomes of N trials in lanes beside those of the plain methods
+///   budget MATRIX      full dynamics to a total variation of 0.01 beside one exact prediction
 
 #include <hwy/targets.h>
 #include <sys/resource.h>
@@ -46,7 +46,7 @@ double seconds(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// The least of several rounds, as many as fit into about a second.
+/// The least time (s) of several rounds, as many as fit into about a second.
 double best_seconds(const std::function<void()>& work) {
   double best = seconds(work);
   for (double spent = best; spent < 1.0;) {
@@ -131,7 +131,7 @@ void size_study(const std::vector<std::string>& a) {
       d = predictor.predict({side, side}, {side / 2, 0, c.start.input}, {.max_cells = gates});
     });
     note = std::to_string(d.steps) + " steps, remainder " + std::to_string(d.remainder);
-    // The whole must be there, or the time means nothing.
+    // An incomplete answer would make the time meaningless.
     if (!(std::abs(d.final_cells.sum() + d.remainder - 1.0) < 1e-9))
       throw std::runtime_error("probabilities do not sum to 1");
   } else {
@@ -154,13 +154,13 @@ void evaluations() {
       const GateTally tally = dynamics::run_gate_trials(p, start, bench::kSeed, {0, kTrials});
       const auto per_trial = [&](std::int64_t n) { return static_cast<double>(n) / kTrials; };
       std::cout << scene << ',' << method << ',';
-      if (p.run.method != "event") std::cout << p.run.step;  // it has none
+      if (p.run.method != "event") std::cout << p.run.step;  // event has no step
       std::cout << ',' << kTrials << ',' << per_trial(tally.health.steps) << ','
                 << per_trial(tally.health.evaluations) << '\n';
     }
 }
 
-/// As one row of cells, for lattice::compare.
+/// The outcomes as a row of cells, for lattice::compare.
 markov::CellCounts outcomes(const GateTally& t) {
   markov::CellCounts counts(1, dynamics::kOutcomes);
   for (std::size_t k = 0; k < dynamics::kOutcomes; ++k)
@@ -190,7 +190,7 @@ void lanes(std::int64_t trials) {
     }
 }
 
-/// Interleaved rounds, the least of each.
+/// Times (s) in interleaved rounds, the least of each.
 void registers(const std::string& scenes) {
   struct Subject {
     std::string name;
@@ -203,7 +203,7 @@ void registers(const std::string& scenes) {
     const lattice::Scene scene = lattice::read_scene(scenes + "/" + name + ".toml", {});
     subjects.push_back({name, scene.gate, scene.start});
   }
-  // Of what there is: all, 256 bits, none (0: one by one).
+  // The instruction sets that exist: all, 256 bits, none (0: trials one by one).
   std::vector<std::pair<std::string, std::int64_t>> sets = {{"plain", 0}};
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets())
     sets.emplace_back(hwy::TargetName(target), target);
@@ -250,7 +250,7 @@ void budget(const std::string& matrix) {
   if (built.rows != stored.rows)
     throw std::runtime_error(matrix + ": not the matrix of this scene");
 
-  // The truth: trials of their own.
+  // The truth comes from separate trials.
   constexpr std::int64_t kTruth = 400'000;
   const auto truth = cross_field("moreau", kTruth, bench::kSeed + 1);
   const lattice::CellProbabilities p =
@@ -289,7 +289,7 @@ void budget(const std::string& matrix) {
     line(key("over_predict").c_str(), direct / predict);
     line(key("over_matrix_and_predict").c_str(), direct / (building + prepare + predict));
     line(key("pays_from_starts").c_str(), std::ceil((building + prepare) / (direct - predict)));
-    // Asked only for what the chain itself reaches, direct simulation needs fewer trials.
+    // For the chain's own accuracy only, direct simulation needs fewer trials.
     const double cheap = direct * static_cast<double>(same_error) / static_cast<double>(needed);
     line(key("seconds_to_chains_error").c_str(), cheap);
     line(key("pays_from_starts_at_chains_error").c_str(),

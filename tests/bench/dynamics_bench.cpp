@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One gate from rest, condition A and B, by our methods and by general engines, one thread. Every
-/// repetition runs other trials, the same ones for everybody: same seed, same random force.
+/// One gate from rest, conditions A and B, by our methods and by general engines, on one thread.
+/// Every repetition runs other trials, the same ones for all methods: same seed, same random force.
 
 #include <benchmark/benchmark.h>
 #include <tbb/task_arena.h>
@@ -22,14 +22,14 @@ using dynamics::GateTally;
 using dynamics::Outcome;
 using dynamics::TrialRange;
 
-/// Runs trials and says how they ended; `health.steps` counts the steps.
+/// Runs trials and returns how they ended; `health.steps` counts the steps.
 using Trials = std::function<GateTally(const GateParams&, TrialRange)>;
 
 GateTally ours(const GateParams& p, TrialRange range) {
   return dynamics::run_gate_trials(p, {}, bench::kSeed, range);
 }
 
-/// One run after the other: `stable` and `moreau` without their lanes.
+/// Runs one trial after the other: `stable` and `moreau` without lanes.
 GateTally one_by_one(const GateParams& p, TrialRange range) {
   const auto method = dynamics::make_method(p);
   GateTally tally;
@@ -63,7 +63,7 @@ void add(const std::string& name, const char* method, double step, std::int64_t 
   for (const char condition : {'A', 'B'}) {
     GateParams p = bench::by(bench::condition(condition), method);
     p.run.step = step;
-    // Shared by the repetitions: which trials come next.
+    // Repetitions share the number of the next trial.
     auto next = std::make_shared<std::int64_t>(0);
     benchmark::RegisterBenchmark(
         (name + "/" + condition).c_str(),

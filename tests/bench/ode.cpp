@@ -65,7 +65,7 @@ class Ode final : public Engine {
   }
 
  private:
-  static constexpr double kThin = 1e-3;  // m, a capsule needs some radius; the disc gives it up
+  static constexpr double kThin = 1e-3;  // m, a capsule's radius; the disc is smaller by it
 
   void touch(dynamics::Side side) {
     dContact contact{};

@@ -32,11 +32,11 @@ using namespace gatewalk::lattice;
 using dynamics::CellMap;
 using dynamics::Random;
 
-/// Of each kind of breakage a mild and a strong one: the share of the leaves that it is done to.
+/// The share of the leaves that a mild and a strong fault changes.
 constexpr double kMild = 0.1, kStrong = 0.4;
 
-/// A square: bodies go on, turn left or right, or are trapped. They are born to turn to one side
-/// rather than to the other.
+/// A square cell: bodies go on, turn left or right, or are trapped. Each body prefers one side from
+/// its start on.
 class Handed : public dynamics::Cell {
  public:
   explicit Handed(double memory) : memory_(memory) {
@@ -85,7 +85,7 @@ class Study {
       });
       done("rows swapped", [](Sources& a, Sources& b) { std::swap(a, b); });
     }
-    if (right.counts.size() > 1) {  // a gate of one type taken for one of another
+    if (right.counts.size() > 1) {  // takes gates of one type for those of another
       Kernel wrong = right;
       std::swap(wrong.counts[0], wrong.counts[1]);
       say("types mislabelled", wrong, problem_.map());
@@ -109,7 +109,8 @@ class Study {
                 total_variation(chain.final_cells, truth_), own.p, own.differs());
   }
 
-  /// Something done to the rows of `part` of the leaves, each with another leaf of its face.
+  /// The kernel after `use` has changed the rows of `part` of the leaves, each together with
+  /// another leaf of its face.
   template <class Use>
   Kernel changed(const Kernel& right, double part, const Use& use) const {
     Kernel wrong = right;

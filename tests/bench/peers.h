@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The same gate in general physics engines, each written as its manual says: a disc, two rods of
-/// their own mass on hinges, springs and dampers there, no gravity, no friction, beams that do not
-/// collide with each other. Restitution as in the scene, the tip's own where the disc touches a
-/// tip.
+/// The same gate in general physics engines, each programmed as its manual says: a disc, two rods
+/// with mass on hinges with springs and dampers, no gravity, no friction, beams that do not collide
+/// with each other. The restitution is the scene's; where the disc touches a tip, the tip's.
 
 #include <memory>
 
@@ -14,7 +13,8 @@ namespace gatewalk::bench {
 class Engine {
  public:
   virtual ~Engine() = default;
-  /// One step of p.run.step under lateral force `force_x` (N); the disc's place after it (m).
+  /// Does a step of p.run.step under the lateral force `force_x` (N). Returns the disc's state (m,
+  /// m/s).
   virtual dynamics::BodyState step(double force_x) = 0;
 };
 

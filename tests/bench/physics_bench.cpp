@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Physics that must come out whatever the numerics: laws with exact values, over many trials.
+/// Laws of physics with exact values, which any numerical method must keep, over many trials.
 ///   physics_bench [TRIALS=1000000]
-/// prints lines "law,by,what,figure,unit,limit,kept,cases". Fails when a law with a limit is
-/// broken.
+/// Prints lines "law,by,what,figure,unit,limit,kept,cases". Fails if a law with a limit is broken.
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
@@ -26,14 +25,15 @@ using namespace gatewalk;
 using namespace gatewalk::dynamics;
 
 constexpr double kNoLimit = NAN;
-/// Of a figure in standard errors: some 60 of them are printed, one run in 300 has one beyond it.
+/// The limit of figures in standard errors. About 60 are printed, so one run in 300 exceeds it by
+/// chance.
 constexpr double kStandardErrors = 4.0;
 bool all_kept = true;
 
 struct Law {
   std::string law, by, what, unit;
   double limit = kNoLimit;
-  bool at_least = false;  // the limit is the least, not the most
+  bool at_least = false;  // the limit is a minimum, not a maximum
 };
 
 void line(const Law& l, double figure, std::int64_t cases) {
@@ -50,7 +50,7 @@ void line(const Law& l, double figure, std::int64_t cases) {
   std::fflush(stdout);
 }
 
-/// Sums over trials 0 .. n - 1, in an order that no thread changes.
+/// Sums over trials 0 .. n - 1, in an order that no number of threads changes.
 template <std::size_t k>
 std::array<double, k> sums(std::int64_t n,
                            const std::function<std::array<double, k>(std::int64_t)>& of_trial) {
@@ -69,7 +69,7 @@ std::array<double, k> sums(std::int64_t n,
       });
 }
 
-// ---- Elastic, undamped, without drag: what the forces do is what body and beams have ----
+// ---- Elastic, undamped, without drag: the forces' work is the energy of body and beams ----
 
 void work_is_energy(const std::string& method, double tolerance, double step, double limit,
                     std::int64_t trials) {
@@ -83,7 +83,7 @@ void work_is_energy(const std::string& method, double tolerance, double step, do
   const auto sum = sums<4>(trials, [&](std::int64_t trial) -> std::array<double, 4> {
     RandomForce force = gate_force(p, 1, trial);
     double off = 0.0, work = 0.0;
-    // The last step has the body outside; the run itself ends at the moment of leaving.
+    // At the last step the body is outside; the run itself ends at the moment of leaving.
     const auto follow = [&](const EnergyLedger::Step& s) {
       work = s.propulsion_work + s.random_work;
       off = energy(p, s.state) - work;
@@ -119,7 +119,7 @@ void free_flight(const std::string& method, double drag, std::int64_t trials) {
   const auto by = make_method(p);
   const BodyState start{.x = 0.0, .y = 0.0, .vx = kAside, .vy = 15.0};
   const test::FreeFlight exact = test::free_flight(p, start.x, start.vx, kFlight);
-  // Centred on the exact means, so that squares lose nothing.
+  // Values are centred on the exact means, so that squares lose no digits.
   const auto sum = sums<10>(trials, [&](std::int64_t trial) -> std::array<double, 10> {
     RandomForce force = gate_force(p, 2, trial);
     const GateRun run = run_gate(p, *by, start, force);
@@ -143,8 +143,8 @@ void free_flight(const std::string& method, double drag, std::int64_t trials) {
   said("variance of place", z(sum[2], sum[6], exact.var_x));
   said("variance of velocity (diffusion)", z(sum[3], sum[7], exact.var_v));
   said("covariance of both", z(sum[4], sum[8], exact.cov));
-  // Euler's steps give F^2 h^2 / 2M too little or too much work each: for these methods the share
-  // that they miss is told, which is of the order of step by hold.
+  // Euler's steps give F^2 h^2 / 2M too little or too much work each. For these methods the missing
+  // share is printed, which is of the order of step by hold.
   if (method == "paper" || method == "penalty")
     line({"free flight", setting, "share of the mean work of the random force missed", "-"},
          std::abs(sum[5] / n) / exact.mean_work, trials);
@@ -154,8 +154,8 @@ void free_flight(const std::string& method, double drag, std::int64_t trials) {
 
 // ---- Order of convergence, through hits and held contacts ----
 
-// Long enough to be held by a beam; in flights and at hits `event` and `stable` make no error at
-// all. Later meetings with the beams stretch errors without bound.
+// Long enough for a beam to hold the body; in flights and at hits `event` and `stable` make no
+// error at all. Later meetings with the beams amplify errors without bound.
 constexpr double kSeconds = 4.0;
 
 void order(const std::string& method, double first, double factor, int halvings, double least) {

@@ -26,7 +26,7 @@ namespace {
 using namespace gatewalk;
 using namespace gatewalk::lattice;
 
-/// Numbers of one replicate.
+/// The numbers of one replicate.
 using Numbers = std::vector<double>;
 
 double variance(const std::vector<Numbers>& replicates) {
@@ -52,8 +52,8 @@ OwnRuns plain_trials(const Problem& problem, const FieldParams& field, std::int6
   return s;
 }
 
-/// Shares of the first gate's ways out, each in eight: below and above the medians of where and how
-/// fast bodies leave.
+/// Shares of the first gate's exits, each split into eight: below and above the medians of where
+/// and how fast bodies leave.
 class FirstGate {
  public:
   explicit FirstGate(const Problem& problem) : problem_(problem), field_(problem.field) {
@@ -142,7 +142,7 @@ void field(const Problem& problem, std::int64_t trials, int replicates) {
   print("final gates of the chain", trials, replicates, variance(chain[0]), variance(chain[1]));
 }
 
-/// Side by side, one after the other.
+/// Measures the cost of plain runs and of runs with points in turn.
 void cost(const Problem& problem, bool first, std::int64_t trials) {
   constexpr int kTimes = 5;
   FieldParams field = problem.field;

@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
               body.random = dynamics::Random(dynamics::Purpose::field,
                                              {.trial = static_cast<std::uint64_t>(body.trial)});
               body.entry = {};
-              // Numbers with all their digits; a velocity along the cells, where entries have one.
+              // Numbers with all their digits; a velocity along the cells, if entries have one.
               for (std::size_t c = 0; c < coordinates; ++c)
                 body.entry.at[c] = body.random.uniform() + (c == 2 ? 15.0 : 0.0);
               cell.begin(body);

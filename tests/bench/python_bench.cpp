@@ -32,7 +32,7 @@ namespace {
 
 using namespace gatewalk;
 
-/// Of CPU.
+/// CPU time (ms).
 template <class F>
 double milliseconds(const F& f) {
   const std::clock_t begin = std::clock();

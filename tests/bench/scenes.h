@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What is measured: the paper's single gate in two conditions, and its field.
+/// The scenes that are measured: the paper's single gate in two conditions, and its field.
 
 #include <cstdint>
 #include <string_view>
@@ -37,7 +37,7 @@ inline constexpr dynamics::BodyState kFieldStart{.x = 0.0, .y = 0.0, .vx = 0.0, 
 inline constexpr std::uint64_t kSeed = 1;
 inline constexpr std::int64_t kTrialsPerRow = 100;
 
-/// `p` by this method at its own step.
+/// `p` with this method at its own step.
 inline dynamics::GateParams by(dynamics::GateParams p, std::string_view method) {
   p.run.method = method;
   p.run.step = dynamics::default_step(p);

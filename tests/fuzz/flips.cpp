@@ -36,15 +36,15 @@ std::string unpacked(const std::string& path) {
 }
 
 Fate fate_of_matrix(const std::string& path) {
-  // Not read_matrix, which looks in a child process what is wrong.
+  // Not read_matrix, which would look for the fault in a child process.
   return fuzz::accepted([&] { return markov::read_counts(path); }) ? silent : refused;
 }
 
 constexpr std::string_view kPng = "\x89PNG\r\n\x1a\n";
 
-/// A picture that is a map, as wide and high as its first lines say.
+/// A picture as a map, with the width and height of its first lines.
 lattice::GreyPicture picture_of(const std::string& path, std::string_view whole) {
-  const auto number_at = [&](std::size_t at) {  // of less than 256
+  const auto number_at = [&](std::size_t at) {  // a number below 256
     return static_cast<int>(static_cast<unsigned char>(whole.at(at + 3)));
   };
   constexpr std::size_t kWidthAt = 16, kHeightAt = 20;
@@ -57,7 +57,7 @@ Fate fate_of_picture(const std::string& path, std::string_view whole,
   return !found ? refused : found->grey == picture.grey ? same : silent;
 }
 
-/// What a file of pieces holds.
+/// The content of a file of pieces.
 struct Pieces {
   std::string head;
   bool finished = false;
@@ -81,13 +81,13 @@ Fate fate_of_pieces(const std::string& path, const Pieces& whole) {
   return is_begin && !found->finished ? cut_short : silent;
 }
 
-/// Flips bits of one file; returns how many were not noticed.
+/// Flips bits of one file; returns how many flips were not noticed.
 int flip(const std::string& path, int flips) {
   const std::string whole = unpacked(path);
   const std::string copy = fuzz::file_of(whole, ".flipped");
   const bool is_pieces = cli::PieceFile::is_one(copy), is_picture = whole.starts_with(kPng);
   const auto picture = is_picture ? picture_of(copy, whole) : lattice::GreyPicture();
-  if (!is_pieces && !is_picture) (void)lattice::read_matrix(copy);  // it is one
+  if (!is_pieces && !is_picture) (void)lattice::read_matrix(copy);  // throws unless it is a matrix
   const auto pieces = is_pieces ? std::optional(Pieces(copy)) : std::nullopt;
   std::mt19937_64 random(1);
   int fates[kFates] = {};

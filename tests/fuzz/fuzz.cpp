@@ -19,7 +19,7 @@
 namespace gatewalk::fuzz {
 namespace {
 
-/// A folder of this process, in memory where there is such a place; removed at its end.
+/// A folder of this process, in memory if possible; removed by the destructor.
 class Folder {
  public:
   Folder() {

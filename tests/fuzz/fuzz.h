@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Targets: each hands bytes to a reader, as a file of somebody else's would. A reader may refuse
-/// them, by the errors that it documents and with a message; of what it accepts a property is held
-/// against a second route. Everything else ends the process.
+/// Fuzz targets. Each hands bytes to a reader, as a file from elsewhere would. A reader may refuse
+/// them, by an exception that it documents, with a message. For accepted bytes a property is
+/// checked in a second way. Everything else ends the process.
 
 #include <exception>
 #include <optional>
@@ -12,12 +12,12 @@
 
 namespace gatewalk::fuzz {
 
-/// Whether the exception is one that readers document: std::invalid_argument, std::runtime_error
-/// or one of the project's own, and none of their kin such as std::system_error; and whether its
-/// message says something, without bytes that a terminal would obey.
+/// Whether readers document the exception: exactly std::invalid_argument, std::runtime_error or one
+/// of the project's own classes, not a class derived from these such as std::system_error. The
+/// message must not be empty and must not contain control characters.
 [[nodiscard]] bool is_refusal(const std::exception& error);
 
-/// What `read()` returns; none where it refuses. Other exceptions are passed on.
+/// The result of `read()`; nullopt if it refuses. Passes on other exceptions.
 template <class Read>
 auto accepted(Read read) -> std::optional<decltype(read())> {
   try {
@@ -28,17 +28,18 @@ auto accepted(Read read) -> std::optional<decltype(read())> {
   }
 }
 
-/// Ends the process, naming `what`, unless it holds.
+/// Ends the process, naming `what`, unless `holds`.
 void require(bool holds, const char* what);
 
-/// A file with these bytes, its name ending in `ending`; good until the next one of that ending.
+/// Writes a file with these bytes, whose name ends in `ending`; valid until the next call with this
+/// ending.
 [[nodiscard]] std::string file_of(std::string_view bytes, const std::string& ending);
-/// What a file holds.
+/// The bytes of a file.
 [[nodiscard]] std::string bytes_of(const std::string& path);
 
-/// The first of the parts that lines "---" separate, and the rest.
+/// The part before the first line "---", and the rest.
 [[nodiscard]] std::pair<std::string_view, std::string_view> parted(std::string_view bytes);
-/// A line without its end, taken off the front of `bytes`.
+/// Takes the first line off `bytes`, and returns it without its end.
 [[nodiscard]] std::string_view take_line(std::string_view& bytes);
 
 /// The targets, by name.

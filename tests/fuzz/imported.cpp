@@ -38,7 +38,7 @@ void read_as(std::string_view bytes, const std::string& ending) {
     require(!matrix->probabilities || sum == 0 || sum >= std::int64_t{1} << 20,
             "probabilities are counts of a fine step");
   }
-  if (matrix->probabilities) return;  // in steps, which are more than counts may be
+  if (matrix->probabilities) return;  // in steps, whose number exceeds that of counts
   cli::SparseTable table = matrix->table;
   std::erase_if(table.entries, [](const auto& e) { return e.value == 0.0; });
   const std::string market = cli::matrix_market_of(table, "again");
@@ -71,7 +71,7 @@ void trajectories(std::string_view bytes) { read_as(bytes, ".dtrajs"); }
 void npz(std::string_view bytes) {
   const auto arrays = accepted([&] { return cli::read_npz(file_of(bytes, ".npz")); });
   if (!arrays) return;
-  // Fewer than a zero byte in a name or text, and no two of one name.
+  // Zero bytes in names or texts, and equal names, may be refused the second time.
   const auto again =
       accepted([&] { return cli::read_npz(file_of(cli::npz_of(*arrays), ".again.npz")); });
   if (again) require(again->size() == arrays->size(), "arrays written and read are as many");

@@ -13,7 +13,7 @@ bool is_large(std::string_view text) {
     for (const char* key : {"rows", "columns"})
       if (document["field"][key].value_or(std::int64_t{1}) > 1000) return true;
   } catch (const toml::parse_error&) {
-    return false;  // which is refused
+    return false;  // a text that readers refuse
   }
   return false;
 }

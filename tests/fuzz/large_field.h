@@ -8,7 +8,7 @@
 
 namespace gatewalk::fuzz {
 
-/// Whether a scene or cell file, or an override, names more than 1000 rows or columns.
+/// Whether a scene, a cell file or an override names more than 1000 rows or columns.
 [[nodiscard]] bool has_large_field(std::string_view text,
                                    const std::vector<std::string>& overrides);
 

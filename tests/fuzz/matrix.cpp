@@ -43,7 +43,7 @@ void use_matrix(const std::string& path) {
 
 void matrix(std::string_view bytes) {
   const std::string path = file_of(bytes, ".nc");
-  // First without read_matrix, which looks in a child process what is wrong.
+  // First without read_matrix, which would look for the fault in a child process.
   if (accepted([&] { return markov::read_counts(path); })) use_matrix(path);
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view kMark = "crc64-xz:", kZeros = "0000000000000000";
 
-/// A name or word of which NetCDF makes something. What it refuses is left out.
+/// Builds a NetCDF file from bytes; whatever NetCDF refuses is left out.
 class Draft {
  public:
   Draft() {
@@ -121,7 +121,7 @@ class Draft {
       whole.push_back(std::strtoll(word.c_str(), &end, 10));
       real.push_back(std::strtod(word.c_str(), &end));
     }
-    whole.resize(size, whole.empty() ? 0 : whole.back());  // the last one, over and over
+    whole.resize(size, whole.empty() ? 0 : whole.back());  // repeats the last one
     real.resize(size, real.empty() ? 0.0 : real.back());
     if (known->second == NC_DOUBLE || known->second == NC_FLOAT)
       (void)nc_put_var_double(group_, variable_, real.data());

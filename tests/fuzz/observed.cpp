@@ -27,7 +27,7 @@ void observed(std::string_view bytes) {
                  std::to_string(seen.final_gates(y, c)) + "\n";
     const auto again =
         accepted([&] { return lattice::read_observed({file_of(table, ".again.csv")}, field); });
-    // A count of a line is at most 1e9; of lines of single trials the sum may be no more either.
+    // A count in a line is at most 1e9; so is the sum over lines of single trials.
     require(again && (again->seen.final_gates == seen.final_gates).all(),
             "counts that were written and read are the same");
   }

@@ -25,7 +25,7 @@ std::uint32_t crc_of(std::string_view bytes) {
       ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-/// piece_log.cpp says where the checksums stand.
+/// The places of the checksums are in piece_log.cpp.
 std::string with_checksums(std::string_view bytes) {
   constexpr std::size_t kHead = 40, kBytesAt = 24, kCheckAt = 32, kOwnAt = 36;
   (void)take_line(bytes);
@@ -80,7 +80,7 @@ void read_as_any(std::string_view bytes) {
   });
 }
 
-/// What a run of this command would have written at the head of its file.
+/// The head that a run of this command would have written.
 cli::Json usual_head() {
   return {{"version", "1"},
           {"commit", "x"},
@@ -109,7 +109,8 @@ void go_on(const std::string& path, const cli::PieceFile& file, const cli::Json&
     cli::KeptRun run(plan);
     for (const cli::PieceRecord& record : file.records()) {
       if (!cli::is_name(record) || record.stage == cli::kEndStage) continue;
-      const std::string name = lattice::printable(file.bytes_of(record));  // a command's own is
+      const std::string name = lattice::printable(file.bytes_of(record));  // a command's own name
+                                                                           // is printable
       run.begin({name, {0, kItems}});
       std::int64_t at = 0;
       for (int k = 0; k < kMostPieces && at < kItems; ++k) {

@@ -24,7 +24,7 @@ constexpr Target kTargets[] = {
 #undef GATEWALK_FUZZ_TARGET
 };
 
-constexpr double kMostSeconds = 1.0;  // of the processor, for one input
+constexpr double kMostSeconds = 1.0;  // CPU time for one input
 
 }  // namespace
 
@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
       files.push_back(file.path());
     std::sort(files.begin(), files.end());
     for (const fs::path& file : files) {
-      // Said before: the process ends on a finding.
+      // Printed before the target runs, because a finding ends the process.
       std::cout << target.name << ' ' << file.filename().string() << std::endl;
       const std::clock_t begin = std::clock();
       target.run(gatewalk::fuzz::bytes_of(file.string()));

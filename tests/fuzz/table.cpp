@@ -44,7 +44,7 @@ void table(std::string_view bytes) {
   std::string text;
   for (const auto& row : *rows)
     for (std::size_t i = 0; i < row.size(); ++i)
-      text += quoted(row[i]) + (i + 1 < row.size() ? ";" : "\n");  // 1,016 is no thousand then
+      text += quoted(row[i]) + (i + 1 < row.size() ? ";" : "\n");  // 1,016 then means no thousands
   const auto again = accepted([&] { return rows_of(file_of(text, ".again.csv")); });
   require(again == rows,
           "a table written with quotation marks and semicolons and read is the same");

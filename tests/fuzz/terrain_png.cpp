@@ -19,7 +19,7 @@ std::uint32_t number_at(std::string_view bytes, std::size_t at) {
 }
 
 std::string with_checksums(std::string png) {
-  constexpr std::size_t kSignature = 8, kAround = 12;  // bytes of a chunk beside its content
+  constexpr std::size_t kSignature = 8, kAround = 12;  // bytes of a chunk besides its content
   for (std::size_t at = kSignature; at + kAround <= png.size();) {
     const std::size_t length = number_at(png, at);
     if (length > png.size() - at - kAround) break;

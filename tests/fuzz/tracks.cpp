@@ -39,7 +39,7 @@ unit = "m/s"
 }  // namespace
 
 void tracks(std::string_view bytes) {
-  // NetCDF is read without a checksum, by a library that is not safe with damaged bytes.
+  // NetCDF is left out: it has no checksum here, and its library is not safe with damaged bytes.
   std::string_view table = bytes;
   lattice::TrackOptions options;
   options.columns = take_line(table);

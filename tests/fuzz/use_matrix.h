@@ -5,7 +5,7 @@
 
 namespace gatewalk::fuzz {
 
-/// Reads a matrix file, and what it holds, as commands do.
+/// Reads a matrix file and its content, as commands do.
 void use_matrix(const std::string& path);
 
 }  // namespace gatewalk::fuzz

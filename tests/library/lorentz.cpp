@@ -17,7 +17,7 @@ using namespace gatewalk;
 int main(int, char** words) try {
   const auto gas = std::make_shared<lorentz::LorentzCell>(std::stod(words[1]));
   const auto cell = std::make_shared<dynamics::FunctionCell>(
-      gas->section(), [gas](dynamics::Body& body) {  // the points are kicked in each gap
+      gas->section(), [gas](dynamics::Body& body) {  // gives the points kicks in each gap
         double& v = body.entry.at[1];
         v = std::clamp(v + 0.3 * body.random.normal(), -0.99, 0.99);
         return gas->pass(body);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A cell that is not ours, as an example: the periodic Lorentz gas. A point of speed 1 flies among
-/// hard discs of radius 1 on a triangular lattice, with gaps between neighbours. A cell is a
-/// rhombus with a disc in each corner; its faces are the four gaps between them.
+/// An example of a cell of your own: the periodic Lorentz gas. A point of speed 1 flies among hard
+/// discs of radius 1 on a triangular lattice, with gaps between neighbours. A cell is a rhombus
+/// with a disc in each corner; its faces are the four gaps between them.
 ///
-/// A class of one's own says what an entry is (section) and carries a body from an entry to the
-/// next (pass). Lengths here are in radii, times in radii by speed.
+/// A class derived from dynamics::Cell says what an entry is (section) and moves a body from an
+/// entry to the next (pass). Lengths here are in radii, times in radii by speed.
 
 #include <Eigen/Core>
 #include <array>
@@ -20,9 +20,9 @@ using namespace gatewalk;
 using Point = Eigen::Vector2d;
 
 /// Moves a point from one side of a polygon with discs in its corners (counter-clockwise) to where
-/// it leaves, and says how long that takes; NaN where its numbers are not finite. They are its
-/// place along the side, from the middle, and its velocity along it: the sine of the angle it
-/// enters at.
+/// it leaves, and returns the time that this takes; NaN for non-finite numbers. The entry's numbers
+/// are the place along the side, from the middle, and the velocity along it: the sine of the angle
+/// of entry.
 template <std::size_t n>
 double cross(const std::array<Point, n>& corners, dynamics::Entry& at) {
   const auto middle = [&](int i) -> Point { return (corners[i] + corners[(i + 1) % n]) / 2.0; };
@@ -81,11 +81,11 @@ struct LorentzCell : dynamics::Cell {
     at = {(at.face + 2) % 4, {-at.at[0], -at.at[1]}};  // seen from the neighbour
     return {dynamics::Fate::left, at, {time}};
   }
-  /// As bodies enter in the long run: any gap, any place in it, any velocity along it.
+  /// An entry drawn as in the long run: any gap, any place in it, any velocity along it.
   dynamics::Entry anywhere(dynamics::Random& r) const {
     return {static_cast<int>(r.below(4)), {gap_ * (r.uniform() - 0.5), 2.0 * r.uniform() - 1.0}};
   }
-  Eigen::Matrix2d lattice;  // where the moves (1, 0) and (0, 1) lead, as columns
+  Eigen::Matrix2d lattice;  // columns: where the moves (1, 0) and (0, 1) lead
 
  private:
   double gap_;

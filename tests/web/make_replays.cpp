@@ -13,7 +13,7 @@ int main(int argc, char** argv) try {
   const auto write = [&](const std::string& name, const std::string& page) {
     write_text_atomically(std::string(argv[1]) + "/" + name, page);
   };
-  // The page of a film with JSON in its place that is no film's.
+  // Writes the page of a film with JSON in its place that is not a film's.
   const auto write_other = [&](const std::string& name, const Film& film, const Json& other) {
     std::string page = replay_page(film);
     const std::string own = script_json(text_of(json_of(film), -1));
