@@ -18,12 +18,9 @@ namespace gatewalk::cli {
 
 /// The actions of a field, in the order of their names.
 struct Actions {
-  std::vector<lattice::Scene> scenes{};                    // for scenes of gates: the scene under
-                                                           // each action
-  std::vector<lattice::Action> actions{};                  // each action with its problem (cells,
-                                                           // map, start)
-  std::vector<std::optional<lattice::Settled>> methods{};  // chosen by a pilot where a scene asks
-                                                           // for it
+  std::vector<lattice::Scene> scenes{};                    // of gates: the scene under each
+  std::vector<lattice::Action> actions{};                  // each with its cells, map and start
+  std::vector<std::optional<lattice::Settled>> methods{};  // if chosen by a pilot
   PolicyField made_for{};
 
   [[nodiscard]] std::vector<std::string> names() const;

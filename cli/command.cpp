@@ -473,8 +473,7 @@ bool Options::parse(const Arguments& arguments) {
   for (std::size_t i = 1; i < given.size() && state_->no_scene.empty(); ++i)
     if (given[i - 1] == "--set" && !given[i].starts_with("--") &&
         given[i].find('=') == Strings::value_type::npos)
-      (void)lattice::keys_set_by(given[i]);  // throws for a setting without "=" before Boost takes
-                                             // it for an argument
+      (void)lattice::keys_set_by(given[i]);  // throws if "=" is missing
   po::parsed_options parsed(&all);
   Strings remarks;
   try {

@@ -62,18 +62,15 @@ struct Arguments {
   std::function<void(const Description&)> given_out = nullptr;
   std::shared_ptr<const dynamics::Cell> cell = nullptr;
   std::vector<std::shared_ptr<const lattice::SourceFile>> files{};
-  std::function<void(const CommandHelp&)> helped = nullptr;  // receives the help page; nothing else
-                                                             // is then done
+  std::function<void(const CommandHelp&)> helped = nullptr;  // receives the help page alone
 };
 
 /// The command line split into its parts, so that another run of the command can be recognised or
 /// started.
 struct CommandWords {
   std::string command;
-  std::vector<std::string> shaping, outputs;  // words that shape the result; words that name
-                                              // outputs
-  std::string main_output;                    // the option that names the main output: output (-o)
-                                              // or json
+  std::vector<std::string> shaping, outputs;  // that shape the result; that name outputs
+  std::string main_output;                    // output (-o) or json
   bool output_is_folder = false;
   std::vector<std::string> others{};  // what else shapes the result, though no word says it
   std::vector<std::string> parts{};   // as Arguments::parts
@@ -95,8 +92,7 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-inline constexpr std::int64_t kMostCount = 1'000'000'000'000'000;  // doubles count exactly up to
-                                                                   // here
+inline constexpr std::int64_t kMostCount = 1'000'000'000'000'000;  // doubles are exact up to here
 
 /// What a command shows on the terminal.
 struct Screen {

@@ -91,8 +91,7 @@ struct Options::State {
   std::shared_ptr<const dynamics::Cell> cell;
   std::map<std::string, std::shared_ptr<const lattice::SourceFile>> files;  // open files, by path
 
-  std::optional<std::set<std::string>> divided;  // stages that parts divide; none: no pieces are
-                                                 // kept
+  std::optional<std::set<std::string>> divided;  // stages; none: no pieces are kept
   CommandWords words;
   std::unique_ptr<KeptRun> kept;
   int thrown_before = std::uncaught_exceptions();

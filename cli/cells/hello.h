@@ -23,8 +23,7 @@ struct Hello {
   };
   dynamics::Section section;
   bool symmetric = false;
-  int normals = 0, uniforms = 0;  // random numbers that a passage gets; at least one of the two is
-                                  // 0
+  int normals = 0, uniforms = 0;  // random numbers of a passage; one is 0
   std::vector<Parameter> parameters;
 };
 

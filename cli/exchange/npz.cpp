@@ -91,8 +91,7 @@ NumpyArray array_of(const PackedFile& file, const std::string& path) {
   };
   const std::string_view bytes = file.bytes;
   if (!bytes.starts_with(kMagic) || bytes.size() < kPrefix + 2) refuse("is none of numpy");
-  const bool is_long = bytes[kMagic.size()] != '\x01';  // versions 2 and 3 have a length of four
-                                                        // bytes
+  const bool is_long = bytes[kMagic.size()] != '\x01';  // versions 2 and 3: four bytes of length
   const auto byte = [&](std::size_t at) {
     return std::size_t{static_cast<unsigned char>(bytes[at])};
   };

@@ -212,8 +212,7 @@ SparseTable read_matrix_market(const std::string& path) {
   const std::size_t sizes = dense ? 2 : 3;
   SparseTable table;
   table.whole = head[3] != "real";
-  std::int64_t promised = -1, seen = 0, row = 0, column = 0;  // the last two: next place of a dense
-                                                              // array
+  std::int64_t promised = -1, seen = 0, row = 0, column = 0;  // row, column: next in an array
   for (std::size_t k = 1; k < lines.size(); ++k) {
     if (lines[k].starts_with('%')) continue;
     const std::vector<std::string> words = words_of(lines[k]);

@@ -97,8 +97,7 @@ struct Label : ResultKey {
 
 using TextRows = std::vector<std::vector<std::optional<std::string>>>;  // nullopt: null
 using NumberRows = std::vector<std::vector<double>>;
-using GateLimits = std::array<markov::CellProbabilities, 2>;  // lower and upper limits of 95 %
-                                                              // intervals
+using GateLimits = std::array<markov::CellProbabilities, 2>;  // 95 % limits: lower, upper
 
 /// Several numbers for each gate, the same number of them for every gate. Gates stand one after the
 /// other, row by row from the start's side on.

@@ -20,8 +20,7 @@ namespace {
 std::vector<std::string> ffmpeg_command(VideoFormat format, const std::string& title,
                                         double frames_per_second) {
   std::vector<std::string> command{"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-                                   "-xerror",  // without it, ffmpeg reports success after a failed
-                                               // write
+                                   "-xerror",  // else a failed write has status 0
                                    // Raw pictures as cairo stores them, without a header.
                                    "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size",
                                    fmt::format("{}x{}", kPictureWidth, kPictureHeight),

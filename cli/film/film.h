@@ -17,8 +17,7 @@ struct FilmStep {
   int i_x = 0, i_y = 0;                            // the gate that the body is in
   int type = 0;                                    // index into Film::types, if there are several
   dynamics::BodyState body;                        // in that gate's frame
-  std::array<double, 2> angle{};                   // rad, of that gate's beams; > 0 deflected
-                                                   // forward
+  std::array<double, 2> angle{};                   // rad, of its beams; > 0 is forward
   std::array<dynamics::ContactMode, 2> contact{};  // until the next step
   double random_force = 0.0;                       // N, until the next step
   double body_energy = 0.0, beams_energy = 0.0;    // J, kinetic

@@ -48,8 +48,7 @@ void write_video(const std::string& path, const Film& film, const VideoOptions& 
   const double start = picture.playback().start(), end = picture.playback().end(),
                step = pace * dynamics::scale_of(film.gate).time / frames_per_second;
   const auto frames = static_cast<std::int64_t>(std::ceil((end - start) / step - 1e-9)) + 1 +
-                      static_cast<std::int64_t>(frames_per_second);  // the last picture stands for
-                                                                     // a second
+                      static_cast<std::int64_t>(frames_per_second);  // the last one stands
   bool reads = true;
   if (format == VideoFormat::gif)
     for (std::int64_t k = 0; k < kPaletteFrames && reads; ++k)

@@ -15,8 +15,7 @@ struct VideoOptions {
   std::optional<double> speed =
       std::nullopt;  // seconds of the run in a second of the video; none: the scene's unit of time
   std::optional<double> frames_per_second = std::nullopt;  // none: 50, or 10 for a GIF
-  bool labels = true;  // words, numbers and the scale bar; without them similar scenes look the
-                       // same
+  bool labels = true;                                      // words, numbers and the scale bar
 };
 
 /// Writes the first run of a film, drawn by cairo and encoded by ffmpeg, as MP4 (H.264, yuv420p,

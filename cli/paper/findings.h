@@ -53,8 +53,7 @@ struct TracedRun {
   std::int64_t trial = 0, hits = 0;
   std::vector<double> t, x, y;  // s, m, m; like all lists below, an entry for every step
   std::vector<double> potential, elastic_left, elastic_right;      // J
-  std::vector<double> landscape, landscape_left, landscape_right;  // J; NaN: the disc has no place
-                                                                   // there
+  std::vector<double> landscape, landscape_left, landscape_right;  // J; NaN: no place for the disc
 };
 
 struct Trace {
@@ -90,8 +89,7 @@ struct ValidatedStart {
   double total_variation = 0.0, total_variation_floor = 0.0;
   lattice::Finding finding = lattice::Finding::within_trials;
   std::vector<std::vector<double>> counts, chain;  // (rows x columns): trials; shares
-  std::vector<std::vector<double>> departed_counts, departed_chain;  // the part of these that left
-                                                                     // the field
+  std::vector<std::vector<double>> departed_counts, departed_chain;  // that left the field
   double cut_off = 0.0;                                              // share of the trials
   double dynamics_seconds = 0.0, walks_seconds = 0.0, exact_seconds = 0.0;
 

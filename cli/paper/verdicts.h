@@ -104,8 +104,7 @@ class Trend {
 
   int series = 0, up = 0, down = 0;        // from first to last place, beyond chance
   int steps = 0, rising = 0, falling = 0;  // between neighbours, beyond chance
-  int lower = 0, seen = 0;                 // pairs of places that fall; of these, visible in 100
-                                           // trials
+  int lower = 0, seen = 0;                 // falling pairs; of these, visible in 100 trials
   double largest_fall = 0.0, at = 0.0;     // the largest step down and where it begins
 
  private:

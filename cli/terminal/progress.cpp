@@ -100,8 +100,8 @@ void Progress::redraw(std::int64_t done, Clock::time_point now) {
 void Progress::write_line(std::int64_t done, Clock::time_point now) {
   const double elapsed = seconds_between(start_, now);
   const double left =
-      elapsed * static_cast<double>(total_ - done) / static_cast<double>(done);  // infinite while
-                                                                                 // nothing is done
+      elapsed * static_cast<double>(total_ - done) / static_cast<double>(done);  // infinite at
+                                                                                 // first
   if (!estimated_ && done > 0 && 30 * (now - start_) >= lines_.every) {
     estimated_ = true;
     if (elapsed + left > std::chrono::duration<double>(lines_.every).count()) {
@@ -126,8 +126,7 @@ dynamics::Work watched_work(bool show_progress, const Progress::Lines& lines, bo
   struct Watched {
     Progress progress;
     std::string what;       // the current part; empty: none
-    std::int64_t most = 0;  // most items done so far: checks at the end of a part start from its
-                            // beginning again
+    std::int64_t most = 0;  // items done; later checks may be lower
   };
   const std::shared_ptr<Watched> watched(new Watched{{"", 0, show_progress, lines}, {}});
   return {[watched, stops](std::string_view what, std::int64_t done, std::int64_t total) {

@@ -48,8 +48,7 @@ class Box2D final : public Engine, b2ContactListener {
     def.allowSleep = false;
     disc_ = world_.CreateBody(&def);
     b2CircleShape circle;
-    circle.m_radius = length(p.body.radius) - b2_polygonRadius;  // the edge's skin adds the
-                                                                 // difference
+    circle.m_radius = length(p.body.radius) - b2_polygonRadius;  // the edge's skin adds it
     b2FixtureDef fixture;
     fixture.shape = &circle;
     fixture.friction = 0.0F;
@@ -66,8 +65,7 @@ class Box2D final : public Engine, b2ContactListener {
                             p_.beams.damping * hinges_[side]->GetJointSpeed();
       beams_[side]->ApplyTorque(static_cast<float>(torque / (kUnit * kUnit)), true);
     }
-    world_.Step(static_cast<float>(p_.run.step), 8, 3);  // numbers of iterations from Box2D's
-                                                         // manual
+    world_.Step(static_cast<float>(p_.run.step), 8, 3);  // iterations as in the manual
     const b2Vec2 at = disc_->GetPosition();
     return {.x = at.x * kUnit, .y = at.y * kUnit};
   }

@@ -28,8 +28,7 @@
 namespace {
 struct Faults {
   int fsync = 0, rename = 0;       // 0: none fails; k: the k-th from now fails
-  int link = 0;                    // number of calls that fail, as on a file system without hard
-                                   // links
+  int link = 0;                    // calls that fail: no hard links
   std::function<void()> at_fsync;  // called before a sync
 } faults;
 
@@ -419,8 +418,7 @@ TEST_F(Output, WhatCannotBeKeptIsRefused) {
 
 TEST_F(Output, AFileThatMayHaveNoSecondNameIsCopied) {
   write_text_atomically(path("a"), "old");
-  faults.link = 3;  // fails for the first backup, then for the second under both names that it
-                    // tries
+  faults.link = 3;  // first backup, then the second's two names
   Backup old(path("a"));
   Backup another(path("a"));
   write_text_atomically(path("a"), "new");

@@ -46,8 +46,7 @@ TEST(PaperVerdict, OfATrend) {
   EXPECT_EQ(verdict({0.1, 0.2, 0.3, 0.4}, 10000), Verdict::reproduced);
   EXPECT_EQ(verdict({0.4, 0.3, 0.2, 0.1}, 10000), Verdict::differs);
   EXPECT_EQ(verdict({0.3, 0.3, 0.3, 0.3}, 10000), Verdict::differs);  // it does not rise
-  EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000), Verdict::differs);  // 100 trials would show this
-                                                                      // fall
+  EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000), Verdict::differs);  // 100 trials show this fall
   EXPECT_EQ(verdict({0.1, 0.5, 0.2, 0.6}, 10000, true),
             Verdict::reproduced);  // the paper allows the fall
   EXPECT_EQ(verdict({0.01, 0.05, 0.03, 0.6}, 10000),

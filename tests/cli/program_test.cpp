@@ -357,8 +357,7 @@ TEST(ProgramCell, AnswersThatAreNone) {
   wrong("77777 left S $s 1 -", "its first word is not the id of a passage that is under way");
   wrong("", "its first word is not the id");
   wrong("Loading the model", "its first word is not the id");
-  wrong("\"$id left S $s 1 -\n$id left S $s 1 -\"", "its first word is not the id");  // answers
-                                                                                      // twice
+  wrong("\"$id left S $s 1 -\n$id left S $s 1 -\"", "its first word is not the id");  // twice
   wrong("$id left S $s 1 " + std::string(481, 'm'),
         "its memory has 481 bytes; at most 480 are carried");
   expect_error(answering("head -c 100000 /dev/zero | tr '\\0' x"),
@@ -533,8 +532,7 @@ TEST(ProgramCell, HasOtherValuesInProcessesOfItsOwn) {
   EXPECT_EQ(straight->numbers()[0].value, 0.0);
   EXPECT_EQ(straight->numbers()[1].value, 0.0);
   EXPECT_NEAR(pass_at(*straight, 0.0).costs[0], 1.0, 1e-12);
-  EXPECT_GT(std::abs(pass_at(cell, 0.0).costs[0] - 1.0), 1e-6);  // the first cell's parameters did
-                                                                 // not change
+  EXPECT_GT(std::abs(pass_at(cell, 0.0).costs[0] - 1.0), 1e-6);  // its own did not change
   EXPECT_THROW((void)cell.with({{"turning", 0.0}}), std::invalid_argument);
 }
 

@@ -120,8 +120,7 @@ TEST_F(Video, IsAGifByTheEndingOfItsName) {
   const std::string words = probed(path("a.gif"));
   for (const char* fact : {"codec_name=gif", "width=800", "height=450"})
     EXPECT_NE(words.find(std::string("\n") + fact + "\n"), words.npos) << fact << "\n" << words;
-  EXPECT_NEAR(number(words, "duration"), 2.08, 0.05);  // 1 s of film, then the last picture for a
-                                                       // second
+  EXPECT_NEAR(number(words, "duration"), 2.08, 0.05);  // 1 s, then the last picture
   EXPECT_EQ(complaint_of(path("a.avi")), path("a.avi") + ": a video is FILE.mp4 or FILE.gif");
   EXPECT_EQ(files(), 1);
 }

@@ -109,8 +109,7 @@ void go_on(const std::string& path, const cli::PieceFile& file, const cli::Json&
     cli::KeptRun run(plan);
     for (const cli::PieceRecord& record : file.records()) {
       if (!cli::is_name(record) || record.stage == cli::kEndStage) continue;
-      const std::string name = lattice::printable(file.bytes_of(record));  // a command's own name
-                                                                           // is printable
+      const std::string name = lattice::printable(file.bytes_of(record));  // as a command's own is
       run.begin({name, {0, kItems}});
       std::int64_t at = 0;
       for (int k = 0; k < kMostPieces && at < kItems; ++k) {
