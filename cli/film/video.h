@@ -26,8 +26,8 @@ struct VideoOptions {
 void write_video(const std::string& path, const Film& film, const VideoOptions& options = {},
                  const dynamics::Work& work = {});
 
-/// Its picture at `time` (s of the run): 720 rows of 1280 points of blue, green, red and an unused
-/// byte. Throws as write_video does for a film or options that make no sense.
+/// The picture of the first run at `time` (s of the run), in 720 rows of 1280 points, each blue,
+/// green, red and an unused byte. Throws as write_video() for an unusable film or options.
 [[nodiscard]] std::string video_frame(const Film& film, double time,
                                       const VideoOptions& options = {});
 
