@@ -61,6 +61,7 @@ NextCommands& NextCommands::again(const std::string& name, const std::string& va
 
 void NextCommands::put(const std::string& command, const std::string& why) {
   if (std::ranges::count(options_.words().shaping, "-") > 0) return;
+  if (kBefore.size() + command.size() > kScreenColumns) return;
   const std::string line = command + "  # " + why;
   lines_.push_back(kBefore.size() + line.size() > kScreenColumns ? command : line);
 }

@@ -138,15 +138,16 @@ Exported export_field(const ExportCommand& options, ExportForm form) {
     const std::vector<std::string> all = names_of(chain, names);
     write_table(options, form, table_of(chain), all, all, states_csv(chain, names));
   }
-  return {{.states = chain.size(),
-           .transitions = std::ssize(chain.target),
-           .first_ending = chain.ends(),
-           .made_by = options.provenance(s)},
-          fmt::format("{} states, {} transitions. State 0 is {}; the last {} states are endings.\n",
-                      chain.size(), chain.target.size(),
-                      from.state ? from.state->bin
-                                 : lattice::title_of(s.problem.map().section, s.starts.front()),
-                      kEndingLabels.size())};
+  return {
+      {.states = chain.size(),
+       .transitions = std::ssize(chain.target),
+       .first_ending = chain.ends(),
+       .made_by = options.provenance(s)},
+      fmt::format("{} states, {} transitions.\nState 0 is {}; the last {} states are endings.\n",
+                  chain.size(), chain.target.size(),
+                  from.state ? from.state->bin
+                             : lattice::title_of(s.problem.map().section, s.starts.front()),
+                  kEndingLabels.size())};
 }
 
 /// Counts per run of each row; `rows` may be those of one type of gate. Empty: a run is one count.
@@ -260,7 +261,8 @@ int run_export(const Arguments& arguments) {
       "are absorbing states: trapped, crossed, left_side, right_side, went_back, cut_off, "
       "never_sampled.\n"
       "--gate writes the matrix of one gate. States count from 0 (.mtx: from 1).",
-      "gatewalk export matrix.nc --set field.max_gates=0 -o field.umb");
+      "gatewalk build scenes/field.toml --accuracy 0.1 -o matrix.nc\n"
+      "  gatewalk export matrix.nc --set field.max_gates=0 -o field.umb");
   options.most_used({"output", "gate", "counts", "set", "start"});
   if (!options.parse(arguments)) return kFine;
   const ExportForm form = export_form(options.output.value());

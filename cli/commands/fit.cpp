@@ -215,8 +215,8 @@ int run_fit(const Arguments& arguments) {
       "simulated\n"
       "from where each one began. Of cells of a program, fit finds numbers of the program:\n"
       "parameters.KEY.",
-      "gatewalk fit scenes/field.toml counts.csv --free forces.propulsion_N=5:9 --free "
-      "forces.random_N=10:40");
+      "gatewalk sample observed -o counts.csv\n"
+      "  gatewalk fit scenes/field.toml counts.csv --free forces.propulsion_N=5:9");
   options.add_details("the search, the checks of the posterior, and the time-stepping method");
   options.most_used({"free", "output", "trials", "figure", "json"});
   if (!options.parse(arguments)) return kFine;

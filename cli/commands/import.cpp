@@ -54,7 +54,9 @@ int run_import(const Arguments& arguments) {
       "counts_per_run: 2 where counts hold each run and its mirror image, as gatewalk export "
       "writes them\n"
       "for trees; error bars then count the run once.",
-      "gatewalk import counts.mtx --states states.csv --start 0 --set field.rows=5 -o chain.nc");
+      "gatewalk export matrix.nc --gate --counts -o counts.mtx\n"
+      "  gatewalk import counts.mtx --states counts.states.csv --start 0 --set field.rows=5 -o "
+      "chain.nc");
   const TextOption file_given = options.positional("file", "the matrix, or the trajectories", true);
   const TextOption table_of_states =
       options.input_file("states", "the table of states, with the move that enters each");

@@ -115,9 +115,10 @@ int run_passages(const Arguments& arguments) {
       "makes a chain of them. Options give what the file does not say: units, frames per second, "
       "columns.\n"
       "A body that is in a cell during a gap or a jump of its track counts as lost there.",
-      "gatewalk passages tracks.csv --cell cell.toml -o runs.csv --fastest 2 --fps 120 "
-      "--metres-per-unit 0.001 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,"
-      "y=POSITION_Y");
+      "gatewalk sample tracks -o tracks.csv\n"
+      "  gatewalk sample cell -o cell.toml\n"
+      "  gatewalk passages tracks.csv --cell cell.toml -o runs.csv --fastest 0.4 --fps 10 \\\n"
+      "    --metres-per-unit 0.001 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y");
   options.add_details("how the file was understood, gaps, jumps, noise, and the local fits");
   options.most_used({"cell", "output", "fastest", "columns", "fps"});
   if (!options.parse(arguments)) return kFine;

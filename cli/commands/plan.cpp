@@ -239,8 +239,8 @@ int run_plan(const Arguments& arguments) {
       "Of a scene without actions, plan finds the start from which bodies cross most often, in a "
       "terrain\n"
       "in any column.",
-      "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 --set "
-      "actions.fast.forces.propulsion_N=9");
+      "gatewalk plan scenes/field.toml --set actions.slow.forces.propulsion_N=6 \\\n"
+      "    --set actions.fast.forces.propulsion_N=9 --accuracy 0.1");
   options.add_details("each action taken all the time, and what each column or method gives");
   options.most_used({"set", "policy", "accuracy", "figure", "json"});
   if (!options.parse(arguments)) return kFine;

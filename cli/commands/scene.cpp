@@ -30,8 +30,7 @@ int run_scene(const Arguments& arguments) {
       "the file, --set, the paper (a default), or derived from the other keys. scene also says "
       "which\n"
       "numbers no walking animal or robot reaches. Without a file, the scene is what --set gives.",
-      "gatewalk scene --new --set body.mass_kg=0.25 --set body.radius_m=0.08 "
-      "--set forces.propulsion_N=0.8 -o mine.toml");
+      "gatewalk scene --new --set body.mass_g=250 --set body.radius_cm=8 -o mine.toml");
   const TextOption given =
       options.positional("scene", "scene file (TOML; -: standard input)", false);
   const Option is_new =

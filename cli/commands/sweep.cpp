@@ -63,8 +63,7 @@ int run_sweep(const Arguments& arguments) {
       "runs end. Values are from:step:to or a list; the grid has all combinations. A scene may "
       "bring a\n"
       "grid in a table [sweep]; --vary adds a key to that grid, or replaces the values of a key.",
-      "gatewalk sweep scenes/single_gate.toml --vary forces.propulsion_N=4:1:9 "
-      "--vary forces.random_N=0,10,20 --trials 1000 --csv sweep.csv");
+      "gatewalk sweep scenes/single_gate.toml --vary forces.propulsion_N=4:1:9 --trials 1000");
   const TextOption path = options.scene();
   options.add_trials_and_seed("runs through the gate at each point");
   options.add_first_trial();

@@ -113,7 +113,7 @@ int run_trace(const Arguments& arguments) {
                        "runs, --video a film of\n"
                        "the first run. CSV and NetCDF keep all steps.",
                        "gatewalk trace scenes/soft_left.toml --trials 20 --only 'traversed left' "
-                       "--replay runs.html --csv runs.csv");
+                       "--replay runs.html");
   options.add_details("more runs, what the columns mean, and the numbers of the scene");
   options.most_used({"field", "trials", "only", "replay", "csv"});
   if (!options.parse(arguments)) return kFine;

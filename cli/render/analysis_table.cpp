@@ -93,7 +93,7 @@ TextTable table_of_effects() { return TextTable({{"", -36, 0, "", "  "}, {}}); }
 /// The numbers that change the chance of the target most, `most` of them.
 std::string largest_effects(const AnalysedField& f, std::size_t most) {
   const auto effects = sorted_effects(f);
-  if (effects.empty()) return "";
+  if (effects.empty() || most == 0) return "";
   TextTable table = table_of_effects();
   for (const lattice::ParameterEffect& e : effects | std::views::take(most))
     table.row({e.key, elasticity_text(f, e)});
@@ -259,8 +259,7 @@ std::string types_part(const AnalysedField& f) {
 std::string lumping_text(const lattice::Analysis& a) {
   if (!a.lumped) return "";
   return wrapped(fmt::format(
-      "Merged into {} (--lump), the chain errs by a total variation of {} in the endings and {} in "
-      "the final gates.",
+      "Merged into {} (--lump), the chain errs by TV {} in the endings, {} in the final gates.",
       counted(a.lumped->states, "state", "states"), fixed(a.lumped->endings, 4),
       fixed(a.lumped->final_gates, 4)));
 }
@@ -290,7 +289,7 @@ std::string answer_text(const AnalysedField& f) {
   if (!is_of_more) {
     constexpr std::int64_t kMost = 3;
     const std::int64_t room = kLines - kNext - lines_of(text) - lines_of(below) - 2;
-    const auto most = static_cast<std::size_t>(std::clamp<std::int64_t>(room, 1, kMost));
+    const auto most = static_cast<std::size_t>(std::clamp<std::int64_t>(room, 0, kMost));
     text += largest_effects(f, most);
     below += beware_text(f, most);
   }

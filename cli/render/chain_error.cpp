@@ -243,10 +243,10 @@ std::string answer_for(const ChainErrorChart& chart, std::size_t s) {
   const ChainSummary summary = summary_of(chart, s);
   const ChainPoint& best = chart.points[summary.best];
   constexpr std::size_t kFewTrees = 2;
-  return wrapped(fmt::format(
-             "Start{}: the best matrix of bins errs by a total variation (TV) of {} ({}).",
-             name_of(chart.truths[s]).substr(1), fixed(best.error(s), 3),
-             place_text(chart, best, s))) +
+  return wrapped(
+             fmt::format("S{}: the best matrix of bins errs by a total variation (TV) of {} ({}).",
+                         name_of(chart.truths[s]).substr(1), fixed(best.error(s), 3),
+                         place_text(chart, best, s))) +
          when_it_pays(chart, summary, s) + trees_text(chart, s, kFewTrees);
 }
 
@@ -427,9 +427,8 @@ std::string details_text(const ChainErrorChart& chart) {
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
     const FieldTruth& truth = chart.truths[s];
     out += fmt::format(
-        "\nStart{}: {} full trials, {} ms each. Each cell has seconds, TV of the exact chain, and "
-        "TV "
-        "of\ndirect simulation at that cost.\n",
+        "\nS{}: {} full trials, {} ms each.\n"
+        "Each cell has seconds, TV of the exact chain, and TV of direct simulation at that cost.\n",
         name_of(truth).substr(1), truth.tally.trials, fixed(1e3 * truth.seconds_per_trial, 2));
     for (std::size_t first = 0; first < chart.curves.size(); first += kBeside)
       out += block_of(chart, s, first, std::min(first + kBeside, chart.curves.size()));

@@ -191,8 +191,8 @@ std::string details_text(const FidelityStudy& study) {
     return fmt::format("{} ({})", step_text(v), v.scene.gate.run.method);
   };
   return fmt::format(
-      "\nThe step is {}, {}. ms: wall-clock time per trial, {}, least of {} repeats\nin "
-      "turn.\n\n{}\n"
+      "\nThe step is {}, {}.\n"
+      "ms: wall-clock time per trial, {}, least of {} repeats in turn.\n\n{}\n"
       "Compared with the first line of the start. changed: trials that end in another gate. TV: "
       "total\n"
       "variation of the final gates; floor: what chance gives between independent samples; pairs: "

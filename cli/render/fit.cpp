@@ -298,14 +298,19 @@ std::vector<std::string> warnings_of(const FittedScene& f) {
   const lattice::Fit& fit = f.fit;
   const bool goes_on = std::any_of(fit.numbers.begin(), fit.numbers.end(),
                                    [](const auto& n) { return n.goes_on[0] || n.goes_on[1]; });
+  std::string beyond;
   for (std::size_t k = 0; k < f.ranges.size(); ++k) {
     const lattice::FittedNumber& n = fit.numbers[k];
     for (const std::size_t end : {0U, 1U})
-      if (n.goes_on[end])
-        warn(fmt::format("{} is likely to lie beyond {}, where its range ends: use a wider range",
-                         f.ranges[k].key,
-                         lattice::shortest(end == 0 ? f.ranges[k].low : f.ranges[k].high)));
+      if (n.goes_on[end]) {
+        const std::string where = lattice::shortest(end == 0 ? f.ranges[k].low : f.ranges[k].high);
+        beyond += beyond.empty()
+                      ? fmt::format("{} is likely to lie beyond {}, where its range ends",
+                                    f.ranges[k].key, where)
+                      : fmt::format("; {} beyond {}", f.ranges[k].key, where);
+      }
   }
+  if (!beyond.empty()) warn(beyond + ": use a wider range");
   if (fit.never > 0)
     warn(
         fmt::format("{} of {} observed {} ended as no simulated one did; they are counted with the "

@@ -491,7 +491,7 @@ void describe(Fields& out, const PowerResult& p) {
 std::string answer_text(const PowerResult& p) {
   const auto sentences = summary_of(p);
   const std::string table = first_table(p);
-  std::string text = wrapped(sentences[0]) + wrapped(sentences[1]) + table;
+  std::string text = (p.versus ? "" : wrapped(sentences[0])) + wrapped(sentences[1]) + table;
   text += wrapped(fmt::format(
       "These numbers hold if you test all endings, at a level of {} %. The predicted final gates "
       "are "
@@ -506,7 +506,7 @@ std::string answer_text(const PowerResult& p) {
 
 std::string details_text(const PowerResult& p) {
   return fmt::format(
-      "\n{}{}{}{}{}{}{}",
+      "\n{}{}{}{}{}{}{}{}", p.versus ? wrapped(summary_of(p)[0]) + "\n" : "",
       endings_text(predicted_shares(p.prediction), "of all bodies as predicted, 95 % intervals"),
       rest_text(rest_of(p.prediction.final)), needed_table(p), groups_table(p),
       p.options.trials ? power_table(p) : "", p.versus ? versus_table(p) : "",

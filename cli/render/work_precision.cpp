@@ -213,24 +213,25 @@ void describe(Fields& out, const ChartPoint& p, const WorkPrecision& chart) {
 /// "1.20e-03", or "<2.0e-02" below the limit.
 std::string error_text(double value, double limit) {
   if (shown(value, limit).below) return "<" + scientific(limit, 1);
-  return std::isfinite(value) ? scientific(value, 2) : "-";
+  return std::isfinite(value) ? scientific(value, 1) : "-";
 }
 
 /// A line for each setting.
 std::string lines_of(const WorkPrecision& chart) {
-  TextTable table({{"  setting", -23},
-                   {"us/trial", 9, 1},
-                   {"steps", 7},
+  TextTable table({{"  setting", -20},
+                   {"us/trial", 8, 1},
+                   {"steps", 6},
                    {"outcomes", -9, 0, "", "  "},
-                   {"+-", -9},
-                   {"chance", -9},
+                   {"+-", -8},
+                   {"chance", -8},
                    {"columns", -9},
                    {"exit (m)", -9},
-                   {"parted", 9},
+                   {"parted", 7},
                    {"status", 0, 0, "", "  "}});
   std::string refused;
   for (const ChartPoint& p : chart.points) {
-    const std::string name = (p.setting.usual ? "* " : "  ") + p.setting.name();
+    const std::string name = fmt::format("{}{} {}", p.setting.usual ? "* " : "  ", p.setting.method,
+                                         digits(p.setting.value, 4));
     if (!p.ran()) {
       table.row({name, "refused"});
       refused += wrapped(name + " refused: " + p.refusal, "    ");
@@ -244,7 +245,7 @@ std::string lines_of(const WorkPrecision& chart) {
                error_text(outcomes.chance, 0.0),
                error_text(columns.total_variation, chart.column_bound(p.errors)),
                error_text(strong.position, chart.position_limit()),
-               percent(strong.parted_share(), 1.0, 2), dynamics::name_of(p.verdict)});
+               percent(strong.parted_share(), 1.0), dynamics::name_of(p.verdict)});
   }
   return table.text() + refused;
 }
@@ -355,7 +356,8 @@ std::string details_text(const std::vector<WorkPrecision>& charts, std::int64_t 
     text += fmt::format("\n{}: {} trials per setting, {} timed\n{}{}", chart.label, chart.trials,
                         chart.timed_trials, reference_text(chart), lines_of(chart));
   return text +
-         wrapped(fmt::format("\n* default of the method. us/trial: least of {} on one thread, {}",
+         wrapped(fmt::format("\nsetting: step in s, of event the tolerance in m; *: default. "
+                             "us/trial: least of {} on one thread, {}",
                              counted(rounds, "round", "rounds"), machine())) +
          "outcomes, columns: total variation from the reference, of the outcomes and of the "
          "crossing\n"

@@ -73,7 +73,7 @@ holds "$within" many.json
 "$gatewalk" build "$scenes/field.toml" --accuracy 0.05 -o tree.nc --quiet >/dev/null 2>&1
 "$gatewalk" predict tree.nc --first-runs 0 --json own.json --quiet
 start=$(jq .start_state.input own.json)
-expect 0 'runs are counted twice' "$gatewalk" export tree.nc --gate --counts -o g.mtx
+expect 0 'count each run and its mirror image' "$gatewalk" export tree.nc --gate --counts -o g.mtx
 [ "$(head -n 1 g.states.csv | grep -c ',counts_per_run$')" = 1 ] || fail "no counts_per_run in g.states.csv"
 "$gatewalk" export tree.nc -o runs.dtrajs --quiet >/dev/null
 for file in g.mtx runs.dtrajs; do

@@ -12,7 +12,7 @@ printf 'from,to,count\nup,up,5\nup,right,5\n' >half.csv
 # No body was seen to leave "right". Of half.csv's walks 1/2 enter it in the first gate, 1/4 in the second: 1/4 cross.
 expect 0 'the endings add up to 25.00 %: 75.00 % reach a state that was never sampled' "$gatewalk" predict half.nc --json predict.json
 expect 0 'the endings add up to 25.00 %: 75.00 % reach a state that was never sampled' "$gatewalk" analyze half.nc --start up --json analyze.json
-expect 0 '^Share that reaches a state without any run: 75.0000 %$' "$gatewalk" analyze half.nc --start up
+expect 0 '^Share that reaches a state without any run: 75.0000 %$' "$gatewalk" analyze half.nc --start up --details
 for file in predict analyze; do holds '.never_sampled == 0.75 and .still_walking == 0' $file.json; done
 holds '([.endings[]] | add) + .never_sampled == 1' analyze.json
 expect 0 'the endings add up to [0-9.]* %: [0-9.]* % reach a state that was never sampled' "$gatewalk" walk half.nc --walks 4000 --json walk.json

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# A command's first screen has at most 15 lines for one start, and no line over 100 characters, also with --details. The
-# proposed commands run.
-#   screens_test.sh GATEWALK ROOT
+# A command's first screen has at most fifteen lines for one start and no line over 100 characters, also with --details;
+# it says what to do next, and what it says runs.   screens_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 cp -r "$scenes"/*.toml "$scenes/observed.csv" "$scenes/tracks" .
@@ -12,7 +11,7 @@ field = { columns = 5, rows = 3 }
 END
 # Shapes of screens: how many lines, how wide, and how they end.
 wide() { awk -v most=100 'length($0) > most' "$1" | head -n 1; }
-# first LINES COMMAND...: the first screen has at most so many lines, besides a map and Next lines; kept in screen.txt.
+# first LINES COMMAND...: the first screen has at most so many lines besides a map of gates, and Next lines; kept in screen.txt.
 first() {
   local most=$1 lines
   shift
@@ -25,7 +24,7 @@ first() {
   tail -n 1 screen.txt | grep -q -e '--details shows ' || fail "does not say that there are details: $*"
   sed -n 's/^\(Next: \|      \)gatewalk /gatewalk /p' screen.txt >>next.txt
 }
-# screens COMMAND...: the first screen, and the whole one, which has all of the first except the hint to --details.
+# screens COMMAND...: its first screen, and the whole one, which has all of the first but for the advice on details.
 screens() {
   first 15 "$@"
   "$gatewalk" "$@" --force --details >whole.txt 2>/dev/null || { fail "$* --details" && return; }
@@ -33,7 +32,7 @@ screens() {
   [ "$(wc -l <whole.txt)" -gt "$(wc -l <screen.txt)" ] || fail "--details shows nothing more: $*"
   grep -q -e '--details shows ' whole.txt && fail "--details advises --details: $*"
   grep -v -e '--details shows ' -e '^Next: ' -e '^      ' screen.txt | grep -v -x -F -f whole.txt >missing.txt
-  # Times differ from run to run.
+  # What was timed differs from run to run.
   grep -v ' [0-9.]* s\b' missing.txt && fail "--details leaves out what the first screen has: $*: $(head -n 1 missing.txt)"
 }
 
@@ -58,7 +57,42 @@ screens predict few.nc
 screens rare small.toml --row 2 --accuracy 0.3
 screens validate small.toml --matrix tree.nc --trials 40 --null-draws 99 --memory
 screens validate field.toml --observed observed.csv --trials 1200 --accuracy 0.3 --null-draws 99
-# Several starts: the answer for each, and the rest once.
+# Studies: influences, how many trials, plans, fits, grids.
+screens analyze small.toml --accuracy 0.3 --runs 100
+screens analyze small.toml --accuracy 0.3 --runs 100 --trials 100 --lump 2,1,1
+screens analyze tree.nc --runs 0 --first-passage crossed
+screens analyze small.toml --accuracy 0.3 --runs 0 --over forces.propulsion_N=6:9 --over forces.random_N=40:60 --over-trials 8192
+screens analyze bins.nc --runs 0
+screens power small.toml --accuracy 0.3
+screens power small.toml --accuracy 0.3 --trials 60
+screens power small.toml --accuracy 0.3 --trials 60 --versus forces.random_N=60
+screens plan small.toml --accuracy 0.2
+actions=(--set actions.a.forces.propulsion_N=5 --set actions.b.forces.propulsion_N=11)
+screens plan small.toml --accuracy 0.2 "${actions[@]}" --policy policy.json
+screens plan small.toml --accuracy 0.2 "${actions[@]}" --least work_J
+screens design mixed.toml --set field.rows=2 --accuracy 0.2
+printf 'ending,count\ncrossed,20\ntrapped,30\nleft side,5\n' >ends.csv
+screens fit small.toml ends.csv --free forces.propulsion_N=6:9 --free forces.random_N=40:60 --trials 24576
+screens sweep fig8.toml --trials 3
+first 15 sweep single_gate.toml --trials 10 --vary forces.propulsion_N=6:1:9
+# One gate, single runs, tracks, scenes.
+screens landscape single_gate.toml -o land --trials 20
+screens trace soft_left.toml --trials 9
+screens trace field.toml --field --trials 2 --replay runs.html
+screens passages tracks/tracks.csv --cell tracks/cell.toml -o again.csv --fps 10 --metres-per-unit 0.001 --fastest 0.4 --lattice 9,9 \
+  --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y
+# Charts: 40 trials show the shape of the screen.
+screens chart field small.toml -o fidelity --trials 20 --start 0,0,15
+screens chart chain small.toml -o chain --truth-trials 200 --runs-limit 2000 --bins 0.5 --bins 1 --start 0,0,15
+screens chart limits single_gate.toml -o limits --quick --trials 1 --set run.time_limit_s=1
+screens chart methods single_gate.toml -o methods --trials 20 --repeats 1 --methods moreau,stable
+# A scene's table is long, not wide, and its meaning comes first.
+for scene in *.toml; do
+  "$gatewalk" scene "$scene" >screen.txt 2>/dev/null || continue
+  [ -z "$(wide screen.txt)" ] || fail "scene $scene: a line is too wide: $(wide screen.txt)"
+  head -n 1 screen.txt | grep -q '^What these numbers mean' || fail "scene $scene: its meaning does not come first"
+done
+# Several starts: the answer of each, the rest once.
 first 23 predict small.toml --accuracy 0.3 --start 0,0,15 --start 4.3,5.1,10.2
 [ "$(grep -c '^crossed' screen.txt)" = 2 ] && [ "$(grep -c '^The 95 % intervals' screen.txt)" = 1 ] || fail "predict: several starts: $(cat screen.txt)"
 screens validate field.toml --accuracy 0.3 --trials 40 --null-draws 99
@@ -70,20 +104,21 @@ screens build passages.csv --cell tracks/cell.toml -o bodies.nc
 screens predict bodies.nc
 screens validate bodies.nc --null-draws 99
 head -n 1 screen.txt | grep -q '^One half of the bodies ' || fail "validate: no verdict of the halves"
-# An imported chain.
+# A chain that was made elsewhere.
 printf 'from,to,count\n0,0,4\n0,1,3\n0,2,2\n1,0,2\n1,1,6\n1,2,1\n' >counts.csv
 printf 'state,move_x,move_y\n0,0,1\n1,1,0\n' >states.csv
 "$gatewalk" import counts.csv --states states.csv --start 0 --set field.rows=3 --set field.columns=3 -o own.nc --quiet >/dev/null
 screens show own.nc
 screens walk own.nc --walks 50
 screens predict own.nc
-# The proposed commands run in a shell, with their comments; with less accuracy where they take long.
+# What to do next runs, a shell's own comment behind it; with less accuracy where that takes long.
 sort -u next.txt >all.txt
 [ "$(wc -l <all.txt)" -ge 15 ] || fail "few lines of advice: $(cat all.txt)"
 gatewalk() {
   case $1 in
     analyze) set -- "$@" --runs 0 ;;
-    power) set -- "$@" --accuracy 0.3 ;;
+    plan | power) set -- "$@" --accuracy 0.3 ;;
+    sweep) set -- "$@" --trials 3 ;;
     validate) set -- "$@" --null-draws 99 ;;
   esac
   command "$program" "$@" --force
@@ -94,11 +129,11 @@ export -f gatewalk
 while read -r line; do
   bash -c "$line" >out.txt 2>err.txt </dev/null || fail "advice does not run: $line: $(head -n 1 err.txt)"
 done <all.txt
-# Standard input cannot be read again, so no command is proposed.
+# From standard input nothing can be asked again.
 "$gatewalk" gate - --trials 5 <small.toml >screen.txt 2>/dev/null
 grep -q 'gatewalk .* -' screen.txt && fail "asks standard input again: $(cat screen.txt)"
 
-# Files of another kind than expected.
+# What is not what it is taken for.
 for command in validate gate lattice rare trace scene; do expect 2 'tree.nc: is a matrix (HDF5), and .* scene' "$gatewalk" $command tree.nc; done
 for command in show walk; do expect 2 'a matrix is not read from standard input' "$gatewalk" $command -; done
 expect 2 'there is no option --trials (did you mean --walks?)' "$gatewalk" walk bins.nc --trials 5

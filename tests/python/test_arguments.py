@@ -398,7 +398,7 @@ class NoTemporaryFile(unittest.TestCase):
         self.assertRegex(cut.attrs["made_by"]["command"], "^gatewalk passages table0.csv table1.csv .* --cell cell.toml$")
         self.assertRegex(recorded.made_by["command"], "^gatewalk build table.csv --cell cell.toml$")
         self.assertRegex(chain.made_by["command"], "^gatewalk import chain.npz .* --states states.csv$")
-        self.assertRegex(" ".join(results["power"].summary), "To tell this group from the other matrix so often")
+        self.assertRegex(" ".join(results["power"].summary), r"To tell this group from the other matrix \(power 80 %\) you need ")
         self.assertEqual(results["validate"].observed["files"], ["the table 0", "the table 1"])
 
     def test_in_errors(self):
