@@ -33,7 +33,7 @@ jq -s '.[0].numbers == .[1].numbers' gates.json pair.json | grep -q true || fail
 # Lines of trials; two numbers of which one cannot be determined; the same on one thread and after a resume.
 printf 'trial,ending,gate_x,gate_y\na,crossed,0,3\nb,trapped,0,1\nc,trapped,0,2\nd,crossed,1,3\ne,left side,-4,2\nf,crossed,0,3\n' >lines.csv
 both=("${free[@]}" --free contact.impulse_threshold_Ns=0.04:0.041 --trials 24576)
-expect 0 '^these data cannot tell contact.impulse_threshold_Ns: ' "$gatewalk" fit "${small[@]}" lines.csv "${both[@]}" --checkpoint kept --json two.json --figure two.svg
+expect 0 '^Beware: these data cannot tell contact.impulse_threshold_Ns: ' "$gatewalk" fit "${small[@]}" lines.csv "${both[@]}" --checkpoint kept --json two.json --figure two.svg
 same() { jq -s '(.[0] | del(.made_by, .seconds)) == (.[1] | del(.made_by, .seconds))' "$1" "$2" | grep -q true || fail "$3"; }
 "$gatewalk" fit "${small[@]}" lines.csv "${both[@]}" --threads 1 --quiet --json one.json
 same two.json one.json "fit: other results on one thread"
@@ -69,7 +69,7 @@ holds '.p < 0.001 and .numbers[0].sd > 0.02' all.json
 
 # Passages determine more than endings: each is simulated from where it began. Costs other than the time may be missing.
 "$gatewalk" lattice "${small[@]}" --set forces.propulsion_N=7.2 --trials 300 --seed 11 --quiet --passages runs.csv --cell-file cell.toml --json again.json --force
-expect 0 '^[0-9]* observed passages; ' "$gatewalk" fit "${small[@]}" runs.csv "${free[@]}" --trials 100000 --json passages.json
+expect 0 '^From [0-9]* observed passages and ' "$gatewalk" fit "${small[@]}" runs.csv "${free[@]}" --trials 100000 --json passages.json
 holds '.of == "passages" and (.numbers[0] | .median_95[0] < 7.2 and 7.2 < .median_95[1] and .median_95[1] - .median_95[0] < 0.3) and .settled and .p > 0.01' passages.json
 holds '.observed == ([.outcomes[].observed] | add) and ([.outcomes[].outcomes] | any(test("^EN d .* m/s( or mirrored)?: to [ELR][DNT] (within|from|after) ")) and any(test("trapped$")))' passages.json
 cut -d, -f1-11 runs.csv >bare.csv
