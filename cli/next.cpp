@@ -59,6 +59,11 @@ NextCommands& NextCommands::again(const std::string& name, const std::string& va
   return *this;
 }
 
+NextCommands& NextCommands::run(const std::string& words, const std::string& why) {
+  put("gatewalk " + words, why);
+  return *this;
+}
+
 void NextCommands::put(const std::string& command, const std::string& why) {
   if (std::ranges::count(options_.words().shaping, "-") > 0) return;
   if (kBefore.size() + command.size() > kScreenColumns) return;

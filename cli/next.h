@@ -9,21 +9,24 @@
 
 namespace gatewalk::cli {
 
-/// Collects lines for Screen::next, each a command as a shell reads it with a comment behind it:
-/// "gatewalk predict walker.toml --accuracy 0.01  # halves the intervals". The comment is left out
-/// where it would make the line too long, and so is a command that is too long itself. A scene that
-/// came on standard input is gone: then there are no lines.
+/// Collects lines for Screen::next. Each line is a shell command followed by a comment: "gatewalk
+/// predict walker.toml --accuracy 0.01  # halves the intervals". The comment is left out if the
+/// line would be too long, and so is a command that is too long by itself. If the scene came on
+/// standard input, another command cannot read it again, so there are no lines.
 class NextCommands {
  public:
   explicit NextCommands(const Options& options) : options_(options) {}
 
-  /// Another command on the same scene or matrix: the files, --set, --start and --cell-program are
-  /// those of this command, so the other command must know those that are given; `more` follows
-  /// them.
+  /// Proposes another command on the same scene or matrix. The files, --set, --start and
+  /// --cell-program are those of this command, so the other command must have these options too;
+  /// `more` follows them.
   NextCommands& add(const std::string& command, const std::string& more, const std::string& why);
-  /// The same command once more with the option --`name` set to `value`; the option alone, "--name
-  /// value why", where the command would make the line too long.
+  /// Proposes the same command again with the option --`name` set to `value`; the option alone,
+  /// "--name value why", if the line would be too long.
   NextCommands& again(const std::string& name, const std::string& value, const std::string& why);
+
+  /// Proposes a command by all its words behind "gatewalk".
+  NextCommands& run(const std::string& words, const std::string& why);
 
   [[nodiscard]] const std::vector<std::string>& lines() const { return lines_; }
 

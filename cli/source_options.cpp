@@ -204,23 +204,6 @@ std::string text_of(const dynamics::Cell& cell) {
   return text;
 }
 
-std::string asked_again(const Options& options, const Asked& asked) {
-  std::string text = shell_quoted(asked.path.value());
-  if (text == "-" || asked.scene.value() == "-") return "";
-  if (asked.scene) text += " " + shell_quoted(asked.scene.value());
-  for (const std::string& set : options.overrides()) text += " --set " + shell_quoted(set);
-  if (asked.program.command)
-    text += " --cell-program " + shell_quoted(asked.program.command.value());
-  for (const std::string& start : asked.starts.values()) text += " --start=" + shell_quoted(start);
-  return text;
-}
-
-std::string next_step(const std::string& command, const std::string& what_for) {
-  constexpr std::size_t kBefore = 6, kMost = 100;  // "Next: " stands before it
-  const std::string line = "gatewalk " + command, both = line + "  # " + what_for;
-  return kBefore + both.size() > kMost ? line : both;
-}
-
 std::string needs_scene(const std::string& path) {
   return path + ": is a matrix (HDF5), and this command simulates new bodies: give a scene (TOML)";
 }

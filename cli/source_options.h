@@ -59,14 +59,6 @@ void choose_method(const Options& options, lattice::Source& s);
 /// with different lines are different cells.
 [[nodiscard]] std::string text_of(const dynamics::Cell& cell);
 
-/// The arguments with which another command is asked about the same source, such as
-/// "scenes/field.toml --set forces.random_N=20". Empty for standard input, which cannot be read
-/// again.
-[[nodiscard]] std::string asked_again(const Options& options, const Asked& asked);
-/// A line of Screen::next, which a shell can run: "gatewalk predict scenes/field.toml  # WHAT_FOR".
-/// The comment is left out if the line would have more than 100 characters.
-[[nodiscard]] std::string next_step(const std::string& command, const std::string& what_for);
-
 /// The message of a command that simulates new bodies, for a matrix at `path`, which it refuses.
 [[nodiscard]] std::string needs_scene(const std::string& path);
 

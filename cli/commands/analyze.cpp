@@ -23,6 +23,7 @@
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/study/prediction.h"
 #include "lattice/study/trials.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -274,9 +275,10 @@ std::string range_of_largest(const Options& options, const lattice::Source& s,
   constexpr std::size_t kShown = 3;  // on the first screen
   for (const auto& effect : sorted_effects(result) | std::views::take(kShown)) {
     if (!std::isfinite(effect.value)) continue;
-    const std::string step = digits(0.05 * effect.value, 2),
-                      low = digits(effect.value - 2.0 * std::stod(step)),
-                      high = digits(effect.value + 2.0 * std::stod(step));
+    const std::string step = digits(0.05 * effect.value, 2);
+    std::string_view words = step;
+    const double by = *lattice::take_number(words);
+    const std::string low = digits(effect.value - 2.0 * by), high = digits(effect.value + 2.0 * by);
     try {
       (void)lattice::RangedScene(options.file(s.path).toml(), options.overrides(),
                                  {fmt::format("{}={}:{}", effect.key, low, high)}, "--vary");

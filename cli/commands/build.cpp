@@ -8,6 +8,7 @@
 
 #include "cli/arguments.h"
 #include "cli/fields/text.h"
+#include "cli/next.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/matrix.h"
@@ -57,13 +58,12 @@ using Settled = std::optional<lattice::Settled>;
 /// What a user of the matrix does next. Its chain can be held against the dynamics of a scene.
 std::vector<std::string> next_of(const BuildCommand& options, const std::string& matrix,
                                  bool is_of_scene) {
-  std::vector<std::string> next{
-      next_step("predict " + shell_quoted(matrix), "how bodies cross the field")};
-  if (const std::string again = asked_again(options, {.path = options.path});
-      is_of_scene && !again.empty())
-    next.push_back(next_step("validate " + again + " --matrix " + shell_quoted(matrix),
-                             "does the chain agree with the dynamics?"));
-  return next;
+  NextCommands next(options);
+  next.run("predict " + shell_quoted(matrix), "how bodies cross the field");
+  if (is_of_scene)
+    next.add("validate", "--matrix " + shell_quoted(matrix),
+             "does the chain agree with the dynamics?");
+  return next.lines();
 }
 
 /// A matrix is NetCDF whatever its file's name says.

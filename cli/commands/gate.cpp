@@ -3,6 +3,7 @@
 
 #include "cli/arguments.h"
 #include "cli/fields/text.h"
+#include "cli/next.h"
 #include "cli/render/choice.h"
 #include "cli/render/gate_runs.h"
 #include "cli/render/health.h"
@@ -36,20 +37,17 @@ int run_gate(const Arguments& arguments) {
       settled, options.provenance(scene)};
   options.work().end_part();
 
-  const std::string again = asked_again(options, {.path = path});
   options.give_out(
-      result,
-      {table_of(result.tally) +
-           wrapped(fmt::format(
-               "From {} through one gate from the scene's start. The 95 % intervals count "
-               "their sampling error.",
-               counted(result.tally.trials, "run", "runs"))),
-       "\n" + scene_line(scene) + method_line(settled),
-       again.empty()
-           ? std::vector<std::string>()
-           : std::vector{next_step("trace " + again + " --trials 5 --replay runs.html",
-                                   "watch single runs"),
-                         next_step("predict " + again, "how bodies cross a field of gates")}});
+      result, {table_of(result.tally) +
+                   wrapped(fmt::format(
+                       "From {} through one gate from the scene's start. The 95 % intervals count "
+                       "their sampling error.",
+                       counted(result.tally.trials, "run", "runs"))),
+               "\n" + scene_line(scene) + method_line(settled),
+               NextCommands(options)
+                   .add("trace", "--trials 5 --replay runs.html", "watch single runs")
+                   .add("predict", "", "how bodies cross a field of gates")
+                   .lines()});
   const int exit = status_of(options, result.tally.health);
   options.draw([&] { return figure_of(result.tally); });
   return exit;

@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/exchange/policy_file.h"
 #include "cli/fields/text.h"
+#include "cli/next.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"
 #include "cli/render/field_runs.h"
@@ -119,14 +120,12 @@ FieldRun field_run(const LatticeCommand& options) {
 
 /// What a user of this answer does next.
 std::vector<std::string> next_of(const LatticeCommand& options) {
-  const std::string again = asked_again(options, options.asked);
-  if (again.empty() || options.policy) return {};
-  std::vector<std::string> next{
-      next_step("predict " + again, "the same shares from fewer trials, and an error bar")};
+  if (options.policy) return {};
+  NextCommands next(options);
+  next.add("predict", "", "the same shares from fewer trials, and an error bar");
   if (!has_cell(options, options.program))
-    next.push_back(next_step("trace " + again + " --field --trials 5 --replay runs.html",
-                             "watch single bodies"));
-  return next;
+    next.add("trace", "--field --trials 5 --replay runs.html", "watch single bodies");
+  return next.lines();
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "cli/arguments.h"
 #include "cli/fields/text.h"
+#include "cli/next.h"
 #include "cli/page.h"
 #include "cli/render/field_ends.h"
 #include "cli/render/field_figure.h"
@@ -106,21 +107,17 @@ markov::PredictOptions::Solver solver_of(const PredictCommand& options) {
 
 /// What a user of this answer does next.
 std::vector<std::string> next_of(const PredictCommand& options, const lattice::Source& s) {
-  const std::string again = asked_again(options, options.asked);
-  std::vector<std::string> next;
-  if (again.empty()) return next;
+  NextCommands next(options);
   if (s.is_recorded() && !s.is_imported && s.pool->bodies() >= 2 * lattice::kLeastBodies)
-    next.push_back(next_step("validate " + asked_again(options, {.path = options.matrix}),
-                             "does one half of the bodies predict the other?"));
+    next.run("validate " + shell_quoted(options.matrix.value()),
+             "does one half of the bodies predict the other?");
   if (s.starts.size() == 1)  // an analysis is of one
-    next.push_back(next_step("analyze " + again,
-                             s.file ? "times, visits of gates, and what the chain remembers"
-                                    : "which number of the scene matters most"));
+    next.add("analyze", "",
+             s.file ? "times, visits of gates, and what the chain remembers"
+                    : "which number of the scene matters most");
   if (s.pool && !s.is_recorded())
-    next.push_back(
-        next_step(fmt::format("predict {} --accuracy {}", again, digits(0.5 * s.accuracy.accuracy)),
-                  "halves the error bar"));
-  return next;
+    next.again("accuracy", digits(0.5 * s.accuracy.accuracy), "halves the error bar");
+  return next.lines();
 }
 
 /// Gives out the result, and warns of what its endings leave out.

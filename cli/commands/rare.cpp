@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/rare.h"
+#include "cli/next.h"
 
 #include <fmt/core.h>
 
@@ -81,16 +82,12 @@ int run_rare(const Arguments& arguments) {
     result.direct = lattice::direct_rows(deep, trials.value(), options.seed(), options.work());
   options.work().end_part();
 
-  std::vector<std::string> next;
-  if (const std::string again = asked_again(options, {.path = path, .program = program});
-      !again.empty()) {
-    if (!how.trials && result.event.splitting.reached)
-      next.push_back(next_step(
-          fmt::format("rare {} --row {} --accuracy {}", again, how.row, digits(0.5 * how.accuracy)),
-          "halves the standard error"));
-    next.push_back(next_step("analyze " + again, "which number of the scene matters most"));
-  }
-  options.give_out(result, {answer_text(result), details_text(result, source.problem.field), next});
+  NextCommands next(options);
+  if (!how.trials && result.event.splitting.reached)
+    next.again("accuracy", digits(0.5 * how.accuracy), "halves the standard error");
+  next.add("analyze", "", "which number of the scene matters most");
+  options.give_out(result,
+                   {answer_text(result), details_text(result, source.problem.field), next.lines()});
   if (const lattice::Splitting& s = result.event.splitting; !(s.rows.back().probability > 0.0))
     options.warn(fmt::format("none of {} trials entered row {}; --gate-runs N allows more",
                              s.trials, how.row));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/command.h"
+#include "cli/next.h"
 #include "cli/render/matrix.h"
 #include "cli/source_options.h"
 #include "lattice/source/cell_matrix.h"
@@ -36,11 +37,10 @@ int run_show(const Arguments& arguments) {
   ShownRows shown{.all = static_cast<bool>(rows), .one = {}};
   if (row) shown.one = static_cast<int>(row.value(0, file.transitions.space.size() - 1));
 
-  std::vector<std::string> next;
-  if (!shown.all && !shown.one)
-    next.push_back(next_step("show " + shell_quoted(path) + " --rows", "a line for each state"));
-  next.push_back(next_step("predict " + shell_quoted(path), "how bodies cross the field"));
-  options.give_out(matrix, {answer_text(matrix, shown), details_text(matrix), next});
+  NextCommands next(options);
+  if (!shown.all && !shown.one) next.add("show", "--rows", "a line for each state");
+  next.add("predict", "", "how bodies cross the field");
+  options.give_out(matrix, {answer_text(matrix, shown), details_text(matrix), next.lines()});
   options.draw([&] { return figure_of(file.transitions); });
   return kFine;
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/arguments.h"
+#include "cli/next.h"
 #include "cli/render/cross_validation.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/matrix.h"
@@ -248,10 +249,10 @@ int validate_recorded(const ValidateCommand& options) {
   if (s.pool->bodies() < kChecked)
     options.warn(fmt::format("with {} bodies p may be too small: it was checked with {} or more",
                              s.pool->bodies(), kChecked));
-  options.give_out(result, {answer_text(result),
-                            details_text(result),
-                            {next_step("predict " + asked_again(options, {.path = options.path}),
-                                       "what all bodies together predict")}});
+  options.give_out(
+      result,
+      {answer_text(result), details_text(result),
+       NextCommands(options).add("predict", "", "what all bodies together predict").lines()});
   for (const std::string& rest : rest_warnings(result.validation)) options.warn(rest);
   options.draw([&] { return figure_of(result.validation, ShownField(s)); });
   return kFine;
@@ -259,25 +260,18 @@ int validate_recorded(const ValidateCommand& options) {
 
 /// What a user of this answer does next.
 std::vector<std::string> next_of(const ValidateCommand& options, const lattice::Validation& v) {
-  const std::string again = asked_again(options, options.asked);
-  if (again.empty()) return {};
-  if (options.observed) return {next_step("power " + again, "how many trials an experiment needs")};
-  const std::string matrix =
-      options.matrix ? " --matrix " + shell_quoted(options.matrix.value()) : "";
+  NextCommands next(options);
+  if (options.observed) return next.add("power", "", "how many trials an experiment needs").lines();
   const bool differs = std::any_of(v.starts.begin(), v.starts.end(), [](const auto& start) {
     return start.finding() == lattice::Finding::own_error;
   });
   if (differs && v.starts.size() == 1 && !options.start)
-    return {next_step("lattice " + again + " --trials 10000", "the full dynamics alone")};
-  std::vector<std::string> next;
+    return next.add("lattice", "--trials 10000", "the full dynamics alone").lines();
   if (v.trials < 1000)
-    next.push_back(
-        next_step("validate " + again + matrix + fmt::format(" --trials {}", 10 * v.trials),
-                  "reveals smaller differences"));
-  next.push_back(
-      next_step("predict " + (options.matrix ? shell_quoted(options.matrix.value()) : again),
-                "the chain's answer alone"));
-  return next;
+    next.again("trials", std::to_string(10 * v.trials), "reveals smaller differences");
+  const std::string why = "the chain's answer alone";
+  return options.matrix ? next.run("predict " + shell_quoted(options.matrix.value()), why).lines()
+                        : next.add("predict", "", why).lines();
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "cli/arguments.h"
 #include "cli/chain_from_start.h"
 #include "cli/fields/text.h"
+#include "cli/next.h"
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"
 #include "cli/render/field_runs.h"
@@ -59,12 +60,10 @@ int run_walk(const Arguments& arguments) {
                              s.starts.front());
   if (netcdf)
     options.write(netcdf.value(), netcdf_of({picture}, s.problem.map().section, result.made_by));
-  const std::string again = asked_again(options, {.path = matrix, .scene = scene});
-  options.give_out(result,
-                   {answer_text(result), details_text(result),
-                    again.empty() ? std::vector<std::string>()
-                                  : std::vector{next_step("predict " + again,
-                                                          "the limit of infinitely many walks")}});
+  options.give_out(
+      result,
+      {answer_text(result), details_text(result),
+       NextCommands(options).add("predict", "", "the limit of infinitely many walks").lines()});
   options.warn(too_few_gates(shown));
   options.warn(rest_warning(rest_of(tally)));
   options.remark(fmt::format("{} s, {} million walks a second", fixed(seconds, 3),
