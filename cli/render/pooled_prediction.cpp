@@ -149,8 +149,13 @@ std::string answer_text(const RunsPrediction& runs) {
   std::string text = wrapped(fmt::format(
       "From {}, pooled into a chain of {} states{}{}.", runs_of(runs), runs.prediction.states,
       any ? "" : ", without error bars", agreement(runs.prediction.hausman_check)));
+  const bool all_from_trials = std::all_of(
+      starts.begin(), starts.end(), [](const lattice::StartAnswer& a) { return a.from_trials; });
   if (any)
-    text += "The 95 % intervals include sampling error and the chain's own approximation error.\n";
+    text += all_from_trials
+                ? "The 95 % intervals count the sampling error of the trials.\n"
+                : "The 95 % intervals include sampling error and the chain's own approximation "
+                  "error.\n";
   if (runs.recorded && runs.recorded->bounds.lost > 0.0)
     text += fmt::format(
         "Beware: {} of the passages were lost from sight, which no interval counts; see "
