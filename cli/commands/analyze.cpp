@@ -28,7 +28,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// The ending that --target names, as in JSON. Throws UsageError for a name that none has.
+/// The ending that --target names, by its key in JSON. Throws UsageError for an unknown name.
 markov::Ending target_of(const std::string& name) {
   if (const auto ending = lattice::ending_named(name)) return *ending;
   throw UsageError(fmt::format(
@@ -36,7 +36,7 @@ markov::Ending target_of(const std::string& name) {
       fmt::join(lattice::kEndingNames | std::views::transform(&lattice::EndingName::key), ", ")));
 }
 
-/// --lump: parts of each coordinate; 1 each without it. Throws UsageError.
+/// The values of --lump, parts of each coordinate; 1 each without --lump. Throws UsageError.
 lattice::LumpingParts lumping_of(const TextOption& given, const dynamics::Section& section) {
   constexpr int kMost = 1000;
   lattice::LumpingParts parts(section.coordinates.size(), 1);
@@ -54,16 +54,16 @@ lattice::LumpingParts lumping_of(const TextOption& given, const dynamics::Sectio
   return parts;
 }
 
-/// The chain that is analysed, and the prediction of how its bodies end.
+/// The chain to analyse, and the prediction of how its bodies end.
 struct AnalysedSubject {
   std::optional<lattice::AnalysedChain> chain;
-  std::optional<lattice::PooledPrediction> of_runs{};  // of gate runs; else of_bins
+  std::optional<lattice::PooledPrediction> of_runs{};  // for chains of gate runs; else of_bins
   std::optional<lattice::Prediction> of_bins{};
   AnalysedAnswer answer{};
   bool clean = true;
 };
 
-/// Throws UsageError, before any work, where even so few states take too much memory.
+/// Throws UsageError, before any work, if a chain with so few states already needs too much memory.
 void require_room(const lattice::Source& s, int states) {
   if (states <= lattice::most_analysed_states(s.problem)) return;
   const lattice::FieldParams& field = s.problem.field;
@@ -73,7 +73,7 @@ void require_room(const lattice::Source& s, int states) {
       field.columns, field.rows, states, field.max_gates > 0 ? ", --set field.max_gates=N)" : ")"));
 }
 
-/// From gate runs, to which more are added until the error bar says enough.
+/// The chain of gate runs. Runs are added until the prediction reaches the accuracy.
 AnalysedSubject chain_of_runs(const Options& options, lattice::Source& s) {
   constexpr int kFewestStates = 100;
   require_room(s, kFewestStates);
@@ -101,7 +101,7 @@ AnalysedSubject chain_of_runs(const Options& options, lattice::Source& s) {
   return c;
 }
 
-/// From a matrix of bins.
+/// The chain of a matrix of bins.
 AnalysedSubject chain_of_bins(const Options& options, const AskedAccuracy& asked,
                               const lattice::Source& s) {
   refuse({asked.accuracy, asked.gate_runs},
@@ -124,7 +124,8 @@ AnalysedSubject chain_of_bins(const Options& options, const AskedAccuracy& asked
   return c;
 }
 
-/// What the numbers of the cells change; nothing where the chain cannot tell.
+/// How the parameters of the cells change the target's probability; empty if the runs were
+/// recorded.
 lattice::ParameterEffects effects_of(const lattice::ParameterOptions& how, lattice::Source& s,
                                      const AnalysedSubject& c, const lattice::Analysis& analysis,
                                      const dynamics::Work& work) {
@@ -139,12 +140,12 @@ lattice::ParameterEffects effects_of(const lattice::ParameterOptions& how, latti
                                     s.accuracy.most_runs - c.answer.gate_runs, work);
 }
 
-/// States of a matrix that bodies enter: without those of its starts.
+/// The number of states in which bodies enter gates, without the states of starts.
 int entered_states(const dynamics::StateSpace& space) {
   return space.size() - static_cast<int>(space.points().size());
 }
 
-/// The state of a matrix by its name or its number; none if no state has it.
+/// The state of a matrix by its name or number; nullopt if there is none.
 std::optional<int> state_named(const lattice::Source& s, const std::string& text) {
   if (!s.file) return {};
   const dynamics::StateSpace& space = s.file->transitions.space;
@@ -159,7 +160,7 @@ std::optional<int> state_named(const lattice::Source& s, const std::string& text
   return {};
 }
 
-/// "IX,IY" at the beginning of a text, of a gate in the field; `rest` is what follows.
+/// Reads the gate "IX,IY" at the beginning of a text; `rest` becomes what follows.
 std::optional<std::int64_t> cell_named(const lattice::FieldParams& field, const std::string& text,
                                        std::string& rest) {
   int at[2];
@@ -170,7 +171,7 @@ std::optional<std::int64_t> cell_named(const lattice::FieldParams& field, const 
         (k == 0 ? next == end || *next != ',' : next != end && *next != ','))
       return {};
     from = next == end ? next : next + 1;
-    if (k == 1 && next != end && from == end) return {};  // a comma and nothing
+    if (k == 1 && next != end && from == end) return {};  // a comma without a number
   }
   const int column = at[0] + field.start_column(), row = at[1];
   if (!field.contains(column, row)) return {};
@@ -178,7 +179,7 @@ std::optional<std::int64_t> cell_named(const lattice::FieldParams& field, const 
   return std::int64_t{row} * field.columns + column;
 }
 
-/// What --first-passage asks for; none without it. Throws UsageError naming what is allowed.
+/// What --first-passage asks for; nullopt without it. Throws UsageError naming what is allowed.
 std::optional<PassageAsked> first_passage_asked(const TextOption& given, const lattice::Source& s) {
   if (!given) return {};
   const std::string text = given.value();
@@ -209,8 +210,8 @@ std::optional<PassageAsked> first_passage_asked(const TextOption& given, const l
              : "; states are those of a matrix: gatewalk build"));
 }
 
-/// The chain's answer to --first-passage, with a warning where tables are left out; none without
-/// it. Throws UsageError for a state of the file where the chain has other states now.
+/// The chain's answer to --first-passage; nullopt without it. Warns if tables are left out. Throws
+/// UsageError for a state of the file if the chain has other states now.
 std::optional<PassageResult> first_passage_of(const Options& options,
                                               const std::optional<PassageAsked>& asked,
                                               const lattice::Source& s, const AnalysedSubject& c) {
@@ -226,7 +227,7 @@ std::optional<PassageResult> first_passage_of(const Options& options,
   PassageResult result{*asked, lattice::first_passage(s.problem.field, *c.chain, asked->target),
                        s.is_imported ? lattice::state_names(*s.file) : lattice::state_names(space),
                        lattice::shown_order(s.is_imported ? s.file->transitions.space : space)};
-  if (asked->target.ending)  // one number has one interval
+  if (asked->target.ending)  // takes the prediction's interval, so that one number has one interval
     result.found.chance.interval =
         c.answer.endings.interval[static_cast<std::size_t>(*asked->target.ending)];
   if (!result.has_tables())
@@ -236,7 +237,7 @@ std::optional<PassageResult> first_passage_of(const Options& options,
   return result;
 }
 
-/// The scene over the ranges of --over; none without them. Throws UsageError and SceneError.
+/// The ranges of --over; nullopt without it. Throws UsageError and SceneError.
 std::optional<NumberRanges> over_of(const Options& options, const TextsOption& over,
                                     const CountOption& trials, const lattice::Source& s) {
   auto ranges = ranges_of(options, s, over, lattice::kMostVaried);
@@ -246,7 +247,8 @@ std::optional<NumberRanges> over_of(const Options& options, const TextsOption& o
   return ranges;
 }
 
-/// How much of the variance of the target's chance each number of --over makes; none without it.
+/// The share of each number of --over in the variance of the target's probability; nullopt without
+/// --over.
 std::optional<RangedShares> shares_of(const Options& options, const CountOption& trials,
                                       const std::optional<NumberRanges>& ranges,
                                       const lattice::Source& s, markov::Ending target) {
@@ -259,7 +261,7 @@ std::optional<RangedShares> shares_of(const Options& options, const CountOption&
                                target, how, options.work())};
 }
 
-/// Of all runs that the command made.
+/// The faults in all runs that the command simulated.
 dynamics::Health health_of(const AnalysedSubject& subject, const AnalysedField& result) {
   dynamics::Health all = result.parameters.health;
   if (subject.of_runs) all += subject.of_runs->health;
@@ -268,8 +270,8 @@ dynamics::Health health_of(const AnalysedSubject& subject, const AnalysedField& 
   return all;
 }
 
-/// A number that matters most over 10 % to each side, as --vary of gatewalk sweep takes it; empty
-/// where there is none, or where the scene does not permit all of that.
+/// The most influential number that the scene permits to vary by 10 % to each side, as a value of
+/// --vary for gatewalk sweep; empty if there is none.
 std::string range_of_largest(const Options& options, const lattice::Source& s,
                              const AnalysedField& result) {
   constexpr std::size_t kShown = 3;  // on the first screen
@@ -283,7 +285,7 @@ std::string range_of_largest(const Options& options, const lattice::Source& s,
       (void)lattice::RangedScene(options.file(s.path).toml(), options.overrides(),
                                  {fmt::format("{}={}:{}", effect.key, low, high)}, "--vary");
       return fmt::format("{}={}:{}:{}", effect.key, low, step, high);
-    } catch (const std::exception&) {  // the scene does not permit all of that
+    } catch (const std::exception&) {  // the scene does not permit the whole range
       continue;
     }
   }
@@ -293,7 +295,7 @@ std::string range_of_largest(const Options& options, const lattice::Source& s,
 std::vector<std::string> next_of(const Options& options, const lattice::Source& s,
                                  const AnalysedField& result) {
   NextCommands next(options);
-  const bool is_of_gates = s.scene && !s.file && !s.starts_given;  // as sweep takes it
+  const bool is_of_gates = s.scene && !s.file && !s.starts_given;  // sweep takes a scene of gates
   if (const std::string range = is_of_gates ? range_of_largest(options, s, result) : "";
       !range.empty())
     return next.add("sweep", "--vary " + range, "varies one of these numbers in one gate").lines();
@@ -366,7 +368,7 @@ int run_analyze(const Arguments& arguments) {
   const lattice::ParameterOptions parameters{.runs = runs.value(0, 1'000'000),
                                              .relative_step = step.within(0.02, 1e-6, 0.5),
                                              .seed = options.seed()};
-  if (trials) (void)trials.value();  // they are run last
+  if (trials) (void)trials.value();  // checks the value now, because these trials run last
   if (parameters.runs > 0 && parameters.runs < 100)
     throw UsageError("--runs: must be 0, or 100 or more");
   lattice::AnalysisOptions how{.target = target_of(target.value()),
@@ -392,7 +394,7 @@ int run_analyze(const Arguments& arguments) {
                        .step = parameters.relative_step};
   const lattice::Analysis& analysis = result.analysis;
   result.passage = first_passage_of(options, passage, s, c);
-  if (s.pool) c.chain.reset();  // that for parameters is larger
+  if (s.pool) c.chain.reset();  // frees memory for the larger chain of the parameters
   result.parameters = effects_of(parameters, s, c, analysis, work);
   if (trials) {
     lattice::FieldCosts costs(lattice::bin_of_durations(s, options.seed()));

@@ -55,7 +55,7 @@ struct BuildCommand : Options {
 
 using Settled = std::optional<lattice::Settled>;
 
-/// What a user of the matrix does next. Its chain can be held against the dynamics of a scene.
+/// Commands to propose next. Only the chain of a scene can be validated against its dynamics.
 std::vector<std::string> next_of(const BuildCommand& options, const std::string& matrix,
                                  bool is_of_scene) {
   NextCommands next(options);
@@ -66,7 +66,7 @@ std::vector<std::string> next_of(const BuildCommand& options, const std::string&
   return next.lines();
 }
 
-/// A matrix is NetCDF whatever its file's name says.
+/// Warns if the matrix file has another ending than .nc: the file is NetCDF in any case.
 void warn_of_ending(const BuildCommand& options) {
   const std::string path = options.output.value();
   const std::string ending = std::filesystem::path(path).extension().string();
@@ -74,7 +74,7 @@ void warn_of_ending(const BuildCommand& options) {
     options.warn(path + ": a matrix is written as NetCDF, whatever the name; .nc tells others so");
 }
 
-/// Writes the file of matrices, one for each type of gate, and says what was made.
+/// Writes the file with a matrix for each type of gate, and gives out the result.
 int give_out(const BuildCommand& options, const lattice::Scene& scene, MadeMatrix made,
              const std::vector<dynamics::Transitions>& matrices) {
   made.path = options.output.value();
@@ -111,7 +111,8 @@ int build_bins(const BuildCommand& options, const lattice::Scene& scene,
   return status;
 }
 
-/// --starts: a range of starts; none without it. Throws UsageError for a malformed one.
+/// The range of starts that --starts gives; nullopt without it. Throws UsageError for a malformed
+/// one.
 std::optional<lattice::StartRange> range_of(const TextOption& starts, const lattice::Scene& scene) {
   if (!starts) return std::nullopt;
   const std::string text = starts.value();
@@ -140,7 +141,7 @@ std::optional<lattice::StartRange> range_of(const TextOption& starts, const latt
   return range;
 }
 
-/// The chain of trees that is to be built. Throws UsageError.
+/// The options of the chain of trees to build. Throws UsageError.
 lattice::TreeOptions tree_options(const BuildCommand& options, const lattice::Scene& scene) {
   lattice::TreeOptions how{.accuracy = accuracy_of(options, options.accuracy)};
   how.range = range_of(options.starts, scene);
@@ -182,7 +183,7 @@ int build_tree(const BuildCommand& options, const lattice::Scene& scene, const S
   return status;
 }
 
-/// Writes the matrices of cells, with the runs behind them, to --output, and gives the result.
+/// Writes the matrices of cells, with the runs behind them, to --output, and gives out the result.
 void give_out_cells(const BuildCommand& options, std::vector<dynamics::Transitions> matrices,
                     const lattice::CellFile& cells, const lattice::RunPool& pool,
                     const StateRecord& states, const std::optional<dynamics::Health>& health,
@@ -201,12 +202,12 @@ void give_out_cells(const BuildCommand& options, std::vector<dynamics::Transitio
   built.made_by.cell = lattice::to_toml(cells);
   options.keep_old(path);
   lattice::write_matrix(path,
-                        std::move(built.matrix.file));  // takes the arrays, which no one shows
+                        std::move(built.matrix.file));  // takes the arrays, which are not shown
   options.give_out(built, {summary_table(built.matrix.file, path) + table_of(pool),
                            "\n" + states_line(states), next_of(options, path, false)});
 }
 
-/// gatewalk build RUNS.csv --cell CELL.toml: from recorded runs.
+/// gatewalk build RUNS.csv --cell CELL.toml: builds from recorded runs.
 int build_recorded(const BuildCommand& options) {
   refuse({options.accuracy.accuracy, options.accuracy.gate_runs, options.starts, options.start,
           options.states, options.trials, options.first_trial, options.bins, options.strict,
@@ -236,7 +237,7 @@ int build_recorded(const BuildCommand& options) {
   return kFine;
 }
 
-/// gatewalk build CELL.toml --cell-program COMMAND: from runs of that program.
+/// gatewalk build CELL.toml --cell-program COMMAND: builds from runs of the program.
 int build_program(const BuildCommand& options) {
   refuse({options.cell_file, options.first_trial, options.bins, options.starts},
          "for cells that another program carries out");

@@ -11,9 +11,9 @@ namespace gatewalk::cli {
 namespace {
 
 constexpr std::int64_t kMostPilotTrials =
-    1'000'000;  // per start; what all of them saw is in memory
+    1'000'000;  // per start; all entries that the trials saw are in memory
 
-/// --bins, in ascending order.
+/// The values of --bins in ascending order.
 std::vector<double> factors_of(const NumbersOption& given, lattice::BinsChoice::Kind kind) {
   std::vector<double> factors = given ? given.values() : lattice::ChainErrorOptions{}.factors;
   std::sort(factors.begin(), factors.end());

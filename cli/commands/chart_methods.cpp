@@ -20,13 +20,13 @@ namespace gatewalk::cli {
 namespace {
 
 constexpr std::int64_t kMostTrials =
-    10'000'000;  // the ends of four settings at a time are in memory: 2 GB
+    10'000'000;  // needs 2 GB, because the ends of four settings' trials are in memory at a time
 
 std::string label_of(const std::string& path) {
   return std::filesystem::path(path).stem().string();
 }
 
-/// A mistake is said before long work, not after it.
+/// Throws for scenes that cannot be charted. To be called before long work.
 void require_chartable(const Options& options, const std::vector<std::string>& paths) {
   std::set<std::string> labels;
   for (const std::string& path : paths) {
@@ -51,7 +51,7 @@ std::vector<std::string> split(const std::string& text) {
   return parts;
 }
 
-/// --methods, else all that are charted. Throws UsageError.
+/// The methods that --methods names; all charted methods without it. Throws UsageError.
 std::vector<std::string> chosen_methods(const TextOption& given) {
   const auto known = dynamics::chart_methods();
   if (!given) return {known.begin(), known.end()};

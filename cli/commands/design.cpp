@@ -19,7 +19,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// Types of the terrain by their names, "s,w" or "."; all that there are without names.
+/// The terrain's types by their names, such as "s,w" or "."; all types for an empty text.
 std::vector<int> types_named(const std::string& names, const lattice::Scene& scene) {
   std::vector<std::string> known{scene.terrain->own};
   for (const lattice::Terrain::Type& type : scene.terrain->types) known.push_back(type.name);

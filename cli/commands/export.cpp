@@ -41,7 +41,7 @@ struct ExportCommand : Options {
 
 enum class ExportForm { umb, drn, prism, matrix_market, csv, npz, trajectories };
 
-/// The form that the ending of a file's name asks for. Throws UsageError naming all endings.
+/// The format by the ending of the file's name. Throws UsageError naming all endings.
 ExportForm export_form(const std::string& output) {
   constexpr std::pair<const char*, ExportForm> kForms[] = {
       {".umb", ExportForm::umb},   {".drn", ExportForm::drn},
@@ -54,14 +54,14 @@ ExportForm export_form(const std::string& output) {
       "-o {}: must end in .umb, .drn, .tra, .mtx, .csv, .npz, .dtrajs or .dtrajs.npz", output));
 }
 
-/// The name of a file without its ending; of .dtrajs.npz without both.
+/// The name of a file without its ending (without both for .dtrajs.npz).
 std::string stem_of(const std::string& output) {
   constexpr std::string_view kBoth = ".dtrajs.npz";
   return output.substr(
       0, lattice::has_ending(output, kBoth) ? output.size() - kBoth.size() : output.rfind('.'));
 }
 
-/// Throws UsageError where a file that is written beside that of -o is an input or another output,
+/// Throws UsageError if a file to be written beside the file of -o is an input or another output,
 /// or cannot be written.
 void check_files_beside(const ExportCommand& options, ExportForm form) {
   const std::string output = options.output.value(), stem = stem_of(output);
@@ -90,7 +90,7 @@ void check_files_beside(const ExportCommand& options, ExportForm form) {
   }
 }
 
-/// Writes a sparse matrix, and its states beside it.
+/// Writes a sparse matrix, and the table of its states beside it.
 void write_table(const ExportCommand& options, ExportForm form, const SparseTable& table,
                  const std::vector<std::string>& rows, const std::vector<std::string>& columns,
                  const std::string& states) {
@@ -105,7 +105,7 @@ void write_table(const ExportCommand& options, ExportForm form, const SparseTabl
     options.write(output, npz_of(table));
 }
 
-/// What was written, and in words.
+/// What was written, as numbers and in words.
 struct Exported {
   ExportResult result;
   std::string text;
@@ -150,7 +150,8 @@ Exported export_field(const ExportCommand& options, ExportForm form) {
                   kEndingLabels.size())};
 }
 
-/// Counts per run of each row; `rows` may be those of one type of gate. Empty: a run is one count.
+/// Counts per run for each row; `rows` may be the rows of one type of gate. Empty: each run is one
+/// count.
 std::vector<std::int64_t> counts_per_run_of(const ExportCommand& options,
                                             const lattice::MatrixFile& file,
                                             const dynamics::Transitions& rows) {
@@ -217,7 +218,7 @@ Exported export_trials(const ExportCommand& options) {
                   space.size(), space.size())};
 }
 
-/// How other programs read the file.
+/// A sentence on how other programs read the file.
 std::string how_to_read(ExportForm form, const std::string& output) {
   switch (form) {
     case ExportForm::umb:
@@ -284,7 +285,7 @@ int run_export(const Arguments& arguments) {
       throw UsageError("SCENE has no meaning beside --gate: a gate's matrix knows no field");
   }
   if (const lattice::SourceFile& file = options.file(options.matrix.value()); !file.is_matrix())
-    (void)file.matrix();  // says what it is instead
+    (void)file.matrix();  // throws an error that says what the file is
   const Exported exported = options.gate                       ? export_gate(options, form)
                             : form == ExportForm::trajectories ? export_trials(options)
                                                                : export_field(options, form);

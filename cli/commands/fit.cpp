@@ -58,7 +58,7 @@ struct FitCommand : Options {
 
 constexpr int kMostScenes = 1000;
 
-/// The file of a draw beside that of -o: of draw 3 beside "best.toml" it is "best-3.toml".
+/// The file of a draw beside the file of -o: draw 3 beside "best.toml" is "best-3.toml".
 std::string file_of_draw(const std::string& path, std::int64_t draw) {
   const std::size_t dot = path.rfind('.'), slash = path.rfind('/');
   const std::size_t at =
@@ -66,8 +66,8 @@ std::string file_of_draw(const std::string& path, std::int64_t draw) {
   return fmt::format("{}-{}{}", path.substr(0, at), draw, path.substr(at));
 }
 
-/// Files of so many scenes beside that of -o: "best-1.toml", ... Throws UsageError where one is
-/// read by the command, or another output of it.
+/// The files of `count` scenes beside the file of -o: "best-1.toml", ... Throws UsageError if one
+/// of them is an input or another output of the command.
 std::vector<std::string> files_of_draws(const FitCommand& options, std::int64_t count) {
   std::vector<std::string> files, taken = options.files_read();
   const std::string path = options.output.value();
@@ -89,14 +89,14 @@ std::vector<std::string> files_of_draws(const FitCommand& options, std::int64_t 
 
 bool is_of_passages(const std::string& path) { return lattice::has_columns(path, {"in", "out"}); }
 
-/// The types of cells that a table of passages names, or those of the map.
+/// The types of cells that a table of passages names; else those of the map.
 CellTypes types_in(const std::vector<std::string>& paths) {
   return is_of_passages(paths.front()) && lattice::has_columns(paths.front(), {"type"})
              ? CellTypes::all
              : CellTypes::of_the_map;
 }
 
-/// Throws UsageError for a number of a scene that changes nothing there.
+/// Throws UsageError if a number has no effect in the scene.
 void require_effect(const NumberRanges& ranges, lattice::RunsFrom from) {
   if (!ranges.scene) return;
   const std::vector<double> middle(ranges.each.size(), 0.5);
@@ -138,7 +138,7 @@ lattice::FitData of_passages(const FitCommand& options, const lattice::Source& s
   return data;
 }
 
-/// Endings that the table has no row of count as 0; empty if it has all.
+/// A remark on the endings that the table does not list, which count as 0; empty if it lists all.
 std::string not_listed(const lattice::Observed& observed, const lattice::FieldParams& field) {
   std::string names;
   if (!observed.seen.has_endings()) return names;
@@ -168,9 +168,9 @@ lattice::FitData of_trials(const FitCommand& options, const lattice::Problem& pr
   return data;
 }
 
-/// What an experiment saw, from tables of counts or of trials, as lattice::read_observed, or one of
-/// passages; and warns of what it leaves out. `at`: with types_in(paths). Throws UsageError, and
-/// std::invalid_argument.
+/// The observations in tables of counts or trials (lattice::read_observed), or in a table of
+/// passages. Warns of what is left out. `at` needs the cell types of types_in(paths). Throws
+/// UsageError and std::invalid_argument.
 lattice::FitData data_to_fit(const FitCommand& options, const lattice::Source& s,
                              const NumberRanges& ranges, const lattice::ProblemAt& at,
                              const std::vector<std::string>& paths, std::int64_t trials) {

@@ -12,7 +12,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// What is wrong in a file is the user's to mend.
+/// Calls `read` and turns an error in the user's file into a UsageError.
 template <class Read>
 auto read_file(const Read& read) {
   try {
@@ -24,7 +24,7 @@ auto read_file(const Read& read) {
   }
 }
 
-/// Commands that take the chain, if it has a start.
+/// Commands to propose next. Those that predict need a chain with a start.
 std::vector<std::string> next_of(const std::string& output, bool has_start) {
   const std::string file = shell_quoted(output);
   if (!has_start) return {"gatewalk show " + file + "  # shows states and rows"};
@@ -75,7 +75,7 @@ int run_import(const Arguments& arguments) {
   auto states = read_file([&] { return read_states(table_of_states.value(), &understood); });
   const std::string path = file_given.value();
   const ForeignMatrix matrix = read_file([&] { return read_foreign(path, states); });
-  // Of trajectories each run is counted once, and nothing else than a count has runs.
+  // Only counts have runs. In trajectories each run counts once.
   if (matrix.trajectories || matrix.probabilities)
     for (ForeignState& s : states) s.counts_per_run = 0;
   lattice::CellFile cells = lattice::parse_cell_file(

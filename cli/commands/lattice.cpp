@@ -42,7 +42,7 @@ struct LatticeCommand : Options {
   Asked asked{.path = path, .program = program};
 };
 
-/// Trials through a scene of gates.
+/// Runs trials through a scene of gates.
 FieldRun run_gates(const LatticeCommand& options) {
   RunScene scene{options.read_scene()};
   scene.settled = settle_method(options, scene.scene, lattice::RunsFrom::everywhere);
@@ -59,7 +59,7 @@ FieldRun run_gates(const LatticeCommand& options) {
   return run;
 }
 
-/// A run of no trial yet.
+/// A result before its first trial.
 FieldRun empty_run(const LatticeCommand& options, const lattice::Source& s) {
   const lattice::FieldParams& field = s.problem.field;
   return {ShownField(s),         s.problem.start,
@@ -67,7 +67,7 @@ FieldRun empty_run(const LatticeCommand& options, const lattice::Source& s) {
           std::nullopt,          lattice::FieldTally(field)};
 }
 
-/// Trials through any cells; writes the tables of --passages and --cell-file.
+/// Runs trials through cells of any kind; writes the tables of --passages and --cell-file.
 FieldRun run_cells(const LatticeCommand& options) {
   lattice::Source s = open_source(options, options.asked);
   if (s.file) throw UsageError(needs_scene(s.path));
@@ -95,7 +95,7 @@ FieldRun run_cells(const LatticeCommand& options) {
   return run;
 }
 
-/// Trials of bodies that do what a policy says.
+/// Runs trials of bodies that follow a policy.
 FieldRun run_policy(const LatticeCommand& options) {
   refuse({options.passages, options.cell_file}, "with --policy");
   lattice::Source s = open_source(options, options.asked);
@@ -110,7 +110,7 @@ FieldRun run_policy(const LatticeCommand& options) {
   return run;
 }
 
-/// The trials that --trials asks for; writes the tables of --passages and --cell-file.
+/// Runs the trials that --trials asks for; writes the tables of --passages and --cell-file.
 FieldRun field_run(const LatticeCommand& options) {
   if (options.policy) return run_policy(options);
   const bool any_cells =
@@ -118,7 +118,7 @@ FieldRun field_run(const LatticeCommand& options) {
   return any_cells ? run_cells(options) : run_gates(options);
 }
 
-/// What a user of this answer does next.
+/// Commands to propose next.
 std::vector<std::string> next_of(const LatticeCommand& options) {
   if (options.policy) return {};
   NextCommands next(options);

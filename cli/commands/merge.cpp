@@ -12,7 +12,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// Trials that parts have by their numbers: of the one run that they make.
+/// The trials of the whole run, from parts that are given by trial numbers.
 dynamics::TrialRange trials_of(const std::vector<Json>& heads) {
   std::int64_t first = kMostCount, end = 0;
   for (const Json& head : heads) {
@@ -23,7 +23,7 @@ dynamics::TrialRange trials_of(const std::vector<Json>& heads) {
   return {first, end - first};
 }
 
-/// Appends those of a list that are not there yet, each option once.
+/// Appends the options of a list that `words` lacks, each option once.
 void add_options(std::vector<std::string>& words, const Json& more) {
   for (const std::string word : more) {
     const std::string name = word.substr(0, word.find('='));
@@ -33,7 +33,7 @@ void add_options(std::vector<std::string>& words, const Json& more) {
   }
 }
 
-/// The words of the one run.
+/// The words of the whole run's command.
 std::vector<std::string> words_of(const std::vector<Json>& heads, const std::string& output) {
   const Json& head = heads.front();
   std::vector<std::string> words, outputs;

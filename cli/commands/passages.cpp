@@ -50,7 +50,7 @@ struct PassagesCommand : Options {
   TextOption figure = add_figure("all tracks over the cells, and where they were cut");
 };
 
-/// Two numbers with a comma between.
+/// Reads two numbers with a comma between them.
 std::array<double, 2> pair_of(const TextOption& option) {
   const std::string text = option.value();
   std::string_view rest = text;

@@ -62,7 +62,7 @@ struct PlanCommand : Options {
   TextOption figure = add_figure("the actions by gate, and how often bodies cross");
 };
 
-/// What --least, --points and --chance ask for; none without --least. Throws UsageError.
+/// What --least, --points and --chance ask for; nullopt without --least. Throws UsageError.
 std::optional<lattice::ThriftOptions> thrift_of(const PlanCommand& options,
                                                 const ShownField& shown) {
   if (!options.least) {
@@ -78,7 +78,7 @@ std::optional<lattice::ThriftOptions> thrift_of(const PlanCommand& options,
   if (thrift.cost == costs.size())
     throw UsageError(fmt::format("--least: '{}' is none of {}",
                                  lattice::printable(options.least.value()), known));
-  // Passages through gates may take 0 or less of anything but time and losses.
+  // A passage through a gate can cost 0 or less, except in time and losses.
   const std::string& key = costs[thrift.cost].key;
   if (shown.mass && shown.field.max_gates == 0 && key != "time_s" && key != "lost_J")
     throw UsageError(fmt::format(
@@ -92,12 +92,12 @@ std::optional<lattice::ThriftOptions> thrift_of(const PlanCommand& options,
   return thrift;
 }
 
-/// Keys of a start, by the coordinates of an entry.
+/// The keys of a start, in the order of an entry's coordinates.
 constexpr std::array<std::string_view, 3> kStartKeys{"start.x_m", "start.vx_m_per_s",
                                                      "start.vy_m_per_s"};
 
-/// Without --over: a radius from the joints, and up to the speed at the end of a gate without
-/// beams.
+/// The ranges without --over: x up to a radius from the joints, and vy up to the speed that a body
+/// reaches in a gate without beams.
 std::vector<std::string> usual_ranges(const lattice::Scene& scene) {
   const double speed = dynamics::meaning_of(scene.gate, scene.start).passage_speed;
   if (!std::isfinite(speed))
@@ -110,7 +110,7 @@ std::vector<std::string> usual_ranges(const lattice::Scene& scene) {
           "start.vy_m_per_s=0:" + lattice::toml_float(speed)};
 }
 
-/// Ranges of the start, in the coordinates of an entry. Throws UsageError for other keys.
+/// The ranges of a start, in the coordinates of an entry. Throws UsageError for other keys.
 std::vector<lattice::CoordinateRange> ranges_in(const lattice::RangedScene& ranged) {
   const std::vector<double> none(ranged.ranges().size(), 0.0), all(ranged.ranges().size(), 1.0);
   const dynamics::Entry low = dynamics::entry_of(ranged.at(none).start),
@@ -125,7 +125,8 @@ std::vector<lattice::CoordinateRange> ranges_in(const lattice::RangedScene& rang
   return ranges;
 }
 
-/// The ranges of --over in a start of a cell file. Throws UsageError and as what reads the file.
+/// The ranges of --over for a start in a cell file. Throws UsageError and what the file's reader
+/// throws.
 std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& given,
                                                 const PlanCommand& options,
                                                 const lattice::Source& s) {
@@ -140,7 +141,7 @@ std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& 
     if (c == coordinates.size())
       throw UsageError(
           fmt::format("--over: {} is none of {}", lattice::printable(range.key), known));
-    for (const double end : {range.low, range.high}) {  // refuses what is not permitted
+    for (const double end : {range.low, range.high}) {  // throws for a start that is not permitted
       std::vector<std::string> overrides;
       for (const std::string& set : options.overrides())
         if (!set.starts_with(lattice::kParameters)) overrides.push_back(set);
@@ -155,7 +156,8 @@ std::vector<lattice::CoordinateRange> ranges_in(const std::vector<std::string>& 
   return ranges;
 }
 
-/// Of a best start: its prediction, where --start can name it, and the map of starts.
+/// Commands to propose after the search for a best start: predict from there, if --start can name
+/// it, and the map of starts.
 std::vector<std::string> next_of(const Options& options, const lattice::Source& s,
                                  const FoundStart& found) {
   NextCommands next(options);
@@ -168,7 +170,7 @@ std::vector<std::string> next_of(const Options& options, const lattice::Source& 
   return next.again("figure", "starts.svg", "draws the chance to cross by start").lines();
 }
 
-/// Of a plan: bodies that follow its policy, once that is a file.
+/// Commands to propose after a plan: bodies that follow its policy, once the policy is in a file.
 std::vector<std::string> next_of(const PlanCommand& options) {
   NextCommands next(options);
   if (options.policy && !options.cell() && !options.program.command)
@@ -181,8 +183,8 @@ std::vector<std::string> next_of(const PlanCommand& options) {
   return next.again("figure", "plan.svg", "draws the actions by gate").lines();
 }
 
-/// Of a scene without actions: the start from which bodies cross most often. `s`: as field_to_run
-/// gives it. Returns the exit status. Throws UsageError.
+/// Plans the start of a scene without actions: the start from which bodies cross most often. `s`
+/// comes from field_to_run. Returns the exit status. Throws UsageError.
 int plan_start(const PlanCommand& options, lattice::Source s) {
   for (const Option& other :
        std::initializer_list<Option>{options.policy, options.gate_policy, options.least,

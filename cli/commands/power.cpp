@@ -80,7 +80,7 @@ int run_power(const Arguments& arguments) {
   auto other = versus(options, asked, other_given, s);
   if (other) require_error_bars(*other);
   choose_method(options, s);
-  // What is to be said of a scene's keys has been said.
+  // The warnings about the scene's keys have been given already.
   if (other) other->choose_method(options.seed(), options.work());
   const auto first = predict(options, s);
   const auto second = other ? std::optional(predict(options, *other)) : std::nullopt;

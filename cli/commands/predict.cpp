@@ -61,7 +61,7 @@ struct PredictCommand : Options {
   Asked asked{matrix, second, program, start, accuracy};
 };
 
-/// "4-6=other.nc": rows whose gates are those of another matrix.
+/// Reads "4-6=other.nc": the rows whose gates have another matrix.
 lattice::RowMatrix parse_rows(const PredictCommand& options, const std::string& text) {
   const auto wrong = [&] {
     return UsageError(fmt::format(
@@ -87,14 +87,14 @@ lattice::RowMatrix parse_rows(const PredictCommand& options, const std::string& 
   return {first, last, path, read_matrix(options, path, nullptr, {})};
 }
 
-/// The rows whose gates are those of other matrices, as --row says. Throws UsageError.
+/// The rows whose gates have other matrices, as --row says. Throws UsageError.
 std::vector<lattice::RowMatrix> other_rows(const PredictCommand& options) {
   std::vector<lattice::RowMatrix> rows;
   for (const std::string& text : options.row.values()) rows.push_back(parse_rows(options, text));
   return rows;
 }
 
-/// The solver that --solver names. Throws UsageError for a name that none has.
+/// The solver that --solver names. Throws UsageError for an unknown name.
 markov::PredictOptions::Solver solver_of(const PredictCommand& options) {
   using Solver = markov::PredictOptions::Solver;
   const std::string name = options.solver.value();
@@ -105,7 +105,7 @@ markov::PredictOptions::Solver solver_of(const PredictCommand& options) {
   throw UsageError(fmt::format("--solver {}: must be auto, propagate, march or klu", name));
 }
 
-/// What a user of this answer does next.
+/// Commands to propose next.
 std::vector<std::string> next_of(const PredictCommand& options, const lattice::Source& s) {
   NextCommands next(options);
   if (s.is_recorded() && !s.is_imported && s.pool->bodies() >= 2 * lattice::kLeastBodies)
@@ -120,7 +120,7 @@ std::vector<std::string> next_of(const PredictCommand& options, const lattice::S
   return next.lines();
 }
 
-/// Gives out the result, and warns of what its endings leave out.
+/// Gives out the result, and warns of bodies that the endings leave out.
 template <class Answer>
 void tell(const PredictCommand& options, const lattice::Source& s, const PredictResult& result,
           const std::vector<Answer>& answers) {
@@ -130,7 +130,7 @@ void tell(const PredictCommand& options, const lattice::Source& s, const Predict
     options.warn(rest_warning(rest_of(answers[k].final), where(s, k)));
 }
 
-/// The file of --netcdf and the figure, if they are asked for: a map for each start.
+/// Writes the file of --netcdf and draws the figure, if asked for: a map for each start.
 template <class Answer>
 void show(const PredictCommand& options, const lattice::Source& s, const PredictResult& result,
           const std::vector<Answer>& answers, lattice::EndingShares Answer::*shares,
@@ -157,8 +157,8 @@ PredictResult empty_result(const PredictCommand& options, const lattice::Source&
           .made_by = options.provenance(s)};
 }
 
-/// Predicts with the runs that there are and, unless they were recorded, with more of them until
-/// the error bar keeps the accuracy. Returns the exit status.
+/// Predicts from gate runs. Unless the runs were recorded, adds runs until the prediction reaches
+/// the accuracy. Returns the exit status.
 int predict_from_runs(const PredictCommand& options, lattice::Source& s) {
   const auto of_file = runs_of_file(options.page, s);
   lattice::PooledPrediction made = predict(options, s);
@@ -179,8 +179,8 @@ int predict_from_runs(const PredictCommand& options, lattice::Source& s) {
   return exit;
 }
 
-/// Predicts what infinitely many walks with a matrix as it is would give, in the rows of `others`
-/// with these. Returns the exit status.
+/// Predicts exactly, as infinitely many walks would, from a matrix without adding runs. Rows in
+/// `others` have other matrices. Returns the exit status.
 int predict_from_matrix(const PredictCommand& options, const lattice::Source& s,
                         const std::vector<lattice::RowMatrix>& others) {
   const std::string solver = options.solver.value();
@@ -252,7 +252,7 @@ int run_predict(const Arguments& arguments) {
   const bool no_runs = options.first_runs && options.first_runs.value(0) == 0,
              by_solver = options.solver.value() != "auto",
              as_it_is = !s.pool || by_solver || no_runs || options.row;
-  // First runs are added to those of a file, by the scene's dynamics or by a program.
+  // The scene's dynamics, or a program, add first runs to those of a file.
   if (!s.file || s.is_recorded() || (s.cells && no_runs))
     refuse({options.first_runs},
            fmt::format("for {}: it is for a matrix of a scene, or (above 0) of a cell program",

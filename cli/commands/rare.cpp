@@ -13,7 +13,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// The problem with so many rows, and no limit of gates.
+/// The problem with `row` rows and without a limit of gates.
 lattice::Problem up_to_row(const lattice::Source& s, int row) {
   return s.scene ? lattice::problem_of(lattice::up_to_row(*s.scene, row))
                  : lattice::up_to_row(s.problem, row);
@@ -57,7 +57,7 @@ int run_rare(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   lattice::SplittingOptions how{.accuracy = accuracy ? accuracy.value() : 0.05,
                                 .seed = options.seed()};
-  if (trials) (void)trials.value();  // they are run last
+  if (trials) (void)trials.value();  // checks the value now, because these trials run last
   if (split_trials) how.trials = split_trials.value(2);
   if (options.shard && !how.trials)
     throw UsageError("--shard needs --split-trials N: a part must know how many there are in all");
@@ -71,7 +71,7 @@ int run_rare(const Arguments& arguments) {
       open_source(options, {.path = path, .program = program, .accuracy = {accuracy, gate_runs}});
   if (source.file) throw UsageError(needs_scene(source.path));
   how.row = row ? static_cast<int>(row.value(1, 10001)) : source.problem.field.rows;
-  if (source.scene) (void)lattice::up_to_row(*source.scene, how.row);  // refuses before a pilot
+  if (source.scene) (void)lattice::up_to_row(*source.scene, how.row);  // throws before a pilot runs
   choose_method(options, source);
   const lattice::Problem deep = up_to_row(source, how.row);
   RareResult result{.event = lattice::rare_event(deep, how, options.work()),

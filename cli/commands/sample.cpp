@@ -13,8 +13,8 @@
 namespace gatewalk::cli {
 namespace {
 
-/// What a file is: the comment that it begins with, up to the first colon, or the last full stop of
-/// its first line.
+/// The description of a sample file: its first comment, up to the first colon or the last full stop
+/// of the line.
 std::string first_words(std::string_view text) {
   text = text.substr(0, text.find('\n'));
   text.remove_prefix(std::min(text.size(), text.find_first_not_of("# ")));

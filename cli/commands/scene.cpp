@@ -8,7 +8,8 @@
 namespace gatewalk::cli {
 namespace {
 
-/// Overrides as lines of a file: without a file they are the scene, and the rest follows from them.
+/// The overrides as lines of a scene file. Without a file these lines are the scene, from which the
+/// other keys follow.
 std::string as_text(const std::vector<std::string>& overrides) {
   std::string text;
   for (const std::string& given : overrides) {

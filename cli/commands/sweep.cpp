@@ -20,7 +20,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// Throws UsageError when an override sets a key that is varied.
+/// Throws UsageError if an override sets a key that is varied.
 void refuse_overridden(const std::vector<lattice::SweepAxis>& axes,
                        const std::vector<std::string>& overrides) {
   for (const std::string& set : overrides)
@@ -31,7 +31,7 @@ void refuse_overridden(const std::vector<lattice::SweepAxis>& axes,
               "--set {} has no effect: {} is varied; --vary {}=VALUE fixes it", set, key, key));
 }
 
-/// What is wrong with the points' scenes, each thing once.
+/// The warnings about the scenes of all points, each once.
 std::vector<std::string> remarks_on(const std::vector<lattice::SweepPoint>& points, bool talk) {
   std::set<std::string> texts;
   for (const lattice::SweepPoint& p : points) {

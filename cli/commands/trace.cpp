@@ -60,7 +60,7 @@ std::optional<double> video_speed(const TraceCommand& options, const lattice::Sc
   return speed;
 }
 
-/// Throws UsageError that names the option where `check` refuses its value.
+/// Calls `check` and throws UsageError naming the option if its value is refused.
 template <class Check>
 void check_option(const TextOption& option, Check check) try {
   if (option) check(option.value());
@@ -68,7 +68,7 @@ void check_option(const TextOption& option, Check check) try {
   throw UsageError(fmt::format("--{} {}", option.name(), e.what()));
 }
 
-/// What to record. Throws UsageError for values that no scene makes sense of.
+/// The options of the recording. Throws UsageError for values that fit no scene.
 lattice::RecordingOptions recording_options(const TraceCommand& options) {
   const lattice::RecordingOptions wanted{.seed = options.seed(),
                                          .first = options.trial.value(0),

@@ -64,18 +64,19 @@ struct ValidateCommand : Options {
   Asked asked{.path = path, .program = program, .starts = start, .accuracy = accuracy};
 };
 
-/// Of an experiment's trials: so many of the dynamics, and the chance in these is small beside its
-/// own. And at least so many.
+/// Simulated trials for each observed trial, so that the simulation's sampling error is small
+/// beside the experiment's; and the least number of simulated trials.
 constexpr std::int64_t kTrialsPerObserved = 20, kLeastBesideObserved = 10'000;
 
-constexpr std::int64_t kMostNullDraws = 100'000;  // some 20 MB
+constexpr std::int64_t kMostNullDraws = 100'000;  // about 20 MB
 
-/// Matrices to validate, by type of cell, in a result that is complete but for the validation.
+/// The matrices to validate, by type of cell, with a result in which only the validation is
+/// missing.
 struct ChainUnderTest {
   lattice::Problem problem;
   std::vector<dynamics::Entry> starts{};
   std::optional<lattice::Observed> observed{};
-  std::optional<lattice::Scene> scene{};  // of gates
+  std::optional<lattice::Scene> scene{};  // for scenes of gates
   ValidateResult result;
 };
 
@@ -91,7 +92,7 @@ ChainUnderTest of_scene(const ValidateCommand& options, lattice::Scene scene,
   return tested;
 }
 
-/// An experiment is of the scene's start, or of the one that is given.
+/// The starts. With --observed: the one start that is given, else the scene's own.
 std::vector<dynamics::Entry> starts_for(const ValidateCommand& options,
                                         const lattice::Scene& scene) {
   if (!options.observed) return starts_of(options.start, scene);
@@ -103,7 +104,7 @@ std::vector<dynamics::Entry> starts_for(const ValidateCommand& options,
   return starts;
 }
 
-/// Before any run: what so many trials cannot show, and who is left out.
+/// Warns, before any run, of what so few trials cannot show, and of trials that are left out.
 void warn_of_trials(const ValidateCommand& options, const lattice::Observed& observed) {
   const std::int64_t n = observed.seen.trials();
   for (const std::string& text : observed.remarks) options.warn(text);
@@ -131,7 +132,7 @@ void put_observed(ChainUnderTest& tested, const ValidateCommand& options,
   tested.observed = std::move(observed);
 }
 
-/// The chain of the file of --matrix.
+/// The chain in the file of --matrix.
 ChainUnderTest read_chain(const ValidateCommand& options) {
   const std::string path = options.matrix.value();
   lattice::SceneMatrix m =
@@ -151,7 +152,7 @@ ChainUnderTest read_chain(const ValidateCommand& options) {
   return tested;
 }
 
-/// A chain of trees, grown for this.
+/// Builds a chain of trees for this validation.
 void put_tree(ChainUnderTest& tested, const ValidateCommand& options) {
   const lattice::TreeOptions how{.accuracy = accuracy_of(options, options.accuracy),
                                  .starts = tested.starts};
@@ -163,7 +164,7 @@ void put_tree(ChainUnderTest& tested, const ValidateCommand& options) {
   matrix.matrices = std::move(chain.transitions);
 }
 
-/// A chain that is built from the scene, of bins or of trees.
+/// The chain of bins or trees, built from the scene.
 ChainUnderTest build_chain(const ValidateCommand& options) {
   const std::int64_t trials = options.matrix_trials ? options.matrix_trials.value() : 100;
   lattice::Scene scene = options.read_scene();
@@ -198,7 +199,7 @@ ChainUnderTest build_chain(const ValidateCommand& options) {
   return tested;
 }
 
-/// A chain of trees of cells that another program carries out.
+/// The chain of trees of a program's cells.
 ChainUnderTest program_chain(const ValidateCommand& options) {
   refuse({options.bins, options.matrix, options.matrix_trials},
          "for cells that another program carries out");
@@ -213,14 +214,14 @@ ChainUnderTest program_chain(const ValidateCommand& options) {
   return tested;
 }
 
-/// Of --matrix, of the cells of --cell-program, or built from the scene. Throws UsageError and as
-/// what reads or builds it.
+/// The chain of --matrix, of the cells of --cell-program, or built from the scene. Throws
+/// UsageError and what reading or building it throws.
 ChainUnderTest chain_under_test(const ValidateCommand& options) {
   if (has_cell(options, options.program)) return program_chain(options);
   return options.matrix ? read_chain(options) : build_chain(options);
 }
 
-/// Of a matrix of recorded runs: does one half of the bodies predict the other?
+/// Validates recorded runs: does one half of the bodies predict the other?
 int validate_recorded(const ValidateCommand& options) {
   const std::string path = options.path.value();
   refuse({options.matrix, options.matrix_trials, options.observed, options.trials, options.walks,
@@ -245,7 +246,7 @@ int validate_recorded(const ValidateCommand& options) {
       .section = s.problem.map().section,
       .recorded = counts_of(*s.pool),
       .made_by = options.provenance(s)};
-  constexpr std::int64_t kChecked = 200;  // results/tracks
+  constexpr std::int64_t kChecked = 200;  // measured in results/tracks
   if (s.pool->bodies() < kChecked)
     options.warn(fmt::format("with {} bodies p may be too small: it was checked with {} or more",
                              s.pool->bodies(), kChecked));
@@ -258,7 +259,7 @@ int validate_recorded(const ValidateCommand& options) {
   return kFine;
 }
 
-/// What a user of this answer does next.
+/// Commands to propose next.
 std::vector<std::string> next_of(const ValidateCommand& options, const lattice::Validation& v) {
   NextCommands next(options);
   if (options.observed) return next.add("power", "", "how many trials an experiment needs").lines();

@@ -39,7 +39,7 @@ int run_walk(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   const std::string path = matrix.value();
   if (!options.file(path).is_matrix())
-    (void)options.file(path).matrix();  // says what it is instead
+    (void)options.file(path).matrix();  // throws an error that says what the file is
   lattice::Source s = open_source(options, {.path = matrix, .scene = scene});
   const StartedChain from = chain_from_start(options, s);
   const std::int64_t walks = walks_given.value();
