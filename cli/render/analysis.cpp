@@ -20,7 +20,7 @@ using dynamics::Cost;
 using lattice::FieldCosts;
 using lattice::Mean95OfRuns;
 
-constexpr std::int64_t kFew = 50;  // walks or trials
+constexpr std::int64_t kFew = 50;  // fewest walks or trials for a distribution
 
 std::size_t place(markov::Ending ending) { return static_cast<std::size_t>(ending); }
 
@@ -28,7 +28,7 @@ const std::vector<dynamics::CostInfo>& costs_of(const AnalysedField& f) {
   return f.shown.map.section.costs;
 }
 
-/// Durations of walks with these endings, ascending; none where they are too few to say much.
+/// Durations of walks with this ending (all walks without one), ascending; empty for too few walks.
 std::vector<double> durations_of(const lattice::Analysis& a, std::optional<markov::Ending> ending) {
   std::vector<double> out;
   for (const markov::TimedWalk& w : a.walks)
@@ -67,8 +67,8 @@ KolmogorovDistance duration_distance(const lattice::Analysis& a, const FieldCost
   const std::vector<double> walks = durations_of(a, ending);
   const auto steps = ending ? costs.durations(*ending) : costs.durations();
   if (walks.empty() || steps.empty() || steps.back().trials < kFew) return {};
-  // Trials are known to a bin, by its middle: walks are counted to the same. Between two bins the
-  // trials' function stays, and the walks' grows.
+  // A trial's duration is known to its bin, given by the middle, so walks are compared at the bin's
+  // ends. Within a bin the trials' distribution function is constant and the walks' function grows.
   const double half = 0.5 * costs.bin();
   const auto n = static_cast<double>(steps.back().trials), m = static_cast<double>(walks.size());
   const auto walks_until = [&](double seconds) {
@@ -83,21 +83,21 @@ KolmogorovDistance duration_distance(const lattice::Analysis& a, const FieldCost
                          std::abs(trials - walks_until(s.seconds + half))});
     before = trials;
   }
-  constexpr double kSmirnov95 = 1.358;  // of the distance times sqrt(n m / (n + m))
+  constexpr double kSmirnov95 = 1.358;  // 95 % quantile of the distance times sqrt(n m / (n + m))
   return {distance, kSmirnov95 * std::sqrt(1.0 / n + 1.0 / m)};
 }
 
 namespace {
 
-// ---- As a result ----
+// ---- The result ----
 
-/// A list that may be empty, as an object or null.
+/// The list; null if it is empty.
 template <class T>
 const std::vector<T>* if_any(const std::vector<T>& list) {
   return list.empty() ? nullptr : &list;
 }
 
-/// A mean with a key of its own; `varies`: how that is shown where it differs among results.
+/// A mean with its key; `varies` is the key as shown if it differs among results.
 struct NamedMean {
   std::string key, varies, unit, meaning;
   const Mean95OfRuns* mean;
@@ -108,7 +108,7 @@ struct NamedMean {
   }
 };
 
-/// The key "why_no_interval", where a mean has a reason.
+/// The key "why_no_interval", for means without an interval.
 void describe_reasons(Fields& out, const std::vector<NamedMean>& means) {
   out.optional(std::ranges::any_of(means, &NamedMean::says_why), [&](Fields& f) {
     f.object({"why_no_interval", "by the key of the mean: why the mean has no 95 % interval"},
@@ -135,7 +135,7 @@ constexpr MeanOfDiscs kMeansOfDiscs[] = {
     {Cost::lost, "expected_lost_J", "J",
      "mean energy that a body loses to hits, dampers and drag, or leaves in the beams"}};
 
-/// Gates visited, and what bodies take, whatever becomes of them.
+/// Gates visited and costs, over all bodies.
 void describe_means(Fields& out, const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
   std::vector<NamedMean> means{{"expected_gates", "", "1",
@@ -366,7 +366,7 @@ void describe_types(Fields& out, const AnalysedField& f) {
       });
 }
 
-/// An elasticity by type of gate; null where all gates are alike.
+/// A list of elasticities by type of gate; null if all gates are alike.
 template <class Items, class Describe>
 void by_type(Fields& out, const Label& label, const AnalysedField& f, const Items& items,
              Describe describe) {

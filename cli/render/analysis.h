@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What a chain says beyond the final gates, as a result, as a table and as a picture.
+/// What a chain tells besides the final gates, as a result, a table and a figure.
 
 #include <cstdint>
 #include <optional>
@@ -30,16 +30,16 @@ struct DirectTrials {
   lattice::FieldCosts costs;
 };
 
-/// How bodies end, which an analysis goes beyond.
+/// How bodies end, on which the analysis builds.
 struct AnalysedAnswer {
   lattice::EndingShares endings{EndingChances{}};
-  Rest rest{};                 // what these leave out
-  bool from_trials = false;    // they are the trials' own shares
-  bool reached = true;         // the accuracy asked for
-  std::int64_t gate_runs = 0;  // made for the chain
+  Rest rest{};                 // what the endings leave out
+  bool from_trials = false;    // whether the endings are the trials' own shares
+  bool reached = true;         // whether the accuracy was reached
+  std::int64_t gate_runs = 0;  // simulated for the chain
   int states = 0;
   double seconds = 0.0;
-  std::optional<dynamics::Health> health{};  // none: the file keeps none
+  std::optional<dynamics::Health> health{};  // none: the file has none
   std::optional<lattice::Settled> method{};
 };
 
@@ -50,31 +50,31 @@ struct AnalysedField {
   AnalysedAnswer answer{};
   lattice::Analysis analysis;
   lattice::ParameterEffects parameters{};
-  double step = 0.0;                     // of the parameters
-  std::optional<DirectTrials> direct{};  // of --trials
-  std::optional<RangedShares> shares{};  // of --over
+  double step = 0.0;                     // relative change of the parameters
+  std::optional<DirectTrials> direct{};  // from --trials
+  std::optional<RangedShares> shares{};  // from --over
   std::optional<PassageResult> passage{};
   Provenance made_by{};
 
-  /// All gate runs, and the time of all.
+  /// Gate runs of the chain and of the parameters, and the time of both (s).
   [[nodiscard]] std::int64_t gate_runs() const { return answer.gate_runs + parameters.health.runs; }
   [[nodiscard]] double seconds() const {
     return answer.seconds + analysis.seconds + parameters.seconds;
   }
 };
 void describe(Fields& out, const AnalysedField& field);
-/// The keys that pages show.
+/// Describes the keys that pages show.
 void describe_for_page(Fields& out, const AnalysedField& field);
-/// The first screen, and what --details adds to it.
+/// The first screen; and what --details adds to it.
 [[nodiscard]] std::string answer_text(const AnalysedField& field);
 [[nodiscard]] std::string details_text(const AnalysedField& field);
 [[nodiscard]] Figure figure_of(const AnalysedField& field);
 
-/// What bodies take that end so, or all of them, by the chain.
+/// Costs of bodies with this ending (all bodies without one), by the chain.
 [[nodiscard]] Spent spent(const lattice::Analysis& analysis, std::optional<markov::Ending> ending);
-/// How far the durations of the chain's walks are from those of trials: the largest difference
-/// between their distribution functions (Kolmogorov), and what 95 % of so many trials of the same
-/// distribution have no more than. Of all, or of one ending; NaN where either has fewer than 50.
+/// The distance between the durations of the chain's walks and of trials: the largest difference
+/// between their distribution functions (Kolmogorov-Smirnov), and the 95 % limit of this distance
+/// for equal distributions. For one ending, or all; NaN if walks or trials are fewer than 50.
 struct KolmogorovDistance {
   double distance = kUnknown, chance_95 = kUnknown;
 };
@@ -84,16 +84,16 @@ struct KolmogorovDistance {
 
 /// The target in words.
 [[nodiscard]] const char* target_name(const AnalysedField& field);
-/// The distribution function of the durations of the chain's walks with one ending, at some hundred
-/// points; empty where there are none.
+/// The distribution function of durations of the chain's walks with one ending, at about a hundred
+/// points; empty if there are none.
 struct DurationCurve {
   std::vector<double> seconds, share;
 };
 [[nodiscard]] DurationCurve duration_curve(const lattice::Analysis& analysis,
                                            markov::Ending ending);
-/// The largest chance of the target from any start.
+/// The largest probability of the target from any start.
 [[nodiscard]] double most_of_starts(const lattice::Analysis& analysis);
-/// The parameters, those that matter most first.
+/// The parameters in the order of their effect, largest first.
 [[nodiscard]] std::vector<lattice::ParameterEffect> sorted_effects(const AnalysedField& field);
 
 }  // namespace gatewalk::cli

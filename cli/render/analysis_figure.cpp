@@ -14,17 +14,18 @@ constexpr double kPanelLeft = 78;
 constexpr const char* kCurveColours[] = {kFirstColour,  kSecondColour, kThirdColour,
                                          kFourthColour, kFifthColour,  "#666666"};
 
-/// A ring around what a mark is at, in whatever colours it stands.
+/// Draws a ring that is visible on any colour.
 void draw_ring(Panel& panel, const Rows& rows) {
   panel.draw_outlined(rows, "", "points", {"#ffffff", 4, 6, 1.3}, {"#000000", 1.5, 6, 1.3});
 }
 
-/// Where the start enters its gate, on the map of gates; nothing where bodies start as they were
-/// seen.
+/// Adds the place where the start enters its gate on the map of gates; nothing for a start drawn
+/// from first entries.
 void add_place_of_start(Rows& rows, const AnalysedField& f, const FieldMap& map) {
   if (!f.start) return;
   const dynamics::Face& face = f.shown.map.section.faces[static_cast<std::size_t>(f.start->face)];
-  // The first coordinate is the place on a face; in the middle where it is no length.
+  // The first coordinate is the place on a face if it is a length; else the middle of the face is
+  // marked.
   const bool is_place = f.shown.map.section.coordinates.front().unit == "m";
   const double aside = is_place ? f.start->at[0] : 0.0;
   const double x = f.shown.field.start_column() - 0.5 * face.di_x +
@@ -36,9 +37,9 @@ void add_place_of_start(Rows& rows, const AnalysedField& f, const FieldMap& map)
   rows.add(on(map.columns, x), on(map.rows, y));
 }
 
-// Each panel below begins at `top` and returns where the next one begins.
+// Each function below draws a panel that begins at `top`, and returns where the next one begins.
 
-/// How often gates are visited, the most frequent ways, and where bodies start.
+/// How often gates are visited, the most frequent paths, and the starts.
 double add_visits(Panels& out, const AnalysedField& f, double top) {
   const FieldMap map(f.analysis.totals.visits, 101, 101);
   Rows &visits = out.data("$visits"), &paths = out.data("$paths"), &begin = out.data("$begin");
@@ -46,7 +47,7 @@ double add_visits(Panels& out, const AnalysedField& f, double top) {
   const auto most = std::min<std::size_t>(f.analysis.paths.paths.size(), 5);
   const bool blocks = map.rows.block > 1 || map.columns.block > 1;
   for (std::size_t k = 0; k < most && !blocks; ++k) {
-    // A little aside each, so that they do not hide each other.
+    // Paths are shifted a little, so that they do not hide each other.
     const double aside = 0.09 * (static_cast<double>(k) - 0.5 * static_cast<double>(most - 1));
     for (const std::int64_t cell : f.analysis.paths.paths[k].cells)
       paths.add(static_cast<double>(cell % f.shown.field.columns - map.columns.first) + aside,
@@ -114,8 +115,8 @@ double add_durations(Panels& out, const AnalysedField& f, double top) {
   return box.bottom + 62;
 }
 
-/// The chance of the target from other starts, by the first and the last coordinate; one between
-/// them is the start's own.
+/// The probability of the target from other starts, by the first and the last coordinate. A
+/// coordinate between these is the start's own.
 double add_starts(Panels& out, const AnalysedField& f, double top) {
   const auto& coordinates = f.shown.map.section.coordinates;
   if (!f.start || coordinates.size() < 2) return top;
@@ -124,7 +125,7 @@ double add_starts(Panels& out, const AnalysedField& f, double top) {
   const double most = 100.0 * most_of_starts(f.analysis);
   if (!(seen[across][1] > seen[across][0] && seen[up][1] > seen[up][0] && most > 0.0)) return top;
   Rows rows("$starts");
-  // The start may lie beyond all entries that were seen.
+  // The start may lie beyond all entries that were observed.
   const auto frame = [&](std::size_t k) {
     const double margin = 0.03 * (seen[k][1] - seen[k][0]), at = f.start->at[k];
     return std::array<double, 2>{at < seen[k][0] ? at - margin : seen[k][0],
@@ -168,7 +169,7 @@ double add_starts(Panels& out, const AnalysedField& f, double top) {
   return panel.box.bottom + 62;
 }
 
-/// A panel of numbers with intervals, in rows that have these names.
+/// Adds a panel of numbers with intervals, a row for each name.
 Panel& add_rows(Panels& out, double top, double row_height, const std::vector<Tic>& names,
                 const std::string& title) {
   const auto n = static_cast<double>(names.size());
@@ -178,7 +179,7 @@ Panel& add_rows(Panels& out, double top, double row_height, const std::vector<Ti
   return panel;
 }
 
-/// What would change the target's chance most.
+/// The parameters that change the target's probability most.
 double add_parameters(Panels& out, const AnalysedField& f, double top) {
   const auto effects = sorted_effects(f);
   if (effects.empty()) return top;
@@ -187,14 +188,14 @@ double add_parameters(Panels& out, const AnalysedField& f, double top) {
   double low = 0.0, high = 0.0;
   for (const auto& effect : effects) {
     const auto& e = effect.elasticity;
-    const bool known = std::isfinite(e.interval[0]);  // else a point alone
+    const bool known = std::isfinite(e.interval[0]);  // without an interval only a point is drawn
     const double from = known ? e.interval[0] : e.mean, to = known ? e.interval[1] : e.mean;
     names.push_back({std::string(effect.key), static_cast<double>(-std::ssize(names))});
     rows.add(e.mean, names.back().at, from, to);
     low = std::min(low, from);
     high = std::max(high, to);
   }
-  if (!(high > low)) high = 1.0;  // nothing changes it
+  if (!(high > low)) high = 1.0;  // no parameter has an effect
   const double margin = 0.05 * (high - low);
   Panel& panel = add_rows(
       out, top, 22.0, names,
@@ -205,7 +206,7 @@ double add_parameters(Panels& out, const AnalysedField& f, double top) {
   return panel.box.bottom + 66;
 }
 
-/// How much of the variance of the target's chance each number of --over makes.
+/// The share of each number of --over in the variance of the target's probability.
 double add_variances(Panels& out, const AnalysedField& f, double top) {
   if (!f.shares || std::isnan(f.shares->found.indices.variance.mean)) return top;
   const lattice::SobolIndices& indices = f.shares->found.indices;

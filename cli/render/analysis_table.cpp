@@ -16,7 +16,7 @@ namespace {
 
 using lattice::Mean95OfRuns;
 
-/// "s 1.20, t 0.44"
+/// Numbers by type of gate: "s 1.20, t 0.44".
 template <class Number>
 std::string types_text(const std::vector<std::string>& names, Number number) {
   std::vector<std::string> texts;
@@ -25,7 +25,7 @@ std::string types_text(const std::vector<std::string>& names, Number number) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-/// Endings whose mean time has no interval, and why: such a mean is to be read with care.
+/// Endings whose mean time has no interval, with the reason.
 std::string few_runs_text(const lattice::Analysis& a) {
   std::vector<std::string> texts;
   for (const EndingName& e : kAllEndingNames)
@@ -38,7 +38,7 @@ std::string few_runs_text(const lattice::Analysis& a) {
                        "  ");
 }
 
-/// How many gates bodies visit, and how long they take, as far as that is known.
+/// The mean number of gates that bodies visit and their mean time, as far as these are known.
 std::string means_text(const lattice::Analysis& a) {
   std::vector<std::string> means;
   if (std::isfinite(a.gates.mean))
@@ -48,7 +48,7 @@ std::string means_text(const lattice::Analysis& a) {
   return means.empty() ? "" : fmt::format("On average a body {}.\n", fmt::join(means, " and "));
 }
 
-/// The trials of --trials beside the chain, in a sentence.
+/// A sentence that compares the chain with the trials of --trials.
 std::string direct_text(const AnalysedField& f) {
   if (!f.direct) return "";
   const auto [distance, chance_95] = duration_distance(f.analysis, f.direct->costs, {});
@@ -63,7 +63,7 @@ std::string direct_text(const AnalysedField& f) {
                   fixed(chance_95, 4)));
 }
 
-/// What the intervals of an analysis count.
+/// What the intervals of an analysis include.
 std::string intervals_text(const AnalysedField& f) {
   if (f.analysis.by_groups)
     return "The 95 % intervals include sampling error and the chain's own approximation error.";
@@ -80,7 +80,7 @@ std::string basis_text(const AnalysedField& f) {
                  intervals_text(f));
 }
 
-/// One number that changes the chance of the target, in a line of a table.
+/// A parameter's elasticity, as a cell of a table.
 std::string elasticity_text(const AnalysedField& f, const lattice::ParameterEffect& e) {
   const std::string text = with_limits(e.elasticity.mean, e.elasticity.interval, 2);
   return std::isnan(e.elasticity.interval[0]) && f.analysis.by_groups
@@ -90,7 +90,7 @@ std::string elasticity_text(const AnalysedField& f, const lattice::ParameterEffe
 
 TextTable table_of_effects() { return TextTable({{"", -36, 0, "", "  "}, {}}); }
 
-/// The numbers that change the chance of the target most, `most` of them.
+/// A table of the `most` parameters that change the target's probability most.
 std::string largest_effects(const AnalysedField& f, std::size_t most) {
   const auto effects = sorted_effects(f);
   if (effects.empty() || most == 0) return "";
@@ -102,8 +102,8 @@ std::string largest_effects(const AnalysedField& f, std::size_t most) {
       target_name(f), table.text());
 }
 
-/// How far the chance of the target changes in one step of the number that matters most; 0:
-/// unknown.
+/// The relative change of the target's probability in one step of the most influential parameter;
+/// 0: not known.
 double largest_change(const AnalysedField& f) {
   const auto effects = sorted_effects(f);
   return effects.empty() ? 0.0 : std::abs(effects.front().elasticity.mean) * f.step;
@@ -111,7 +111,7 @@ double largest_change(const AnalysedField& f) {
 
 bool is_open(const lattice::Mean95& m) { return m.interval[0] < 0.0 && m.interval[1] > 0.0; }
 
-/// What a reader of the first screen may take wrong, in a line.
+/// A warning about the first screen, in a line.
 std::string beware_text(const AnalysedField& f, std::size_t most) {
   const lattice::Analysis& a = f.analysis;
   const auto effects = sorted_effects(f);
@@ -136,7 +136,7 @@ std::string beware_text(const AnalysedField& f, std::size_t most) {
              : "";
 }
 
-/// What bodies take, by the chain and by trials.
+/// Costs of bodies, by the chain and by trials.
 std::string costs_part(const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
   CostTable costs(f.shown);
@@ -179,7 +179,7 @@ std::string endless_part(const lattice::Analysis& a) {
       percent(a.endless->second / a.endless->survival, 1.0), fmt::join(scales, ", "));
 }
 
-/// The most frequent ways to the target.
+/// The most frequent paths to the target.
 std::string paths_part(const AnalysedField& f) {
   const lattice::FieldParams& field = f.shown.field;
   const markov::FrequentPaths& paths = f.analysis.paths;
@@ -205,12 +205,12 @@ std::string paths_part(const AnalysedField& f) {
                             : "");
 }
 
-/// What would change the chance of the target, number by number.
+/// A table of all parameters that change the target's probability.
 std::string parameters_part(const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
   const auto effects = sorted_effects(f);
   if (effects.empty()) return "";
-  // The chain behind these has more runs than that behind the endings above.
+  // The chain of the parameters has more runs than the chain of the endings above.
   const std::string chance = percents(f.parameters.chance),
                     answer = percents(f.answer.endings.share[static_cast<std::size_t>(a.target)]);
   std::string text = fmt::format(
@@ -255,7 +255,7 @@ std::string types_part(const AnalysedField& f) {
   return text;
 }
 
-/// What the chain loses with its states merged, as --lump says or into one for each boundary.
+/// The chain's error after merging its states, as --lump says.
 std::string lumping_text(const lattice::Analysis& a) {
   if (!a.lumped) return "";
   return wrapped(fmt::format(
@@ -275,7 +275,7 @@ std::string answer_text(const AnalysedField& f) {
   constexpr std::int64_t kLines = 15, kNext = 2;
   const lattice::EndingShares& shares = f.answer.endings;
   const auto at = static_cast<std::size_t>(f.analysis.target);
-  const bool is_of_more = f.passage || f.shares;  // then the endings are details
+  const bool is_of_more = f.passage || f.shares;  // the endings then belong to the details
   std::string text = f.passage ? text_of(*f.passage) : "";
   text += f.shares    ? fmt::format("{:<11}  {} %\n", target_name(f),
                                     with_interval(shares.share[at], shares.interval[at]))

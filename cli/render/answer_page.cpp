@@ -35,7 +35,8 @@ std::string base64(std::span<const unsigned char> bytes) {
   return text;
 }
 
-/// Numbers as base64 of their deflated bytes: all first bytes, then all second ones, ...
+/// Numbers as base64 of deflated bytes. The bytes are transposed: first all first bytes, then all
+/// second bytes, ..., which compresses better.
 template <class Number>
 std::string packed(const std::vector<Number>& numbers) {
   std::vector<unsigned char> bytes(numbers.size() * sizeof(Number));
@@ -51,8 +52,8 @@ std::string packed(const std::vector<Number>& numbers) {
   return base64(std::span(small).first(size));
 }
 
-/// Shares by end (an ending or a gate) and place (a start's state, a cell): all places of an end
-/// together.
+/// Shares by end (an ending or a gate) and place (a start's state, a cell). All places of an end
+/// stand together.
 struct ShareTable {
   Codes share, low, high;
   void add(double value, const std::array<double, 2>& interval) {
@@ -72,7 +73,7 @@ void describe(Fields& out, const Label& l, const ShareTable& table, bool interva
   });
 }
 
-/// What is known of a place: of a state, of a start, of a cell; nothing of those without runs.
+/// The answers for a place (a state, a start or a cell); places without runs are left out.
 struct Known {
   const lattice::EndingShares* endings;
   const markov::CellProbabilities* gates;
@@ -125,7 +126,7 @@ void describe_section(Fields& out, const dynamics::Section& section) {
   });
 }
 
-/// How the state is found of a start by this face.
+/// How the page finds the state of a start through this face.
 void describe_face(Fields& out, const dynamics::StateSpace& space, int face) {
   const auto at = static_cast<std::size_t>(face);
   const std::size_t coordinates = space.section().coordinates.size();
@@ -154,7 +155,7 @@ void describe_face(Fields& out, const dynamics::StateSpace& space, int face) {
   out.points({"seen", "its own", "from where to where each coordinate was seen"}, seen);
 }
 
-/// How a start's state is found.
+/// How the page finds the state of a start.
 void describe_states(Fields& out, const AnswerPage& page) {
   std::vector<std::int32_t> of_leaf(page.states.of_leaf.begin(), page.states.of_leaf.end()), runs;
   for (const lattice::StartState& s : page.states.states)
@@ -249,7 +250,7 @@ std::uint16_t share_code(double share) {
   if (!(share > 0.0 && share < 5e-5))
     return static_cast<std::uint16_t>(
         std::lround(100.0 * lattice::number_of(fixed(100.0 * share, 2))));
-  const std::string text = scientific(100.0 * share, 1);  // "6.9e-04", 5.0e-03 at most
+  const std::string text = scientific(100.0 * share, 1);  // "6.9e-04"; at most 5.0e-03
   const int digits = (text[0] - '0') * 10 + (text[2] - '0'), power = -std::stoi(text.substr(4));
   return static_cast<std::uint16_t>(kSmall + (power - 3) * kDigits + digits - 10);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What the page of an answer holds: gatewalk predict --page.
+/// The content of the interactive page that --page writes.
 
 #include <optional>
 #include <string>
@@ -13,20 +13,20 @@
 
 namespace gatewalk::cli {
 
-/// What is told of one start by its own runs (of bins: by its state).
+/// The answer for a start by its own runs (for bins: by its state).
 struct PageAnswer {
   std::optional<dynamics::Entry> start;
   const markov::FinalDistribution& final;
   lattice::EndingShares endings;
-  std::array<markov::CellProbabilities, 2> gates_95{};  // without intervals: empty
-  std::string from;                                     // "chain", "trials", "matrix"
+  std::array<markov::CellProbabilities, 2> gates_95{};  // empty: no intervals
+  std::string from;                                     // "chain", "trials" or "matrix"
   double error_95 = 0.0;                                // NaN: not known
   std::int64_t first_runs = 0;
 };
 
 /// What the page was made from.
 struct PageChain {
-  bool has_trees;  // else bins
+  bool has_trees;  // false: bins
   int states;
   std::int64_t gate_runs;
   std::string asked;  // the scene or the file
@@ -36,23 +36,24 @@ struct PageChain {
 struct AnswerPage {
   std::string title;
   const ShownField& shown;
-  const lattice::Scene* scene;     // whose gates are drawn to scale; null: other cells
-  std::vector<PageAnswer> starts;  // one at least; the cells' bodies have the first one
+  const lattice::Scene* scene;     // its gates are drawn to scale; null: other cells
+  std::vector<PageAnswer> starts;  // at least one; bodies in the cells have the first
   const dynamics::StateSpace& space;
-  std::vector<int> faces;  // through which starts may be
+  std::vector<int> faces;  // faces through which bodies may start
   const lattice::StartStates& states;
   const std::vector<lattice::CellAhead>& cells;
-  const std::vector<std::array<int, 2>>& moves;  // of the cells' `next`
+  const std::vector<std::array<int, 2>>& moves;  // of CellAhead::next
   PageChain chain;
-  const AnalysedField& analysis;  // of which the page shows parts
+  const AnalysedField& analysis;  // the page shows parts of it
 };
 
-/// Shares are packed as the digits that are shown (share_code), beside `gates_95` with their
-/// intervals; what is left out `left_out` says.
+/// Describes the page. Shares are packed by share_code(); `gates_95` adds their intervals. The key
+/// "left_out" names what is left out.
 void describe(Fields& out, const AnswerPage& page, bool gates_95);
 
-/// A share as percents() shows it in 16 bits: hundredths of a per cent; above 10 000 two digits and
-/// a power of ten, where these would be 0; 65535: not a number.
+/// A share in 16 bits, with the digits that percents() shows. Up to 10 000: hundredths of a per
+/// cent. Above: two digits and a power of ten, for shares that hundredths would show as 0. 65535:
+/// NaN.
 [[nodiscard]] std::uint16_t share_code(double share);
 
 }  // namespace gatewalk::cli

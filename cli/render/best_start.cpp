@@ -18,13 +18,13 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr int kParts = 40;  // of each range in a map
+constexpr int kParts = 40;  // parts of each range in a map
 
 std::string column_text(const FoundStart& f, int column) {
   return fmt::format("i_x {}", column - f.shown.field.start_column());
 }
 
-/// The start of a column that the chain takes for the best, on the map.
+/// The best start in a column, by the chain.
 double best_in(const FoundStart& f, int column) {
   const std::vector<double> chance = map_of(f, column).chance;
   return *std::max_element(chance.begin(), chance.end());
@@ -41,7 +41,7 @@ void describe_column(Fields& out, const FoundStart& f, int column) {
             column - f.shown.field.start_column());
 }
 
-/// What the map of a column shows.
+/// The map of a column.
 void describe_map(Fields& out, const FoundStart& f, int column) {
   const StartMap map = map_of(f, column);
   describe_column(out, f, column);
@@ -183,7 +183,7 @@ Figure figure_of(const FoundStart& f) {
   };
   const Box box{70, 370, 36, 236};
   Panel& panel = out.add(box);
-  const bool here = found.best.column == f.shown.field.start_column();  // as the own start
+  const bool here = found.best.column == f.shown.field.start_column();  // in the scene's own column
   panel.say("% crossed by start" +
                 (f.columns.size() > 1 ? " in " + column_text(f, found.best.column) : "") +
                 ", by the chain; x: best" + (here ? ", +: own" : ""),

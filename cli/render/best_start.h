@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The best start of a body as a result, as a table and as a picture.
+/// The best start of a body as a result, a table and a figure.
 
 #include <optional>
 #include <string>
@@ -16,8 +16,8 @@
 
 namespace gatewalk::cli {
 
-/// The result of `plan` for a scene without actions: a best start, what it was looked for in, and
-/// the scene's own.
+/// The result of `plan` for a scene without actions: the best start, the ranges that were searched,
+/// and the scene's own start.
 struct FoundStart {
   ShownField shown;
   dynamics::Entry own;
@@ -29,14 +29,15 @@ struct FoundStart {
   Provenance made_by{};
 };
 void describe(Fields& out, const FoundStart& f);
-/// The first screen, and what --details adds to it.
+/// The first screen; and what --details adds to it.
 [[nodiscard]] std::string answer_text(const FoundStart& f);
 [[nodiscard]] std::string details_text(const FoundStart& f);
-/// The chance to cross by start in the best column, and in full from the best and the own one.
+/// The probability to cross by start in the best column, and in full trials from the best and from
+/// the scene's own start.
 [[nodiscard]] Figure figure_of(const FoundStart& f);
 
-/// Of a column, the chance to cross by the chain over the first two ranges: (second x first), at
-/// the middles of as many parts of each; other numbers are those of the best start.
+/// The probability to cross by the chain for starts in one column: (second range x first range), at
+/// the middles of equal parts. Other coordinates are those of the best start.
 struct StartMap {
   std::vector<double> across, up;
   std::vector<double> chance;

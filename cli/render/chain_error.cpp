@@ -72,7 +72,7 @@ void describe(Fields& out, const ChainAnswer& a) {
              a.never_sampled);
 }
 
-/// Of a curve and of its points.
+/// The bins of a curve and of its points.
 void describe_bins(Fields& out, const ChainCurve& c) {
   out.number({"bins", "1", "bins per axis, as a multiple of the usual number"}, c.factor);
   out.count({"states", "1", "states of the chain"}, c.space.size());
@@ -185,7 +185,7 @@ void describe_start_of(Fields& out, const ChainErrorChart& chart, std::size_t s)
 
 // ---- Table ----
 
-/// Until when the chain is better than direct simulation, for one start and for many.
+/// Up to which accuracy the chain is cheaper than direct simulation, for one start and for many.
 std::string when_it_pays(const ChainErrorChart& chart, const ChainSummary& summary, std::size_t s) {
   const FieldTruth& truth = chart.truths[s];
   std::string text = "For one start ";
@@ -211,7 +211,7 @@ std::string when_it_pays(const ChainErrorChart& chart, const ChainSummary& summa
       counted(std::llround(summary.starts_to_pay), "start", "starts"), seconds_text(direct)));
 }
 
-/// What direct simulation shows of the same truth in so many seconds.
+/// The error of direct simulation after this time (s), against the same truth.
 std::string direct_text(const FieldTruth& truth, double seconds) {
   const auto trials = std::max<std::int64_t>(1, std::llround(seconds / truth.seconds_per_trial));
   return fixed(lattice::expected_total_variation(truth.p, truth.as_against_exact(trials)), 3);
@@ -238,7 +238,7 @@ std::string place_text(const ChainErrorChart& chart, const ChainPoint& p, std::s
                      seconds_text(p.seconds(s)));
 }
 
-/// What the chart says for one start, in at most eight lines.
+/// The answer for one start, in at most eight lines.
 std::string answer_for(const ChainErrorChart& chart, std::size_t s) {
   const ChainSummary summary = summary_of(chart, s);
   const ChainPoint& best = chart.points[summary.best];
@@ -250,7 +250,7 @@ std::string answer_for(const ChainErrorChart& chart, std::size_t s) {
          when_it_pays(chart, summary, s) + trees_text(chart, s, kFewTrees);
 }
 
-/// What limits the best matrix, and what others reach.
+/// What limits the best matrix, and what other matrices reach.
 std::string words_of(const ChainErrorChart& chart, std::size_t s) {
   const ChainSummary summary = summary_of(chart, s);
   const ChainPoint &best = chart.points[summary.best], &cheapest = chart.points[summary.cheapest];
@@ -280,9 +280,9 @@ std::string words_of(const ChainErrorChart& chart, std::size_t s) {
   return text + trees_text(chart, s, chart.trees[s].size());
 }
 
-/// Curves [first, beyond) side by side, for one start: a line for each number of trials a row, with
-/// seconds, total variation of the chain and that of direct simulation at this cost; and the parts
-/// of the last one's error.
+/// The curves [first, beyond) side by side, for one start. Each line is a number of trials per row,
+/// with seconds, the chain's total variation and that of direct simulation at this cost. Then the
+/// parts of the last line's error.
 std::string block_of(const ChainErrorChart& chart, std::size_t s, std::size_t first,
                      std::size_t beyond) {
   std::vector<TextColumn> columns{{"trials/row", 12}};
@@ -449,7 +449,7 @@ std::string details_text(const ChainErrorChart& chart) {
 
 namespace {
 
-/// How curves look. Bins finer and coarser than the usual ones are thin.
+/// How curves look. Curves of finer and coarser bins are thin.
 struct CurveLook {
   const char* with;
   Pen pen;
@@ -460,7 +460,7 @@ constexpr CurveLook kDirect{"lines", {kInk, 1.5}},
     kVisited{"linespoints", {kFourthColour, 1.5, 13, 0.6}},
     kTree{"linespoints", {kFirstColour, 1.5, 7, 0.6}};
 
-/// Bins nearest to the usual ones.
+/// Whether a curve has the bins nearest to the usual ones.
 bool is_usual(const ChainErrorChart& chart, const lattice::ChainCurve& curve) {
   const auto off = [](const lattice::ChainCurve& c) { return std::abs(std::log(c.factor)); };
   return std::none_of(chart.curves.begin(), chart.curves.end(), [&](const auto& other) {
@@ -468,7 +468,7 @@ bool is_usual(const ChainErrorChart& chart, const lattice::ChainCurve& curve) {
   });
 }
 
-/// What the axes must show: places of errors and seconds above zero.
+/// The range of positive numbers that an axis must show.
 struct Extent {
   double low = HUGE_VAL, high = 0.0;
 
@@ -478,7 +478,7 @@ struct Extent {
   }
 };
 
-/// Total variation over seconds, for one start; the truth's noise as a level.
+/// Draws total variation over seconds, for one start; the truth's sampling error is a level.
 void draw_curves(Panels& out, Panel& panel, const ChainErrorChart& chart, std::size_t s,
                  Extent& seconds, Extent& errors) {
   const std::string of = fmt::format("_{}", s);
@@ -508,7 +508,7 @@ void draw_curves(Panels& out, Panel& panel, const ChainErrorChart& chart, std::s
   draw(trees, kTree);
 }
 
-/// Which of the curves there are.
+/// Adds a key of the curves.
 void add_keys(Panels& out, const ChainErrorChart& chart) {
   const auto named = [](const CurveLook& look, const std::string& name) {
     return entry(look.with, look.pen, verbatim(name));
@@ -548,7 +548,7 @@ Figure figure_of(const ChainErrorChart& chart) {
     panels[s]->say(name_of(chart.truths[s]), left, top - 12, kSmallFont);
     draw_curves(out, *panels[s], chart, s, seconds, errors);
   }
-  // Of nothing that has a place on such axes: some place.
+  // Without positive numbers the axis has some range.
   for (Extent* extent : {&seconds, &errors})
     if (!std::isfinite(extent->low)) *extent = {0.1, 1.0};
   const double low = seconds.low / 1.4, high = 1.4 * seconds.high;

@@ -20,13 +20,13 @@ struct ChainErrorResult {
   Provenance made_by;
 };
 void describe(Fields& out, const ChainErrorResult& result);
-/// For each start a line for each answer of each point (exact, walks), then direct simulation.
+/// CSV: for each start, a line for each point (exact and walks), then lines for direct simulation.
 [[nodiscard]] std::string csv_of(const lattice::ChainErrorChart& chart);
-/// The first screen: what the chart says for each start. And what --details adds: for each start a
-/// table of points, trials a row by bins, and what limits them.
+/// The first screen: the answer for each start; and what --details adds: for each start a table of
+/// points (trials per row by bins), and what limits them.
 [[nodiscard]] std::string answer_text(const lattice::ChainErrorChart& chart);
 [[nodiscard]] std::string details_text(const lattice::ChainErrorChart& chart);
-/// Two panels for each start, total variation and 1 - corrcoef over seconds.
+/// For each start two panels: total variation, and 1 - corrcoef, over seconds.
 [[nodiscard]] Figure figure_of(const lattice::ChainErrorChart& chart);
 
 /// "start d = 4 m, v = (5, 10) m/s"

@@ -19,7 +19,7 @@ std::string setting_text(const dynamics::RunParams& run) {
                                 : ", run.step_s = " + json_number(run.step));
 }
 
-/// What was tried: a method with the value of the key that sets its accuracy.
+/// A setting that was tried: the method, and the value of the key that sets its accuracy.
 void describe_setting(Fields& out, const dynamics::Setting& setting, dynamics::Verdict verdict) {
   out.text({"method", "method of the setting, as in run.method"}, setting.method);
   out.text(Label("key", "key of the scene that sets how exact the method is")

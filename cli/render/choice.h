@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What run.method = "auto" chose, as JSON and in words.
+/// The method that run.method = "auto" chose, as JSON and in words.
 
 #include <optional>
 #include <string>
@@ -12,25 +12,27 @@
 
 namespace gatewalk::cli {
 
-/// The key "method", of results whose scene leaves the method to the program.
+/// The key "method" of results; null if the scene names its method.
 void describe_method(Fields& out, const std::optional<lattice::Settled>& settled);
-/// The attribute of files with its keys.
+/// The choice as an attribute of files.
 [[nodiscard]] std::string attribute_of(const lattice::Settled& settled);
-/// Its inverse. Throws nlohmann::json::exception and std::invalid_argument for what is none.
+/// Reads attribute_of(). Throws nlohmann::json::exception and std::invalid_argument for a damaged
+/// text.
 [[nodiscard]] lattice::Settled settled_from(const Json& json);
-/// What is wrong with a choice, in a sentence; empty if nothing.
+/// A sentence if the choice does not meet the tolerance; else empty.
 [[nodiscard]] std::string complaint(const lattice::Settled& settled);
-/// "Time stepping: method stable, run.step_s = 0.02, chosen with ...", two lines; empty for none.
+/// "Time stepping: method stable, run.step_s = 0.02, chosen with ...", two lines; empty without a
+/// choice.
 [[nodiscard]] std::string method_line(const std::optional<lattice::Settled>& settled);
 
-/// What a body may do, and the methods that were chosen for it.
+/// The actions of a body, with the method chosen for each.
 struct ActionMethods {
   std::vector<std::string> actions;
   std::vector<std::optional<lattice::Settled>> methods;
 };
-/// The key "methods": of the actions for which one was chosen; null: of none.
+/// The key "methods", for actions with a chosen method; null if there are none.
 void describe_methods(Fields& out, const ActionMethods& all);
-/// A line for each of these.
+/// method_line() for each action with a chosen method.
 [[nodiscard]] std::string method_lines(const ActionMethods& all);
 
 }  // namespace gatewalk::cli

@@ -19,7 +19,7 @@ const std::vector<dynamics::CostInfo>& costs_of(const ShownField& shown) {
   return shown.map.section.costs;
 }
 
-/// What trials took: an ending's, or (none) those of all.
+/// Costs of trials with this ending, or of all trials without one.
 struct SpentByTrials : Spent {
   std::int64_t trials;
 

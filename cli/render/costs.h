@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What bodies take on their way through a field (time, work, ...), as keys of results and as a
+/// The costs of bodies on their way through a field (time, work, ...), as keys of results and as a
 /// table.
 
 #include <array>
@@ -15,24 +15,24 @@
 
 namespace gatewalk::cli {
 
-/// What bodies took that ended in one way, or all.
+/// Costs of bodies with one ending, or of all bodies.
 struct Spent {
   static constexpr std::array<double, 5> kLevels{0.05, 0.25, 0.5, 0.75, 0.95};
 
-  double share = 0.0;                              // of all bodies
-  dynamics::Costs mean{}, sd{};                    // by Section::costs
+  double share = 0.0;                              // share of all bodies
+  dynamics::Costs mean{}, sd{};                    // in the order of Section::costs
   std::vector<Interval> mean_95{};                 // of the means; empty: not known
   std::array<double, kLevels.size()> quantiles{};  // of the duration, s; NaN: not known
 
   [[nodiscard]] double of(dynamics::Cost c) const { return mean[static_cast<std::size_t>(c)]; }
-  /// Of a disc: work of both forces per mass and way forward, J / (kg m).
+  /// Cost of transport of a disc: work of both forces per mass and distance ahead, J / (kg m).
   [[nodiscard]] double cost_of_transport(double mass) const;
 };
-/// Its keys.
+/// Describes the keys of `spent`.
 void describe(Fields& out, const Spent& spent, const ShownField& shown);
 
-/// A line for each way to end: "crossed      25.1   18 to 33    1490      35    1400    8.1"; of
-/// other cells than a disc's, time and each further cost.
+/// "crossed      25.1   18 to 33    1490      35    1400    8.1": a table of costs with a line for
+/// each ending. For cells other than a disc's gates: time and each further cost.
 class CostTable {
  public:
   explicit CostTable(const ShownField& shown);
@@ -46,7 +46,7 @@ class CostTable {
   TextTable lines_;
 };
 
-/// The key "costs": what trials took, of all and by how they ended.
+/// The key "costs": costs of trials, of all and by ending.
 void describe_costs(Fields& out, const lattice::FieldCosts& costs, const ShownField& shown);
 [[nodiscard]] std::string table_of(const lattice::FieldCosts& costs, const ShownField& shown);
 

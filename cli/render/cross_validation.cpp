@@ -19,7 +19,7 @@ namespace {
 using lattice::CrossValidation;
 using lattice::Fold;
 
-/// Those that there are.
+/// The endings that a half or its prediction has.
 std::vector<EndingName> shown_endings_of(const CrossValidation& v) {
   std::vector<EndingName> names(kEndingNames.begin(), kEndingNames.end());
   const auto back = static_cast<std::size_t>(lattice::kWentBack.ending);
@@ -106,7 +106,7 @@ void describe(Fields& out, const Fold& fold) {
 }
 
 std::string half_name(std::size_t half) { return half == 0 ? "half 1" : "half 2"; }
-/// Of fold 0 the second half is seen.
+/// In fold 0 the second half is observed.
 std::string seen_name(std::size_t fold) { return half_name(1 - fold); }
 std::string chain_name(std::size_t fold) { return half_name(fold); }
 
@@ -257,7 +257,7 @@ std::vector<std::string> rest_warnings(const CrossValidation& v) {
 
 namespace {
 
-/// The half and the ending whose shares differ most, over what chance makes.
+/// The half and the ending for which the observed and the predicted share differ most.
 std::pair<std::size_t, EndingName> differs_most(const CrossValidation& v) {
   std::pair<std::size_t, EndingName> most{0, kEndingNames.front()};
   double largest = -1.0;

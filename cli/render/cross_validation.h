@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// One half of recorded bodies against the other, as a result, a table and a figure.
+/// Cross-validation of recorded bodies, one half against the other, as a result, a table and a
+/// figure.
 
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@
 
 namespace gatewalk::cli {
 
-/// The result of `validate` of recorded runs.
+/// The result of `validate` for recorded runs.
 struct CrossValidationResult {
   lattice::CrossValidation validation;
   lattice::Independence memory;
@@ -24,7 +25,7 @@ struct CrossValidationResult {
   Provenance made_by;
 };
 void describe(Fields& out, const CrossValidationResult& result);
-/// Of each chain whose endings leave something out (rest_warning).
+/// The rest_warning() of each half's chain whose endings leave something out.
 [[nodiscard]] std::vector<std::string> rest_warnings(const lattice::CrossValidation& v);
 /// What the screen shows first, and its details.
 [[nodiscard]] std::string answer_text(const CrossValidationResult& result);

@@ -25,7 +25,7 @@ std::int64_t never_seen(const lattice::TrackFile& file) {
                        [](const lattice::Track& t) { return t.time.empty(); });
 }
 
-/// How many passages left through each face.
+/// The number of passages that left through each face.
 std::vector<std::int64_t> left_by(const CutTracks& cut, const lattice::CellFile& cell) {
   std::vector<std::int64_t> counts(cell.map.section.faces.size(), 0);
   for (const CutPassage& p : cut.passages)
@@ -33,7 +33,7 @@ std::vector<std::int64_t> left_by(const CutTracks& cut, const lattice::CellFile&
   return counts;
 }
 
-/// How the files of tracks were understood.
+/// Lines on how the files of tracks were read.
 std::string lines_of_file(const lattice::TrackFile& file) {
   std::string text =
       wrapped(fmt::format("{} ({}): {}, {} places, a frame every {}", file.source, file.kind,
@@ -55,7 +55,7 @@ std::string lines_of_file(const lattice::TrackFile& file) {
   return text;
 }
 
-/// What happened between the places that were seen, and how the cells lie among them.
+/// Lines on how tracks were completed between recorded places, and how the cells lie.
 std::string lines_of_cut(const CutResult& result) {
   const auto& [file, cell, cut, made_by] = result;
   std::string text =
@@ -252,21 +252,21 @@ std::string details_text(const CutResult& result) {
 
 namespace {
 
-constexpr std::size_t kMostPlaces = 40'000, kMostMarks = 3'000;  // of a picture
-constexpr long kMostBorders = 100;                               // along one axis
+constexpr std::size_t kMostPlaces = 40'000, kMostMarks = 3'000;  // of a figure
+constexpr long kMostBorders = 100;                               // along an axis
 
-/// Whole cells, columns and rows, the last ones not included.
+/// A range of cells by columns and rows, without the last ones.
 struct Span {
   long left, right, bottom, top;
 
-  /// Those of them that are in the lattice.
+  /// The cells of this range that are in the lattice.
   [[nodiscard]] Span within(long columns, long rows) const {
     if (columns == 0) return *this;
     return {std::clamp(left, 0L, columns), std::clamp(right, 0L, columns),
             std::clamp(bottom, 0L, rows), std::clamp(top, 0L, rows)};
   }
 };
-/// That hold all pieces.
+/// The range of cells that holds all pieces of tracks.
 Span span_of(const CutTracks& cut, const lattice::CellFile& cell) {
   double left = HUGE_VAL, right = -HUGE_VAL, bottom = HUGE_VAL, top = -HUGE_VAL;
   for (const lattice::TrackPiece& p : cut.pieces)
@@ -284,7 +284,7 @@ Span span_of(const CutTracks& cut, const lattice::CellFile& cell) {
   return {across[0], across[1], along[0], along[1]};
 }
 
-/// Ways with a gap between two.
+/// Adds the tracks, with a gap between two of them.
 void add_ways(Rows& rows, const CutTracks& cut, const Sized& metre) {
   std::size_t all = 0;
   for (const lattice::TrackPiece& p : cut.pieces) all += p.size();
@@ -299,7 +299,7 @@ void add_ways(Rows& rows, const CutTracks& cut, const Sized& metre) {
   }
 }
 
-/// The borders of the cells: "x y dx dy".
+/// Adds the borders of the cells: "x y dx dy".
 void add_borders(Rows& rows, const Span& span, const lattice::CellFile& cell, const Sized& metre) {
   const double w = cell.width / metre.size, l = cell.length / metre.size;
   const double wide = w * static_cast<double>(span.right - span.left),
@@ -354,7 +354,7 @@ Figure figure_of(const CutTracks& cut, const lattice::CellFile& cell) {
   const auto add = [&](const char* name, const std::vector<std::array<double, 2>>& marks,
                        const Pen& pen, const std::string& word) {
     if (marks.empty()) return;
-    Rows& rows = out.data(name);  // no more than can be told apart
+    Rows& rows = out.data(name);  // no more than can be distinguished
     for (std::size_t i = 0; i < marks.size(); i += marks.size() / kMostMarks + 1)
       rows.add(marks[i][0] / metre.size, marks[i][1] / metre.size);
     panel.draw(rows, "1:2", "points", pen);

@@ -27,7 +27,7 @@ const std::string& name_of(const lattice::Scene& scene, int type) {
                    : scene.terrain->types[static_cast<std::size_t>(type) - 1].name;
 }
 
-/// A gate whose type is another than before.
+/// A gate whose type was changed.
 struct Changed {
   int x = 0, y = 0, from = 0, to = 0;
 };
@@ -82,7 +82,7 @@ std::string gain_verdict(const DesignedScene& d, std::size_t changes) {
 
 lattice::Scene with_gates(lattice::Scene scene, std::vector<int> type_of_cell) {
   scene.terrain->type_of_cell = std::move(type_of_cell);
-  scene.terrain->shares.clear();  // it is given now, not drawn
+  scene.terrain->shares.clear();  // the map is given now, not drawn at random
   return scene;
 }
 
@@ -207,7 +207,7 @@ Figure figure_of(const DesignedScene& d) {
   double range = 1e-6;
   for (Eigen::Index r = 0; r < map.rows.blocks(); ++r)
     for (Eigen::Index c = 0; c < map.columns.blocks(); ++c) {
-      double largest = 0.0;  // in a block of several gates it stands for all
+      double largest = 0.0;  // stands for a block of several gates
       bool differs = false;
       for (const std::size_t gate : gates_in(map, r, c, d.before.field)) {
         if (std::abs(best[gate]) > std::abs(largest)) largest = best[gate];

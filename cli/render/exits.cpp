@@ -32,14 +32,14 @@ Label exits_label() {
   return {"exits", "places where bodies leave the field, along each of its sides"};
 }
 
-/// What one or two answers say of it.
+/// A place along a side, with the shares of one or two answers.
 struct Place {
   double from = 0.0, to = 0.0;  // m
   std::array<double, 2> share{};
   std::array<Interval, 2> interval{};
 };
 
-/// `describe_shares` adds the shares of a place.
+/// Describes all places; `describe_shares` adds the shares of a place.
 template <class Describe>
 void describe_places(Fields& out, const Label& l, const std::vector<const FieldExits*>& exits,
                      const ShownField& shown, Describe describe_shares) {
@@ -150,7 +150,7 @@ void add_exits(Panels& out, const FieldExits& exits, const ShownField& shown, do
     double most = far ? largest_share(e) : sides;
     Rows& rows = out.data(fmt::format("$exits{}_{}", tag, side));
     for (std::size_t i = 0; i < e.share.size(); ++i) {
-      // Nothing where nobody is expected: in large fields its bars would be all that is seen.
+      // Places without bodies are left out: in large fields their bars would hide the others.
       if (e.share[i] <= lattice::kShareRounding) continue;
       const bool known = std::isfinite(e.interval[i][0]);
       const double high = known ? e.interval[i][1] : e.share[i];

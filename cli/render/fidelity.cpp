@@ -223,7 +223,7 @@ constexpr std::array<Pen, 4> kLooks{Pen{.colour = kFirstColour, .mark = 7, .size
                                     Pen{.colour = kThirdColour, .mark = 9, .size = 0.8},
                                     Pen{.colour = kFourthColour, .mark = 13, .size = 0.8}};
 
-/// What a key calls a variant.
+/// The name of a variant in a figure's key.
 std::string plain_name(const FidelityStudy& study, std::size_t v) {
   const lattice::Scene& scene = study.variants[v].scene;
   return std::string(name_of(scene.field.fidelity)) +

@@ -131,7 +131,7 @@ FieldEnds<std::int64_t> ends_of(const lattice::FieldTally& tally,
 
 FieldEnds<std::int64_t> ends_of(const markov::WalkTally& tally, const lattice::FieldParams& field) {
   lattice::EndingShares shares(tally.endings, tally.walks);
-  // Those who still walk may end in any way: the upper limits count them.
+  // Walks under way may still end in any way; the upper limits count them.
   for (std::size_t e = 0; e < markov::kEndings; ++e)
     shares.interval[e][1] = share_interval(tally.endings[e] + tally.still_walking, tally.walks)[1];
   return {tally, static_cast<double>(tally.walks), shares.with_limit(field.max_gates),

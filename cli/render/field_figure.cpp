@@ -27,7 +27,7 @@ SmallMap::SmallMap(const CellProbabilities& shown) : map(shown, 101, 101) {  // 
 }
 
 Panel& add_map(Panels& out, const FieldMap& map, const Box& box, double apart) {
-  // Over blocks of gates, named by the gates in their middle, counted from `zero`.
+  // An axis over blocks of gates. Blocks are named by their middle gate, counted from `zero`.
   const auto axis = [](const char* name, const FieldMap::Span& span, Eigen::Index zero,
                        double length, double between) {
     const auto most = std::max<Eigen::Index>(3, static_cast<Eigen::Index>(length / between));
@@ -41,7 +41,7 @@ Panel& add_map(Panels& out, const FieldMap& map, const Box& box, double apart) {
   Panel& panel = out.add(box);
   panel.x = axis("column i_x", map.columns, map.middle_column, box.width(), apart);
   panel.y = axis("row i_y", map.rows, 0, box.height(), 22);
-  // The fewer digits its tics have the further from them.
+  // The fewer digits the tics have, the further they are from the axis title.
   if (map.rows.first + map.rows.count <= 10) panel.y.name_look = "offset 0.2,0";
   return panel;
 }
@@ -79,9 +79,9 @@ bool numbers_fit(const FieldMap& map, const Box& box) {
 
 namespace {
 
-constexpr Eigen::Index kMostDrawn = 101;  // gates or blocks of gates, each way
+constexpr Eigen::Index kMostDrawn = 101;  // gates or blocks, each way
 
-/// Places within one picture, px.
+/// The layout of a picture, px.
 struct Plan {
   static constexpr double kLeft = 58, kMap = 270, kSmall = 108, kSmallLeft = 384;
   double top, map_width, map_height, legend_height;
@@ -92,7 +92,7 @@ struct Plan {
       : top(from_top + 42), legend_height(legend), with_exits(exits), endings(bars) {
     const auto columns = static_cast<double>(map.columns.blocks()),
                rows = static_cast<double>(map.rows.blocks());
-    // Gates are drawn square where neither side would become too long or too short.
+    // Gates are squares, unless a side would become too long or too short.
     const double cell = std::min(kMap / columns, 300.0 / rows);
     map_width = std::max(0.3 * kMap, cell * columns);
     map_height = std::max(120.0, cell * rows);
@@ -114,7 +114,7 @@ struct Plan {
   [[nodiscard]] double end() const { return exits() + (with_exits ? height_of_exits() : 0.0); }
 };
 
-/// The large map with its numbers.
+/// The large map with numbers in its cells.
 void add_large_map(Panels& out, const FieldPicture& p, const FieldMap& map, const Plan& plan,
                    const Rows& rows, const RootScale& scale, const TypeMarks& types) {
   Panel& panel = add_map(out, map, plan.map());
@@ -132,7 +132,7 @@ void add_large_map(Panels& out, const FieldPicture& p, const FieldMap& map, cons
   types.add_legend(panel, plan.legend(), types.draw_on(out, panel, map, rows.name().substr(1)));
 }
 
-/// Maps without numbers: of whom, with the same colours.
+/// A small map without numbers, with the same colours.
 void add_small_map(Panels& out, const std::string& title, const FieldMap& map, const Box& box,
                    const Rows& rows, const RootScale& scale) {
   Panel& panel = add_map(out, map, box);
@@ -143,8 +143,8 @@ void add_small_map(Panels& out, const std::string& title, const FieldMap& map, c
   panel.draw_cells(rows);
 }
 
-/// The endings with their intervals, and what they leave out; who went back where cells let bodies
-/// go there.
+/// Bars of the endings with their intervals, and of what the endings leave out; `went back` only in
+/// fields where bodies can go back.
 std::vector<ShareBar> bars_of(const lattice::EndingShares& all, const ShownField& shown) {
   const lattice::EndingShares endings =
       std::isnan(all.interval.front().front()) ? all : all.with_limit(shown.field.max_gates);

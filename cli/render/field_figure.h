@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Pictures of where bodies end in a field.
+/// Figures of where bodies end in a field.
 
 #include <array>
 #include <optional>
@@ -19,7 +19,7 @@
 
 namespace gatewalk::cli {
 
-/// Where bodies end that began in one way: shares of all.
+/// Where bodies from one start end, as shares of all bodies.
 struct FieldPicture {
   std::string title;
   markov::CellProbabilities final_gates, trapped, departed;  // (rows x columns)
@@ -42,13 +42,13 @@ struct FieldPicture {
         gates_95(std::move(intervals)) {}
 };
 
-/// The map of the final gates, those of the trapped and of the departed, the endings, and where
-/// along its sides they left; of several starts one below the other. Of a field with several types
-/// of gates, which is which. Throws std::invalid_argument for more than kMostPictures.
+/// The maps of final gates, trapped and departed bodies, the endings, and where along the sides
+/// bodies left; several starts one below the other. In a field with several types of gates, marks
+/// show the types. Throws std::invalid_argument for more than kMostPictures.
 inline constexpr std::size_t kMostPictures = 8;
 [[nodiscard]] Figure figure_of(const std::vector<FieldPicture>& pictures, const ShownField& shown);
 
-/// A map of a field at the top left of a sheet, and where it is drawn.
+/// A map of a field at the top left of a sheet, and its place.
 struct SmallMap {
   FieldMap map;
   Box box{};
@@ -56,19 +56,20 @@ struct SmallMap {
   explicit SmallMap(const markov::CellProbabilities& shown);
 };
 
-/// A panel with a map's blocks of gates on its axes; the x axis' tics are so many points apart.
+/// Adds a panel with a map's blocks of gates on its axes; the x axis has a tic every `apart`
+/// points.
 [[nodiscard]] Panel& add_map(Panels& out, const FieldMap& map, const Box& box, double apart = 30);
-/// "column row root_of_share" in %, of blocks; and the share as a short text, where it is asked
+/// Adds "column row root_of_share" in % for each block, with the share as a short text if asked
 /// for.
 void add_shares(Rows& rows, const FieldMap& map, const markov::CellProbabilities& shares,
                 bool as_text = false);
-/// "column row value", of blocks.
+/// Adds "column row value" for each block.
 void add_values(Rows& rows, const markov::CellProbabilities& values);
-/// Those numbers of a field's gates, row by row, that a block of a map holds.
+/// The numbers of a field's gates, row by row, that a block of a map holds.
 [[nodiscard]] std::vector<std::size_t> gates_in(const FieldMap& map, Eigen::Index row,
                                                 Eigen::Index column,
                                                 const lattice::FieldParams& field);
-/// Whether there is room for numbers in the cells of a map in that box.
+/// Whether numbers fit into the cells of a map in that box.
 [[nodiscard]] bool numbers_fit(const FieldMap& map, const Box& box);
 
 }  // namespace gatewalk::cli

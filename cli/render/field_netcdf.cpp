@@ -12,7 +12,7 @@ namespace {
 
 using markov::CellProbabilities;
 
-/// A map of each start.
+/// Writes a map for each start.
 template <class MapOf>
 void put_maps(int nc, const std::array<int, 3>& dimensions, const char* name, const char* meaning,
               const std::vector<FieldPicture>& fields, const MapOf& map_of) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Where bodies end, as a NetCDF-4 file: for fields too large for JSON.
+/// Where bodies end, as a NetCDF-4 file, for fields too large for JSON.
 
 #include <string>
 #include <vector>
@@ -15,8 +15,8 @@ inline constexpr const char* kNetcdfHelp =
     "as NetCDF-4, for fields of any size (JSON has maps of up to 100000 gates)";
 
 /// The bytes of a file with final_gates, trapped_gates and departed_gates (start x i_y x i_x),
-/// final_gates_low and _high where all have them, the endings, the starts (NaN: as bodies were seen
-/// to enter first), and `made_by` as attributes.
+/// final_gates_low and _high if all starts have them, the endings, the starts (NaN: drawn from
+/// first entries), and `made_by` as attributes.
 [[nodiscard]] std::string netcdf_of(const std::vector<FieldPicture>& fields,
                                     const dynamics::Section& section, const Provenance& made_by);
 

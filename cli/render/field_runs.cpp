@@ -15,7 +15,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// A limit of gates ends every walk.
+/// The 95 % interval of walks under way; 0 with a limit of gates, which ends every walk.
 Interval still_walking_95(const markov::WalkTally& tally, const lattice::FieldParams& field) {
   if (field.max_gates > 0) return {0.0, 0.0};
   return dynamics::share_interval(tally.still_walking, tally.walks);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Trials of the full dynamics and walks of the chain through a field, as results and as tables.
+/// Trials of the full dynamics and walks of the chain through a field, as results and tables.
 
 #include <optional>
 #include <string>
@@ -18,18 +18,18 @@
 
 namespace gatewalk::cli {
 
-/// A scene that was run, and the method chosen for it, if it left that open.
+/// A scene that was run, and the method if it was chosen for the scene.
 struct RunScene {
   lattice::Scene scene;
   std::optional<lattice::Settled> settled{};
 };
-/// The result of `lattice`: trials through the field, and what they are of.
+/// The result of `lattice`: trials through the field.
 struct FieldRun {
   ShownField shown;
   dynamics::Entry start{};
   Provenance made_by{};
   lattice::FieldCosts costs;
-  std::optional<RunScene> scene{};  // of gates
+  std::optional<RunScene> scene{};  // for gates
   lattice::FieldTally tally;
   ActionMethods may_do{};  // under a policy
 };
@@ -38,13 +38,13 @@ void describe(Fields& out, const FieldRun& run);
 [[nodiscard]] std::string answer_text(const FieldRun& run);
 [[nodiscard]] std::string details_text(const FieldRun& run);
 
-/// The result of `walk`: how walks of a chain through the field went.
+/// The result of `walk`: walks of a chain through the field.
 struct WalkResult {
   ShownField shown;
   markov::WalkTally tally{};
-  std::optional<ShownState> state{};       // in which walks start; of recorded runs none, but ...
-  std::optional<dynamics::Entry> start{};  // ... an entry, or (none) all first ones that were seen
-  bool foreign = false;  // the chain was made elsewhere: it has no trials beside it
+  std::optional<ShownState> state{};       // state in which walks start; none for recorded runs
+  std::optional<dynamics::Entry> start{};  // for recorded runs: an entry; none: all first entries
+  bool foreign = false;                    // an imported chain, without trials to compare with
   std::optional<dynamics::Health> matrix_status{};
   Provenance made_by{};
 };

@@ -41,7 +41,7 @@ std::string ink(double most) {
 }
 
 std::string literal(std::string_view text) {
-  std::string out = "'";  // single quotes: taken as it stands
+  std::string out = "'";  // gnuplot takes text in single quotes as it stands
   for (const char c : text) {
     if (c == '\'') out += c;  // doubled
     out += c == '\n' ? ' ' : c;

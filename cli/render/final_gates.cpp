@@ -102,8 +102,8 @@ void describe(Fields& out, const lattice::JointTest& j) {
 
 namespace {
 
-/// All of them if they can be printed; else those between ends that hold next to nothing, in blocks
-/// if they are still too many.
+/// The gates to show: all if they can be printed; else without the ends that hold next to nothing,
+/// and in blocks if there are still too many.
 FieldMap::Span span_of(const Eigen::ArrayXd& shares, Eigen::Index most) {
   constexpr double kNextToNothing = 5e-5;  // prints as 0.00 %
   FieldMap::Span span{0, shares.size(), 1};
@@ -133,7 +133,7 @@ FieldMap::FieldMap(const markov::CellProbabilities& shares, Eigen::Index most_ro
       columns(span_of(shares.colwise().sum().transpose(), most_columns)),
       middle_column(shares.cols() / 2) {
   if (rows.block == 1 && columns.block == 1) return;
-  // The start's column in the middle of a block, so that left and right can be compared.
+  // The start's column is in the middle of a block, so that left and right can be compared.
   columns.block |= 1;
   const Eigen::Index end = columns.first + columns.count;
   const Eigen::Index to_left =
@@ -179,7 +179,7 @@ std::string map_of(const markov::CellProbabilities& shares, const std::string& w
         "(blocks of {} x {} gates; i_x is that of the middle gate, i_y that of the lowest)\n",
         map.columns.block, map.rows.block);
   const markov::CellProbabilities blocks = map.blocks_of(shares);
-  int width = 7;  // shares take six places at most, and a blank; visits may take more
+  int width = 7;  // shares take at most six places and a blank; visits may take more
   for (const double share : blocks.reshaped())
     width = std::max(width, static_cast<int>(fixed(100.0 * share, 2).size()) + 1);
   for (Eigen::Index r = blocks.rows() - 1; r >= 0; --r) {
@@ -200,7 +200,7 @@ namespace {
 
 constexpr auto kBack = static_cast<std::size_t>(lattice::kWentBack.ending);
 
-/// `back`: some went back, which is an ending of its own then. `put` takes key and meaning.
+/// Calls `put` with key and meaning of each ending; `back` adds the ending "went back".
 template <class Put>
 void by_ending(Fields& f, bool back, std::string_view what, Put put) {
   const auto add = [&](const EndingName& e) {
@@ -297,7 +297,7 @@ void describe_endings(Fields& out, const lattice::EndingShares& shares) {
 lattice::EndingShares shown_endings(lattice::EndingShares shares,
                                     const markov::FinalDistribution& f) {
   for (std::size_t e = 0; e < markov::kEndings; ++e) {
-    constexpr double kHardlyAny = 1e-6;  // more than this is no rounding, whatever is left walking
+    constexpr double kHardlyAny = 1e-6;  // a larger share is no rounding error
     if (shares.share[e] > std::min(f.rounding + f.remainder, kHardlyAny)) continue;
     shares.share[e] = 0.0;
     if (!std::isnan(shares.interval[e][0])) shares.interval[e][0] = 0.0;

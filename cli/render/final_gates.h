@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Where and how trials, walks and predictions through a field end, as keys of results and as
-/// tables.
+/// Where and how trials, walks and predictions end in a field, as keys of results and as tables.
 
 #include <array>
 #include <cstdint>
@@ -22,12 +21,13 @@ namespace gatewalk::cli {
 
 /// The keys of a comparison of two maps of final gates.
 void describe(Fields& out, const lattice::Comparison& c);
-/// The keys of what a change makes of the final gates of the same trials.
+/// The keys of a change's effect on the final gates of the same trials.
 void describe_change(Fields& out, const lattice::PairedChange& change);
-/// The keys of one test of all statistics.
+/// The keys of a joint test of all statistics.
 void describe(Fields& out, const lattice::JointTest& j);
 
-/// A map of a command with --netcdf: null in fields of more gates than kMostGatesInJson.
+/// A map in the result of a command with --netcdf; null for fields with more than kMostGatesInJson
+/// gates.
 inline constexpr Eigen::Index kMostGatesInJson = 100'000;
 template <class Cells>
 void describe_map(Fields& out, const Field& f, const Cells& cells) {
@@ -36,23 +36,22 @@ void describe_map(Fields& out, const Field& f, const Cells& cells) {
   else
     out.grid(f, cells);
 }
-/// With its 95 % intervals.
+/// A map with its 95 % intervals.
 void describe_map(Fields& out, const Field& f, const markov::CellProbabilities& cells,
                   const GateLimits& limits);
-/// The key "total_variation_by_chance": what is between two maps of final gates.
+/// The key "total_variation_by_chance", between two maps of final gates.
 void describe_by_chance(Fields& out, double mean, double q95);
-/// The key "left_out" where a field has so many gates that its maps are null.
+/// The key "left_out", in fields with so many gates that maps are null.
 void describe_left_out(Fields& out, int columns, int rows);
 
-/// What of a field is shown: all of it, or, of fields too large, the part that holds all but next
-/// to nothing, in blocks if need be.
+/// The part of a field that a map shows: the whole field, or in large fields the part that holds
+/// all but next to nothing, in blocks if necessary.
 struct FieldMap {
-  /// Gates from `first` on, `count` of them, in blocks of `block`; `first` may lie before the
-  /// field.
+  /// `count` gates from `first` on, in blocks of `block`; `first` may lie before the field.
   struct Span {
     Eigen::Index first, count, block;
     [[nodiscard]] Eigen::Index blocks() const { return (count + block - 1) / block; }
-    /// The gate in the middle of block i, and the block that holds a gate.
+    /// The gate in the middle of block i; and the block that holds a gate.
     [[nodiscard]] Eigen::Index middle(Eigen::Index i) const {
       return first + i * block + block / 2;
     }
@@ -63,41 +62,41 @@ struct FieldMap {
 
   FieldMap(const markov::CellProbabilities& shares, Eigen::Index most_rows,
            Eigen::Index most_columns);
-  /// Shares of the same field by block.
+  /// Shares of the same field, summed by block.
   [[nodiscard]] markov::CellProbabilities blocks_of(const markov::CellProbabilities& shares) const;
 };
-/// How much lies in the gates that the map leaves out, if any: "elsewhere in the 301 x 301 gates:
-/// 0.01 %".
+/// The share in gates that the map leaves out, as text: "elsewhere in the 301 x 301 gates: 0.01 %".
+/// Empty if there is none.
 [[nodiscard]] std::string elsewhere_text(const FieldMap& map,
                                          const markov::CellProbabilities& shares);
-/// A share in %, short enough for a gate of a figure: "17", "1.2", "<.1", nothing for none.
+/// A share in %, short enough for a gate of a figure: "17", "1.2", "<.1"; empty for 0.
 [[nodiscard]] std::string short_percent(double share);
 
-/// The field seen from above, farthest row on top, in percent: "WHAT, UNIT" is its title. Of fields
-/// too large to print: where all but next to nothing lies, in blocks if need be.
+/// The field seen from above in percent, farthest row on top, under the title "WHAT, UNIT". Of a
+/// field too large to print, the part that holds all but next to nothing, in blocks if necessary.
 [[nodiscard]] std::string map_of(const markov::CellProbabilities& shares, const std::string& what,
                                  const std::string& unit);
-/// The map of trapped bodies; empty for fields too large to print and where no body is trapped.
+/// The map of trapped bodies; empty for fields too large to print and if no body is trapped.
 [[nodiscard]] std::string map_of_trapped(const markov::CellProbabilities& shares,
                                          const std::string& unit);
 
 using lattice::EndingName;
 using lattice::kAllEndingNames;
 using lattice::kEndingNames;
-/// What bodies do that end so: "are trapped in a gate".
+/// What bodies with this ending do: "are trapped in a gate".
 [[nodiscard]] std::string_view meaning_of(const EndingName& ending);
 using EndingCounts = std::array<std::int64_t, markov::kEndings>;
 using EndingChances = std::array<double, markov::kEndings>;
 [[nodiscard]] const EndingName& ending_name(markov::Ending ending);
-/// All of their keys.
+/// The keys of all endings.
 [[nodiscard]] std::vector<std::string> ending_keys();
 /// The key "answer_from".
 void describe_answer_from(Fields& out, bool from_trials);
 /// An object with a key for each ending: counts, or shares of all bodies.
 void describe_endings(Fields& out, const Label& l, const EndingCounts& counts);
 void describe_endings(Fields& out, const Label& l, const EndingChances& shares);
-/// Behind it another one with their 95 % intervals. `counts`: of so many `bodies`; the limits are
-/// those of `shares` times these.
+/// Counts of endings among `bodies`, followed by an object with their 95 % intervals: the limits of
+/// `shares` times `bodies`.
 void describe_endings(Fields& out, const Label& l, const EndingCounts& counts, double bodies,
                       const lattice::EndingShares& shares);
 void describe_endings(Fields& out, const Label& l, const lattice::EndingShares& shares);
@@ -105,29 +104,29 @@ void describe_endings(Fields& out, const Label& l, const lattice::EndingShares& 
 void describe_endings(Fields& out, const EndingCounts& counts, double bodies,
                       const lattice::EndingShares& shares);
 void describe_endings(Fields& out, const lattice::EndingShares& shares);
-/// A prediction's endings as they are shown: 0 where the share is no more than rounding and walks
-/// not finished may make.
+/// The endings of a prediction as shown: a share is 0 if rounding and unfinished walks may explain
+/// it.
 [[nodiscard]] lattice::EndingShares shown_endings(lattice::EndingShares shares,
                                                   const markov::FinalDistribution& f);
-/// Shares of all bodies whose ending is not known, which the endings leave out.
+/// Shares of bodies whose ending is unknown, so that the endings leave them out.
 struct Rest {
-  double never_sampled = 0.0;  // reach a state whose row was never sampled
-  double still_walking = 0.0;  // under way when the sum or the walks were stopped
+  double never_sampled = 0.0;  // reach a state whose row has no runs
+  double still_walking = 0.0;  // under way when the sum or the walks stopped
   std::string stopped = "when the sum was stopped";
 };
 [[nodiscard]] Rest rest_of(const markov::FinalDistribution& f);
 /// The keys "never_sampled" and "still_walking".
 void describe(Fields& out, const Rest& rest);
-/// A line for each of them; empty where nothing is left out.
+/// A line for each of these shares; empty if nothing is left out.
 [[nodiscard]] std::string rest_text(const Rest& rest);
-/// A warning of a rest that counts, `where` first: "the endings add up to 25.00 %: ..."; else
-/// empty.
+/// A warning if a notable share is left out: "the endings add up to 25.00 %: ..."; else empty.
+/// `where` is put in front.
 [[nodiscard]] std::string rest_warning(const Rest& rest, const std::string& where = "");
 
-/// A share in % with two decimals, or two digits if that would be 0.
+/// A share in % with two decimals, or with two digits if these would be 0.
 [[nodiscard]] std::string percents(double share);
-/// A line for each ending that is possible: "crossed      0.02 %  [0.00, 0.05]"; `of` stands at the
-/// end of the first line.
+/// A line for each possible ending: "crossed      0.02 %  [0.00, 0.05]"; `of` stands at the end of
+/// the first line.
 [[nodiscard]] std::string endings_text(const lattice::EndingShares& shares,
                                        const std::string& of = "");
 /// "17.61 [16.87, 18.37]", in %; "17.61" without an interval.

@@ -11,8 +11,8 @@
 namespace gatewalk::cli {
 namespace {
 
-/// Numbers of all states of all gates, states in the result's order. A start's own row, behind
-/// these, is not of any gate.
+/// Numbers for all states of all gates, in the order of the result's states. A start's own row
+/// follows them and belongs to no gate.
 GateNumbers of_states(const std::vector<double>& values, const PassageResult& result) {
   const markov::FirstPassages& all = result.found.all;
   GateNumbers table{static_cast<std::size_t>(all.rows), static_cast<std::size_t>(all.columns), {}};

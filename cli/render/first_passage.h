@@ -10,7 +10,7 @@
 
 namespace gatewalk::cli {
 
-/// What --first-passage asks for, and as it is written there.
+/// What --first-passage asks for, and its text.
 struct PassageAsked {
   std::string text;
   markov::PassageTarget target;
@@ -20,8 +20,8 @@ struct PassageResult {
   PassageAsked asked{};
   lattice::FirstPassage found{};
   std::vector<std::string> names{};  // of the chain's states
-  std::vector<int> order{};          // in which tables have these
-  /// Tables of more numbers than 2 million are left out.
+  std::vector<int> order{};          // the order of states in tables
+  /// Whether the tables are given; they are left out above 2 million numbers.
   [[nodiscard]] bool has_tables() const;
 };
 void describe(Fields& out, const PassageResult& result);

@@ -22,8 +22,8 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr double kTogether = 0.9;  // a correlation, from which on two numbers are not told apart
-constexpr double kUnexplained = 0.01;  // p, below which no number of the ranges explains the counts
+constexpr double kTogether = 0.9;  // correlation above which two numbers cannot be distinguished
+constexpr double kUnexplained = 0.01;  // smaller p: no numbers explain the counts
 constexpr std::size_t kMostShown = 3;  // groups of outcomes that differ most
 
 /// When bodies of an outcome left: " within 2 s", " from 2 s to 3 s", " after 3 s".
@@ -43,7 +43,7 @@ std::string time_of(const lattice::FittedOutcomes& of, std::size_t outcome) {
   return fmt::format(" from {} to {}", time(of.times[part - 1]), time(of.times[part]));
 }
 
-/// An outcome in words: "trapped in (0, 3)", "crossed", "(0, 3)"; of passages "to RT", "trapped".
+/// An outcome in words: "trapped in (0, 3)", "crossed", "(0, 3)"; for passages "to RT", "trapped".
 std::string words_of(const FittedScene& f, std::size_t outcome) {
   const lattice::FittedOutcomes& of = f.fit.outcomes;
   const std::string time = time_of(of, outcome);
@@ -76,12 +76,12 @@ std::string words_of(const FittedScene& f, const lattice::OutcomeGroup& group) {
   return fmt::format("{}: {} ... {}{}", begin, first, begin == other ? "" : other + ": ", last);
 }
 
-/// How far a count lies from what is expected, by chance alone.
+/// The distance of a count from its expected value, in units of chance.
 double surprise(const lattice::OutcomeGroup& g) {
   return (static_cast<double>(g.observed) - g.expected) / std::sqrt(std::max(g.expected, 1e-12));
 }
 
-/// Digits that tell a range's thousandth.
+/// The number, with digits down to a thousandth of its range.
 std::string in_range(const FittedScene& f, std::size_t k, double at) {
   const lattice::NumberRange& r = f.ranges[k];
   const double step = 1e-3 * (r.high - r.low);
@@ -197,7 +197,7 @@ void describe(Fields& out, const FittedScene& f) {
 
 namespace {
 
-/// Numbers that the data leave anywhere in their ranges, in a sentence.
+/// A sentence on the numbers that the data do not restrict within their ranges.
 std::string untold_text(const FittedScene& f) {
   std::vector<std::string> keys;
   for (std::size_t k = 0; k < f.ranges.size(); ++k)
@@ -207,7 +207,7 @@ std::string untold_text(const FittedScene& f) {
                              fmt::join(keys, " or ")));
 }
 
-/// Pairs of numbers of which only a combination is known, at most so many.
+/// Sentences on pairs of numbers of which only a combination is known, at most `most` pairs.
 std::string together_text(const FittedScene& f, std::size_t most) {
   std::string text;
   for (std::size_t k = 0; k < f.ranges.size(); ++k)
@@ -223,7 +223,7 @@ std::string together_text(const FittedScene& f, std::size_t most) {
   return text;
 }
 
-/// Whether the numbers explain the counts, and where not.
+/// Whether the numbers explain the counts, and where they do not.
 std::string explained_text(const FittedScene& f) {
   const lattice::Fit& fit = f.fit;
   if (fit.p >= kUnexplained)
@@ -379,7 +379,7 @@ std::string inference_data(const FittedScene& f) {
     }
     return g;
   };
-  // As many dimensions as there are; in the order of `values`, the last one fastest.
+  // Puts `values` with these dimensions; the last one varies fastest.
   const auto put = [&](int id, const std::string& name, const std::vector<int>& dimensions,
                        const std::vector<double>& values, const std::string& meaning) {
     int variable = -1;
@@ -421,7 +421,8 @@ namespace {
 
 constexpr std::size_t kBins = 24;  // of a panel
 
-/// Where the draws of a number lie, in its unit: all but a thousandth at each end, with a margin.
+/// The range of a number's draws, in its unit, with a margin, without the outermost thousandth at
+/// each end.
 std::array<double, 2> shown_range(const FittedScene& f, std::size_t k) {
   std::vector<double> sorted(f.fit.draws.col(static_cast<Eigen::Index>(k)).begin(),
                              f.fit.draws.col(static_cast<Eigen::Index>(k)).end());
@@ -442,7 +443,7 @@ double middle(std::size_t bin, const std::array<double, 2>& range) {
          (static_cast<double>(bin) + 0.5) / static_cast<double>(kBins) * (range[1] - range[0]);
 }
 
-/// Numbers that stand clear of each other, and of those of the next panel: none at its very ends.
+/// Tics whose numbers do not touch each other or those of the next panel; none at the very ends.
 std::string range_tics(const std::array<double, 2>& range, double side) {
   constexpr double kLetter = 8.0, kApart = 14.0, kAside = 12.0;  // points
   const double span = range[1] - range[0];
@@ -470,12 +471,13 @@ std::string range_tics(const std::array<double, 2>& range, double side) {
   return fmt::format("({})", list);
 }
 
-/// Where there are many, a letter, which the upper right corner explains.
+/// The name of a number's axis; a letter if there are many numbers, which a list in the upper right
+/// corner explains.
 std::string axis_name(const FittedScene& f, std::size_t k) {
   return f.ranges.size() > 2 ? std::string(1, static_cast<char>('a' + k)) : f.ranges[k].key;
 }
 
-/// How many draws lie in each bin of a number; of two, row by row.
+/// The number of draws in each bin of a number, or of two numbers, row by row.
 std::vector<double> counts_of(const FittedScene& f, const std::vector<std::size_t>& numbers,
                               const std::vector<std::array<double, 2>>& ranges) {
   std::vector<double> counts(numbers.size() == 1 ? kBins : kBins * kBins, 0.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How runs of one gate ended, as a result, a table and a picture.
+/// How runs of one gate ended, as a result, a table and a figure.
 
 #include <optional>
 #include <string>
@@ -23,9 +23,9 @@ struct GateResult {
   Provenance made_by;
 };
 void describe(Fields& out, const GateResult& result);
-/// A line per outcome: count, share, 95 % interval.
+/// A line for each outcome: count, share, 95 % interval.
 [[nodiscard]] std::string table_of(const dynamics::GateTally& tally);
-/// A bar per outcome.
+/// A bar for each outcome.
 [[nodiscard]] Figure figure_of(const dynamics::GateTally& tally);
 
 }  // namespace gatewalk::cli

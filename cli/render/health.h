@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The record of numerical faults, as JSON and in words.
+/// Numerical faults of runs, as JSON and in words.
 
 #include <optional>
 #include <string>
@@ -16,15 +16,15 @@ namespace gatewalk::cli {
 void describe(Fields& out, const dynamics::Health& health);
 /// The key "status", which most results have.
 void describe_status(Fields& out, const dynamics::Health& health);
-/// The same of a result whose record of faults may be missing; none: null.
+/// The key "status"; null if there is no record of faults.
 void describe_status(Fields& out, const std::optional<dynamics::Health>& health);
-/// The key "status" of what has a verdict, one of kVerdictNames.
+/// The key "status" for results with a verdict, one of kVerdictNames.
 [[nodiscard]] Label status_label(std::string_view meaning);
-/// The attribute of files with these keys.
+/// The faults as an attribute of files.
 [[nodiscard]] std::string attribute_of(const dynamics::Health& health);
-/// Its inverse. Throws nlohmann::json::exception when a count is missing.
+/// Reads attribute_of(). Throws nlohmann::json::exception if a count is missing.
 [[nodiscard]] dynamics::Health health_from(const Json& j);
-/// One sentence if something was seen, else empty.
+/// A sentence if faults were seen; else empty.
 [[nodiscard]] std::string complaint(const dynamics::Health& health);
 
 }  // namespace gatewalk::cli

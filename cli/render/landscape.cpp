@@ -103,7 +103,7 @@ std::string csv_of(const dynamics::Landscape& l) {
 
 namespace {
 
-/// Lengths and energies, to what counts in such a gate.
+/// Texts of lengths and energies, rounded to what matters in the gate.
 struct GateReadings {
   dynamics::Scale scale;
 
@@ -189,7 +189,7 @@ void add_rows(Rows& rows, const Landscape& l, const Sized& metre, const Sized& j
   const auto energy = [&](double e) {
     return std::isfinite(e) ? digits(std::min(e, ceiling) / joule.size) : "NaN";
   };
-  // No more points than can be seen.
+  // No more points than can be distinguished.
   const std::size_t stride = std::max<std::size_t>(1, std::max(l.x.size(), l.y.size()) / 200);
   for (std::size_t i = 0; i < l.y.size(); i += stride) {
     for (std::size_t j = 0; j < l.x.size(); j += stride)
@@ -201,13 +201,14 @@ void add_rows(Rows& rows, const Landscape& l, const Sized& metre, const Sized& j
 
 namespace {
 
-/// The number of the grid point nearest to x.
+/// The index of the grid point nearest to x.
 Eigen::Index nearest(const std::vector<double>& grid, double x) {
   const double spacing = (grid.back() - grid.front()) / static_cast<double>(grid.size() - 1);
   return std::lround((x - grid.front()) / spacing);
 }
 
-/// The y axis has its name nearer, by letters, where its numbers are long, as with a step of 0.05.
+/// The y axis. Its title stands closer, by letters, if the numbers are long, as with a step of
+/// 0.05.
 Axis upright_axis(const std::string& name, double low, double high, double step) {
   constexpr std::size_t kShort = 3;
   const std::string number = digits(step);
@@ -219,7 +220,7 @@ Axis upright_axis(const std::string& name, double low, double high, double step)
           .name_look = "offset " + digits(0.8 + static_cast<double>(more)) + ",0"};
 }
 
-/// A mark in black and white: seen on every colour of a map.
+/// Draws a mark in black and white, visible on every colour of a map.
 void draw_mark(Panel& panel, const Rows& place, int mark, double size, double inside) {
   panel.draw_outlined(place, "1:2", "points", {.colour = "#000000", .mark = mark, .size = size},
                       {.colour = "#ffffff", .mark = mark, .size = inside});
@@ -246,7 +247,7 @@ Figure figure_of(const dynamics::Passes& passes) {
   Rows &grid = out.data("$grid"), &way = out.data("$way"), &at_pass = out.data("$pass"),
        &at_start = out.data("$start");
   add_rows(grid, l, metre, joule, ceiling);
-  // Both what the way rises to and the start's energy, off the axis.
+  // The axis also shows the highest point of the path and the start's energy.
   const double start_energy = fine.from_start.start_energy + passes.kinetic_energy;
   double lowest = start_energy, highest = start_energy, gone = 0.0;
   for (std::size_t i = 0; i < pass.way.size(); ++i) {

@@ -162,8 +162,8 @@ std::string csv_of(const std::vector<FinishedMap>& maps) {
 
 namespace {
 
-/// "x3.2", "/10": the factor to the nearest fault; "at 0.9", "<0.01" on axes that have none; "-":
-/// no fault. Of a scene that has a fault itself the step is the nearest without one, "ok /4".
+/// The factor to the nearest fault: "x3.2", "/10"; "at 0.9", "<0.01" on axes without factors; "-":
+/// no fault. For a scene that has a fault itself, the nearest step without one: "ok /4".
 std::string cell_of(const Limit& limit, const MethodLimits& method) {
   if (!limit.fault_at) return "-";
   const auto factor = [](double f) {
@@ -178,7 +178,8 @@ std::string cell_of(const Limit& limit, const MethodLimits& method) {
   return is_finer_step ? "ok " + factor(limit.remedy->value / method.own.value) : ".";
 }
 
-/// As the scene takes it: with digits enough for a step to fit the hold of the random force.
+/// The setting as a scene takes it, with enough digits for the step to divide the random force's
+/// hold.
 std::string setting_of(const dynamics::Remedy& remedy) {
   std::string text = remedy.method.empty() ? "" : fmt::format("run.method = \"{}\"", remedy.method);
   if (!remedy.key.empty())
@@ -186,7 +187,7 @@ std::string setting_of(const dynamics::Remedy& remedy) {
   return text;
 }
 
-/// What is to be known of a method, in a line.
+/// A line on a method.
 std::string sentence_of(const MethodLimits& m) {
   const bool is_fine = m.verdict == Verdict::fine;
   const Limit* const limit = is_fine ? m.nearest() : &m.limits.front();
@@ -254,7 +255,7 @@ std::string figure_name(dynamics::LimitNumber number) {
 
 namespace {
 
-/// One colour per verdict, in their order: pale while the numbers hold.
+/// A colour for each verdict, in their order; pale if the numbers hold.
 constexpr std::array<const char*, dynamics::kVerdictNames.size()> kColours{
     "#e3f1dc",  // ok
     "#ffe169",  // missed hit
@@ -280,7 +281,7 @@ struct DrawnAxis {
   bool logarithmic;
 
   explicit DrawnAxis(const MapAxis& axis) : logarithmic(axis.logarithmic) {
-    std::vector<double> at = axis.values;  // places, in the measure in which cells are even
+    std::vector<double> at = axis.values;  // places, on a scale where cells are even
     if (logarithmic)
       for (double& place : at) place = std::log(place);
     const auto drawn = [&](double place) { return logarithmic ? std::exp(place) : place; };
@@ -293,7 +294,7 @@ struct DrawnAxis {
     }
   }
 
-  /// `length`: of the axis, in points.
+  /// `length` of the axis, in points.
   [[nodiscard]] Axis axis(std::string_view name, double length) const {
     const double from = low.front(), to = high.back();
     std::string tics = digits(tic_step(to - from, 3));
@@ -306,7 +307,7 @@ struct DrawnAxis {
   }
 };
 
-/// A box for each point, for boxxyerror.
+/// Adds a box for each point, for boxxyerror.
 void add_boxes(Rows& rows, const FinishedMap& m, const DrawnAxis& x, const DrawnAxis& y) {
   for (std::size_t iy = 0; iy < m.map.y.values.size(); ++iy)
     for (std::size_t ix = 0; ix < m.map.x.values.size(); ++ix) {
@@ -316,7 +317,7 @@ void add_boxes(Rows& rows, const FinishedMap& m, const DrawnAxis& x, const Drawn
     }
 }
 
-/// The maps of one kind, three methods in a row, and a key in the place of the sixth.
+/// The maps of one number: three methods in a row, and a key in the sixth place.
 class PanelGroup {
  public:
   PanelGroup(const dynamics::LimitScene& scene, std::span<const FinishedMap> maps, double top,
@@ -363,7 +364,8 @@ class PanelGroup {
     return top_ + 52 + 196 * static_cast<double>(row);
   }
 
-  /// Known borders of a map, the same one in the same dashes everywhere, seen on every colour.
+  /// Draws the known borders of a map. Each border has the same dashes everywhere, visible on every
+  /// colour.
   void draw_borders(Panels& out, Panel& panel, std::size_t i, const std::string& tag) const {
     std::size_t n = 0;
     for (const dynamics::Border& border : lines_[i]) {
@@ -376,7 +378,7 @@ class PanelGroup {
     }
   }
 
-  /// Where the scene is: a point, or its step alone.
+  /// Draws the scene's place: a point, or its step alone.
   static void draw_scene(Panels& out, Panel& panel, const dynamics::LimitMap& map,
                          const std::string& tag) {
     const double x = map.x.values[map.x.from];
@@ -391,7 +393,7 @@ class PanelGroup {
     const dynamics::LimitMap& map = maps_[i].map;
     const DrawnAxis x(map.x), y(map.y);
     const double left = left_of(i % 3), top = row_of(i / 3);
-    // A label under the middle one serves its whole row, but for one that has another axis.
+    // The title under the middle map serves its row, except for a map with another axis.
     const bool named = i % 3 == 1 || (i == 3 && map.x.label != maps_.back().map.x.label);
     Rows& rows = out.data(tag_ + std::to_string(i));
     add_boxes(rows, maps_[i], x, y);
@@ -411,7 +413,7 @@ class PanelGroup {
   std::span<const FinishedMap> maps_;
   double top_;
   std::string tag_;
-  std::vector<std::vector<dynamics::Border>> lines_;  // of each map
+  std::vector<std::vector<dynamics::Border>> lines_;  // by map
   std::vector<std::string> borders_;                  // labels, in the order of their dashes
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Numbers as bytes, the least significant first, on every machine: as numpy, UMB and pages read
-/// them.
+/// Numbers as little-endian bytes on every machine, as numpy, UMB and pages read them.
 
 #include <algorithm>
 #include <array>
@@ -14,7 +13,7 @@ namespace gatewalk::cli {
 template <class Number>
 using BytesOf = std::array<char, sizeof(Number)>;
 
-/// On a machine whose most significant byte is the first, the other way round; its own inverse.
+/// The bytes, reversed on a big-endian machine; its own inverse.
 template <class Number>
 [[nodiscard]] BytesOf<Number> ordered(BytesOf<Number> bytes) {
   if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
@@ -31,7 +30,7 @@ template <class Number>
   return std::bit_cast<Number>(ordered<Number>(bytes));
 }
 
-/// All one after the other.
+/// The bytes of all numbers, one after the other.
 template <class Number>
 [[nodiscard]] std::string all_little_endian(const std::vector<Number>& numbers) {
   std::string all;

@@ -26,8 +26,8 @@ namespace {
 
 using namespace dynamics;
 
-/// Gate runs behind the counts: of a tree, those that its record says (mirror images count twice,
-/// and first runs of trials are rows of their own).
+/// The number of gate runs behind the counts. For trees the file's record gives it, because mirror
+/// images are counted too, and first runs of trials are rows of their own.
 std::int64_t gate_runs_of(const lattice::MatrixFile& file, const std::string& path) {
   const auto states = recorded_states(file, path);
   return file.transitions.space.has_trees() && states && states->trees
@@ -35,7 +35,7 @@ std::int64_t gate_runs_of(const lattice::MatrixFile& file, const std::string& pa
              : file.transitions.totals().runs;
 }
 
-/// Share of a row's trials that came out at each boundary of the next gate, and trapped.
+/// The shares of a row's trials that enter the next gate through each boundary, then trapped.
 std::vector<double> outcome_shares(const Transitions& t, int row) {
   const auto faces = std::ssize(t.space.section().faces);
   std::vector<double> share(static_cast<std::size_t>(faces) + 1, 0.0);
@@ -54,7 +54,7 @@ std::string short_range(const std::array<double, 2>& range) {
                               : fmt::format("[{}, {}]", digits(range[0], 3), digits(range[1], 3));
 }
 
-/// "18.2", "100", "." for none: at most four places.
+/// "18.2", "100", or "." for none: at most four characters.
 std::string short_share(double share) {
   const std::string text = fixed(100.0 * share, 1);
   return share == 0.0 ? "." : text == "100.0" ? "100" : text;
@@ -96,7 +96,7 @@ std::string row_table(const Transitions& t) {
          table.text();
 }
 
-/// The outputs of a row, in the order in which states are shown: state here, count.
+/// The outputs of a row in the order in which states are shown: state in the matrix, and count.
 std::map<int, std::pair<int, std::int64_t>> outputs_of(const Transitions& t, int row) {
   std::map<int, std::pair<int, std::int64_t>> outputs;
   for (const auto& [column, count] : t.rows[row])
@@ -117,7 +117,7 @@ std::string outputs_table(const Transitions& t, int shown) {
                      table.text());
 }
 
-/// A line of each other gate in the field.
+/// Adds a line for each further type of gate.
 void add_types(TextTable& table, const lattice::MatrixFile& file) {
   for (const auto& [name, t] : file.types) {
     const auto total = t.totals();
@@ -195,18 +195,18 @@ void describe_row(Fields& out, const Transitions& t, int row) {
            });
 }
 
-/// The factor on Table III's bins per axis, else the name of the bins.
+/// The factor on Table III's bins per axis, or else the name of the bins.
 std::string bins_text(const StateRecord& states) {
   return states.bins && states.bins->factor ? lattice::toml_float(*states.bins->factor)
                                             : states.kind;
 }
 
-/// The key "matrix", of commands that write one.
+/// The key "matrix", for commands that write a matrix.
 void describe_path(Fields& out, const std::string& path) {
   out.text({"matrix", "path of the matrix file that was written"}, path);
 }
 
-/// Its record of this key, as `read` understands it; none where it has none.
+/// The file's record under `key`, as `read` understands it; nullopt if there is none.
 template <class Read>
 auto record_in(const lattice::MatrixFile& file, const std::string& path, const std::string& key,
                const Read& read) -> std::optional<decltype(read(Json()))> {
@@ -344,7 +344,7 @@ void describe(Fields& out, const ShownMatrix& shown) {
   describe_types(out, file);
   out.list({"rows", "rows of the matrix, one for each input"}, lattice::shown_order(t.space),
            [&](Fields& f, int row) { describe_row(f, t, row); });
-  const auto states = recorded_states(file, path);  // a foreign file may have none
+  const auto states = recorded_states(file, path);  // a file of another program may have none
   out.optional(states.has_value(),
                [&](Fields& f) { describe_state_space(f, states.value_or(StateRecord())); });
   out.object({"text", "other texts that the file keeps"}, [&](Fields& f) {
@@ -414,8 +414,7 @@ std::string details_text(const ShownMatrix& matrix) {
 
 namespace {
 
-/// States of one boundary, the starts, or the column of the trapped, with their place in the
-/// picture.
+/// A group of states in the figure: those of one boundary, the starts, or the column "trapped".
 struct StateGroup {
   std::string name;
   int first, states, blocks;
@@ -425,9 +424,9 @@ struct StateGroup {
 };
 
 constexpr double kSide = 330.0, kGap = 3.0, kLeast = 18.0;
-constexpr int kMostBlocks = 120;  // about, each way
+constexpr int kMostBlocks = 120;  // approximately, each way
 
-/// Widths in proportion to the blocks, but none less than kLeast.
+/// Gives each group a width in proportion to its blocks, but at least kLeast.
 void place(std::vector<StateGroup>& groups) {
   const double room = kSide - kGap * static_cast<double>(groups.size() - 1);
   const auto taken = [&](double each) {
@@ -466,8 +465,8 @@ std::vector<StateGroup> groups_of(const StateSpace& space, int per_block, bool w
   return groups;
 }
 
-/// Chances, in %, of the blocks of a group of rows to those of a group of columns; below zero where
-/// no row has runs.
+/// Probabilities (%) from the blocks of one group (rows) to those of another (columns); below zero
+/// if no row of a block has runs.
 std::vector<std::vector<double>> chances(const Transitions& t, const StateGroup& rows,
                                          const StateGroup& columns, int per_block) {
   std::vector<std::vector<double>> all(static_cast<std::size_t>(rows.blocks));

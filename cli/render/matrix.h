@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A matrix file: what it keeps beside its counts, and all of it as results, as tables
-/// and as a picture.
+/// A matrix file as results, as tables and as a figure, with what it holds besides its counts.
 
 #include <cstdint>
 #include <map>
@@ -18,34 +17,34 @@
 
 namespace gatewalk::cli {
 
-/// Its record "state_space", "method" or "status"; none where it has none. Throws markov::BadFile
-/// naming `path` when one is damaged; a damaged status is none.
+/// The records "state_space", "method" and "status" of a matrix file; nullopt if the file has none.
+/// Throws markov::BadFile naming `path` for a damaged record; a damaged status counts as none.
 [[nodiscard]] std::optional<StateRecord> recorded_states(const lattice::MatrixFile& file,
                                                          const std::string& path);
 [[nodiscard]] std::optional<lattice::Settled> recorded_method(const lattice::MatrixFile& file,
                                                               const std::string& path);
 [[nodiscard]] std::optional<dynamics::Health> recorded_health(const lattice::MatrixFile& file);
-/// The faults of the runs behind a recorded status, in one sentence; empty when none were seen.
+/// A sentence on the faults in a recorded status; empty if there were none.
 [[nodiscard]] std::string faults_recorded(const std::optional<dynamics::Health>& status);
 
-/// Throws std::invalid_argument where a scene is larger than what a matrix file keeps of it.
+/// Throws std::invalid_argument if a scene is too large for a matrix file.
 void require_keepable(const lattice::Scene& scene);
 
-/// The result of `build` for gates: a matrix without its counts.
+/// The result of `build` for gates: a matrix, shown without its counts.
 struct MadeMatrix {
   std::string path{};
   lattice::MatrixFile file;
   StateRecord states;
   std::optional<lattice::Settled> method{};
-  std::optional<std::int64_t> trials_per_row{};  // of bins
+  std::optional<std::int64_t> trials_per_row{};  // for bins
   Provenance made_by{};
 };
 void describe(Fields& out, const MadeMatrix& made);
-/// All that the file of such a matrix keeps beside its counts, by key; `health` of its runs.
+/// The texts that the matrix file holds besides its counts, by key; `health` is that of its runs.
 [[nodiscard]] std::map<std::string, std::string> texts_of(const MadeMatrix& made,
                                                           const lattice::Scene& scene,
                                                           const dynamics::Health& health);
-/// Size, runs and types of gates of a matrix that was written, a line each.
+/// Size, runs and types of gates of a written matrix, a line each.
 [[nodiscard]] std::string summary_table(const lattice::MatrixFile& file, const std::string& path);
 
 /// The result of `show`: all that a file holds.
@@ -57,11 +56,11 @@ void describe(Fields& out, const ShownMatrix& shown);
 /// The result of `import`.
 struct ImportedMatrix {
   ShownMatrix matrix;
-  std::vector<std::string> understood;  // where a file may be read in more than one way
+  std::vector<std::string> understood;  // how ambiguous parts of the file were read
   Provenance made_by;
 };
 void describe(Fields& out, const ImportedMatrix& imported);
-/// The result of `build` for cells that are not ours.
+/// The result of `build` for recorded runs and for cells of a program.
 struct CellMatrixResult {
   ShownMatrix matrix;
   RecordedCounts recorded;
@@ -69,8 +68,8 @@ struct CellMatrixResult {
 };
 void describe(Fields& out, const CellMatrixResult& built);
 
-/// What is shown besides the summary: a line per row, all outputs of one row (from 0, in the order
-/// of lattice::shown_order, as all of them).
+/// What to show besides the summary: a line for each row, or all outputs of one row. Rows count
+/// from 0 in the order of lattice::shown_order.
 struct ShownRows {
   bool all = false;
   std::optional<int> one;
@@ -79,7 +78,7 @@ struct ShownRows {
 /// How the matrix was made, and its scene.
 [[nodiscard]] std::string details_text(const ShownMatrix& matrix);
 
-/// The matrix as a picture: states grouped by boundary, in blocks if they are many.
+/// A figure of the matrix, with states grouped by boundary, and in blocks if there are many.
 [[nodiscard]] Figure figure_of(const dynamics::Transitions& t);
 
 }  // namespace gatewalk::cli

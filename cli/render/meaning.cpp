@@ -19,11 +19,12 @@ namespace {
 
 using dynamics::Meaning;
 
-// A walk ends at a Froude number of 1, where gravity no longer keeps the body on a stiff leg; fast
-// runners reach 10 to 30. Feet hold by friction. Legs step a few times per length of the body.
+// Limits for walkers. A walk ends at a Froude number of 1, where gravity no longer keeps the body
+// on a stiff leg; fast runners reach 10 to 30. Friction holds the feet. Legs step a few times per
+// body length.
 constexpr double kFastestRun = 30.0, kMostGrip = 1.0, kMostSteps = 10.0, kLeastPatience = 5.0;
 
-/// Three digits, without an exponent where people need none.
+/// Three digits, without an exponent for numbers of moderate size.
 std::string three_digits(double x) {
   if (!std::isfinite(x)) return "-";
   const double size = std::abs(x);
@@ -59,12 +60,12 @@ std::string_view words_of(dynamics::GateFate fate) {
   return "is trapped";
 }
 
-/// A sentence about what the numbers mean.
+/// A sentence on the meaning of the numbers, with its subject.
 struct Sentence {
   std::string about, words;
 };
 
-/// Numbers that decide alike in a sentence.
+/// Sentences on threshold numbers; numbers with the same effect share a sentence.
 std::vector<Sentence> thresholds(std::vector<dynamics::Deciding> left) {
   std::vector<Sentence> all;
   while (!left.empty()) {
@@ -142,7 +143,7 @@ std::string swing_words(const lattice::Scene& scene, const Meaning& m) {
                            ringing(m.ring_down[dynamics::kRight]));
 }
 
-/// What the numbers mean, a sentence for each thing; without what is far from walkers.
+/// Sentences on the meaning of the numbers, without those on far_from_walkers().
 std::vector<Sentence> sentences(const SceneResult& result) {
   const auto& [scene, m, deciding] = result;
   std::vector<Sentence> all{
@@ -160,7 +161,7 @@ std::vector<Sentence> sentences(const SceneResult& result) {
   return all;
 }
 
-/// The same, a paragraph above the table of keys.
+/// The meaning of the numbers, as a paragraph above the table of keys.
 std::string meaning_text(const SceneResult& result) {
   std::string text = fmt::format("What these numbers mean{}\n",
                                  result.scene.terrain ? ", in the scene's own gate" : "");
@@ -178,7 +179,7 @@ std::string meaning_text(const SceneResult& result) {
   return text;
 }
 
-/// Its sentences, each behind what it is about: "sideways: noise moves the body by ...".
+/// Remarks on the scene, each after its subject: "sideways: noise moves the body by ...".
 std::vector<std::string> remarks(const SceneResult& result) {
   std::vector<std::string> all;
   for (const auto& [about, words] : sentences(result))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What the numbers of a scene mean, in words, and where they are far from what walks.
+/// The meaning of a scene's numbers in words, and where they are unlike any walker's.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace gatewalk::cli {
 
-/// Something about a scene that no animal and no robot that walks has.
+/// A property of a scene that no walking animal or robot has.
 struct FarFromWalkers {
   std::string name;    // "random_per_weight"
   std::string what;    // "a random force of 5.7 times its weight"
@@ -19,7 +19,8 @@ struct FarFromWalkers {
 };
 [[nodiscard]] std::vector<FarFromWalkers> far_from_walkers(const dynamics::Meaning& meaning,
                                                            const lattice::Scene& scene);
-/// The same in a line, for a scene that leaves out keys which have a unit; else empty.
+/// A line on the properties of far_from_walkers(), for a scene that leaves out keys with a unit;
+/// empty otherwise.
 [[nodiscard]] std::string far_from_walkers_line(const lattice::Scene& scene);
 
 /// The result of `scene`.
@@ -29,7 +30,7 @@ struct SceneResult {
   std::vector<dynamics::Deciding> deciding;
 };
 void describe(Fields& out, const SceneResult& result);
-/// What the numbers mean; below it the map and the actions, if there are, and every key.
+/// The meaning of the numbers; then the map and the actions, if the scene has them; then every key.
 [[nodiscard]] std::string table_of(const SceneResult& result);
 
 }  // namespace gatewalk::cli

@@ -30,7 +30,7 @@ const std::string& outcome_name(const MemoryStudy& study, int outcome) {
   return study.outcomes[static_cast<std::size_t>(outcome)];
 }
 
-/// What a label means.
+/// The meaning of a label.
 std::string label_name(const MemoryStudy& study, Question q, int label) {
   if (q == Question::gate_before) return study.origins[static_cast<std::size_t>(label)];
   if (q == Question::visit)
@@ -149,7 +149,8 @@ std::string sentence_ahead(const MemoryStudy& study) {
       study.ahead.steps.back().gates, p, s.gates, seen, chance);
 }
 
-/// By the way now and the way then: {"EN": {"EN": ..., "trapped": ...}, ...}
+/// Values by the face of the first entry and of the later one: {"EN": {"EN": ..., "trapped": ...},
+/// ...}
 template <class Value, class Put>
 void describe_ways(Fields& out, const MemoryStudy& study, const Label& label,
                    const std::vector<Value>& values, Put put) {
@@ -279,7 +280,7 @@ std::string sentence_of(const MemoryStudy& study) {
 
 namespace {
 
-/// What a question asks, as the subject of a sentence.
+/// The subject of each question's sentence.
 constexpr std::array<std::string_view, lattice::kQuestions> kSubjects{
     "Several gates ahead", "The gate before", "The number of gates so far", "The row of the field"};
 
@@ -392,19 +393,19 @@ namespace {
 
 constexpr double kPanelsLeft = 88, kPanelsRight = 492, kMemoryPanelHeight = 54, kPanelGap = 14,
                  kPanelsHead = 50, kScalesHeight = 110, kScalesHead = 82;
-/// More ways than this would make panels too small to read.
+/// With more faces the panels would be too small to read.
 constexpr std::size_t kMostWays = 6;
 constexpr std::size_t kDrawnScales = 3;
 
-/// One curve: what the kernel's powers say with its 95 %, and what was seen. Rows "gates low high
-/// predicted seen".
+/// Draws a curve: the kernel's powers with a 95 % band, and the observed shares. Rows are "gates
+/// low high predicted seen".
 void draw_curve(Panel& panel, const Rows& rows, const char* colour, const char* seen_colour) {
   panel.draw(rows, "1:2:3", "filledcurves fs transparent solid 0.25 noborder", {colour});
   panel.draw(rows, "1:4", "lines", {.colour = colour, .width = 1.2});
   panel.draw(rows, "1:5", "points", {.colour = seen_colour, .mark = 7, .size = 0.45});
 }
 
-/// Of the bodies that enter by one boundary, the share (%) that enters by another, k gates later.
+/// For bodies that enter through one face, the share (%) that enters through another k gates later.
 struct Probabilities {
   Rows rows;
   double most = 0.0;
@@ -431,13 +432,13 @@ struct Probabilities {
   }
 };
 
-/// An axis from 0, with a tic or two.
+/// An axis from 0 with a tic or two.
 Axis up_to(double most, const char* name) {
   const double end = most > 0.0 ? 1.15 * most : 1.0;
   return {name, 0, end, "0," + digits(tic_step(end, 2.0))};
 }
 
-/// Ways by which somebody entered; the last column is trapped.
+/// The faces through which bodies entered; the last column is trapped.
 std::vector<std::size_t> entered_ways(const MemoryStudy& study) {
   const std::size_t ways = study.outcomes.size() - 1;
   std::vector<std::size_t> entered;

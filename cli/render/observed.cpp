@@ -22,16 +22,16 @@ namespace {
 
 using lattice::JointTest;
 
-/// A difference that experiments should see, as a share.
+/// A difference of this share should not go unnoticed.
 constexpr double kFewAreEnough = 0.25;
 
 std::size_t index_of(const EndingName& e) { return static_cast<std::size_t>(e.ending); }
 
-/// What bodies do that end so, in the order of kEndingNames: "fewer cross".
+/// What bodies with each ending do, in the order of kEndingNames: "fewer cross".
 constexpr std::array<const char*, kEndingNames.size()> kDo{
     "cross", "leave by the left side", "leave by the right side", "are trapped", "are cut off"};
 
-/// The smallest adjusted p-value of the final gates; NaN: they were not counted.
+/// The smallest adjusted p-value of the final gates; NaN if they were not counted.
 double p_of_gates(const JointTest& j) {
   double least = std::nan("");
   for (const double p :
@@ -74,7 +74,7 @@ void describe(Fields& out, const JointTest& j, const std::optional<lattice::Comp
              [&](Fields& of, const auto& value) { describe(of, value); });
 }
 
-/// `c`: what such differences are looked for in.
+/// Describes the smallest detectable differences; `c` says in which numbers they are tested.
 void describe(Fields& out, const lattice::LeastDifferences& least,
               const lattice::ObservedComparison& c) {
   out.number(
@@ -123,7 +123,7 @@ std::string gates_part(const lattice::ObservedComparison& c) {
   return "\nFinal gates of the observed trials against both; TV: total variation\n" + table.text();
 }
 
-/// Endings as they were observed, beside both models; *: differs from the observed.
+/// The observed endings beside both models'; * marks a share that differs from the observed.
 std::string shares_part(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
   TextTable table({{"", -10},
                    {"observed, %", -23, 0, "", "  "},
@@ -161,7 +161,7 @@ std::string endings_part(const lattice::ObservedComparison& c) {
       table.text());
 }
 
-/// One sentence; p-values belong to the differences that it names.
+/// The verdict in a sentence; its p-values belong to the differences that it names.
 std::string verdict_of(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
   const JointTest &d = c.against_dynamics, &k = c.against_chain;
   const std::string these = fmt::format("these {} trials ", c.seen.trials()),
@@ -297,11 +297,11 @@ std::string endings_not_listed(const lattice::Observed& observed,
 
 namespace {
 
-/// A share as it is drawn; without an interval low and high are the share.
+/// A share to draw, with its interval; without an interval low and high are the share.
 struct DrawnShare {
   double share, low, high;
 };
-/// What is counted in one row, as it was observed, by the dynamics, by the chain.
+/// A row of the figure: observed, by the dynamics, and by the chain.
 struct ComparedShare {
   std::string name;
   std::array<DrawnShare, 3> shares;
@@ -333,7 +333,7 @@ std::vector<ComparedShare> compared_endings(const lattice::ObservedComparison& c
   return rows;
 }
 
-/// The gates in which most end, by any of the three; the others together.
+/// The gates with the largest share in any of the three, and all others together.
 std::vector<ComparedShare> compared_gates(const lattice::ObservedComparison& c,
                                           const lattice::StartValidation& v,
                                           const lattice::FieldParams& field) {
@@ -377,7 +377,7 @@ std::vector<ComparedShare> compared_gates(const lattice::ObservedComparison& c,
   return rows;
 }
 
-/// A panel with three marks in each row, from `top` on; where the next one begins.
+/// Draws a panel with three marks in each row from `top` on. Returns where the next panel begins.
 double add_compared(Panels& out, double top, const std::string& title, const std::string& kind,
                     double row_height, const std::vector<ComparedShare>& rows) {
   const auto count = static_cast<double>(rows.size());
@@ -391,7 +391,7 @@ double add_compared(Panels& out, double top, const std::string& title, const std
       const DrawnShare& s = rows[i].shares[k];
       most = std::max(most, 100.0 * s.high);
       has_intervals = has_intervals || s.low < s.high;
-      // One below the other, so that they do not hide each other.
+      // The marks stand one below the other, so that they do not hide each other.
       const double at = static_cast<double>(i) + 0.25 * (static_cast<double>(k) - 1.0);
       data.add(100.0 * s.share, at, 100.0 * s.low, 100.0 * s.high);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// An experiment's counts beside the model, as a part of a result and as a table.
+/// The counts of an experiment beside the model, as part of a result and as a table.
 
 #include <cstdint>
 #include <string>
@@ -13,12 +13,12 @@
 
 namespace gatewalk::cli {
 
-/// Which counts are held against the model.
+/// The files of counts.
 struct ObservedFiles {
   std::vector<std::string> paths;
   std::int64_t went_back = 0;  // trials that are left out
 };
-/// The key "observed". `v`: the model's side of it.
+/// The key "observed". `v` is the model's side of the comparison.
 void describe_observed(Fields& out, const lattice::ObservedComparison& c,
                        const lattice::StartValidation& v, const ObservedFiles& files);
 [[nodiscard]] std::string answer_text(const lattice::ObservedComparison& c,
@@ -26,19 +26,19 @@ void describe_observed(Fields& out, const lattice::ObservedComparison& c,
 [[nodiscard]] std::string details_text(const lattice::ObservedComparison& c,
                                        const lattice::StartValidation& v);
 
-/// The endings and the gates in which most end, as they were observed, by the dynamics and by the
-/// chain, each with its 95 % interval (but the chain's gates, whose intervals are not known).
+/// The endings and the most frequent final gates: observed, by the dynamics and by the chain, each
+/// with its 95 % interval. The chain's gates have no intervals.
 [[nodiscard]] Figure figure_of(const lattice::ObservedComparison& c,
                                const lattice::StartValidation& v,
                                const lattice::FieldParams& field);
 
-/// Before any run: trials that `observed` leaves out; and that so few show little. Empty if it is
-/// not so.
+/// Warnings before any run: of trials that are left out because the body went back, and of too few
+/// trials. Empty if there is nothing to warn of.
 [[nodiscard]] std::string who_went_back(const lattice::Observed& observed);
 [[nodiscard]] std::string too_few_observed(const lattice::Observed& observed);
 
-/// Endings that the table of counts has no row of, and the model has: they count as 0. Empty if
-/// there are none.
+/// A warning that the table of counts does not list endings that the model has, so that they count
+/// as 0. Empty if it lists all.
 [[nodiscard]] std::string endings_not_listed(const lattice::Observed& observed,
                                              const lattice::StartValidation& v);
 

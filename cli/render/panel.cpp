@@ -12,7 +12,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// A margin of 0 is the edge of the sheet, in both directions.
+/// Edges of 0 (left, top) and of the sheet's size mean the whole sheet.
 constexpr Box kWholeSheet{0, Sheet::kWidth, 0, HUGE_VAL};
 
 std::string words_of(const Pen& pen) {

@@ -20,7 +20,7 @@
 namespace gatewalk::cli {
 namespace {
 
-constexpr int kFewVisits = 10;  // of all trials: maps leave out what fewer show
+constexpr int kFewVisits = 10;  // visits in all trials; maps leave out gates with fewer
 
 std::size_t cells_in(const PlannedField& p) {
   return static_cast<std::size_t>(p.shown.field.columns) *
@@ -32,11 +32,11 @@ markov::CellProbabilities usage_of(const PlannedField& p, std::size_t action) {
   return by_gate(p.plan.usage.data() + action * cells_in(p), p.shown.field);
 }
 
-/// What stands for an action in a map.
+/// Marks of the actions in a text map.
 constexpr std::string_view kMarks = "123456789abcdefghijklmnopqrstuvwxyz";
 char mark_of(std::size_t action) { return action < kMarks.size() ? kMarks[action] : ' '; }
 
-/// A mark for each cell, the far row first.
+/// A text map with the mark of each cell's action, the far row first.
 std::string map_text(const PlannedField& p) {
   const int columns = p.shown.field.columns, rows = p.shown.field.rows;
   if (columns > kMostPrinted || rows > kMostPrinted || p.actions.size() > kMarks.size()) return "";
@@ -55,7 +55,7 @@ std::string map_text(const PlannedField& p) {
   return text;
 }
 
-/// What the plan gains, in sentences.
+/// Sentences on what the plan gains.
 std::string gain_verdict(const PlannedField& p) {
   const std::size_t best = best_alone(p.plan);
   const lattice::Gain& gain = p.plan.gains[best];
@@ -105,7 +105,7 @@ std::string front_text(const PlannedField& p) {
                      chosen ? " (*: the one that --chance chooses):" : ":", table.text());
 }
 
-/// The action that is taken most in each gate; none where nobody came.
+/// The action taken most in each gate; null if no body came.
 TextRows most_taken_rows(const PlannedField& p) {
   const std::vector<MostTaken> most = most_taken(p);
   TextRows rows(static_cast<std::size_t>(p.shown.field.rows));
@@ -118,7 +118,7 @@ TextRows most_taken_rows(const PlannedField& p) {
   return rows;
 }
 
-/// The action that a policy of gates alone takes in each.
+/// The action in each gate, for a policy that depends on the gate alone.
 TextRows action_rows(const PlannedField& p, const markov::Decisions& d) {
   TextRows rows(static_cast<std::size_t>(d.field.rows));
   for (int r = 0; r < d.field.rows; ++r)
@@ -172,18 +172,18 @@ void describe_front(Fields& out, const PlannedField& p) {
            p.plan.front_finished);
 }
 
-/// Those of kSequential.
+/// The colours of kSequential.
 constexpr std::array<const char*, 8> kShades{"#440154", "#46327e", "#365c8d", "#277f8e",
                                              "#1fa187", "#4ac16d", "#a0da39", "#fde725"};
 
-/// A name as gnuplot's tics show it letter by letter.
+/// The name escaped so that gnuplot's tics show each letter.
 std::string escaped(const std::string& name) {
   std::string text;
   for (const char c : name) text += c == '_' ? std::string("\\_") : std::string(1, c);
   return text;
 }
 
-/// A colour for each action, dark to light, and their names beside them.
+/// A colour for each action, dark to light, with names beside the colour bar.
 Colours colours_of(const PlannedField& p, const Box& bar) {
   const auto n = static_cast<int>(p.actions.size());
   std::vector<std::string> names;
@@ -201,14 +201,14 @@ Colours colours_of(const PlannedField& p, const Box& bar) {
   return colours;
 }
 
-/// Chance to cross against what a trial takes, of the policies that take less.
+/// The probability to cross against the mean cost of a trial, for the policies that cost less.
 void add_front(Panels& out, const PlannedField& p, const Box& box) {
   const dynamics::CostInfo& cost = p.shown.map.section.costs[p.thrift->cost];
   double low = p.plan.front[0].spent.mean, high = low;
   double lowest = 1.0, highest = 0.0;
   Rows& rows = out.data("$front");
   for (const lattice::FrontPoint& point : p.plan.front) {
-    const double mean = point.spent.mean;  // of few trials without an interval
+    const double mean = point.spent.mean;  // with few trials it has no interval
     const bool few = std::isnan(point.spent.mean_95[0]);
     const auto [from, to] = few ? std::array<double, 2>{mean, mean} : point.spent.mean_95;
     const auto [least, most] = point.crossings.interval_95();
@@ -315,7 +315,7 @@ void describe(Fields& out, const PlannedField& p) {
 
 namespace {
 
-/// A line for each action taken all the time, and one for the policy that knows the gate alone.
+/// A line for each single action, and one for the policy that depends on the gate alone.
 std::string actions_table(const PlannedField& p) {
   const lattice::Plan& plan = p.plan;
   TextTable table({{"", -4},
@@ -371,7 +371,7 @@ Figure figure_of(const PlannedField& p) {
   const double legend = box.bottom + 52, bars_top = legend + types.legend_height() + 30;
 
   Panels out;
-  // In a block of several gates the one that most bodies visit stands for all.
+  // A block of several gates shows the action of the gate that most bodies visit.
   Rows& rows = out.data("$actions");
   for (Eigen::Index r = 0; r < map.rows.blocks(); ++r)
     for (Eigen::Index c = 0; c < map.columns.blocks(); ++c) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The best actions of a body as a result, as a table and as a picture.
+/// The best actions of a body as a result, a table and a figure.
 
 #include <optional>
 #include <string>
@@ -19,36 +19,36 @@ namespace gatewalk::cli {
 struct PlannedField {
   ShownField shown;
   std::vector<std::string> actions;
-  std::vector<std::optional<lattice::Settled>> methods;  // that were chosen for these
+  std::vector<std::optional<lattice::Settled>> methods;  // chosen for the actions
   lattice::Plan plan;
   double seconds = 0.0;
   std::optional<lattice::ThriftOptions> thrift{};
   Provenance made_by{};
 };
 void describe(Fields& out, const PlannedField& p);
-/// The first screen, and what --details adds to it.
+/// The first screen; and what --details adds to it.
 [[nodiscard]] std::string answer_text(const PlannedField& p);
 [[nodiscard]] std::string details_text(const PlannedField& p);
-/// Which action is taken most in each cell, and how often bodies cross.
+/// The action taken most in each cell, and how often bodies cross.
 [[nodiscard]] Figure figure_of(const PlannedField& p);
 
-/// Number of the policy of the front that takes least of those that cross as often as asked for;
-/// none where none does, or no chance was asked for.
+/// The index of the cheapest policy on the front that crosses at least as often as --chance asks
+/// for; nullopt without --chance, or if none does.
 [[nodiscard]] std::optional<std::size_t> cheapest(const PlannedField& p);
-/// That policy, or the plan's.
+/// The policy that cheapest() names, or the plan's own.
 [[nodiscard]] const lattice::Policy& chosen_policy(const PlannedField& p);
 
-/// By cell (near row first): the action that is taken most there, and how often a trial takes any;
-/// -1 where none ever came.
+/// For a cell: the action taken most there (-1 if no body came), its share of the visits, and the
+/// visits per trial. most_taken() lists cells with the near row first.
 struct MostTaken {
   int action = -1;
   double share = 0.0, visits = 0.0;  // of the visits; per trial
-  bool shown = false;                // so many visits that they say something
+  bool shown = false;                // enough visits to be shown
 };
 [[nodiscard]] std::vector<MostTaken> most_taken(const PlannedField& p);
-/// Whether the plan is shown to cross more often than any action all the time, or is one.
+/// Whether the plan is shown to cross more often than every single action, or is a single action.
 [[nodiscard]] bool gains(const PlannedField& p);
-/// The action that alone crosses most often; the first of several.
+/// The action that crosses most often if it is always taken; the first of equals.
 [[nodiscard]] std::size_t best_alone(const lattice::Plan& plan);
 
 }  // namespace gatewalk::cli

@@ -20,7 +20,7 @@ namespace {
 double worst_error(const lattice::PooledPrediction& p) {
   double worst = 0.0;
   for (const lattice::StartAnswer& a : p.starts)
-    if (!(worst >= a.error.total_variation)) worst = a.error.total_variation;  // or not a number
+    if (!(worst >= a.error.total_variation)) worst = a.error.total_variation;  // also takes NaN
   return worst;
 }
 
@@ -47,7 +47,7 @@ void describe_error(Fields& out, double error_95) {
 
 void describe(Fields& out, const lattice::StartAnswer& a, const ShownField& shown) {
   FieldEnds<double> ends = ends_of(a.final, a.endings);
-  if (a.from_trials) {  // whose shares are added up one by one
+  if (a.from_trials) {  // whose endings at the edges are counted one by one
     ends.departed = 0.0;
     for (const markov::Ending edge : markov::kEdges) ends.departed += a.final[edge];
   }
@@ -121,7 +121,7 @@ std::string runs_of(const RunsPrediction& runs) {
   return text.empty() ? "the gate runs of the file" : text;
 }
 
-/// How the chain's own trials judge it, as the end of a sentence; empty where none do.
+/// The end of a sentence on whether the chain agrees with its own trials; empty if it has none.
 std::string agreement(const std::optional<lattice::HausmanCheck>& own) {
   if (!own) return "";
   return fmt::format("; the chain {} its own trials ({})",

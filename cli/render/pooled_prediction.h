@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Predictions as accurate as was asked for, as results and as tables.
+/// Predictions with an accuracy that was asked for, as results and tables.
 
 #include <optional>
 #include <string>
@@ -14,33 +14,33 @@
 
 namespace gatewalk::cli {
 
-/// Recorded runs, and what those lost from sight leave open.
+/// Recorded runs, and the bounds that bodies lost from sight imply.
 struct RecordedRuns {
   RecordedCounts counts{};
   lattice::LostBounds bounds{};
 };
-/// What gate runs say.
+/// A prediction from gate runs.
 struct RunsPrediction {
   lattice::PooledPrediction prediction{};
-  double accuracy = 0.0;  // that was asked for
+  double accuracy = 0.0;  // asked for
   std::optional<lattice::Settled> method{};
   std::optional<RecordedRuns> recorded{};
 };
-/// The keys of one start, and those of all together; `given`: the starts stand in a list.
+/// The keys of one start; and those of all starts. `given`: the starts stand in a list.
 void describe(Fields& out, const lattice::StartAnswer& answer, const ShownField& shown);
 void describe(Fields& out, const RunsPrediction& runs, bool given);
-/// The answer for one start, and what all starts share.
+/// The answer for one start; and what all starts share.
 [[nodiscard]] std::string answer_text(const lattice::StartAnswer& answer);
 [[nodiscard]] std::string answer_text(const RunsPrediction& runs);
-/// Details of one start, and those that all starts share.
+/// The details of one start; and what all starts share.
 [[nodiscard]] std::string details_text(const lattice::StartAnswer& answer, const ShownField& shown);
 [[nodiscard]] std::string details_text(const RunsPrediction& runs);
 
 /// The key "error_95".
 void describe_error(Fields& out, double error_95);
-/// The key "own_trials": what a chain's own full trials say of it; null where there are none.
+/// The key "own_trials": the comparison of the chain with its own full trials; null without trials.
 void describe_hausman_check(Fields& out, const std::optional<lattice::HausmanCheck>& own);
-/// The same as a sentence; empty where there are none.
+/// A sentence that compares the chain with its own full trials; empty without trials.
 [[nodiscard]] std::string hausman_check_text(const std::optional<lattice::HausmanCheck>& own);
 
 }  // namespace gatewalk::cli

@@ -22,7 +22,7 @@ using lattice::Effect;
 using lattice::EndingPlan;
 using lattice::ExperimentOptions;
 
-/// Endings of this prediction alone; of both.
+/// The endings to test: those of this prediction; and those of both predictions.
 std::vector<std::size_t> looked_at(const PowerResult& p) {
   return lattice::endings_to_look_at(p.prediction, p.prediction);
 }
@@ -30,7 +30,7 @@ std::vector<std::size_t> looked_at_apart(const PowerResult& p) {
   return lattice::endings_to_look_at(p.prediction, p.versus->prediction);
 }
 
-// ---- As a result ----
+// ---- The result ----
 
 /// Where bodies end by a prediction.
 void describe(Fields& out, const lattice::StartAnswer& a) {
@@ -42,7 +42,7 @@ void describe(Fields& out, const lattice::StartAnswer& a) {
   describe_error(out, a.error.total_variation);
 }
 
-/// What differs: an ending from the prediction, or between two groups; final gates.
+/// What differs: an ending from the prediction, an ending between two groups, or the final gates.
 enum class Differs { ending, ending_of_groups, final_gates };
 
 void describe(Fields& out, const Effect& effect, const ExperimentOptions& options, Differs what) {
@@ -73,7 +73,7 @@ void describe(Fields& out, const Effect& effect, const ExperimentOptions& option
              effect.within_error);
 }
 
-/// An object with a key for each of these endings; `kind`: the name of what stands there.
+/// An object with a key for each of these endings; `kind` names the object there.
 template <class Describe>
 void by_ending(Fields& out, const Label& label, const std::vector<std::size_t>& endings,
                std::string_view kind, Describe describe) {
@@ -137,18 +137,18 @@ void describe(Fields& out, const PowerResult::Versus& versus, const PowerResult&
   });
 }
 
-// ---- As tables ----
+// ---- Tables ----
 
 std::string trials_text(const std::optional<std::int64_t>& trials) {
   return trials ? std::to_string(*trials) : fmt::format(">{}", lattice::kMostPlanned);
 }
 
-/// "29 (41)", with ? where the prediction may be as much off.
+/// "29 (41)"; followed by ? if the prediction's own error may be as large.
 std::string effect_text(const Effect& effect) {
   return fmt::format("{} ({}){}", trials_text(effect.trials), trials_text(effect.trials_of_all),
                      effect.within_error ? "?" : " ");
 }
-/// "29", with the same mark.
+/// "29"; followed by ? if the prediction's own error may be as large.
 std::string gates_text(const Effect& effect) {
   return trials_text(effect.trials) + (effect.within_error ? "?" : " ");
 }
@@ -172,7 +172,7 @@ std::string sureness(const ExperimentOptions& options) {
                      digits(100.0 * options.goal.level));
 }
 
-/// Below a table: `always`, and a line for each mark that its rows have.
+/// The legend under a table: `always`, and a line for each mark that occurs in `rows`.
 std::string legend(const std::string& rows, const std::string& always) {
   std::string text = always;
   const auto explain = [&](const char* mark, const std::string& what) {
@@ -190,8 +190,8 @@ std::string legend(const std::string& rows, const std::string& always) {
 constexpr const char* kBrackets =
     "29 (41): 29 trials if only this ending is tested, 41 if all endings are tested.\n";
 
-/// A table of endings: names, predicted shares, and a column of this width for each difference,
-/// `scale` times as large in its heading and with `behind` it; then `more`.
+/// A table of endings: names, predicted shares, and a column for each difference with this width,
+/// headed by the difference times `scale` and `behind`; then the columns `more`.
 template <std::size_t n>
 TextTable table_of_endings(const std::array<double, n>& differences, int width, const char* behind,
                            std::vector<TextColumn> more = {}, const char* share = "predicted",
@@ -202,7 +202,7 @@ TextTable table_of_endings(const std::array<double, n>& differences, int width, 
   return TextTable(std::move(columns));
 }
 
-/// A line of such a table.
+/// A line of table_of_endings().
 template <std::size_t n>
 std::vector<TextCell> line_of(const std::string& name, const std::string& share,
                               const std::array<Effect, n>& effects,
@@ -212,7 +212,7 @@ std::vector<TextCell> line_of(const std::string& name, const std::string& share,
   return cells;
 }
 
-/// The lines of all endings that are looked at.
+/// Adds a line for each ending to test.
 template <std::size_t n>
 void add_lines(TextTable& table, const PowerResult& p, std::array<Effect, n> EndingPlan::*effects) {
   for (const std::size_t e : looked_at(p))
@@ -309,7 +309,7 @@ std::string versus_table(const PowerResult& p) {
       gates.rows(), legend(endings.rows() + gates.rows(), kBrackets));
 }
 
-// ---- In sentences ----
+// ---- Sentences ----
 
 /// "260 trials", "more than 100000 trials"
 std::string trials_words(const std::optional<std::int64_t>& trials) {
@@ -317,7 +317,7 @@ std::string trials_words(const std::optional<std::int64_t>& trials) {
                 : fmt::format("more than {} trials", lattice::kMostPlanned);
 }
 
-/// The larger of both shifts, as far as they are detected.
+/// The larger of the two shifts, up and down, that are detected.
 std::optional<double> larger(const lattice::SmallestDifference& d) {
   if (d.more && d.fewer) return std::max(*d.more, *d.fewer);
   return d.more ? d.more : d.fewer;
@@ -344,7 +344,7 @@ std::string shown_by(const PowerResult& p) {
                      gates);
 }
 
-/// The most trials that any ending takes to be seen `at` kShareDifferences off; none: over
+/// The number of trials that detect kShareDifferences[at] in every ending; nullopt: over
 /// kMostPlanned.
 std::optional<std::int64_t> trials_of_endings(const PowerResult& p, std::size_t at) {
   std::int64_t most = 0;
@@ -356,7 +356,7 @@ std::optional<std::int64_t> trials_of_endings(const PowerResult& p, std::size_t 
   return most;
 }
 
-/// What it takes to tell the scene from the other one.
+/// A sentence on the trials needed to distinguish the scene from the other one.
 std::string told_apart(const PowerResult& p) {
   const auto& [set, other, apart, scene] = *p.versus;
   std::optional<std::int64_t> by_ending;
@@ -381,7 +381,7 @@ std::string told_apart(const PowerResult& p) {
 
 constexpr std::size_t kPoints = 2, kGates = 2;  // 10 points, a total variation of 0.2
 
-/// What these trials show, and what it takes.
+/// Two sentences: what these trials detect, and how many trials are needed.
 std::array<std::string, 2> summary_of(const PowerResult& p) {
   const std::string of_endings = fmt::format(
       "To detect a shift of {} percentage points in any one ending (power {} %) you need up to {}.",
@@ -396,12 +396,13 @@ std::array<std::string, 2> summary_of(const PowerResult& p) {
   return {of_endings, of_gates};
 }
 
-/// "44 ", with ? where the prediction may be as much off: where all endings are tested.
+/// "44 ", the trials if all endings are tested; followed by ? if the prediction's own error may be
+/// as large.
 std::string of_all_text(const Effect& effect) {
   return trials_text(effect.trials_of_all) + (effect.within_error ? "?" : " ");
 }
 
-/// The endings of the first screen: as predicted, and what it takes to see them shifted.
+/// The endings of the first screen: predicted shares, and the trials that detect a shift.
 std::string first_table(const PowerResult& p) {
   constexpr int kWide = 24, kNarrow = 13;
   const lattice::EndingShares shares = predicted_shares(p.prediction);
@@ -419,7 +420,7 @@ std::string first_table(const PowerResult& p) {
                  of_all_text(p.versus->apart.endings[e])});
     return table.text();
   }
-  std::vector<std::size_t> differences{1, 2, 3};  // places in kShareDifferences
+  std::vector<std::size_t> differences{1, 2, 3};  // indices into kShareDifferences
   if (p.options.trials) {
     differences.erase(differences.begin());
     columns.push_back({counted(*p.options.trials, "trial", "trials") + " detect", kWide});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How many trials an experiment needs, as a result and as tables.
+/// The number of trials that an experiment needs, as a result and tables.
 
 #include <optional>
 #include <string>
@@ -25,12 +25,12 @@ struct PowerResult {
   lattice::ExperimentOptions options{};
   lattice::StartAnswer prediction{};
   lattice::ExperimentPlan plan{};
-  /// What the prediction is to be told apart from.
+  /// The scene or group to be distinguished from the prediction.
   struct Versus {
-    std::vector<std::string> set{};  // what --versus gives
+    std::vector<std::string> set{};  // the values of --versus
     lattice::StartAnswer prediction{};
     lattice::TwoScenesPlan apart{};
-    std::optional<lattice::Scene> scene{};  // none of another group's recorded runs
+    std::optional<lattice::Scene> scene{};  // none for another group's recorded runs
   };
   std::optional<Versus> versus{};
   dynamics::Health health{};
@@ -38,7 +38,7 @@ struct PowerResult {
   Provenance made_by{};
 };
 void describe(Fields& out, const PowerResult& result);
-/// The first screen, and what --details adds to it.
+/// The first screen; and what --details adds to it.
 [[nodiscard]] std::string answer_text(const PowerResult& result);
 [[nodiscard]] std::string details_text(const PowerResult& result);
 

@@ -17,7 +17,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// Of one start.
+/// Describes the prediction for one start.
 void describe(Fields& out, const lattice::StartPrediction& s, const ShownField& shown) {
   const markov::FinalDistribution& f = s.final;
   const auto ends = ends_of(f, s.shares);
@@ -47,7 +47,7 @@ void describe(Fields& out, const lattice::StartPrediction& s, const ShownField& 
   out.count({"steps", "1", "propagation steps; 0: a linear solve instead"}, f.steps);
 }
 
-/// What the intervals of a matrix's answer count, or why there are none.
+/// What the intervals of a matrix's answer include, or why there are none.
 std::string intervals_text(const MatrixPrediction& of) {
   const lattice::StartPrediction& s = of.prediction.starts.front();
   if (std::isnan(s.shares.interval.front().front()))
@@ -81,7 +81,7 @@ std::string details_text(const lattice::StartPrediction& s, const std::string& b
              bin, rest_text(rest_of(f)), digits(f.remainder + f.rounding, 2));
 }
 
-/// `describe_one` takes the number of a start.
+/// `describe_one` is called with the number of a start.
 template <class Describe>
 void describe_starts(Fields& out, const PredictResult& r, Describe describe_one) {
   out.optional(r.given.empty(), [&](Fields& f) { describe_one(f, 0); });
@@ -147,7 +147,7 @@ void describe(Fields& out, const PredictResult& r) {
 
 namespace {
 
-/// Adds for each start its title, if starts were given, and what `text_of` says of it.
+/// For each start, its title (if starts were given) and the text of `text_of`.
 template <class Text>
 std::string by_start(const PredictResult& r, Text text_of) {
   std::string text;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Predictions of where bodies end, from a matrix as it is or as accurate as was asked for, as
-/// results and as tables.
+/// Predictions of where bodies end, from a matrix as it is or from runs with an accuracy asked for,
+/// as results and tables.
 
 #include <optional>
 #include <string>
@@ -16,31 +16,30 @@
 
 namespace gatewalk::cli {
 
-/// Rows of gates that have another matrix.
+/// Rows whose gates have another matrix.
 struct OtherRows {
   int first = 0, last = 0;  // i_y
-  std::string matrix{};     // its path
+  std::string matrix{};     // path
   std::optional<dynamics::Health> status{};
   std::string scene{};  // as TOML
 };
-/// What a matrix says as it is.
+/// A prediction from a matrix as it is.
 struct MatrixPrediction {
   lattice::Prediction prediction{};
   std::string path{};                // of the matrix
   int matrix_states = 0;             // the number of its states
-  std::vector<ShownState> states{};  // in which bodies start, by start
+  std::vector<ShownState> states{};  // by start, the state in which bodies start
   std::string solver{};
   std::optional<dynamics::Health> status{};  // of the matrix
   std::vector<OtherRows> rows{};
-  bool probabilities = false;  // the matrix was given so, not counted
-  bool foreign = false;        // a chain that was made elsewhere, which has no trials beside it
+  bool probabilities = false;  // the matrix holds probabilities, not counts
+  bool foreign = false;        // an imported chain, without trials to compare with
 };
 
-/// The result of `predict`: of one of two kinds.
+/// The result of `predict`, which has one of two kinds of prediction.
 struct PredictResult {
   ShownField shown;
-  std::vector<std::optional<dynamics::Entry>>
-      given{};  // starts that were asked for; none: the scene's own
+  std::vector<std::optional<dynamics::Entry>> given{};  // starts of --start; none: the scene's own
   std::optional<MatrixPrediction> of_matrix{};
   std::optional<RunsPrediction> of_runs{};
   Provenance made_by{};
@@ -50,7 +49,7 @@ void describe(Fields& out, const PredictResult& result);
 [[nodiscard]] std::string answer_text(const PredictResult& result);
 [[nodiscard]] std::string details_text(const PredictResult& result);
 
-/// Empty if none is.
+/// A line on what was left out; empty if nothing was.
 [[nodiscard]] std::string text_of(const lattice::LeftOut& left_out);
 
 }  // namespace gatewalk::cli

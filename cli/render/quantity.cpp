@@ -15,7 +15,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// What a unit can be shown as, from small to large.
+/// The units in which a unit's numbers can be shown, from small to large.
 std::vector<Sized> sizes_of(const std::string& unit) {
   if (unit == "kg") return {{1e-12, "ng"}, {1e-9, "µg"}, {1e-6, "mg"}, {1e-3, "g"}, {1.0, "kg"}};
   std::vector<Sized> sizes{{1e-18, "a" + unit}, {1e-15, "f" + unit}, {1e-12, "p" + unit},
@@ -33,7 +33,7 @@ std::vector<Sized> sizes_of(const std::string& unit) {
   return sizes;
 }
 
-/// The largest that is not above `most`; the unit itself if all are.
+/// The largest unit not above `most`; the unit itself if all are above.
 Sized largest_within(const std::string& unit, double most) {
   Sized found{1.0, unit};
   bool any = false;
@@ -45,7 +45,7 @@ Sized largest_within(const std::string& unit, double most) {
   return any ? found : Sized{1.0, unit};
 }
 
-constexpr double kShort = 1e4;  // what is less has no more than four digits before the point
+constexpr double kShort = 1e4;  // numbers below have at most four digits before the point
 
 }  // namespace
 
@@ -58,7 +58,7 @@ Sized readable_unit(const std::string& unit, double most) {
 std::string quantity(double x, const std::string& unit, int significant) {
   if (!std::isfinite(x)) return "-";
   if (x == 0.0) return "0 " + unit;
-  x = lattice::number_of(scientific(x, significant - 1));  // 9999.7 is 10 k
+  x = lattice::number_of(scientific(x, significant - 1));  // 9999.7 becomes 10 k
   const Sized shown = readable_unit(unit, std::abs(x));
   const double value = x / shown.size, size = std::abs(value);
   if (size < 0.01 || size >= kShort) return digits(value, significant) + " " + shown.name;
@@ -77,7 +77,7 @@ std::string reading(double x, const std::string& unit, double step) {
   Sized shown = plain ? Sized{1.0, unit} : largest_within(unit, typical);
   std::string behind = " " + shown.name;
   if (const double size = typical / shown.size;
-      !plain && (size < 0.9 || size > 999.0)) {  // beyond all prefixes
+      !plain && (size < 0.9 || size > 999.0)) {  // no prefix is large or small enough
     const int exponent = 3 * static_cast<int>(std::floor((power + 2.0) / 3.0));
     shown.size = std::pow(10.0, exponent);
     behind = fmt::format("e{} {}", exponent, unit);

@@ -26,7 +26,7 @@ bool has_error(const lattice::RowChance& c) {
   return c.probability > 0.0 && c.probability < 1.0 && c.relative_standard_error > 0.0;
 }
 
-/// Independent trials whose share has the same relative standard error.
+/// The number of independent trials with the same relative standard error.
 double trials_needed(const lattice::RowChance& c) {
   return (1.0 - c.probability) /
          (c.probability * c.relative_standard_error * c.relative_standard_error);
@@ -172,7 +172,7 @@ Figure figure_of(const RareResult& result) {
   p.y.logarithmic = true;
   p.key = {"on bottom left Left reverse samplen 1.5 width -4"};
   p.draw(chain, "1:2", "lines", {.colour = kSecondColour, .width = 2}, "chain");
-  p.draw(trials, "($1+0.25):2:3:4", "yerrorbars",  // beside the others
+  p.draw(trials, "($1+0.25):2:3:4", "yerrorbars",  // shifted, so that the marks stand side by side
          {.colour = kThirdColour, .mark = 4, .size = 0.5},
          fmt::format("{} direct trials, 95 %", direct.trials));
   p.draw(split, "1:2:3:4", "yerrorbars", {.colour = kFirstColour, .mark = 7, .size = 0.5},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Chances of rare events as JSON, as a table and as a picture.
+/// Probabilities of rare events as JSON, a table and a figure.
 
 #include <cstdint>
 #include <string>
@@ -18,7 +18,7 @@ namespace gatewalk::cli {
 /// The result of `rare`.
 struct RareResult {
   lattice::RareEvent event;
-  lattice::DirectRows direct;  // beside it; no trials where none were asked for
+  lattice::DirectRows direct;  // direct simulation, for comparison; zero trials: none
   std::optional<lattice::Settled> method;
   Provenance made_by;
 };

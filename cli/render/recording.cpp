@@ -32,7 +32,7 @@ constexpr std::size_t kFewLines = 6, kMostLines = 20;  // of the table, without 
 
 /// One unit for each column of a table, so that its lines can be compared.
 struct Readings {
-  double second, joule;  // what counts
+  double second, joule;  // smallest difference that matters
 
   Readings(const lattice::Scene& scene, const std::vector<Recording>& runs) {
     const dynamics::Scale scale = dynamics::scale_of(scene.gate);
@@ -51,7 +51,7 @@ struct Readings {
   [[nodiscard]] std::string joules(double energy) const { return reading(energy, "J", joule); }
 };
 
-/// Codes with the words that they stand for.
+/// Writes the meanings of a variable's codes.
 void put_words(int nc, int variable, const std::vector<std::string>& words) {
   using namespace markov::netcdf;
   std::string meanings;
@@ -66,7 +66,7 @@ void put_words(int nc, int variable, const std::vector<std::string>& words) {
         "flag_values");
 }
 
-/// Dimension run and what there is one of in each run.
+/// Writes the dimension run, and the variables with a value for each run.
 void put_runs(int nc, const Recordings& recordings) {
   using namespace markov::netcdf;
   std::vector<std::int64_t> trial;
@@ -88,11 +88,11 @@ void put_runs(int nc, const Recordings& recordings) {
   put_words(nc, put_variable(nc, "ending", run, ending, "1", "how a run ended"), known);
 }
 
-/// Coordinates of trajectories with their axes, as the CF conventions name them. The time has no
-/// axis: CF's axis T needs a date from which time counts, and a trial has none.
+/// The axes of trajectories' coordinates, as the CF conventions name them. The time has no axis:
+/// CF's axis T needs a date from which time counts, and a trial has none.
 const std::map<std::string_view, const char*> kAxes{{"field_x_m", "X"}, {"field_y_m", "Y"}};
 
-/// A column of all runs: codes as bytes, what is counted as whole numbers.
+/// Writes a column of all runs: codes as bytes, counts as integers.
 void put_column(int nc, int sample, const Column& c, const Recordings& recordings) {
   using namespace markov::netcdf;
   const auto put = [&](auto zero) {
@@ -120,7 +120,7 @@ void put_column(int nc, int sample, const Column& c, const Recordings& recording
 
 namespace {
 
-/// A line for each run, of the first `most`.
+/// A line for each of the first `most` runs.
 std::string table_of(const lattice::Scene& scene, const Recordings& recordings, std::size_t most) {
   const std::vector<Recording>& runs = recordings.runs;
   const std::size_t shown = std::min(runs.size(), most);
@@ -244,7 +244,7 @@ void describe_details(Fields& out, const Recordings& recordings, const Recording
 
 namespace {
 
-/// Where a body is in the whole field, from the middle of the first gate's lower edge (m).
+/// The place of a body in the whole field, from the middle of the first gate's lower edge (m).
 std::array<double, 2> place(const Scene& scene, const lattice::Moment& m) {
   const dynamics::BodyState& b = m.sample.state.body;
   return {b.x + 2.0 * scene.gate.beams.joint_x * m.i_x, b.y + scene.gate.run.traverse_y * m.i_y};
@@ -254,7 +254,7 @@ struct Window {
   double left, right, bottom, top;  // m
 };
 
-/// Whole gates that hold all ways.
+/// The smallest window of whole gates that holds all tracks.
 Window window_of(const Scene& scene, const std::vector<const Recording*>& runs) {
   const double half = scene.gate.beams.joint_x, deep = scene.gate.run.traverse_y;
   Window w{-half, half, 0.0, deep};
@@ -268,10 +268,10 @@ Window window_of(const Scene& scene, const std::vector<const Recording*>& runs) 
   return w;
 }
 
-/// Beams at rest of every gate in the window: "x y dx dy" from joint to tip.
+/// Adds the beams at rest of every gate in the window: "x y dx dy" from joint to tip.
 void add_beams(Rows& beams, const Scene& scene, const lattice::FieldGates& gates, const Window& w,
                double metre) {
-  const auto& b = scene.gate.beams;  // joints, which all gates have in common
+  const auto& b = scene.gate.beams;  // all gates have the same joints
   const auto columns = std::lround((w.right - w.left) / (2.0 * b.joint_x)),
              rows = std::lround(w.top / scene.gate.run.traverse_y);
   const long first = std::lround(w.left / (2.0 * b.joint_x) + 0.5);  // i_x

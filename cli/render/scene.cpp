@@ -19,7 +19,7 @@
 namespace gatewalk::cli {
 namespace {
 
-/// A number of a scene with seven digits at most, unless it is a whole one.
+/// A number of a scene with at most seven digits, unless it is an integer.
 std::string shortened(const std::string& number) {
   if (number.find_first_of(".en") == number.npos) return number;
   const double x = lattice::number_of(number);
@@ -32,7 +32,7 @@ std::string shown_value(const lattice::KeyInfo& k) {
   return k.value.starts_with('"') ? k.value : shortened(k.value);
 }
 
-/// "[low, high]", each end shortened.
+/// The range "[low, high]" with both ends shortened.
 std::string shown_range(const lattice::KeyInfo& k) {
   const std::size_t comma = k.range.find(", ");
   if (comma == k.range.npos) return k.range;
@@ -56,7 +56,7 @@ std::string limits_text(const ShownField& shown) {
 
 std::string too_few_gates(const ShownField& shown) {
   const lattice::FieldParams& field = shown.field;
-  int longest = 1;  // rows in one move
+  int longest = 1;  // rows that a body can advance in a move
   for (const dynamics::Face& face : shown.map.section.faces) longest = std::max(longest, face.di_y);
   if (field.max_gates == 0 || field.max_gates >= (field.rows + longest - 1) / longest) return "";
   return fmt::format("nobody can cross: field.max_gates = {} is less than field.rows = {}",
@@ -67,7 +67,7 @@ std::string scene_line(const lattice::Scene& scene, const std::vector<std::strin
   const auto& gate = scene.gate;
   const auto& start = scene.start;
   const auto number = [](double x) { return digits(x, 6); };
-  // Two numbers with one unit, that of the larger.
+  // Two numbers share one unit, that of the larger.
   const Sized place = readable_unit("m", std::max(std::abs(start.x), std::abs(start.y)));
   const Sized speed = readable_unit("m/s", std::max(std::abs(start.vx), std::abs(start.vy)));
   const std::string text =
@@ -125,11 +125,11 @@ std::string commented(const lattice::Scene& scene) {
   };
   for (lattice::KeyInfo& k : keys) {
     if (k.source == "derived")
-      k.value = digits(lattice::number_of(k.value));  // nobody reads them back
+      k.value = digits(lattice::number_of(k.value));  // as a comment, with few digits
     if (!of_terrain(k)) width = std::max(width, leaf(k).size() + k.value.size() + 5);
   }
   for (const lattice::KeyInfo& k : keys) {
-    if (of_terrain(k)) break;  // as a table below
+    if (of_terrain(k)) break;  // written as a table below
     if (const std::string own = k.key.substr(0, k.key.find('.')); own != table)
       text += "\n[" + (table = own) + "]\n";
     const bool follows = k.source == "derived";
@@ -156,7 +156,7 @@ using lattice::Scene;
 constexpr double kSceneWide = 720, kSceneTop = 44, kEdge = 48, kRoomWide = 276, kRoomTall = 320;
 constexpr double kTable = 374, kKeys = 406, kRow = 16.5;
 
-/// Things at places of the sheet, in points from its upper left corner.
+/// Draws at places on the sheet, in points from its upper left corner.
 class Drawing {
  public:
   void line(double x, double y, double to_x, double to_y, const std::string& style) {
@@ -165,7 +165,7 @@ class Drawing {
   void circle(double x, double y, double radius, const std::string& style) {
     out_ += fmt::format("set object circle at {} size {} {}\n", at(x, y), digits(radius), style);
   }
-  /// `text` in gnuplot's quotes; `where`: left, center or right, and more.
+  /// Draws `text` in gnuplot's quotes; `where`: left, center or right, and more.
   void text(const std::string& text, double x, double y, const std::string& where) {
     out_ += fmt::format("set label {} at {} {}\n", text, at(x, y), where);
   }
@@ -210,8 +210,8 @@ constexpr std::array<KeySymbol, 21> kSceneSymbols{{{"M", "body.mass_kg"},
                                                    {"v_x", "start.vx_m_per_s"},
                                                    {"v_y", "start.vy_m_per_s"}}};
 
-/// Symbols, keys and values; those that the scene leaves out in another colour. Returns where it
-/// ends.
+/// Draws a table of symbols, keys and values, with another colour for keys that the scene leaves
+/// out. Returns where the table ends.
 double draw_table(Drawing& drawing, const Scene& scene) {
   const std::string left_out = fmt::format("left tc rgb '{}'", kSecondColour);
   const std::vector<lattice::KeyInfo> keys = lattice::describe(scene);
@@ -232,7 +232,7 @@ double draw_table(Drawing& drawing, const Scene& scene) {
   return y + 4 + kRow;
 }
 
-/// A torsion spring around a joint.
+/// Draws a torsion spring around a joint.
 void draw_spring(Drawing& drawing, double x, double y) {
   constexpr int kParts = 30;
   const auto point = [&](int i) {
@@ -245,7 +245,7 @@ void draw_spring(Drawing& drawing, double x, double y) {
   }
 }
 
-/// The disc with its forces, `disc` points in radius.
+/// Draws the disc with its forces, with a radius of `disc` points.
 void draw_body(Drawing& drawing, const Scene& scene, double x, double y, double disc) {
   const auto& forces = scene.gate.forces;
   drawing.circle(x, y, disc, "fs empty border lt -1 lw 1.5");
@@ -313,7 +313,7 @@ Figure figure_of(const Scene& scene) {
   for (const double side : {left + 9, right - 8})
     d.text("'exited'", side, 0.5 * (bottom + joint), "center rotate by 90");
 
-  // Lengths: beside the gate, below it, above the beams.
+  // Lengths stand beside the gate, below it and above the beams.
   d.line(left - 16, bottom, left - 16, joint, kMeasure);
   d.text("'y_J'", left - 21, 0.5 * (bottom + joint), "right");
   d.line(right + 14, bottom, right + 14, far, kMeasure);

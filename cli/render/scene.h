@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What a scene says, in words.
+/// A scene in words, as a table and as a figure.
 
 #include <string>
 #include <vector>
@@ -11,12 +11,12 @@
 
 namespace gatewalk::cli {
 
-/// What is run, in four lines: start, body and forces, beams and method.
+/// The scene in four lines: start, body and forces, beams and method.
 [[nodiscard]] std::string scene_line(const lattice::Scene& scene,
                                      const std::vector<std::string>& actions = {});
-/// What two of the endings mean in this scene, below them.
+/// The meaning of two endings, trapped and cut off, in this scene.
 [[nodiscard]] std::string limits_text(const ShownField& shown);
-/// That no body can cross the field within the gates it may visit; empty if one can.
+/// A warning that no body can cross the field within its limit of gates; empty otherwise.
 [[nodiscard]] std::string too_few_gates(const ShownField& shown);
 
 /// Every key with its value, unit, range, meaning and source.
@@ -24,7 +24,7 @@ namespace gatewalk::cli {
 /// The scene as a file to edit: every key with its value, unit, range and meaning.
 [[nodiscard]] std::string commented(const lattice::Scene& scene);
 
-/// One gate to scale: the disc at its start, the beams at rest, each length and force at its place,
+/// A gate to scale: the disc at its start, the beams at rest, each length and force at its place,
 /// and the keys that give them.
 [[nodiscard]] Figure figure_of(const lattice::Scene& scene);
 

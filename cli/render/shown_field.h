@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// What results are shown of: the field, its cells' size and types, how entries are told.
+/// What results show of a field: its size, the size and types of its cells, and how entries are
+/// described.
 
 #include <optional>
 #include <string>
@@ -17,10 +18,10 @@ namespace gatewalk::cli {
 struct ShownField {
   lattice::FieldParams field;
   double width = 0.0, length = 0.0;  // m, of a cell
-  double time_limit = 0.0;           // s, until a body is trapped; NaN: somebody said so
-  std::optional<double> mass;        // kg, of a disc; other bodies' are not known
-  std::vector<std::string> types;    // names by type, "s/t" where two are alike; none where all are
-  dynamics::CellMap map;             // section, which type stands where
+  double time_limit = 0.0;           // s, until a body is trapped; NaN: as recorded runs say
+  std::optional<double> mass;        // kg, of a disc; not known for other bodies
+  std::vector<std::string> types;    // by type, "s/t" for equal types; empty if all gates are alike
+  dynamics::CellMap map;             // section, and the type of each cell
 
   ShownField(const lattice::Scene& scene);  // NOLINT(google-explicit-constructor)
   explicit ShownField(const lattice::CellFile& cells);

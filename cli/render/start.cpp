@@ -77,7 +77,7 @@ StartTexts::StartTexts(const dynamics::Section& section, const std::vector<dynam
     add("face", 4, 1, face_of);
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)
     add(section.coordinates[axis].name, axis == 0 ? 4 : 5, axis == 0 ? 1 : 2,
-        [&](const dynamics::Entry& s) { return digits(s.at[axis] + 0.0, 6); });  // -0 is 0
+        [&](const dynamics::Entry& s) { return digits(s.at[axis] + 0.0, 6); });  // turns -0 into 0
 }
 
 ShownState shown_state(const lattice::ChainStart& start, const dynamics::StateSpace& space) {

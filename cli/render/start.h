@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Starts of trials and of chains, as keys of results and in words.
+/// Starts of trials and chains, as keys of results and in words.
 
 #include <optional>
 #include <string>
@@ -11,16 +11,17 @@
 
 namespace gatewalk::cli {
 
-/// The keys of an entry: its coordinates' own, with "face" where it is not the first one, and its
-/// "name" where it has one. Of a range [from, to] each.
+/// The keys of an entry: its coordinates, "face" if it is not the first face, and "name" if the
+/// entry has one. For a range, each coordinate is [from, to].
 void describe(Fields& out, const dynamics::Section& section, const dynamics::Entry& entry);
 void describe(Fields& out, const dynamics::Section& section, const dynamics::StateRange& range);
-/// An object of these, the key "start" of most results; "as seen" where there is no entry.
+/// The key "start" of most results: an object with the keys of an entry; the text "as seen" without
+/// an entry.
 void describe_start(Fields& out, const Label& l, const dynamics::Section& section,
                     const std::optional<dynamics::Entry>& start);
 void describe_start(Fields& out, const dynamics::Section& section,
                     const std::optional<dynamics::Entry>& start);
-/// "  23  -11   16": columns as wide as the numbers of all starts need, of six digits at most.
+/// Texts of starts in aligned columns, with at most six digits: "  23  -11   16".
 struct StartTexts {
   std::string header;              // "   d   vx   vy"
   std::vector<std::string> texts;  // (starts)
@@ -28,15 +29,15 @@ struct StartTexts {
 };
 [[nodiscard]] std::string start_text(const dynamics::Section& section,
                                      const dynamics::Entry& start);
-/// The state of a chain in which bodies start, as it is shown.
+/// The state of a chain in which bodies start, as results show it.
 struct ShownState {
   int number = 0;   // from 0
-  std::string bin;  // the entries that it stands for
+  std::string bin;  // the range of entries in this state
   bool clamped = false;
 };
 [[nodiscard]] ShownState shown_state(const lattice::ChainStart& start,
                                      const dynamics::StateSpace& space);
-/// Its keys, and the key "start_state" with these.
+/// The keys of `state`; and the key "start_state".
 void describe(Fields& out, const ShownState& state);
 void describe_start_state(Fields& out, const ShownState& state);
 

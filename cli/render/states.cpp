@@ -113,7 +113,7 @@ BinRecord bins_in(const Json& json) {
 
 // ---- In words ----
 
-/// "4,5,10", "W:0.1,0": as --start gives it.
+/// A start as --start takes it: "4,5,10", "W:0.1,0".
 std::string text_of_start(const Section& section, const Entry& start) {
   std::string text;
   for (std::size_t axis = 0; axis < section.coordinates.size(); ++axis)

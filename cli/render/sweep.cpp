@@ -28,8 +28,8 @@ using dynamics::share_interval;
 using lattice::SweepAxis;
 using lattice::SweepPoint;
 
-/// What a share is of, and how many of those. Right of those that pushed more past one beam than
-/// past the other: the paper's Fig. 12.
+/// A share, as part of a whole. `right_of_traversed` is the share of right traversals among the
+/// left and right ones, as in the paper's Fig. 12.
 struct Part {
   const char* name;
   std::int64_t part, whole;
@@ -44,7 +44,7 @@ std::vector<Part> shares_of(const dynamics::GateTally& t) {
            t[Outcome::traversed_left] + t[Outcome::traversed_right]}};
 }
 
-/// "5.1 [3.9, 6.6]", in %; "-" of none.
+/// "5.1 [3.9, 6.6]", in %; "-" if there are no runs.
 std::string share_text(const Part& s) {
   if (s.whole == 0) return "-";
   const auto [low, high] = share_interval(s.part, s.whole);
@@ -103,7 +103,7 @@ std::string csv_of(const SweepResult& result) {
     for (const std::int64_t n : t.counts) out << ',' << n;
     for (const Part& s : shares_of(t)) {
       if (s.whole == 0) {
-        out << ",,,";  // of none there is no share
+        out << ",,,";  // no share of nothing
         continue;
       }
       const auto [low, high] = share_interval(s.part, s.whole);
@@ -117,7 +117,7 @@ std::string csv_of(const SweepResult& result) {
 
 namespace {
 
-/// Keys in the headings where they are short; else letters, which a line in front explains.
+/// Columns of the varied keys: headed by short keys, or by letters that `legend` explains.
 struct KeyColumns {
   std::string legend{};
   std::vector<TextColumn> columns{};
@@ -160,7 +160,7 @@ std::string table_of(const std::vector<SweepAxis>& axes,
   return legend + table.text();
 }
 
-constexpr std::size_t kMostShown = 8;  // points of the first screen; fewer below a legend of keys
+constexpr std::size_t kMostShown = 8;  // points on the first screen; fewer below a legend
 constexpr std::size_t kMostBelowLegend = 6;
 
 }  // namespace
@@ -169,7 +169,7 @@ std::string answer_text(const SweepResult& result) {
   std::vector<const SweepPoint*> points;
   for (const SweepPoint& p : result.points) points.push_back(&p);
   std::string text;
-  if (points.size() > kMostShown) {  // those where most and fewest traverse
+  if (points.size() > kMostShown) {  // shows those where most and fewest traverse
     std::ranges::stable_sort(points, [](const SweepPoint* a, const SweepPoint* b) {
       return a->tally.traversed() > b->tally.traversed();
     });
@@ -195,7 +195,7 @@ std::string details_text(const SweepResult& result, const lattice::Scene& scene)
 
 namespace {
 
-/// The values as numbers, if all are.
+/// The values as numbers; nullopt if one of them is not a number.
 std::optional<std::vector<double>> numbers_of(const SweepAxis& axis) {
   std::vector<double> numbers;
   for (const std::string& v : axis.values) {
@@ -207,7 +207,8 @@ std::optional<std::vector<double>> numbers_of(const SweepAxis& axis) {
   return numbers;
 }
 
-/// Values at 0, 1, 2 ... of an axis of that many points; not all have tics where they would touch.
+/// An axis with values at 0, 1, 2, ... that has this many points for each value. If tics would
+/// touch, some are left out.
 Axis axis_of(const SweepAxis& axis, double points_per_value, bool upright) {
   std::size_t longest = 1;
   for (const std::string& v : axis.values) longest = std::max(longest, v.size());
@@ -224,7 +225,7 @@ std::string about(const std::vector<SweepPoint>& points) {
   return fmt::format("one gate, {} trials a point", points.front().tally.trials);
 }
 
-/// Shares of all over one key, with their intervals.
+/// Draws shares with their intervals over one key.
 Figure curves(const SweepAxis& axis, const std::vector<SweepPoint>& points) {
   struct Curve {
     const char *name, *colour;
@@ -268,7 +269,7 @@ Figure curves(const SweepAxis& axis, const std::vector<SweepPoint>& points) {
   return out.figure(370);
 }
 
-/// The traversed over two keys.
+/// Draws the share that traversed over two keys.
 Figure map_of(const SweepAxis& up, const SweepAxis& right, const std::vector<SweepPoint>& points) {
   const std::size_t columns = right.values.size(), rows = up.values.size();
   Panels out;
@@ -281,7 +282,7 @@ Figure map_of(const SweepAxis& up, const SweepAxis& right, const std::vector<Swe
   }
   std::size_t longest = 1;
   for (const std::string& v : up.values) longest = std::max(longest, v.size());
-  // The upright name of the axis takes 8 points a letter.
+  // The upright name of the axis needs 8 points a letter.
   const double name = 8.0 * static_cast<double>(up.key.size());
   const double left = 70.0 + 8.0 * static_cast<double>(std::min<std::size_t>(longest, 12));
   const double wide = 420.0 - left,

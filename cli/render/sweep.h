@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// A sweep as a result, CSV and table.
+/// A sweep as a result, CSV, a table and a figure.
 
 #include <string>
 #include <vector>
@@ -20,12 +20,12 @@ struct SweepResult {
 };
 void describe(Fields& out, const SweepResult& result);
 [[nodiscard]] std::string csv_of(const SweepResult& result);
-/// The first screen, and what --details adds to it.
+/// The first screen; and what --details adds to it.
 [[nodiscard]] std::string answer_text(const SweepResult& result);
 [[nodiscard]] std::string details_text(const SweepResult& result, const lattice::Scene& scene);
 
-/// Of one key: shares over its values; of two: a map of the traversed. Throws std::invalid_argument
-/// for more.
+/// For one key, shares over its values; for two, a map of the share that traversed. Throws
+/// std::invalid_argument for more keys.
 [[nodiscard]] Figure figure_of(const std::vector<lattice::SweepAxis>& axes,
                                const std::vector<lattice::SweepPoint>& points);
 

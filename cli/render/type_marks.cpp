@@ -16,11 +16,11 @@ namespace {
 constexpr double kLegendLine = 17, kLeftEnd = 8, kRightEnd = 496, kLetter = 7.6;  // points
 constexpr std::size_t kLongestName = 40;
 
-/// Shapes of gnuplot, white on black and black on white. What is beyond has one look together.
+/// gnuplot's shapes: white on black, then black on white. Further types share one look.
 constexpr std::array kShapes{7, 9, 5, 13, 11, 15};
 constexpr std::size_t kMarkLooks = 2 * kShapes.size();
 
-/// A mark as two points, the larger one first: seen on every colour.
+/// A mark as two points, the larger one first, visible on every colour.
 struct MarkLook {
   int shape;
   const char *around, *inside;
@@ -87,7 +87,7 @@ bool TypeMarks::draw_on(Panels& out, Panel& panel, const FieldMap& map,
   if (entries_.empty() || map.rows.block > 1 || map.columns.block > 1 ||
       std::min(width, height) < kLeast)
     return false;
-  // In the upper left corner, where it leaves room for a number.
+  // The mark stands in the upper left corner, where it leaves room for a number.
   const double left = std::max(0.0, 0.5 - kAside / width),
                up = std::max(0.0, 0.5 - kAside / height);
   for (std::size_t type = 1; type < map_.types.size(); ++type) {

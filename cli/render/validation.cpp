@@ -60,7 +60,7 @@ std::string verdict(const lattice::StartValidation& r) {
 
 namespace {
 
-// ---- Result ----
+// ---- The result ----
 
 double share(std::int64_t part, std::int64_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
@@ -73,8 +73,8 @@ double seconds_per_walk(const lattice::StartValidation& r) {
   return r.walks_seconds / static_cast<double>(r.walks.walks);
 }
 
-/// Of all types. Leaves of trees share runs and hold mirror images: then the runs are those of the
-/// record.
+/// The totals of all types. For trees the record gives the runs, because leaves share runs and hold
+/// mirror images.
 dynamics::Transitions::Totals totals_of(const ValidatedMatrix& matrix) {
   dynamics::Transitions::Totals total;
   for (const dynamics::Transitions& t : matrix.matrices) total += t.totals();
@@ -82,7 +82,7 @@ dynamics::Transitions::Totals totals_of(const ValidatedMatrix& matrix) {
   return total;
 }
 
-/// Of a disc: crossings through the sides above the joints.
+/// For a disc: crossings through the sides above the joints.
 std::int64_t traverse_sides(const lattice::Validation& v) {
   return v.entries_by[dynamics::Boundary::right_traverse] +
          v.entries_by[dynamics::Boundary::left_traverse];
@@ -96,7 +96,7 @@ void describe_spread(Fields& out, const Field& of, std::string_view over, double
   });
 }
 
-/// What the paper did: 100 trials of the full dynamics, over and over.
+/// The paper's procedure: repeats of 100 trials of the full dynamics.
 void describe_paper_sized(Fields& out, const lattice::StartValidation& r) {
   const lattice::PaperSized& p = r.paper_sized;
   const auto with_floor = [&](const Field& of, const lattice::MeanAndSd& m, std::string_view key,
@@ -124,7 +124,7 @@ void describe_paper_sized(Fields& out, const lattice::StartValidation& r) {
              p.walks_rmse, "walks_rmse_per_100_floor", r.floor_100_walks.rmse_per_100);
 }
 
-/// A map of each: dynamics, walks, exact chain.
+/// The maps of the dynamics, the walks and the exact chain.
 void describe_maps(Fields& out, const Label& label, const markov::CellCounts& dynamics,
                    const markov::CellCounts& walks, const markov::CellProbabilities& exact) {
   out.object(label, [&](Fields& f) {
@@ -265,7 +265,7 @@ std::string starts_table(const lattice::Validation& v, const StartTexts& labels)
   return table.text();
 }
 
-/// How trials of one start ended, by the dynamics and by the chain.
+/// The endings of one start, by the dynamics and by the chain.
 std::string endings_table(const lattice::StartValidation& r) {
   TextTable table({{"", -10},
                    {"trials, %", -24, 0, "", "  "},
@@ -297,8 +297,7 @@ std::string endings_tables(const lattice::Validation& v, const dynamics::Section
   return text;
 }
 
-/// A table of one measure with a line for each start: columns of numbers with three decimals, or
-/// words.
+/// A table of one measure with a line for each start; numbers have three decimals.
 std::string measure_table(const StartTexts& labels, const std::vector<std::string>& headings,
                           const std::function<std::vector<TextCell>(std::size_t)>& cells_of) {
   std::vector<TextColumn> columns{{labels.header}};
@@ -313,7 +312,7 @@ std::string measure_table(const StartTexts& labels, const std::vector<std::strin
   return table.text();
 }
 
-/// Beside what the paper prints, where these are its starts.
+/// Our values beside Table IV's, for the paper's starts.
 std::string table4_tables(const ValidateResult& result, const StartTexts& labels) {
   const std::vector<std::string> headings{"  paper", "  exact chain", "  floor", "    100 walks"};
   const auto table =
@@ -338,7 +337,7 @@ std::string table4_tables(const ValidateResult& result, const StartTexts& labels
             &lattice::NoiseFloor::rmse_per_100, &lattice::PaperSized::walks_rmse));
 }
 
-/// Of all trials.
+/// Tables of the final gates, from all trials.
 std::string final_gates_tables(const lattice::Validation& v, const StartTexts& labels) {
   const std::vector<std::string> headings{"exact chain", "floor", "walks", "floor"};
   std::vector<std::string> of_variation = headings;
@@ -399,7 +398,7 @@ std::string seconds_table(const lattice::Validation& v, const StartTexts& labels
       table.text());
 }
 
-/// By which faces bodies went on: "S 61.2 %, W 19.4 %".
+/// The faces through which bodies went on: "S 61.2 %, W 19.4 %".
 std::string by_face(const lattice::Validation& v, const dynamics::Section& section) {
   std::vector<std::string> faces;
   for (std::size_t f = 0; f < section.faces.size(); ++f)
@@ -487,7 +486,7 @@ StartTexts labels_of(const ValidateResult& result) {
   return {result.shown.map.section, starts};
 }
 
-/// What one start says.
+/// The answer for one start.
 std::string answer_text(const lattice::StartValidation& r) {
   const EndingName& most = differs_most(r);
   const auto at = static_cast<std::size_t>(most.ending);
@@ -504,7 +503,7 @@ std::string answer_text(const lattice::StartValidation& r) {
       fixed(j.total_variation.seen, 3), fixed(j.chance_total_variation, 3));
 }
 
-/// What several starts say.
+/// The answer for several starts.
 std::string answer_text(const lattice::Validation& v, const StartTexts& labels) {
   const auto n = std::count_if(v.starts.begin(), v.starts.end(), differs);
   return (n == 0
@@ -563,7 +562,7 @@ std::string details_text(const ValidateResult& result) {
     return percent(static_cast<double>(n), static_cast<double>(v.entries));
   };
   std::string text = endings_tables(v, result.shown.map.section);
-  if (result.shown.mass) text += table4_tables(result, labels);  // of discs in gates
+  if (result.shown.mass) text += table4_tables(result, labels);  // for discs in gates
   text += final_gates_tables(v, labels) + exits_table(v, labels) + seconds_table(v, labels);
   text += fmt::format(
       "\nMatrix: {} gate runs, {}.\nCrossings between gates in the trials: {};\n{} lie outside the "
@@ -616,7 +615,7 @@ Figure figure_of(const lattice::Validation& v, const ShownField& shown) {
 Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& title,
                  const std::string& seen_head, const ShownField& shown, const MorePanels& more) {
   struct Row {
-    FieldMap map;  // of what either of them reaches
+    FieldMap map;  // of all gates that either map reaches
     double top, height;
   };
   std::vector<Row> rows;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// The chain against the full dynamics, as a result, as tables and as a figure.
+/// The chain against the full dynamics, as a result, tables and a figure.
 
 #include <optional>
 #include <string>
@@ -20,11 +20,11 @@
 
 namespace gatewalk::cli {
 
-/// The matrices whose chain is validated, one for each type of gate, with what its file or its
-/// making says of it.
+/// The matrices of the chain to validate, one for each type of gate, with the record of their file
+/// or of their making.
 struct ValidatedMatrix {
   std::vector<dynamics::Transitions> matrices{};
-  std::string path{};    // empty: it was built for this
+  std::string path{};    // empty: built for this validation
   double seconds = 0.0;  // to build or read it
   std::optional<dynamics::Health> health{};
   std::optional<lattice::Settled> method{};
@@ -36,8 +36,8 @@ struct ValidateResult {
   lattice::Validation validation{};
   ValidatedMatrix matrix{};
   ShownField shown;
-  std::vector<lattice::PaperStart> papers{};  // where the starts are those of Table IV: these
-  bool like_table4 = false;  // the scene is the paper's: its figures belong beside ours
+  std::vector<lattice::PaperStart> papers{};  // of Table IV, if the starts are its starts
+  bool like_table4 = false;                   // show Table IV's values beside ours
   ObservedFiles observed{};
   Provenance made_by{};
 };
@@ -48,23 +48,22 @@ void describe(Fields& out, const ValidateResult& result);
 /// The verdict alone: "The chain agrees with the full dynamics ... (p = 0.870)."
 [[nodiscard]] std::string chain_verdict(const lattice::StartValidation& r);
 
-/// One sentence of a result: whether the chain agrees with the dynamics from one start.
+/// A sentence on whether the chain agrees with the dynamics from one start.
 [[nodiscard]] std::string verdict(const lattice::StartValidation& r);
 /// "p = 0.034", "p < 0.001"
 [[nodiscard]] std::string p_of(const lattice::JointTest& j);
 
-/// Maps of the final gates: dynamics, chain, and their difference, a row per start; below them the
-/// Chapman-Kolmogorov test. Throws
-/// std::invalid_argument for more than kMostValidated.
+/// Maps of the final gates, a row for each start: dynamics, chain and their difference; then the
+/// Chapman-Kolmogorov test. Throws std::invalid_argument for more than kMostValidated starts.
 inline constexpr std::size_t kMostValidated = 8;
 [[nodiscard]] Figure figure_of(const lattice::Validation& v, const ShownField& shown);
 
-/// Final gates as they were seen and by a chain, of the same field.
+/// The final gates of the same field, as observed and by a chain.
 struct ComparedGates {
   std::string summary;  // a line
   markov::CellProbabilities seen, chain;
 };
-/// The maps of both and their difference, a row each; `more` below them.
+/// A row of maps for each comparison: observed, by the chain, and the difference; `more` below.
 [[nodiscard]] Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& title,
                                const std::string& seen_head, const ShownField& shown,
                                const MorePanels& more = {});

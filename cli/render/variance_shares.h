@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// How much of the variance of a chance each number makes, as a result and as a table.
+/// The shares of numbers in the variance of a probability, as a result and a table.
 
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@ struct RangedShares {
   lattice::VarianceShares found{};
 };
 void describe(Fields& out, const RangedShares& shares);
-/// What each number makes of the variance, and behind --details what that rests on.
+/// The share of each number in the variance; and with --details how it was computed.
 [[nodiscard]] std::string answer_text(const RangedShares& shares);
 [[nodiscard]] std::string details_text(const RangedShares& shares);
 

@@ -28,7 +28,7 @@ using dynamics::WorkPrecision;
 
 namespace {
 
-/// A figure as the chart may give it: nothing when it is below what the reference can show.
+/// A number as a chart shows it: none if it is below what the reference can show.
 struct Shown {
   double value = std::nan("");
   bool below = false;
@@ -55,7 +55,7 @@ std::string csv_of(const ChartPoint& p, const WorkPrecision& chart) {
   out << csv_text(chart.label) << ',' << p.setting.method << ',' << p.setting.key << ','
       << digits(p.setting.value) << ',' << (p.setting.usual ? 1 : 0) << ','
       << dynamics::name_of(p.verdict) << ',' << h.runs << ',';
-  if (!p.ran()) {  // nothing but the reason
+  if (!p.ran()) {  // only the reason
     out << std::string(30, ',') << csv_text(p.refusal) << "\n";
     return out.str();
   }
@@ -131,7 +131,7 @@ void describe(Fields& out, const StrongError& e, const WorkPrecision& chart, boo
          e.energy, chart.strong_limit(&StrongError::energy));
 }
 
-/// What the reference shows of itself is given in full.
+/// Errors of the reference itself are given even below its limits.
 void describe(Fields& out, const Errors& e, const WorkPrecision& chart, bool of_reference) {
   out.object(
       Label("errors", "differences between trials of two settings with the same random numbers")
@@ -159,7 +159,7 @@ void describe_reference(Fields& out, const WorkPrecision& chart) {
              r.evaluations_per_trial);
   out.object({"outcomes", "number of the reference's trials by outcome"}, [&](Fields& f) {
     for (const auto& [outcome, key, words] : dynamics::kOutcomeNames)
-      if (outcome != Outcome::traversed_even)  // those that are even count as right (accuracy.h)
+      if (outcome != Outcome::traversed_even)  // even traversals count as right ones (accuracy.h)
         f.count({key, "1", fmt::format("number of trials with this outcome: {}", words)},
                 r[outcome]);
   });
@@ -311,7 +311,7 @@ std::string csv_of(const std::vector<WorkPrecision>& charts) {
 
 namespace {
 
-/// The default setting of each method, a line each.
+/// A line for the default setting of each method.
 std::string usual_lines(const WorkPrecision& chart) {
   TextTable table({{"  default setting", -25},
                    {"us/trial", 10, 1},
@@ -369,7 +369,7 @@ std::string details_text(const std::vector<WorkPrecision>& charts, std::int64_t 
 
 namespace {
 
-/// Colour and marker (filled) of a method.
+/// Colour and filled marker of a method.
 Pen pen_of(const std::string& method) {
   if (method == "paper") return {.colour = kSecondColour, .mark = 5, .size = 0.7};
   if (method == "stable") return {.colour = kFirstColour, .mark = 7, .size = 0.7};
@@ -378,23 +378,23 @@ Pen pen_of(const std::string& method) {
   return {.colour = kFourthColour, .mark = 15, .size = 0.7};
 }
 
-// What is marked, in the panels, there in the colour of a method, and in the key.
+// Marks of points. Panels draw them in the method's colour, the key in the text's colour.
 constexpr Pen kUsual{kInk, 1.2, 6, 1.2}, kFault{kInk, 2, 2, 0.7}, kLess{kInk, 1.2, 10, 0.9},
     kParted{kInk, 1.2, 8, 0.9};
 constexpr Pen kLimit{.colour = kInk, .width = 0.8, .dashes = 2},
     kOwn{.colour = kInk, .width = 0.8, .dashes = 3};
 
-/// A point's error (infinite: half of the trials or more parted; NaN: none), its standard error,
-/// and what it must reach to be told from no error.
+/// A point's error (infinite: at least half of the trials parted; NaN: none), its standard error,
+/// and the bound above which an error is significant.
 struct Drawn {
   double error, spread, bound;
 
   [[nodiscard]] bool parted() const { return !std::isnan(error) && !std::isfinite(height()); }
-  /// Where it is drawn.
+  /// Where the point is drawn.
   [[nodiscard]] double height() const { return std::max(error, bound); }
 };
 
-/// One of the errors of a chart: the bound that the reference sets to all, and its own error.
+/// A kind of error in a chart: the reference's limit for all points, and its own error.
 struct OutcomeKind {
   double limit, own;
   std::function<Drawn(const ChartPoint&)> value;
@@ -415,7 +415,7 @@ OutcomeKind positions_of(const WorkPrecision& chart) {
           }};
 }
 
-/// Of a logarithmic axis.
+/// The range of positive numbers on a logarithmic axis.
 struct Range {
   double low = HUGE_VAL, high = 0.0;
 
@@ -424,13 +424,13 @@ struct Range {
     low = std::min(low, x);
     high = std::max(high, x);
   }
-  /// With room on both sides; one that has seen nothing has some, too.
+  /// The range with margins; a default range if no number was seen.
   [[nodiscard]] Range wider(double below, double above) const {
     return high > 0.0 ? Range{low / below, high * above} : Range{0.1, 1.0};
   }
 };
 
-/// The same for all scenes: they can be compared.
+/// The ranges of all scenes' panels, equal so that scenes can be compared.
 struct Ranges {
   Range time, outcomes, positions;
 
@@ -451,8 +451,8 @@ struct Ranges {
   }
 };
 
-/// Least time per trial against error, all methods. What is below its bound is drawn there, as
-/// less than that; what has parted, on top.
+/// Draws the least time per trial against the error, for all methods. An error below its bound is
+/// drawn there as "less than"; trials that parted are drawn at the top.
 void draw_methods(Panels& out, Panel& panel, const WorkPrecision& chart, const OutcomeKind& kind,
                   const Range& range, const std::string& tag) {
   const auto level = [&](double at, const Pen& pen) {
@@ -506,7 +506,7 @@ void draw_methods(Panels& out, Panel& panel, const WorkPrecision& chart, const O
   if (!compared) panel.more = "set label 'nothing to compare' at graph 0.5,0.5 center\n";
 }
 
-/// Settings that the method refused, in lines as wide as the figure: "refused: penalty 0.02 to
+/// Lines on the settings that a method refused, as wide as the figure: "refused: penalty 0.02 to
 /// 0.01 s".
 std::vector<std::string> refused_lines(const WorkPrecision& chart) {
   constexpr std::size_t kLongest = 76;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-/// Speed against accuracy of the methods on scenes, as a result, CSV, a table and a figure.
+/// Speed against accuracy of the methods, as a result, CSV, a table and a figure.
 
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace gatewalk::cli {
 
-/// The result of `chart methods`: a chart of each scene, and what made it.
+/// The result of `chart methods`: a chart for each scene, and its provenance.
 struct ChartResult {
   std::vector<dynamics::WorkPrecision> charts;
   std::vector<Provenance> made_by;
@@ -20,16 +20,16 @@ struct ChartResult {
 void describe(Fields& out, const ChartResult& result);
 /// A scene's reference and settings.
 void describe(Fields& out, const dynamics::WorkPrecision& chart);
-/// A line for each setting of each scene.
+/// CSV with a line for each setting of each scene.
 [[nodiscard]] std::string csv_of(const std::vector<dynamics::WorkPrecision>& charts);
-/// The first screen: the fastest setting that will do, and of one scene the defaults of the
-/// methods. And what --details adds: the reference, and a line for each setting; `rounds` of
-/// timing.
+/// The first screen: the fastest setting that is good enough and, for a single scene, the methods'
+/// defaults; and what --details adds: the reference, and a line for each setting. `rounds` are
+/// those of timing.
 [[nodiscard]] std::string answer_text(const std::vector<dynamics::WorkPrecision>& charts);
 [[nodiscard]] std::string details_text(const std::vector<dynamics::WorkPrecision>& charts,
                                        std::int64_t rounds);
-/// A row for each scene: time against the error of the outcomes, and
-/// against where trials end.
+/// A row for each scene: time against the error of the outcomes, and against the error of the
+/// places where trials end.
 [[nodiscard]] Figure figure_of(const std::vector<dynamics::WorkPrecision>& charts);
 
 }  // namespace gatewalk::cli
