@@ -109,10 +109,15 @@ std::string summary_of(const std::vector<Claim>& claims) {
                    {"paper", kFit, 0, "", "  "},
                    {"here (sd)", kFit, 0, "", "  "},
                    {"", 0, 0, "", "  "}});
+  // "Chain and dynamics, d = 0 m, v = (0, 15) m/s."
+  const auto start_of = [](const std::string& claim) {
+    const std::size_t from = claim.find("d = ");
+    return claim.substr(from, claim.rfind('.') - from);
+  };
   std::string differing;
   for (const Claim& c : claims)
     if (is_of_table4(c))
-      table.row({c.claim.substr(c.claim.find("d = ")), c.paper, c.ours, name_of(c.verdict)});
+      table.row({start_of(c.claim), c.paper, c.ours, name_of(c.verdict)});
     else if (c.verdict == Verdict::differs)
       differing +=
           wrapped(fmt::format("- {} Paper: {}; here: {}.", c.claim, c.paper, c.ours), "  ");

@@ -24,14 +24,14 @@ head -c 1000 paper/data/fig9_100.json >half && mv half paper/data/fig9_100.json
 jq 'del(.runs[0].hits)' paper/data/exits.json >other && mv other paper/data/exits.json
 jq 'del(.crossing.seconds)' paper/data/done.json >less && mv less paper/data/done.json
 expect 0 '\[30/30\]  crossing' "$gatewalk" reproduce -o paper --quick --details
-grep -q '^27 of 30 studies are done already' out.txt && [ "$(grep -c '^ *\[' out.txt)" = 3 ] || fail "reproduce: did again what was done"
+grep -q '^27 of 30 studies are done already' out.txt && [ "$(grep -c '^ *\[[0-9]*/30\]' out.txt)" = 3 ] || fail "reproduce: did again what was done"
 cmp claims.csv paper/claims.csv || fail "reproduce: what was done again says something else"
 # The first screen: a verdict for each start of Table IV, then what differs. With --details: every claim.
 expect 0 '^Next: open paper/report.html' "$gatewalk" reproduce -o paper --quick
-[ "$(grep -c 'd = .* m, v = .* m/s .*\(reproduced\|agrees\|cannot tell\|differs\)$' out.txt)" = 4 ] || fail "reproduce: no verdict for the four starts"
+[ "$(grep -c '^  d = .* m, v = .* m/s  .*\(reproduced\|agrees\|cannot tell\|differs\)$' out.txt)" = 4 ] || fail "reproduce: no verdict for the four starts"
 [ "$(wc -l <out.txt)" -le 35 ] && ! grep -q '.\{101\}' out.txt || fail "reproduce: a screen of $(wc -l <out.txt) lines"
 "$gatewalk" reproduce -o paper --quick --details >out.txt
-[ "$(grep -c 'paper: ' out.txt)" = "$(jq '.claims | length' paper/report.json)" ] || fail "reproduce: --details has not all claims"
+[ "$(grep -c '^ *paper: ' out.txt)" = "$(jq '.claims | length' paper/report.json)" ] || fail "reproduce: --details has not all claims"
 # Numbers go where --csv says, relative to the folder in which the command was given.
 expect 0 'reproduced, .* agree' "$gatewalk" reproduce -o paper --quick --csv numbers.csv
 grep -q '^quick,,,1,,$' numbers.csv || fail "reproduce: --csv wrote nothing"
