@@ -26,6 +26,9 @@
 # coverage  which lines and branches of dynamics, markov and lattice the ordinary tests run (clang; a branch is a condition,
 #        true or false): results/reliability/coverage.csv; the log lists what none runs.
 #        Fails under 95 % of lines or 90 % of branches.
+# No step runs tests with their full counts (tests/support/long.h), which can take hours. One at a time:
+#   GATEWALK_LONG=1 build/tests/lattice_tests --gtest_filter=Fit.AFieldThatIsItsMirrorImageHasBothHills     12 seeds, not 4
+#   GATEWALK_LONG=1 build/tests/dynamics_tests --gtest_filter=RandomScenes.StableAndEvent*     10 000 scenes, also the slow 15
 # tests/mutants.py checks whether tests notice a mistake in a line that they run. The output of a step goes to
 # nightly-STEP.log; the end of a failed step's log is shown.
 set -euo pipefail
