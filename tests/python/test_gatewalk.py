@@ -118,7 +118,7 @@ class SameAsTheProgram(unittest.TestCase):
     def test_all_commands(self):
         key = {"forces.random_N": 40.0}
         of = ["--set", "forces.random_N=40.0", "--seed", 7]
-        self.check(gw.predict(FIELD, accuracy=0.05, seed=7, set=key), "predict", FIELD, "--accuracy", 0.05, *of)
+        self.check(gw.predict(FIELD, accuracy=0.1, seed=7, set=key), "predict", FIELD, "--accuracy", 0.1, *of)
         self.check(gw.predict(FIELD, accuracy=0.1, start=[(0.0, 0.0, 15.0), (-4.0, 5.0, 10.0)]), "predict", FIELD, "--accuracy", 0.1,
                    "--start=0,0,15", "--start=-4,5,10")
         self.check(gw.lattice(gw.Scene(FIELD, key), trials=300, seed=7), "lattice", FIELD, "--trials", 300, *of)
@@ -128,9 +128,9 @@ class SameAsTheProgram(unittest.TestCase):
         self.check(gw.trace(FIELD, trials=2, field=True), "trace", FIELD, "--trials", 2, "--field")
         self.check(gw.validate(FIELD, accuracy=0.2, trials=100, null_draws=99), "validate", FIELD, "--accuracy", 0.2, "--trials", 100,
                    "--null-draws", 99)
-        self.check(gw.analyze(FIELD, accuracy=0.1, runs=200), "analyze", FIELD, "--accuracy", 0.1, "--runs", 200)
+        self.check(gw.analyze(FIELD, accuracy=0.2, runs=200), "analyze", FIELD, "--accuracy", 0.2, "--runs", 200)
         self.check(gw.rare(FIELD, row=3, accuracy=0.3), "rare", FIELD, "--row", 3, "--accuracy", 0.3)
-        self.check(gw.power(FIELD, trials=50), "power", FIELD, "--trials", 50)
+        self.check(gw.power(FIELD, trials=50, accuracy=0.2), "power", FIELD, "--trials", 50, "--accuracy", 0.2)
         self.check(gw.analyze(FIELD, accuracy=0.2, runs=0, over={"forces.propulsion_N": (6, 8), "forces.random_N": (30, 60)}, over_trials=4096),
                    "analyze", FIELD, "--accuracy", 0.2, "--runs", 0, "--over", "forces.propulsion_N=6:8", "--over", "forces.random_N=30:60",
                    "--over-trials", 4096)
@@ -150,9 +150,9 @@ class SameAsTheProgram(unittest.TestCase):
             runs = Path(folder) / "runs.csv"
             subprocess.run([PROGRAM, "lattice", FIELD, "--set", "field.rows=3", "--set", "run.method=moreau", "--trials", "20", "--passages", runs,
                             "--cell-file", Path(folder) / "cell.toml", "--quiet"], check=True, stdout=subprocess.DEVNULL)
-            of_passages = gw.fit(FIELD, runs, free=free, trials=30000, set=few)
+            of_passages = gw.fit(FIELD, runs, free=free, trials=12288, set=few)
             self.assertEqual(of_passages["of"], "passages")
-            self.check(of_passages, "fit", FIELD, runs, "--free", "forces.propulsion_N=5:9", "--trials", 30000, "--set", "field.rows=3", "--set",
+            self.check(of_passages, "fit", FIELD, runs, "--free", "forces.propulsion_N=5:9", "--trials", 12288, "--set", "field.rows=3", "--set",
                        "run.method=moreau")
         with self.assertRaises(gw.SceneError):
             gw.fit(FIELD, {"crossed": 20, "trapped": 60}, free={"forces.push": (5, 9)})
