@@ -89,7 +89,7 @@ RowChance fast_truth(int row) {
   return shares.at(static_cast<std::size_t>(row) - 1);
 }
 RowChance mixed_truth(int row) {
-  static const std::vector<RowChance> shares = direct(mixed_scene(), 6, 50'000);
+  static const std::vector<RowChance> shares = direct(mixed_scene(), 6, 20'000);
   return shares.at(static_cast<std::size_t>(row) - 1);
 }
 
@@ -308,7 +308,7 @@ TEST(Splitting, ABoundWhereNobodyCameHoldsAsOftenAsItSays) {
 TEST(Splitting, RareEventRunsFewTrialsForTheChainOfACommonEvent) {
   const Scene scene = fast_scene();
   const RareEvent common = rare_event(problem_of(scene), {.row = 2}),
-                  rare = rare_event(problem_of(scene), {.row = 7, .accuracy = 0.3});
+                  rare = rare_event(problem_of(scene), {.row = 7, .accuracy = 0.9});
   EXPECT_LT(common.pool_runs, 7500 * 6);
   EXPECT_GT(rare.pool_runs, 60'000);
   expect_agree(common.splitting.rows[1], fast_truth(2), 4.0);
