@@ -334,8 +334,8 @@ int run_analyze(const Arguments& arguments) {
   const CountOption runs = options.add_count(
       "runs", "N",
       "for each number of the scene: N gate runs with a little more of it, N with a little less, "
-      "and 2 N\nfor the intervals, on top of --gate-runs; 0: no influences",
-      "20000");
+      "and 2 N\nfor the intervals, on top of --gate-runs; 0: no influences (default: 20000, or 0 "
+      "with --first-passage)");
   const NumberOption step = options.add_number(
       "step", "PART", "how much more and less, as a part of the number (default: 0.02)");
   const TextOption lump = options.add_text(
@@ -365,7 +365,9 @@ int run_analyze(const Arguments& arguments) {
   options.most_used({"accuracy", "target", "set", "figure", "json"});
   if (!options.parse(arguments)) return kFine;
   if (starts_given.values().size() > 1) throw UsageError("--start: an analysis is of one start");
-  const lattice::ParameterOptions parameters{.runs = runs.value(0, 1'000'000),
+  const lattice::ParameterOptions parameters{.runs = runs       ? runs.value(0, 1'000'000)
+                                                     : to_reach ? 0
+                                                                : 20'000,
                                              .relative_step = step.within(0.02, 1e-6, 0.5),
                                              .seed = options.seed()};
   if (trials) (void)trials.value();  // checks the value now, because these trials run last

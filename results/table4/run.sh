@@ -12,7 +12,7 @@ gatewalk=${1:-$root/build/gatewalk}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-"$gatewalk" validate "$root/scenes/field.toml" --trials 10000 --matrix-trials 100 --seed 1 \
+"$gatewalk" validate "$root/scenes/field.toml" --trials 10000 --bins paper --matrix-trials 100 --seed 1 --details \
   >"$here/validation.txt" 2>/dev/null
 
 echo "method,damping,trials,traversed_left_percent,exited_percent,trapped_percent" >"$here/single_gate.csv"
