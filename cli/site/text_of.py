@@ -60,8 +60,8 @@ def command_page(manual: str, name: str) -> str:
 
 def commands_page(overview: str) -> str:
     """All commands in the groups of `gatewalk help`."""
-    out = ["# Commands", "", "Each page shows what `gatewalk help COMMAND` prints. Another page lists the commands",
-           "[by what you want](guides/index.md#every-command-by-what-you-want).",
+    out = ["# Commands", "", "Each page shows what `gatewalk help COMMAND` prints.",
+           "[How-to guides](guides/index.md) begin with a question and show the commands that answer it.",
            "[Conventions](reference/conventions.md) explains what all commands share.", ""]
     names = []
     for title, lines in re.findall(r"^(\w.*)\n((?:  [\w-]+(?: \w+)?  +.*\n)+)", overview, re.M):

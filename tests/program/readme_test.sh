@@ -1,61 +1,50 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# README and the guides' index: the commands in their tables run as printed, and README is not too long.
+# README and the help pages: the commands in README's table and the examples of all commands run as printed, and README
+# is not too long.
 #   readme_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
-# Values for the words in capitals.
-for sample in field mixed cell tracks observed; do
-  "$gatewalk" sample $sample -o $sample.toml --quiet || fail "sample $sample"
+# The files that the commands name.
+ln -s "$scenes" scenes
+"$gatewalk" sample observed -o counts.csv --quiet || fail "sample observed"
+paper_matrix matrix.nc
+for part in 1 2 3; do
+  "$gatewalk" lattice scenes/field.toml --trials 8 --shard $part/3 --part part$part --quiet || fail "part $part"
 done
-mv tracks.toml tracks.csv
-mv observed.toml observed.csv
-cp "$scenes/programs/pillars.toml" .
-cp "$scenes/programs/pillars.py" program && chmod +x program
-paper_matrix M.nc
-named() {
-  sed -E 's|CELL.toml|pillars.toml|; s|COMMAND|./program|; s|KEY=FROM:STEP:TO|forces.random_N=1:1:2|; s|KEY=A:B|forces.random_N=1:20|
-    s|D,VX,VY|0,0,15|; s|FILE\.csv|observed.csv|; s|counts\.csv|observed.csv|; s|FILE\.html|page.html|; s|\bDIR\b|folder|; s|\bNAME\b|field|; s|\bTARGET\b|crossed|; s|--row I\b|--row 1|
-    s|^design SCENE|design mixed.toml|; s|\bSCENE\b|field.toml|g'
-}
-commands=$("$gatewalk" --help | awk '/^usage/ { list = 1; next } list && /^  [a-z]/ { print $1 }')
 
 # runs WORDS...: the command succeeds, or is still at work after a while; wrong use would fail at once. A while is 1 s of
-# CPU time, however busy the machine is, or 3 s on the clock, which also end a cell program.
+# CPU time, however busy the machine is, or 3 s on the clock.
 runs() {
-  local limit=1
-  [[ " $* " != *" --cell-program "* ]] || limit=unlimited
   (
-    ulimit -c 0 -S -t $limit
+    ulimit -c 0 -S -t 1
     timeout --foreground 3 "$gatewalk" "$@" --quiet --force
     exit $?
   ) >out.txt 2>&1 </dev/null
   local status=$?
   [ $status = 0 ] || [ $status = 124 ] || [ $status = 130 ] || [ $status = 152 ] || fail "$page: status $status: gatewalk $* ($(head -n 3 out.txt))"
 }
-# rows PAGE AT_LEAST: its table "I want" names at least so many commands, and each works.
-rows() {
-  local page=$1 seen=0 words name with without
-  while read -r words; do
-    words=${words#gatewalk }
-    name=${words%% *}
-    grep -qx -e "$name" <<<"$commands" || continue  # an option
-    seen=$((seen + 1))
-    # shellcheck disable=SC2046
-    expect 0 Example: "$gatewalk" help $(sed -E 's/^(chart [a-z]+|[a-z-]+).*/\1/' <<<"$words")
-    [ "$words" != "$name" ] || continue  # a name alone
-    with=$(sed -E 's/\[[^],]*, [^]]*\]//g; s/[][]//g' <<<"$words" | named)
-    without=$(sed -E 's/ *\[[^]]*\]//g' <<<"$words" | named)
-    # shellcheck disable=SC2086
-    runs $without
-    # shellcheck disable=SC2086
-    [ "$with" = "$without" ] || runs $with
-  done < <(awk -F'|' '/^\| I want /{ on = 1 } on && !/^\|/ { exit } on { print $3 }' "$scenes/../$page" | grep -o '`[^`]*`' | tr -d '`')
-  [ $seen -ge "$2" ] || fail "$page: the table has $seen commands"
-}
-rows README.md 8
-rows cli/site/guides/index.md 30
+
+page=README.md seen=0
+while read -r words; do
+  seen=$((seen + 1))
+  [[ $words == *" "* ]] || continue  # a name alone
+  # shellcheck disable=SC2046
+  runs $(sed -E 's|KEY=FROM:STEP:TO|forces.random_N=1:1:2|; s|\bSCENE\b|scenes/field.toml|' <<<"$words")
+done < <(awk -F'|' '/^\| I want /{ on = 1 } on && !/^\|/ { exit } on { print $3 }' "$scenes/../$page" | grep -o '`gatewalk [^`]*`' | tr -d '`' | sed 's/^gatewalk //')
+[ $seen -ge 8 ] || fail "$page: the table has $seen commands"
 [ "$(wc -w <"$scenes/../README.md")" -le 900 ] || fail "README.md has $(wc -w <"$scenes/../README.md") words"
+
+seen=0
+while read -r name; do
+  seen=$((seen + 1))
+  page="gatewalk help $name"
+  # shellcheck disable=SC2086
+  example=$("$gatewalk" help $name | awk '/^Example:/ { on = 1; next } on && !/^  / { exit } on { if (sub(/ \\$/, "")) printf "%s", $0; else print }')
+  [ -n "$example" ] || fail "$page: no example"
+  while read -r _ words; do eval "runs $words"; done <<<"$example"
+done < <("$gatewalk" --help | sed -nE 's/^  ([a-z-]+( [a-z]+)?)  +[a-z].*/\1/p')
+[ $seen -ge 28 ] || fail "gatewalk help lists $seen commands"
 
 # The check finds a wrong row.
 failures_before=$failures
