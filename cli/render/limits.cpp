@@ -178,12 +178,12 @@ std::string cell_of(const Limit& limit, const MethodLimits& method) {
   return is_finer_step ? "ok " + factor(limit.remedy->value / method.own.value) : ".";
 }
 
-/// The setting as a scene takes it, with enough digits for the step to divide the random force's
-/// hold.
+/// The setting as a scene and --set take it, with enough digits for the step to divide the random
+/// force's hold. It has no blanks, so that a screen never breaks it.
 std::string setting_of(const dynamics::Remedy& remedy) {
-  std::string text = remedy.method.empty() ? "" : fmt::format("run.method = \"{}\"", remedy.method);
+  std::string text = remedy.method.empty() ? "" : fmt::format("run.method=\"{}\"", remedy.method);
   if (!remedy.key.empty())
-    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", remedy.key, digits(remedy.value));
+    text += fmt::format("{}{}={}", text.empty() ? "" : ", ", remedy.key, digits(remedy.value));
   return text;
 }
 

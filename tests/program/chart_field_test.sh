@@ -33,13 +33,13 @@ expect 1 'gnuplot was not found.*are written' env PATH=/nonexistent "$gatewalk" 
 one_gate="$scenes/field.toml --set field.columns=1 --set field.rows=1 --set run.step_s=0.02 --start 0,0,15"
 # shellcheck disable=SC2086
 {
-expect 0 '^Start 0, 0, 15: 99 trials cannot tell .* 0.0000 +- 0.0303 ' "$gatewalk" chart field $one_gate --trials 99 -o new/chart
+expect 0 '^Start 0, 0, 15: 99 trials cannot tell .* 0.0000 +- 0.0303$' "$gatewalk" chart field $one_gate --trials 99 -o new/chart
 holds '.starts[0].active_is_enough == null' new/chart/fidelity.json
 expect 0 '^Start 0, 0, 15: active is enough: .* 0.0000 +- 0.0300 ' "$gatewalk" chart field $one_gate --trials 100 -o new/chart
 holds '.starts[0].active_is_enough == true and (.starts[0].runs | map(.step_s == 0.02) | all)' new/chart/fidelity.json
 # The step is named, with its effect on moreau.
 expect 0 '^gatewalk: .*(moreau), step 0.02 s: .* sank into a beam' "$gatewalk" chart field $one_gate --trials 100 -o new/chart --quiet
-expect 0 'step 0.02 s (moreau), 0.02 s (stable)' "$gatewalk" chart field $one_gate --trials 5 -o new/chart --details
+expect 0 '^The step is 0.02 s (moreau), 0.02 s (stable).$' "$gatewalk" chart field $one_gate --trials 5 -o new/chart --details
 }
 
 finish

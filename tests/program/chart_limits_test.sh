@@ -28,8 +28,8 @@ done
 holds '[.methods[] | .status] | unique | length > 1' maps/limits.json  # the methods differ
 
 # The remedy in the table can be given as printed, and helps.
-line=$(grep -m 1 '^  moreau .*step x5: .*; take run.step_s = ' table.txt) || fail "chart limits: moreau has no finer step"
-"$gatewalk" gate "$scenes/field.toml" --set run.method=moreau --set "run.step_s=${line##* = }" --set run.time_limit_s=3 --trials 8 --json helped.json --quiet >/dev/null ||
+line=$(grep -A 1 '^  moreau .*step x5: ' table.txt | tr -s '\n ' ' ' | grep -o 'step x5: [^;]*; take run.step_s=[0-9.]*') || fail "chart limits: moreau has no finer step"
+"$gatewalk" gate "$scenes/field.toml" --set run.method=moreau --set "run.step_s=${line##*=}" --set run.time_limit_s=3 --trials 8 --json helped.json --quiet >/dev/null ||
   fail "a step that helps is refused: $line"
 holds '.status.clean' helped.json
 # Each number of the result has its own line in the table of numbers.
