@@ -2,7 +2,9 @@
 #include "cli/command.h"
 #include "cli/next.h"
 #include "cli/render/matrix.h"
+#include "cli/render/states.h"
 #include "cli/source_options.h"
+#include "lattice/scene/cell_file.h"
 #include "lattice/source/cell_matrix.h"
 
 namespace gatewalk::cli {
@@ -39,7 +41,11 @@ int run_show(const Arguments& arguments) {
 
   NextCommands next(options);
   if (!shown.all && !shown.one) next.add("show", "--rows", "a line for each state");
-  next.add("predict", "", "how bodies cross the field");
+  // A prediction needs a start, which an imported chain may lack.
+  const auto states = recorded_states(file, path);
+  const bool lacks_start = states && states->is_imported() &&
+                           !lattice::parse_cell_file(file.text.at(lattice::kCellText), path).start;
+  next.add("predict", lacks_start ? "--start 0" : "", "how bodies cross the field");
   options.give_out(matrix, {answer_text(matrix, shown), details_text(matrix), next.lines()});
   options.draw([&] { return figure_of(file.transitions); });
   return kFine;

@@ -304,6 +304,14 @@ std::string size_line(const Transitions& t, const std::string& path) {
                      path, counted(n, "state", "states"), n, n + 1);
 }
 
+/// What a matrix counts: "gate runs", "recorded passages", "counted steps"; "probabilities" if the
+/// matrix was imported with probabilities in the place of counts.
+const char* counted_of(const std::optional<StateRecord>& states) {
+  if (states && states->are_probabilities) return "probabilities";
+  if (states && states->is_imported()) return "counted steps";
+  return states && states->trees && !states->trees->accuracy ? "recorded passages" : "gate runs";
+}
+
 }  // namespace
 
 std::string summary_table(const lattice::MatrixFile& file, const std::string& path) {
@@ -311,13 +319,10 @@ std::string summary_table(const lattice::MatrixFile& file, const std::string& pa
   const auto total = t.totals();
   const auto states = recorded_states(file, path);
   const bool is_imported = states && states->is_imported();
-  const bool is_recorded = states && states->trees && !states->trees->accuracy;
-  const std::string runs = states && states->are_probabilities
-                               ? "given as probabilities"
-                               : fmt::format("from {} {}", gate_runs_of(file, path),
-                                             is_imported   ? "counted steps"
-                                             : is_recorded ? "recorded passages"
-                                                           : "gate runs");
+  const std::string runs =
+      states && states->are_probabilities
+          ? "given as probabilities"
+          : fmt::format("from {} {}", gate_runs_of(file, path), counted_of(states));
   std::string text =
       size_line(t, path) + fmt::format("{} entries are above 0, {}.\n", total.nonzeros, runs);
   if (!t.space.has_trees() && !is_imported)
@@ -376,15 +381,18 @@ std::string answer_text(const ShownMatrix& matrix, const ShownRows& shown) {
   const auto total = t.totals();
   const std::int64_t cells = std::int64_t{t.space.size()} * (t.space.size() + 1);
   TextTable table({{"", -20, 0, "", "  "}, {}});
-  table.row(
-      {"gate runs", fmt::format("{}{}", gate_runs_of(file, path),
-                                t.space.has_trees()
-                                    ? fmt::format(" (counts, with mirror images: {})", total.runs)
-                                    : "")});
+  const auto states = recorded_states(file, path);  // a file of another program may have none
+  table.row({counted_of(states),
+             states && states->are_probabilities
+                 ? "given in the place of counts"
+                 : fmt::format("{}{}", gate_runs_of(file, path),
+                               t.space.has_trees()
+                                   ? fmt::format(" (counts, with mirror images: {})", total.runs)
+                                   : "")});
   table.row({"entries above 0", fmt::format("{} of {} ({})", total.nonzeros, cells,
                                             percent(static_cast<double>(total.nonzeros),
                                                     static_cast<double>(cells)))});
-  if (!t.space.has_trees())
+  if (!t.space.has_trees() && !(states && states->is_imported()))
     table.row({"outside the bins", fmt::format("{} of the crossings, counted in the nearest bin",
                                                percent(total.clamped_share(), 1.0))});
   table.row({"rows without runs", total.empty_rows});

@@ -38,6 +38,7 @@ expect 0 'the matrix holds probabilities, not counts' "$gatewalk" predict q.nc -
 jq -s '[.[0].endings[], .[1].endings[]] as $e | [range(5) | ($e[.] - $e[. + 5]) | fabs] | max < 1e-14' q.json ours.json | grep -q true ||
   fail "probabilities: another answer"
 holds '.matrix_sampling.replicates == 0' q.json
+expect 0 '^  probabilities  *given in the place of counts$' "$gatewalk" show q.nc
 
 # A chain of the user's own: by names of states; and by trajectories, in which each step is a count.
 cat >s.csv <<'END'
@@ -82,7 +83,8 @@ done
 "$gatewalk" show own.nc --json show.json --quiet >/dev/null
 holds '[.rows[] | [.input, .name]] == [[0, "up"], [1, "aside"], [2, "up_again"]] and .rows[1].outputs == [{"output": 2, "count": 4}]' show.json
 expect 0 '^ *2 *4 *up_again$' "$gatewalk" show own.nc --row 1
-expect 0 'start takes a name, or a number from 0' "$gatewalk" show own.nc
+expect 0 '^States: 3, of an imported chain. --start takes the name of a state, or its number from 0.$' "$gatewalk" show own.nc --details
+grep -q '^  counted steps  *15$' out.txt || fail "show: the counts are not named"
 "$gatewalk" predict own.nc --start aside --json start.json --quiet
 holds '.starts[0].start_state | .input == 1 and .bin == "aside"' start.json
 # Names with commas and quotes are quoted as in RFC 4180, in all CSV.
@@ -96,6 +98,9 @@ printf '0 1 0 0 2\n' >quoted.dtrajs
 expect 0 '4 counted steps' "$gatewalk" import q.csv --states q.states.csv --start 'fast, ahead' -o requoted.nc
 
 expect 2 'has no \[start\]' bash -c "'$gatewalk' import own.csv --states s.csv -o nowhere.nc && '$gatewalk' predict nowhere.nc"
+# What show proposes gives this chain a start, and runs.
+expect 0 '^      gatewalk predict nowhere.nc --start 0  # ' "$gatewalk" show nowhere.nc
+expect 0 '^crossed ' "$gatewalk" predict nowhere.nc --start 0
 
 # Trials as trajectories: each ends as its trial ended, and the counts are those of the runs.
 "$gatewalk" export tree.nc -o t.dtrajs --json t.json --quiet
