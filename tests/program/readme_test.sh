@@ -31,7 +31,7 @@ while read -r words; do
   [[ $words == *" "* ]] || continue  # a name alone
   # shellcheck disable=SC2046
   runs $(sed -E 's|KEY=FROM:STEP:TO|forces.random_N=1:1:2|; s|\bSCENE\b|scenes/field.toml|' <<<"$words")
-done < <(awk -F'|' '/^\| I want /{ on = 1 } on && !/^\|/ { exit } on { print $3 }' "$scenes/../$page" | grep -o '`gatewalk [^`]*`' | tr -d '`' | sed 's/^gatewalk //')
+done < <(awk -F'|' '/^\| I want /{ on = 1 } on && !/^\|/ { exit } on { print $3 }' "$scenes/../$page" | grep -o '`[^`]*`' | tr -d '`' | sed -n 's|^gatewalk ||p')
 [ $seen -ge 8 ] || fail "$page: the table has $seen commands"
 [ "$(wc -w <"$scenes/../README.md")" -le 900 ] || fail "README.md has $(wc -w <"$scenes/../README.md") words"
 
