@@ -80,7 +80,10 @@ holds "$parts" robot.json
 "$gatewalk" lattice "$scenes/field.toml" --set field.max_gates=0 --trials 20 --quiet --json lattice.json
 holds '.cut_off_95 == [0, 0] and .endings_95.cut_off == [0, 0]' lattice.json
 # The probability behind the influences comes from another chain, and the table says which one is the answer.
-"$gatewalk" analyze "$scenes/robot.toml" --accuracy 0.1 --runs 200 --json robot.json --force >robot.txt 2>/dev/null
+"$gatewalk" analyze "$scenes/robot.toml" --accuracy 0.1 --runs 200 --details --json robot.json --force >robot.txt 2>/dev/null
 jq -e '.endings.crossed != .sensitivities.probability' robot.json >/dev/null || fail "no two chances to tell apart"
-grep -q "of \"crossed\" ([0-9.]* % by the chain of $(jq .sensitivities.chain_gate_runs robot.json) gate runs behind these numbers; the answer is the $(jq '.endings.crossed * 100' robot.json | xargs printf %.2f) % above)" robot.txt || fail "two chances to cross: $(grep 'the chance of' robot.txt)"
+share() { jq "$1 * 100" robot.json | xargs printf '%.2f %%'; }
+of_these=$(share .sensitivities.probability)
+tr '\n' ' ' <robot.txt | grep -q -F -e "of \"crossed\" ($of_these) grows for 1 % more of each number, 95 % ($of_these comes from the larger chain of $(value .sensitivities.chain_gate_runs robot.json) gate runs behind this table. The answer is the $(share .endings.crossed) above.)" ||
+  fail "two chances to cross: $(grep 'the chance of' robot.txt)"
 finish
