@@ -14,7 +14,7 @@ for name in $(jq -r '.samples[].name' all.json); do
   "$gatewalk" sample "$name" | cmp -s - "$scenes/../$file" || fail "$name is not $file"
 done
 expect 2 "there is no sample 'wlaker'; did you mean walker?" "$gatewalk" sample wlaker
-expect 2 'which sample?' "$gatewalk" sample -o x.toml
+expect 2 '^gatewalk: -o without NAME: name a sample' "$gatewalk" sample -o x.toml
 "$gatewalk" sample walker -o mine.toml || fail "sample walker"
 cmp -s mine.toml "$scenes/walker.toml" || fail "sample -o"
 expect 0 'kept as mine.toml.~1~' "$gatewalk" sample field -o mine.toml
