@@ -23,7 +23,7 @@ other() { # TEXT FILE: other/bin/gatewalk, whose words follow, differs in FILE o
 }
 printf '#!/bin/sh\n"%s" "$@" && { [ ! -f numbers.csv ] || sed -i "/^trials,/s/[0-9]/9/" numbers.csv; }\n' "$gatewalk" >other/bin/gatewalk
 other 'gate field.toml' numbers.csv
-printf '#!/bin/sh\n"%s" "$@" | sed "s/^Runs one gate/Runs two gates/"\n' "$gatewalk" >other/bin/gatewalk
+printf '#!/bin/sh\n"%s" "$@" | sed "s/^Simulates runs through one gate/Simulates runs through two gates/"\n' "$gatewalk" >other/bin/gatewalk
 other 'help gate' stdout.txt
 printf '#!/bin/sh\n"%s" "$@" && { [ "$2" != --write ] || sed -i "0,/\\"type\\": \\"integer\\"/s//\\"type\\": \\"number\\"/" "$3/gatewalk/schemas/gate.schema.json"; }\n' "$gatewalk" >other/bin/gatewalk
 other 'schema gate' gate.schema.json
