@@ -259,7 +259,8 @@ std::string types_part(const AnalysedField& f) {
 std::string lumping_text(const lattice::Analysis& a) {
   if (!a.lumped) return "";
   return wrapped(fmt::format(
-      "Merged into {} (--lump), the chain errs by TV {} in the endings, {} in the final gates.",
+      "Merged into {} (--lump), the chain errs by a total variation of {} in the endings and {} in "
+      "the final gates.",
       counted(a.lumped->states, "state", "states"), fixed(a.lumped->endings, 4),
       fixed(a.lumped->final_gates, 4)));
 }
