@@ -221,6 +221,7 @@ int build_recorded(const BuildCommand& options) {
   const lattice::RunPool pool = lattice::pool_of(std::move(runs));
   const lattice::Problem problem = lattice::problem_of(cells, pool);
   for (const std::string& text : lattice::doubts_of(pool, problem)) options.warn(text);
+  options.warn(lattice::faces_without_use(pool, problem));
   if (const std::string text = lattice::far_from_faces(pool, problem); !text.empty())
     options.warn(text);
   const auto& costs = problem.map().section.costs;

@@ -156,11 +156,8 @@ std::string answer_text(const RunsPrediction& runs) {
                 ? "The 95 % intervals count the sampling error of the trials.\n"
                 : "The 95 % intervals include sampling error and the chain's own approximation "
                   "error.\n";
-  if (runs.recorded && runs.recorded->bounds.lost > 0.0)
-    text += fmt::format(
-        "Beware: {} of the passages were lost from sight, which no interval counts; see "
-        "--details.\n",
-        percent(runs.recorded->bounds.lost, 1.0, 2));
+  if (runs.recorded)
+    text += beware_of_lost(runs.recorded->counts, runs.recorded->bounds, starts.front().endings);
   return text;
 }
 

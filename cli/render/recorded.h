@@ -15,6 +15,7 @@ namespace gatewalk::cli {
 struct RecordedCounts {
   std::int64_t bodies = 0, trials = 0, passages = 0;
   std::int64_t left = 0, trapped = 0, lost = 0;  // passages, by what became of the body
+  std::int64_t bodies_lost = 0;                  // bodies with at least one passage that was lost
 };
 [[nodiscard]] RecordedCounts counts_of(const lattice::RunPool& pool);
 void describe(Fields& out, const RecordedCounts& counts);
@@ -26,5 +27,11 @@ void describe_recorded(Fields& out, const RecordedCounts& counts);
 void describe_lost_bounds(Fields& out, const lattice::LostBounds& bounds);
 /// A table of the bounds; empty if no body was lost.
 [[nodiscard]] std::string table_of(const lattice::LostBounds& bounds);
+/// "Beware: 3 of 48 bodies were lost from sight ...", with the bounds of each ending for which a
+/// bound lies outside the 95 % interval of `answer`, or the bounds differ by more than its width.
+/// Empty if no body was lost.
+[[nodiscard]] std::string beware_of_lost(const RecordedCounts& counts,
+                                         const lattice::LostBounds& bounds,
+                                         const lattice::EndingShares& answer);
 
 }  // namespace gatewalk::cli

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lattice/recorded/recorded_pool.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
@@ -108,20 +108,55 @@ std::string far_from_faces(const RunPool& pool, const Problem& problem) {
       place.name, farthest, large);
 }
 
+namespace {
+
+/// The use of a face: whether a body was seen in a cell that it had entered by this face, and the
+/// number of passages that lead to it.
+struct FaceUse {
+  bool entered = false;
+  std::int64_t led_to = 0;
+};
+
+std::vector<FaceUse> uses_of_faces(const RunPool& pool, const Problem& problem) {
+  std::vector<FaceUse> uses(problem.map().section.faces.size());
+  each_entry(pool, {}, [&](const dynamics::Entry& entry, int) {
+    uses[static_cast<std::size_t>(entry.face)].entered = true;
+  });
+  const PassageTable& passages = pool.scattered.each.passages;
+  for (std::size_t i = 0; i < passages.size(); ++i)
+    if (const CellPassage passage = passages[i]; passage.fate == Fate::left)
+      ++uses[static_cast<std::size_t>(passage.entry.face)].led_to;
+  return uses;
+}
+
+}  // namespace
+
 std::vector<std::string> doubts_of(const RunPool& pool, const Problem& problem) {
   std::vector<std::string> said;
   if (pool.bodies() < kLeastBodies)
     said.push_back(fmt::format("no error bars: they need {} bodies at least, these are {}",
                                kLeastBodies, pool.bodies()));
-  std::vector<bool> entered(problem.map().section.faces.size(), false);
-  each_entry(pool, {}, [&](const dynamics::Entry& entry, int) {
-    entered[static_cast<std::size_t>(entry.face)] = true;
-  });
-  for (std::size_t f = 0; f < entered.size(); ++f)
-    if (!entered[f])
-      said.push_back("nobody was seen to enter by face " + problem.map().section.faces[f].name +
-                     ": what would become of such a body is not known");
+  const std::vector<FaceUse> uses = uses_of_faces(pool, problem);
+  for (std::size_t f = 0; f < uses.size(); ++f)
+    if (!uses[f].entered && uses[f].led_to > 0)
+      said.push_back(fmt::format(
+          "record more cells: {} lead to face {}, and no body was seen behind it; predictions "
+          "count these bodies as never sampled",
+          uses[f].led_to == 1 ? "1 passage" : fmt::format("{} passages", uses[f].led_to),
+          problem.map().section.faces[f].name));
   return said;
+}
+
+std::string faces_without_use(const RunPool& pool, const Problem& problem) {
+  const std::vector<FaceUse> uses = uses_of_faces(pool, problem);
+  std::vector<std::string> names;
+  for (std::size_t f = 0; f < uses.size(); ++f)
+    if (!uses[f].entered && uses[f].led_to == 0)
+      names.push_back(problem.map().section.faces[f].name);
+  if (names.empty()) return "";
+  return fmt::format(
+      "no body went through face {}; you need not act, but a --start there is refused",
+      fmt::join(names, " or "));
 }
 
 double lost_share(const RunPool& pool) {

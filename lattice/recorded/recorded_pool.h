@@ -29,9 +29,12 @@ void add_trials(RecordedRuns& runs, const FieldTrials& each, const dynamics::Ent
 /// range of the entries seen, or one scale around 0 if there were none: no run leads to that state.
 [[nodiscard]] Problem problem_of(const CellFile& cells, const RunPool& pool);
 
-/// What recorded runs cannot tell, one sentence each: too few bodies for error bars, faces by which
-/// no body entered.
+/// What recorded runs cannot tell, one sentence each: too few bodies for error bars, faces to which
+/// passages lead and by which no body was seen to enter.
 [[nodiscard]] std::vector<std::string> doubts_of(const RunPool& pool, const Problem& problem);
+/// A sentence on the faces to which no passage leads; empty if there are none. No prediction from
+/// the observed entries needs these faces.
+[[nodiscard]] std::string faces_without_use(const RunPool& pool, const Problem& problem);
 /// A sentence if places on the faces are further from the middle than a cell is large; else empty.
 [[nodiscard]] std::string far_from_faces(const RunPool& pool, const Problem& problem);
 
