@@ -283,8 +283,8 @@ std::string memory_text(const lattice::Independence& m, const dynamics::Section&
   const auto& faces = section.faces;
   const auto outcome = static_cast<std::size_t>(m.outcome);
   return fmt::format(
-      "Memory: the face of the cell before tells more than the state ({}). Strongest: after {},\n"
-      "bodies {} {} points {} often than others in the same state.\n",
+      "Memory: the state alone does not say all ({}). After face {} in the cell before, bodies\n"
+      "{} {} points {} often than others in the same state; the halves include this error.\n",
       p_words(m.p), faces[static_cast<std::size_t>(m.label)].name,
       outcome < faces.size() ? "go on by " + faces[outcome].name : "are trapped",
       fixed(100.0 * std::abs(m.more), 1), m.more > 0.0 ? "more" : "less");
@@ -292,19 +292,67 @@ std::string memory_text(const lattice::Independence& m, const dynamics::Section&
 
 }  // namespace
 
+/// How many single differences are larger than chance makes in 95 of 100 cases.
+struct LargerThanChance {
+  std::size_t count = 0, of = 0;
+};
+LargerThanChance larger_than_chance(const CrossValidation& v) {
+  LargerThanChance larger;
+  const auto add = [&](double seen, double chance_95) {
+    ++larger.of;
+    larger.count += seen > chance_95;
+  };
+  for (const Fold& fold : v.folds) {
+    add(fold.total_variation.seen, fold.chance_total_variation_95);
+    for (const EndingName& e : shown_endings_of(v)) {
+      const auto at = static_cast<std::size_t>(e.ending);
+      add(fold.endings[at].seen, fold.chance_95[at]);
+    }
+  }
+  return larger;
+}
+
+/// Why the verdict may differ from what single differences suggest.
+std::string single_differences_text(const CrossValidation& v) {
+  const auto [count, of] = larger_than_chance(v);
+  if (count == 0)
+    return fmt::format(
+        "None of {} differences is larger than chance alone makes in 95 of 100 cases.\n", of);
+  return fmt::format(
+      "{} of {} differences {} larger than chance alone makes in 95 of 100 cases;\n"
+      "corrected for testing all of them: {}.\n",
+      count, of, count == 1 ? "is" : "are", p_words(v.p));
+}
+
+/// Which share of the trials the chain continues.
+std::string continued_text(const CrossValidation& v) {
+  const auto share = [&](std::size_t w) {
+    const lattice::Watched& watched = v.folds[w].watched;
+    return percent(static_cast<double>(watched.trials - watched.to_end),
+                   static_cast<double>(watched.trials));
+  };
+  if (std::ranges::all_of(
+          v.folds, [](const Fold& fold) { return fold.watched.to_end == fold.watched.trials; }))
+    return "";
+  return fmt::format(
+      "The chain continues the trials that were not seen to their end: {} in {}, {} in {}.\n",
+      share(0), seen_name(0), share(1), seen_name(1));
+}
+
 std::string answer_text(const CrossValidationResult& result) {
   const CrossValidation& v = result.validation;
   const auto [w, most] = differs_most(v);
   const Fold& fold = v.folds[w];
   const auto at = static_cast<std::size_t>(most.ending);
   std::string text = fmt::format(
-      "One half of the bodies {} ({}).\n"
-      "Largest difference: {}, {} % in {} as seen, {} % by the chain of {};\n"
-      "chance alone makes {} points (95 %).\n",
+      "One half of the bodies {} ({}).\n{}"
+      "Largest difference: {}, {} % seen in {}, {} % by the chain of {};\n"
+      "chance alone makes up to {} points (95 %).\n{}",
       v.differs() ? "does not predict the other"
                   : "predicts the other, as far as these runs can tell",
-      p_words(v.p), most.name, percents(fold.seen.share[at]), seen_name(w),
-      percents(fold.chain_endings.share[at]), chain_name(w), percents(fold.chance_95[at]));
+      p_words(v.p), single_differences_text(v), most.name, percents(fold.seen.share[at]),
+      seen_name(w), percents(fold.chain_endings.share[at]), chain_name(w),
+      percents(fold.chance_95[at]), continued_text(v));
   for (std::size_t k = 0; k < 2; ++k)
     text += fmt::format("Final gates of {}: {}.\n", seen_name(k), total_variation_text(v.folds[k]));
   text += memory_text(result.memory, result.section) + table_of(result.recorded);
@@ -319,11 +367,11 @@ std::string details_text(const CrossValidationResult& result) {
   const CrossValidation& v = result.validation;
   const std::vector<EndingName> names = shown_endings_of(v);
   std::string text =
-      "\nEndings with 95 % intervals: chance in the bodies as seen, and the error bars of the "
+      "\nEndings with 95 % intervals: sampling of the bodies as seen, and the error bars of the "
       "chain from the\nsame starts. Where a trial was not seen to its end, the chain continues "
-      "from "
-      "the last entry seen.\nDifference by chance: 95 % of the differences that chance in both "
-      "halves makes; *: differs by more.\n";
+      "from the last entry seen.\nDifference by chance: 95 of 100 single differences that chance "
+      "alone makes are smaller.\n*: a difference is larger than chance, corrected for testing all "
+      "differences (p at most 0.05).\n";
   for (std::size_t w = 0; w < 2; ++w)
     text += "\n" + endings_table(v.folds[w], names, seen_name(w), chain_name(w));
   text += "\n";
