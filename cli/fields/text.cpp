@@ -47,7 +47,9 @@ std::string wrapped(std::string_view text, std::string_view indent) {
   while (!text.empty()) {
     // Blanks in front of a word stay with it, so that the first line may be indented.
     const std::size_t word = text.find_first_not_of(' ');
-    const std::size_t end = text.find(' ', std::min(word, text.size()));
+    std::size_t end = text.find(' ', std::min(word, text.size()));
+    if (end != text.npos && text.substr(end + 1).starts_with('%'))  // a line breaks before "80 %"
+      end = text.find(' ', end + 1);
     std::string_view next = text.substr(0, end);
     text.remove_prefix(next.size());
     if (!is_empty && columns(line) + columns(next) > kScreenColumns) {

@@ -143,10 +143,20 @@ std::string trials_text(const std::optional<std::int64_t>& trials) {
   return trials ? std::to_string(*trials) : fmt::format(">{}", lattice::kMostPlanned);
 }
 
-/// "29 (41)"; followed by ? if the prediction's own error may be as large.
-std::string effect_text(const Effect& effect) {
-  return fmt::format("{} ({}){}", trials_text(effect.trials), trials_text(effect.trials_of_all),
-                     effect.within_error ? "?" : " ");
+/// " fewer" or " more" if the share can change by this much in that direction only; else empty.
+std::string only_direction(double share, double difference) {
+  if (share + difference > 1.0) return " fewer";
+  return share - difference < 0.0 ? " more" : "";
+}
+std::string only_direction(const lattice::StartAnswer& a, std::size_t e, const Effect& effect) {
+  const auto at = static_cast<std::size_t>(kAllEndingNames[e].ending);
+  return only_direction(std::clamp(a.final.endings[at], 0.0, 1.0), effect.difference);
+}
+
+/// "29 (41)", "29 (41) fewer"; followed by ? if the prediction's own error may be as large.
+std::string effect_text(const Effect& effect, const std::string& direction) {
+  return fmt::format("{} ({}){}{}", trials_text(effect.trials), trials_text(effect.trials_of_all),
+                     direction, effect.within_error ? "?" : " ");
 }
 /// "29"; followed by ? if the prediction's own error may be as large.
 std::string gates_text(const Effect& effect) {
@@ -183,12 +193,14 @@ std::string legend(const std::string& rows, const std::string& always) {
   explain(">", fmt::format(">{}: more trials than that, or such a shift is impossible.",
                            lattice::kMostPlanned));
   explain("none", "none: no shift is detected this often.");
+  explain(" fewer", "fewer: so many points more would be over 100 %; the number is for fewer.");
+  explain(" more", "more: so many points fewer would be below 0 %; the number is for more.");
   explain(" - ", "-: such a shift is impossible.");
   return text;
 }
 
 constexpr const char* kBrackets =
-    "29 (41): 29 trials if only this ending is tested, 41 if all endings are tested.\n";
+    "First number: trials if only this ending is tested; in brackets: if all endings are tested.\n";
 
 /// A table of endings: names, predicted shares, and a column for each difference with this width,
 /// headed by the difference times `scale` and `behind`; then the columns `more`.
@@ -202,11 +214,10 @@ TextTable table_of_endings(const std::array<double, n>& differences, int width, 
   return TextTable(std::move(columns));
 }
 
-/// A line of table_of_endings().
-template <std::size_t n>
+/// A line of table_of_endings(); `text` writes an effect.
+template <std::size_t n, class Text>
 std::vector<TextCell> line_of(const std::string& name, const std::string& share,
-                              const std::array<Effect, n>& effects,
-                              std::string (*text)(const Effect&)) {
+                              const std::array<Effect, n>& effects, Text text) {
   std::vector<TextCell> cells{name, share};
   for (const Effect& effect : effects) cells.emplace_back(text(effect));
   return cells;
@@ -217,7 +228,9 @@ template <std::size_t n>
 void add_lines(TextTable& table, const PowerResult& p, std::array<Effect, n> EndingPlan::*effects) {
   for (const std::size_t e : looked_at(p))
     table.row(line_of(kAllEndingNames[e].name, share_text(p.prediction, e),
-                      p.plan.endings[e].*effects, effect_text));
+                      p.plan.endings[e].*effects, [&](const Effect& effect) {
+                        return effect_text(effect, only_direction(p.prediction, e, effect));
+                      }));
 }
 
 std::string needed_table(const PowerResult& p) {
@@ -228,7 +241,7 @@ std::string needed_table(const PowerResult& p) {
   return fmt::format(
       "\nOne experiment against the model: trials needed ({}) to detect that\n"
       "an ending is so many points more or less often than predicted (the larger of both "
-      "numbers):\n"
+      "numbers,\nif both are possible):\n"
       "\n{}{}\n"
       "Trials needed to detect that the final gates differ by this total variation, spread over "
       "all\n"
@@ -243,7 +256,8 @@ std::string groups_table(const PowerResult& p) {
   return fmt::format(
       "\nTwo groups, such as animals with and without a treatment: trials of each group needed\n"
       "({}) to detect that an ending differs between the groups by so many points.\n"
-      "One group ends as predicted; the number is the larger one for more and less often:\n\n{}{}",
+      "One group ends as predicted; the number is the larger one for more and less often, if both\n"
+      "are possible:\n\n{}{}",
       sureness(p.options), table.text(),
       legend(table.rows(), kBrackets) +
           "The trials must come from different animals: m trials of one animal count as\n"
@@ -274,7 +288,8 @@ std::string power_table(const PowerResult& p) {
       table.text(),
       legend(table.rows(),
              "+5.0 / -4.0: 5 points more, or 4 fewer, than predicted; in brackets: if all endings "
-             "are tested.\nTV: total variation.\n"));
+             "are tested.\nA shift that only one direction allows counts in that direction. TV: "
+             "total variation.\n"));
 }
 
 std::string versus_table(const PowerResult& p) {
@@ -295,7 +310,7 @@ std::string versus_table(const PowerResult& p) {
   for (const std::size_t e : looked_at_apart(p))
     add(endings,
         {kAllEndingNames[e].name, share_text(p.prediction, e), share_text(other, e),
-         effect_text(apart.endings[e])},
+         effect_text(apart.endings[e], "")},
         apart.endings[e]);
   add(gates,
       {"final gates", "total variation " + fixed(apart.final_gates.difference, 3),
@@ -344,12 +359,15 @@ std::string shown_by(const PowerResult& p) {
                      gates);
 }
 
-/// The number of trials that detect kShareDifferences[at] in every ending; nullopt: over
+/// The number of trials that detect the effect number `at` in every ending; nullopt: over
 /// kMostPlanned.
-std::optional<std::int64_t> trials_of_endings(const PowerResult& p, std::size_t at) {
+template <std::size_t n>
+std::optional<std::int64_t> trials_of_endings(const PowerResult& p,
+                                              std::array<Effect, n> EndingPlan::*effects,
+                                              std::size_t at) {
   std::int64_t most = 0;
   for (const std::size_t e : looked_at(p)) {
-    const auto& trials = p.plan.endings[e].effects[at].trials_of_all;
+    const auto& trials = (p.plan.endings[e].*effects)[at].trials_of_all;
     if (!trials) return {};
     most = std::max(most, *trials);
   }
@@ -380,26 +398,34 @@ std::string told_apart(const PowerResult& p) {
 }
 
 constexpr std::size_t kPoints = 2, kGates = 2;  // 10 points, a total variation of 0.2
+constexpr std::size_t kGroupPoints = 1;         // 10 points between two groups
+
+/// A sentence on two groups of equal size.
+std::string groups_sentence(const PowerResult& p) {
+  return fmt::format(
+      "Two groups: you need up to {} of each to detect a shift of {} points (--details: a table).",
+      trials_words(trials_of_endings(p, &EndingPlan::of_groups, kGroupPoints)),
+      digits(100.0 * lattice::kGroupDifferences[kGroupPoints]));
+}
 
 /// Two sentences: what these trials detect, and how many trials are needed.
 std::array<std::string, 2> summary_of(const PowerResult& p) {
   const std::string of_endings = fmt::format(
-      "To detect a shift of {} percentage points in any one ending (power {} %) you need up to {}.",
-      digits(100.0 * lattice::kShareDifferences[kPoints]), digits(100.0 * p.options.goal.power),
-      trials_words(trials_of_endings(p, kPoints)));
+      "One group against the model: you need up to {} to detect a shift of {} points in an ending.",
+      trials_words(trials_of_endings(p, &EndingPlan::effects, kPoints)),
+      digits(100.0 * lattice::kShareDifferences[kPoints]));
   const std::string of_gates = fmt::format(
       "To detect a total variation of {} in the final gates you need {}.",
       digits(lattice::kTotalVariations[kGates]), trials_words(p.plan.final_gates[kGates].trials));
-  if (p.options.trials)
-    return {shown_by(p), p.versus ? told_apart(p) : of_endings + " " + of_gates};
+  if (p.options.trials) return {shown_by(p), p.versus ? told_apart(p) : of_endings};
   if (p.versus) return {of_endings + " " + of_gates, told_apart(p)};
   return {of_endings, of_gates};
 }
 
-/// "44 ", the trials if all endings are tested; followed by ? if the prediction's own error may be
-/// as large.
-std::string of_all_text(const Effect& effect) {
-  return trials_text(effect.trials_of_all) + (effect.within_error ? "?" : " ");
+/// "44 ", "44 fewer ": the trials if all endings are tested; followed by ? if the prediction's own
+/// error may be as large.
+std::string of_all_text(const Effect& effect, const std::string& direction) {
+  return trials_text(effect.trials_of_all) + direction + (effect.within_error ? "?" : " ");
 }
 
 /// The endings of the first screen: predicted shares, and the trials that detect a shift.
@@ -417,7 +443,7 @@ std::string first_table(const PowerResult& p) {
     TextTable table(columns);
     for (const std::size_t e : looked_at_apart(p))
       table.row({kAllEndingNames[e].name, predicted(shares, e), predicted(others, e),
-                 of_all_text(p.versus->apart.endings[e])});
+                 of_all_text(p.versus->apart.endings[e], "")});
     return table.text();
   }
   std::vector<std::size_t> differences{1, 2, 3};  // indices into kShareDifferences
@@ -432,7 +458,9 @@ std::string first_table(const PowerResult& p) {
     const EndingPlan& plan = p.plan.endings[e];
     std::vector<TextCell> cells{kAllEndingNames[e].name, predicted(shares, e)};
     if (p.options.trials) cells.emplace_back(text_of(plan.least_of_all));
-    for (const std::size_t d : differences) cells.emplace_back(of_all_text(plan.effects[d]));
+    for (const std::size_t d : differences)
+      cells.emplace_back(
+          of_all_text(plan.effects[d], only_direction(p.prediction, e, plan.effects[d])));
     table.row(cells);
   }
   return table.text();
@@ -492,12 +520,17 @@ void describe(Fields& out, const PowerResult& p) {
 std::string answer_text(const PowerResult& p) {
   const auto sentences = summary_of(p);
   const std::string table = first_table(p);
-  std::string text = (p.versus ? "" : wrapped(sentences[0])) + wrapped(sentences[1]) + table;
-  text += wrapped(fmt::format(
-      "These numbers hold if you test all endings, at a level of {} %. The predicted final gates "
-      "are "
-      "within a total variation of {} of the truth, 95 times in 100.",
-      digits(100.0 * p.options.goal.level), digits(p.prediction.error.total_variation, 2)));
+  std::string text = (p.versus ? "" : wrapped(sentences[0])) + wrapped(sentences[1]);
+  if (!p.versus) text += wrapped(groups_sentence(p));
+  text += table;
+  const bool one_way = table.find(" more") != table.npos || table.find(" fewer") != table.npos;
+  text += wrapped(fmt::format("{}, all endings tested ({}).{}",
+                              p.versus ? "Two groups" : "One group", sureness(p.options),
+                              one_way ? " more, fewer: the only possible direction." : ""));
+  text += fmt::format(
+      "The predicted final gates are within a total variation of {} of the truth, 95 times in "
+      "100.\n",
+      digits(p.prediction.error.total_variation, 2));
   return text + (table.find('?') != table.npos
                      ? "Beware: ? marks shifts within the prediction's own error; a smaller "
                        "--accuracy helps.\n"

@@ -20,7 +20,7 @@ for line in 'One experiment against the model: trials needed (power 80 %, level 
   'Two experiments of 60 trials each, one with this scene, one with' 'beams.stiffness_left_Nm_per_rad=200, beams.stiffness_right_Nm_per_rad=200.'; do
   grep -q "^$line" power.txt || fail "power: no line '$line'"
 done
-[ "$(grep -c '^29 (41): 29 trials if only this ending is tested, 41 if all endings are tested' power.txt)" = 3 ] || fail "power: brackets are not explained"
+[ "$(grep -c '^First number: trials if only this ending is tested; in brackets: if all endings are tested' power.txt)" = 3 ] || fail "power: brackets are not explained"
 grep -q '^crossed .*+[0-9.]* / none' power.txt && grep -q '^none: no shift is detected this often' power.txt || fail "power: none is not explained"
 grep -q '[0-9])?' power.txt && grep -q '^?: the prediction itself may be off by as much' power.txt || fail "power: ? is not explained"
 grep -q '^>100000' power.txt && fail "power: a mark is explained that does not stand there"
