@@ -262,7 +262,10 @@ int validate_recorded(const ValidateCommand& options) {
 /// Commands to propose next.
 std::vector<std::string> next_of(const ValidateCommand& options, const lattice::Validation& v) {
   NextCommands next(options);
-  if (options.observed) return next.add("power", "", "how many trials an experiment needs").lines();
+  if (options.observed) {
+    const std::int64_t n = v.starts.front().observed->seen.trials();
+    return next.add("power", fmt::format("--trials {}", n), "what so many trials detect").lines();
+  }
   const bool differs = std::any_of(v.starts.begin(), v.starts.end(), [](const auto& start) {
     return start.finding() == lattice::Finding::own_error;
   });

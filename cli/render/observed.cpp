@@ -211,27 +211,66 @@ void describe_observed(Fields& out, const lattice::ObservedComparison& c,
   });
 }
 
-std::string answer_text(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
+namespace {
+
+/// The first sentence of the screen.
+std::string first_sentence(const lattice::ObservedComparison& c) {
   const JointTest &d = c.against_dynamics, &k = c.against_chain;
-  const char* const agree = d.differs() ? "differ from" : "agree with";
-  const char* const then = d.differs() == k.differs() ? (d.differs() ? "and from" : "and with")
-                           : k.differs()              ? "but differ from"
-                                                      : "but agree with";
-  std::string text =
-      wrapped(fmt::format("The {} observed trials {} the full dynamics ({}) {} the chain ({}).",
-                          c.seen.trials(), agree, p_of(d), then, p_of(k)));
+  if (d.differs())
+    return fmt::format(
+        "The {} observed trials differ from the full dynamics ({}){} the chain ({}).",
+        c.seen.trials(), p_of(d), k.differs() ? " and from" : "; no difference found from",
+        p_of(k));
+  return fmt::format("No difference found between {} trials and the full dynamics ({}){}.",
+                     c.seen.trials(), p_of(d),
+                     k.differs() ? fmt::format("; the chain differs ({})", p_of(k))
+                                 : fmt::format(" or the chain ({})", p_of(k)));
+}
+
+/// "3.1 (crossed) to 17.5 points (trapped) more": the smallest and the largest detectable shift in
+/// one direction; "none" if no ending has one.
+std::string range_text(const lattice::ObservedComparison& c,
+                       std::optional<double> lattice::SmallestDifference::*direction,
+                       const char* word) {
+  std::vector<std::pair<double, const char*>> shifts;
+  for (const EndingName& e : kEndingNames)
+    if (const auto& shift = c.least.by_ending[index_of(e)].*direction;
+        shift && !c.endings.rules_out(e.ending))
+      shifts.emplace_back(100.0 * *shift, e.name);
+  if (shifts.empty()) return fmt::format("none {}", word);
+  const auto [least, most] = std::ranges::minmax_element(shifts);
+  return least == most
+             ? fmt::format("{} points {} ({})", fixed(least->first, 1), word, least->second)
+             : fmt::format("{} ({}) to {} points ({}) {}", fixed(least->first, 1), least->second,
+                           fixed(most->first, 1), most->second, word);
+}
+
+/// Which shifts such an experiment would have shown.
+std::string detectable_text(const lattice::ObservedComparison& c) {
+  return wrapped(fmt::format("{} detect (power {} %): {}; {}.",
+                             counted(c.seen.trials(), "trial", "trials"),
+                             fixed(100.0 * c.least.goal.power, 0),
+                             range_text(c, &lattice::SmallestDifference::more, "more"),
+                             range_text(c, &lattice::SmallestDifference::fewer, "fewer")));
+}
+
+}  // namespace
+
+std::string answer_text(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
+  const JointTest& d = c.against_dynamics;
+  std::string text = wrapped(first_sentence(c));
   if (c.seen.has_endings()) text += shares_part(c, v);
   if (c.seen.has_gates())
     text += fmt::format(
         "Final gates: total variation {} from the full dynamics; chance alone makes {}.\n",
         fixed(c.dynamics_gates->total_variation, 3), fixed(d.chance_total_variation, 3));
+  if (c.seen.has_endings()) text += detectable_text(c);
   text += wrapped(fmt::format(
       "From {} and {} of the full dynamics. Quote the first p: it is corrected for all that is "
       "tested.{}",
       counted(c.seen.trials(), "observed trial", "observed trials"),
       counted(v.dynamics.trials, "trial", "trials"),
-      d.differs() ? " gatewalk fit finds numbers that explain the counts."
-                  : " Agreement does not show that both are equal."));
+      d.differs() ? " gatewalk fit finds numbers that explain the counts." : ""));
   if (v.finding() == lattice::Finding::own_error)
     text += fmt::format(
         "Beware: the chain differs from the full dynamics ({}); compare with the "

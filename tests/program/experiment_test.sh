@@ -19,7 +19,8 @@ jq -s '.[0].observed as $seen | .[1] | $seen.endings == .endings and $seen.final
 holds '.observed | .trials == 60 and .files == ["ends.csv", "gates.csv"] and (.against_dynamics.differs | not) and (.verdict | startswith("these 60 trials do not differ from the dynamics by more than chance (p = "))' observed.json
 holds '.observed.against_dynamics | ([.p_adjusted | .. | numbers] | min) as $least | .p == $least and .null_draws == 499 and (.final_gates | .corrcoef_floor > 0 and .total_variation > 0) and .p_endings.trapped > 0' observed.json
 holds '.observed.smallest_difference | .power == 0.8 and .level == 0.05 and .final_gates_total_variation > 0.1 and .endings_total_variation > 0.05 and (.endings_percentage_points | length == 5 and .trapped.more > 5 and .trapped.fewer > 5 and .crossed.fewer == null)' observed.json
-head -1 observed.txt | grep -q '^The 60 observed trials agree with the full dynamics (p = .*) and with the chain (p = ' || fail "validate --observed: the verdict does not come first"
+head -1 observed.txt | grep -q '^No difference found between 60 trials and the full dynamics (p = .*) or the chain (p = .*)\.$' || fail "validate --observed: the verdict does not come first"
+grep -q '^60 trials detect (power 80 %): [0-9.]* (.*) to [0-9.]* points (.*) more; .* fewer' observed.txt || fail "validate --observed: what the trials detect is not said"
 grep -q '^and the smallest shift that 60 trials detect with 80 % power' observed.txt || fail "validate --observed: a column is not explained"
 grep -q '^From 60 observed trials and 2000 trials of the full dynamics. Quote the first p' observed.txt || fail "validate --observed: which p to quote"
 # Everything else is the same as without --observed.
