@@ -99,8 +99,9 @@ lattice::CutOptions cut_options(const PassagesCommand& options) {
   return cut;
 }
 
-std::vector<std::string> next_of(const std::string& runs, const std::string& cell) {
-  if (runs == "-") return {};
+std::vector<std::string> next_of(const CutResult& result, const std::string& runs,
+                                 const std::string& cell) {
+  if (runs == "-" || result.cut.is_off()) return {};
   return {"gatewalk build " + shell_quoted(runs) + " --cell " + shell_quoted(cell) +
           " -o chain.nc  # makes a chain of the passages"};
 }
@@ -142,7 +143,7 @@ int run_passages(const Arguments& arguments) {
   lattice::write_runs(path, result.cell,
                       lattice::recorded_runs(result.cut, result.file, result.cell));
   options.give_out(result, {answer_text(result), details_text(result),
-                            next_of(path, options.cell_file.value())});
+                            next_of(result, path, options.cell_file.value())});
   options.draw([&] { return figure_of(result.cut, result.cell); });
   return kFine;
 }

@@ -212,6 +212,32 @@ void describe(Fields& out, const CutResult& result) {
   describe_made_by(out, made_by);
 }
 
+namespace {
+
+/// What lost passages mean, and what to do.
+std::string losses_text(const CutTracks& cut, const lattice::CellFile& cell, double interval) {
+  constexpr double kFew = 0.01;
+  const std::int64_t lost = cut.count(CutEnd::lost);
+  if (cut.is_off())
+    return fmt::format(
+        "Beware: the options do not fit the tracks. Check {}\nthe unit (--metres-per-unit) and "
+        "--fastest before you build a chain.\n",
+        "--origin (with --y-down: 0,HEIGHT of the picture),");
+  if (static_cast<double>(lost) <= kFew * static_cast<double>(cut.passages.size())) return "";
+  std::string text = "Beware: lost passages bias a chain if losses depend on the motion.\n";
+  if (cut.lost(lattice::LostBy::gap) > 0) text += "--bridge N bridges gaps of up to N frames.\n";
+  const std::int64_t ends = cut.lost(lattice::LostBy::end),
+                     at_border = cut.ended_at_outer_border(cell, cut.fastest_step * interval);
+  if (2 * at_border >= ends && at_border > 0)
+    text += wrapped(fmt::format(
+        "{} of {} ended within one step of the outer border: film beyond the cells, or give a "
+        "smaller --lattice.",
+        at_border, counted(ends, "lost track", "lost tracks")));
+  return text;
+}
+
+}  // namespace
+
 std::string answer_text(const CutResult& result) {
   const auto& [file, cell, cut, made_by] = result;
   std::vector<std::string> faces, losses;
@@ -235,15 +261,13 @@ std::string answer_text(const CutResult& result) {
   line("lost", CutEnd::lost, fmt::format("{}", fmt::join(losses, ", ")));
   std::string text =
       table.text() +
-      wrapped(fmt::format("From {}, {} places; {} left out, because they began unseen.",
-                          counted(std::ssize(file.tracks), "body", "bodies"), file.places,
-                          counted(cut.first_stays, "stay", "stays")));
-  constexpr double kFew = 0.01;
-  if (static_cast<double>(cut.count(CutEnd::lost)) > kFew * static_cast<double>(all))
-    text +=
-        "Beware: lost passages bias a chain if losses depend on the motion; --bridge N bridges "
-        "gaps.\n";
-  return text;
+      wrapped(fmt::format(
+          "From {}, {} places.{}", counted(std::ssize(file.tracks), "body", "bodies"), file.places,
+          cut.first_stays > 0
+              ? fmt::format(" {} left out: the track begins inside the cell.",
+                            counted(cut.first_stays, "first cell is", "first cells are"))
+              : ""));
+  return text + losses_text(cut, cell, file.interval);
 }
 
 std::string details_text(const CutResult& result) {

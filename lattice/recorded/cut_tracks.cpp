@@ -37,6 +37,13 @@ const Measured& measured(const dynamics::Coordinate& coordinate) {
                               "its middle), vx, vy, speed (m/s), heading (rad)");
 }
 
+/// The number of places in all pieces of tracks.
+std::int64_t places_of(const CutTracks& cut) {
+  std::int64_t places = 0;
+  for (const TrackPiece& p : cut.pieces) places += static_cast<std::int64_t>(p.size());
+  return places;
+}
+
 /// A crossing of a border by the smooth path.
 struct Crossing {
   double time, x, y, vx, vy, velocity_gain;
@@ -215,12 +222,13 @@ class Cutter {
       if (const std::string words = words_of_steps(); !words.empty())
         cut_.doubts.push_back(std::to_string(lost) + " of " + std::to_string(all) +
                               " passages are lost in gaps and jumps: " + words);
-    std::int64_t places = 0;
-    for (const TrackPiece& p : cut_.pieces) places += static_cast<std::int64_t>(p.size());
-    if (10 * cut_.places_outside > 9 * places)
-      cut_.doubts.push_back(std::to_string(cut_.places_outside) + " of " + std::to_string(places) +
-                            " places lie outside the cells: are --origin (the lower left corner of "
-                            "the first row), --y-down and --metres-per-unit right?");
+    if (cut_.is_mostly_outside())
+      cut_.doubts.push_back(std::to_string(cut_.places_outside) + " of " +
+                            std::to_string(places_of(cut_)) +
+                            " places lie outside the cells: check --origin, " +
+                            (file_.y_down ? "which with --y-down is 0,HEIGHT of the picture"
+                                          : "the lower left corner of the first row, --y-down") +
+                            ", and --metres-per-unit");
     std::int64_t ahead = 0, back = 0;
     for (const CutPassage& p : cut_.passages) {
       const int way = cell_.map.section.faces[static_cast<std::size_t>(p.in.face)].di_y;
@@ -232,8 +240,8 @@ class Cutter {
           (ahead == 0 ? "all" : "nearly all") +
           std::string(" passages go backwards, down the rows: ") +
           std::string(file_.y_down ? "leave --y-down out if y grows upwards in the file"
-                                   : "give --y-down if y grows downwards in the file, as in "
-                                     "pictures"));
+                                   : "give --y-down and --origin 0,HEIGHT if y grows downwards "
+                                     "in the file, as in pictures"));
   }
 
   void set_lattice() {
@@ -518,6 +526,22 @@ std::int64_t CutTracks::count(CutEnd end) const {
 std::int64_t CutTracks::lost(LostBy by) const {
   return std::count_if(passages.begin(), passages.end(), [&](const CutPassage& p) {
     return p.end == CutEnd::lost && p.lost_by == by;
+  });
+}
+
+bool CutTracks::is_mostly_outside() const { return 10 * places_outside > 9 * places_of(*this); }
+
+bool CutTracks::is_off() const {
+  return is_mostly_outside() || 10 * count(CutEnd::lost) > 9 * std::ssize(passages);
+}
+
+std::int64_t CutTracks::ended_at_outer_border(const CellFile& cell, double distance) const {
+  if (columns == 0) return 0;
+  const double right = columns * cell.width, top = rows * cell.length;
+  return std::count_if(passages.begin(), passages.end(), [&](const CutPassage& p) {
+    if (p.end != CutEnd::lost || p.lost_by != LostBy::end) return false;
+    const auto [x, y] = p.to;
+    return std::min({x, right - x, y, top - y}) <= distance;
   });
 }
 

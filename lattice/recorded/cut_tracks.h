@@ -67,6 +67,13 @@ struct CutTracks {
 
   [[nodiscard]] std::int64_t count(CutEnd end) const;
   [[nodiscard]] std::int64_t lost(LostBy by) const;
+  /// Nearly all passages were lost, or nearly all places lie outside the lattice: the options do
+  /// not fit the file.
+  [[nodiscard]] bool is_off() const;
+  [[nodiscard]] bool is_mostly_outside() const;
+  /// The number of passages whose track ends at most `distance` (m) from the outer border of a
+  /// lattice with an end.
+  [[nodiscard]] std::int64_t ended_at_outer_border(const CellFile& cell, double distance) const;
 };
 
 /// Throws std::invalid_argument naming faces, coordinates, units or mirror images of `cell` that

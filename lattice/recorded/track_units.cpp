@@ -243,7 +243,8 @@ double metres_per_unit_of(const std::vector<StatedUnit>& of_x, const std::vector
   if (!said || said->unit->kind != UnitKind::length || (!(x && y) && !given)) {
     Lacking lacking(file.source);
     if (!given && said && said->unit->kind == UnitKind::pixel)
-      lacking.add("what a unit of places is, which are " + said->words(), "--metres-per-unit X");
+      lacking.add("how long a pixel is (places are " + said->words() + ")",
+                  "--metres-per-unit X, 0.00005 for pixels of 0.05 mm");
     else if (!given)
       lacking.add("what " + (x   ? y_name + " is in"
                              : y ? x_name + " is in"

@@ -24,8 +24,7 @@ bool is_frame(double number) {
 }
 
 void Lacking::refuse() const {
-  if (!text_.empty())
-    throw std::invalid_argument(path_ + " does not say, and is not taken to mean, " + text_);
+  if (!text_.empty()) throw std::invalid_argument(path_ + " does not say " + text_);
 }
 
 void refuse_unused(bool given, const std::string& path, const std::string& option,

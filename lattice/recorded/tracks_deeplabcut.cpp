@@ -128,7 +128,8 @@ class WideTable {
     for (const KeyPointColumns& place : places) any_likelihood |= place.likelihood > 0;
     Lacking lacking(file_.source);
     if (!options_.fps) lacking.add("frames per second", "--fps N");
-    if (!options_.metres_per_unit) lacking.add("what a pixel is", "--metres-per-unit X");
+    if (!options_.metres_per_unit)
+      lacking.add("how long a pixel is", "--metres-per-unit X, 0.00005 for pixels of 0.05 mm");
     if (any_likelihood && !options_.confidence)
       lacking.add("from which likelihood on a place counts", "--confidence X");
     lacking.refuse();

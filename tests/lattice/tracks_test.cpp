@@ -470,7 +470,7 @@ TEST_F(TracksFile, UnitsThatDoNotFitAreRefused) {
           1.0);
   refused("t_s", "x_mm", "y", "column x_mm is in mm, by its name, which is 0.001 m", 1.0);
   refused("t_s", "x_mm", "y", "what column y is in: --metres-per-unit X");
-  refused("t_s", "x_px", "y_px", "are in px, by its name: --metres-per-unit X");
+  refused("t_s", "x_px", "y_px", "are in px, by its name): --metres-per-unit X");
   refused("t_s", "x", "y", "what x and y are in: --metres-per-unit X");
   // Steps of 20 ms are 50 frames per second; steps of 20 s, in a file without a unit, every 1000th
   // frame.
@@ -523,7 +523,7 @@ TEST_F(TracksFile, TrackMatesUnitsAreBelieved) {
   EXPECT_EQ(t.remarks.at(1), "column POSITION_T is in (ms), in the row of units: converted to s");
   expect_refused(text("(micron)", "(frame)", ""), options, "give frame=POSITION_T of --columns");
   expect_refused(text("(pixel)", "(sec)", ""), options,
-                 "are in (pixel), in the row of units: --metres");
+                 "are in (pixel), in the row of units): --metres");
   expect_refused(text("(micron)", "(parsec)", ""), options, "which is no unit of time");
   options.metres_per_unit = 0.001;
   EXPECT_DOUBLE_EQ(read(text("(pixel)", "(sec)", ""), options).tracks[0].y[1], 4.0);
