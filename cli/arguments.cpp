@@ -17,6 +17,7 @@
 #include "dynamics/base/work.h"
 #include "lattice/pool/pool_runner.h"
 #include "lattice/pool/states_info.h"
+#include "lattice/scene/scene_keys.h"
 #include "lattice/scene/units.h"
 #include "lattice/source/start_text.h"
 #include "lattice/text/digits.h"
@@ -165,12 +166,10 @@ void add_starts(const Options& options, lattice::SceneMatrix& m, const std::stri
   warn_of(options, *prediction, lattice::tree_info(*m.file, path).accuracy_of_one());
 }
 
-namespace {
-
-/// Whether the scene sets forces.propulsion_N, or the command varies that key.
-bool is_about_push(const Options& options, const lattice::Scene& scene) {
+bool replaces_push(const Options& options) {
   const std::string push = "forces.propulsion_N";
-  if (scene.named.contains(push)) return true;
+  for (const std::string& set : options.overrides())
+    if (std::ranges::count(lattice::keys_set_by(set), push) > 0) return true;
   for (const TextsOption& option : options.varied())
     for (const std::string& text : option.values())
       if (lattice::known_key(text.substr(0, text.find('=')), "--" + option.name()) == push)
@@ -178,13 +177,18 @@ bool is_about_push(const Options& options, const lattice::Scene& scene) {
   return false;
 }
 
-}  // namespace
+std::string push_alone_changes(const lattice::Scene& scene) {
+  const std::string numbers = lattice::numbers_from_the_push(scene);
+  if (numbers.empty()) return "";
+  return fmt::format("your options change the push, but not {}, which {} leaves out", numbers,
+                     scene.source);
+}
 
 void warn_of_keys(const Options& options, const lattice::Scene& scene, lattice::RunsFrom from) {
   for (const std::string& text : lattice::keys_without_effect(scene, from)) options.warn(text);
   if (!options.talk()) return;
   options.warn(lattice::derived_keys(scene));
-  if (is_about_push(options, scene)) options.warn(lattice::push_is_followed(scene));
+  if (replaces_push(options)) options.warn(push_alone_changes(scene));
   options.warn(far_from_walkers_line(scene));
 }
 

@@ -76,9 +76,14 @@ void add_starts(const Options& options, lattice::SceneMatrix& m, const std::stri
                 const std::vector<dynamics::Entry>& starts);
 
 /// Warns of keys without effect. Unless --quiet, also warns of keys that get scaled values of the
-/// paper, of keys that change with a push that is studied, and of a scene unlike any walking animal
-/// or robot.
+/// paper, of numbers computed from a push that an option replaces, and of a scene unlike any
+/// walking animal or robot.
 void warn_of_keys(const Options& options, const lattice::Scene& scene, lattice::RunsFrom from);
+/// Whether --set or an option that varies keys gives forces.propulsion_N.
+[[nodiscard]] bool replaces_push(const Options& options);
+/// The warning for an option that replaces the push: the numbers that were computed from the push
+/// stay as they are. Empty if there are none.
+[[nodiscard]] std::string push_alone_changes(const lattice::Scene& scene);
 /// warn_of_keys, then lattice::settle_method. Warns if the chosen method does not meet the
 /// tolerance.
 [[nodiscard]] std::optional<lattice::Settled> settle_method(const Options& options,

@@ -32,14 +32,20 @@ void refuse_overridden(const std::vector<lattice::SweepAxis>& axes,
 }
 
 /// The warnings about the scenes of all points, each once.
-std::vector<std::string> remarks_on(const std::vector<lattice::SweepPoint>& points, bool talk) {
+std::vector<std::string> remarks_on(const Options& options,
+                                    const std::vector<lattice::SweepAxis>& axes,
+                                    const std::vector<lattice::SweepPoint>& points) {
+  const bool talk = options.talk();
+  const bool with_push =
+      replaces_push(options) || std::ranges::any_of(axes, [](const lattice::SweepAxis& axis) {
+        return lattice::known_key(axis.key, "--vary") == "forces.propulsion_N";
+      });
   std::set<std::string> texts;
   for (const lattice::SweepPoint& p : points) {
     for (const std::string& text : lattice::keys_without_effect(p.scene, lattice::RunsFrom::start))
       texts.insert(text);
     if (talk) texts.insert(lattice::derived_keys(p.scene));
-    if (talk && p.scene.named.contains("forces.propulsion_N"))
-      texts.insert(lattice::push_is_followed(p.scene));
+    if (talk && with_push) texts.insert(push_alone_changes(p.scene));
   }
   texts.erase("");
   return {texts.begin(), texts.end()};
@@ -88,7 +94,7 @@ int run_sweep(const Arguments& arguments) {
   if (figure && axes.size() > 2)
     throw UsageError(fmt::format("--figure: shows one key or two, {} are varied", axes.size()));
   auto points = lattice::sweep_points({file, options.overrides(), axes});
-  for (const std::string& remark : remarks_on(points, options.talk())) options.warn(remark);
+  for (const std::string& remark : remarks_on(options, axes, points)) options.warn(remark);
 
   lattice::run_sweep(points, trials, options.seed(), options.work(),
                      [&](const auto& p) { options.warn(complaint(*p.settled)); });

@@ -158,6 +158,17 @@ std::vector<Sentence> sentences(const SceneResult& result) {
                                                           times_as(m.passages_waited))
                                             : "")}};
   for (Sentence& s : thresholds(deciding)) all.push_back(std::move(s));
+  if (scene.derived.contains("start.vy_m_per_s") && scene.start.vy > m.top_speed)
+    all.push_back(
+        {"start",
+         fmt::format("gatewalk computed the start speed {}, faster than the top speed of {} "
+                     "in the open: give start.vy_m_per_s",
+                     quantity(scene.start.vy, "m/s", 3), quantity(m.top_speed, "m/s", 3))});
+  if (const std::string numbers = lattice::numbers_from_the_push(scene);
+      !numbers.empty() && scene.named.contains("forces.propulsion_N"))
+    all.push_back({"push", fmt::format("gatewalk computed {} from the push; to compare pushes by "
+                                       "--set, write these numbers into the file first",
+                                       numbers)});
   return all;
 }
 

@@ -70,11 +70,6 @@ bool of_the_method(std::string_view key) {
          key == "contact.impulse_threshold_Ns";
 }
 
-/// "forces.random_N = 0.08", with six digits; gatewalk scene shows more.
-std::string with_value(const KeyInfo& k) {
-  return k.key + fmt::format(" = {:.6g}", number_of(k.value));
-}
-
 }  // namespace
 
 std::string derived_keys(const Scene& scene) {
@@ -119,35 +114,22 @@ std::vector<std::string> keys_that_follow_the_push(const Scene& scene) {
 
 }  // namespace
 
-std::string push_is_followed(const Scene& scene) {
+std::string numbers_from_the_push(const Scene& scene) {
   struct Part {
     std::string_view words, begin;
-    bool several;
   };
-  constexpr Part kParts[] = {{"the beams", "beams.", true},
-                             {"the random force", "forces.random_", false},
-                             {"the drag", "forces.drag_", false}};
+  constexpr Part kParts[] = {{"the beams", "beams."},
+                             {"the random force", "forces.random_"},
+                             {"the drag", "forces.drag_"},
+                             {"the start speed", "start."}};
   const std::vector<std::string> keys = keys_that_follow_the_push(scene);
-  std::string who, values;
-  bool several = false;
-  for (const Part& part : kParts) {
-    if (std::none_of(keys.begin(), keys.end(),
-                     [&](const std::string& key) { return key.starts_with(part.begin); }))
-      continue;
-    several = part.several || !who.empty();
-    who += (who.empty() ? "" : ", ") + std::string(part.words);
-  }
-  if (who.empty()) return who;
-  for (const KeyInfo& k : describe(scene))
-    if (std::find(keys.begin(), keys.end(), k.key) != keys.end())
-      values += (values.empty() ? "" : ", ") + with_value(k);
-  if (const std::size_t comma = who.rfind(", "); comma != who.npos) who.replace(comma, 1, " and");
-  return scene.source + ": " + who + (several ? " follow" : " follows") + " the push: fix " +
-         (several ? "them" : "it") +
-         " in the file before you compare pushes, since they change with a push that the file "
-         "gives, "
-         "but not by --set, --vary, --free, --over or --versus: " +
-         values;
+  std::string all;
+  for (const Part& part : kParts)
+    if (std::any_of(keys.begin(), keys.end(),
+                    [&](const std::string& key) { return key.starts_with(part.begin); }))
+      all += (all.empty() ? "" : ", ") + std::string(part.words);
+  if (const std::size_t comma = all.rfind(", "); comma != all.npos) all.replace(comma, 1, " and");
+  return all;
 }
 
 namespace {

@@ -37,10 +37,9 @@ struct Settled {
 /// A sentence on the keys that the scene leaves out and that get scaled values of the paper; empty
 /// if there are none.
 [[nodiscard]] std::string derived_keys(const Scene& scene);
-/// A sentence for results that compare pushes: which keys of the beams, the random force and the
-/// drag are left out, so that they change with forces.propulsion_N, and what to write to fix them.
-/// Empty if there are none.
-[[nodiscard]] std::string push_is_followed(const Scene& scene);
+/// Which numbers of the scene gatewalk computed from forces.propulsion_N, in words: "the beams and
+/// the random force". Empty if there are none.
+[[nodiscard]] std::string numbers_from_the_push(const Scene& scene);
 
 /// Runs a sample of `trials` again by a better method, and adds to `health` by how much the results
 /// change (dynamics::check_outcomes).

@@ -45,23 +45,26 @@ holds '.meaning | .far_from_walkers == [] and .top_speed_m_per_s > 0.29 and .top
 holds '[.meaning.far_from_walkers[].name] == ["froude", "push_per_weight", "random_per_weight", "draws_per_body_length", "passages_waited"]' small.json
 expect 0 'no walking animal or robot is like this scene: .*, and [1-9] more .gatewalk scene mine.toml says why.$' "$gatewalk" gate mine.toml --trials 10
 expect 2 'figure has no meaning beside --new' "$gatewalk" scene mine.toml --new --figure three.svg
-# A push in the file changes the keys that are left out, an override does not. A message with the numbers to write
-# appears if a push is given; not if the file has these numbers.
+# A push in the file changes the keys that are left out, an override does not. A command says so if an option replaces the
+# push, and scene if the file gives the push; neither if the file has these numbers.
 printf 'body.mass_kg = 0.25\nbody.radius_m = 0.08\n' >bare.toml
-follows='the beams, the random force and the drag follow the push: fix them .*beams.stiffness_left_Nm_per_rad = 0.0064,'
+follows='^gatewalk: your options change the push, but not the beams, the random force, the drag and the start speed, which bare.toml leaves out$'
 expect 0 "$follows" "$gatewalk" gate bare.toml --set forces.propulsion_N=0.03 --trials 10
 expect 0 "$follows" "$gatewalk" sweep bare.toml --vary forces.propulsion_N=0.01,0.03 --trials 10
-[ "$(grep -c 'before you compare pushes' out.txt)" = 1 ] || fail "sweep: says more than once what follows the push"
+[ "$(grep -c 'change the push' out.txt)" = 1 ] || fail "sweep: says more than once what follows the push"
 expect 0 "$follows" "$gatewalk" power bare.toml --versus forces.propulsion_mN=30 --trials 20 --accuracy 0.5
-expect 0 'before you compare pushes, .*stiffness_left_Nm_per_rad = 0.32,' "$gatewalk" gate mine.toml --trials 10
+expect 0 '^  push  *gatewalk computed the beams, the random force, the drag and the start speed from the' "$gatewalk" scene mine.toml
 { cat bare.toml; printf 'beams.stiffness_left_Nm_per_rad = 0.0064\nbeams.damping_Nms_per_rad = 0.0008\n'; } >fixed.toml
-expect 0 'fixed.toml: the random force and the drag follow the push' "$gatewalk" gate fixed.toml --set forces.propulsion_N=0.03 --trials 10
-grep -q 'before you compare pushes: .*beams.stiffness' out.txt && fail "gate: a stiffness of the file follows the push"
-printf 'forces = { random_N = 0.08, random_rate_Hz = 50, drag_Ns_per_m = 0.015 }\n' >>fixed.toml
-for line in "bare.toml" "fixed.toml --set forces.propulsion_N=0.03" "$scenes/robot.toml --set forces.propulsion_N=0.9" "$scenes/field.toml --set forces.propulsion_N=8"; do
+expect 0 'change the push, but not the random force, the drag and the start speed, which fixed.toml leaves out$' "$gatewalk" gate fixed.toml --set forces.propulsion_N=0.03 --trials 10
+printf 'forces = { random_N = 0.08, random_rate_Hz = 50, drag_Ns_per_m = 0.015 }\nstart.vy_m_per_s = 0.5\n' >>fixed.toml
+for line in "bare.toml" mine.toml "fixed.toml --set forces.propulsion_N=0.03" "$scenes/robot.toml --set forces.propulsion_N=0.9" "$scenes/field.toml --set forces.propulsion_N=8"; do
   # shellcheck disable=SC2086
-  "$gatewalk" gate $line --trials 10 2>&1 | grep 'before you compare pushes' && fail "gate $line: nothing follows the push, or none is given"
+  "$gatewalk" gate $line --trials 10 2>&1 | grep 'change the push' && fail "gate $line: nothing follows the push, or none is given"
 done
+# A start speed that gatewalk computed, above the top speed of the drag in the file.
+fast=(--set body.mass_g=250 --set body.radius_cm=8 --set forces.propulsion_N=0.8 --set forces.drag_Ns_per_m=2)
+expect 0 '^  start  *gatewalk computed the start speed 0.849 m/s, faster than the top speed of 0.4 m/s' "$gatewalk" scene "${fast[@]}"
+"$gatewalk" scene "${fast[@]}" --set start.vy_m_per_s=0.4 | grep '^  start' && fail "scene: a start speed that is given counts as computed"
 # The step at which a body creeps over its beams' resistance: at 1 % of the stiffness, not at 25 %.
 creep='--set forces.random_N=0 --set forces.drag_Ns_per_m=7 --set beams.damping_Nms_per_rad=1 --set run.time_limit_s=1000 --set start.vy_m_per_s=1'
 "$gatewalk" scene "$scenes/field.toml" $creep --json creep.json --quiet
