@@ -153,7 +153,9 @@ int run_trace(const Arguments& arguments) {
     options.keep_old(file);
     write_video(file, result.film, {.speed = speed}, options.work());
     result.film_speed = speed.value_or(dynamics::scale_of(scene.gate).time);
-    film_line = fmt::format("{}: plays {}\n", file, speed_words(*result.film_speed));
+    film_line = fmt::format("{}: film of run {}{}, plays {}\n", file, recordings.runs.front().trial,
+                            recordings.runs.size() > 1 ? " (--trial N films run N)" : "",
+                            speed_words(*result.film_speed));
   }
   const bool to_stdout = options.csv.value() == "-" || options.replay.value() == "-";
   options.give_out(result,

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <map>
 #include <memory>
 
 #include "cli/terminal/interrupt.h"
@@ -125,8 +127,9 @@ void Progress::finish() {
 dynamics::Work watched_work(bool show_progress, const Progress::Lines& lines, bool stops) {
   struct Watched {
     Progress progress;
-    std::string what;       // the current part; empty: none
-    std::int64_t most = 0;  // items done; later checks may be lower
+    std::string what;                                  // the current part; empty: none
+    std::int64_t most = 0;                             // items done; later checks may be lower
+    std::map<std::string, int, std::less<>> rounds{};  // how often each part has begun
   };
   const std::shared_ptr<Watched> watched(new Watched{{"", 0, show_progress, lines}, {}});
   return {[watched, stops](std::string_view what, std::int64_t done, std::int64_t total) {
@@ -137,7 +140,10 @@ dynamics::Work watched_work(bool show_progress, const Progress::Lines& lines, bo
     }
     if (stops && interrupted()) throw Interrupted{};
     if (what != watched->what) {
-      watched->progress.begin(watched->what = what, total);
+      watched->what = what;
+      const int round = ++watched->rounds[watched->what];
+      watched->progress.begin(round == 1 ? watched->what : fmt::format("{}, round {}", what, round),
+                              total);
       watched->most = 0;
     }
     watched->progress.update(watched->most = std::max(watched->most, done), total);

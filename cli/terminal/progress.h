@@ -57,8 +57,9 @@ class Progress {
   Clock::time_point last_line_;
 };
 
-/// Work that reports its progress if wanted. After a first signal, Interrupted is thrown before the
-/// next piece, if `stops`.
+/// Work that reports its progress if wanted. A part that begins again is "round 2", "round 3" of
+/// that part, so that an estimate that starts anew does not look like a hang. After a first signal,
+/// Interrupted is thrown before the next piece, if `stops`.
 [[nodiscard]] dynamics::Work watched_work(bool show_progress, const Progress::Lines& lines = {},
                                           bool stops = true);
 

@@ -44,9 +44,9 @@ expect 2 "'departed': a run ends as one of" "$gatewalk" trace "$scenes/soft_left
   fail "trace: no GIF"
 # A film says how fast it plays, in its pictures, the table and JSON; by default in the scene's own unit of time.
 "$gatewalk" trace "$scenes/soft_left.toml" --set run.time_limit_s=0.2 --video slow.gif --video-speed 0.25 --json slow.json >slow.txt
-grep -q '^slow.gif: plays at 1/4 of real time$' slow.txt || fail "a film does not say its speed: $(cat slow.txt)"
+grep -q '^slow.gif: film of run 0, plays at 1/4 of real time$' slow.txt || fail "a film does not say its speed: $(cat slow.txt)"
 holds '.video_speed == 0.25' slow.json
-expect 0 '^real.gif: plays in real time$' "$gatewalk" trace "$scenes/soft_left.toml" --set run.time_limit_s=0.2 --video real.gif
+expect 0 '^real.gif: film of run 0, plays in real time$' "$gatewalk" trace "$scenes/soft_left.toml" --set run.time_limit_s=0.2 --video real.gif
 # The proposed remedy for the limit of steps works, whatever it is.
 "$gatewalk" trace "$scenes/field.toml" --field --trials 900 --csv many.csv >out.txt 2>&1 && fail "more than 500 000 steps are recorded"
 fit=$(sed -n 's/.*: give --trials \([0-9]*\), --only ENDING, a smaller field.max_gates, a longer run.step_s or a shorter run.time_limit_s$/\1/p' out.txt)
