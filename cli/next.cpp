@@ -45,11 +45,22 @@ NextCommands& NextCommands::add(const std::string& command, const std::string& m
   return *this;
 }
 
+NextCommands& NextCommands::of(const std::string& file, const std::string& command,
+                               const std::string& why) {
+  std::string line = "gatewalk " + command + " " + shell_quoted(file);
+  for (const std::string& word : options_.words().shaping)
+    if (std::ranges::count(kOfScene, option_of(word)) > 0) line += " " + written(word);
+  put(line, why);
+  return *this;
+}
+
 NextCommands& NextCommands::again(const std::string& name, const std::string& value,
                                   const std::string& why) {
+  const auto is_same = [&](const std::string& word) { return option_of(word) == name; };
+  if (std::ranges::any_of(options_.words().outputs, is_same)) return *this;  // it is written now
   std::string line = "gatewalk " + options_.words().command;
   for (const std::string& word : options_.words().shaping)
-    if (option_of(word) != name) line += " " + written(word);
+    if (!is_same(word)) line += " " + written(word);
   const std::string option = "--" + name + " " + value;
   line += " " + option;
   if (kBefore.size() + line.size() > kScreenColumns)

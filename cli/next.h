@@ -25,6 +25,8 @@ class NextCommands {
   /// "--name value why", if the line would be too long.
   NextCommands& again(const std::string& name, const std::string& value, const std::string& why);
 
+  /// Proposes another command on `file`, with --set and --start of this command.
+  NextCommands& of(const std::string& file, const std::string& command, const std::string& why);
   /// Proposes a command by all its words behind "gatewalk".
   NextCommands& run(const std::string& words, const std::string& why);
 

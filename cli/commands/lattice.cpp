@@ -122,7 +122,7 @@ FieldRun field_run(const LatticeCommand& options) {
 std::vector<std::string> next_of(const LatticeCommand& options) {
   if (options.policy) return {};
   NextCommands next(options);
-  next.add("predict", "", "the same shares from fewer trials, and an error bar");
+  next.add("predict", "", "a prediction with error bars, also of rare endings");
   if (!has_cell(options, options.program))
     next.add("trace", "--field --trials 5 --replay runs.html", "watch single bodies");
   return next.lines();

@@ -79,6 +79,8 @@ int run_merge(const Arguments& arguments) {
   const TextsOption part_files = options.positional_list("part", "files that --part wrote");
   options.output_file("output", "FILE", "the main output", Options::Content::binary);
   options.without_scene("the parts have their scene");
+  options.add_details("what the parts' command shows with --details");
+  options.most_used({"output", "json"});
   const auto own_end = std::find(arguments.words.begin(), arguments.words.end(), "--");
   Arguments own = arguments;
   own.words.assign(arguments.words.begin(), own_end);
@@ -95,7 +97,7 @@ int run_merge(const Arguments& arguments) {
     throw UsageError(
         fmt::format("-o and --json name the same output of gatewalk {}: give one", name));
   Arguments all(words_of(heads, options.output.value()));
-  for (const Option& flag : {options.quiet, options.force})
+  for (const Option& flag : {options.quiet, options.force, options.details})
     if (flag) all.words.push_back("--" + flag.name());
   if (options.json) all.words.push_back("--json=" + options.json.value());
   for (auto word = own_end; word != arguments.words.end(); ++word) {

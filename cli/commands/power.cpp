@@ -25,7 +25,7 @@ std::vector<std::string> next_of(const Options& options, const lattice::Source& 
     next.again("trials", "100", "says what 100 trials detect");
   else if (s.is_recorded())
     next.add("validate", "", "tests whether half of the bodies predict the others");
-  else if (!s.file)
+  else if (!s.file && !Option(options, "versus"))
     next.add("lattice", "--trials " + std::to_string(options.trials.value()),
              "simulates one such experiment");
   return next.lines();

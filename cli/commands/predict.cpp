@@ -106,17 +106,22 @@ markov::PredictOptions::Solver solver_of(const PredictCommand& options) {
 }
 
 /// Commands to propose next.
-std::vector<std::string> next_of(const PredictCommand& options, const lattice::Source& s) {
+std::vector<std::string> next_of(const PredictCommand& options, const lattice::Source& s,
+                                 const PredictResult& result) {
   NextCommands next(options);
   if (s.is_recorded() && !s.is_imported && s.pool->bodies() >= 2 * lattice::kLeastBodies)
     next.run("validate " + shell_quoted(options.matrix.value()),
              "does one half of the bodies predict the other?");
-  if (s.starts.size() == 1)  // an analysis is of one
+  if (s.starts.size() == 1 && !options.row)  // an analysis is of one start and one matrix
     next.add("analyze", "",
              s.file ? "times, visits of gates, and what the chain remembers"
                     : "which number of the scene matters most");
-  if (s.pool && !s.is_recorded())
-    next.again("accuracy", digits(0.5 * s.accuracy.accuracy), "halves the error bar");
+  if (result.of_runs && !s.is_recorded() && result.of_runs->prediction.reached) {
+    double error = 0.0;
+    for (const lattice::StartAnswer& a : result.of_runs->prediction.starts)
+      error = std::max(error, a.error.total_variation);
+    next.again("accuracy", digits(0.5 * error, 2), "halves the error bar");
+  }
   return next.lines();
 }
 
@@ -124,7 +129,8 @@ std::vector<std::string> next_of(const PredictCommand& options, const lattice::S
 template <class Answer>
 void tell(const PredictCommand& options, const lattice::Source& s, const PredictResult& result,
           const std::vector<Answer>& answers) {
-  options.give_out(result, {answer_text(result), details_text(result), next_of(options, s)});
+  options.give_out(result,
+                   {answer_text(result), details_text(result), next_of(options, s, result)});
   options.warn(too_few_gates(result.shown));
   for (std::size_t k = 0; k < answers.size(); ++k)
     options.warn(rest_warning(rest_of(answers[k].final), where(s, k)));

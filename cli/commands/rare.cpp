@@ -83,8 +83,10 @@ int run_rare(const Arguments& arguments) {
   options.work().end_part();
 
   NextCommands next(options);
-  if (!how.trials && result.event.splitting.reached)
-    next.again("accuracy", digits(0.5 * how.accuracy), "halves the standard error");
+  if (const lattice::Splitting& s = result.event.splitting;
+      !how.trials && s.reached && s.rows.back().relative_standard_error > 0.0)
+    next.again("accuracy", digits(0.5 * s.rows.back().relative_standard_error, 2),
+               "halves the standard error");
   next.add("analyze", "", "which number of the scene matters most");
   options.give_out(result,
                    {answer_text(result), details_text(result, source.problem.field), next.lines()});

@@ -274,7 +274,7 @@ std::vector<std::string> next_of(const ValidateCommand& options, const lattice::
   if (v.trials < 1000)
     next.again("trials", std::to_string(10 * v.trials), "reveals smaller differences");
   const std::string why = "the chain's answer alone";
-  return options.matrix ? next.run("predict " + shell_quoted(options.matrix.value()), why).lines()
+  return options.matrix ? next.of(options.matrix.value(), "predict", why).lines()
                         : next.add("predict", "", why).lines();
 }
 

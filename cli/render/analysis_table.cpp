@@ -65,6 +65,9 @@ std::string direct_text(const AnalysedField& f) {
 
 /// What the intervals of an analysis include.
 std::string intervals_text(const AnalysedField& f) {
+  if (f.answer.from_trials)
+    return "The endings are the shares of the trials, which are more precise here than the chain; "
+           "their 95 % intervals count the sampling error of the trials.";
   if (f.analysis.by_groups)
     return "The 95 % intervals include sampling error and the chain's own approximation error.";
   return std::isnan(f.answer.endings.interval.front().front())
@@ -123,10 +126,20 @@ std::string beware_text(const AnalysedField& f, std::size_t most) {
                      a.target_chance > 0.5 ? "every body" : "no body", target_name(f))
                : "";
   constexpr double kSmall = 0.3;
-  if (const double change = largest_change(f); change > kSmall)
+  constexpr double kLeastStep = 1e-4;  // a smaller one hardly changes any run
+  const double change = largest_change(f), step = f.step * 0.1 / change;
+  if (change == 0.0)
+    return "Beware: no changed run ended otherwise, so these runs tell no influences; raise "
+           "--runs.\n";
+  if (change > kSmall && step >= kLeastStep)
     return fmt::format(
         "Beware: the chance changes by {} in one step of {}; repeat with --step {}.\n",
-        percent(change, 1.0, 0), percent(f.step, 1.0), digits(f.step * 0.1 / change, 1));
+        percent(change, 1.0, 0), percent(f.step, 1.0), digits(step, 1));
+  if (change > kSmall)
+    return fmt::format(
+        "Beware: \"{}\" is too rare for these influences; take another --target, or raise "
+        "--runs.\n",
+        target_name(f));
   if (!a.by_groups)
     return "Beware: a matrix of bins gives coarse influences without intervals; analyze the "
            "scene.\n";

@@ -278,8 +278,9 @@ std::string memory_text(const lattice::Independence& m, const dynamics::Section&
   if (m.label < 0)
     return "Memory cannot be tested: no state was entered in two ways with two outcomes.\n";
   if (m.p > lattice::MemoryStudy::kLevel)
-    return fmt::format("Memory: the face of the cell before tells nothing beyond the state ({}).\n",
-                       p_words(m.p));
+    return fmt::format(
+        "Memory: these runs give no evidence that the face of the cell before matters ({}).\n",
+        p_words(m.p));
   const auto& faces = section.faces;
   const auto outcome = static_cast<std::size_t>(m.outcome);
   return fmt::format(
@@ -357,9 +358,7 @@ std::string answer_text(const CrossValidationResult& result) {
     text += fmt::format("Final gates of {}: {}.\n", seen_name(k), total_variation_text(v.folds[k]));
   text += memory_text(result.memory, result.section) + table_of(result.recorded);
   if (v.differs())
-    text +=
-        "Beware: a prediction for other bodies errs by about that difference; record more "
-        "bodies.\n";
+    text += "Beware: a prediction for other bodies may err as much as the halves differ.\n";
   return text;
 }
 

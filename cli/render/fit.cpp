@@ -246,6 +246,17 @@ std::string explained_text(const FittedScene& f) {
 
 }  // namespace
 
+/// The numbers whose posterior reaches an end of its range.
+std::string at_ends_text(const FittedScene& f) {
+  std::string keys;
+  for (std::size_t k = 0; k < f.ranges.size(); ++k)
+    if (const lattice::FittedNumber& n = f.fit.numbers[k]; n.goes_on[0] || n.goes_on[1])
+      keys += (keys.empty() ? "" : ", ") + f.ranges[k].key;
+  return keys.empty() ? ""
+                      : wrapped("Beware: the likeliest values lie at an end of the range of " +
+                                keys + "; widen the range.");
+}
+
 std::string answer_text(const FittedScene& f) {
   const lattice::Fit& fit = f.fit;
   TextTable numbers(
@@ -262,7 +273,7 @@ std::string answer_text(const FittedScene& f) {
   return numbers.text() + explained_text(f) +
          fmt::format("From {} observed {} and {} simulated {}.\n", fit.observed, counted(f),
                      fit.trials, counted(f)) +
-         untold_text(f) + together_text(f, kMostPairs);
+         at_ends_text(f) + untold_text(f) + together_text(f, kMostPairs);
 }
 
 std::string details_text(const FittedScene& f) {

@@ -176,8 +176,8 @@ std::string answer_text(const SweepResult& result) {
     const bool has_legend = !KeyColumns(result.axes).legend.empty();
     const auto half = static_cast<std::ptrdiff_t>((has_legend ? kMostBelowLegend : kMostShown) / 2);
     points.erase(points.begin() + half, points.end() - half);
-    text = fmt::format("The {} points at which most runs traverse, and the {} with fewest:\n", half,
-                       half);
+    text = fmt::format(
+        "{} of the points at which most runs traverse, and {} of those with fewest:\n", half, half);
   }
   return text + table_of(result.axes, points) +
          fmt::format("From {} of {}, all with the same random numbers; 95 % intervals.\n",

@@ -542,8 +542,8 @@ std::string answer_text(const ValidateResult& result) {
                   totals_of(matrix).runs, matrix.path.empty() ? "" : " in " + matrix.path);
   if (std::any_of(v.starts.begin(), v.starts.end(), differs))
     text +=
-        "Beware: the chain is biased here by about that difference. gatewalk lattice simulates "
-        "the dynamics.\n";
+        "Beware: the chain has an error of its own here. gatewalk lattice simulates the full "
+        "dynamics.\n";
   else if (v.trials < kFewTrials)
     text += fmt::format(
         "Beware: {} trials reveal only large differences; more trials reveal smaller "
