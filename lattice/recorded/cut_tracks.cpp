@@ -453,7 +453,7 @@ class Cutter {
       if (!t.y.empty()) up += t.y.back() - t.y.front();
     const bool is_below = highest < 0.0;
     const std::string below = is_below ? ": all lie below the first row" : "";
-    if (is_below && file_.y_down) return below + ": is --origin the lower left corner?";
+    if (is_below && file_.y_down) return below + ": with --y-down, --origin is 0,HEIGHT";
     if (!file_.y_down && (is_below || up < 0.0))
       return below + ": is y measured downwards (--y-down)?";
     return below;

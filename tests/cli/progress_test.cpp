@@ -84,6 +84,15 @@ std::size_t times(const std::string& text, char c) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), c));
 }
 
+TEST(WatchedWork, APartThatBeginsAgainIsAnotherRound) {
+  std::ostringstream out;
+  const dynamics::Work work = watched_work(true, {&out, milliseconds(0)});
+  for (int round = 0; round < 2; ++round)
+    for (const int done : {0, 1, 2, 4}) work.tell("trials", done, 4);
+  EXPECT_NE(out.str().find("gatewalk: trials: 50 %"), std::string::npos) << out.str();
+  EXPECT_NE(out.str().find("gatewalk: trials, round 2: 50 %"), std::string::npos) << out.str();
+}
+
 TEST(Progress, SaysHowFarItIsAndClearsTheLine) {
   const std::string text = on_terminal(80, [] {
     Progress progress("runs", 400, true);

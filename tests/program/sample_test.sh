@@ -24,7 +24,16 @@ for name in tracks runs observed; do "$gatewalk" sample $name -o $name.csv; done
 "$gatewalk" sample cell -o cell.toml
 expect 0 'in 48 trials' "$gatewalk" passages tracks.csv --cell cell.toml -o passages.csv --fps 10 --metres-per-unit 0.001 \
   --fastest 0.4 --lattice 9,9 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y
+grep -q '^19 of 30 lost tracks ended within one step of the outer border: film beyond the cells' out.txt &&
+  ! grep -q -e '--bridge' out.txt || fail "passages: what to do about lost tracks: $(cat out.txt)"
+expect 0 '^Beware: the options do not fit the tracks. Check --origin' "$gatewalk" passages tracks.csv --cell cell.toml -o off.csv \
+  --fps 10 --metres-per-unit 0.001 --fastest 0.4 --origin 0,830 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y
+grep -q 'gatewalk build' out.txt && fail "passages: proposes a chain of tracks that do not fit: $(cat out.txt)"
 expect 0 '48 bodies' "$gatewalk" build passages.csv --cell cell.toml -o passages.nc
+grep -q '^gatewalk: no body went through face N; you need not act' out.txt || fail "build: a face without use: $(cat out.txt)"
+expect 0 '^Beware: 30 of the 48 bodies were lost from sight' "$gatewalk" predict passages.nc --set field.columns=5 --set field.rows=4
+grep -q '^  trapped [0-9.]* or [0-9.]* %; crossed [0-9.]* or [0-9.]* %\.$' out.txt || fail "predict: the bounds of lost bodies: $(cat out.txt)"
+expect 0 '^[0-9]* of 12 differences are larger than chance alone' "$gatewalk" validate passages.nc
 expect 2 'nobody was seen to enter so' "$gatewalk" predict passages.nc --start N:0.01,0,-0.15
 expect 0 'crossed' "$gatewalk" predict passages.nc --start W:0.01,0.1,0.1
 expect 0 '12 bodies' "$gatewalk" build runs.csv --cell cell.toml -o runs.nc
