@@ -366,11 +366,14 @@ std::string details_text(const CrossValidationResult& result) {
   const CrossValidation& v = result.validation;
   const std::vector<EndingName> names = shown_endings_of(v);
   std::string text =
-      "\nEndings with 95 % intervals: sampling of the bodies as seen, and the error bars of the "
-      "chain from the\nsame starts. Where a trial was not seen to its end, the chain continues "
-      "from the last entry seen.\nDifference by chance: 95 of 100 single differences that chance "
-      "alone makes are smaller.\n*: a difference is larger than chance, corrected for testing all "
-      "differences (p at most 0.05).\n";
+      "\nEndings with 95 % intervals: as seen, of the sampling of bodies; by the chain from the "
+      "same "
+      "starts,\nof its error bars. The chain continues a trial that was not seen to its end from "
+      "its "
+      "last entry.\nDifference by chance: 95 of 100 single differences that chance alone makes are "
+      "smaller.\n*: a difference is larger than chance, corrected for testing all differences (p "
+      "at "
+      "most 0.05).\n";
   for (std::size_t w = 0; w < 2; ++w)
     text += "\n" + endings_table(v.folds[w], names, seen_name(w), chain_name(w));
   text += "\n";
