@@ -11,7 +11,6 @@
 
 #include "cli/command_state.h"
 #include "cli/fields/text.h"
-#include "cli/fields/text_table.h"
 #include "cli/kept/kept_options.h"
 #include "cli/kept/ranks.h"
 #include "cli/terminal/output.h"
@@ -425,9 +424,9 @@ std::string Options::help_page() const {
   const CommandHelp page = help();
   lattice::TextStream text;
   text << "gatewalk " << page.synopsis << "\n\n" << page.about << "\n\n";
-  TextTable positionals({{"", -22, 0, "", "  "}, {"", 0, 0, "", "  "}});
-  for (const auto& [name, what] : page.arguments) positionals.row({name, what});
-  text << positionals.text() << "\nExample:\n  " << page.example << "\n";
+  for (const auto& [name, what] : page.arguments)
+    text << wrapped(fmt::format("  {:<22}  {}", name, what), std::string(26, ' '));
+  text << "\nExample:\n  " << page.example << "\n";
   for (auto at = page.options.begin(); at != page.options.end();) {
     po::options_description group(at->group, kColumns);
     for (const std::string& heading = at->group; at != page.options.end() && at->group == heading;

@@ -14,6 +14,10 @@ expect 2 "^gatewalk: no command '$scenes/field.toml', but a file: the command co
 while read -r command; do
   # shellcheck disable=SC2086
   expect 0 'Example:' "$gatewalk" $command --help
+  # Its page begins with at most five options, and no line but the example is wider than a screen.
+  first=$(awk '/^Options that most people need/ { on = 1; next } on && /^$/ { exit } on && /^  -/ { n++ } END { print n + 0 }' out.txt)
+  [ "$first" -le 5 ] && { [ "$first" -ge 1 ] || [ "$command" = sample ]; } || fail "$command --help: $first options come first"
+  grep -v '^  gatewalk ' out.txt | grep -q '.\{101\}' && fail "$command --help: a line is too wide"
   # shellcheck disable=SC2086
   expect 2 'there is no option' "$gatewalk" $command --no-such-option
 done <commands.txt
