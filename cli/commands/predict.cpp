@@ -110,8 +110,7 @@ std::vector<std::string> next_of(const PredictCommand& options, const lattice::S
                                  const PredictResult& result) {
   NextCommands next(options);
   if (s.is_recorded() && !s.is_imported && s.pool->bodies() >= 2 * lattice::kLeastBodies)
-    next.run("validate " + shell_quoted(options.matrix.value()),
-             "does one half of the bodies predict the other?");
+    next.of(options.matrix.value(), "validate", "does one half of the bodies predict the other?");
   if (s.starts.size() == 1 && !options.row)  // an analysis is of one start and one matrix
     next.add("analyze", "",
              s.file ? "times, visits of gates, and what the chain remembers"

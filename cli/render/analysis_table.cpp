@@ -101,7 +101,7 @@ std::string largest_effects(const AnalysedField& f, std::size_t most) {
   for (const lattice::ParameterEffect& e : effects | std::views::take(most))
     table.row({e.key, elasticity_text(f, e)});
   return fmt::format(
-      "Largest influences: % by which the chance of \"{}\" grows for 1 % more of\n{}",
+      "Largest influences: relative change of the chance of \"{}\", in %, for 1 % more of\n{}",
       target_name(f), table.text());
 }
 

@@ -139,7 +139,12 @@ std::string shares_part(const lattice::ObservedComparison& c, const lattice::Sta
                cell(v.dynamics_endings, c.against_dynamics.differs(e.ending)),
                cell(v.exact_endings, c.against_chain.differs(e.ending))});
   }
-  return table.text();
+  const bool is_marked = std::ranges::any_of(kEndingNames, [&](const EndingName& e) {
+    return !c.endings.rules_out(e.ending) &&
+           (c.against_dynamics.differs(e.ending) || c.against_chain.differs(e.ending));
+  });
+  return table.text() +
+         (is_marked ? "*: differs from the observed share by more than chance.\n" : "");
 }
 
 std::string endings_part(const lattice::ObservedComparison& c) {
