@@ -401,8 +401,11 @@ std::string answer_text(const ShownMatrix& matrix, const ShownRows& shown) {
       !file.text.contains("status") && file.text.contains(lattice::kCellText)
           ? std::string("none on record") + (lattice::has_runs(file) ? ": runs were recorded" : "")
           : faults_recorded(recorded_health(file));
-  table.row({"numerical faults", faults.empty() ? "none seen" : faults});
-  std::string text = size_line(t, path) + table.text();
+  const std::string of_all = file.types.empty() ? "" : "in all types: ";
+  std::string text =
+      size_line(t, path) + table.text() +
+      wrapped("  numerical faults    " + (faults.empty() ? "none seen" : of_all + faults),
+              std::string(22, ' '));
   if (shown.all) text += row_table(t);
   if (shown.one) text += outputs_table(t, *shown.one);
   return text;
