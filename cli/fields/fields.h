@@ -74,7 +74,7 @@ struct Label : ResultKey {
     changed.varies = shown;
     return changed;
   }
-  /// Declares that the text is one of these words.
+  /// Declares that the text is one of the `allowed` words.
   [[nodiscard]] Label one_of(std::vector<std::string> allowed) const {
     Label changed = *this;
     changed.words = std::move(allowed);

@@ -19,10 +19,11 @@ struct VideoOptions {
 };
 
 /// Writes the first run of a film, drawn by cairo and encoded by ffmpeg, as MP4 (H.264, yuv420p,
-/// 1280 x 720) or GIF (800 x 450, repeats for ever), by the ending of `path`. The last picture
-/// stands for a second. `path` is replaced as a whole or left as it was. `work` is told of every
-/// picture and may stop. Throws std::invalid_argument for an unusable film, name or options, and
-/// std::runtime_error when ffmpeg is missing or fails or the file cannot be written.
+/// 1280 x 720) or GIF (800 x 450, repeats for ever), by the ending of `path`. The film ends
+/// with one second of its last picture. An old file is replaced as a whole or stays. `work` hears
+/// of every picture and may stop the film. Throws std::invalid_argument for an unusable film, name
+/// or options, and std::runtime_error when ffmpeg is missing or fails or the file cannot be
+/// written.
 void write_video(const std::string& path, const Film& film, const VideoOptions& options = {},
                  const dynamics::Work& work = {});
 

@@ -57,7 +57,7 @@ Measured steep(const Findings& f) {
 struct Moments {
   std::int64_t looked = 0;
   std::int64_t below = 0;      // moments more than 0.5 J below the landscape
-  std::int64_t explained = 0;  // of these, not below the landscape of one beam alone
+  std::int64_t explained = 0;  // of `below`: not below the landscape of one beam alone
 
   void look_at(const TracedRun& run) {
     for (std::size_t i = 0; i < run.t.size(); ++i) {

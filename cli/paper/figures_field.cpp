@@ -18,9 +18,10 @@ namespace {
 /// A final gate.
 struct Cell {
   double i_x, i_y;
-  std::int64_t trials;                       // trials that ended there
-  double dynamics, chain;                    // shares of all trials
-  double departed_dynamics, departed_chain;  // the parts of these shares that left the field
+  std::int64_t trials;     // trials that ended there
+  double dynamics, chain;  // shares of all trials
+  double departed_dynamics,
+      departed_chain;  // shares of all trials that left the field from this gate
 };
 
 /// The final gates of a start, row by row.

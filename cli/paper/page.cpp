@@ -94,7 +94,7 @@ std::string badge(Verdict v) {
                  fmt::format("<i aria-hidden=\"true\">{}</i>{}", mark_of(v).symbol, name_of(v)));
 }
 
-/// Calls `tell` with each verdict that claims have, and the number of these claims.
+/// Calls `tell` with each verdict that occurs, and the number of claims with this verdict.
 template <class Tell>
 void each_verdict(const std::vector<Claim>& claims, Tell tell) {
   for (const Verdict v : kOrder)

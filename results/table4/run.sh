@@ -7,12 +7,13 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
-gatewalk=${1:-$root/build/gatewalk}
+gatewalk=$(realpath "${1:-$root/build/gatewalk}")
 . "$root/results/manifest.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-"$gatewalk" validate "$root/scenes/field.toml" --trials 10000 --bins paper --matrix-trials 100 --seed 1 --details \
+cd "$root"  # so that the screen names the scene as README does
+"$gatewalk" validate scenes/field.toml --trials 10000 --bins paper --matrix-trials 100 --seed 1 --details \
   >"$here/validation.txt" 2>/dev/null
 
 echo "method,damping,trials,traversed_left_percent,exited_percent,trapped_percent" >"$here/single_gate.csv"
