@@ -41,6 +41,7 @@ struct alignas(64) LaneWatches {
   Row y0, work, lowest, created;
   Row max_theta[2], penetration, speed_squared;
   Row steps, impacts, fast;
+  Row counted[2];  // Watch::counted: 1 or 0
 };
 
 /// The runs in the lanes, and everything between two steps: spells of constant force and the ends
@@ -211,8 +212,10 @@ class LaneRuns {
     w.lowest[i] = energy(p_, s);
     w.work[i] = w.created[i] = w.penetration[i] = w.speed_squared[i] = 0.0;
     w.steps[i] = w.impacts[i] = w.fast[i] = 0.0;
-    for (const Side side : {kLeft, kRight})
-      bodies.theta[side][i] = bodies.omega[side][i] = w.max_theta[side][i] = 0.0;
+    for (const Side side : {kLeft, kRight}) {
+      bodies.theta[side][i] = bodies.omega[side][i] = 0.0;
+      w.max_theta[side][i] = w.counted[side][i] = 0.0;
+    }
   }
 
   const GateParams& p_;
@@ -337,8 +340,10 @@ HWY_INLINE void step(const GateParams& p, LaneRuns& runs) {
     jx = jx + impulse[side] * t[side].nx;
     jy = jy + impulse[side] * t[side].ny;
     omega[side] = omega[side] - impulse[side] * t[side].lever * load(k.inv_inertia[side]);
-    const WideMask new_hit = (impulse[side] > zero) & (t[side].gap > h * before[side]);
-    impacts = impacts + or_zero(new_hit, one);
+    const WideMask pushed = impulse[side] > zero,
+                   counted = active[side] & (load(w.counted[side]) > zero);
+    impacts = impacts + or_zero(pushed & ~counted, one);
+    store(or_zero(pushed | counted, one), w.counted[side]);
   }
   store(impacts, w.impacts);
   vx = vx + jx * inv_mass;

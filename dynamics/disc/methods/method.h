@@ -27,6 +27,9 @@ struct Watch {
   std::int64_t undefined_contacts = 0;  // contacts for which the method has no formula
   std::int64_t fast_steps = 0;          // steps so long that hits may have been missed
   std::int64_t unstable_steps = 0;      // steps beyond the method's stability bound for free beams
+  // Whether `impacts` already counts the present overlap with each beam: an overlap can last for
+  // many steps of `moreau` and `penalty`.
+  std::array<bool, 2> counted{};
   // The next members are for traces. Runs in vector lanes do not set them, nor does `penalty`, in
   // which contacts are not hits.
   std::array<double, 2> impulse{};  // N s, of the hits on each beam, along the contact's normal

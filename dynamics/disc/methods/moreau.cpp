@@ -55,6 +55,8 @@ void MoreauMethod::one_step(GateState& s, double force_x, const Step& step, Watc
     ++watch.evaluations;
     active[side] = touch[side].gap <= 0.0;
   }
+  for (const Side side : {kLeft, kRight})
+    watch.counted[side] = watch.counted[side] && active[side];
 
   if (active[kLeft] || active[kRight]) {
     std::array<double, 2> b{}, before{};
@@ -75,7 +77,8 @@ void MoreauMethod::one_step(GateState& s, double force_x, const Step& step, Watc
     for (const Side side : {kLeft, kRight}) {
       beams[side].omega -= impulse[side] * touch[side].lever / step.inertia[side];
       watch.impulse[side] += impulse[side];
-      watch.impacts += impulse[side] > 0.0 && touch[side].gap > step.h * before[side];
+      watch.impacts += impulse[side] > 0.0 && !watch.counted[side];
+      watch.counted[side] = watch.counted[side] || impulse[side] > 0.0;
     }
     for (const Side side : {kLeft, kRight}) {
       if (!active[side])

@@ -22,7 +22,7 @@
 /// can create energy: sum J (u+ + u-)/2 may be positive if one contact opens already.
 ///
 /// There is no constraint mode: contact.impulse_threshold has no effect and `held` stays false.
-/// Watch::impacts counts overlaps that, at their present speed, did not exist a step ago.
+/// Watch::impacts counts each overlap in which an impulse acts, once.
 
 #include "dynamics/disc/methods/method.h"
 

@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "dynamics/disc/methods/march.h"
 
@@ -109,11 +110,12 @@ double PenaltyMethod::advance(GateState& s, double force_x, double duration, Ene
     std::array<double, 2> force{};
     for (const Side side : {kLeft, kRight}) {
       const Touch& t = touch[side];
+      const bool counted = std::exchange(watch.counted[side], t.gap < 0.0);
       if (t.gap >= 0.0) continue;
       const double u = gap_rate(t, now.body, now.beams[side]);
       const Spring& spring = springs.of(t);
       force[side] = std::fmax(0.0, -mass[side] * (spring.stiffness * t.gap + spring.damping * u));
-      watch.impacts += t.gap >= h * u;
+      watch.impacts += !counted;
     }
     const Touch &l = touch[kLeft], &r = touch[kRight];
     BodyState& body = now.body;

@@ -21,8 +21,8 @@
 /// as 0.015; hits of both beams are not solved together; stiff or damped beams need short steps.
 ///
 /// There is no constraint mode: contact.impulse_threshold has no effect and `held` stays false.
-/// Watch::impacts counts overlaps that, at their present speed, did not exist a step ago. The
-/// energy ledger includes the energy in the contact springs.
+/// Watch::impacts counts each overlap once. The energy ledger includes the energy in the contact
+/// springs.
 
 #include "dynamics/disc/methods/method.h"
 
