@@ -8,10 +8,10 @@
 
 #include "cli/fields/text.h"
 #include "cli/fields/text_table.h"
+#include "cli/render/compared_gates.h"
 #include "cli/render/field_ends.h"
 #include "cli/render/final_gates.h"
-#include "cli/render/memory.h"
-#include "cli/render/validation.h"
+#include "cli/render/tested_shares.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -257,21 +257,23 @@ std::vector<std::string> rest_warnings(const CrossValidation& v) {
 
 namespace {
 
-/// The half and the ending for which the observed and the predicted share differ most.
-std::pair<std::size_t, EndingName> differs_most(const CrossValidation& v) {
-  std::pair<std::size_t, EndingName> most{0, kEndingNames.front()};
-  double largest = -1.0;
-  for (std::size_t w = 0; w < 2; ++w)
-    for (const EndingName& e : shown_endings_of(v)) {
-      const auto at = static_cast<std::size_t>(e.ending);
-      const Fold& fold = v.folds[w];
-      const double difference = std::abs(fold.seen.share[at] - fold.chain_endings.share[at]);
-      if (difference > largest) {
-        largest = difference;
-        most = {w, e};
-      }
-    }
-  return most;
+/// A line on the half and the ending that differ most from the other half's chain.
+std::string largest_difference(const CrossValidation& v) {
+  std::vector<TestedShare> shares;
+  double p_of_gates = 1.0;
+  for (const Fold& fold : v.folds) {
+    add_tested(shares, fold.endings);
+    p_of_gates = std::min(p_of_gates, fold.total_variation.p_adjusted);
+  }
+  const auto most = named_share(shares, p_of_gates, Fold::kLevel);
+  if (!most) return kOnlyGatesDiffer;
+  const std::size_t w = *most / markov::kEndings, at = *most % markov::kEndings;
+  const Fold& fold = v.folds[w];
+  return fmt::format(
+      "Largest difference: {}, {} % seen in {}, {} % by the chain of {};\n"
+      "chance alone makes up to {} points (95 %).\n",
+      name_of(shares[*most].ending), percents(fold.seen.share[at]), seen_name(w),
+      percents(fold.chain_endings.share[at]), chain_name(w), percents(fold.chance_95[at]));
 }
 
 std::string memory_text(const lattice::Independence& m, const dynamics::Section& section) {
@@ -342,18 +344,11 @@ std::string continued_text(const CrossValidation& v) {
 
 std::string answer_text(const CrossValidationResult& result) {
   const CrossValidation& v = result.validation;
-  const auto [w, most] = differs_most(v);
-  const Fold& fold = v.folds[w];
-  const auto at = static_cast<std::size_t>(most.ending);
-  std::string text = fmt::format(
-      "One half of the bodies {} ({}).\n{}"
-      "Largest difference: {}, {} % seen in {}, {} % by the chain of {};\n"
-      "chance alone makes up to {} points (95 %).\n{}",
-      v.differs() ? "does not predict the other"
-                  : "predicts the other, as far as these runs can tell",
-      p_words(v.p), single_differences_text(v), most.name, percents(fold.seen.share[at]),
-      seen_name(w), percents(fold.chain_endings.share[at]), chain_name(w),
-      percents(fold.chance_95[at]), continued_text(v));
+  std::string text = fmt::format("One half of the bodies {} ({}).\n{}{}{}",
+                                 v.differs() ? "does not predict the other"
+                                             : "predicts the other, as far as these runs can tell",
+                                 p_words(v.p), single_differences_text(v), largest_difference(v),
+                                 continued_text(v));
   for (std::size_t k = 0; k < 2; ++k)
     text += fmt::format("Final gates of {}: {}.\n", seen_name(k), total_variation_text(v.folds[k]));
   text += memory_text(result.memory, result.section) + table_of(result.recorded);

@@ -14,6 +14,7 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/panel.h"
 #include "cli/render/power.h"
+#include "cli/render/tested_shares.h"
 #include "cli/render/validation.h"
 #include "dynamics/base/share.h"
 
@@ -30,15 +31,6 @@ std::size_t index_of(const EndingName& e) { return static_cast<std::size_t>(e.en
 /// What bodies with each ending do, in the order of kEndingNames: "fewer cross".
 constexpr std::array<const char*, kEndingNames.size()> kDo{
     "cross", "leave by the left side", "leave by the right side", "are trapped", "are cut off"};
-
-/// The smallest adjusted p-value of the final gates; NaN if they were not counted.
-double p_of_gates(const JointTest& j) {
-  double least = std::nan("");
-  for (const double p :
-       {j.total_variation.p_adjusted, j.energy.p_adjusted, j.chi_squared.p_adjusted})
-    least = std::fmin(least, p);
-  return least;
-}
 
 /// "fewer cross, 10.00 [4.22, 19.07] % of them, 28.10 % by the model; final gates, ..."
 std::string differences(const lattice::ObservedComparison& c, const JointTest& j,
@@ -170,8 +162,9 @@ std::string endings_part(const lattice::ObservedComparison& c) {
 std::string verdict_of(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
   const JointTest &d = c.against_dynamics, &k = c.against_chain;
   const std::string these = fmt::format("these {} trials ", c.seen.trials()),
-                    in_dynamics = fmt::format("the dynamics by more than chance ({})", p_of(d)),
-                    in_chain = fmt::format("the chain ({})", p_of(k));
+                    in_dynamics =
+                        fmt::format("the dynamics by more than chance ({})", p_words(d.p)),
+                    in_chain = fmt::format("the chain ({})", p_words(k.p));
   if (d.differs())
     return fmt::format("{}differ from {}: {}; {} {}", these, in_dynamics,
                        differences(c, d, v.dynamics_endings),
@@ -224,12 +217,12 @@ std::string first_sentence(const lattice::ObservedComparison& c) {
   if (d.differs())
     return fmt::format(
         "The {} observed trials differ from the full dynamics ({}){} the chain ({}).",
-        c.seen.trials(), p_of(d), k.differs() ? " and from" : "; no difference found from",
-        p_of(k));
+        c.seen.trials(), p_words(d.p), k.differs() ? " and from" : "; no difference found from",
+        p_words(k.p));
   return fmt::format("No difference found between {} trials and the full dynamics ({}){}.",
-                     c.seen.trials(), p_of(d),
-                     k.differs() ? fmt::format("; the chain differs ({})", p_of(k))
-                                 : fmt::format(" or the chain ({})", p_of(k)));
+                     c.seen.trials(), p_words(d.p),
+                     k.differs() ? fmt::format("; the chain differs ({})", p_words(k.p))
+                                 : fmt::format(" or the chain ({})", p_words(k.p)));
 }
 
 /// "3.1 (crossed) to 17.5 points (trapped) more": the smallest and the largest detectable shift in
@@ -280,7 +273,7 @@ std::string answer_text(const lattice::ObservedComparison& c, const lattice::Sta
     text += fmt::format(
         "Beware: the chain differs from the full dynamics ({}); compare with the "
         "dynamics.\n",
-        p_of(v.joint_test));
+        p_words(v.joint_test.p));
   return text;
 }
 

@@ -50,22 +50,18 @@ void describe(Fields& out, const ValidateResult& result);
 
 /// A sentence on whether the chain agrees with the dynamics from one start.
 [[nodiscard]] std::string verdict(const lattice::StartValidation& r);
-/// "p = 0.034", "p < 0.001"
-[[nodiscard]] std::string p_of(const lattice::JointTest& j);
+
+/// The time of a trial of the full dynamics divided by the time of a walk through the chain.
+[[nodiscard]] double trial_over_walk(const lattice::StartValidation& r);
+/// The totals of all types. For trees the record gives the runs, because leaves share runs and hold
+/// mirror images.
+[[nodiscard]] dynamics::Transitions::Totals totals_of(const ValidatedMatrix& matrix);
+/// For a disc: crossings through the sides above the joints.
+[[nodiscard]] std::int64_t traverse_sides(const lattice::Validation& v);
 
 /// Maps of the final gates, a row for each start: dynamics, chain and their difference; then the
 /// Chapman-Kolmogorov test. Throws std::invalid_argument for more than kMostValidated starts.
 inline constexpr std::size_t kMostValidated = 8;
 [[nodiscard]] Figure figure_of(const lattice::Validation& v, const ShownField& shown);
-
-/// The final gates of the same field, as observed and by a chain.
-struct ComparedGates {
-  std::string summary;  // a line
-  markov::CellProbabilities seen, chain;
-};
-/// A row of maps for each comparison: observed, by the chain, and the difference; `more` below.
-[[nodiscard]] Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& title,
-                               const std::string& seen_head, const ShownField& shown,
-                               const MorePanels& more = {});
 
 }  // namespace gatewalk::cli
