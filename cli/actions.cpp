@@ -17,10 +17,17 @@ namespace gatewalk::cli {
 namespace {
 
 void require_two(std::size_t count, const std::string& source, const std::string& as_it_is) {
-  if (count < 2)
+  if (count == 0)
+    throw UsageError(
+        fmt::format("{}: has no actions (tables [actions.NAME]). Give the scene, and the --set, of "
+                    "the gatewalk "
+                    "plan that made the policy",
+                    source));
+  if (count == 1)
     throw UsageError(fmt::format(
-        "{}: has {} tables [actions.NAME]: to choose among takes two at least; an empty one is {}",
-        source, count, as_it_is));
+        "{}: has one action, and a policy chooses among two or more; an empty table [actions.NAME] "
+        "is {}",
+        source, as_it_is));
 }
 
 /// The program's cell with the parameters that a body has while it takes `action`.

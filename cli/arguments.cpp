@@ -12,6 +12,7 @@
 #include "cli/render/health.h"
 #include "cli/render/matrix.h"
 #include "cli/render/meaning.h"
+#include "cli/render/pooled_prediction.h"
 #include "cli/render/start.h"
 #include "cli/source_options.h"
 #include "dynamics/base/work.h"
@@ -130,16 +131,10 @@ void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>&
         fixed(own->total_variation, 4), fixed(own->chance_total_variation, 4), p_words(own->p)));
 }
 
-void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy) {
+void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy,
+             bool is_recorded) {
   warn_of(options, prediction.hausman_check);
-  if (prediction.reached) return;
-  double worst = 0.0;
-  for (const lattice::StartAnswer& a : prediction.starts)
-    worst = std::max(worst, a.error.total_variation);
-  options.warn(
-      fmt::format("the accuracy of {} was not reached, the error bar is {}; --gate-runs "
-                  "allows more runs",
-                  digits(accuracy), fixed(worst, 4)));
+  options.warn(not_reached(prediction, accuracy, is_recorded));
 }
 
 void warn_of_range(const Options& options, const lattice::MatrixFile& file, const std::string& path,

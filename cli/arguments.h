@@ -64,7 +64,8 @@ void fix_trials(const Options& options, const AskedAccuracy& asked, lattice::Acc
 void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>& own);
 /// Warns if the chain's prediction differs significantly from its own full trials, and if the
 /// accuracy asked for was not reached.
-void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy);
+void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy,
+             bool is_recorded = false);
 
 /// Warns if starts lie outside the range of starts that the matrix was built for.
 void warn_of_range(const Options& options, const lattice::MatrixFile& file, const std::string& path,

@@ -96,12 +96,17 @@ inline constexpr std::int64_t kMostCount = 1'000'000'000'000'000;  // doubles ar
 
 /// What a command shows on the terminal.
 struct Screen {
-  Screen(std::string text, std::string more = {}, std::vector<std::string> then = {})  // NOLINT
-      : answer(std::move(text)), details(std::move(more)), next(std::move(then)) {}
+  Screen(std::string text, std::string more = {}, std::vector<std::string> then = {},  // NOLINT
+         std::string what_details_show = {})
+      : answer(std::move(text)),
+        details(std::move(more)),
+        next(std::move(then)),
+        details_shown(std::move(what_details_show)) {}
 
   std::string answer;             // at most 15 lines for one start, without maps
   std::string details;            // printed after the answer with --details
-  std::vector<std::string> next;  // what the user can do next, a line each
+  std::vector<std::string> next;  // what the user can do next: shell commands (NextCommands)
+  std::string details_shown;      // what `details` shows, in words; empty: as add_details() says
 };
 
 class Options;

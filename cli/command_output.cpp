@@ -2,12 +2,15 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
 
 #include "cli/command_state.h"
 #include "cli/fields/csv.h"
 #include "cli/fields/json.h"
+#include "cli/fields/text.h"
 #include "cli/kept/ranks.h"
 #include "cli/terminal/gnuplot.h"
 #include "cli/terminal/output.h"
@@ -56,11 +59,21 @@ std::string Options::text_of(const Screen& screen) const {
   std::string text = screen.answer;
   if (details) text += screen.details;
   if (!talk()) return text;
-  std::vector<std::string> next = screen.next;
+  constexpr std::int64_t kMostLines = 15;
+  const std::string indent(6, ' ');
+  std::int64_t shown = std::ranges::count(screen.answer, '\n') + 1;  // and the line on --details
+  for (const std::string& command : screen.next) {
+    const std::int64_t more = std::ranges::count(command, '\n') + 1;
+    const bool is_first = &command == &screen.next.front();
+    if (!is_first && more > 1 && shown + more > kMostLines) continue;  // too long for the rest
+    shown += more;
+    std::string lines = command;
+    for (std::size_t at = 0; (at = lines.find('\n', at)) != lines.npos;) lines.insert(++at, indent);
+    text += (is_first ? "Next: " : indent) + lines + "\n";
+  }
   if (!details && !screen.details.empty())
-    next.push_back("--details shows " + state_->details_shown);
-  for (const std::string& line : next)
-    text += (&line == &next.front() ? "Next: " : "      ") + line + "\n";
+    text += wrapped("--details shows " +
+                    (screen.details_shown.empty() ? state_->details_shown : screen.details_shown));
   return text;
 }
 

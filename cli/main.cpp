@@ -54,8 +54,9 @@ void print_help(std::ostream& out) {
 }
 
 /// The command of that name. For an unknown name, prints an error with a suggestion and returns
-/// null.
-const Command* find_command(const std::string& name) {
+/// null. `otherwise` prints what helps if there is no suggestion.
+const Command* find_command(const std::string& name,
+                            void (*otherwise)(std::ostream& out) = print_help) {
   if (const Command* const named = command_named(name)) return named;
   std::cerr << "gatewalk: no command '" << name << "'";
   if (std::error_code error; std::filesystem::is_regular_file(name, error)) {
@@ -70,7 +71,7 @@ const Command* find_command(const std::string& name) {
     return nullptr;
   }
   std::cerr << "\n\n";
-  print_help(std::cerr);
+  otherwise(std::cerr);
   return nullptr;
 }
 
@@ -118,7 +119,9 @@ int run_help(const std::vector<std::string>& words) {
   refuse_old_name(words);
   const std::size_t n = words_of_name(words);
   const std::string name = words[0] + (n == 2 ? " " + words[1] : "");
-  const Command* const command = find_command(name);
+  const Command* const command = find_command(name, [](std::ostream& out) {
+    out << "cli/site/glossary.md explains words; gatewalk help lists the commands.\n";
+  });
   if (!command) return kWrongUse;
   if (words.size() == n) return command->run({"--help"});
   if (words.size() > n + 1 || words[n] != "--result")

@@ -13,7 +13,8 @@ namespace {
 /// Options that belong to the scene, so that a proposed command takes them over.
 constexpr std::array<std::string_view, 4> kOfScene{"set", "start", "cell-program", "cell-timeout"};
 
-constexpr std::string_view kBefore = "Next: ";  // in front of a line
+/// The columns that a line has behind "Next: ".
+constexpr std::size_t kColumns = kScreenColumns - 6;
 
 /// "force" of "--force" and of "--force=2"; empty for a file.
 std::string_view option_of(std::string_view word) {
@@ -32,6 +33,38 @@ std::string written(const std::string& word) {
   return word.substr(0, equals) + between + shell_quoted(value);
 }
 
+/// The words of a shell command, each option with its value: "--set a=1".
+std::vector<std::string> parts_of(const std::string& command) {
+  std::vector<std::string> parts(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < command.size(); ++i) {
+    if (!quoted && std::string_view(command).substr(i).starts_with(" --")) {
+      parts.emplace_back();
+      continue;
+    }
+    if (command[i] == '\'') quoted = !quoted;
+    parts.back() += command[i];
+    if (command[i] == '\\' && !quoted) parts.back() += command[++i];  // \' of shell_quoted()
+  }
+  return parts;
+}
+
+/// The command and its comment in as few lines as fit the screen. A line that goes on ends with a
+/// backslash. A part that is longer than a line stays whole, and then has no comment.
+std::string in_lines(const std::string& command, const std::string& comment) {
+  const std::vector<std::string> parts = parts_of(command);
+  std::string text, line;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const std::string behind = k + 1 == parts.size() ? comment : " \\";
+    if (k > 0 && line.size() + 1 + parts[k].size() + behind.size() > kColumns) {
+      text += line + " \\\n";
+      line = "   ";
+    }
+    line += (k > 0 ? " " : "") + parts[k];
+  }
+  return text + line + (line.size() + comment.size() <= kColumns ? comment : "");
+}
+
 }  // namespace
 
 NextCommands& NextCommands::add(const std::string& command, const std::string& more,
@@ -39,7 +72,9 @@ NextCommands& NextCommands::add(const std::string& command, const std::string& m
   std::string line = "gatewalk " + command;
   for (const std::string& word : options_.words().shaping) {
     const std::string_view option = option_of(word);
-    if (option.empty() || std::ranges::count(kOfScene, option) > 0) line += " " + written(word);
+    if (option.empty() || std::ranges::count(kOfScene, option) > 0 ||
+        std::ranges::count(kept_, option) > 0)
+      line += " " + written(word);
   }
   put(line + (more.empty() ? "" : " " + more), why);
   return *this;
@@ -61,12 +96,7 @@ NextCommands& NextCommands::again(const std::string& name, const std::string& va
   std::string line = "gatewalk " + options_.words().command;
   for (const std::string& word : options_.words().shaping)
     if (!is_same(word)) line += " " + written(word);
-  const std::string option = "--" + name + " " + value;
-  line += " " + option;
-  if (kBefore.size() + line.size() > kScreenColumns)
-    lines_.push_back(option + " " + why);
-  else
-    put(line, why);
+  put(line + " --" + name + " " + value, why);
   return *this;
 }
 
@@ -77,9 +107,7 @@ NextCommands& NextCommands::run(const std::string& words, const std::string& why
 
 void NextCommands::put(const std::string& command, const std::string& why) {
   if (std::ranges::count(options_.words().shaping, "-") > 0) return;
-  if (kBefore.size() + command.size() > kScreenColumns) return;
-  const std::string line = command + "  # " + why;
-  lines_.push_back(kBefore.size() + line.size() > kScreenColumns ? command : line);
+  lines_.push_back(in_lines(command, "  # " + why));
 }
 
 }  // namespace gatewalk::cli

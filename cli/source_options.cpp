@@ -184,7 +184,7 @@ void choose_method(const Options& options, Source& s) {
 
 lattice::PooledPrediction predict(const Options& options, Source& s) {
   auto prediction = lattice::predict(s, options.work());
-  warn_of(options, prediction, s.accuracy.accuracy);
+  warn_of(options, prediction, s.accuracy.accuracy, s.is_recorded());
   return prediction;
 }
 
@@ -205,7 +205,7 @@ std::string text_of(const dynamics::Cell& cell) {
 }
 
 std::string needs_scene(const std::string& path) {
-  return path + ": is a matrix (HDF5), and this command simulates new bodies: give a scene (TOML)";
+  return path + ": is a matrix (HDF5), and a scene (TOML) is needed here";
 }
 
 void refuse(std::initializer_list<Option> options, const std::string& where) {

@@ -13,7 +13,9 @@
 #include "cli/number_ranges.h"
 #include "cli/page.h"
 #include "cli/render/analysis.h"
+#include "cli/render/health.h"
 #include "cli/render/matrix.h"
+#include "cli/render/pooled_prediction.h"
 #include "cli/source_options.h"
 #include "lattice/field/matrix_file.h"
 #include "lattice/pool/chain_with_rewards.h"
@@ -270,6 +272,13 @@ dynamics::Health health_of(const AnalysedSubject& subject, const AnalysedField& 
   return all;
 }
 
+/// Lines of the first screen about the answer on which the analysis builds; empty if there is
+/// nothing to beware of.
+std::string beware_of_answer(const lattice::Source& s, const AnalysedSubject& c) {
+  if (c.of_runs) return beware_of(*c.of_runs, s.accuracy.accuracy, s.is_recorded());
+  return s.is_imported ? "" : beware_of_recorded(c.answer.health);
+}
+
 /// The most influential number that the scene permits to vary by 10 % to each side, as a value of
 /// --vary for gatewalk sweep; empty if there is none.
 std::string range_of_largest(const Options& options, const lattice::Source& s,
@@ -298,7 +307,7 @@ std::vector<std::string> next_of(const Options& options, const lattice::Source& 
   const bool is_of_gates = s.scene && !s.file && !s.starts_given;  // sweep takes a scene of gates
   if (const std::string range = is_of_gates ? range_of_largest(options, s, result) : "";
       !range.empty())
-    return next.add("sweep", "--vary " + range, "varies one of these numbers in one gate").lines();
+    return next.add("sweep", "--vary " + range, "varies it in one gate").lines();
   return next.again("figure", "analysis.svg", "draws visits, paths and influences").lines();
 }
 
@@ -406,12 +415,17 @@ int run_analyze(const Arguments& arguments) {
   }
   result.shares = shares_of(options, over_trials, ranges, s, how.target);
   result.made_by = options.provenance(s);
+  const dynamics::Health health = health_of(c, result);
+  const std::vector<std::string> next = next_of(options, s, result);
+  std::int64_t lines_below = 1;  // on --details
+  for (const std::string& command : next) lines_below += 1 + std::ranges::count(command, '\n');
   options.give_out(result,
-                   {answer_text(result), details_text(result), next_of(options, s, result)});
+                   {answer_text(result, lines_below) + beware_of_answer(s, c) + beware_of(health),
+                    details_text(result), next});
   options.warn(rest_warning(c.answer.rest));
   if (const std::string why = analysis.why_unfinished(); !why.empty())
     options.warn("gates visited, visits, times and costs are not known: " + why);
-  const bool clean = status_of(options, health_of(c, result)) == kFine && c.clean;
+  const bool clean = status_of(options, health) == kFine && c.clean;
   const std::vector<PageAnswer> starts =
       c.of_runs ? page_answers(*c.of_runs) : page_answers(*c.of_bins, s);
   write_page(options, page, s, of_file, starts, &result);

@@ -83,7 +83,7 @@ int give_out(const BuildCommand& options, const lattice::Scene& scene, MadeMatri
   lattice::put_matrices(made.file, scene, matrices);
   options.keep_old(made.path);
   lattice::write_matrix(made.path, made.file);
-  options.give_out(made, {summary_table(made.file, made.path),
+  options.give_out(made, {summary_table(made.file, made.path) + beware_of(matrices.front().health),
                           "\n" + states_line(made.states) + method_line(made.method),
                           next_of(options, made.path, true)});
   return status_of(options, matrices.front().health);
@@ -203,7 +203,8 @@ void give_out_cells(const BuildCommand& options, std::vector<dynamics::Transitio
   options.keep_old(path);
   lattice::write_matrix(path,
                         std::move(built.matrix.file));  // takes the arrays, which are not shown
-  options.give_out(built, {summary_table(built.matrix.file, path) + table_of(pool),
+  options.give_out(built, {summary_table(built.matrix.file, path) + table_of(pool) +
+                               beware_of(health.value_or(dynamics::Health())),
                            "\n" + states_line(states), next_of(options, path, false)});
 }
 

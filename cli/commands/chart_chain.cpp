@@ -5,6 +5,7 @@
 
 #include "cli/arguments.h"
 #include "cli/render/chain_error.h"
+#include "cli/render/health.h"
 #include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
@@ -91,7 +92,7 @@ int run_chart_chain(const Arguments& arguments) {
                                 std::move(settled), options.provenance(scene)};
   const auto& chart = result.chart;
   folder.write("chain.csv", csv_of(chart), "chain.json", result);
-  options.give_out(result, {answer_text(chart), details_text(chart)});
+  options.give_out(result, {answer_text(chart) + beware_of(chart.health), details_text(chart)});
   folder.draw("chain.svg", figure_of(chart));
   const int exit = status_of(options, chart.health);
   options.draw([&] { return figure_of(chart); });

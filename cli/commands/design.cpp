@@ -94,7 +94,8 @@ int run_design(const Arguments& arguments) {
   const DesignedScene designed{
       *s.scene, std::move(changed), problem.map().section, problem.start,        how,
       settled,  std::move(design),  watch.seconds(),       options.provenance(s)};
-  options.give_out(designed, {answer_text(designed), details_text(designed), next_of(options)});
+  options.give_out(designed, {answer_text(designed) + beware_of(designed.design.health),
+                              details_text(designed), next_of(options)});
   if (output) options.write(output.value(), lattice::scene_file(designed.after));
   const lattice::Crossings &with = designed.design.crossings, &without = designed.design.before;
   options.warn(few_crossings(with.crossed > without.crossed ? with : without));

@@ -9,6 +9,7 @@
 #include "cli/arguments.h"
 #include "cli/next.h"
 #include "cli/number_ranges.h"
+#include "cli/render/health.h"
 #include "cli/render/observed.h"
 #include "cli/source_options.h"
 #include "lattice/recorded/recorded_pool.h"
@@ -243,7 +244,8 @@ int run_fit(const Arguments& arguments) {
                            lattice::fit(numbers, at, data, how, options.work()),
                            options.provenance(s)};
   const lattice::Fit& fit = fitted.fit;
-  options.give_out(fitted, {answer_text(fitted), details_text(fitted), next_of(options, fitted)});
+  options.give_out(fitted, {answer_text(fitted) + beware_of(fit.health), details_text(fitted),
+                            next_of(options, fitted)});
   if (options.draws) options.write(options.draws.value(), draws_csv(fitted));
   if (options.inference_data) options.write(options.inference_data.value(), inference_data(fitted));
   if (const std::string path = options.output.value(); !path.empty()) {

@@ -42,7 +42,8 @@ int run_gate(const Arguments& arguments) {
                    wrapped(fmt::format(
                        "From {} through one gate from the scene's start. The 95 % intervals count "
                        "their sampling error.",
-                       counted(result.tally.trials, "run", "runs"))),
+                       counted(result.tally.trials, "run", "runs"))) +
+                   beware_of(result.tally.health),
                "\n" + scene_line(scene) + method_line(settled),
                NextCommands(options)
                    .add("trace", "--trials 5 --replay runs.html", "watch single runs")

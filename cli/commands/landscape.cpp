@@ -81,10 +81,10 @@ int run_landscape(const Arguments& arguments) {
   result.made_by = options.provenance(scene);
   folder.write("landscape.csv", csv_of(result.passes.coarse.landscape), "landscape.json", result);
   folder.draw("landscape.svg", figure_of(result.passes));
-  options.give_out(result, {answer_text(result, scene.gate),
+  const dynamics::Health health = result.measured ? result.measured->health : dynamics::Health();
+  options.give_out(result, {answer_text(result, scene.gate) + beware_of(health),
                             details_text(result, scene.gate) + line, next_of(options, trials)});
-  const int exit =
-      status_of(options, result.measured ? result.measured->health : dynamics::Health());
+  const int exit = status_of(options, health);
   options.draw([&] { return figure_of(result.passes); });
   return exit;
 }

@@ -9,6 +9,7 @@
 #include "cli/render/field_figure.h"
 #include "cli/render/field_netcdf.h"
 #include "cli/render/field_runs.h"
+#include "cli/render/health.h"
 #include "cli/render/scene.h"
 #include "cli/source_options.h"
 #include "dynamics/base/work.h"
@@ -151,7 +152,8 @@ int run_lattice(const Arguments& arguments) {
                              run.start);
   if (options.netcdf)
     options.write(options.netcdf.value(), netcdf_of({picture}, run.shown.map.section, run.made_by));
-  options.give_out(run, {answer_text(run), details_text(run), next_of(options)});
+  options.give_out(
+      run, {answer_text(run) + beware_of(run.tally.health), details_text(run), next_of(options)});
   options.remark(fixed(seconds, 2) + " s");
   options.warn(too_few_gates(run.shown));
   const int exit = status_of(options, run.tally.health);

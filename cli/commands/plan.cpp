@@ -214,7 +214,8 @@ int plan_start(const PlanCommand& options, lattice::Source s) {
   const FoundStart shown{
       ShownField(s),   s.problem.start,        how.ranges,           how.columns, std::move(found),
       watch.seconds(), lattice::settled_of(s), options.provenance(s)};
-  options.give_out(shown, {answer_text(shown), details_text(shown), next_of(options, s, shown)});
+  options.give_out(shown, {answer_text(shown) + beware_of(shown.found.health), details_text(shown),
+                           next_of(options, s, shown)});
   options.warn(few_crossings(shown.found.crossings));
   warn_of_choice_rounds(options, shown.found);
   options.warn(too_few_gates(ShownField(s)));
@@ -267,7 +268,8 @@ int run_plan(const Arguments& arguments) {
   lattice::Plan plan = lattice::make_plan(all.actions, how, options.work());
   const PlannedField planned{ShownField(s),   all.names(), std::move(all.methods), std::move(plan),
                              watch.seconds(), how.thrift,  options.provenance(s)};
-  options.give_out(planned, {answer_text(planned), details_text(planned), next_of(options)});
+  options.give_out(planned, {answer_text(planned) + beware_of(planned.plan.health),
+                             details_text(planned), next_of(options)});
   if (options.policy)
     options.write(options.policy.value(), policy_text(chosen_policy(planned), all.made_for));
   if (options.gate_policy) {
@@ -278,9 +280,9 @@ int run_plan(const Arguments& arguments) {
   }
   options.warn(few_crossings(planned.plan.crossings));
   if (options.policy && !cheapest(planned) && !gains(planned))
-    options.warn(fmt::format(
-        "--policy: {} is not shown to gain anything over {} all the time, which is simpler",
-        options.policy.value(), planned.actions[best_alone(planned.plan)]));
+    options.warn(
+        fmt::format("--policy: {} is not shown to be better than {} all the time, which is simpler",
+                    options.policy.value(), planned.actions[best_alone(planned.plan)]));
   if (how.thrift && how.thrift->chance > 0.0 && !cheapest(planned))
     options.warn("--chance: none of these policies crosses so often; --policy is the plan's own");
   if (!planned.plan.front_refused.empty())

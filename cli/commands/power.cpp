@@ -3,6 +3,8 @@
 #include "cli/arguments.h"
 #include "cli/next.h"
 #include "cli/render/final_gates.h"
+#include "cli/render/health.h"
+#include "cli/render/pooled_prediction.h"
 #include "cli/render/scene.h"
 #include "cli/source_options.h"
 
@@ -25,9 +27,14 @@ std::vector<std::string> next_of(const Options& options, const lattice::Source& 
     next.again("trials", "100", "says what 100 trials detect");
   else if (s.is_recorded())
     next.add("validate", "", "tests whether half of the bodies predict the others");
-  else if (!s.file && !Option(options, "versus"))
-    next.add("lattice", "--trials " + std::to_string(options.trials.value()),
-             "simulates one such experiment");
+  else if (!s.file) {
+    const std::string trials = "--trials " + std::to_string(options.trials.value());
+    std::string other;
+    for (const std::string& set : TextsOption(options, "versus").values())
+      other += "--set " + shell_quoted(set) + " ";
+    next.add("lattice", trials, other.empty() ? "simulates one such experiment" : "one group");
+    if (!other.empty()) next.add("lattice", other + trials, "the other group");
+  }
   return next.lines();
 }
 
@@ -100,7 +107,10 @@ int run_power(const Arguments& arguments) {
     result.health += second->health;
   }
   work.tell("power of experiments", 1, 1);
-  options.give_out(result, {answer_text(result), details_text(result), next_of(options, s)});
+  options.give_out(result,
+                   {answer_text(result) + beware_of(first, s.accuracy.accuracy, s.is_recorded()) +
+                        beware_of(result.health),
+                    details_text(result), next_of(options, s)});
   options.warn(too_few_gates(ShownField(s)));
   options.warn(rest_warning(rest_of(answer.final)));
   if (result.versus)

@@ -109,6 +109,7 @@ markov::PredictOptions::Solver solver_of(const PredictCommand& options) {
 std::vector<std::string> next_of(const PredictCommand& options, const lattice::Source& s,
                                  const PredictResult& result) {
   NextCommands next(options);
+  next.keeping({"accuracy", "gate-runs", "seed"});
   if (s.is_recorded() && !s.is_imported && s.pool->bodies() >= 2 * lattice::kLeastBodies)
     next.of(options.matrix.value(), "validate", "does one half of the bodies predict the other?");
   if (s.starts.size() == 1 && !options.row)  // an analysis is of one start and one matrix

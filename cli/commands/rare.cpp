@@ -19,6 +19,17 @@ lattice::Problem up_to_row(const lattice::Source& s, int row) {
                  : lattice::up_to_row(s.problem, row);
 }
 
+/// A sentence if the gate runs are too few for the accuracy asked for; else empty.
+std::string too_few_runs(const lattice::Splitting& s, const lattice::SplittingOptions& how) {
+  if (!(s.rows.back().probability > 0.0))
+    return fmt::format("none of {} trials entered row {}; --gate-runs N allows more", s.trials,
+                       how.row);
+  if (s.reached || how.trials) return "";
+  return fmt::format(
+      "the relative standard error of {} needs more than {} gate runs; --gate-runs N allows more",
+      digits(how.accuracy), how.most_runs);
+}
+
 }  // namespace
 
 int run_rare(const Arguments& arguments) {
@@ -88,16 +99,12 @@ int run_rare(const Arguments& arguments) {
     next.again("accuracy", digits(0.5 * s.rows.back().relative_standard_error, 2),
                "halves the standard error");
   next.add("analyze", "", "which number of the scene matters most");
+  const std::string too_few = too_few_runs(result.event.splitting, how);
   options.give_out(result,
-                   {answer_text(result), details_text(result, source.problem.field), next.lines()});
-  if (const lattice::Splitting& s = result.event.splitting; !(s.rows.back().probability > 0.0))
-    options.warn(fmt::format("none of {} trials entered row {}; --gate-runs N allows more",
-                             s.trials, how.row));
-  else if (!s.reached && !how.trials)
-    options.warn(
-        fmt::format("the relative standard error of {} needs more than {} gate runs; "
-                    "--gate-runs N allows more",
-                    digits(how.accuracy), how.most_runs));
+                   {answer_text(result) + (too_few.empty() ? "" : "Beware: " + too_few + ".\n") +
+                        beware_of(result.event.splitting.health),
+                    details_text(result, source.problem.field), next.lines()});
+  options.warn(too_few);
   const int exit = status_of(options, result.event.splitting.health);
   options.draw([&] { return figure_of(result); });
   return exit;

@@ -41,11 +41,11 @@ int run_reproduce(const Arguments& arguments) {
         r,
         options.talk()
             ? Screen(fmt::format("{} claims of the paper: {}.\n", r.claims.size(), r.tally()) +
-                         summary_of(r.claims),
+                         summary_of(r.claims) +
+                         fmt::format("{}/report.{} says why a claim differs.\n", folder,
+                                     has_pages() ? "html" : "json"),
                      "\n" + table_of(r.claims) +
-                         fmt::format("The studies took {} s.\n", fixed(r.made_by.seconds, 0)),
-                     {fmt::format("open {}/report.{}, which says why a claim differs", folder,
-                                  has_pages() ? "html" : "json")})
+                         fmt::format("The studies took {} s.\n", fixed(r.made_by.seconds, 0)))
             : Screen(""),
         -1);
   } catch (const Interrupted&) {

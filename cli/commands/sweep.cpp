@@ -101,16 +101,16 @@ int run_sweep(const Arguments& arguments) {
   options.work().end_part();
 
   const SweepResult result{axes, std::move(points), options.provenance(scene)};
+  dynamics::Health health;
+  for (const lattice::SweepPoint& p : result.points) health += p.tally.health;
   if (csv == "-") {
     write_text_atomically("-", csv_of(result));
     if (!options.json.value().empty()) options.give_out(result, std::string());
   } else {
     if (!csv.empty()) options.write(csv, csv_of(result));
-    options.give_out(result,
-                     {answer_text(result), details_text(result, scene), next_of(options, result)});
+    options.give_out(result, {answer_text(result) + beware_of(health), details_text(result, scene),
+                              next_of(options, result)});
   }
-  dynamics::Health health;
-  for (const lattice::SweepPoint& p : result.points) health += p.tally.health;
   options.warn(complaint(health));
   const int status =
       exit_status(options, std::all_of(result.points.begin(), result.points.end(),

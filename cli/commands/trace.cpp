@@ -60,6 +60,15 @@ std::optional<double> video_speed(const TraceCommand& options, const lattice::Sc
   return speed;
 }
 
+constexpr double kLongFilm = 30;  // s
+
+/// How long a film of the first run plays (s).
+double length_of(const Film& film, const std::optional<double>& speed) {
+  const std::vector<FilmStep>& steps = film.runs.front().steps;
+  return (steps.back().time - steps.front().time) /
+         speed.value_or(dynamics::scale_of(film.gate).time);
+}
+
 /// Calls `check` and throws UsageError naming the option if its value is refused.
 template <class Check>
 void check_option(const TextOption& option, Check check) try {
@@ -115,7 +124,7 @@ int run_trace(const Arguments& arguments) {
                        "gatewalk trace scenes/soft_left.toml --trials 20 --only 'traversed left' "
                        "--replay runs.html");
   options.add_details("more runs, what the columns mean, and the numbers of the scene");
-  options.most_used({"field", "trials", "only", "replay", "csv"});
+  options.most_used({"field", "trials", "replay", "video", "csv"});
   if (!options.parse(arguments)) return kFine;
   lattice::RecordingOptions wanted = recording_options(options);
   lattice::Scene scene = options.read_scene();
@@ -151,6 +160,10 @@ int run_trace(const Arguments& arguments) {
   if (options.video) {
     const std::string file = options.video.value();
     options.keep_old(file);
+    if (const double seconds = length_of(result.film, speed); options.talk() && seconds > kLongFilm)
+      options.warn(fmt::format(
+          "{}: drawing a film of {} s takes long; a larger --video-speed makes a shorter film",
+          file, fixed(seconds, 0)));
     write_video(file, result.film, {.speed = speed}, options.work());
     result.film_speed = speed.value_or(dynamics::scale_of(scene.gate).time);
     film_line = fmt::format("{}: film of run {}{}, plays {}\n", file, recordings.runs.front().trial,
@@ -158,13 +171,14 @@ int run_trace(const Arguments& arguments) {
                             speed_words(*result.film_speed));
   }
   const bool to_stdout = options.csv.value() == "-" || options.replay.value() == "-";
-  options.give_out(result,
-                   to_stdout ? Screen(std::string())
-                             : Screen(answer_text(scene, recordings) + film_line,
-                                      details_text(scene, recordings) + method_line(result.method) +
-                                          method_lines(result.may_do),
-                                      next_of(options, wanted.across_field)),
-                   -1);
+  options.give_out(
+      result,
+      to_stdout ? Screen(std::string())
+                : Screen(answer_text(scene, recordings) + film_line + beware_of(recordings.health),
+                         details_text(scene, recordings) + method_line(result.method) +
+                             method_lines(result.may_do),
+                         next_of(options, wanted.across_field)),
+      -1);
   const int exit = status_of(options, recordings.health);
   options.draw([&] { return figure_of(scene, recordings); });
   return exit;

@@ -9,6 +9,7 @@
 #include "cli/next.h"
 #include "cli/render/cross_validation.h"
 #include "cli/render/final_gates.h"
+#include "cli/render/health.h"
 #include "cli/render/matrix.h"
 #include "cli/render/prediction.h"
 #include "cli/render/validation.h"
@@ -232,8 +233,9 @@ int validate_recorded(const ValidateCommand& options) {
   const lattice::Source s = open_source(options, options.asked);
   if (s.is_imported)
     throw UsageError(path +
-                     ": is a chain that was made elsewhere: there are no trials to hold it "
-                     "against, and no bodies whose steps could be told apart");
+                     ": holds an imported chain, without trials or bodies to test it with. Make "
+                     "the chain from recorded runs instead: gatewalk build runs.csv --cell "
+                     "cell.toml");
   if (s.pool->scattered.each.bodies.empty())
     throw UsageError(path + ": its runs were not recorded: --cell-program says who makes more");
   lattice::CrossValidationOptions how{
@@ -250,13 +252,24 @@ int validate_recorded(const ValidateCommand& options) {
   if (s.pool->bodies() < kChecked)
     options.warn(fmt::format("with {} bodies p may be too small: it was checked with {} or more",
                              s.pool->bodies(), kChecked));
-  options.give_out(
-      result,
-      {answer_text(result), details_text(result),
-       NextCommands(options).add("predict", "", "what all bodies together predict").lines()});
+  options.give_out(result,
+                   {answer_text(result), details_text(result),
+                    NextCommands(options)
+                        .keeping({"seed"})
+                        .add("predict", "", "what all bodies together predict")
+                        .lines(),
+                    "every ending of both halves, how far bodies were watched, final gates"});
   for (const std::string& rest : rest_warnings(result.validation)) options.warn(rest);
   options.draw([&] { return figure_of(result.validation, ShownField(s)); });
   return kFine;
+}
+
+/// What --details shows, in words.
+std::string details_of(const ValidateResult& result) {
+  if (result.validation.starts.front().observed)
+    return "p of every ending, the final gates, and whether the chain agrees with the dynamics";
+  return result.like_table4 ? "every ending and measure by start, Table IV, times, tests of memory"
+                            : "";
 }
 
 /// Commands to propose next.
@@ -274,8 +287,9 @@ std::vector<std::string> next_of(const ValidateCommand& options, const lattice::
   if (v.trials < 1000)
     next.again("trials", std::to_string(10 * v.trials), "reveals smaller differences");
   const std::string why = "the chain's answer alone";
-  return options.matrix ? next.of(options.matrix.value(), "predict", why).lines()
-                        : next.add("predict", "", why).lines();
+  if (options.matrix) return next.of(options.matrix.value(), "predict", why).lines();
+  if (options.bins || options.matrix_trials) return next.lines();  // predict makes other states
+  return next.keeping({"accuracy", "gate-runs", "seed"}).add("predict", "", why).lines();
 }
 
 }  // namespace
@@ -297,7 +311,7 @@ int run_validate(const Arguments& arguments) {
       "half of the bodies predict the other?",
       "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
   options.reads(options.observed, [](const std::string& file) { return file; });
-  options.add_details("every ending and measure by start, Table IV, times, each test of memory");
+  options.add_details("every ending and measure by start, times, each test of memory");
   options.most_used({"observed", "matrix", "trials", "set", "json"});
   if (!options.parse(arguments)) return kFine;
   if (const lattice::SourceFile& file = options.file(options.path.value());
@@ -331,7 +345,8 @@ int run_validate(const Arguments& arguments) {
   result.validation = lattice::validate_chain(tested.problem, result.matrix.matrices, tested.starts,
                                               how, options.work());
   const lattice::Validation& v = result.validation;
-  options.give_out(result, {answer_text(result), details_text(result), next_of(options, v)});
+  options.give_out(result, {answer_text(result) + beware_of(v.health), details_text(result),
+                            next_of(options, v), details_of(result)});
   options.warn(text_of(v.left_out));
   for (const lattice::StartValidation& start : v.starts)
     options.warn(rest_warning(rest_of(start.exact), "by the chain "));

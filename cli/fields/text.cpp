@@ -48,8 +48,12 @@ std::string wrapped(std::string_view text, std::string_view indent) {
     // Blanks in front of a word stay with it, so that the first line may be indented.
     const std::size_t word = text.find_first_not_of(' ');
     std::size_t end = text.find(' ', std::min(word, text.size()));
-    if (end != text.npos && text.substr(end + 1).starts_with('%'))  // a line breaks before "80 %"
-      end = text.find(' ', end + 1);
+    const auto joins = [&](std::size_t at) {  // "80 %" and "p = 0.05" stay on one line
+      return text.substr(at + 1).starts_with('%') || text.substr(at + 1).starts_with("= ") ||
+             text.substr(at + 1).starts_with("< ") || text.substr(0, at).ends_with(" =") ||
+             text.substr(0, at).ends_with(" <");
+    };
+    while (end != text.npos && joins(end)) end = text.find(' ', end + 1);
     std::string_view next = text.substr(0, end);
     text.remove_prefix(next.size());
     if (!is_empty && columns(line) + columns(next) > kScreenColumns) {

@@ -65,8 +65,9 @@ struct AnalysedField {
 void describe(Fields& out, const AnalysedField& field);
 /// Describes the keys that pages show.
 void describe_for_page(Fields& out, const AnalysedField& field);
-/// The first screen; and what --details adds to it.
-[[nodiscard]] std::string answer_text(const AnalysedField& field);
+/// The first screen, with as many influences as fit above `lines_below` further lines; and what
+/// --details adds to it.
+[[nodiscard]] std::string answer_text(const AnalysedField& field, std::int64_t lines_below);
 [[nodiscard]] std::string details_text(const AnalysedField& field);
 [[nodiscard]] Figure figure_of(const AnalysedField& field);
 

@@ -77,10 +77,12 @@ std::string intervals_text(const AnalysedField& f) {
 
 std::string basis_text(const AnalysedField& f) {
   const std::string chain = counted(f.answer.states, "state", "states");
-  return wrapped((f.gate_runs() > 0
-                      ? fmt::format("From {} gate runs and a chain of {}. ", f.gate_runs(), chain)
-                      : fmt::format("From a chain of {}. ", chain)) +
-                 intervals_text(f));
+  const std::int64_t runs = f.answer.gate_runs, more = f.parameters.health.runs;
+  std::string text = runs > 0 ? fmt::format("From {} gate runs and a chain of {}", runs, chain)
+                              : "From a chain of " + chain;
+  if (more > 0)
+    text += fmt::format("; the influences from {}{} gate runs", more, runs > 0 ? " further" : "");
+  return wrapped(text + ". " + intervals_text(f));
 }
 
 /// A parameter's elasticity, as a cell of a table.
@@ -91,15 +93,26 @@ std::string elasticity_text(const AnalysedField& f, const lattice::ParameterEffe
              : text;
 }
 
-TextTable table_of_effects() { return TextTable({{"", -36, 0, "", "  "}, {}}); }
+/// What 1 % more of a parameter makes of the target's share: "25.80 % becomes 50.81 %"; empty
+/// without an interval of the influence, and if the result would be no share.
+std::string example_of(const AnalysedField& f, const lattice::ParameterEffect& e) {
+  const double share = f.answer.endings.share[static_cast<std::size_t>(f.analysis.target)],
+               changed = share * (1.0 + 0.01 * e.elasticity.mean);
+  if (f.analysis.by_groups && std::isnan(e.elasticity.interval[0])) return "";
+  if (!(share > 0.0 && changed >= 0.0 && changed <= 1.0)) return "";
+  return fmt::format("{} % becomes {} %", percents(share), percents(changed));
+}
 
 /// A table of the `most` parameters that change the target's probability most.
 std::string largest_effects(const AnalysedField& f, std::size_t most) {
   const auto effects = sorted_effects(f);
   if (effects.empty() || most == 0) return "";
-  TextTable table = table_of_effects();
-  for (const lattice::ParameterEffect& e : effects | std::views::take(most))
-    table.row({e.key, elasticity_text(f, e)});
+  TextTable table({{"", -36, 0, "", "  "}, {"", -24}, {"", 0, 0, "", "  "}});
+  for (const lattice::ParameterEffect& e : effects | std::views::take(most)) {
+    std::vector<TextCell> cells{e.key, elasticity_text(f, e)};
+    if (const std::string example = example_of(f, e); !example.empty()) cells.emplace_back(example);
+    table.row(cells);
+  }
   return fmt::format(
       "Largest influences: relative change of the chance of \"{}\", in %, for 1 % more of\n{}",
       target_name(f), table.text());
@@ -133,7 +146,7 @@ std::string beware_text(const AnalysedField& f, std::size_t most) {
            "--runs.\n";
   if (change > kSmall && step >= kLeastStep)
     return fmt::format(
-        "Beware: the chance changes by {} in one step of {}; repeat with --step {}.\n",
+        "Beware: one step of {1} changes the chance by {0} of its value; repeat with --step {2}.\n",
         percent(change, 1.0, 0), percent(f.step, 1.0), digits(step, 1));
   if (change > kSmall)
     return fmt::format(
@@ -285,8 +298,8 @@ std::int64_t lines_of(const std::string& text) { return std::ranges::count(text,
 
 }  // namespace
 
-std::string answer_text(const AnalysedField& f) {
-  constexpr std::int64_t kLines = 15, kNext = 2;
+std::string answer_text(const AnalysedField& f, std::int64_t lines_below) {
+  constexpr std::int64_t kLines = 15;
   const lattice::EndingShares& shares = f.answer.endings;
   const auto at = static_cast<std::size_t>(f.analysis.target);
   const bool is_of_more = f.passage || f.shares;  // the endings then belong to the details
@@ -294,7 +307,7 @@ std::string answer_text(const AnalysedField& f) {
   text += f.shares    ? fmt::format("{:<11}  {} %\n", target_name(f),
                                     with_interval(shares.share[at], shares.interval[at]))
           : f.passage ? ""
-                      : endings_text(shares, "of all bodies");
+                      : endings_text(shares, "of all bodies", impossible_endings(f.shown));
   if (!f.shares) text += means_text(f.analysis);
   text += direct_text(f);
   if (f.shares) text += answer_text(*f.shares);
@@ -302,7 +315,7 @@ std::string answer_text(const AnalysedField& f) {
       (is_asked_lumping(f.analysis) ? lumping_text(f.analysis) : "") + basis_text(f);
   if (!is_of_more) {
     constexpr std::int64_t kMost = 3;
-    const std::int64_t room = kLines - kNext - lines_of(text) - lines_of(below) - 2;
+    const std::int64_t room = kLines - lines_below - lines_of(text) - lines_of(below) - 2;
     const auto most = static_cast<std::size_t>(std::clamp<std::int64_t>(room, 0, kMost));
     text += largest_effects(f, most);
     below += beware_text(f, most);
@@ -314,7 +327,8 @@ std::string details_text(const AnalysedField& f) {
   const lattice::Analysis& a = f.analysis;
   std::string text = "\n";
   if (f.passage || f.shares)
-    text += endings_text(f.answer.endings, "of all bodies, 95 % intervals");
+    text += endings_text(f.answer.endings, "of all bodies, 95 % intervals",
+                         impossible_endings(f.shown));
   text += limits_text(f.shown) + rest_text(f.answer.rest);
   if (!a.gates.why_none.empty())
     text += wrapped(fmt::format("{}: {}.",

@@ -16,7 +16,7 @@ namespace {
 
 using markov::CellProbabilities;
 
-constexpr double kMapWidth = 130, kGap = 16, kLeft = 64, kHead = 46;
+constexpr double kMapWidth = 130, kMapGap = 16, kMapsLeft = 64, kMapsHead = 46;
 
 }  // namespace
 
@@ -27,7 +27,7 @@ Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& 
     double top, height;
   };
   std::vector<Row> rows;
-  double most = 0.0, largest = 0.0, end = kHead;
+  double most = 0.0, largest = 0.0, end = kMapsHead;
   for (const ComparedGates& c : compared) {
     const FieldMap map(0.5 * (c.seen + c.chain), 60, 60);
     const CellProbabilities seen = map.blocks_of(c.seen), chain = map.blocks_of(c.chain);
@@ -45,7 +45,7 @@ Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& 
   const double below = end + 62 + types.legend_height(), bound = 100.0 * largest;
   const RootScale scale(100.0 * most);
   const std::string look = " scale 0.5 offset 0,0.4", tic = short_number(0.7 * bound);
-  const auto left_of = [](int i) { return kLeft + i * (kMapWidth + kGap); };
+  const auto left_of = [](int i) { return kMapsLeft + i * (kMapWidth + kMapGap); };
   const auto bar_of = [&](int first, int last) {
     return Box{left_of(first), left_of(last) + kMapWidth, end + 8, end + 18};
   };
@@ -54,7 +54,7 @@ Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& 
   bool marked = false;
   Panels out;
   out.say(title, 8, 16);
-  for (int i = 0; i < 3; ++i) out.say(heads[i], left_of(i), kHead - 4, kSmallFont);
+  for (int i = 0; i < 3; ++i) out.say(heads[i], left_of(i), kMapsHead - 4, kSmallFont);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto& [map, top, height] = rows[k];
     const bool last = k + 1 == rows.size();

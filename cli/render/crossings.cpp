@@ -59,8 +59,8 @@ std::string gain_sentence(const lattice::Gain& gain, const std::string& what,
   if (gain.interval_95[0] > 0.0)
     return wrapped(fmt::format("{} gains {} points over {}.", what, gain_text(gain), other));
   return wrapped(
-      fmt::format("{} is not shown to gain anything over {}: {} points. A smaller --accuracy can "
-                  "show a smaller gain.",
+      fmt::format("{} is not shown to be better than {}: {} points. A smaller --accuracy can show "
+                  "a smaller gain.",
                   what, other, gain_text(gain)));
 }
 

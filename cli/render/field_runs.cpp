@@ -8,6 +8,7 @@
 #include "cli/render/exits.h"
 #include "cli/render/field_ends.h"
 #include "cli/render/health.h"
+#include "cli/render/matrix.h"
 #include "cli/render/scene.h"
 #include "dynamics/base/share.h"
 #include "lattice/source/start_text.h"
@@ -124,11 +125,12 @@ void describe(Fields& out, const WalkResult& r) {
 }
 
 std::string answer_text(const WalkResult& r) {
-  return endings_text(ends_of(r.tally, r.shown.field).shares) +
+  return endings_text(ends_of(r.tally, r.shown.field).shares, "", impossible_endings(r.shown)) +
          fmt::format("From {} through the chain.\n", counted(r.tally.walks, "walk", "walks")) +
          wrapped(std::string("Beware: the 95 % intervals count the sampling error of the walks "
                              "alone. gatewalk predict adds that of the matrix.") +
-                 (r.foreign ? "" : " gatewalk validate measures the chain's own error."));
+                 (r.foreign ? "" : " gatewalk validate measures the chain's own error.")) +
+         (r.foreign ? "" : beware_of_recorded(r.matrix_status));
 }
 
 std::string details_text(const WalkResult& r) {

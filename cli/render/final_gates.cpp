@@ -352,18 +352,25 @@ std::string with_interval(double share, const std::array<double, 2>& interval) {
   return fmt::format("{} [{}, {}]", percents(share), percents(interval[0]), percents(interval[1]));
 }
 
-std::string endings_text(const lattice::EndingShares& shares, const std::string& of) {
+std::string endings_text(const lattice::EndingShares& shares, const std::string& of,
+                         const std::vector<markov::Ending>& impossible) {
   std::string text;
+  bool is_marked = false;
   for (const EndingName& e : kAllEndingNames) {
     if (shares.rules_out(e.ending)) continue;
     const auto at = static_cast<std::size_t>(e.ending);
     const auto& [low, high] = shares.interval[at];
     text += fmt::format("{:<11}{:>7} %", e.name, percents(shares.share[at]));
-    if (!std::isnan(low)) text += fmt::format("  [{}, {}]", percents(low), percents(high));
+    if (shares.share[at] == 0.0 && std::ranges::count(impossible, e.ending) > 0) {
+      text += "  -";
+      is_marked = true;
+    } else if (!std::isnan(low)) {
+      text += fmt::format("  [{}, {}]", percents(low), percents(high));
+    }
     if (!of.empty() && e.ending == kEndingNames.front().ending) text += "  " + of;
     text += "\n";
   }
-  return text;
+  return text + (is_marked ? "-: impossible, because no sequence of moves leads there.\n" : "");
 }
 
 std::string map_of_trapped(const markov::CellProbabilities& shares, const std::string& unit) {

@@ -126,9 +126,11 @@ void describe(Fields& out, const Rest& rest);
 /// A share in % with two decimals, or with two digits if these would be 0.
 [[nodiscard]] std::string percents(double share);
 /// A line for each possible ending: "crossed      0.02 %  [0.00, 0.05]"; `of` stands at the end of
-/// the first line.
+/// the first line. Of the endings in `impossible`, those with a share of 0 have "-" as interval,
+/// and a line below explains this mark.
 [[nodiscard]] std::string endings_text(const lattice::EndingShares& shares,
-                                       const std::string& of = "");
+                                       const std::string& of = "",
+                                       const std::vector<markov::Ending>& impossible = {});
 /// "17.61 [16.87, 18.37]", in %; "17.61" without an interval.
 [[nodiscard]] std::string with_interval(double share, const std::array<double, 2>& interval);
 

@@ -90,4 +90,10 @@ std::string complaint(const dynamics::Health& h) {
   return text;
 }
 
+std::string beware_of(const dynamics::Health& health) {
+  if (health.clean()) return "";
+  return "Beware: the numerical method showed faults in these runs; see the warning, or status in "
+         "--json.\n";
+}
+
 }  // namespace gatewalk::cli

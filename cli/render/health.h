@@ -26,5 +26,7 @@ void describe_status(Fields& out, const std::optional<dynamics::Health>& health)
 [[nodiscard]] dynamics::Health health_from(const Json& j);
 /// A sentence if faults were seen; else empty.
 [[nodiscard]] std::string complaint(const dynamics::Health& health);
+/// A line of the first screen if faults were seen, which complaint() names; else empty.
+[[nodiscard]] std::string beware_of(const dynamics::Health& health);
 
 }  // namespace gatewalk::cli

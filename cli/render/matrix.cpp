@@ -251,6 +251,12 @@ std::string faults_recorded(const std::optional<dynamics::Health>& status) {
   return status ? complaint(*status) : "the record of numerical faults is missing or damaged.";
 }
 
+std::string beware_of_recorded(const std::optional<dynamics::Health>& status) {
+  if (faults_recorded(status).empty()) return "";
+  return status ? "Beware: the numerical method showed faults in the runs of this matrix.\n"
+                : "Beware: the record of numerical faults of this matrix is missing or damaged.\n";
+}
+
 void require_keepable(const lattice::Scene& scene) {
   if (const auto bytes = lattice::to_toml(scene).size(); bytes > markov::kMostTextBytes)
     throw std::invalid_argument(fmt::format(

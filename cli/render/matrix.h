@@ -26,6 +26,8 @@ namespace gatewalk::cli {
 [[nodiscard]] std::optional<dynamics::Health> recorded_health(const lattice::MatrixFile& file);
 /// A sentence on the faults in a recorded status; empty if there were none.
 [[nodiscard]] std::string faults_recorded(const std::optional<dynamics::Health>& status);
+/// A line of the first screen if faults_recorded() is not empty; else empty.
+[[nodiscard]] std::string beware_of_recorded(const std::optional<dynamics::Health>& status);
 
 /// Throws std::invalid_argument if a scene is too large for a matrix file.
 void require_keepable(const lattice::Scene& scene);

@@ -265,6 +265,19 @@ void describe(Fields& out, const MemoryStudy& study) {
   }
 }
 
+namespace {
+
+/// Which memory of the gate before these runs would have shown.
+std::string detectable_text(const Independence& i) {
+  if (i.runs == 0) return "No state was entered in two ways, so its memory cannot be tested.\n";
+  if (!std::isfinite(i.seen_at_90)) return "They are too few to detect any memory.\n";
+  return fmt::format(
+      "They would detect a memory of the gate before if its total variation is {} or more.\n",
+      fixed(i.seen_at_90, 3));
+}
+
+}  // namespace
+
 std::string sentence_of(const MemoryStudy& study) {
   double least = 1.0;
   for (int k = 0; k < lattice::kQuestions; ++k)
@@ -274,8 +287,10 @@ std::string sentence_of(const MemoryStudy& study) {
         "Is it Markov? No: in {} gate runs the next step depends on more than the state ({}).\n",
         study.runs, p_words(least));
   return fmt::format(
-      "Is it Markov? {} gate runs give no evidence that the chain has lost information ({}).\n",
-      study.runs, p_words(least));
+             "Is it Markov? {} gate runs give no evidence that the chain has lost information "
+             "({}).\n",
+             study.runs, p_words(least)) +
+         detectable_text(study.independence(Question::gate_before));
 }
 
 namespace {
@@ -289,16 +304,17 @@ std::string lines_ahead(const MemoryStudy& study) {
     return "not tested, because the field has several types of gates.\n";
   const GatesAhead::Step& s = study.ahead.largest();
   return fmt::format(
-      "bodies are {} the powers of the matrix put them.\n"
+      "{} the powers of the matrix.\n"
       "    {} gates ahead: total variation {}; chance alone makes up to {} (95 %).\n",
-      study.remembers(Question::gates_ahead) ? "elsewhere than" : "where", s.gates,
-      fixed(s.total_variation.seen, 4), fixed(s.chance_95, 4));
+      study.remembers(Question::gates_ahead) ? "bodies deviate from"
+                                             : "no evidence that bodies deviate from",
+      s.gates, fixed(s.total_variation.seen, 4), fixed(s.chance_95, 4));
 }
 
 std::string lines_of(const MemoryStudy& study, Question q) {
   const Independence& i = study.independence(q);
   if (!study.remembers(q)) {
-    const std::string text = "tells nothing more than the state.\n    ";
+    const std::string text = "no evidence that it tells more than the state.\n    ";
     if (i.runs == 0) return text + "No state was entered in two such ways.\n";
     if (!std::isfinite(i.seen_at_90)) return text + "There are too few runs to detect a memory.\n";
     return text + fmt::format(

@@ -118,9 +118,10 @@ std::string gates_part(const lattice::ObservedComparison& c) {
 /// The observed endings beside both models'; * marks a share that differs from the observed.
 std::string shares_part(const lattice::ObservedComparison& c, const lattice::StartValidation& v) {
   TextTable table({{"", -10},
-                   {"observed, %", -23, 0, "", "  "},
-                   {"full dynamics, %", -24, 0, "", "  "},
-                   {"chain, %", 0, 0, "", "  "}});
+                   {"observed, %", -22, 0, "", "  "},
+                   {"full dynamics, %", -22, 0, "", "  "},
+                   {"chain, %", -22, 0, "", "  "},
+                   {"detectable", 0, 0, "", "  "}});
   for (const EndingName& e : kEndingNames) {
     if (c.endings.rules_out(e.ending)) continue;
     const std::size_t at = index_of(e);
@@ -129,33 +130,32 @@ std::string shares_part(const lattice::ObservedComparison& c, const lattice::Sta
     };
     table.row({e.name, cell(c.endings, false),
                cell(v.dynamics_endings, c.against_dynamics.differs(e.ending)),
-               cell(v.exact_endings, c.against_chain.differs(e.ending))});
+               cell(v.exact_endings, c.against_chain.differs(e.ending)),
+               text_of(c.least.by_ending[at])});
   }
   const bool is_marked = std::ranges::any_of(kEndingNames, [&](const EndingName& e) {
     return !c.endings.rules_out(e.ending) &&
            (c.against_dynamics.differs(e.ending) || c.against_chain.differs(e.ending));
   });
   return table.text() +
-         (is_marked ? "*: differs from the observed share by more than chance.\n" : "");
+         (is_marked ? "*: differs from the observed share by more than chance.\n" : "") +
+         fmt::format("Detectable: the smallest shift, in points, that {} reveal (power {} %).\n",
+                     counted(c.seen.trials(), "trial", "trials"),
+                     fixed(100.0 * c.least.goal.power, 0));
 }
 
 std::string endings_part(const lattice::ObservedComparison& c) {
-  TextTable table({{"", -10},
-                   {"p: full dynamics", 18},
-                   {"p: chain", 10},
-                   {"detectable shift, points", 0, 0, "", "    "}});
+  TextTable table({{"", -10}, {"p: full dynamics", 18}, {"p: chain", 10}});
   for (const EndingName& e : kEndingNames) {
     if (c.endings.rules_out(e.ending)) continue;
     const std::size_t at = index_of(e);
     table.row({e.name, p_text(c.against_dynamics.endings[at].p_adjusted),
-               p_text(c.against_chain.endings[at].p_adjusted), text_of(c.least.by_ending[at])});
+               p_text(c.against_chain.endings[at].p_adjusted)});
   }
-  return fmt::format(
-      "\nEach ending: how often chance makes as large a difference (p, corrected for all that is "
-      "tested),\nand the smallest shift that {} detect with {} % power (none: no shift "
-      "is).\n{}",
-      counted(c.seen.trials(), "trial", "trials"), fixed(100.0 * c.least.goal.power, 0),
-      table.text());
+  return "\nEach ending: how often chance makes as large a difference (p, corrected for all that "
+         "is "
+         "tested)\n" +
+         table.text();
 }
 
 /// The verdict in a sentence; its p-values belong to the differences that it names.
@@ -225,31 +225,19 @@ std::string first_sentence(const lattice::ObservedComparison& c) {
                                  : fmt::format(" or the chain ({})", p_words(k.p)));
 }
 
-/// "3.1 (crossed) to 17.5 points (trapped) more": the smallest and the largest detectable shift in
-/// one direction; "none" if no ending has one.
-std::string range_text(const lattice::ObservedComparison& c,
-                       std::optional<double> lattice::SmallestDifference::*direction,
-                       const char* word) {
-  std::vector<std::pair<double, const char*>> shifts;
-  for (const EndingName& e : kEndingNames)
-    if (const auto& shift = c.least.by_ending[index_of(e)].*direction;
-        shift && !c.endings.rules_out(e.ending))
-      shifts.emplace_back(100.0 * *shift, e.name);
-  if (shifts.empty()) return fmt::format("none {}", word);
-  const auto [least, most] = std::ranges::minmax_element(shifts);
-  return least == most
-             ? fmt::format("{} points {} ({})", fixed(least->first, 1), word, least->second)
-             : fmt::format("{} ({}) to {} points ({}) {}", fixed(least->first, 1), least->second,
-                           fixed(most->first, 1), most->second, word);
-}
-
-/// Which shifts such an experiment would have shown.
-std::string detectable_text(const lattice::ObservedComparison& c) {
-  return wrapped(fmt::format("{} detect (power {} %): {}; {}.",
-                             counted(c.seen.trials(), "trial", "trials"),
-                             fixed(100.0 * c.least.goal.power, 0),
-                             range_text(c, &lattice::SmallestDifference::more, "more"),
-                             range_text(c, &lattice::SmallestDifference::fewer, "fewer")));
+/// A sentence for a publication, with the p against the full dynamics.
+std::string sentence_to_quote(const lattice::ObservedComparison& c) {
+  const JointTest& d = c.against_dynamics;
+  const bool endings = c.seen.has_endings(), gates = c.seen.has_gates();
+  const char* const what = endings && gates ? "endings and final gates"
+                           : endings        ? "endings"
+                                            : "final gates";
+  return wrapped(fmt::format(
+      "To quote: \"The {} of {} {} the full dynamics of the model ({}, test by simulation, "
+      "corrected "
+      "for all {}).\"",
+      what, counted(c.seen.trials(), "trial", "trials"),
+      d.differs() ? "differed from" : "did not differ detectably from", p_words(d.p), what));
 }
 
 }  // namespace
@@ -262,13 +250,12 @@ std::string answer_text(const lattice::ObservedComparison& c, const lattice::Sta
     text += fmt::format(
         "Final gates: total variation {} from the full dynamics; chance alone makes {}.\n",
         fixed(c.dynamics_gates->total_variation, 3), fixed(d.chance_total_variation, 3));
-  if (c.seen.has_endings()) text += detectable_text(c);
-  text += wrapped(fmt::format(
-      "From {} and {} of the full dynamics. Quote the first p: it is corrected for all that is "
-      "tested.{}",
-      counted(c.seen.trials(), "observed trial", "observed trials"),
-      counted(v.dynamics.trials, "trial", "trials"),
-      d.differs() ? " gatewalk fit finds numbers that explain the counts." : ""));
+  text += sentence_to_quote(c);
+  text += wrapped(
+      fmt::format("From {} and {} of the full dynamics.{}",
+                  counted(c.seen.trials(), "observed trial", "observed trials"),
+                  counted(v.dynamics.trials, "trial", "trials"),
+                  d.differs() ? " gatewalk fit finds numbers that explain the counts." : ""));
   if (v.finding() == lattice::Finding::own_error)
     text += fmt::format(
         "Beware: the chain differs from the full dynamics ({}); compare with the "

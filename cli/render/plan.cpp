@@ -68,7 +68,7 @@ std::string gain_verdict(const PlannedField& p) {
         fmt::format("Beware: the plan is worse than {}, by {} points. Sampling noise led the "
                     "search; use a smaller --accuracy.",
                     alone, gain_text(gain)));
-  return gain_sentence(gain, "Choosing the action by how a body enters", alone);
+  return gain_sentence(gain, "The best policy found", alone);
 }
 
 std::string worst_text(const lattice::Plan& plan) {

@@ -13,6 +13,7 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/scene.h"
+#include "lattice/statistics/compare.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -121,11 +122,14 @@ std::string runs_of(const RunsPrediction& runs) {
   return text.empty() ? "the gate runs of the file" : text;
 }
 
-/// The end of a sentence on whether the chain agrees with its own trials; empty if it has none.
-std::string agreement(const std::optional<lattice::HausmanCheck>& own) {
+/// The end of a sentence on whether the chain's own trials show a fault, at the level of validate;
+/// empty if the chain has none.
+std::string own_trials_text(const std::optional<lattice::HausmanCheck>& own) {
   if (!own) return "";
-  return fmt::format("; the chain {} its own trials ({})",
-                     own->differs() ? "differs from" : "agrees with", p_words(own->p));
+  return fmt::format("; the chain{} ({})",
+                     own->p <= lattice::JointTest::kLevel ? " differs from its own trials"
+                                                          : "'s own trials show no fault of it",
+                     p_words(own->p));
 }
 
 bool has_error_bar(const lattice::StartAnswer& a) { return std::isfinite(a.error.total_variation); }
@@ -148,7 +152,7 @@ std::string answer_text(const RunsPrediction& runs) {
   const bool any = std::any_of(starts.begin(), starts.end(), has_error_bar);
   std::string text = wrapped(fmt::format(
       "From {}, pooled into a chain of {} states{}{}.", runs_of(runs), runs.prediction.states,
-      any ? "" : ", without error bars", agreement(runs.prediction.hausman_check)));
+      any ? "" : ", without error bars", own_trials_text(runs.prediction.hausman_check)));
   const bool all_from_trials = std::all_of(
       starts.begin(), starts.end(), [](const lattice::StartAnswer& a) { return a.from_trials; });
   if (any)
@@ -158,7 +162,8 @@ std::string answer_text(const RunsPrediction& runs) {
                   "error.\n";
   if (runs.recorded)
     text += beware_of_lost(runs.recorded->counts, runs.recorded->bounds, starts.front().endings);
-  return text;
+  return text + beware_of(runs.prediction, runs.accuracy, runs.recorded.has_value()) +
+         beware_of(runs.prediction.health);
 }
 
 std::string details_text(const lattice::StartAnswer& a, const ShownField& shown) {
@@ -189,6 +194,21 @@ std::string details_text(const RunsPrediction& runs) {
   text += method_line(runs.method);
   return runs.recorded ? text + table_of(runs.recorded->counts) + table_of(runs.recorded->bounds)
                        : text;
+}
+
+std::string not_reached(const lattice::PooledPrediction& prediction, double accuracy,
+                        bool is_recorded) {
+  if (prediction.reached) return "";
+  const double error = worst_error(prediction);
+  return fmt::format("the accuracy of {} was not reached{}{}", digits(accuracy),
+                     std::isfinite(error) ? ", the error bar is " + fixed(error, 4) : "",
+                     is_recorded ? "" : "; --gate-runs allows more runs");
+}
+
+std::string beware_of(const lattice::PooledPrediction& prediction, double accuracy,
+                      bool is_recorded) {
+  const std::string text = not_reached(prediction, accuracy, is_recorded);
+  return text.empty() ? "" : "Beware: " + text + ".\n";
 }
 
 void describe_hausman_check(Fields& out, const std::optional<lattice::HausmanCheck>& own) {

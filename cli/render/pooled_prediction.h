@@ -36,6 +36,14 @@ void describe(Fields& out, const RunsPrediction& runs, bool given);
 [[nodiscard]] std::string details_text(const lattice::StartAnswer& answer, const ShownField& shown);
 [[nodiscard]] std::string details_text(const RunsPrediction& runs);
 
+/// A sentence if the accuracy asked for was not reached; else empty. More runs cannot be added to
+/// recorded ones.
+[[nodiscard]] std::string not_reached(const lattice::PooledPrediction& prediction, double accuracy,
+                                      bool is_recorded);
+/// The same as a line of the first screen.
+[[nodiscard]] std::string beware_of(const lattice::PooledPrediction& prediction, double accuracy,
+                                    bool is_recorded);
+
 /// The key "error_95".
 void describe_error(Fields& out, double error_95);
 /// The key "own_trials": the comparison of the chain with its own full trials; null without trials.

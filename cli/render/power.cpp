@@ -522,11 +522,11 @@ std::string answer_text(const PowerResult& p) {
   const std::string table = first_table(p);
   std::string text = (p.versus ? "" : wrapped(sentences[0])) + wrapped(sentences[1]);
   if (!p.versus) text += wrapped(groups_sentence(p));
-  text += table;
   const bool one_way = table.find(" more") != table.npos || table.find(" fewer") != table.npos;
-  text += wrapped(fmt::format("{}, all endings tested ({}).{}",
-                              p.versus ? "Two groups" : "One group", sureness(p.options),
-                              one_way ? " more, fewer: the only possible direction." : ""));
+  text += fmt::format("{}, all endings tested ({}){}:\n{}",
+                      p.versus ? "Trials of each of two groups" : "Trials of one group",
+                      sureness(p.options), one_way ? "; more, fewer: only in that direction" : "",
+                      table);
   text += fmt::format(
       "The predicted final gates are within a total variation of {} of the truth, 95 times in "
       "100.\n",

@@ -11,6 +11,7 @@
 #include "cli/render/field_ends.h"
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
+#include "cli/render/matrix.h"
 #include "cli/render/scene.h"
 #include "lattice/source/start_text.h"
 
@@ -68,7 +69,7 @@ std::string answer_text(const MatrixPrediction& of) {
     text +=
         "Beware: the chain's own error is left out. gatewalk validate SCENE --matrix FILE measures "
         "it.\n";
-  return text;
+  return of.foreign ? text : text + beware_of_recorded(of.status);
 }
 
 std::string details_text(const lattice::StartPrediction& s, const std::string& bin,
@@ -166,7 +167,8 @@ std::string answer_text(const PredictResult& r) {
                   [&](std::size_t k) {
                     if (r.of_runs) return answer_text(r.of_runs->prediction.starts[k]);
                     const lattice::StartPrediction& s = r.of_matrix->prediction.starts[k];
-                    return endings_text(ends_of(s.final, s.shares).shares);
+                    return endings_text(ends_of(s.final, s.shares).shares, "",
+                                        impossible_endings(r.shown));
                   }) +
          (r.of_runs ? answer_text(*r.of_runs) : answer_text(*r.of_matrix));
 }

@@ -8,9 +8,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "cli/fields/text.h"
 #include "cli/fields/text_table.h"
+#include "cli/render/final_gates.h"
 #include "cli/render/quantity.h"
 #include "lattice/scene/scene_bins.h"
 #include "lattice/scene/terrain.h"
@@ -45,13 +47,53 @@ std::string shown_range(const lattice::KeyInfo& k) {
 
 std::string limits_text(const ShownField& shown) {
   std::string text = std::isnan(shown.time_limit)
-                         ? "Trapped: as the recorded runs say."
+                         ? "Trapped: as the runs or counts of the file say."
                          : fmt::format("Trapped: still in the same gate {} after entering it.",
                                        quantity(shown.time_limit, "s"));
   return text + (shown.field.max_gates > 0
                      ? fmt::format("\nCut off: would go on after {} gates (field.max_gates).\n",
                                    shown.field.max_gates)
                      : "\nNo body is cut off: field.max_gates = 0 sets no limit.\n");
+}
+
+std::vector<markov::Ending> impossible_endings(const ShownField& shown) {
+  const lattice::FieldParams& field = shown.field;
+  const std::vector<dynamics::Face>& faces = shown.map.section.faces;
+  const std::int64_t
+      cells = std::int64_t{field.columns} * field.rows,
+      // A walk longer than there are cells comes back to one, and can go on for ever.
+      most = field.max_gates > 0 ? std::min<std::int64_t>(field.max_gates, cells + 1) : cells + 1;
+  constexpr std::int64_t kMostMoves = 10'000'000;
+  if (most * cells * std::ssize(faces) > kMostMoves) return {};
+  std::array<bool, markov::kEndings> possible{};
+  std::vector<bool> here(static_cast<std::size_t>(cells));
+  here[static_cast<std::size_t>(field.start_column())] = true;
+  bool goes_on = true;
+  for (std::int64_t gate = 0; gate < most && goes_on; ++gate) {
+    std::vector<bool> next(here.size());
+    goes_on = false;
+    for (int row = 0; row < field.rows; ++row)
+      for (int column = 0; column < field.columns; ++column) {
+        if (!here[static_cast<std::size_t>(row * field.columns + column)]) continue;
+        for (const dynamics::Face& face : faces) {
+          const int to_column = column + face.di_x, to_row = row + face.di_y;
+          if (field.contains(to_column, to_row)) {
+            next[static_cast<std::size_t>(to_row * field.columns + to_column)] = true;
+            goes_on = true;
+          } else {
+            possible[static_cast<std::size_t>(
+                markov::edge_before({field.columns, field.rows}, to_column, to_row))] = true;
+          }
+        }
+      }
+    here = std::move(next);
+  }
+  possible[static_cast<std::size_t>(markov::Ending::cut_off)] = goes_on;
+  std::vector<markov::Ending> impossible;
+  for (const EndingName& e : kAllEndingNames)
+    if (e.ending != markov::Ending::trapped && !possible[static_cast<std::size_t>(e.ending)])
+      impossible.push_back(e.ending);
+  return impossible;
 }
 
 std::string too_few_gates(const ShownField& shown) {

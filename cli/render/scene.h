@@ -8,6 +8,7 @@
 #include "cli/render/figure.h"
 #include "cli/render/shown_field.h"
 #include "lattice/scene/scene.h"
+#include "markov/chain.h"
 
 namespace gatewalk::cli {
 
@@ -16,6 +17,9 @@ namespace gatewalk::cli {
                                      const std::vector<std::string>& actions = {});
 /// The meaning of two endings, trapped and cut off, in this scene.
 [[nodiscard]] std::string limits_text(const ShownField& shown);
+/// The endings of which no sequence of moves through the field's faces has any, from the start on;
+/// without `trapped`, which is no move. Empty for fields that are too large to search.
+[[nodiscard]] std::vector<markov::Ending> impossible_endings(const ShownField& shown);
 /// A warning that no body can cross the field within its limit of gates; empty otherwise.
 [[nodiscard]] std::string too_few_gates(const ShownField& shown);
 

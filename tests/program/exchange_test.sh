@@ -57,7 +57,7 @@ for command in predict analyze "walk --walks 1000" "show --rows"; do
   [ "$(jq -cS 'del(.made_by, .text, .seconds, .file, .matrix)' own.json)" = "$(jq -cS 'del(.made_by, .text, .seconds, .file, .matrix)' steps.json)" ] || fail "$command: steps are not their counts"
 done
 # An imported chain has no trials, so it cannot be validated or planned.
-expect 2 '^gatewalk: own.nc: is a chain that was made elsewhere: there are no trials to hold it against' "$gatewalk" validate own.nc
+expect 2 '^gatewalk: own.nc: holds an imported chain, without trials or bodies to test it with. Make .* gatewalk build runs.csv' "$gatewalk" validate own.nc
 expect 2 '^gatewalk: own.nc: is a chain that was made elsewhere: its error bars are of its counts, not of trials' "$gatewalk" power own.nc
 for command in walk predict; do ! "$gatewalk" $command own.nc 2>&1 | grep 'gatewalk validate' || fail "$command: sends to what refuses the chain"; done
 # A start is a state, by its name or number, and gives the same answer as the start that import was given.

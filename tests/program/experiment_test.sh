@@ -20,9 +20,9 @@ holds '.observed | .trials == 60 and .files == ["ends.csv", "gates.csv"] and (.a
 holds '.observed.against_dynamics | ([.p_adjusted | .. | numbers] | min) as $least | .p == $least and .null_draws == 499 and (.final_gates | .corrcoef_floor > 0 and .total_variation > 0) and .p_endings.trapped > 0' observed.json
 holds '.observed.smallest_difference | .power == 0.8 and .level == 0.05 and .final_gates_total_variation > 0.1 and .endings_total_variation > 0.05 and (.endings_percentage_points | length == 5 and .trapped.more > 5 and .trapped.fewer > 5 and .crossed.fewer == null)' observed.json
 head -1 observed.txt | grep -q '^No difference found between 60 trials and the full dynamics (p = .*) or the chain (p = .*)\.$' || fail "validate --observed: the verdict does not come first"
-grep -q '^60 trials detect (power 80 %): [0-9.]* (.*) to [0-9.]* points (.*) more; .* fewer' observed.txt || fail "validate --observed: what the trials detect is not said"
-grep -q '^and the smallest shift that 60 trials detect with 80 % power' observed.txt || fail "validate --observed: a column is not explained"
-grep -q '^From 60 observed trials and 2000 trials of the full dynamics. Quote the first p' observed.txt || fail "validate --observed: which p to quote"
+grep -q '^Detectable: the smallest shift, in points, that 60 trials reveal (power 80 %)' observed.txt && grep -q '^trapped .* +[0-9.]* / -[0-9.]*$' observed.txt || fail "validate --observed: what the trials detect is not said"
+grep -q '^From 60 observed trials and 2000 trials of the full dynamics\.$' observed.txt || fail "validate --observed: its basis"
+tr '\n' ' ' <observed.txt | grep -q 'To quote: "The endings and final gates of 60 trials did not differ detectably from the full dynamics of the model (p = ' || fail "validate --observed: no sentence to quote"
 # Everything else is the same as without --observed.
 "$gatewalk" "${beside[@]}" --trials 2000 --start 0,0,15 --json without.json --quiet
 jq -S 'walk(if type == "object" then del(.seconds, .speed_ratio, .made_by, .observed) else . end)' observed.json >with.txt

@@ -105,7 +105,7 @@ expect 2 'accuracy: must lie in \[0.001, 0.5)' "$gatewalk" plan own.toml --accur
 expect 2 'a plan is made for one start' "$gatewalk" plan own.toml --start 0,0,15 --start 4,0,15
 expect 2 'actions.a.contact.restitution is not permitted: a body cannot choose it' "$gatewalk" plan own.toml --set actions.a.contact.restitution=0.5
 "$gatewalk" build "$scenes/field.toml" --accuracy 0.2 -o tree.nc --quiet
-expect 2 'is a matrix (HDF5), and this command simulates new bodies: give a scene' "$gatewalk" plan tree.nc
+expect 2 'is a matrix (HDF5), and a scene (TOML) is needed here' "$gatewalk" plan tree.nc
 # No body can cross.
 expect 0 'none of 25 trials crossed: too rare to choose by' "$gatewalk" plan own.toml --set run.method=moreau --set field.max_gates=2 --accuracy 0.2
 
@@ -115,7 +115,7 @@ expect 0 'none of 25 trials crossed: too rare to choose by' "$gatewalk" plan own
 if command -v python3 >/dev/null; then
   cp "$scenes/programs/hopper.toml" .
   hopper=(hopper.toml --cell-program "python3 $scenes/programs/hopper.py")
-  expect 0 '^Choosing the action by how a body enters gains ' "$gatewalk" plan "${hopper[@]}" --seed 2 --json hops.json --policy hops.policy.json --gate-policy push.policy.json --threads 2
+  expect 0 '^The best policy found gains ' "$gatewalk" plan "${hopper[@]}" --seed 2 --json hops.json --policy hops.policy.json --gate-policy push.policy.json --threads 2
   holds '[.actions[].name] == ["gently", "hard"] and .trials == 2401 and .best_alone == "hard" and .settled' hops.json
   holds '(.crossed - 0.729 | fabs) < 0.03 and (.actions[0].crossed - 0.108 | fabs) < 0.02 and (.actions[1].crossed - 0.324 | fabs) < 0.03 and (.by_gate.crossed - 0.324 | fabs) < 0.03' hops.json
   # The first action is always taken on hard ground.

@@ -27,7 +27,7 @@ expect 0 '\[30/30\]  crossing' "$gatewalk" reproduce -o paper --quick --details
 grep -q '^27 of 30 studies are done already' out.txt && [ "$(grep -c '^ *\[[0-9]*/30\]' out.txt)" = 3 ] || fail "reproduce: did again what was done"
 cmp claims.csv paper/claims.csv || fail "reproduce: what was done again says something else"
 # The first screen: a verdict for each start of Table IV, then what differs. With --details: every claim.
-expect 0 '^Next: open paper/report.html' "$gatewalk" reproduce -o paper --quick
+expect 0 '^paper/report.html says why a claim differs' "$gatewalk" reproduce -o paper --quick
 [ "$(grep -c '^  d = .* m, v = .* m/s  .*\(reproduced\|agrees\|cannot tell\|differs\)$' out.txt)" = 4 ] || fail "reproduce: no verdict for the four starts"
 [ "$(wc -l <out.txt)" -le 35 ] && ! grep -q '.\{101\}' out.txt || fail "reproduce: a screen of $(wc -l <out.txt) lines"
 "$gatewalk" reproduce -o paper --quick --details >out.txt

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # A command's first screen has at most fifteen lines for one start and no line over 100 characters, also with --details;
-# it says what to do next, and what it says runs.   screens_test.sh GATEWALK ROOT
+# it says what to do next, and what it says runs and does what its comment says.   screens_test.sh GATEWALK ROOT
 . "$(dirname "$0")/preamble.sh"
 
 cp -r "$scenes"/*.toml "$scenes/observed.csv" "$scenes/tracks" .
@@ -9,6 +9,12 @@ cat >small.toml <<'END'
 forces = { propulsion_N = 8, random_N = 50 }
 field = { columns = 5, rows = 3 }
 END
+# advice FILE: the commands that a screen proposes, each on a line; a command that a backslash continues is joined.
+advice() {
+  awk '/^Next: / { sub(/^Next: /, "      "); on = 1 }
+    on && /^      / { sub(/^ +/, ""); more = sub(/ \\$/, " "); line = line $0; if (!more) { print line; line = "" }; next }
+    { on = 0 }' "$1"
+}
 # Shapes of screens: how many lines, how wide, and how they end.
 wide() { awk -v most=100 'length($0) > most' "$1" | head -n 1; }
 # first LINES COMMAND...: the first screen has at most so many lines besides a map of gates, and Next lines; kept in screen.txt.
@@ -20,9 +26,12 @@ first() {
   [ "$lines" -le "$most" ] || fail "$lines lines: $*"
   [ -z "$(wide screen.txt)" ] || fail "a line is too wide: $*: $(wide screen.txt)"
   [ "$(wc -l <err.txt)" -le 2 ] || fail "more than two remarks: $*: $(cat err.txt)"
-  grep -q '^Next: ' screen.txt || fail "does not say what to do next: $*"
-  tail -n 1 screen.txt | grep -q -e '--details shows ' || fail "does not say that there are details: $*"
-  sed -n 's/^\(Next: \|      \)gatewalk /gatewalk /p' screen.txt >>next.txt
+  [ "$1" = chart ] || grep -q '^Next: ' screen.txt || fail "does not say what to do next: $*"
+  tail -n 1 screen.txt | grep -q -e '^--details shows ' || fail "does not say that there are details: $*"
+  advice screen.txt >lines.txt
+  grep -v -x 'gatewalk [a-z].*  # [a-zA-Z].*' lines.txt >odd.txt && fail "no whole command with a comment: $*: $(cat odd.txt)"
+  # Each line with the command that proposed it.
+  while read -r line; do printf '%s\t%s\n' "$line" "${*@Q}"; done <lines.txt >>next.txt
 }
 # screens COMMAND...: its first screen, and the whole one, which has all of the first but for the advice on details.
 screens() {
@@ -111,24 +120,69 @@ printf 'state,move_x,move_y\n0,0,1\n1,1,0\n' >states.csv
 screens show own.nc
 screens walk own.nc --walks 50
 screens predict own.nc
+# A chain of which no move goes left: the left side is impossible, and the screen says so.
+grep -q '^left side *0.00 %  -$' screen.txt && grep -q '^-: impossible' screen.txt || fail "an impossible ending has an interval: $(cat screen.txt)"
 # What to do next runs, a shell's own comment behind it; with less accuracy where that takes long.
-sort -u next.txt >all.txt
+sort -u -t$'\t' -k1,1 next.txt >all.txt
 [ "$(wc -l <all.txt)" -ge 15 ] || fail "few lines of advice: $(cat all.txt)"
 gatewalk() {
   case $1 in
-    analyze) set -- "$@" --runs 0 ;;
+    analyze) set -- "$@" --runs 0 --json advised.json ;;
     plan | power) set -- "$@" --accuracy 0.3 ;;
     sweep) set -- "$@" --trials 3 ;;
-    validate) set -- "$@" --null-draws 99 ;;
+    validate) set -- "$@" --null-draws 99 --json advised.json ;;
+    predict | rare | lattice) set -- "$@" --json advised.json ;;
   esac
   command "$program" "$@" --force
 }
 program=$gatewalk
 export program
 export -f gatewalk
-while read -r line; do
-  bash -c "$line" >out.txt 2>err.txt </dev/null || fail "advice does not run: $line: $(head -n 1 err.txt)"
+# claims EXPRESSION: it holds for the results of the command that was advised, b, and of the one that advised it, a.
+claims() {
+  eval "\"\$gatewalk\" $first --json first.json --quiet --force" >/dev/null 2>&1
+  jq -e -n --slurpfile a first.json --slurpfile b advised.json "\$a[0] as \$a | \$b[0] as \$b | $1" >/dev/null ||
+    fail "the comment is false ($1): $line (proposed by $first)"
+  tried="$tried ${line##*  # }"
+}
+tried=
+while IFS=$'\t' read -r line first; do
+  file=$(printf '%s\n' "$line" | sed -n 's/.* --\(figure\|csv\|output\|replay\|policy\) \([^ ]*\)  # .*/\2/p')
+  [ -z "$file" ] || rm -f "$file"
+  bash -c "$line" >out.txt 2>err.txt </dev/null || { fail "advice does not run: $line: $(head -n 1 err.txt)" && continue; }
+  [ -z "$file" ] || [ -s "$file" ] || fail "advice does not write $file: $line"
+  case $line in
+    *'# halves the error bar') claims 'def worst: [.. | .error_95? | numbers] | max; ($b | worst) < 0.7 * ($a | worst)' ;;
+    *'# halves the standard error') claims '$b.relative_standard_error < 0.7 * $a.relative_standard_error' ;;
+    *'# reveals smaller differences')
+      claims 'def chance: [.starts[].trials_and_matrix.total_variation_by_chance.mean] | add; $b.trials > $a.trials and ($b | chance) < ($a | chance)' ;;
+    *'# says what 100 trials detect') grep -q '100 trials detect' out.txt || fail "the comment is false: $line" ;;
+    *'# simulates one such experiment') [ "$(jq .trials advised.json)" = 60 ] || fail "the comment is false: $line" ;;
+    *'# predicts all endings from there' | *'# which number of the scene matters most')
+      jq -e '.. | .endings? | objects' advised.json >/dev/null || fail "no endings: $line" ;;
+  esac
 done <all.txt
+for claim in 'halves the error bar' 'halves the standard error' 'reveals smaller differences'; do
+  case $tried in *"$claim"*) ;; *) fail "no screen says: $claim" ;; esac
+done
+# What follows a prediction is of the same prediction.
+first 15 predict small.toml --accuracy 0.3 --seed 7 --json first.json
+line=$(advice screen.txt | grep '^gatewalk analyze ')
+bash -c "$line" >/dev/null 2>&1
+jq -e -n --slurpfile a first.json --slurpfile b advised.json '$a[0].endings == $b[0].endings' >/dev/null || fail "analyze has other endings than predict: $line"
+# A long command goes on behind a backslash, as it is pasted.
+first 15 predict small.toml --accuracy 0.3 --set forces.propulsion_N=8 --set forces.random_N=50 --set field.rows=3 --set field.columns=5
+grep -q ' \\$' screen.txt || fail "no long command: $(cat screen.txt)"
+sed -n 's/^Next: //; /^gatewalk\|^      /p' screen.txt >pasted.sh
+bash -e pasted.sh >/dev/null 2>err.txt </dev/null || fail "what is pasted does not run: $(head -n 1 err.txt): $(cat pasted.sh)"
+# Runs added by no command: no such advice. Rows of other gates: no analysis of the same gates.
+first 15 predict tree.nc --start 4.3,5.1,10.2 --first-runs 0
+advice screen.txt | grep -e '--accuracy' && fail "advice that is refused"
+"$gatewalk" predict bins.nc --row 1=bins.nc 2>/dev/null | grep 'gatewalk analyze' && fail "an analysis of other gates"
+# What the first screen must not hide: faults of the method, an accuracy that was not reached.
+"$gatewalk" gate single_gate.toml --set run.method=paper --trials 50 2>/dev/null | grep -q '^Beware: the numerical method showed faults' || fail "gate hides faults"
+"$gatewalk" predict small.toml --accuracy 0.01 --gate-runs 1500 2>/dev/null | grep -q '^Beware: the accuracy of 0.01 was not reached' || fail "predict hides its accuracy"
+"$gatewalk" rare small.toml --row 2 --accuracy 0.01 --gate-runs 3000 2>/dev/null | grep -q '^Beware: the relative standard error of 0.01 needs more' || fail "rare hides its accuracy"
 # From standard input nothing can be asked again.
 "$gatewalk" gate - --trials 5 <small.toml >screen.txt 2>/dev/null
 grep -q 'gatewalk .* -' screen.txt && fail "asks standard input again: $(cat screen.txt)"

@@ -8,6 +8,7 @@ expect 0 '^gatewalk [0-9]' "$gatewalk" --version
 expect 0 '^gatewalk [0-9]' "$gatewalk" -V
 expect 2 'usage: gatewalk' "$gatewalk"
 expect 2 "no command 'fly'" "$gatewalk" fly
+expect 2 'cli/site/glossary.md explains words' "$gatewalk" help lost
 expect 2 "^gatewalk: no command '$scenes/field.toml', but a file: the command comes first, gatewalk COMMAND $scenes/field.toml\$" "$gatewalk" "$scenes/field.toml" predict
 "$gatewalk" --help | sed -n '/^usage/,$ s/^  \([a-z]*\( [a-z][a-z]*\)\{0,1\}\)  .*/\1/p' >commands.txt
 [ "$(grep -c -x -e 'chart [a-z]*' -e gate -e merge commands.txt)" -ge 5 ] || fail "commands: $(cat commands.txt)"
