@@ -32,8 +32,9 @@ std::vector<std::string> next_of(const Options& options, const lattice::Source& 
     std::string other;
     for (const std::string& set : TextsOption(options, "versus").values())
       other += "--set " + shell_quoted(set) + " ";
-    next.add("lattice", trials, other.empty() ? "simulates one such experiment" : "one group");
-    if (!other.empty()) next.add("lattice", other + trials, "the other group");
+    next.add("lattice", trials,
+             other.empty() ? "simulates one such experiment" : "simulates one group");
+    if (!other.empty()) next.add("lattice", other + trials, "simulates the other group");
   }
   return next.lines();
 }

@@ -100,10 +100,10 @@ int run_rare(const Arguments& arguments) {
                "halves the standard error");
   next.add("analyze", "", "which number of the scene matters most");
   const std::string too_few = too_few_runs(result.event.splitting, how);
-  options.give_out(result,
-                   {answer_text(result) + (too_few.empty() ? "" : "Beware: " + too_few + ".\n") +
-                        beware_of(result.event.splitting.health),
-                    details_text(result, source.problem.field), next.lines()});
+  options.give_out(
+      result, {answer_text(result) + (too_few.empty() ? "" : wrapped("Beware: " + too_few + ".")) +
+                   beware_of(result.event.splitting.health),
+               details_text(result, source.problem.field), next.lines()});
   options.warn(too_few);
   const int exit = status_of(options, result.event.splitting.health);
   options.draw([&] { return figure_of(result); });

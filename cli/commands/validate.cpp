@@ -288,7 +288,14 @@ std::vector<std::string> next_of(const ValidateCommand& options, const lattice::
     next.again("trials", std::to_string(10 * v.trials), "reveals smaller differences");
   const std::string why = "the chain's answer alone";
   if (options.matrix) return next.of(options.matrix.value(), "predict", why).lines();
-  if (options.bins || options.matrix_trials) return next.lines();  // predict makes other states
+  if (options.matrix_trials || (options.bins && options.bins.value() != "tree")) {
+    const std::int64_t trials = options.matrix_trials ? options.matrix_trials.value() : 100;
+    if (!options.start)  // whose states build makes for trees only
+      next.keeping({"bins", "seed"})
+          .add("build", fmt::format("--trials {} --output matrix.nc", trials),
+               "keeps this chain in a file, for predict");
+    return next.lines();
+  }
   return next.keeping({"accuracy", "gate-runs", "seed"}).add("predict", "", why).lines();
 }
 

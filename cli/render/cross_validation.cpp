@@ -267,7 +267,8 @@ std::string largest_difference(const CrossValidation& v) {
   }
   const auto most = named_share(shares, p_of_gates, Fold::kLevel);
   if (!most) return kOnlyGatesDiffer;
-  const std::size_t w = *most / markov::kEndings, at = *most % markov::kEndings;
+  const std::size_t w = *most < shares.size() / 2 ? 0 : 1,
+                    at = static_cast<std::size_t>(shares[*most].ending);
   const Fold& fold = v.folds[w];
   return fmt::format(
       "Largest difference: {}, {} % seen in {}, {} % by the chain of {};\n"

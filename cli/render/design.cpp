@@ -75,7 +75,9 @@ std::string gain_verdict(const DesignedScene& d, std::size_t changes) {
       "{} the chance by {} points.{}",
       counted(static_cast<std::int64_t>(changes), "changed gate changes", "changed gates change"),
       gain_text(gain),
-      shown ? "" : " This is not more than chance; a smaller --accuracy can show a smaller gain."));
+      shown ? ""
+            : " This is not shown to be more than chance; a smaller --accuracy can show a smaller "
+              "gain."));
 }
 
 }  // namespace

@@ -359,7 +359,7 @@ std::string sentence_of(const lattice::ForceMemory& m) {
       "With the random force drawn anew at every crossing, the final gates {} ({}): total "
       "variation "
       "{} +- {}; chance makes {}. {} of the trials end in another gate.",
-      m.matters() ? "change" : "change no more than by chance", p_words(pairs.p_total_variation),
+      m.matters() ? "change" : "are not shown to change", p_words(pairs.p_total_variation),
       fixed(apart.total_variation, 4), fixed(m.change.uncertainty(), 4),
       fixed(pairs.floor_total_variation, 4), percent(m.change.changed, 1.0)));
 }

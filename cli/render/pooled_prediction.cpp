@@ -208,7 +208,7 @@ std::string not_reached(const lattice::PooledPrediction& prediction, double accu
 std::string beware_of(const lattice::PooledPrediction& prediction, double accuracy,
                       bool is_recorded) {
   const std::string text = not_reached(prediction, accuracy, is_recorded);
-  return text.empty() ? "" : "Beware: " + text + ".\n";
+  return text.empty() ? "" : wrapped("Beware: " + text + ".");
 }
 
 void describe_hausman_check(Fields& out, const std::optional<lattice::HausmanCheck>& own) {

@@ -525,8 +525,7 @@ std::string answer_text(const PowerResult& p) {
   const bool one_way = table.find(" more") != table.npos || table.find(" fewer") != table.npos;
   text += fmt::format("{}, all endings tested ({}){}:\n{}",
                       p.versus ? "Trials of each of two groups" : "Trials of one group",
-                      sureness(p.options), one_way ? "; more, fewer: only in that direction" : "",
-                      table);
+                      sureness(p.options), one_way ? "; more, fewer: only that way" : "", table);
   text += fmt::format(
       "The predicted final gates are within a total variation of {} of the truth, 95 times in "
       "100.\n",

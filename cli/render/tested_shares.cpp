@@ -13,10 +13,11 @@ std::optional<std::size_t> named_share(const std::vector<TestedShare>& shares, d
                                        double level) {
   const bool any = std::ranges::any_of(shares, [&](const TestedShare& s) { return s.p <= level; });
   if (!any && p_of_gates <= level) return {};
+  constexpr double kRounding = 1e-12;  // of shares that differ alike, the first is named
   std::optional<std::size_t> most;
   for (std::size_t k = 0; k < shares.size(); ++k)
     if ((!any || shares[k].p <= level) &&
-        (!most || shares[k].difference > shares[*most].difference))
+        (!most || shares[k].difference > shares[*most].difference + kRounding))
       most = k;
   return most;
 }

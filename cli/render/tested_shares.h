@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "markov/chain.h"
+#include "lattice/statistics/ending_shares.h"
 
 namespace gatewalk::lattice {
 struct JointTest;
@@ -20,11 +20,15 @@ struct TestedShare {
   markov::Ending ending;
   double difference, p;
 };
-/// The shares of all endings, states never sampled among them.
+/// Adds the shares of all endings in the order of tables, then those of states never sampled.
 template <class Tests>
 void add_tested(std::vector<TestedShare>& shares, const Tests& endings) {
-  for (std::size_t e = 0; e < endings.size(); ++e)
-    shares.push_back({static_cast<markov::Ending>(e), endings[e].seen, endings[e].p_adjusted});
+  const auto add = [&](markov::Ending ending) {
+    const auto& test = endings[static_cast<std::size_t>(ending)];
+    shares.push_back({ending, test.seen, test.p_adjusted});
+  };
+  for (const lattice::EndingName& e : lattice::kAllEndingNames) add(e.ending);
+  add(markov::Ending::unsampled);
 }
 
 /// The index of the share to name: of the shares with p at most `level`, the one that differs most.

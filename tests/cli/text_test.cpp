@@ -31,6 +31,10 @@ TEST(Text, LinesAreBrokenAtBlanksWithinTheScreen) {
   EXPECT_EQ(wrapped("  " + word + " " + word + " next line", "    "),
             "  " + word + " " + word + " next\n    line\n");
   EXPECT_EQ(wrapped("a " + wide + " b", "  "), "a\n  " + wide + "\n  b\n");
+  // A p-value and a percentage stay on one line.
+  EXPECT_EQ(wrapped(word + " " + word + " (p = 0.05)"), word + " " + word + "\n(p = 0.05)\n");
+  EXPECT_EQ(wrapped(word + " " + word + " (p < 0.001"), word + " " + word + "\n(p < 0.001\n");
+  EXPECT_EQ(wrapped(word + " " + word + " is at 80 %"), word + " " + word + " is at\n80 %\n");
   // A letter of two bytes is one column.
   EXPECT_EQ(wrapped(word + " " + word + " 12345 " + accents),
             word + " " + word + " 12345 " + accents + "\n");

@@ -100,7 +100,8 @@ expect 2 'over: is for a scene without actions' "$gatewalk" plan "${small[@]}" "
 expect 2 'a start is planned over start.x_m, start.vx_m_per_s and start.vy_m_per_s alone' "$gatewalk" plan "${small[@]}" --over forces.propulsion_N=5:9
 expect 2 'start.x_m = -30 is not permitted' "$gatewalk" plan "${small[@]}" --over start.x_m=-30:30
 expect 2 'policy: is for a scene with actions' "$gatewalk" plan "${small[@]}" --policy p.json
-expect 2 'has 1 tables \[actions.NAME\]' "$gatewalk" plan "$scenes/field.toml" --set actions.a.forces.propulsion_N=9
+expect 2 'has no actions (tables .*). Give the scene, and the --set, of the gatewalk plan that made the policy' "$gatewalk" lattice "$scenes/single_gate.toml" --policy fast.json
+expect 2 'has one action, and a policy chooses among two or more' "$gatewalk" plan "$scenes/field.toml" --set actions.a.forces.propulsion_N=9
 expect 2 'accuracy: must lie in \[0.001, 0.5)' "$gatewalk" plan own.toml --accuracy 0.6
 expect 2 'a plan is made for one start' "$gatewalk" plan own.toml --start 0,0,15 --start 4,0,15
 expect 2 'actions.a.contact.restitution is not permitted: a body cannot choose it' "$gatewalk" plan own.toml --set actions.a.contact.restitution=0.5
@@ -156,8 +157,8 @@ if command -v python3 >/dev/null; then
   expect 0 '^crossed' "$gatewalk" predict hopper.nc --set field.rows=2
   expect 0 '^crossed' "$gatewalk" predict hopper.nc "${hopper[@]:1}" --start S:-0.2
   # What cannot be planned.
-  expect 2 'hopper.nc: is a matrix (HDF5), and this command simulates new bodies' "$gatewalk" plan hopper.nc
-  expect 2 'hopper.nc: is a matrix (HDF5), and this command simulates new bodies' "$gatewalk" lattice hopper.nc "${hopper[@]:1}" --policy hops.policy.json
+  expect 2 'hopper.nc: is a matrix (HDF5), and a scene (TOML) is needed here' "$gatewalk" plan hopper.nc
+  expect 2 'hopper.nc: is a matrix (HDF5), and a scene (TOML) is needed here' "$gatewalk" lattice hopper.nc "${hopper[@]:1}" --policy hops.policy.json
   expect 2 'hopper.toml: has cells of another kind, \[cell\]: --cell-program' "$gatewalk" plan hopper.toml
   expect 2 'is a table, and no scene' "$gatewalk" plan "$scenes/tracks/runs.csv"
   expect 2 'over: says where bodies may start, such as --over start.s_m=0:1' "$gatewalk" plan "${bare[@]}"
@@ -165,7 +166,7 @@ if command -v python3 >/dev/null; then
   # With a push of 1 J it goes on most often from the left.
   "$gatewalk" plan "${bare[@]}" --set parameters.push_J=1 --over start.s_m=-0.5:0.5 --accuracy 0.05 --quiet --json start.json --force
   holds '.start.s_m < 0 and .crossed > 0.25 and .crossed < 0.4 and .own.crossed < 0.2 and .gain_95[0] > 0 and (.starts | length) == 1 and (.starts[0].chance | length) == 1' start.json
-  expect 2 'bare.toml: has 1 tables' "$gatewalk" plan "${bare[@]}" "${pushes[@]:0:2}"
+  expect 2 'bare.toml: has one action' "$gatewalk" plan "${bare[@]}" "${pushes[@]:0:2}"
   expect 2 "^gatewalk: --set actions.hard.parameters.shove=1: actions.hard.parameters.shove: cell program: it has no parameter 'shove', but push_J$" "$gatewalk" plan "${hopper[@]}" --set actions.hard.parameters.shove=1
   sed 's/push_J = 3$/push_J = 4/' hopper.toml >much.toml
   expect 2 "^gatewalk: much.toml:[0-9]*: actions.hard.parameters.push_J: cell program: parameter 'push_J' must be a number from 1.0 to 3.0$" "$gatewalk" plan much.toml "${hopper[@]:1}"

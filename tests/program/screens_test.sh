@@ -39,6 +39,7 @@ screens() {
   "$gatewalk" "$@" --force --details >whole.txt 2>/dev/null || { fail "$* --details" && return; }
   [ -z "$(wide whole.txt)" ] || fail "with --details a line is too wide: $*: $(wide whole.txt)"
   [ "$(wc -l <whole.txt)" -gt "$(wc -l <screen.txt)" ] || fail "--details shows nothing more: $*"
+  grep -q 'p = 0\.[1-9][0-9][0-9]' whole.txt && fail "p in two forms: $*: $(grep 'p = 0\.[1-9][0-9][0-9]' whole.txt)"
   grep -q -e '--details shows ' whole.txt && fail "--details advises --details: $*"
   grep -v -e '--details shows ' -e '^Next: ' -e '^      ' screen.txt | grep -v -x -F -f whole.txt >missing.txt
   # What was timed differs from run to run.
@@ -65,6 +66,7 @@ screens predict mixed.toml --accuracy 0.3
 screens predict few.nc
 screens rare small.toml --row 2 --accuracy 0.3
 screens validate small.toml --matrix tree.nc --trials 40 --null-draws 99 --memory
+screens validate small.toml --bins paper --matrix-trials 5 --trials 40 --null-draws 99
 screens validate field.toml --observed observed.csv --trials 1200 --accuracy 0.3 --null-draws 99
 # Studies: influences, how many trials, plans, fits, grids.
 screens analyze small.toml --accuracy 0.3 --runs 100
