@@ -43,7 +43,7 @@ with (DIR / "coverage.csv").open("w") as out:
     for e, held, halves, mean in rows:
         print(e, n, held, 2 * n, halves, f"{mean:.5f}", truth[e], sep=",", file=out)
 print(f"{n} films of 200 bodies each, two halves of each:\n")
-print("| ending | bars hold the truth, % of films | bars of one half hold the other, % of halves | mean prediction less truth, points |"
+print("| ending | intervals that hold the truth, % of films | intervals from one half that hold the share of the other half, % of halves | mean prediction less truth, points |"
       "\n|---|---|---|---|")
 for e, held, halves, mean in rows:
     print(f"| {e.replace('_', ' ')} | {share(held, n)} | {share(halves, 2 * n)} | {100 * (mean - truth[e]):+.2f} |")
