@@ -119,7 +119,9 @@ void fix_trials(const Options& options, const AskedAccuracy& asked, lattice::Acc
                                    *how.trials, starts));
   } else if (options.shard) {
     throw UsageError(
-        "--shard of trees needs --trials N: a part must know how many there are in all");
+        "--shard of trees needs --trials N (for a scene with --bins tree): a part must know how "
+        "many "
+        "there are in all");
   }
 }
 

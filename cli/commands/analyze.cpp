@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <ranges>
 #include <string>
@@ -21,7 +22,9 @@
 #include "lattice/pool/chain_with_rewards.h"
 #include "lattice/pool/lumped_chain.h"
 #include "lattice/scene/ranges.h"
+#include "lattice/scene/scene_keys.h"
 #include "lattice/scene/scene_problem.h"
+#include "lattice/scene/units.h"
 #include "lattice/statistics/ending_shares.h"
 #include "lattice/study/prediction.h"
 #include "lattice/study/trials.h"
@@ -198,6 +201,14 @@ std::optional<PassageAsked> first_passage_asked(const TextOption& given, const l
     if (const auto entered = state_named(s, rest))
       return PassageAsked{text, {.cell = *cell, .input = *entered}};
   }
+  if (s.file && !s.is_imported) {
+    const std::vector<std::string> names = lattice::state_names(*s.file);
+    for (std::size_t k = static_cast<std::size_t>(entered_states(s.file->transitions.space));
+         k < names.size(); ++k)
+      if (text == names[k] || text == std::to_string(k))
+        throw UsageError(fmt::format(
+            "--first-passage {}: is the start itself, in which every body begins", text));
+  }
   const auto keys = lattice::kAllEndingNames | std::views::transform(&lattice::EndingName::key);
   const auto range = [](int first, int count) {
     return fmt::format("{} to {}", first, first + count - 1);
@@ -279,12 +290,56 @@ std::string beware_of_answer(const lattice::Source& s, const AnalysedSubject& c)
   return s.is_imported ? "" : beware_of_recorded(c.answer.health);
 }
 
+constexpr std::size_t kShownEffects = 3;  // on the first screen
+
+/// The key in the unit in which the scene gives its value: "beams.joint_x_cm" for
+/// "beams.joint_x_m".
+std::string spelled(const lattice::Scene& scene, const std::string& key) {
+  const auto given = scene.named.find(key);
+  if (given == scene.named.end()) return key;
+  // "mine.toml:3 (joint_x_cm = 20)", "--set beams.joint_x_cm=20"
+  std::string_view where = given->second;
+  const auto is_of_key = [](char c) {
+    return c == '_' || c == '.' || (std::isalnum(static_cast<unsigned char>(c)) != 0);
+  };
+  while (!where.empty()) {
+    const auto end = std::ranges::find_if_not(where, is_of_key);
+    const auto size = static_cast<std::size_t>(end - where.begin());
+    const std::string word(where.substr(0, size));
+    const std::string name =
+        word.find('.') == word.npos ? key.substr(0, key.find('.') + 1) + word : word;
+    if (lattice::unit_of(name, key)) return name;
+    where.remove_prefix(std::max<std::size_t>(size, 1));
+  }
+  return key;
+}
+
+/// The most influential number with 1 % more of it, as a value of --set: "beams.joint_x_cm=20.2";
+/// empty if the scene permits none of the largest.
+std::string one_percent_more(const Options& options, const lattice::Source& s,
+                             const AnalysedField& result) {
+  for (const auto& effect : sorted_effects(result) | std::views::take(kShownEffects)) {
+    if (!std::isfinite(effect.value)) continue;
+    const std::string key = spelled(*s.scene, effect.key);
+    const double value =
+        lattice::in_given_unit(1.01 * effect.value, *lattice::unit_of(key, effect.key));
+    std::vector<std::string> overrides = options.overrides();
+    overrides.push_back(fmt::format("{}={}", key, digits(value, 4)));
+    try {
+      (void)lattice::read_scene(options.file(s.path).toml(), overrides);
+      return overrides.back();
+    } catch (const std::exception&) {  // the scene does not permit this value
+      continue;
+    }
+  }
+  return "";
+}
+
 /// The most influential number that the scene permits to vary by 10 % to each side, as a value of
 /// --vary for gatewalk sweep; empty if there is none.
 std::string range_of_largest(const Options& options, const lattice::Source& s,
                              const AnalysedField& result) {
-  constexpr std::size_t kShown = 3;  // on the first screen
-  for (const auto& effect : sorted_effects(result) | std::views::take(kShown)) {
+  for (const auto& effect : sorted_effects(result) | std::views::take(kShownEffects)) {
     if (!std::isfinite(effect.value)) continue;
     const std::string step = digits(0.05 * effect.value, 2);
     std::string_view words = step;
@@ -304,8 +359,17 @@ std::string range_of_largest(const Options& options, const lattice::Source& s,
 std::vector<std::string> next_of(const Options& options, const lattice::Source& s,
                                  const AnalysedField& result) {
   NextCommands next(options);
-  const bool is_of_gates = s.scene && !s.file && !s.starts_given;  // sweep takes a scene of gates
-  if (const std::string range = is_of_gates ? range_of_largest(options, s, result) : "";
+  const bool is_of_gates = s.scene && !s.file;
+  const bool is_one_gate = s.problem.field.columns * std::int64_t{s.problem.field.rows} == 1;
+  if (const std::string set =
+          is_of_gates && !is_one_gate ? one_percent_more(options, s, result) : "";
+      !set.empty())
+    return next.keeping({"accuracy", "gate-runs", "seed"})
+        .add("predict", "--set " + set, "with 1 % more of it")
+        .lines();
+  if (const std::string range = is_of_gates && is_one_gate && !s.starts_given  // sweep has no start
+                                    ? range_of_largest(options, s, result)
+                                    : "";
       !range.empty())
     return next.add("sweep", "--vary " + range, "varies it in one gate").lines();
   return next.again("figure", "analysis.svg", "draws visits, paths and influences").lines();

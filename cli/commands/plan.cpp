@@ -179,7 +179,10 @@ std::vector<std::string> next_of(const PlanCommand& options) {
                          shell_quoted(options.policy.value())),
              "shows 20 bodies that follow the policy");
   else if (!options.policy)
-    next.again("policy", "policy.json", "writes the policy for gatewalk lattice and trace");
+    next.again("policy", "policy.json",
+               options.cell() || options.program.command
+                   ? "writes the policy for gatewalk lattice"
+                   : "writes the policy for gatewalk lattice and trace");
   return next.again("figure", "plan.svg", "draws the actions by gate").lines();
 }
 

@@ -100,7 +100,8 @@ int run_power(const Arguments& arguments) {
                      .plan = lattice::plan_experiment(answer, how),
                      .health = first.health,
                      .method = lattice::settled_of(s),
-                     .made_by = options.provenance(s)};
+                     .made_by = options.provenance(s),
+                     .recorded = s.is_recorded()};
   if (second) {
     const lattice::StartAnswer& versus = second->starts.front();
     result.versus = {other_given.values(), versus, lattice::tell_apart(answer, versus, how),

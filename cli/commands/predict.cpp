@@ -120,7 +120,7 @@ std::vector<std::string> next_of(const PredictCommand& options, const lattice::S
     double error = 0.0;
     for (const lattice::StartAnswer& a : result.of_runs->prediction.starts)
       error = std::max(error, a.error.total_variation);
-    next.again("accuracy", digits(0.5 * error, 2), "halves the error bar");
+    next.again("accuracy", digits(0.5 * error, 2), "halves the error bar of the final gates");
   }
   return next.lines();
 }

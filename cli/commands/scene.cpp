@@ -30,7 +30,8 @@ int run_scene(const Arguments& arguments) {
       "line of\n"
       "the file, --set, the paper (a default), or derived from the other keys. scene also says "
       "which\n"
-      "numbers no walking animal or robot reaches. Without a file, the scene is what --set gives.",
+      "numbers are unusual for walking animals and robots. Without a file, the scene is what --set "
+      "gives.",
       "gatewalk scene --new --set body.mass_g=250 --set body.radius_cm=8 -o mine.toml");
   const TextOption given =
       options.positional("scene", "scene file (TOML; -: standard input)", false);

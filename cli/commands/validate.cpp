@@ -225,11 +225,17 @@ ChainUnderTest chain_under_test(const ValidateCommand& options) {
 /// Validates recorded runs: does one half of the bodies predict the other?
 int validate_recorded(const ValidateCommand& options) {
   const std::string path = options.path.value();
-  refuse({options.matrix, options.matrix_trials, options.observed, options.trials, options.walks,
+  if (options.observed)
+    throw UsageError(fmt::format(
+        "--observed: counts are compared with a scene: gatewalk validate SCENE --observed {}. "
+        "Without --observed, validate tests whether one half of the recorded bodies of {} predicts "
+        "the other",
+        options.observed.values().front(), path));
+  refuse({options.matrix, options.matrix_trials, options.trials, options.walks,
           options.accuracy.accuracy, options.accuracy.gate_runs, options.start, options.bins,
           options.memory, options.strict, options.shard, options.part, options.checkpoint,
           options.resume, options.max_time},
-         fmt::format("for {}, of whose bodies one half is held against the other", path));
+         fmt::format("for {}: validate predicts one half of its bodies from the other half", path));
   const lattice::Source s = open_source(options, options.asked);
   if (s.is_imported)
     throw UsageError(path +
@@ -253,7 +259,7 @@ int validate_recorded(const ValidateCommand& options) {
     options.warn(fmt::format("with {} bodies p may be too small: it was checked with {} or more",
                              s.pool->bodies(), kChecked));
   options.give_out(result,
-                   {answer_text(result), details_text(result),
+                   {answer_text(result) + unequal_sides(ShownField(s)), details_text(result),
                     NextCommands(options)
                         .keeping({"seed"})
                         .add("predict", "", "what all bodies together predict")
@@ -352,8 +358,8 @@ int run_validate(const Arguments& arguments) {
   result.validation = lattice::validate_chain(tested.problem, result.matrix.matrices, tested.starts,
                                               how, options.work());
   const lattice::Validation& v = result.validation;
-  options.give_out(result, {answer_text(result) + beware_of(v.health), details_text(result),
-                            next_of(options, v), details_of(result)});
+  options.give_out(result, {answer_text(result) + unequal_sides(result.shown) + beware_of(v.health),
+                            details_text(result), next_of(options, v), details_of(result)});
   options.warn(text_of(v.left_out));
   for (const lattice::StartValidation& start : v.starts)
     options.warn(rest_warning(rest_of(start.exact), "by the chain "));

@@ -93,14 +93,27 @@ std::string elasticity_text(const AnalysedField& f, const lattice::ParameterEffe
              : text;
 }
 
-/// What 1 % more of a parameter makes of the target's share: "25.80 % becomes 50.81 %"; empty
-/// without an interval of the influence, and if the result would be no share.
-std::string example_of(const AnalysedField& f, const lattice::ParameterEffect& e) {
+/// Whether the slope does not tell what a small change does: 1 % or one step changes the
+/// probability by more than a tenth of its value, or more and less of the number differ.
+bool is_steep(const AnalysedField& f, const lattice::ParameterEffect& e) {
+  constexpr double kGentle = 0.1, kOnePercent = 0.01;
+  const auto much = [&](double slope) {
+    return std::abs(slope) * std::max(f.step, kOnePercent) > kGentle;
+  };
+  return e.bends || much(e.elasticity.mean) || much(e.more) || much(e.less);
+}
+
+/// What one step of a parameter changes, as measured: "+1.71 points for 2 % more"; "steep" where
+/// that tells nothing of smaller changes; empty without an interval of the influence, and if the
+/// result would be no share.
+std::string change_of(const AnalysedField& f, const lattice::ParameterEffect& e) {
+  if (is_steep(f, e)) return "steep";
   const double share = f.answer.endings.share[static_cast<std::size_t>(f.analysis.target)],
-               changed = share * (1.0 + 0.01 * e.elasticity.mean);
+               change = share * f.step * e.elasticity.mean, changed = share + change;
   if (f.analysis.by_groups && std::isnan(e.elasticity.interval[0])) return "";
   if (!(share > 0.0 && changed >= 0.0 && changed <= 1.0)) return "";
-  return fmt::format("{} % becomes {} %", percents(share), percents(changed));
+  return fmt::format("{}{} points for {} % more", change > 0.0 ? "+" : "", fixed(100.0 * change, 2),
+                     digits(100.0 * f.step));
 }
 
 /// A table of the `most` parameters that change the target's probability most.
@@ -110,12 +123,13 @@ std::string largest_effects(const AnalysedField& f, std::size_t most) {
   TextTable table({{"", -36, 0, "", "  "}, {"", -24}, {"", 0, 0, "", "  "}});
   for (const lattice::ParameterEffect& e : effects | std::views::take(most)) {
     std::vector<TextCell> cells{e.key, elasticity_text(f, e)};
-    if (const std::string example = example_of(f, e); !example.empty()) cells.emplace_back(example);
+    if (const std::string change = change_of(f, e); !change.empty()) cells.emplace_back(change);
     table.row(cells);
   }
   return fmt::format(
-      "Largest influences: relative change of the chance of \"{}\", in %, for 1 % more of\n{}",
-      target_name(f), table.text());
+      "Largest influences on \"{}\" (a slope: % of its chance per % of the number, over +-{} "
+      "%):\n{}",
+      target_name(f), digits(100.0 * f.step), table.text());
 }
 
 /// The relative change of the target's probability in one step of the most influential parameter;
@@ -139,20 +153,20 @@ std::string beware_text(const AnalysedField& f, std::size_t most) {
                      a.target_chance > 0.5 ? "every body" : "no body", target_name(f))
                : "";
   constexpr double kSmall = 0.3;
-  constexpr double kLeastStep = 1e-4;  // a smaller one hardly changes any run
-  const double change = largest_change(f), step = f.step * 0.1 / change;
+  constexpr double kMostSlope = 1000.0;  // of a target that hardly any run reaches
+  const double change = largest_change(f);
   if (change == 0.0)
     return "Beware: no changed run ended otherwise, so these runs tell no influences; raise "
            "--runs.\n";
-  if (change > kSmall && step >= kLeastStep)
-    return fmt::format(
-        "Beware: one step of {1} changes the chance by {0} of its value; repeat with --step {2}.\n",
-        percent(change, 1.0, 0), percent(f.step, 1.0), digits(step, 1));
-  if (change > kSmall)
+  if (change > kSmall && change > kMostSlope * f.step)
     return fmt::format(
         "Beware: \"{}\" is too rare for these influences; take another --target, or raise "
         "--runs.\n",
         target_name(f));
+  if (std::ranges::any_of(effects | std::views::take(most),
+                          [&](const auto& e) { return is_steep(f, e); }))
+    return "Beware: steep: the slope may not hold for 1 %; gatewalk predict SCENE --set KEY=VALUE "
+           "tells.\n";
   if (!a.by_groups)
     return "Beware: a matrix of bins gives coarse influences without intervals; analyze the "
            "scene.\n";
@@ -240,9 +254,8 @@ std::string parameters_part(const AnalysedField& f) {
   const std::string chance = percents(f.parameters.chance),
                     answer = percents(f.answer.endings.share[static_cast<std::size_t>(a.target)]);
   std::string text = fmt::format(
-      "\nInfluences: % by which the chance of \"{}\" ({} %) grows for 1 % more of each number, 95 "
-      "%\n",
-      target_name(f), chance);
+      "\nInfluences on \"{}\" ({} %): slope, % of its chance per % of each number, over +-{} %\n",
+      target_name(f), chance, digits(100.0 * f.step));
   if (chance != answer && f.parameters.pool_runs > 0)
     text +=
         wrapped(fmt::format("({} % comes from the larger chain of {} gate runs behind this "
@@ -255,14 +268,18 @@ std::string parameters_part(const AnalysedField& f) {
               types_text(f.shown.types, [&](std::size_t t) { return e.of_type[t].mean; });
     if (e.bends)
       line += fmt::format("; with more of it {}, with less {}", fixed(e.more, 2), fixed(e.less, 2));
+    if (is_steep(f, e)) line += "; steep";
     text += wrapped(fmt::format("  {:<36}{}", e.key, line), std::string(40, ' '));
   }
   return text +
          (a.by_groups
-              ? "Each number is changed alone, in gates of all types. The intervals include "
-                "sampling error\nand the chain's own approximation error. --set KEY=VALUE shows "
-                "the effect of a large change.\n"
-              : "");
+              ? "Each number is changed alone, in gates of all types. The 95 % intervals include "
+                "sampling error\nand the chain's own approximation error.\n"
+              : "") +
+         wrapped(
+             "steep: 1 % or one step changes the chance by more than a tenth of its value, or "
+             "more and less of the number differ. The slope then does not tell what a small "
+             "change does: gatewalk predict SCENE --set KEY=VALUE does.");
 }
 
 std::string types_part(const AnalysedField& f) {
@@ -308,6 +325,7 @@ std::string answer_text(const AnalysedField& f, std::int64_t lines_below) {
                                     with_interval(shares.share[at], shares.interval[at]))
           : f.passage ? ""
                       : endings_text(shares, "of all bodies", impossible_endings(f.shown));
+  if (!is_of_more) text += unequal_sides(f.shown);
   if (!f.shares) text += means_text(f.analysis);
   text += direct_text(f);
   if (f.shares) text += answer_text(*f.shares);

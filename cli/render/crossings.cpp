@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cli/fields/text.h"
@@ -48,7 +49,8 @@ std::string chance_text(const lattice::Crossings& c, std::string_view of) {
 }
 
 std::string gain_text(const lattice::Gain& gain) {
-  const auto points = [](double x) { return fixed(100.0 * x, 2); };
+  // The interval is of a normal distribution, which knows no end; a gain has one at 100 points.
+  const auto points = [](double x) { return fixed(100.0 * std::clamp(x, -1.0, 1.0), 2); };
   if (std::isnan(gain.interval_95[0])) return points(gain.difference);
   return fmt::format("{}{} [{}, {}]", gain.difference > 0.0 ? "+" : "", points(gain.difference),
                      points(gain.interval_95[0]), points(gain.interval_95[1]));

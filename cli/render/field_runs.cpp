@@ -68,7 +68,7 @@ void describe(Fields& out, const FieldRun& run) {
 }
 
 std::string answer_text(const FieldRun& run) {
-  return endings_text(ends_of(run.tally, run.shown.field).shares) +
+  return endings_text(ends_of(run.tally, run.shown.field).shares) + unequal_sides(run.shown) +
          fmt::format(
              "From {} of the full dynamics{}. The 95 % intervals count their sampling error.\n",
              counted(run.tally.trials, "trial", "trials"),

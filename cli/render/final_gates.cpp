@@ -347,9 +347,19 @@ std::string rest_warning(const Rest& rest, const std::string& where) {
                      percents(1.0 - all), what);
 }
 
+namespace {
+
+/// percents(), but not with digits that mean nothing beside an interval that begins at 0.
+std::string percents_beside(double share, const std::array<double, 2>& interval) {
+  return interval[0] == 0.0 ? fixed(100.0 * share, 2) : percents(share);
+}
+
+}  // namespace
+
 std::string with_interval(double share, const std::array<double, 2>& interval) {
   if (std::isnan(interval[0])) return percents(share);
-  return fmt::format("{} [{}, {}]", percents(share), percents(interval[0]), percents(interval[1]));
+  return fmt::format("{} [{}, {}]", percents_beside(share, interval), percents(interval[0]),
+                     percents(interval[1]));
 }
 
 std::string endings_text(const lattice::EndingShares& shares, const std::string& of,
@@ -360,7 +370,8 @@ std::string endings_text(const lattice::EndingShares& shares, const std::string&
     if (shares.rules_out(e.ending)) continue;
     const auto at = static_cast<std::size_t>(e.ending);
     const auto& [low, high] = shares.interval[at];
-    text += fmt::format("{:<11}{:>7} %", e.name, percents(shares.share[at]));
+    text += fmt::format("{:<11}{:>7} %", e.name,
+                        percents_beside(shares.share[at], shares.interval[at]));
     if (shares.share[at] == 0.0 && std::ranges::count(impossible, e.ending) > 0) {
       text += "  -";
       is_marked = true;

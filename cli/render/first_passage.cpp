@@ -87,8 +87,13 @@ void describe(Fields& out, const PassageResult& result) {
 
 std::string text_of(const PassageResult& result) {
   const lattice::FirstPassage& f = result.found;
-  std::string text =
-      fmt::format("First passage to {}: {} %", result.asked.text, percents(f.chance.mean));
+  const auto& [ending, cell, input] = result.asked.target;
+  std::string target = result.asked.text;
+  if (input && !cell) {  // a state by its number or its name
+    const std::string& name = result.names[static_cast<std::size_t>(*input)];
+    target = "state " + target + (name == target ? "" : fmt::format(" ({})", name));
+  }
+  std::string text = fmt::format("First passage to {}: {} %", target, percents(f.chance.mean));
   if (const auto& [low, high] = f.chance.interval; std::isfinite(low))
     text += fmt::format(" [{}, {}]", percents(low), percents(high));
   text += " of all bodies reach it";

@@ -187,6 +187,34 @@ std::string setting_of(const dynamics::Remedy& remedy) {
   return text;
 }
 
+/// What helps at a fault of a method.
+std::string advice_of(const Limit& limit, const MethodLimits& m) {
+  if (!limit.remedy) return "nothing that was tried helps";
+  const dynamics::Remedy& r = *limit.remedy;
+  const bool is_fine = m.verdict == Verdict::fine, is_own = r.method.empty() &&
+                                                            r.key == m.own.key &&
+                                                            digits(r.value) == digits(m.own.value);
+  if (is_own) return "the scene's own value has no fault";
+  return (is_fine ? "there take " : "take ") + setting_of(r);
+}
+
+/// "stable, moreau and event"
+std::string listed(const std::vector<std::string>& names) {
+  if (names.size() < 2) return names.front();
+  return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
+}
+
+/// Which methods show no fault at the scene's own numbers.
+std::string sound_methods(const LimitsResult& result) {
+  std::vector<std::string> sound, faulty;
+  for (const MethodLimits& m : result.limits)
+    (m.verdict == Verdict::fine ? sound : faulty).emplace_back(m.method);
+  if (sound.empty()) return "every method shows faults";
+  if (faulty.empty()) return "no method shows a fault";
+  return fmt::format("{} show{} no fault; {} do{}", listed(sound), sound.size() == 1 ? "s" : "",
+                     listed(faulty), faulty.size() == 1 ? "es" : "");
+}
+
 /// A line on a method.
 std::string sentence_of(const MethodLimits& m) {
   const bool is_fine = m.verdict == Verdict::fine;
@@ -194,11 +222,10 @@ std::string sentence_of(const MethodLimits& m) {
   if (!limit) return fmt::format("  {:<9}shows no fault at the values tried\n", m.method);
   const dynamics::Sign& sign = dynamics::sign_of(limit->verdict);
   return wrapped(
-      fmt::format(
-          "  {:<9}{}: {}{}; {}", m.method,
-          is_fine ? fmt::format("{} {}", limit->axis.name, cell_of(*limit, m)) : "here", sign.words,
-          sign.key.empty() ? "" : fmt::format(" ({})", sign.key),
-          limit->remedy ? "take " + setting_of(*limit->remedy) : "nothing that was tried helps"),
+      fmt::format("  {:<9}{}: {}{}; {}", m.method,
+                  is_fine ? fmt::format("{} {}", limit->axis.name, cell_of(*limit, m)) : "here",
+                  sign.words, sign.key.empty() ? "" : fmt::format(" ({})", sign.key),
+                  advice_of(*limit, m)),
       std::string(11, ' '));
 }
 
@@ -209,14 +236,14 @@ std::string answer_text(const LimitsResult& result) {
       result.other_types.empty()
           ? ""
           : fmt::format(", not of type {}", fmt::join(result.other_types, " or "));
-  std::string text = wrapped(
-      fmt::format("{}: where each method breaks near the numbers of the scene (its own gate{}; {} "
-                  "at each point)",
-                  result.label, types, counted(result.scene.options.trials, "trial", "trials")));
+  std::string text = wrapped(fmt::format(
+      "{}: at the scene's own numbers {} ({} at each point; its own gate{}). The nearest faults:",
+      result.label, sound_methods(result), counted(result.scene.options.trials, "trial", "trials"),
+      types));
   for (const MethodLimits& m : result.limits) text += sentence_of(m);
   return text +
-         "x3: at 3 times the scene's number; /3: at a third of it; here: at the scene's own "
-         "numbers.\n";
+         "x3: at 3 times the scene's number; /3: at a third of it; at 1: at this value; here: "
+         "at its own.\n";
 }
 
 std::string details_text(const LimitsResult& result) {

@@ -22,6 +22,8 @@ using dynamics::Meaning;
 // Limits for walkers. A walk ends at a Froude number of 1, where gravity no longer keeps the body
 // on a stiff leg; fast runners reach 10 to 30. Friction holds the feet. Legs step a few times per
 // body length.
+constexpr const char* kGrip =
+    "friction holds few robots by more than their weight; insects with claws hold by more";
 constexpr double kFastestRun = 30.0, kMostGrip = 1.0, kMostSteps = 10.0, kLeastPatience = 5.0;
 
 /// Three digits, without an exponent for numbers of moderate size.
@@ -33,6 +35,10 @@ std::string three_digits(double x) {
 
 std::string times_as(double x) {
   return three_digits(x) + (three_digits(x) == "1" ? " time" : " times");
+}
+/// A length in the unit in which a body is measured: "16 cm".
+std::string length_words(double x) {
+  return x >= 0.01 && x < 1.0 ? digits(100.0 * x, 3) + " cm" : quantity(x, "m", 3);
 }
 std::string degrees(double angle) {
   return three_digits(angle * 180.0 / std::numbers::pi) + " degrees";
@@ -65,9 +71,21 @@ struct Sentence {
   std::string about, words;
 };
 
-/// Sentences on threshold numbers; numbers with the same effect share a sentence.
-std::vector<Sentence> thresholds(std::vector<dynamics::Deciding> left) {
+/// Sentences on threshold numbers; numbers with the same effect share a sentence. Where noise makes
+/// the runs differ, the push may still be near the beams' largest resistance.
+std::vector<Sentence> thresholds(std::vector<dynamics::Deciding> left, double push,
+                                 double resistance) {
   std::vector<Sentence> all;
+  constexpr double kNear = 0.05;
+  if (left.empty() && resistance > 0.0 && std::isfinite(resistance) &&
+      std::abs(push - resistance) <= kNear * resistance)
+    all.push_back(
+        {"threshold",
+         fmt::format(
+             "the push is within {} % of the beams' largest resistance: 1 % more or less of "
+             "a number can decide between crossing and being trapped (gatewalk analyze "
+             "shows of which)",
+             digits(100.0 * kNear))});
   while (!left.empty()) {
     const dynamics::Deciding first = left.front();
     std::string names;
@@ -146,7 +164,11 @@ std::string swing_words(const lattice::Scene& scene, const Meaning& m) {
 /// Sentences on the meaning of the numbers, without those on far_from_walkers().
 std::vector<Sentence> sentences(const SceneResult& result) {
   const auto& [scene, m, deciding] = result;
+  const auto& gate = scene.gate;
   std::vector<Sentence> all{
+      {"size",
+       fmt::format("the body is {} wide, twice its radius; the joints of a gate are {} apart",
+                   length_words(2.0 * gate.body.radius), length_words(2.0 * gate.beams.joint_x))},
       {"speed", speed_words(scene, m)},
       {"sideways", sideways_words(scene, m)},
       {"beams", resistance_words(scene, m)},
@@ -157,7 +179,8 @@ std::vector<Sentence> sentences(const SceneResult& result) {
                    std::isfinite(m.passage) ? fmt::format(", {} what a gate without beams takes",
                                                           times_as(m.passages_waited))
                                             : "")}};
-  for (Sentence& s : thresholds(deciding)) all.push_back(std::move(s));
+  for (Sentence& s : thresholds(deciding, scene.gate.forces.propulsion, m.beams.resistance))
+    all.push_back(std::move(s));
   if (scene.derived.contains("start.vy_m_per_s") && scene.start.vy > m.top_speed)
     all.push_back(
         {"start",
@@ -166,9 +189,10 @@ std::vector<Sentence> sentences(const SceneResult& result) {
                      quantity(scene.start.vy, "m/s", 3), quantity(m.top_speed, "m/s", 3))});
   if (const std::string numbers = lattice::numbers_from_the_push(scene);
       !numbers.empty() && scene.named.contains("forces.propulsion_N"))
-    all.push_back({"push", fmt::format("gatewalk computed {} from the push; to compare pushes by "
-                                       "--set, write these numbers into the file first",
-                                       numbers)});
+    all.push_back(
+        {"push", fmt::format("gatewalk computed {} from the push; --set forces.propulsion_N=VALUE "
+                             "changes the push alone",
+                             numbers)});
   return all;
 }
 
@@ -184,7 +208,7 @@ std::string meaning_text(const SceneResult& result) {
   }
   const auto all = far_from_walkers(result.meaning, result.scene);
   if (!all.empty())
-    text += "Beware: no walking animal or robot is like this; measure your own numbers\n";
+    text += "Beware: unusual for a walking animal or robot; measure your own numbers\n";
   for (const FarFromWalkers& far : all)
     text += wrapped(fmt::format("  {}: {}", far.what, far.reason), "    ");
   return text;
@@ -260,15 +284,16 @@ void describe_meaning(Fields& out, const Meaning& m, const lattice::Scene& scene
                beams.object({"right", "the right beam"},
                             [&](Fields& f) { describe(f, m.ring_down[dynamics::kRight]); });
              });
-  out.list({"far_from_walkers", "numbers of meaning that no walking animal or robot reaches"},
-           far_from_walkers(m, scene), [](Fields& f, const FarFromWalkers& far) {
-             f.text(Label("name", "key of the number in meaning")
-                        .one_of({"froude", "push_per_weight", "random_per_weight",
-                                 "draws_per_body_length", "passages_waited"}),
-                    far.name);
-             f.text({"what", "the number in words"}, far.what);
-             f.text({"reason", "why the number is far from walking"}, far.reason);
-           });
+  out.list(
+      {"far_from_walkers", "numbers of meaning that are unusual for walking animals and robots"},
+      far_from_walkers(m, scene), [](Fields& f, const FarFromWalkers& far) {
+        f.text(Label("name", "key of the number in meaning")
+                   .one_of({"froude", "push_per_weight", "random_per_weight",
+                            "draws_per_body_length", "passages_waited"}),
+               far.name);
+        f.text({"what", "the number in words"}, far.what);
+        f.text({"reason", "why the number is far from walking"}, far.reason);
+      });
 }
 
 }  // namespace
@@ -283,18 +308,18 @@ std::vector<FarFromWalkers> far_from_walkers(const Meaning& m, const lattice::Sc
          fmt::format("{} {}, {} body lengths per second", quantity(fastest, "m/s", 3),
                      has_top ? "at most in the open" : "at the end of an open gate",
                      three_digits(fastest / (2.0 * scene.gate.body.radius))),
-         fmt::format("v^2/(g R) = {}, with the radius for a leg: nothing walks above 1, and fast "
-                     "runners reach 10 to 30",
+         fmt::format("v^2/(g R) = {}, with the radius for a leg: walking is usually below 1, and "
+                     "fast runners reach 10 to 30",
                      three_digits(m.froude))});
   if (m.push_per_weight > kMostGrip)
     all.push_back({"push_per_weight",
                    fmt::format("a push of {} the body's weight", times_as(m.push_per_weight)),
-                   "feet hold by friction, which is seldom more than the weight"});
+                   kGrip});
   if (m.random_per_weight > kMostGrip)
     all.push_back(
         {"random_per_weight",
          fmt::format("a random force of {} the body's weight", times_as(m.random_per_weight)),
-         "feet hold by friction, which is seldom more than the weight"});
+         kGrip});
   if (m.draws_per_length > kMostSteps)
     all.push_back({"draws_per_body_length",
                    three_digits(m.draws_per_length) + " draws of the random force per body length",
@@ -314,7 +339,7 @@ std::string far_from_walkers_line(const lattice::Scene& scene) {
   const auto all = far_from_walkers(dynamics::meaning_of(scene.gate, scene.start), scene);
   if (all.empty()) return "";
   return fmt::format(
-      "no walking animal or robot is like this scene: {}{} (gatewalk scene {} says why)",
+      "this scene is unusual for a walking animal or robot: {}{} (gatewalk scene {} says why)",
       all.front().what, all.size() > 1 ? fmt::format(", and {} more", all.size() - 1) : "",
       scene.source);
 }

@@ -11,7 +11,7 @@
 
 namespace gatewalk::cli {
 
-/// A property of a scene that no walking animal or robot has.
+/// A property of a scene that is unusual for walking animals and robots.
 struct FarFromWalkers {
   std::string name;    // "random_per_weight"
   std::string what;    // "a random force of 5.7 times its weight"

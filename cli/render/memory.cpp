@@ -41,9 +41,18 @@ std::string label_name(const MemoryStudy& study, Question q, int label) {
 
 // ---- Independence ----
 
+/// Whether so few outcomes vary that the test has no power to speak of: any memory would count.
+bool is_untestable(const Independence& i) {
+  constexpr double kLeastShown = 5e-4;
+  return i.seen_at_90 < kLeastShown;
+}
+constexpr const char* kUntestable =
+    "memory cannot be tested: in nearly every state all bodies went the same way";
+
 std::string power_words(const Independence& i) {
   if (i.runs == 0) return "no state shows two of them";
   if (!std::isfinite(i.seen_at_90)) return "too few runs to see any memory";
+  if (is_untestable(i)) return kUntestable;
   return fmt::format("a memory of total variation {} would have been seen with probability 0.9",
                      fixed(i.seen_at_90, 3));
 }
@@ -271,8 +280,9 @@ namespace {
 std::string detectable_text(const Independence& i) {
   if (i.runs == 0) return "No state was entered in two ways, so its memory cannot be tested.\n";
   if (!std::isfinite(i.seen_at_90)) return "They are too few to detect any memory.\n";
+  if (is_untestable(i)) return fmt::format("But {}.\n", kUntestable);
   return fmt::format(
-      "They would detect a memory of the gate before if its total variation is {} or more.\n",
+      "They would detect a memory of the gate before only if its total variation is {} or more.\n",
       fixed(i.seen_at_90, 3));
 }
 
@@ -317,6 +327,7 @@ std::string lines_of(const MemoryStudy& study, Question q) {
     const std::string text = "no evidence that it tells more than the state.\n    ";
     if (i.runs == 0) return text + "No state was entered in two such ways.\n";
     if (!std::isfinite(i.seen_at_90)) return text + "There are too few runs to detect a memory.\n";
+    if (is_untestable(i)) return text + fmt::format("But {}.\n", kUntestable);
     return text + fmt::format(
                       "A memory of total variation {} would be detected with probability "
                       "0.9.\n",

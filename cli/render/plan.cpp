@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <ranges>
 #include <utility>
 
 #include "cli/fields/text.h"
@@ -32,8 +35,8 @@ markov::CellProbabilities usage_of(const PlannedField& p, std::size_t action) {
   return by_gate(p.plan.usage.data() + action * cells_in(p), p.shown.field);
 }
 
-/// Marks of the actions in a text map.
-constexpr std::string_view kMarks = "123456789abcdefghijklmnopqrstuvwxyz";
+/// Marks of the actions in a text map: their numbers, as in the file of --policy.
+constexpr std::string_view kMarks = "0123456789abcdefghijklmnopqrstuvwxyz";
 char mark_of(std::size_t action) { return action < kMarks.size() ? kMarks[action] : ' '; }
 
 /// A text map with the mark of each cell's action, the far row first.
@@ -336,6 +339,96 @@ std::string actions_table(const PlannedField& p) {
   return table.text();
 }
 
+/// Entries at one face for which a policy takes one action.
+struct Region {
+  dynamics::StateRange range;
+  int leaves = 1;
+  int action = 0;
+};
+
+/// The coordinate along which two regions of one action touch, all others being equal; nullopt if
+/// they are no one region together.
+std::optional<std::size_t> joint_axis(const Region& a, const Region& b) {
+  if (a.action != b.action || a.range.face != b.range.face) return {};
+  std::optional<std::size_t> axis;
+  for (std::size_t c = 0; c < a.range.at.size(); ++c) {
+    const auto &here = a.range.at[c], &there = b.range.at[c];
+    if (here == there) continue;
+    if (axis || (here[1] != there[0] && there[1] != here[0])) return {};
+    axis = c;
+  }
+  return axis;
+}
+
+/// The regions of a policy of trees in one gate, those of most leaves first.
+std::vector<Region> regions_of(const lattice::Policy& policy, const lattice::Place& place) {
+  std::vector<Region> regions;
+  const int leaves = policy.space.size() - static_cast<int>(policy.space.points().size());
+  for (int state = 0; state < leaves; ++state) {
+    const dynamics::StateRange range = policy.space.range(state);
+    regions.push_back({range, 1, policy.action(place, range.middle())});
+  }
+  for (std::size_t i = 0; i < regions.size(); ++i)
+    for (std::size_t k = 0; k < regions.size(); ++k) {
+      Region& one = regions[i];
+      const auto axis = k == i ? std::nullopt : joint_axis(one, regions[k]);
+      if (!axis) continue;
+      auto& [from, to] = one.range.at[*axis];
+      from = std::min(from, regions[k].range.at[*axis][0]);
+      to = std::max(to, regions[k].range.at[*axis][1]);
+      one.leaves += regions[k].leaves;
+      regions.erase(regions.begin() + static_cast<std::ptrdiff_t>(k));
+      i = k = static_cast<std::size_t>(-1);  // a larger region may touch any other: begin again
+      break;
+    }
+  std::ranges::stable_sort(regions, std::ranges::greater(), &Region::leaves);
+  return regions;
+}
+
+/// A range with three digits: "S s [-0.499, 0.0049] m".
+std::string entries_text(const dynamics::Section& section, const dynamics::StateRange& range) {
+  std::string text;
+  for (std::size_t c = 0; c < section.coordinates.size(); ++c) {
+    const dynamics::Coordinate& coordinate = section.coordinates[c];
+    text += fmt::format("{} {} [{}, {}]{}", c == 0 ? "" : ",", coordinate.name,
+                        digits(range.at[c][0], 3), digits(range.at[c][1], 3),
+                        dynamics::behind_number(coordinate.unit));
+  }
+  return section.faces[static_cast<std::size_t>(range.face)].name + text;
+}
+
+/// When the plan takes which action: a list for the most visited gate besides the start's.
+std::string regions_text(const PlannedField& p) {
+  const lattice::Policy& policy = p.plan.policy;
+  if (policy.always || !policy.space.has_trees()) return "";
+  const int columns = p.shown.field.columns, middle = p.shown.field.start_column();
+  const std::vector<MostTaken> most = most_taken(p);
+  std::optional<std::size_t> gate;
+  for (std::size_t k = 0; k < most.size(); ++k)
+    if (k != static_cast<std::size_t>(middle) && most[k].shown &&
+        (!gate || most[k].visits > most[*gate].visits))
+      gate = k;
+  if (!gate) return "";
+  const int column = static_cast<int>(*gate) % columns, row = static_cast<int>(*gate) / columns,
+            passed = row + std::abs(column - middle);
+  const std::vector<Region> regions =
+      regions_of(policy, {.column = column, .row = row, .passed = passed});
+  constexpr std::size_t kMost = 8;
+  std::string text = fmt::format(
+      "Actions in gate {},{}, the most visited after the start's, by how a body enters{}:\n",
+      column - middle, row,
+      p.shown.field.max_gates > 0 ? fmt::format(" after {}", counted(passed, "gate", "gates"))
+                                  : "");
+  for (const Region& region : regions | std::views::take(kMost))
+    text += wrapped(fmt::format("  {}, {}: {}", p.actions[static_cast<std::size_t>(region.action)],
+                                counted(region.leaves, "state", "states"),
+                                entries_text(policy.space.section(), region.range)),
+                    "    ");
+  if (const std::size_t all = regions.size(); all > kMost)
+    text += fmt::format("  and {} smaller ranges (--policy writes all of them)\n", all - kMost);
+  return text;
+}
+
 /// Whether the table of actions is short enough for the first screen.
 bool is_short(const PlannedField& p) { return p.actions.size() <= 5; }
 
@@ -353,6 +446,7 @@ std::string answer_text(const PlannedField& p) {
 std::string details_text(const PlannedField& p) {
   std::string text = "\n";
   if (p.thrift || !is_short(p)) text += actions_table(p) + map_text(p);
+  if (const std::string regions = regions_text(p); !regions.empty()) text += regions + "\n";
   text +=
       "by gate alone: the best policy found that knows the gate, but not how the body enters.\n"
       "All policies are compared with the same random numbers.\n";

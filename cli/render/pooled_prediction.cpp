@@ -123,13 +123,14 @@ std::string runs_of(const RunsPrediction& runs) {
 }
 
 /// The end of a sentence on whether the chain's own trials show a fault, at the level of validate;
-/// empty if the chain has none.
-std::string own_trials_text(const std::optional<lattice::HausmanCheck>& own) {
+/// empty if the chain has none, or if only the method behind both showed faults.
+std::string own_trials_text(const lattice::PooledPrediction& p) {
+  const auto& own = p.hausman_check;
   if (!own) return "";
-  return fmt::format("; the chain{} ({})",
-                     own->p <= lattice::JointTest::kLevel ? " differs from its own trials"
-                                                          : "'s own trials show no fault of it",
-                     p_words(own->p));
+  if (own->p <= lattice::JointTest::kLevel)
+    return fmt::format("; the chain differs from its own trials ({})", p_words(own->p));
+  if (!beware_of(p.health).empty()) return "";
+  return fmt::format("; the chain's own trials show no fault of it ({})", p_words(own->p));
 }
 
 bool has_error_bar(const lattice::StartAnswer& a) { return std::isfinite(a.error.total_variation); }
@@ -152,7 +153,7 @@ std::string answer_text(const RunsPrediction& runs) {
   const bool any = std::any_of(starts.begin(), starts.end(), has_error_bar);
   std::string text = wrapped(fmt::format(
       "From {}, pooled into a chain of {} states{}{}.", runs_of(runs), runs.prediction.states,
-      any ? "" : ", without error bars", own_trials_text(runs.prediction.hausman_check)));
+      any ? "" : ", without error bars", own_trials_text(runs.prediction)));
   const bool all_from_trials = std::all_of(
       starts.begin(), starts.end(), [](const lattice::StartAnswer& a) { return a.from_trials; });
   if (any)

@@ -182,14 +182,18 @@ std::string sureness(const ExperimentOptions& options) {
                      digits(100.0 * options.goal.level));
 }
 
+/// What makes the prediction more precise.
+const char* more_precise(const PowerResult& p) {
+  return p.recorded ? "more recorded bodies help" : "a smaller --accuracy helps";
+}
+
 /// The legend under a table: `always`, and a line for each mark that occurs in `rows`.
-std::string legend(const std::string& rows, const std::string& always) {
+std::string legend(const PowerResult& p, const std::string& rows, const std::string& always) {
   std::string text = always;
   const auto explain = [&](const char* mark, const std::string& what) {
     if (rows.find(mark) != rows.npos) text += what + "\n";
   };
-  explain("?",
-          "?: the prediction itself may be off by as much; a smaller --accuracy is more precise.");
+  explain("?", fmt::format("?: the prediction itself may be off by as much; {}.", more_precise(p)));
   explain(">", fmt::format(">{}: more trials than that, or such a shift is impossible.",
                            lattice::kMostPlanned));
   explain("none", "none: no shift is detected this often.");
@@ -246,8 +250,8 @@ std::string needed_table(const PowerResult& p) {
       "Trials needed to detect that the final gates differ by this total variation, spread over "
       "all\n"
       "gates (the difference that is hardest to detect):\n\n{}{}",
-      sureness(p.options), endings.text(), legend(endings.rows(), kBrackets), gates.text(),
-      legend(gates.rows(), ""));
+      sureness(p.options), endings.text(), legend(p, endings.rows(), kBrackets), gates.text(),
+      legend(p, gates.rows(), ""));
 }
 
 std::string groups_table(const PowerResult& p) {
@@ -259,7 +263,7 @@ std::string groups_table(const PowerResult& p) {
       "One group ends as predicted; the number is the larger one for more and less often, if both\n"
       "are possible:\n\n{}{}",
       sureness(p.options), table.text(),
-      legend(table.rows(), kBrackets) +
+      legend(p, table.rows(), kBrackets) +
           "The trials must come from different animals: m trials of one animal count as\n"
           "m / (1 + (m - 1) r), where r is the correlation between them.\n");
 }
@@ -286,7 +290,7 @@ std::string power_table(const PowerResult& p) {
       "points, and the smallest shift that {} % of such experiments detect:\n\n{}{}",
       counted(*p.options.trials, "trial", "trials"), digits(100.0 * p.options.goal.power),
       table.text(),
-      legend(table.rows(),
+      legend(p, table.rows(),
              "+5.0 / -4.0: 5 points more, or 4 fewer, than predicted; in brackets: if all endings "
              "are tested.\nA shift that only one direction allows counts in that direction. TV: "
              "total variation.\n"));
@@ -321,7 +325,7 @@ std::string versus_table(const PowerResult& p) {
       n.empty() ? "" : fmt::format(" of {} trials each", n),
       scene ? "with this scene, one with" : "with this group, one with the group of",
       wrapped(fmt::format("{}.", fmt::join(set, ", "))), sureness(p.options), endings.text(),
-      gates.rows(), legend(endings.rows() + gates.rows(), kBrackets));
+      gates.rows(), legend(p, endings.rows() + gates.rows(), kBrackets));
 }
 
 // ---- Sentences ----
@@ -530,11 +534,12 @@ std::string answer_text(const PowerResult& p) {
       "The predicted final gates are within a total variation of {} of the truth, 95 times in "
       "100.\n",
       digits(p.prediction.error.total_variation, 2));
-  return text + (table.find('?') != table.npos
-                     ? "Beware: ? marks shifts within the prediction's own error; a smaller "
-                       "--accuracy helps.\n"
-                     : "Beware: several trials of one animal count less than trials of different "
-                       "animals (--details).\n");
+  if (table.find('?') != table.npos)
+    text += fmt::format("Beware: ? marks shifts within the prediction's own error; {}.\n",
+                        more_precise(p));
+  return text +
+         "Beware: several trials of one animal count less than trials of different animals "
+         "(--details).\n";
 }
 
 std::string details_text(const PowerResult& p) {

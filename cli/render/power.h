@@ -36,6 +36,7 @@ struct PowerResult {
   dynamics::Health health{};
   std::optional<lattice::Settled> method{};
   Provenance made_by{};
+  bool recorded = false;  // whether the chain is of recorded bodies, to which none can be added
 };
 void describe(Fields& out, const PowerResult& result);
 /// The first screen; and what --details adds to it.

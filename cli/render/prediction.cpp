@@ -170,7 +170,7 @@ std::string answer_text(const PredictResult& r) {
                     return endings_text(ends_of(s.final, s.shares).shares, "",
                                         impossible_endings(r.shown));
                   }) +
-         (r.of_runs ? answer_text(*r.of_runs) : answer_text(*r.of_matrix));
+         unequal_sides(r.shown) + (r.of_runs ? answer_text(*r.of_runs) : answer_text(*r.of_matrix));
 }
 
 std::string details_text(const PredictResult& r) {

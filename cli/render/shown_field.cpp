@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/shown_field.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "cli/render/type_marks.h"
@@ -26,5 +28,14 @@ ShownField::ShownField(const lattice::CellFile& cells)
       time_limit(cells.trapped_after.value_or(std::nan(""))),
       types(cells.types.size() > 1 ? cells.types : std::vector<std::string>{}),
       map(cells.map) {}
+
+std::string unequal_sides(const ShownField& shown) {
+  const int left = shown.field.start_column(), right = shown.field.columns - 1 - left;
+  if (left == right) return "";
+  return fmt::format(
+      "{} columns: {} to the left of the start and {} to its right. This alone makes the sides "
+      "differ.\n",
+      shown.field.columns, left, right);
+}
 
 }  // namespace gatewalk::cli

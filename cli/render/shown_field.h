@@ -29,4 +29,8 @@ struct ShownField {
       : ShownField(source.scene ? ShownField(*source.scene) : ShownField(*source.cells)) {}
 };
 
+/// A line of the first screen where the start has more columns on one side than on the other, as in
+/// every field with an even number of columns; empty otherwise.
+[[nodiscard]] std::string unequal_sides(const ShownField& shown);
+
 }  // namespace gatewalk::cli

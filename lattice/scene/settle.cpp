@@ -76,14 +76,20 @@ std::string derived_keys(const Scene& scene) {
   if (scene.named.empty() && !scene.terrain)
     return scene.source + " names no key: this is the paper's scene, 1 kg and 10 m in radius";
   const std::vector<KeyInfo> keys = describe(scene);
-  const auto left_out = std::count_if(keys.begin(), keys.end(), [](const KeyInfo& k) {
-    return k.source == "derived" && !of_the_method(k.key);
+  const auto scaled = std::ranges::count_if(
+      keys, [](const KeyInfo& k) { return k.source == "derived" && !of_the_method(k.key); });
+  if (scaled == 0) return "";
+  const auto unchanged = std::ranges::count_if(keys, [](const KeyInfo& k) {
+    return k.source == "paper" && k.key.starts_with("contact.") && !of_the_method(k.key);
   });
-  if (left_out == 0) return "";
+  const auto left_out = scaled + unchanged;
   return fmt::format(
-      "{0} leaves out {1} key{2}: gatewalk scaled the paper's values to this body (gatewalk scene "
-      "{0} shows them)",
-      scene.source, left_out, left_out == 1 ? "" : "s");
+      "{0} leaves out {1} key{2}: gatewalk scaled the paper's value{3} of {4} to this body{5} "
+      "(gatewalk scene {0} shows them)",
+      scene.source, left_out, left_out == 1 ? "" : "s", scaled == 1 ? "" : "s",
+      unchanged == 0 ? (scaled == 1 ? "it" : "them") : std::to_string(scaled),
+      unchanged == 0 ? ""
+                     : fmt::format(", and took {} of contact from the paper unchanged", unchanged));
 }
 
 namespace {
@@ -115,19 +121,9 @@ std::vector<std::string> keys_that_follow_the_push(const Scene& scene) {
 }  // namespace
 
 std::string numbers_from_the_push(const Scene& scene) {
-  struct Part {
-    std::string_view words, begin;
-  };
-  constexpr Part kParts[] = {{"the beams", "beams."},
-                             {"the random force", "forces.random_"},
-                             {"the drag", "forces.drag_"},
-                             {"the start speed", "start."}};
-  const std::vector<std::string> keys = keys_that_follow_the_push(scene);
   std::string all;
-  for (const Part& part : kParts)
-    if (std::any_of(keys.begin(), keys.end(),
-                    [&](const std::string& key) { return key.starts_with(part.begin); }))
-      all += (all.empty() ? "" : ", ") + std::string(part.words);
+  for (const std::string& key : keys_that_follow_the_push(scene))
+    if (!key.starts_with("run.")) all += (all.empty() ? "" : ", ") + key;
   if (const std::size_t comma = all.rfind(", "); comma != all.npos) all.replace(comma, 1, " and");
   return all;
 }

@@ -37,8 +37,8 @@ struct Settled {
 /// A sentence on the keys that the scene leaves out and that get scaled values of the paper; empty
 /// if there are none.
 [[nodiscard]] std::string derived_keys(const Scene& scene);
-/// Which numbers of the scene gatewalk computed from forces.propulsion_N, in words: "the beams and
-/// the random force". Empty if there are none.
+/// The keys of the scene that gatewalk computed from forces.propulsion_N:
+/// "beams.damping_Nms_per_rad and forces.random_N". Empty if there are none.
 [[nodiscard]] std::string numbers_from_the_push(const Scene& scene);
 
 /// Runs a sample of `trials` again by a better method, and adds to `health` by how much the results

@@ -41,6 +41,50 @@ expect 2 'keeps no gate runs' "$gatewalk" analyze bins.nc --accuracy 0.1
 holds '.costs.all | .trials == 500 and .mean_time_s > 0 and .quantiles_time_s[0] < .quantiles_time_s[4]' lattice_costs.json
 holds '([.costs | to_entries[] | select(.key != "all") | .value.trials] | add) == 500' lattice_costs.json
 
+# An influence is a slope over one step: the screen says what that step changed, or "steep" where 1 % or the step changes more
+# than a tenth of the chance, or where more and less differ; a smaller step changes none of this.
+printf 'forces = { propulsion_N = 8, random_N = 50 }\nbeams = { joint_x_cm = 2500 }\nfield = { columns = 5, rows = 3 }\n' >small.toml
+for step in 0.02 0.001; do
+  "$gatewalk" analyze small.toml --accuracy 0.2 --runs 400 --step $step --json steps.json --force >steps.txt 2>/dev/null
+  percent=$(jq -n "$step * 100")
+  grep -q "^Largest influences on \"crossed\" (a slope: % of its chance per % of the number, over +-$percent %):$" steps.txt || fail "analyze: no slopes: $(cat steps.txt)"
+  grep -q 'becomes' steps.txt && fail "analyze: a slope is told as an effect"
+  sed -n 's/^  \([a-z]*\.[a-zA-Z_]*\)  .*/\1/p' steps.txt >keys.txt
+  [ -s keys.txt ] || fail "analyze: no influences: $(cat steps.txt)"
+  while read -r key; do
+    steep=$(jq --arg key "$key" --argjson step $step '.sensitivities.parameters[] | select(.key == $key) | .bends or
+      ([.elasticity, .with_more, .with_less] | map(select(. != null) | fabs * ([$step, 0.01] | max)) | max > 0.1)' steps.json)
+    points=$(jq --arg key "$key" --argjson step $step '.endings.crossed as $p | .sensitivities.parameters[] | select(.key == $key) | 100 * $p * $step * .elasticity' steps.json)
+    case $steep in
+      true) grep -q "^  $key .* steep$" steps.txt || fail "analyze: $key is steep: $(cat steps.txt)" ;;
+      *) grep -q "^  $key .* $(printf '%+.2f' "$points") points for $percent % more$\|^  $key .*no interval" steps.txt || fail "analyze: $key changes $points points: $(cat steps.txt)" ;;
+    esac
+  done <keys.txt
+  ! grep -q ' steep$' steps.txt || grep -q '^Beware: steep: the slope may not hold for 1 %; gatewalk predict SCENE --set KEY=VALUE tells.$' steps.txt || fail "analyze: does not warn of steep slopes: $(cat steps.txt)"
+  cp steps.txt steps-$step.txt
+done
+grep -q ' steep$' steps.txt || fail "analyze: nothing is steep at a small step: $(cat steps.txt)"
+# The number that matters most, 1 % larger, in the unit of the file; of one gate a range for sweep.
+grep -q '^Next: gatewalk predict small.toml --accuracy 0.2 --set beams.joint_x_cm=2525  # with 1 % more of it$' steps-0.02.txt || fail "analyze: proposes another value: $(cat steps-0.02.txt)"
+"$gatewalk" analyze small.toml --accuracy 0.2 --runs 400 --set beams.joint_x_m=25.5 >set.txt 2>/dev/null
+grep '^Next: ' -A 1 set.txt | tr -d '\n' | grep -q -e '--set beams.joint_x_m=25.5 .*--set [a-z]*[.][a-zA-Z_]*=[0-9.e-]*  # with 1 % more of it$' || fail "analyze: proposes no predict: $(cat set.txt)"
+"$gatewalk" analyze small.toml --accuracy 0.2 --runs 400 --set field.columns=1 --set field.rows=1 >gate.txt 2>/dev/null
+grep -q '^Next: gatewalk sweep small.toml ' gate.txt && grep -q -e '--vary [a-z]*[.].*:.*:.*  # varies it in one gate$' gate.txt || fail "analyze of one gate proposes no sweep"
+# A field whose start is not in the middle: each command says so, and no other.
+for command in "predict small.toml --accuracy 0.3" "lattice small.toml --trials 20" "analyze small.toml --accuracy 0.3 --runs 0" "validate small.toml --accuracy 0.3 --trials 20 --start 0,0,15 --null-draws 99"; do
+  # shellcheck disable=SC2086
+  "$gatewalk" $command --set field.columns=6 >even.txt 2>/dev/null
+  [ "$(grep -c '^6 columns: 3 to the left of the start and 2 to its right. This alone makes the sides differ.$' even.txt)" = 1 ] || fail "an even number of columns: $command: $(cat even.txt)"
+  [ "$(wc -l <even.txt)" -le 15 ] || fail "too many lines: $command: $(cat even.txt)"
+  # shellcheck disable=SC2086
+  "$gatewalk" $command 2>/dev/null | grep 'columns: ' && fail "an odd number of columns: $command"
+done
+# A share far below what the trials can show has no digits of its own.
+sed -n '/^\$ cat mine.toml$/,/^\$ /p' "$scenes/../README.md" | grep -v '^\$' >mine.toml
+"$gatewalk" predict mine.toml --accuracy 0.2 --json rare.json >rare.txt 2>/dev/null
+holds '.endings.left_side | . > 0 and . < 5e-5' rare.json
+grep -q '^left side  *0.00 %  \[0.00, 0.[0-9]*\]$' rare.txt || fail "more digits than the trials can tell: $(cat rare.txt)"
+
 # The list of starts has at most the 300 that are entered most.
 holds '(.starts | length) == 300 and .starts_in_all > 300 and ([.starts[].runs] | min) > 0' analysis.json
 expect 0 "the 300 of $(jq .starts_in_all analysis.json) ways to enter" "$gatewalk" analyze fast.nc --runs 0 --details

@@ -27,8 +27,17 @@ for k in 0 1 2 3 4; do
 done
 holds '[.methods[] | .status] | unique | length > 1' maps/limits.json  # the methods differ
 
+# The first line names the methods without a fault at the scene's own numbers; no line advises the scene's own value.
+head -n 1 table.txt | grep -q "^field: at the scene's own numbers [a-z, ]* shows* no fault; [a-z, ]* do" || fail "chart limits: $(head -n 2 table.txt)"
+for k in 0 1 2 3 4; do
+  name=$(value ".methods[$k].name" maps/limits.json)
+  jq -e ".methods[$k].status == \"ok\"" maps/limits.json >/dev/null && side='numbers .*' rest=' no fault;' || { side='no fault; .*' rest=''; }
+  head -n 2 table.txt | tr '\n' ' ' | grep -q "$side$name.*$rest" || fail "chart limits: $name is in the wrong list: $(head -n 2 table.txt)"
+  own=$(jq -r ".methods[$k] | \"\(.setting)=\(.value)\"" maps/limits.json)
+  grep -A 2 "^  $name " table.txt | sed '2,$ { /^  [a-z]/,$ d }' | grep -q "take $own$" && fail "chart limits: advises the scene's own value: $own"
+done
 # The remedy in the table can be given as printed, and helps.
-line=$(grep -A 1 '^  moreau .*step x5: ' table.txt | tr -s '\n ' ' ' | grep -o 'step x5: [^;]*; take run.step_s=[0-9.]*') || fail "chart limits: moreau has no finer step"
+line=$(grep -A 1 '^  moreau .*step x5: ' table.txt | tr -s '\n ' ' ' | grep -o 'step x5: [^;]*; there take run.step_s=[0-9.]*') || fail "chart limits: moreau has no finer step"
 "$gatewalk" gate "$scenes/field.toml" --set run.method=moreau --set "run.step_s=${line##*=}" --set run.time_limit_s=3 --trials 8 --json helped.json --quiet >/dev/null ||
   fail "a step that helps is refused: $line"
 holds '.status.clean' helped.json
@@ -37,16 +46,17 @@ holds '.status.clean' helped.json
 [ -z "$(cut -d, -f1-3 numbers.csv | sort | uniq -d)" ] || fail "chart limits: equal names in numbers.csv: $(cut -d, -f1-3 numbers.csv | sort | uniq -d | head -n 2)"
 # A tolerance that no map has.
 for tolerance in 1e-20 1e5; do
-  expect 0 'where each method breaks' "$gatewalk" chart limits "$scenes/single_gate.toml" -o maps --force --quick --trials 1 --set run.time_limit_s=1 --set run.event_tolerance_m=$tolerance
+  expect 0 '^single_gate: at the scene.s own numbers .* show' "$gatewalk" chart limits "$scenes/single_gate.toml" -o maps --force --quick --trials 1 --set run.time_limit_s=1 --set run.event_tolerance_m=$tolerance
 done
 
 # What the scene does not have is left out: damping, and the speed of a start at rest. Old figures are removed.
-expect 0 'undamped: where each method breaks' "$gatewalk" chart limits "$scenes/undamped.toml" -o maps --force "${short[@]}"
+expect 0 '^undamped: at the scene.s own numbers ' "$gatewalk" chart limits "$scenes/undamped.toml" -o maps --force "${short[@]}"
 holds '[.maps[].number] | unique == ["beam_mass", "graze", "impulse_threshold", "lever", "random_force", "restitution", "stiffness"]' maps/limits.json
 [ "$(ls maps/*.svg | wc -l)" = 7 ] || fail "chart limits beside old figures: $(ls maps)"
 # In a field with several types of gates the scene's own is charted, with a message. A step of the scene holds for all
 # methods.
-expect 0 'its own gate, not of type s or u;' "$gatewalk" chart limits "$scenes/mixed.toml" -o mixed "${short[@]}" --set run.step_s=0.01 --set forces.random_N=0
+expect 0 '^mixed: at the scene.s own numbers ' "$gatewalk" chart limits "$scenes/mixed.toml" -o mixed "${short[@]}" --set run.step_s=0.01 --set forces.random_N=0
+tr '\n' ' ' <out.txt | grep -q 'its own gate, not of type s or u)' || fail "chart limits: does not say of which type: $(cat out.txt)"
 grep -q 'has no effect here: one gate is run' out.txt || fail "chart limits: silent about types of gates"
 holds '.types_not_charted == ["s", "u"] and [.methods[0:4][] | .value == 0.01] == [true, true, true, true]' mixed/limits.json
 

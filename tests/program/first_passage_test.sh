@@ -48,11 +48,15 @@ fast=(--set run.method=moreau --set field.rows=4 --set forces.propulsion_N=8.5)
 holds '.first_passage | .probability_95[0] < .probability and .probability < .probability_95[1] and .mean_time_s_95[0] < .mean_time_s and .mean_gates_95[1] > .mean_gates' trees.json
 holds '(.first_passage.probability - .by_ending.crossed.probability | fabs) < 1e-9 and (.first_passage.mean_time_s / .by_ending.crossed.mean_time_s - 1 | fabs) < 1e-9' trees.json
 state=$(jq -r '.first_passage.states[9]' trees.json)
-expect 0 "^First passage to $state: " "$gatewalk" analyze fast.nc --runs 0 --first-passage "$state" --json state.json
+expect 0 "^First passage to state 9 ($state): " "$gatewalk" analyze fast.nc --runs 0 --first-passage 9
+expect 0 "^First passage to state $state: " "$gatewalk" analyze fast.nc --runs 0 --first-passage "$state" --json state.json
 holds '.first_passage | .probability_95 == null and .mean_gates_95 == null and ([.of_states.probability[][][9]] | all(. == 1))' state.json
 for text in lost 0,4 -5,0 0, EN_99999 0,0,x; do
   expect 2 'must be an ending (crossed' "$gatewalk" analyze fast.nc --first-passage "$text"
 done
+# The start's own state is entered by no passage.
+own=$(jq -r '.first_passage.states | length' trees.json)
+expect 2 'is the start itself, in which every body begins' "$gatewalk" analyze fast.nc --first-passage "$own"
 expect 2 'states are those of a matrix' "$gatewalk" analyze "$scenes/field.toml" --first-passage EN_3
 # Without the option the result says nothing of first passages.
 "$gatewalk" analyze fair.nc --json without.json --quiet

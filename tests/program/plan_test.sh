@@ -107,6 +107,8 @@ expect 2 'a plan is made for one start' "$gatewalk" plan own.toml --start 0,0,15
 expect 2 'actions.a.contact.restitution is not permitted: a body cannot choose it' "$gatewalk" plan own.toml --set actions.a.contact.restitution=0.5
 "$gatewalk" build "$scenes/field.toml" --accuracy 0.2 -o tree.nc --quiet
 expect 2 'is a matrix (HDF5), and a scene (TOML) is needed here' "$gatewalk" plan tree.nc
+# A gain ends at 100 points.
+expect 0 '^  0 a .* +100.00 \[[0-9.]*, 100.00\] ' "$gatewalk" plan "$scenes/walker.toml" --set actions.a.forces.propulsion_N=0.05 --set actions.b.forces.propulsion_N=0.5 --accuracy 0.2
 # No body can cross.
 expect 0 'none of 25 trials crossed: too rare to choose by' "$gatewalk" plan own.toml --set run.method=moreau --set field.max_gates=2 --accuracy 0.2
 
@@ -119,6 +121,18 @@ if command -v python3 >/dev/null; then
   expect 0 '^The best policy found gains ' "$gatewalk" plan "${hopper[@]}" --seed 2 --json hops.json --policy hops.policy.json --gate-policy push.policy.json --threads 2
   holds '[.actions[].name] == ["gently", "hard"] and .trials == 2401 and .best_alone == "hard" and .settled' hops.json
   holds '(.crossed - 0.729 | fabs) < 0.03 and (.actions[0].crossed - 0.108 | fabs) < 0.02 and (.actions[1].crossed - 0.324 | fabs) < 0.03 and (.by_gate.crossed - 0.324 | fabs) < 0.03' hops.json
+  # --details lists when the plan takes which action: soft ground lies to the left of the middle, hard ground to the right.
+  "$gatewalk" plan "${hopper[@]}" --seed 2 --details >hops.txt 2>/dev/null
+  grep -A 9 '^Actions in gate 0,[12], the most visited after the start.s, by how a body enters:$' hops.txt >regions.txt
+  sed -n '2,/^$/p' regions.txt | grep -v '^$' >lines.txt
+  [ "$(wc -l <lines.txt)" -ge 2 ] && [ "$(wc -l <lines.txt)" -le 9 ] || fail "a plan's actions in $(wc -l <lines.txt) lines: $(cat lines.txt)"
+  for side in 'gently.*: S s \[-0\.[0-9]*, -*[0-9.e-]*\] m' 'hard.*: S s \[-*[0-9.e-]*, 0\.[0-9]*\] m'; do
+    head -n 2 lines.txt | grep -q "^  ${side%%.\**}, [0-9]* states: ${side#*: }$" || fail "a plan's actions by place: $(cat lines.txt)"
+  done
+  sed -n '1,2s/.*\[\(.*\), \(.*\)\] m/\1 \2/p' lines.txt | awk '$1 < -0.05 && $2 > 0.05 { exit 1 }' || fail "a plan's actions on both sides: $(cat lines.txt)"
+  grep -q '^  0 gently .*\|^  1 hard ' hops.txt || fail "actions are not counted from 0: $(cat hops.txt)"
+  # trace shows no cells of a program, so its policy is for lattice alone.
+  grep '# writes the policy' hops.txt >next.txt && grep -q 'for gatewalk lattice$' next.txt || fail "a program's policy is promised to others: $(cat next.txt)"
   # The first action is always taken on hard ground.
   holds '.most_taken[0] == [null, "hard", null] and .actions[0].taken[0][1] == 0' hops.json
   "$gatewalk" lattice "${hopper[@]}" --policy hops.policy.json --trials 4000 --seed 3 --quiet --json hopped.json --threads 2
@@ -143,7 +157,7 @@ if command -v python3 >/dev/null; then
   expect 2 'hops.policy.json: was made for another cell: "parameters.push_J = 2.5" here, "parameters.push_J = 3.0" there' "$gatewalk" lattice "${hopper[@]}" --policy hops.policy.json
   mv hopper.toml.old hopper.toml
   # Numbers that no action has also belong to a policy; an empty action is the cell as it is.
-  expect 0 '^  1 as_it_is  ' "$gatewalk" plan "${bare[@]}" --set parameters.push_J=3 --set actions.gently.parameters.push_J=1 --set 'actions.as_it_is={}' --policy as.policy.json --json as.json
+  expect 0 '^  0 as_it_is  ' "$gatewalk" plan "${bare[@]}" --set parameters.push_J=3 --set actions.gently.parameters.push_J=1 --set 'actions.as_it_is={}' --policy as.policy.json --json as.json
   holds '(.actions[0].crossed - 0.324 | fabs) < 0.03 and (.crossed - 0.729 | fabs) < 0.03' as.json
   expect 2 'as.policy.json: was made for another cell: .*push_J = 2.*push_J = 3' "$gatewalk" lattice "${bare[@]}" --set parameters.push_J=2 --set actions.gently.parameters.push_J=1 --set 'actions.as_it_is={}' --policy as.policy.json
   # Costs are those of the cell: the push that goes on most often also takes least time per crossing.

@@ -84,6 +84,6 @@ holds '.cut_off_95 == [0, 0] and .endings_95.cut_off == [0, 0]' lattice.json
 jq -e '.endings.crossed != .sensitivities.probability' robot.json >/dev/null || fail "no two chances to tell apart"
 share() { jq "$1 * 100" robot.json | xargs printf '%.2f %%'; }
 of_these=$(share .sensitivities.probability)
-tr '\n' ' ' <robot.txt | grep -q -F -e "of \"crossed\" ($of_these) grows for 1 % more of each number, 95 % ($of_these comes from the larger chain of $(value .sensitivities.chain_gate_runs robot.json) gate runs behind this table. The answer is the $(share .endings.crossed) above.)" ||
+tr '\n' ' ' <robot.txt | grep -q -F -e "on \"crossed\" ($of_these): slope, % of its chance per % of each number, over +-2 % ($of_these comes from the larger chain of $(value .sensitivities.chain_gate_runs robot.json) gate runs behind this table. The answer is the $(share .endings.crossed) above.)" ||
   fail "two chances to cross: $(grep 'the chance of' robot.txt)"
 finish

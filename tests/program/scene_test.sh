@@ -43,19 +43,34 @@ expect 0 'the beams hold the push of 0.24 N at 25.3 degrees' "$gatewalk" scene "
 holds '.meaning | .far_from_walkers == [] and .top_speed_m_per_s > 0.29 and .top_speed_m_per_s < 0.31' walker.json
 "$gatewalk" scene --set body.mass_g=90 --set body.radius_cm=6 --set forces.propulsion_N=1 --json small.json --quiet
 holds '[.meaning.far_from_walkers[].name] == ["froude", "push_per_weight", "random_per_weight", "draws_per_body_length", "passages_waited"]' small.json
-expect 0 'no walking animal or robot is like this scene: .*, and [1-9] more .gatewalk scene mine.toml says why.$' "$gatewalk" gate mine.toml --trials 10
+expect 0 'this scene is unusual for a walking animal or robot: .*, and [1-9] more .gatewalk scene mine.toml says why.$' "$gatewalk" gate mine.toml --trials 10
 expect 2 'figure has no meaning beside --new' "$gatewalk" scene mine.toml --new --figure three.svg
 # A push in the file changes the keys that are left out, an override does not. A command says so if an option replaces the
 # push, and scene if the file gives the push; neither if the file has these numbers.
 printf 'body.mass_kg = 0.25\nbody.radius_m = 0.08\n' >bare.toml
-follows='^gatewalk: your options change the push, but not the beams, the random force, the drag and the start speed, which bare.toml leaves out$'
+follows='^gatewalk: your options change the push, but not beams.stiffness_left_Nm_per_rad, .*, forces.drag_Ns_per_m and start.vy_m_per_s, which bare.toml leaves out$'
 expect 0 "$follows" "$gatewalk" gate bare.toml --set forces.propulsion_N=0.03 --trials 10
 expect 0 "$follows" "$gatewalk" sweep bare.toml --vary forces.propulsion_N=0.01,0.03 --trials 10
 [ "$(grep -c 'change the push' out.txt)" = 1 ] || fail "sweep: says more than once what follows the push"
 expect 0 "$follows" "$gatewalk" power bare.toml --versus forces.propulsion_mN=30 --trials 20 --accuracy 0.5
-expect 0 '^  push  *gatewalk computed the beams, the random force, the drag and the start speed from the' "$gatewalk" scene mine.toml
+# Only the keys that were computed are named.
+for key in beams.stiffness_right_Nm_per_rad beams.damping_Nms_per_rad forces.random_N forces.random_rate_Hz; do
+  grep -q "change the push, but not .* $key[, ]" out.txt || fail "the push: $key follows it and is not named"
+done
+"$gatewalk" scene mine.toml --json mine.json --quiet
+holds '.remarks | any(test("^push: gatewalk computed beams.stiffness_left_Nm_per_rad, .* and start.vy_m_per_s from the push; --set forces.propulsion_N=VALUE changes the push alone$"))' mine.json
+# README's robot: only the damping follows the push, which lies near the beams' resistance, so a small error decides.
+sed -n '/^\$ cat mine.toml$/,/^\$ /p' "$scenes/../README.md" | grep -v '^\$' >readme.toml
+[ "$(wc -l <readme.toml)" -ge 5 ] || fail "README has no mine.toml"
+"$gatewalk" scene readme.toml --json readme.json --quiet 2>/dev/null
+holds '.remarks | any(. == "push: gatewalk computed beams.damping_Nms_per_rad from the push; --set forces.propulsion_N=VALUE changes the push alone")' readme.json
+holds '.remarks | any(test("^threshold: the push is within 5 % of the beams. largest resistance: "))' readme.json
+holds '.remarks | any(. == "size: the body is 16 cm wide, twice its radius; the joints of a gate are 40 cm apart")' readme.json
+expect 0 '^gatewalk: readme.toml leaves out 6 keys: gatewalk scaled the paper.s values of 4 to this body, and took 2 of contact from the paper unchanged' "$gatewalk" gate readme.toml --trials 10
+"$gatewalk" scene readme.toml --set forces.propulsion_N=0.7 --json far.json --quiet 2>/dev/null
+holds '.remarks | any(startswith("threshold")) | not' far.json
 { cat bare.toml; printf 'beams.stiffness_left_Nm_per_rad = 0.0064\nbeams.damping_Nms_per_rad = 0.0008\n'; } >fixed.toml
-expect 0 'change the push, but not the random force, the drag and the start speed, which fixed.toml leaves out$' "$gatewalk" gate fixed.toml --set forces.propulsion_N=0.03 --trials 10
+expect 0 'change the push, but not forces.random_N, forces.random_rate_Hz, forces.drag_Ns_per_m and start.vy_m_per_s, which fixed.toml leaves out$' "$gatewalk" gate fixed.toml --set forces.propulsion_N=0.03 --trials 10
 printf 'forces = { random_N = 0.08, random_rate_Hz = 50, drag_Ns_per_m = 0.015 }\nstart.vy_m_per_s = 0.5\n' >>fixed.toml
 for line in "bare.toml" mine.toml "fixed.toml --set forces.propulsion_N=0.03" "$scenes/robot.toml --set forces.propulsion_N=0.9" "$scenes/field.toml --set forces.propulsion_N=8"; do
   # shellcheck disable=SC2086
