@@ -535,8 +535,10 @@ std::string answer_text(const PowerResult& p) {
       "100.\n",
       digits(p.prediction.error.total_variation, 2));
   if (table.find('?') != table.npos)
-    text += fmt::format("Beware: ? marks shifts within the prediction's own error; {}.\n",
-                        more_precise(p));
+    return text + fmt::format(
+                      "Beware: ?: within the error bar ({}). Trials of one animal count "
+                      "less.\n",
+                      more_precise(p));
   return text +
          "Beware: several trials of one animal count less than trials of different animals "
          "(--details).\n";

@@ -126,7 +126,7 @@ expect 2 'two halves need 32 bodies at least, these are 12' "$gatewalk" validate
 expect 2 'has no meaning for' "$gatewalk" validate coin.nc --trials 100
 # Recorded bodies get no more by a smaller --accuracy; counts are compared with a scene.
 "$gatewalk" power unlike.nc --details >power.txt 2>/dev/null
-grep -q "own error; more recorded bodies help" power.txt && grep -q '^?: .* as much; more recorded bodies help' power.txt || fail "power: what helps recorded bodies: $(cat power.txt)"
+grep -q "^Beware: ?: within the error bar (more recorded bodies help). Trials of one animal count less.$" power.txt && grep -q '^?: .* as much; more recorded bodies help' power.txt || fail "power: what helps recorded bodies: $(cat power.txt)"
 grep -e '--accuracy' power.txt && fail "power of recorded bodies advises --accuracy"
 expect 2 'counts are compared with a scene: gatewalk validate SCENE --observed seen.csv. Without --observed, ' "$gatewalk" validate coin.nc --observed seen.csv
 
