@@ -116,7 +116,7 @@ void describe_smallest(Fields& out, const PowerResult& p) {
              p.plan.least_total_variation.value_or(kUnknown));
 }
 
-void describe(Fields& out, const PowerResult::Versus& versus, const PowerResult& p) {
+void describe(Fields& out, const PowerVersus& versus, const PowerResult& p) {
   out.texts({"set", "values of --versus: keys of the other scene, or a matrix"}, versus.set);
   describe(out, versus.prediction);
   out.object({"apart", "trials that tell the two predictions apart"}, [&](Fields& apart) {

@@ -20,19 +20,20 @@ void describe(Fields& out, const lattice::SmallestDifference& d);
 /// "+17.1 / -8.2"
 [[nodiscard]] std::string text_of(const lattice::SmallestDifference& d);
 
+/// The scene or group to be distinguished from the prediction.
+struct PowerVersus {
+  std::vector<std::string> set{};  // the values of --versus
+  lattice::StartAnswer prediction{};
+  lattice::TwoScenesPlan apart{};
+  std::optional<lattice::Scene> scene{};  // none for another group's recorded runs
+};
+
 /// The result of `power`.
 struct PowerResult {
   lattice::ExperimentOptions options{};
   lattice::StartAnswer prediction{};
   lattice::ExperimentPlan plan{};
-  /// The scene or group to be distinguished from the prediction.
-  struct Versus {
-    std::vector<std::string> set{};  // the values of --versus
-    lattice::StartAnswer prediction{};
-    lattice::TwoScenesPlan apart{};
-    std::optional<lattice::Scene> scene{};  // none for another group's recorded runs
-  };
-  std::optional<Versus> versus{};
+  std::optional<PowerVersus> versus{};
   dynamics::Health health{};
   std::optional<lattice::Settled> method{};
   Provenance made_by{};

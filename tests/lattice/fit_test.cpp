@@ -170,7 +170,7 @@ TEST(Fit, IntervalsOfTimesHoldWhatTheyShould) {
     for (std::size_t t = 0; t < each.endings.size(); ++t)
       o.timed.push_back({static_cast<std::size_t>(*each.endings[t]), -1,
                          each.endings[t] == markov::Ending::far_edge ? each.costs[t][0] : 0.0});
-    const Fit f = fit_trials(1, problem_at, o, {.trials = 15'000, .seed = 2});
+    const Fit f = fit_trials(1, problem_at, o, {.trials = 60'000, .seed = 2});
     held += f.numbers[0].interval[0] <= at && at <= f.numbers[0].interval[1];
   }
   // 95 % within sampling error (p > 0.001 by the binomial distribution).

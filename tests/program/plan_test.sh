@@ -34,7 +34,7 @@ holds '.most_taken | length == 9' mixed.json
 # The full dynamics runs the policy file: it crosses as often as the plan says, the same in every run.
 { cat "$scenes/field.toml"; printf '[actions.left]\nbeams.stiffness_left_Nm_per_rad = 200\n[actions.right]\nbeams.stiffness_right_Nm_per_rad = 200\n'; } >sides.toml
 sides=(sides.toml --set run.method=moreau --set field.rows=4 --set field.max_gates=6)
-"$gatewalk" plan "${sides[@]}" --accuracy 0.05 --quiet --json sides.json --policy sides.policy.json --gate-policy gates.policy.json
+"$gatewalk" plan "${sides[@]}" --accuracy 0.03 --quiet --json sides.json --policy sides.policy.json --gate-policy gates.policy.json
 holds '.chain != null and .actions[0].gain > 0' sides.json
 expect 0 '^crossed' "$gatewalk" lattice "${sides[@]}" --policy sides.policy.json --trials 2000 --seed 3 --json run.json
 jq -s '.[0].crossed_95 as [$low, $high] | .[1].endings.crossed / .[1].trials | . > $low - 0.02 and . < $high + 0.02' sides.json run.json | grep -q true || fail "the policy crosses less or more often than planned"

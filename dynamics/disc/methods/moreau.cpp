@@ -55,8 +55,7 @@ void MoreauMethod::one_step(GateState& s, double force_x, const Step& step, Watc
     ++watch.evaluations;
     active[side] = touch[side].gap <= 0.0;
   }
-  for (const Side side : {kLeft, kRight})
-    watch.counted[side] = watch.counted[side] && active[side];
+  for (const Side side : {kLeft, kRight}) watch.counted[side] = watch.counted[side] && active[side];
 
   if (active[kLeft] || active[kRight]) {
     std::array<double, 2> b{}, before{};
