@@ -569,7 +569,7 @@ class Scenes(unittest.TestCase):
             self.assertIn(remark.split(": ", 1)[1], " ".join(shown.split()))
         self.assertIn("<li>sideways: noise moves the body", walker._repr_html_())
         self.assertEqual([r.split(": ")[0] for r in gw.Scene(FIELD).remarks],
-                         ["speed", "sideways", "beams", "beams", "trapped"] + ["far from what walks"] * 4)
+                         ["size", "speed", "sideways", "beams", "beams", "trapped"] + ["far from what walks"] * 4)
 
     def test_terrain_is_part_of_a_scene(self):
         mixed = (ROOT / "scenes/mixed.toml").read_text()
