@@ -17,8 +17,8 @@ namespace gatewalk::cli {
                                      const std::vector<std::string>& actions = {});
 /// The meaning of two endings, trapped and cut off, in this scene.
 [[nodiscard]] std::string limits_text(const ShownField& shown);
-/// The endings of which no sequence of moves through the field's faces has any, from the start on;
-/// without `trapped`, which is no move. Empty for fields that are too large to search.
+/// The endings that no sequence of moves from the start can reach. `trapped` is never among them,
+/// as it is no move. Empty for fields that are too large to search.
 [[nodiscard]] std::vector<markov::Ending> impossible_endings(const ShownField& shown);
 /// A warning that no body can cross the field within its limit of gates; empty otherwise.
 [[nodiscard]] std::string too_few_gates(const ShownField& shown);
