@@ -280,7 +280,7 @@ TEST_P(ExactHits, FirstHitsObeyTheLaw) {
                          (kick * kick);
     // In the middle of the step: errors of rates up to 50 m/s, of 500 J and of 1000 kg m^2/s, from
     // positions with the rounding of up to 250 steps.
-    const double digits = 2048 * kEps;
+    const double digits = 1280 * kEps;
     // Up to 250 steps round the positions; the kick converts this error into time.
     const double late = m.at_mid_step ? 1e-13 : m.place + 50 * 7e-15 / kick;  // m; s
     const double hit = m.at_mid_step ? t - 0.5 * p.run.step : t - after;
