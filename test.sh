@@ -13,15 +13,15 @@ packages+=(libchipmunk-dev)
 # A cluster on this machine, for parts of runs; processes that share one.
 packages+=(slurmctld slurmd slurm-client munge libopenmpi-dev openmpi-bin)
 # The Python module, and what it makes tables and pictures with.
-packages+=(pybind11-dev python3-dev python3-numpy python3-scipy python3-pandas python3-xarray python3-matplotlib python3-venv
-  python3-pip python3-wheel mypy python3-jsonschema)
+packages+=(pybind11-dev python3-dev python3-numpy python3-scipy python3-pandas python3-xarray python3-netcdf4
+  python3-matplotlib python3-venv python3-pip python3-wheel mypy python3-jsonschema)
 which=(-LE elsewhere)
 if [ "${1-}" = elsewhere ]; then
   shift
   which=(-L elsewhere)
   packages+=(python3-sphinx furo python3-myst-parser python3-breathe python3-yaml doxygen)
   packages+=(jupyter-nbconvert python3-ipykernel python3-nbformat)
-  packages+=(python3-netcdf4 python3-h5py r-base-core r-cran-ncdf4 r-cran-markovchain octave octave-netcdf)
+  packages+=(python3-h5py r-base-core r-cran-ncdf4 r-cran-markovchain octave octave-netcdf)
   packages+=(mmdebstrap dpkg-dev lintian man-db zsh fish pkg-config reuse)
 fi
 # Some machines bring an npm of their own, which Debian's package would conflict with.
