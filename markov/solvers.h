@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "markov/outcomes.h"
 #include "markov/predict.h"
 
 namespace gatewalk::markov {
@@ -40,6 +41,12 @@ class AdjointPredictor {
   Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
       answers_;  // (outputs x 1 + ends): mean draws, then the probability of each end
 };
+
+/// (outputs x kEndings) The probability of each ending of walks whose first draw, in this cell of a
+/// uniform field, gives this output. Takes about as long as one prediction. Throws as
+/// AdjointPredictor.
+[[nodiscard]] EndTable ending_chances(const Chain& chain, const Field& field, int column, int row,
+                                      int max_cells);
 
 /// Predicts without a limit of cells by sparse elimination of one reachable (cell, input) pair
 /// after the other, in the blocks and the order of SuiteSparse KLU. Nothing is subtracted

@@ -240,9 +240,11 @@ std::optional<PassageResult> first_passage_of(const Options& options,
   PassageResult result{*asked, lattice::first_passage(s.problem.field, *c.chain, asked->target),
                        s.is_imported ? lattice::state_names(*s.file) : lattice::state_names(space),
                        lattice::shown_order(s.is_imported ? s.file->transitions.space : space)};
-  if (asked->target.ending)  // takes the prediction's interval, so that one number has one interval
-    result.found.chance.interval =
-        c.answer.endings.interval[static_cast<std::size_t>(*asked->target.ending)];
+  if (asked->target.ending) {  // the prediction's share and interval, so that there is only one
+    const auto e = static_cast<std::size_t>(*asked->target.ending);
+    if (c.of_runs && !c.answer.from_trials) result.found.chance.mean = c.answer.endings.share[e];
+    result.found.chance.interval = c.answer.endings.interval[e];
+  }
   if (!result.has_tables())
     options.warn(
         "--first-passage: the tables of all states are left out, they would have more "
@@ -461,6 +463,7 @@ int run_analyze(const Arguments& arguments) {
   choose_method(options, s);
   const auto of_file = runs_of_file(page, s);
   AnalysedSubject c = s.pool ? chain_of_runs(options, s) : chain_of_bins(options, accuracy, s);
+  if (c.of_runs && !c.answer.from_trials) how.endings = c.answer.endings.share;
   const dynamics::Work work = options.work();
   AnalysedField result{.shown = ShownField(s),
                        .start = s.starts.front(),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -164,6 +165,14 @@ StateSpace tree_space(const Section& section, const EntryTable& seen, int per_le
       section, seen, static_cast<std::size_t>(per_leaf), states);
   if (state_of != nullptr) *state_of = std::move(states);
   return {section, std::move(trees), std::move(points)};
+}
+
+int coordinates_cut(const StateSpace& space) {
+  std::set<int> axes;
+  for (const Tree& tree : space.trees())
+    for (const Tree::Node& node : tree.nodes)
+      if (node.axis != Tree::kLeaf) axes.insert(node.axis);
+  return static_cast<int>(axes.size());
 }
 
 }  // namespace gatewalk::dynamics

@@ -22,4 +22,7 @@ namespace gatewalk::dynamics {
                                     int per_leaf = kEntriesPerLeaf, std::vector<Entry> points = {},
                                     std::vector<int>* state_of = nullptr);
 
+/// Number of coordinates that any tree cuts: those that vary, as far as the leaves tell.
+[[nodiscard]] int coordinates_cut(const StateSpace& space);
+
 }  // namespace gatewalk::dynamics

@@ -81,6 +81,65 @@ KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
 
 }  // namespace
 
+int ending_leaf(const RunPool& pool) {
+  constexpr std::int64_t kLeast = 2, kMostStates = 50'000;
+  return static_cast<int>(std::max(kLeast, 2 * kernel_runs(pool) / kMostStates));
+}
+
+std::vector<std::optional<EndingsOf>> endings_of(const dynamics::CellMap& map,
+                                                 const FieldParams& field, const RunPool& pool,
+                                                 const std::vector<FirstRow>& starts,
+                                                 TrialGroup group) {
+  std::vector<std::optional<EndingsOf>> endings(starts.size());
+  std::vector<FirstRow> asked;
+  std::vector<std::size_t> place;
+  for (std::size_t i = 0; i < starts.size(); ++i)
+    if (!std::holds_alternative<dynamics::Entry>(starts[i])) {
+      asked.push_back(starts[i]);
+      place.push_back(i);
+    }
+  if (asked.empty()) return endings;
+  const Kernel kernel = kernel_of(map, pool, ending_leaf(pool), group);
+  const markov::Counts rows =
+      first_rows(kernel, map, pool, asked, map.type_of(field.start_column(), 0), {group});
+  if (!pays_adjoint(map, field, asked.size())) {
+    const KernelAnswers answers = answers_of(kernel, map, rows, field, {}, 0);
+    for (std::size_t i = 0; i < asked.size(); ++i) endings[place[i]] = answers.final[i].endings;
+    return endings;
+  }
+  const markov::EndTable chances =
+      markov::ending_chances(chain_of(kernel, map, field, {}).chains().front(),
+                             {field.columns, field.rows}, field.start_column(), 0, field.max_gates);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    EndingsOf& of = endings[place[i]].emplace();
+    const auto row = static_cast<Eigen::Index>(i);
+    const auto all = static_cast<double>(rows.row(row).sum());
+    for (markov::Counts::InnerIterator it(rows, row); it; ++it)
+      for (std::size_t e = 0; e < of.size(); ++e)
+        of[e] +=
+            static_cast<double>(it.value()) / all * chances(it.col(), static_cast<Eigen::Index>(e));
+    if (!(all > 0.0)) of[static_cast<std::size_t>(markov::Ending::unsampled)] = 1.0;
+  }
+  return endings;
+}
+
+FinalDistribution with_endings(FinalDistribution prediction, const EndingsOf& endings) {
+  EndingsOf times;
+  for (std::size_t e = 0; e < times.size(); ++e)
+    times[e] = prediction.endings[e] > 0.0 ? endings[e] / prediction.endings[e] : 1.0;
+  for (std::size_t e = 0; e < times.size(); ++e) prediction.endings[e] *= times[e];
+  // In all cells that are not mixed every body was trapped.
+  markov::CellProbabilities trapped = trapped_cells(prediction);
+  trapped *= times[static_cast<std::size_t>(markov::Ending::trapped)];
+  prediction.final_cells = trapped;
+  for (auto& cell : prediction.mixed_cells) {
+    double sum = 0.0;
+    for (std::size_t e = 0; e < times.size(); ++e) sum += cell.by_ending[e] *= times[e];
+    prediction.final_cells.data()[cell.cell] = sum;
+  }
+  return prediction;
+}
+
 KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
                          const markov::Counts& first_rows, const FieldParams& field,
                          std::uint64_t seed) {
@@ -151,7 +210,8 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<FirstRow>& st
                    .kernels = {},
                    .unseen = {},
                    .states = chains_.front().kernel.space.size(),
-                   .nonzeros = chains_.front().kernel.nonzeros()};
+                   .nonzeros = chains_.front().kernel.nonzeros(),
+                   .coordinates = coordinates_cut(chains_.front().kernel.space)};
   for (const FirstRow& s : starts) {
     const auto* const own = std::get_if<const OwnRuns*>(&s);
     said.unseen.push_back(own ? missing_mass(chains_.front().kernel, map_, field_, **own) : 0.0);
@@ -177,6 +237,22 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<FirstRow>& st
     }
   });
   return said;
+}
+
+void PoolChains::add_endings(const RunPool& pool, const std::vector<FirstRow>& starts,
+                             PoolAnswers& said) const {
+  if (said.whole.walks > 0 || ending_leaf(pool) >= per_leaf_) return;
+  std::array<std::vector<std::optional<EndingsOf>>, kTrialGroups + 1> found;
+  tbb::parallel_for(-1, kTrialGroups, [&](int g) {
+    const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};
+    found[static_cast<std::size_t>(g + 1)] = endings_of(map_, field_, pool, starts, group);
+  });
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    std::optional<PoolEndings>& of = said.endings.emplace_back();
+    if (!found[0][i]) continue;
+    of = {.whole = *found[0][i], .groups = {}};
+    for (std::size_t g = 0; g < kTrialGroups; ++g) of->groups[g] = *found[g + 1][i];
+  }
 }
 
 }  // namespace gatewalk::lattice

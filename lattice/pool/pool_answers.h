@@ -25,6 +25,35 @@ struct KernelAnswers {
                                        const markov::Counts& first_rows, const FieldParams& field,
                                        std::uint64_t seed);
 
+/// Least number of entries in a leaf of the chains that give the shares of endings. The size of
+/// leaves biases an ending, and smaller leaves halve that bias. The map of final gates keeps larger
+/// leaves, because many small ones make each gate's share noisier. Pools of very many runs, whose
+/// bias is small, get larger leaves here too, so that these chains do not take long.
+[[nodiscard]] int ending_leaf(const RunPool& pool);
+
+/// Shares of all bodies by markov::Ending.
+using EndingsOf = std::array<double, markov::kEndings>;
+
+/// Shares of endings for each start by the exact chain with leaves of ending_leaf() entries, from
+/// the runs of one group of the trials; nullopt for a start whose row is that of its leaf, because
+/// the few runs of a small leaf would make all of its first draws.
+[[nodiscard]] std::vector<std::optional<EndingsOf>> endings_of(const dynamics::CellMap& map,
+                                                               const FieldParams& field,
+                                                               const RunPool& pool,
+                                                               const std::vector<FirstRow>& starts,
+                                                               TrialGroup group = {});
+
+/// The prediction with the shares of endings taken from `endings`; the map of each ending keeps its
+/// shape.
+[[nodiscard]] markov::FinalDistribution with_endings(markov::FinalDistribution prediction,
+                                                     const EndingsOf& endings);
+
+/// Shares of endings for one start by all trials, and by each group of the trials.
+struct PoolEndings {
+  EndingsOf whole;
+  std::array<EndingsOf, kTrialGroups> groups;
+};
+
 /// Predictions for each start by all trials, and by each group of the trials.
 struct PoolAnswers {
   KernelAnswers whole;
@@ -34,8 +63,13 @@ struct PoolAnswers {
   /// walks.
   std::vector<std::vector<markov::FinalDistribution>> kernels;
   std::vector<double> unseen;  // (starts) missing_mass()
+  /// (starts) Endings from small leaves, once they are asked for (PoolChains::add_endings); empty
+  /// if answers come from Monte Carlo walks. Without them the endings are those of `whole` and
+  /// `groups`.
+  std::vector<std::optional<PoolEndings>> endings{};
   int states = 0;
   std::int64_t nonzeros = 0;
+  int coordinates = 0;  // number of coordinates by which the states differ
 };
 
 /// The chains of a pool that grows. Kernels are kept while only first runs are added.
@@ -51,6 +85,10 @@ class PoolChains {
   [[nodiscard]] bool by_adjoint(const RunPool& pool, std::size_t starts) const;
 
   [[nodiscard]] PoolAnswers ask(const RunPool& pool, const std::vector<FirstRow>& starts);
+  /// Adds the endings from small leaves to answers for these starts. Their chains are made anew
+  /// with each call.
+  void add_endings(const RunPool& pool, const std::vector<FirstRow>& starts,
+                   PoolAnswers& said) const;
 
  private:
   struct GroupChain {

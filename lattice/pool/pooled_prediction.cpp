@@ -44,52 +44,56 @@ void widen(std::array<double, 2>& interval, double share) {
   interval = {std::max(0.0, interval[0] - share), std::min(1.0, interval[1] + share)};
 }
 
-/// The chain's answer for one start, with error bars. `first_runs`: behind the chain's first row;
-/// `pooled`: trials in the pool; `chance`: sampling error of the walks behind `whole`.
+/// The chain's answer for start number `i`, with error bars. `first_runs`: behind the chain's first
+/// row; `pooled`: trials in the pool.
 StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, std::int64_t pooled,
-                         FinalDistribution whole, double chance, double unseen,
-                         const std::vector<FinalDistribution>& groups,
-                         const std::vector<FinalDistribution>& kernels, std::uint64_t seed) {
+                         const PoolAnswers& said, std::size_t i, std::uint64_t seed) {
   StartAnswer a;
   a.first_runs = first_runs;
-  const GroupSpread spread(whole, groups);
+  a.unseen = said.unseen[i];
+  a.final = said.whole.final[i];
+  std::vector<FinalDistribution> groups = said.groups[i];
   const std::int64_t behind = std::min(first_runs, pooled);
-  a.error = spread.error(behind, seed);
-  a.unseen = unseen;
-  a.error.total_variation = std::min(1.0, std::hypot(a.error.total_variation, chance) + unseen);
-  a.kernel_error_95 =
-      kernels.empty()
-          ? a.error.total_variation
-          : std::min(1.0, GroupSpread(whole, kernels).error(pooled, seed).total_variation + unseen);
+  const double chance = chance_of_walks(a.final, said.whole.walks);
+  a.error = GroupSpread(a.final, groups, said.coordinates).error(behind, seed);
+  a.error.total_variation = std::min(1.0, std::hypot(a.error.total_variation, chance) + a.unseen);
+  a.kernel_error_95 = said.kernels.empty()
+                          ? a.error.total_variation
+                          : std::min(1.0, GroupSpread(a.final, said.kernels[i], said.coordinates)
+                                                  .error(pooled, seed)
+                                                  .total_variation +
+                                              a.unseen);
+  if (!said.endings.empty() && said.endings[i]) {
+    a.final = with_endings(std::move(a.final), said.endings[i]->whole);
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      groups[g] = with_endings(std::move(groups[g]), said.endings[i]->groups[g]);
+  }
+  const GroupSpread spread(a.final, groups, said.coordinates);
   a.endings = spread.endings_95(behind);
   a.gates_95 = spread.gates_95(behind);
   std::vector<ExitShares> group_exits;
   for (const FinalDistribution& g : groups) group_exits.push_back(exit_shares(g));
-  a.exits = exits_of_groups(exit_shares(whole), group_exits, evidence_of(whole, behind));
-  if (unseen > 0.0) {  // the RMSE is largest if they all move from one gate to another
+  a.exits = exits_of_groups(exit_shares(a.final), group_exits, evidence_of(a.final, behind));
+  if (a.unseen > 0.0) {  // the RMSE is largest if they all move from one gate to another
     const auto gates = static_cast<double>(a.gates_95[0].size());
-    a.error.rmse_per_100 += 100.0 * unseen * std::sqrt(2.0 / gates);
+    a.error.rmse_per_100 += 100.0 * a.unseen * std::sqrt(2.0 / gates);
     a.error.corrcoef = std::nan("");
   }
-  for (auto& interval : a.endings.interval) widen(interval, unseen);
+  for (auto& interval : a.endings.interval) widen(interval, a.unseen);
   a.endings = a.endings.with_limit(field.max_gates);
   for (SideExits& side : a.exits)
-    for (auto& interval : side.interval) widen(interval, unseen);
+    for (auto& interval : side.interval) widen(interval, a.unseen);
   a.exits = within_sides(std::move(a.exits), a.endings);
-  a.gates_95[0] = (a.gates_95[0] - unseen).max(0.0);
-  a.gates_95[1] = (a.gates_95[1] + unseen).min(1.0);
-  a.final = std::move(whole);
+  a.gates_95[0] = (a.gates_95[0] - a.unseen).max(0.0);
+  a.gates_95[1] = (a.gates_95[1] + a.unseen).min(1.0);
   return a;
 }
 
-/// The chain's answer for one start, or the shares of the start's own trials if these are more
-/// precise.
+/// The chain's answer for start number `i`, or the shares of the start's own trials if these are
+/// more precise.
 StartAnswer answer_of(const FieldParams& field, const OwnRuns& s, std::int64_t pooled,
-                      FinalDistribution whole, double chance, double unseen,
-                      const std::vector<FinalDistribution>& groups,
-                      const std::vector<FinalDistribution>& kernels, std::uint64_t seed) {
-  StartAnswer a = chain_answer(field, s.first_runs(), pooled, std::move(whole), chance, unseen,
-                               groups, kernels, seed);
+                      const PoolAnswers& said, std::size_t i, std::uint64_t seed) {
+  StartAnswer a = chain_answer(field, s.first_runs(), pooled, said, i, seed);
   a.start = s.start;
   a.trials = std::ssize(s.full.endings);
   if (a.trials == 0) return a;
@@ -105,12 +109,11 @@ StartAnswer answer_of(const FieldParams& field, const OwnRuns& s, std::int64_t p
   a.exits = exits_of(tally);
   a.gates_95 = {a.final.final_cells, a.final.final_cells};
   const auto never = interval_of_share(0.0, static_cast<double>(a.trials));
-  for (Eigen::Index i = 0; i < a.final.final_cells.size(); ++i) {
+  for (Eigen::Index cell = 0; cell < a.final.final_cells.size(); ++cell) {
+    const double share = a.final.final_cells.data()[cell];
     const auto interval =
-        a.final.final_cells.data()[i] == 0.0
-            ? never
-            : interval_of_share(a.final.final_cells.data()[i], static_cast<double>(a.trials));
-    for (std::size_t side = 0; side < 2; ++side) a.gates_95[side].data()[i] = interval[side];
+        share == 0.0 ? never : interval_of_share(share, static_cast<double>(a.trials));
+    for (std::size_t side = 0; side < 2; ++side) a.gates_95[side].data()[cell] = interval[side];
   }
   return a;
 }
@@ -172,6 +175,7 @@ class PredictionRun {
     if (options_.trials) work_.end_part();  // only then do all parts of a run need the same trials
     const bool may_add = !options_.first_runs && !options_.trials;
     while (ask() && runner_.may_go_on() && may_add) add_trials();
+    add_endings();
     result_.reached = open_.empty();
     result_.gate_runs = runner_.gate_runs;
     result_.run_seconds = runner_.seconds;
@@ -220,32 +224,54 @@ class PredictionRun {
   /// Computes the answers for the open starts, and closes those that are precise enough. Returns
   /// false if no more trials are wanted, or if they would not help.
   [[nodiscard]] bool ask() {
-    // With the adjoint all starts cost as much as one. Closed starts are therefore asked again,
-    // which corrects error bars that were small by chance.
+    // With the adjoint all starts cost as much as one. Closed starts are therefore asked again in
+    // each round (else only after the last), which corrects error bars that were small by chance.
     if (chains_.by_adjoint(pool_, open_.size())) open_ = all();
-    std::vector<FirstRow> asked;
-    for (const std::size_t k : open_) asked.emplace_back(&pool_.starts[places_[k]]);
-    PoolAnswers said = chains_.ask(pool_, asked);
-    result_.states = said.states;
-    result_.nonzeros = said.nonzeros;
-    by_walks_ = said.whole.walks > 0;
-    const std::int64_t pooled = pool_.trials();
-    std::vector<double> chances(open_.size());
-    tbb::parallel_for(std::size_t{0}, open_.size(), [&](std::size_t i) {
-      chances[i] = chance_of_walks(said.whole.final[i], said.whole.walks);
-      result_.starts[open_[i]] = answer_of(
-          problem_.field, pool_.starts[places_[open_[i]]], pooled, std::move(said.whole.final[i]),
-          chances[i], said.unseen[i], said.groups[i],
-          said.kernels.empty() ? std::vector<FinalDistribution>{} : said.kernels[i], options_.seed);
-    });
+    asked_ = open_;
+    said_ = chains_.ask(pool_, rows_asked());
+    result_.states = said_.states;
+    result_.nonzeros = said_.nonzeros;
+    by_walks_ = said_.whole.walks > 0;
+    answer();
     std::erase_if(open_, [&](std::size_t k) {
       return result_.starts[k].error.total_variation <= options_.accuracy;
     });
+    if (open_.empty() && asked_.size() < result_.starts.size()) {
+      open_ = all();
+      return ask();
+    }
     // The walks have their own sampling error: if it makes up half of the error, more trials do not
     // help.
-    return !open_.empty() && std::all_of(chances.begin(), chances.end(), [&](double chance) {
-      return chance < 0.5 * options_.accuracy;
+    return !open_.empty() &&
+           std::all_of(said_.whole.final.begin(), said_.whole.final.end(),
+                       [&](const FinalDistribution& d) {
+                         return chance_of_walks(d, said_.whole.walks) < 0.5 * options_.accuracy;
+                       });
+  }
+
+  [[nodiscard]] std::vector<FirstRow> rows_asked() const {
+    std::vector<FirstRow> rows;
+    for (const std::size_t k : asked_) rows.emplace_back(&pool_.starts[places_[k]]);
+    return rows;
+  }
+
+  /// Makes the answers for the starts asked from what the chains said.
+  void answer() {
+    const std::int64_t pooled = pool_.trials();
+    tbb::parallel_for(std::size_t{0}, asked_.size(), [&](std::size_t i) {
+      result_.starts[asked_[i]] = answer_of(problem_.field, pool_.starts[places_[asked_[i]]],
+                                            pooled, said_, i, options_.seed);
     });
+  }
+
+  /// Adds the endings from small leaves to all answers.
+  void add_endings() {
+    if (asked_.size() < result_.starts.size()) {
+      open_ = all();
+      static_cast<void>(ask());
+    }
+    chains_.add_endings(pool_, rows_asked(), said_);
+    answer();
   }
 
   /// The part of the error that comes from the first runs.
@@ -360,9 +386,11 @@ class PredictionRun {
   const Work& work_;
   PoolRunner runner_;
   PoolChains chains_;
-  bool by_walks_ = false;            // whether the current answers come from walks
-  std::vector<std::size_t> places_;  // indices of the starts in the pool
-  std::vector<std::size_t> open_;    // starts whose answers are not precise enough yet
+  bool by_walks_ = false;             // whether the current answers come from walks
+  std::vector<std::size_t> places_;   // indices of the starts in the pool
+  std::vector<std::size_t> open_;     // starts whose answers are not precise enough yet
+  std::vector<std::size_t> asked_{};  // starts of the last answers
+  PoolAnswers said_{};                // the chains' last answers, for the starts asked
   PooledPrediction result_;
 };
 
@@ -411,12 +439,17 @@ std::vector<FirstRow> rows_of(const RunPool& pool,
   return rows;
 }
 
+/// The answers of all runs: final gates from the kernel, endings from small leaves.
 KernelAnswers whole_answers(const Kernel& kernel, const Problem& problem, const RunPool& pool,
-                            const std::vector<std::optional<Entry>>& starts, std::uint64_t seed) {
-  return answers_of(
-      kernel, problem.map(),
-      first_rows(kernel, problem.map(), pool, rows_of(pool, starts), problem.start_type()),
-      problem.field, seed);
+                            const std::vector<FirstRow>& rows, int per_leaf, std::uint64_t seed) {
+  const CellMap& map = problem.map();
+  KernelAnswers answers = answers_of(
+      kernel, map, first_rows(kernel, map, pool, rows, problem.start_type()), problem.field, seed);
+  if (answers.walks > 0 || ending_leaf(pool) >= per_leaf) return answers;
+  const auto endings = endings_of(map, problem.field, pool, rows);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (endings[i]) answers.final[i] = with_endings(std::move(answers.final[i]), *endings[i]);
+  return answers;
 }
 
 }  // namespace
@@ -424,7 +457,9 @@ KernelAnswers whole_answers(const Kernel& kernel, const Problem& problem, const 
 std::vector<FinalDistribution> predict_whole(const Problem& problem, const RunPool& pool,
                                              const std::vector<std::optional<Entry>>& starts,
                                              int per_leaf, std::uint64_t seed) {
-  return whole_answers(kernel_of(problem.map(), pool, per_leaf), problem, pool, starts, seed).final;
+  return whole_answers(kernel_of(problem.map(), pool, per_leaf), problem, pool,
+                       rows_of(pool, starts), per_leaf, seed)
+      .final;
 }
 
 PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
@@ -436,13 +471,15 @@ PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
   const std::uint64_t seed = options.seed;
   const std::int64_t bodies = pool.bodies();
   PooledPrediction result;
+  const std::vector<FirstRow> rows = rows_of(pool, starts);
   PoolAnswers said;
   if (bodies >= kLeastBodies) {
-    said = PoolChains(map, problem.field, per_leaf, starts.size(), seed)
-               .ask(pool, rows_of(pool, starts));
+    PoolChains chains(map, problem.field, per_leaf, starts.size(), seed);
+    said = chains.ask(pool, rows);
+    chains.add_endings(pool, rows, said);
   } else {
     const Kernel kernel = kernel_of(map, pool, per_leaf);
-    said.whole = whole_answers(kernel, problem, pool, starts, seed);
+    said.whole = whole_answers(kernel, problem, pool, rows, per_leaf, seed);
     said.states = kernel.space.size();
     said.nonzeros = kernel.nonzeros();
   }
@@ -451,11 +488,7 @@ PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
   for (std::size_t i = 0; i < starts.size(); ++i) {
     StartAnswer& a = result.starts.emplace_back();
     if (bodies >= kLeastBodies) {
-      const double chance = chance_of_walks(said.whole.final[i], said.whole.walks);
-      a = chain_answer(problem.field, bodies, bodies, std::move(said.whole.final[i]), chance, 0.0,
-                       said.groups[i],
-                       said.kernels.empty() ? std::vector<FinalDistribution>{} : said.kernels[i],
-                       seed);
+      a = chain_answer(problem.field, bodies, bodies, said, i, seed);
     } else {
       const double unknown = std::nan("");
       a.error = {unknown, unknown, unknown};
@@ -505,7 +538,7 @@ PooledRange pool_range(const Problem& problem, RunPool& pool, const StartRange& 
     pool.scattered = std::move(tried.scattered);
     std::vector<double> errors;
     for (std::size_t k = 0; k < all.size(); ++k)
-      errors.push_back(GroupSpread(said.whole.final[k], said.kernels[k])
+      errors.push_back(GroupSpread(said.whole.final[k], said.kernels[k], said.coordinates)
                            .error(pool.trials(), options.seed)
                            .total_variation);
     result.kernel_error_95 = median(errors);

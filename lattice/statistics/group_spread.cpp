@@ -24,6 +24,14 @@ using dynamics::Random;
 /// as often as they should (results/tree).
 constexpr double kBiasLeft = 0.75;
 
+/// The same for states that differ by this number of coordinates. The width of a state grows with
+/// the power 1 / coordinates of its size, and so does the bias; kBiasLeft is for three coordinates.
+/// Fewer keep that factor, on the safe side.
+double bias_left(int coordinates) {
+  if (coordinates <= 3) return kBiasLeft;
+  return 1.0 / (std::pow(1.0 + 1.0 / kBiasLeft, 3.0 / coordinates) - 1.0);
+}
+
 /// Number of draws behind a quantile; fewer for large fields.
 int draws_for(Eigen::Index numbers) {
   return static_cast<int>(
@@ -265,8 +273,8 @@ Evidence evidence_of(const markov::FinalDistribution& whole, std::int64_t trials
 }
 
 GroupSpread::GroupSpread(const markov::FinalDistribution& whole,
-                         const std::vector<markov::FinalDistribution>& groups)
-    : whole_(whole), groups_(groups) {
+                         const std::vector<markov::FinalDistribution>& groups, int coordinates)
+    : whole_(whole), groups_(groups), bias_left_(bias_left(coordinates)) {
   if (groups.size() < 2) throw std::invalid_argument("group spread: needs two groups at least");
   for (const auto& g : groups)
     if (g.final_cells.rows() != whole.final_cells.rows() ||
@@ -279,7 +287,7 @@ Error95 GroupSpread::error(std::int64_t trials, std::uint64_t seed) const {
   CellProbabilities mean =
       CellProbabilities::Zero(whole_.final_cells.rows(), whole_.final_cells.cols());
   for (const auto& g : groups_) mean += g.final_cells / n;
-  const CellProbabilities biased = whole_.final_cells + kBiasLeft * (mean - whole_.final_cells);
+  const CellProbabilities biased = whole_.final_cells + bias_left_ * (mean - whole_.final_cells);
   const double scale = 1.0 / std::sqrt(n * (n - 1.0));
   const IndependentErrors independent(groups_, mean);
   Error95 e =

@@ -55,10 +55,11 @@ struct Mean95OfRuns : Mean95 {
 /// Error bars of a prediction from predictions of groups of the trials.
 class GroupSpread {
  public:
-  /// `groups`: two or more predictions, from disjoint parts of the trials of equal size. Throws
-  /// std::invalid_argument for fewer groups, and for fields of another size.
+  /// `groups`: two or more predictions, from disjoint parts of the trials of equal size.
+  /// `coordinates`: number by which the states differ. Throws std::invalid_argument for fewer
+  /// groups, and for fields of another size.
   GroupSpread(const markov::FinalDistribution& whole,
-              const std::vector<markov::FinalDistribution>& groups);
+              const std::vector<markov::FinalDistribution>& groups, int coordinates);
 
   /// Error bounds, from errors drawn with the groups' spread. `trials`: number behind the
   /// prediction. A share that is 0 in all groups is bounded by this number; the same holds for the
@@ -71,6 +72,7 @@ class GroupSpread {
  private:
   const markov::FinalDistribution& whole_;
   const std::vector<markov::FinalDistribution>& groups_;
+  double bias_left_;
 };
 
 /// Error bounds of the shares of the trials themselves; `counts`: trials by final gate (rows x

@@ -29,6 +29,9 @@ struct AnalysisOptions {
   std::size_t paths = 5;
   LumpingParts lumping{};
   std::uint64_t seed = 1;
+  /// Shares of all bodies by ending, predicted from smaller states (pool_answers.h) than those of
+  /// the chain: the totals of each ending are scaled to its share.
+  std::optional<std::array<double, markov::kEndings>> endings{};
 };
 
 /// The probability of the target from one way of entering the first cell by the start's face; NaN

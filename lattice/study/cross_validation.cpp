@@ -374,12 +374,12 @@ void add_seen(Fold& fold, const Half& half, const Eigen::MatrixXd& seen, const F
 
 /// Adds the chain's prediction from the same starts, with its own error bars.
 void add_prediction(Fold& fold, const EndsByBody& ends,
-                    const std::vector<markov::FinalDistribution>& groups, std::uint64_t seed,
-                    const FieldParams& field) {
+                    const std::vector<markov::FinalDistribution>& groups, int coordinates,
+                    std::uint64_t seed, const FieldParams& field) {
   Walked all{ends.predicted.rowwise().sum()};
   all.gates = std::accumulate(ends.gates.begin(), ends.gates.end(), 0.0);
   fold.chain = distribution_of(all, field);
-  const GroupSpread spread(fold.chain, groups);
+  const GroupSpread spread(fold.chain, groups, coordinates);
   fold.chain_error = spread.error(fold.chain_bodies, seed);
   fold.chain_endings = spread.endings_95(fold.chain_bodies).with_limit(field.max_gates);
 }
@@ -406,7 +406,7 @@ Fold fold_of(const Problem& problem, const Half& half, const Half& chain_half,
   fold.watched = half.watched;
   add_seen(fold, half, ends.seen, problem.field);
   add_prediction(fold, ends, group_predictions(problem, half, chain_half, options.per_leaf),
-                 options.seed, problem.field);
+                 dynamics::coordinates_cut(kernel.space), options.seed, problem.field);
   fold.corrcoef = corrcoef(fold.seen_gates, fold.chain.final_cells);
   fold.rmse_per_100 = rmse_per_100(fold.seen_gates, fold.chain.final_cells);
   return fold;

@@ -8,13 +8,45 @@
 #include "markov/solvers.h"
 
 namespace gatewalk::markov {
+namespace {
+
+void require_limit(int max_cells) {
+  if (max_cells < 1)
+    throw std::invalid_argument("adjoint: needs a limit of cells, max_cells is " +
+                                std::to_string(max_cells));
+}
+
+/// (outputs x questions) The answers of walks whose first draw gives this output.
+EndTable answers_after(const Chain& chain, Backward& backward,
+                       const std::vector<Question>& questions) {
+  EndTable answers(chain.outputs(), std::ssize(questions));
+  backward.ask(questions, [&](std::span<const std::size_t> numbers) {
+    for (int moves = backward.last_move(); moves >= 1; --moves) backward.step(moves);
+    for (Eigen::Index output = 0; output < answers.rows(); ++output)
+      for (std::size_t k = 0; k < numbers.size(); ++k)
+        answers(output, static_cast<Eigen::Index>(numbers[k])) =
+            backward.after(chain.exits()[static_cast<std::size_t>(output)], k);
+  });
+  return answers;
+}
+
+}  // namespace
+
+EndTable ending_chances(const Chain& chain, const Field& field, int column, int row,
+                        int max_cells) {
+  require_limit(max_cells);
+  validate(chain, field, {column, row, 0}, max_cells);
+  const FieldChain everywhere(chain);
+  Backward backward(everywhere, field, column, row, max_cells);
+  std::vector<Question> questions;
+  for (std::size_t e = 0; e < kEndings; ++e) questions.push_back({.why = static_cast<Ending>(e)});
+  return answers_after(chain, backward, questions);
+}
 
 AdjointPredictor::AdjointPredictor(const Chain& chain, const Field& field, int column, int row,
                                    int max_cells)
     : field_(field), start_{column, row, 0}, max_cells_(max_cells) {
-  if (max_cells < 1)
-    throw std::invalid_argument("adjoint: needs a limit of cells, max_cells is " +
-                                std::to_string(max_cells));
+  require_limit(max_cells);
   validate(chain, field, start_, max_cells);
   const FieldChain everywhere(chain);
   Backward backward(everywhere, field, column, row, max_cells);
@@ -39,14 +71,7 @@ AdjointPredictor::AdjointPredictor(const Chain& chain, const Field& field, int c
             }))
           ask(cell, edge);
     }
-  answers_.resize(chain.outputs(), std::ssize(questions));
-  backward.ask(questions, [&](std::span<const std::size_t> numbers) {
-    for (int moves = backward.last_move(); moves >= 1; --moves) backward.step(moves);
-    for (Eigen::Index output = 0; output < answers_.rows(); ++output)
-      for (std::size_t k = 0; k < numbers.size(); ++k)
-        answers_(output, static_cast<Eigen::Index>(numbers[k])) =
-            backward.after(chain.exits()[static_cast<std::size_t>(output)], k);
-  });
+  answers_ = answers_after(chain, backward, questions);
 }
 
 FinalDistribution AdjointPredictor::predict(const std::vector<std::int64_t>& counts) const {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "cli/render/final_gates.h"
+#include "lattice/pool/pool_answers.h"
 #include "lattice/pool/pooled_prediction.h"
 #include "lattice/pool/predict_pooled.h"
 #include "lattice/pool/tree_chain.h"
@@ -116,8 +117,10 @@ TEST(CellsAhead, OfTheFirstCellAreTheStartsOwn) {
   double trapped = 0.0;
   for (const lattice::CellAhead& a : cells)
     if (!a.next.empty()) trapped += a.visits.mean * a.next.back().mean;
-  const auto whole =
-      lattice::predict_whole(m.problem, m.pool, {m.problem.start}, dynamics::kEntriesPerLeaf, 1);
+  const lattice::Kernel kernel = lattice::kernel_of(m.problem.map(), m.pool);
+  const auto row = lattice::first_rows(kernel, m.problem.map(), m.pool, {&m.pool.starts.front()},
+                                       m.problem.start_type());
+  const auto whole = lattice::answers_of(kernel, m.problem.map(), row, m.problem.field, 1).final;
   EXPECT_NEAR(trapped, whole[0].trapped(), 1e-12);
   const lattice::CellAhead& first = cells[static_cast<std::size_t>(m.problem.field.start_column())];
   EXPECT_GE(first.visits.mean, 1.0);

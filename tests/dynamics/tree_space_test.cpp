@@ -173,9 +173,10 @@ TEST(TreeSpace, IsThatOfAPlainGrowerForAnyNumberOfCoordinates) {
 TEST(TreeSpace, EqualEntriesStayTogether) {
   std::vector<Entry> entries(100, {Boundary::enter, {1.0, 2.0, 3.0}});
   EXPECT_EQ(tree_space(kPaper, {kPaper, entries}, 5).trees()[0].nodes.size(), 1u);
+  EXPECT_EQ(coordinates_cut(tree_space(kPaper, {kPaper, entries}, 5)), 0);
   for (int i = 0; i < 20; ++i) entries.push_back({Boundary::enter, {2.0 + i, 2.0, 3.0}});
   std::vector<int> states;
-  (void)tree_space(kPaper, {kPaper, entries}, 5, {}, &states);
+  EXPECT_EQ(coordinates_cut(tree_space(kPaper, {kPaper, entries}, 5, {}, &states)), 1);
   EXPECT_TRUE(std::all_of(states.begin(), states.begin() + 100, [](int s) { return s == 0; }));
   EXPECT_GT(states.back(), 0);
 }

@@ -237,21 +237,26 @@ markov::FinalDistribution of_shares(double left, double right) {
 TEST(GroupSpread, SamplingAndBiasByHand) {
   const auto whole = of_shares(0.5, 0.5);
   const std::vector<markov::FinalDistribution> same(8, whole);
-  EXPECT_NEAR(GroupSpread(whole, same).error(1'000'000, 1).total_variation, 3e-6, 1e-8);
+  EXPECT_NEAR(GroupSpread(whole, same, 3).error(1'000'000, 1).total_variation, 3e-6, 1e-8);
   // All groups agree but are off: a pure bias, of which the whole prediction is taken to have three
   // quarters.
   const std::vector<markov::FinalDistribution> biased(8, of_shares(0.4, 0.6));
-  EXPECT_NEAR(GroupSpread(whole, biased).error(1000, 1).total_variation, 0.075, 1e-12);
-  EXPECT_NEAR(GroupSpread(whole, biased).endings_95(100).interval[0][0], 0.425, 0.002);
+  EXPECT_NEAR(GroupSpread(whole, biased, 3).error(1000, 1).total_variation, 0.075, 1e-12);
+  // States of more coordinates shrink more slowly with the number of trials: x of 8^x is halved in
+  // twice as many coordinates.
+  EXPECT_NEAR(GroupSpread(whole, biased, 6).error(1000, 1).total_variation,
+              0.1 / (std::sqrt(7.0 / 3.0) - 1.0), 1e-12);
+  EXPECT_NEAR(GroupSpread(whole, biased, 1).error(1000, 1).total_variation, 0.075, 1e-12);
+  EXPECT_NEAR(GroupSpread(whole, biased, 3).endings_95(100).interval[0][0], 0.425, 0.002);
   // +-0.1 alternating: a standard error of 0.1 / sqrt(7), estimated from eight groups of two gates
   // that vary together: Student's t with 7 degrees of freedom.
   std::vector<markov::FinalDistribution> spread;
   for (int k = 0; k < 8; ++k) spread.push_back(of_shares(k % 2 ? 0.4 : 0.6, k % 2 ? 0.6 : 0.4));
   double mean = 0.0;
   for (std::uint64_t seed = 0; seed < 100; ++seed)
-    mean += GroupSpread(whole, spread).error(1000, seed).total_variation / 100.0;
+    mean += GroupSpread(whole, spread, 3).error(1000, seed).total_variation / 100.0;
   EXPECT_NEAR(mean, 2.365 * 0.1 / std::sqrt(7.0), 0.02 * mean);
-  EXPECT_THROW(GroupSpread(whole, {whole}), std::invalid_argument);
+  EXPECT_THROW(GroupSpread(whole, {whole}, 3), std::invalid_argument);
 }
 
 // Many gates that vary independently show together how much: as if the variance were known.
@@ -267,7 +272,7 @@ TEST(GroupSpread, ManyGatesMakeManyDegreesOfFreedom) {
     for (auto& g : groups)
       for (Eigen::Index i = 0; i < kGates; ++i) g.final_cells.data()[i] += 1e-4 * random.normal();
     const double spread = 1e-4 / std::sqrt(8.0);  // of the mean of eight groups
-    told.push_back(GroupSpread(whole, groups).error(1'000'000, k).total_variation /
+    told.push_back(GroupSpread(whole, groups, 3).error(1'000'000, k).total_variation /
                    (0.5 * kGates * spread * std::sqrt(2.0 / std::numbers::pi)));
   }
   // The groups' mean is off by as much again, of which the bar includes three quarters.
@@ -280,7 +285,7 @@ TEST(GroupSpread, NoneAndAllSeenAreAsManyTrialsSay) {
   const auto whole = of_shares(0.0, 1.0 - 1e-16);
   std::vector<markov::FinalDistribution> groups(8, of_shares(0.0, 1.0));
   groups[3] = whole;
-  const GroupSpread spread(whole, groups);
+  const GroupSpread spread(whole, groups, 3);
   const EndingShares endings = spread.endings_95(160);
   EXPECT_EQ(endings.interval[0], dynamics::share_interval(0, 160));
   EXPECT_NEAR(endings.interval[1][0], dynamics::share_interval(160, 160)[0], 1e-12);
@@ -307,7 +312,7 @@ TEST(GroupSpread, RmseAndCorrcoefHoldForAnyGateThatWasMissed) {
     markov::FinalDistribution whole;
     whole.final_cells = p;
     const Error95 bound =
-        GroupSpread(whole, std::vector<markov::FinalDistribution>(8, whole)).error(trials, 1);
+        GroupSpread(whole, std::vector<markov::FinalDistribution>(8, whole), 3).error(trials, 1);
     EXPECT_GT(bound.corrcoef, least);
     for (Eigen::Index from : {0, 1, 4})
       for (Eigen::Index to = 0; to < p.size(); ++to) {
@@ -326,10 +331,10 @@ TEST(GroupSpread, OneTrialSeenLeavesAWideInterval) {
   std::vector<markov::FinalDistribution> groups(8, of_shares(0.0, 1.0));
   groups[2] = of_shares(0.05, 0.95);
   const auto [low, high] =
-      GroupSpread(of_shares(0.0125, 0.9875), groups).endings_95(160).interval[0];
+      GroupSpread(of_shares(0.0125, 0.9875), groups, 3).endings_95(160).interval[0];
   EXPECT_LT(low, 0.0008);
   EXPECT_GT(high, 0.04);
-  const auto all = GroupSpread(of_shares(0.0125, 0.9875), groups).endings_95(160).interval[1];
+  const auto all = GroupSpread(of_shares(0.0125, 0.9875), groups, 3).endings_95(160).interval[1];
   EXPECT_NEAR(all[0], 1.0 - high, 1e-9);
   EXPECT_NEAR(all[1], 1.0 - low, 1e-9);
 }
@@ -340,7 +345,7 @@ TEST(GroupSpread, NoNarrowerThanTheGateRuns) {
   const auto whole = of_shares(1e-4, 1.0 - 1e-4);
   std::vector<markov::FinalDistribution> groups;
   for (int k = 0; k < 8; ++k) groups.push_back(of_shares(1e-4 * (1 + 0.01 * k), 0.9999));
-  const auto [low, high] = GroupSpread(whole, groups).endings_95(200).interval[0];
+  const auto [low, high] = GroupSpread(whole, groups, 3).endings_95(200).interval[0];
   EXPECT_GT(high, dynamics::share_interval(0, 1000)[1]);
   EXPECT_LT(low, 2e-6);
 }
@@ -609,6 +614,52 @@ TEST(PoolChains, ManyStartsByTheAdjointAreAnsweredAsOneByOne) {
     for (std::size_t g = 0; g < kTrialGroups; ++g) {
       near(many.groups[few[i]][g], two.groups[i][g]);
       near(many.kernels[few[i]][g], two.kernels[i][g]);
+    }
+  }
+}
+
+TEST(PoolChains, EndingsScaleTheirMaps) {
+  markov::FinalDistribution d;
+  d.final_cells = CellProbabilities::Zero(1, 3);
+  d.final_cells << 0.3, 0.7, 0.0;
+  d.mixed_cells.push_back({1, {0.2, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0}});
+  d.endings = {0.5, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0};
+  const auto scaled = with_endings(d, {0.6, 0.4, 0.0, 0.0, 0.0, 0.0, 0.0});
+  EXPECT_NEAR(scaled.trapped(), 0.6, 1e-15);
+  EXPECT_NEAR(scaled[Ending::far_edge], 0.4, 1e-15);
+  EXPECT_NEAR(scaled.final_cells(0, 0), 0.36, 1e-15);
+  EXPECT_NEAR(scaled.final_cells(0, 1), 0.24 + 0.4, 1e-15);
+  EXPECT_EQ(scaled.final_cells(0, 2), 0.0);
+  EXPECT_NEAR(scaled.mixed_cells[0][Ending::far_edge], 0.4, 1e-15);
+  // An ending that no map has stays away.
+  const auto none = with_endings(d, {0.5, 0.49, 0.01, 0.0, 0.0, 0.0, 0.0});
+  EXPECT_EQ(none[Ending::left_edge], 0.0);
+}
+
+// The shares of endings are those of the chain with leaves of two entries, from few starts and, by
+// the adjoint, from many.
+TEST(PooledPrediction, EndingsComeFromSmallLeaves) {
+  const Scene scene = fast_scene();
+  const Problem problem = problem_of(scene);
+  for (const std::size_t starts : {std::size_t{2}, many_starts().size()}) {
+    const std::vector<Entry> all = many_starts();
+    const std::vector<Entry> some(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(starts));
+    RunPool pool;
+    const PooledPrediction p = predict_pooled(problem, pool, some, {.accuracy = 0.2, .seed = 3});
+    const Kernel kernel = kernel_of(problem.map(), pool, ending_leaf(pool));
+    for (std::size_t i = 0; i < starts; i += 7) {
+      const StartAnswer& a = p.starts[i];
+      if (a.from_trials) continue;
+      const markov::Counts row =
+          first_rows(kernel, problem.map(), pool, {&pool.starts[i]}, problem.start_type());
+      const auto small = answers_of(kernel, problem.map(), row, scene.field, 1).final[0];
+      for (std::size_t e = 0; e < markov::kEndings; ++e) {
+        EXPECT_NEAR(a.endings.share[e], small.endings[e], 1e-12) << e;
+        EXPECT_LE(a.endings.interval[e][0], a.endings.share[e]);
+        EXPECT_GE(a.endings.interval[e][1], a.endings.share[e]);
+      }
+      EXPECT_NEAR(a.final.final_cells.sum() + a.final.remainder, 1.0, 1e-12);
+      EXPECT_GT((a.final.final_cells - small.final_cells).abs().maxCoeff(), 1e-6);
     }
   }
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <numeric>
 #include <stdexcept>
 
 #include "chains.h"
@@ -56,6 +57,7 @@ TEST(Adjoint, SaysWhatPropagationSays) {
           for (const int row : {3, 40, 60}) test::empty_row(counts, row);
         const Chain chain = Chain::from_counts(counts, exits);
         const AdjointPredictor adjoint(chain, c.field, c.column, c.row, c.max_cells);
+        const EndTable endings = ending_chances(chain, c.field, c.column, c.row, c.max_cells);
         for (const int input : {0, 12, 86}) {
           const auto expected =
               propagate(chain, c.field, {c.column, c.row, input}, {.max_cells = c.max_cells});
@@ -64,6 +66,15 @@ TEST(Adjoint, SaysWhatPropagationSays) {
                        ", " + std::to_string(c.max_cells) + " cells, input " +
                        std::to_string(input));
           expect_near(found, expected, 1e-14);
+          const std::vector<std::int64_t> row = row_of(counts, input);
+          const auto all = static_cast<double>(std::accumulate(row.begin(), row.end(), 0LL));
+          for (std::size_t e = 0; e < kEndings && all > 0.0; ++e) {
+            double share = 0.0;
+            for (std::size_t output = 0; output < row.size(); ++output)
+              share += static_cast<double>(row[output]) / all *
+                       endings(static_cast<Eigen::Index>(output), static_cast<Eigen::Index>(e));
+            EXPECT_NEAR(share, expected.endings[e], 1e-13) << e;
+          }
         }
       }
 }
@@ -141,6 +152,8 @@ TEST(Adjoint, RefusesWhatItCannotAnswer) {
   const Chain chain = Chain::from_counts(counts, lattice_exits());
   EXPECT_THROW(AdjointPredictor(chain, {9, 9}, 4, 0, 0), std::invalid_argument);
   EXPECT_THROW(AdjointPredictor(chain, {9, 9}, 9, 0, 5), std::invalid_argument);
+  EXPECT_THROW((void)ending_chances(chain, {9, 9}, 4, 0, 0), std::invalid_argument);
+  EXPECT_THROW((void)ending_chances(chain, {9, 9}, 9, 0, 5), std::invalid_argument);
   const AdjointPredictor adjoint(chain, {3, 3}, 1, 0, 5);
   EXPECT_THROW((void)adjoint.predict({1, 2, 3}), std::invalid_argument);
   const auto nothing = adjoint.predict(std::vector<std::int64_t>(88, 0));

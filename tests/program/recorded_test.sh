@@ -60,8 +60,9 @@ holds '.endings_95.crossed[1] - .endings_95.crossed[0] < 0.15' coin.json
 "$gatewalk" analyze coin.nc --json coins.json --quiet >/dev/null || fail "analyze of coin.nc"
 holds '.expected_gates_95[0] < 1.75 and .expected_gates_95[1] > 1.75 and ((.expected_time_s - .expected_gates) | fabs) < 1e-9' coins.json
 "$gatewalk" walk coin.nc --walks 100000 --json walks.json --quiet >/dev/null || fail "walk of coin.nc"
+# Walks draw from the states of the file, which are larger than those of the predicted endings.
 [ "$(jq -n --slurpfile w walks.json --slurpfile p coin.json \
-  '($w[0].endings.crossed / 1e5 - $p[0].endings.crossed) | fabs < 0.008')" = true ] || fail "walks of coin.nc"
+  '$p[0].endings_95.crossed as $i | $w[0].endings.crossed / 1e5 | . > $i[0] and . < $i[1]')" = true ] || fail "walks of coin.nc"
 expect 0 'you need [a-z ]*[0-9]* trials' "$gatewalk" power coin.nc --json power.json
 holds '.from_prediction.endings.crossed[2].trials > 10' power.json
 
