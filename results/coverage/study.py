@@ -10,7 +10,7 @@ for: added in squares to the half of the interval on the truth's side, or to the
 what the answer was made from; an interval of such a share can only say "at most", and should hold more
 often.
 """
-import csv, importlib.util, json, math, os, sys, tempfile
+import csv, importlib.util, json, math, os, statistics, subprocess, sys, tempfile
 from collections import defaultdict
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -27,12 +27,39 @@ SCENES = {
     "robot": tree.SCENES["R"],
     "mixed": [str(ROOT / "scenes/mixed.toml"), "--set", "run.method=moreau"],
 }
-TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 200, 0.04
+# A cell program with 3, 5 and 8 coordinates: place and velocity; heading and turning rate; phase, stride and load.
+LEGS = {f"legs{len(start)}": start for start in
+        ((0.01, 0, 0.25), (0.01, 0, 0.25, 0, 0), (0.01, 0, 0.25, 0, 0, 0.5, 1, 1))}
+TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 300, 0.04
+FIRST_SEED = 2001  # the rules were chosen on others
 LATTICE_TRIALS, LATTICE_SEEDS = 1000, 200
 UNSEEN = {"A": 10, "B": 6, "C": 10, "R": 40, "M": 6}  # chains of results/tree's scenes, 24 starts each
 SEEDS_OF = {"analyze": 40, "validate": 30, "power": 2, "rare": 35, "build": 40}  # of each scene
 VALIDATE_TRIALS, RARE_ROW, RARE_RUNS, MORE_TRUTH_TRIALS = 1000, 6, 100_000, 100_000
 COSTS = ("time_s", "forward_m", "work_J", "random_work_J", "lost_J")
+
+
+def seeds_of(command):
+    return range(FIRST_SEED, FIRST_SEED + SEEDS_OF[command])
+
+
+def make_legs(folder):
+    """Compiles the cell program; adds its scenes, whose cells are as its first line says."""
+    program = folder / "legged_body"
+    subprocess.run(["c++", "-std=c++20", "-O2", ROOT / "scenes/programs/legged_body.cpp", "-o", program], check=True)
+    for name, start in LEGS.items():
+        said = subprocess.run([program, str(len(start))], input="", capture_output=True, text=True, check=True)
+        cell = json.loads(said.stdout)
+        lines = ["[cell]", "width_m = 0.2", "length_m = 0.24"]
+        for face in cell["faces"]:
+            lines += ["[[cell.faces]]", f'name = "{face["name"]}"', f'move = {face["move"]}']
+        for c in cell["coordinates"]:
+            lines += ["[[cell.coordinates]]", f'name = "{c["name"]}"', f'unit = "{c["unit"]}"', f'scale = {c["scale"]}']
+        lines += ["[field]", "columns = 9", "rows = 9", "max_gates = 15", ""]
+        toml = folder / f"{name}.toml"
+        toml.write_text("\n".join(lines))
+        SCENES[name] = [str(toml), "--cell-program", f"{program} {len(start)}", "--start",
+                        "S:" + ",".join(map(str, start))]
 
 
 def truth_of(scene):
@@ -100,7 +127,7 @@ def predicted(count, scene, truth):
         return run("predict", *SCENES[scene], "--accuracy", ACCURACY, "--seed", seed)
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for j in pool.map(one, range(1, SEEDS + 1)):
+        for j in pool.map(one, range(FIRST_SEED, FIRST_SEED + SEEDS)):
             trials = j["first_runs"]
             answer, p = flat(j["final_gates"]), truth["final_gates"]
             count.add("predict: total variation", scene,
@@ -122,7 +149,7 @@ def simulated(count, scene, truth):
         return run("lattice", *SCENES[scene], "--trials", LATTICE_TRIALS, "--seed", seed)
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for j in pool.map(one, range(1, LATTICE_SEEDS + 1)):
+        for j in pool.map(one, range(FIRST_SEED, FIRST_SEED + LATTICE_SEEDS)):
             for e, interval in j["endings_95"].items():
                 count.share(f"lattice: {e}", scene, truth["endings"][e], j["endings"][e] / LATTICE_TRIALS,
                             [limit / LATTICE_TRIALS for limit in interval], LATTICE_TRIALS)
@@ -145,18 +172,29 @@ def unseen(count):
             words = [w for s in starts for w in ("--start", ",".join(map(str, s)))]
             return scene, starts, run("predict", matrix, *words, "--seed", seed)
 
+    held = defaultdict(list)  # by scene: the share of each chain's starts that hold
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         for scene, starts, j in pool.map(one, [(s, seed) for s, n in UNSEEN.items() for seed in range(101, 101 + n)]):
+            held[scene].append(0.0)
             for s, a in zip(starts, j["starts"]):
                 t = truths[f"{scene} {','.join(map(str, s))} many"]
                 p = [n / t["trials"] for n in t["final_gates"]]
                 answer = flat(a["final_gates"])
-                count.add("predict, unseen start: total variation", scene,
-                          tv(answer, p) <= math.hypot(a["error_95"], noise_tv(p, t["trials"])))
+                holds = tv(answer, p) <= math.hypot(a["error_95"], noise_tv(p, t["trials"]))
+                count.add("predict, unseen start: total variation", scene, holds)
+                held[scene][-1] += holds / len(starts)
                 noise = 100 * math.sqrt(sum(x * (1 - x) for x in p) / t["trials"] / len(p))
                 count.add("predict, unseen start: RMSE", scene,
                           rmse(answer, p) <= math.hypot(a["rmse_per_100_95"], noise))
                 gates_of(count, "predict, unseen start", scene, a, p, a["first_runs"], t["trials"])
+
+
+    with open(OUT / "unseen_chains.csv", "w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(["scene", "chains", "holds_percent", "standard_error_over_chains_points"])
+        for scene, of in held.items():
+            table.writerow([scene, len(of), f"{100 * statistics.mean(of):.1f}",
+                            f"{100 * statistics.stdev(of) / math.sqrt(len(of)):.1f}"])
 
 
 def endings_of(count, what, scene, shares, intervals, truth, trials):
@@ -205,7 +243,7 @@ def validated(count, scene, truth):
 
 def powered(count, scene, truth):
     """Its intervals are those of predict, number by number, which is all that is looked at."""
-    for seed in range(1, SEEDS_OF["power"] + 1):
+    for seed in seeds_of("power"):
         power, predict = (run(c, *SCENES[scene], "--accuracy", ACCURACY, "--seed", seed) for c in ("power", "predict"))
         count.add("power: as predict's to the last bit", scene, power["endings_95"] == predict["endings_95"])
 
@@ -226,7 +264,7 @@ def built(count, scene, truth):
             matrix.unlink()
             return said, answer
         with ThreadPoolExecutor(os.cpu_count()) as pool:
-            for said, answer in pool.map(one, range(1, SEEDS_OF["build"] + 1)):
+            for said, answer in pool.map(one, seeds_of("build")):
                 count.add("build: total variation", scene, tv(flat(answer["final_gates"]), truth["final_gates"]) <=
                           math.hypot(said["state_space"]["error_95"][0], noise_tv(truth["final_gates"], TRUTH_TRIALS)))
 
@@ -235,21 +273,28 @@ def each(command, scene, *options):
     def one(seed):
         return run(command, *SCENES[scene], *options, "--seed", seed)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        yield from pool.map(one, range(1, SEEDS_OF[command] + 1))
+        yield from pool.map(one, seeds_of(command))
 
 
+ALSO_LEGS = ("predict", "lattice", "build")  # commands whose intervals are counted with LEGS too
 COMMANDS = {"predict": predicted, "lattice": simulated, "analyze": analyzed, "validate": validated, "power": powered,
             "rare": rare, "build": built, "unseen": None}
 
 
 def main():
-    commands = sys.argv[3:] or list(COMMANDS)
+    with tempfile.TemporaryDirectory() as folder:
+        own = list(SCENES)
+        make_legs(Path(folder))
+        measure(own, sys.argv[3:] or list(COMMANDS))
+
+
+def measure(own, commands):
     path = OUT / "truth.json"
     truths = json.loads(path.read_text()) if path.exists() else {}
     for scene in SCENES:
         if scene not in truths:
             truths[scene] = truth_of(scene)
-    lacking = [scene for scene in SCENES if "rows" not in truths[scene]]
+    lacking = [scene for scene in own if "rows" not in truths[scene]]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         for scene, more in zip(lacking, pool.map(more_truth_of, lacking)):
             truths[scene].update(more)
@@ -259,7 +304,7 @@ def main():
         if command == "unseen":
             unseen(count)
         else:
-            for scene in SCENES:
+            for scene in SCENES if command in ALSO_LEGS else own:
                 COMMANDS[command](count, scene, truths[scene])
     names = [*SCENES, "M", "R", "all"]
     share = lambda key: f"{100 * count.held[key] / count.of[key]:.1f}" if count.of[key] else ""
