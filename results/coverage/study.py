@@ -28,8 +28,9 @@ SCENES = {
     "mixed": [str(ROOT / "scenes/mixed.toml"), "--set", "run.method=moreau"],
 }
 # A cell program with 3, 5 and 8 coordinates: place and velocity; heading and turning rate; phase, stride and load.
-LEGS = {f"legs{len(start)}": start for start in
-        ((0.01, 0, 0.25), (0.01, 0, 0.25, 0, 0), (0.01, 0, 0.25, 0, 0, 0.5, 1, 1))}
+LEGS = ("legs3", "legs5", "legs8")
+LEGS_START = {"d_m": 0.01, "vx_m_per_s": 0, "vy_m_per_s": 0.25, "heading_rad": 0, "turn_rad_per_s": 0, "phase": 0.5,
+              "stride": 1, "load": 1}
 TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 300, 0.04
 FIRST_SEED = 2001  # the rules were chosen on others
 LATTICE_TRIALS, LATTICE_SEEDS = 1000, 200
@@ -47,19 +48,20 @@ def make_legs(folder):
     """Compiles the cell program; adds its scenes, whose cells are as its first line says."""
     program = folder / "legged_body"
     subprocess.run(["c++", "-std=c++20", "-O2", ROOT / "scenes/programs/legged_body.cpp", "-o", program], check=True)
-    for name, start in LEGS.items():
-        said = subprocess.run([program, str(len(start))], input="", capture_output=True, text=True, check=True)
+    for name in LEGS:
+        coordinates = int(name[-1])
+        said = subprocess.run([program, str(coordinates)], input="", capture_output=True, text=True, check=True)
         cell = json.loads(said.stdout)
         lines = ["[cell]", "width_m = 0.2", "length_m = 0.24"]
         for face in cell["faces"]:
             lines += ["[[cell.faces]]", f'name = "{face["name"]}"', f'move = {face["move"]}']
         for c in cell["coordinates"]:
             lines += ["[[cell.coordinates]]", f'name = "{c["name"]}"', f'unit = "{c["unit"]}"', f'scale = {c["scale"]}']
-        lines += ["[field]", "columns = 9", "rows = 9", "max_gates = 15", ""]
+        lines += ["[field]", "columns = 9", "rows = 9", "max_gates = 15", "[start]", 'face = "S"']
+        lines += [f"{key} = {value}" for key, value in list(LEGS_START.items())[:coordinates]]
         toml = folder / f"{name}.toml"
-        toml.write_text("\n".join(lines))
-        SCENES[name] = [str(toml), "--cell-program", f"{program} {len(start)}", "--start",
-                        "S:" + ",".join(map(str, start))]
+        toml.write_text("\n".join(lines) + "\n")
+        SCENES[name] = [str(toml), "--cell-program", f"{program} {coordinates}"]
 
 
 def truth_of(scene):
