@@ -131,7 +131,8 @@ TEST(RqmcTrials, HaveLessChanceTogether) {
   }
   const CellProbabilities p = shares(ran.tally.final_cells);
   const double plain = (p * (1.0 - p)).sqrt().sum();
-  EXPECT_LT(spread(replicates), 0.8 * plain * plain / kTrials);
+  // 0.67 here; 0.77 if points set the noise of first passages alone.
+  EXPECT_LT(spread(replicates), 0.72 * plain * plain / kTrials);
 }
 
 TEST(RqmcTrials, FirstPointsGoOnWhereTheyWere) {
