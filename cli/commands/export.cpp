@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <system_error>
 
@@ -90,12 +92,31 @@ void check_files_beside(const ExportCommand& options, ExportForm form) {
   }
 }
 
+/// Writes the table of states beside the file of -o. A matrix file with the same name and another
+/// ending would lose its states to another table: throws UsageError, or warns with --force.
+void write_states(const ExportCommand& options, const std::string& states) {
+  const std::string output = options.output.value(), stem = stem_of(output),
+                    file = stem + ".states.csv";
+  std::ifstream in(file, std::ios::binary);
+  std::error_code missing;
+  if (in && std::string(std::istreambuf_iterator<char>(in), {}) != states)
+    for (const char* ending : {".mtx", ".csv", ".npz", ".dtrajs", ".dtrajs.npz"})
+      if (const std::string other = stem + ending;
+          other != output && std::filesystem::exists(other, missing)) {
+        const std::string what =
+            fmt::format("{} has the states of {}, which are others", file, other);
+        if (!options.force) throw UsageError(what + ": give -o another name");
+        options.warn(what + ": they are replaced");
+      }
+  options.write(file, states);
+}
+
 /// Writes a sparse matrix, and the table of its states beside it.
 void write_table(const ExportCommand& options, ExportForm form, const SparseTable& table,
                  const std::vector<std::string>& rows, const std::vector<std::string>& columns,
                  const std::string& states) {
   const std::string output = options.output.value();
-  options.write(stem_of(output) + ".states.csv", states);
+  write_states(options, states);
   if (form == ExportForm::matrix_market)
     options.write(output, matrix_market_of(table, fmt::format("gatewalk {}: {}", kVersion,
                                                               options.canonical())));
@@ -183,12 +204,11 @@ Exported export_gate(const ExportCommand& options, ExportForm form) {
   std::vector<std::string> names;
   for (const int s : order) names.push_back(all[static_cast<std::size_t>(s)]);
   names.push_back(all.back());
-  const std::vector<std::int64_t> per_run =
-      options.counts ? counts_per_run_of(options, file, t) : std::vector<std::int64_t>();
+  const std::vector<std::int64_t> per_run = counts_per_run_of(options, file, t);
   write_table(options, form, table, names, names, states_csv(file, per_run));
-  std::string text = fmt::format("{} states of one gate, {} entries. The last column is trapped.\n",
-                                 t.space.size(), table.entries.size());
-  if (std::count(per_run.begin(), per_run.end(), 2) > 0)
+  std::string text = fmt::format("{} of one gate, {} entries. The last column is trapped.\n",
+                                 states_words(t.space), table.entries.size());
+  if (options.counts && std::count(per_run.begin(), per_run.end(), 2) > 0)
     text += fmt::format(
         "Some rows count each run and its mirror image: see counts_per_run in {}.states.csv.\n",
         stem_of(options.output.value()));
@@ -210,12 +230,13 @@ Exported export_trials(const ExportCommand& options) {
   const dynamics::StateSpace& space = s.file->transitions.space;
   const Trajectories all = trajectories_of(*s.pool, space);
   const std::string output = options.output.value();
-  options.write(stem_of(output) + ".states.csv", states_csv(*s.file, {}));
+  const auto per_run = counts_per_run_of(options, *s.file, s.file->transitions);
+  write_states(options, states_csv(*s.file, per_run));
   options.write(output, lattice::has_ending(output, ".npz") ? npz_of(all) : text_of(all));
   return {
       {.states = space.size(), .trajectories = std::ssize(all), .made_by = options.provenance(s)},
-      fmt::format("{} trajectories through {} states. State {} is trapped.\n", all.size(),
-                  space.size(), space.size())};
+      fmt::format("{} trajectories through {}. State {} is trapped.\n", all.size(),
+                  states_words(space), space.size())};
 }
 
 /// A sentence on how other programs read the file.

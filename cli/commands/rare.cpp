@@ -30,6 +30,16 @@ std::string too_few_runs(const lattice::Splitting& s, const lattice::SplittingOp
       digits(how.accuracy), how.most_runs);
 }
 
+/// A sentence if more gate runs were made than --gate-runs says; else empty.
+std::string more_runs(const lattice::RareEvent& event, const lattice::SplittingOptions& how) {
+  const lattice::Splitting& s = event.splitting;
+  if (how.trials || s.trials > how.kFirst || s.gate_runs + event.pool_runs <= how.most_runs)
+    return "";
+  return wrapped(
+      fmt::format("These are more than {} gate runs (--gate-runs): the first {} trials always run.",
+                  how.most_runs, how.kFirst));
+}
+
 }  // namespace
 
 int run_rare(const Arguments& arguments) {
@@ -53,7 +63,7 @@ int run_rare(const Arguments& arguments) {
   const CountOption gate_runs = options.add_count(
       "gate-runs", "N",
       "about the largest number of gate runs (default: 2e7; as long as no body enters the row, "
-      "those of 100 000 trials)");
+      "those of 100 000 trials); the first 1000 trials always run");
   const CountOption trials =
       options.add_count("trials", "N", "also simulate N trials without splitting, to compare");
   const CountOption split_trials = options.add_count(
@@ -100,10 +110,10 @@ int run_rare(const Arguments& arguments) {
                "halves the standard error");
   next.add("analyze", "", "which number of the scene matters most");
   const std::string too_few = too_few_runs(result.event.splitting, how);
-  options.give_out(
-      result, {answer_text(result) + (too_few.empty() ? "" : wrapped("Beware: " + too_few + ".")) +
-                   beware_of(result.event.splitting.health),
-               details_text(result, source.problem.field), next.lines()});
+  options.give_out(result, {answer_text(result) + more_runs(result.event, how) +
+                                (too_few.empty() ? "" : wrapped("Beware: " + too_few + ".")) +
+                                beware_of(result.event.splitting.health),
+                            details_text(result, source.problem.field), next.lines()});
   options.warn(too_few);
   const int exit = status_of(options, result.event.splitting.health);
   options.draw([&] { return figure_of(result); });

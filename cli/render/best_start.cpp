@@ -32,7 +32,8 @@ double best_in(const FoundStart& f, int column) {
 
 std::string gain_verdict(const FoundStart& f) {
   if (f.found.own)
-    return "No start was found that is better than the scene's own by more than chance.\n";
+    return "The scene's own start is the best known: none was found that is better by more than "
+           "chance.\n";
   return gain_sentence(f.found.gain, "The best start", "the scene's own");
 }
 
@@ -95,7 +96,8 @@ void describe(Fields& out, const FoundStart& f) {
     describe_column(start, f, found.best.column);
   });
   out.flag({"is_own",
-            "whether the scene's own start is kept: none was better by more than a standard error"},
+            "whether the scene's own start is kept: none was better by more than a standard error, "
+            "or not in new trials"},
            found.own);
   out.object({"own", "the start of the scene, or of --start"}, [&](Fields& own) {
     describe_start(own, {"start", "entry of the body into the field"}, section, f.own);

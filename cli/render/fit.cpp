@@ -135,7 +135,7 @@ void describe(Fields& out, const FittedScene& f) {
            markov::CellProbabilities(fit.correlation.array()));
   out.number({"p", "1",
               "posterior predictive p-value: share of drawn experiments with at least the observed "
-              "chi-squared distance"},
+              "chi-squared distance, in which never is a group"},
              fit.p);
   out.count({"observed", "1", "number of observed trials, or passages"}, fit.observed);
   out.text(Label("of",
@@ -238,6 +238,7 @@ std::string explained_text(const FittedScene& f) {
   std::string text = fmt::format(
       "Beware: no numbers in these ranges explain the counts ({}){}. Largest differences:\n",
       p_words(fit.p), fit.outcomes.is_of_passages() ? "; are the cells of the same size?" : "");
+  if (fit.never > 0) text += fmt::format("  as no simulated one ended: {} observed\n", fit.never);
   for (std::size_t i = 0; i < std::min(kMostShown, sorted.size()); ++i)
     text += fmt::format("  {}: {} expected, {} observed\n", words_of(f, sorted[i]),
                         fixed(sorted[i].expected, 1), sorted[i].observed);

@@ -26,13 +26,29 @@ namespace {
 
 using namespace dynamics;
 
+/// Whether some rows of an imported matrix count each run with its mirror image.
+bool counts_images(const lattice::MatrixFile& file) {
+  const std::vector<std::int64_t> per_run = lattice::counts_per_run(file);
+  return std::find(per_run.begin(), per_run.end(), 2) != per_run.end();
+}
+
+/// The number of runs behind an imported matrix whose rows say how often they count each run.
+std::int64_t imported_runs_of(const lattice::MatrixFile& file) {
+  const std::vector<std::int64_t> per_run = lattice::counts_per_run(file);
+  double runs = 0.0;
+  for (int s = 0; s < file.transitions.space.size(); ++s)
+    runs += static_cast<double>(file.transitions.trials[s]) /
+            static_cast<double>(per_run[static_cast<std::size_t>(s)]);
+  return std::llround(runs);
+}
+
 /// The number of gate runs behind the counts. For trees the file's record gives it, because mirror
 /// images are counted too, and first runs of trials are rows of their own.
 std::int64_t gate_runs_of(const lattice::MatrixFile& file, const std::string& path) {
   const auto states = recorded_states(file, path);
-  return file.transitions.space.has_trees() && states && states->trees
-             ? states->trees->gate_runs
-             : file.transitions.totals().runs;
+  return file.transitions.space.has_trees() && states && states->trees ? states->trees->gate_runs
+         : counts_images(file)                                         ? imported_runs_of(file)
+                               : file.transitions.totals().runs;
 }
 
 /// The shares of a row's trials that enter the next gate through each boundary, then trapped.
@@ -257,6 +273,12 @@ std::string beware_of_recorded(const std::optional<dynamics::Health>& status) {
                 : "Beware: the record of numerical faults of this matrix is missing or damaged.\n";
 }
 
+std::string states_words(const dynamics::StateSpace& space) {
+  const auto starts = std::ssize(space.points());
+  const std::string states = counted(space.size() - starts, "state", "states");
+  return starts == 0 ? states : states + " and " + counted(starts, "start", "starts");
+}
+
 void require_keepable(const lattice::Scene& scene) {
   if (const auto bytes = lattice::to_toml(scene).size(); bytes > markov::kMostTextBytes)
     throw std::invalid_argument(fmt::format(
@@ -307,14 +329,16 @@ namespace {
 std::string size_line(const Transitions& t, const std::string& path) {
   const int n = t.space.size();
   return fmt::format("{}: transition matrix of {} ({} rows, {} columns, the last one: trapped)\n",
-                     path, counted(n, "state", "states"), n, n + 1);
+                     path, states_words(t.space), n, n + 1);
 }
 
-/// What a matrix counts: "gate runs", "recorded passages", "counted steps"; "probabilities" if the
-/// matrix was imported with probabilities in the place of counts.
-const char* counted_of(const std::optional<StateRecord>& states) {
+/// What a matrix counts: "gate runs", "recorded passages", "counted steps", or "counted runs" if
+/// some rows count mirror images; "probabilities" if the matrix was imported with probabilities in
+/// the place of counts.
+const char* counted_of(const lattice::MatrixFile& file, const std::optional<StateRecord>& states) {
   if (states && states->are_probabilities) return "probabilities";
-  if (states && states->is_imported()) return "counted steps";
+  if (states && states->is_imported())
+    return counts_images(file) ? "counted runs" : "counted steps";
   return states && states->trees && !states->trees->accuracy ? "recorded passages" : "gate runs";
 }
 
@@ -328,7 +352,7 @@ std::string summary_table(const lattice::MatrixFile& file, const std::string& pa
   const std::string runs =
       states && states->are_probabilities
           ? "given as probabilities"
-          : fmt::format("from {} {}", gate_runs_of(file, path), counted_of(states));
+          : fmt::format("from {} {}", gate_runs_of(file, path), counted_of(file, states));
   std::string text =
       size_line(t, path) + fmt::format("{} entries are above 0, {}.\n", total.nonzeros, runs);
   if (!t.space.has_trees() && !is_imported)
@@ -388,11 +412,11 @@ std::string answer_text(const ShownMatrix& matrix, const ShownRows& shown) {
   const std::int64_t cells = std::int64_t{t.space.size()} * (t.space.size() + 1);
   TextTable table({{"", -20, 0, "", "  "}, {}});
   const auto states = recorded_states(file, path);  // a file of another program may have none
-  table.row({counted_of(states),
+  table.row({counted_of(file, states),
              states && states->are_probabilities
                  ? "given in the place of counts"
                  : fmt::format("{}{}", gate_runs_of(file, path),
-                               t.space.has_trees()
+                               t.space.has_trees() || counts_images(file)
                                    ? fmt::format(" (counts, with mirror images: {})", total.runs)
                                    : "")});
   table.row({"entries above 0", fmt::format("{} of {} ({})", total.nonzeros, cells,
@@ -552,7 +576,7 @@ Figure figure_of(const Transitions& t) {
          c.size > 8.0 * static_cast<double>(c.name.size()) ? "center offset 0,-0.3"
                                                            : "right rotate by 90");
   panel.say(
-      fmt::format("transition matrix: {} states, {} counts{}", t.space.size(), t.totals().runs,
+      fmt::format("transition matrix: {}, {} counts{}", states_words(t.space), t.totals().runs,
                   per_block > 1 ? fmt::format(", blocks of {}", per_block) : ""),
       8, 18);
   panel.say("down: how a gate is entered; across: how the next one is, or trapped", 8,

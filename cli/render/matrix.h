@@ -29,6 +29,9 @@ namespace gatewalk::cli {
 /// A line of the first screen if faults_recorded() is not empty; else empty.
 [[nodiscard]] std::string beware_of_recorded(const std::optional<dynamics::Health>& status);
 
+/// "87 states"; "192 states and 1 start" for trees, whose starts have rows of their own.
+[[nodiscard]] std::string states_words(const dynamics::StateSpace& space);
+
 /// Throws std::invalid_argument if a scene is too large for a matrix file.
 void require_keepable(const lattice::Scene& scene);
 

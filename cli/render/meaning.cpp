@@ -21,7 +21,7 @@ using dynamics::Meaning;
 
 // Limits for walkers. A walk ends at a Froude number of 1, where gravity no longer keeps the body
 // on a stiff leg; fast runners reach 10 to 30. Friction holds the feet. Legs step a few times per
-// body length.
+// body width.
 constexpr const char* kGrip =
     "friction holds few robots by more than their weight; insects with claws hold by more";
 constexpr double kFastestRun = 30.0, kMostGrip = 1.0, kMostSteps = 10.0, kLeastPatience = 5.0;
@@ -104,7 +104,7 @@ std::string speed_words(const lattice::Scene& scene, const Meaning& m) {
   const std::string top =
       std::isfinite(m.top_speed)
           ? fmt::format(
-                "at most {} in the open, {} body lengths per second (95 % of it {} after a start "
+                "at most {} in the open, {} body widths per second (95 % of it {} after a start "
                 "from rest); ",
                 quantity(m.top_speed, "m/s", 3),
                 three_digits(m.top_speed / (2.0 * scene.gate.body.radius)),
@@ -128,7 +128,7 @@ std::string sideways_words(const lattice::Scene& scene, const Meaning& m) {
     text += fmt::format("; the random force is {} the push",
                         times_as(gate.forces.random / gate.forces.propulsion));
   if (std::isfinite(m.passage))
-    text += fmt::format(", drawn {} per body length", times_as(m.draws_per_length));
+    text += fmt::format(", drawn {} per body width", times_as(m.draws_per_length));
   return text;
 }
 
@@ -305,7 +305,7 @@ std::vector<FarFromWalkers> far_from_walkers(const Meaning& m, const lattice::Sc
   if (m.froude > kFastestRun)
     all.push_back(
         {"froude",
-         fmt::format("{} {}, {} body lengths per second", quantity(fastest, "m/s", 3),
+         fmt::format("{} {}, {} body widths per second", quantity(fastest, "m/s", 3),
                      has_top ? "at most in the open" : "at the end of an open gate",
                      three_digits(fastest / (2.0 * scene.gate.body.radius))),
          fmt::format("v^2/(g R) = {}, with the radius for a leg: walking is usually below 1, and "
@@ -322,7 +322,7 @@ std::vector<FarFromWalkers> far_from_walkers(const Meaning& m, const lattice::Sc
          kGrip});
   if (m.draws_per_length > kMostSteps)
     all.push_back({"draws_per_body_length",
-                   three_digits(m.draws_per_length) + " draws of the random force per body length",
+                   three_digits(m.draws_per_length) + " draws of the random force per body width",
                    "legs step a few times while the body goes its own length"});
   if (m.passages_waited < kLeastPatience)
     all.push_back(

@@ -342,7 +342,7 @@ std::optional<double> larger(const lattice::SmallestDifference& d) {
   return d.more ? d.more : d.fewer;
 }
 
-/// "You detect a shift of 12 points in crossed, 15 in trapped, or a total variation of ..."
+/// "You detect a shift of 12.1 points in crossed, 15.3 in trapped, or a total variation of ..."
 std::string shown_by(const PowerResult& p) {
   const std::string begin =
       fmt::format("With {} (power {} %) you detect ", counted(*p.options.trials, "trial", "trials"),
@@ -350,7 +350,7 @@ std::string shown_by(const PowerResult& p) {
   std::vector<std::string> shifts;
   for (const std::size_t e : looked_at(p))
     if (const auto least = larger(p.plan.endings[e].least_of_all))
-      shifts.push_back(fmt::format("{}{} in {}", fixed(100.0 * *least, 0),
+      shifts.push_back(fmt::format("{}{} in {}", fixed(100.0 * *least, 1),
                                    shifts.empty() ? " points" : "", kAllEndingNames[e].name));
   const std::string gates = p.plan.least_total_variation
                                 ? "a total variation of " +

@@ -46,10 +46,13 @@ std::string shown_range(const lattice::KeyInfo& k) {
 }  // namespace
 
 std::string limits_text(const ShownField& shown) {
-  std::string text = std::isnan(shown.time_limit)
-                         ? "Trapped: as the runs or counts of the file say."
-                         : fmt::format("Trapped: still in the same gate {} after entering it.",
-                                       quantity(shown.time_limit, "s"));
+  std::string text =
+      std::isnan(shown.time_limit)
+          ? fmt::format("Trapped: as the {} say{}.",
+                        shown.is_simulated ? "cell program" : "runs or counts of the file",
+                        shown.is_simulated ? "s" : "")
+          : fmt::format("Trapped: still in the same gate {} after entering it.",
+                        quantity(shown.time_limit, "s"));
   return text + (shown.field.max_gates > 0
                      ? fmt::format("\nCut off: would go on after {} gates (field.max_gates).\n",
                                    shown.field.max_gates)

@@ -137,7 +137,7 @@ std::string starts_text(const StateRecord& s) {
 std::string lines_of(const lattice::TreeInfo& trees, const StateRecord& s) {
   std::string text =
       fmt::format("States: {}, leaves of trees with {} entries or more, from {} gate runs.\n",
-                  s.states, trees.entries_per_leaf, trees.gate_runs);
+                  s.states - std::ssize(s.starts), trees.entries_per_leaf, trees.gate_runs);
   text += starts_text(s);
   if (trees.range) {
     const auto& at = trees.range->range.at;
@@ -217,7 +217,7 @@ void describe(Fields& out, const StateRecord& s) {
   const lattice::TreeInfo trees = s.trees.value_or(lattice::TreeInfo());
   const bool recorded = s.trees && is_of_recorded_runs(trees);
   const auto put_states = [&](Fields& f) {
-    f.count({"states", "1", "number of states of the chain"}, s.states);
+    f.count({"states", "1", "number of states of the chain, starts included"}, s.states);
   };
   out.text(Label("bins",
                  "origin of the states: bins of the paper's Table III, of a pilot (auto), of the "

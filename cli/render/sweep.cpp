@@ -160,8 +160,13 @@ std::string table_of(const std::vector<SweepAxis>& axes,
   return legend + table.text();
 }
 
-constexpr std::size_t kMostShown = 8;  // points on the first screen; fewer below a legend
-constexpr std::size_t kMostBelowLegend = 6;
+// Points on the first screen if there are more than most_shown(); fewer below a legend.
+constexpr std::size_t kShown = 8, kBelowLegend = 6;
+
+/// Most points of which the first screen shows all: they share its lines with the legend.
+std::size_t most_shown(const std::vector<SweepAxis>& axes) {
+  return std::max(kShown, 10 - (KeyColumns(axes).legend.empty() ? 0 : axes.size()));
+}
 
 }  // namespace
 
@@ -169,12 +174,12 @@ std::string answer_text(const SweepResult& result) {
   std::vector<const SweepPoint*> points;
   for (const SweepPoint& p : result.points) points.push_back(&p);
   std::string text;
-  if (points.size() > kMostShown) {  // shows those where most and fewest traverse
+  if (points.size() > most_shown(result.axes)) {  // shows those where most and fewest traverse
     std::ranges::stable_sort(points, [](const SweepPoint* a, const SweepPoint* b) {
       return a->tally.traversed() > b->tally.traversed();
     });
     const bool has_legend = !KeyColumns(result.axes).legend.empty();
-    const auto half = static_cast<std::ptrdiff_t>((has_legend ? kMostBelowLegend : kMostShown) / 2);
+    const auto half = static_cast<std::ptrdiff_t>((has_legend ? kBelowLegend : kShown) / 2);
     points.erase(points.begin() + half, points.end() - half);
     text = fmt::format(
         "{} of the points at which most runs traverse, and {} of those with fewest:\n", half, half);
@@ -187,7 +192,7 @@ std::string answer_text(const SweepResult& result) {
 
 std::string details_text(const SweepResult& result, const lattice::Scene& scene) {
   std::string text = "\nAll other numbers are those of the scene:\n" + scene_line(scene);
-  if (result.points.size() <= kMostShown) return text;
+  if (result.points.size() <= most_shown(result.axes)) return text;
   std::vector<const SweepPoint*> points;
   for (const SweepPoint& p : result.points) points.push_back(&p);
   return text + "\nAll points\n" + table_of(result.axes, points);

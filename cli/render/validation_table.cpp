@@ -315,7 +315,7 @@ namespace {
 std::string summary(const lattice::StartValidation& v, const ShownField& shown) {
   return fmt::format(
       "{}: total variation {} (chance: {})", lattice::title_of(shown.map.section, v.start),
-      fixed(v.exact_against.total_variation, 3), fixed(v.exact_against.floor_total_variation, 3));
+      fixed(v.joint_test.total_variation.seen, 3), fixed(v.joint_test.chance_total_variation, 3));
 }
 
 }  // namespace

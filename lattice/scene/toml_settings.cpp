@@ -198,6 +198,9 @@ std::string mistake_in_value(std::string_view value) {
   if (number.find_first_of("0123456789") == number.npos)
     return "text must stand between quotation marks, as in \"auto\"";
   if (rest.starts_with(',')) return "a number has a decimal point, as in 0.25";
+  if (rest.starts_with(':'))
+    return "a key has one value: run the command once for each value (sweep --vary does so for one "
+           "gate)";
   if (!rest.empty() && rest[0] != '#')
     return "a number must stand alone: its unit is in the key's name";
   if (number.ends_with('.')) return "a number must have a digit behind its point, as in 1.0";

@@ -134,17 +134,19 @@ class Starter {
     return best;
   }
 
-  /// Judges a start by held-out trials.
+  /// Judges a start by held-out trials. The own start is the best known if these cross no less
+  /// often from there.
   [[nodiscard]] BestStart judged(const TrialStart& best, bool own, bool settled) {
     const std::int64_t first = rounds_.next();
     const FieldTrials with = run(best).each;
     rounds_.go_back_to(first);
     const FieldTrials without = run(own_).each;
+    own = own || crossings_of(with).crossed <= crossings_of(without).crossed;
     return {rounds_.summary(settled),
             std::move(*chances_),
-            best,
+            own ? own_ : best,
             own,
-            crossings_of(with),
+            crossings_of(own ? without : with),
             crossings_of(without),
             own ? Gain::over_itself() : gain_over(with, without)};
   }

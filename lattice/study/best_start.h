@@ -43,7 +43,9 @@ struct StartChances {
 
 /// The best start, with the probabilities of the last chain that it was chosen with.
 struct BestStart : ChoiceSummary, StartChances {
-  TrialStart best;  // the problem's own, unless another is better by more than a standard error
+  /// The problem's own, unless another is better by more than a standard error in the search, and
+  /// also in the held-out trials.
+  TrialStart best;
   bool own = false;
   /// Held-out trials, not used in the search: from the best start, and from the problem's own.
   Crossings crossings{}, crossings_of_own{};

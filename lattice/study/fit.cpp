@@ -317,6 +317,9 @@ class Fitter {
     std::size_t ending = 0;  // ending of the last group
     fit_.groups.clear();
     fit_.never = 0;
+    const auto once = static_cast<double>(std::count(all.begin(), all.end(), 1));
+    never_share_ =
+        std::min(1.0, (once + 2.0 * std::sqrt(once) + 3.0) / static_cast<double>(trials));
     // An ending that the experiment showed keeps its own group.
     const auto is_enough = [&](bool whole_ending) {
       if (!whole_ending) return size >= enough;
@@ -582,11 +585,13 @@ class Fitter {
       fit_.mixing = std::max(fit_.mixing, std::sqrt(1.0 + 2.0 * by_length / within));
   }
 
-  /// Simulates an experiment like this one at each draw.
+  /// Simulates an experiment like this one at each draw. Outcomes that no simulated trial had are a
+  /// further group of each experiment, although the model counts them with their neighbours.
   void predict() {
     const Index draws = fit_.draws.rows(), groups = observed_.size();
     fit_.predicted.resize(draws, groups);
-    Random chance = random(2 + kWalks + 1);
+    Random chance = random(2 + kWalks + 1), of_never = random(2 + kWalks + 2);
+    const double never = static_cast<double>(fit_.observed) * never_share_;
     VectorXd logs, mean = VectorXd::Zero(groups);
     std::vector<std::int64_t> counts(static_cast<std::size_t>(groups));
     Index further = 0;
@@ -608,10 +613,14 @@ class Fitter {
       for (Index g = 0; g < groups; ++g)
         fit_.predicted(i, g) = static_cast<double>(counts[static_cast<std::size_t>(g)]);
       const VectorXd expected = chances.cwiseMax(std::numeric_limits<double>::min());
-      const auto distance = [&](const VectorXd& n) {
-        return (n - expected).cwiseAbs2().cwiseQuotient(expected).sum();
+      const auto distance = [&](const VectorXd& n, std::int64_t of_never_seen) {
+        const double more = static_cast<double>(of_never_seen) - never;
+        return (n - expected).cwiseAbs2().cwiseQuotient(expected).sum() + more * more / never;
       };
-      if (distance(fit_.predicted.row(i).transpose()) >= distance(observed_)) ++further;
+      std::array<std::int64_t, 2> split{};
+      multinomial(fit_.observed, std::array{never_share_, 1.0 - never_share_}, split, of_never);
+      if (distance(fit_.predicted.row(i).transpose(), split[0]) >= distance(observed_, fit_.never))
+        ++further;
       mean += expected / static_cast<double>(draws);
     }
     fit_.p = static_cast<double>(further) / static_cast<double>(draws);
@@ -637,7 +646,10 @@ class Fitter {
   MatrixXd used_;                // points of the model
   VectorXd observed_;            // (groups)
   std::vector<Index> group_of_;  // by outcome
-  Likelihood likelihood_;        // of the observations, under the model
+  // Upper end of a 95 % interval, about, for the share of trials with an outcome that no trial of
+  // the model had: the missing mass of Good and Turing, 3 / trials if no outcome occurred once.
+  double never_share_ = 1.0;
+  Likelihood likelihood_;  // of the observations, under the model
   std::shared_ptr<const OutcomeTree> model_;
   MatrixXd cloud_;  // (numbers x points) uniform where all bounds hold
   std::vector<OutcomeTree::Coefficients> coefficients_;  // by walk

@@ -55,7 +55,9 @@ struct Fit {
   FittedOutcomes outcomes;
   std::vector<OutcomeGroup> groups;
   Eigen::MatrixXd predicted;  // (draws x groups), a simulated experiment at each draw
-  double p = 1.0;       // share of simulated experiments that are further from the expectation
+  /// Share of simulated experiments that are further from the expectation than the observed one;
+  /// `never` counts as a further group.
+  double p = 1.0;
   double misfit = 0.0;  // possible error of a log likelihood between the points
   int rounds = 0, degree = 0;
   std::int64_t points = 0, trials = 0, observed = 0;

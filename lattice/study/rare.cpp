@@ -270,8 +270,7 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
   };
   // Each round has as many trials as the rounds before suggest, at most eight times the trials so
   // far.
-  constexpr std::int64_t kFirst = 1000;
-  for (std::int64_t more = options.trials.value_or(kFirst); more > 0;) {
+  for (std::int64_t more = options.trials.value_or(SplittingOptions::kFirst); more > 0;) {
     stage = {"split trials", {sums.trials, more}, 0, more};
     in_kept_pieces(work, stage, SplitPiece{}, run_block, take);
     if (options.trials) break;

@@ -29,6 +29,7 @@ struct SplittingOptions {
   std::int64_t most_runs = 20'000'000;   // most gate runs, about
   std::int64_t most_in_vain = 100'000;   // most trials while no body reaches the target
   std::uint64_t seed = 1;
+  static constexpr std::int64_t kFirst = 1000;  // trials that run whatever most_runs is
 };
 
 /// The probability to enter one row.

@@ -108,7 +108,11 @@ TEST(BestStart, IsTheOwnOneWhereAllAreAlike) {
         lucky_lane(),
         {.ranges = {{0, 6.0, 9.0}}, .accuracy = 0.02, .seed = static_cast<std::uint64_t>(seed)});
     own += found.own;
-    if (!found.own) continue;
+    if (!found.own) {
+      EXPECT_GT(found.crossings.crossed, found.crossings_of_own.crossed) << seed;
+      continue;
+    }
+    EXPECT_EQ(found.crossings.crossed, found.crossings_of_own.crossed);
     EXPECT_EQ(found.best.entry, lucky_lane().start);
     EXPECT_EQ(found.gain.difference, 0.0);
   }

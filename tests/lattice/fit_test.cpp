@@ -95,6 +95,26 @@ TEST(Fit, IsTheExactPosteriorOfOneNumber) {
   EXPECT_EQ(grouped, 300);
 }
 
+// A lane has no sides, so no simulated trial ends there. Nine of 80 trials that did are no chance.
+TEST(Fit, IsNotExplainedByWhatNeverHappens) {
+  Observed o;
+  o.seen.endings[static_cast<std::size_t>(markov::Ending::far_edge)] = 31;
+  o.seen.endings[static_cast<std::size_t>(markov::Ending::trapped)] = 49;
+  const auto fitted = [&] {
+    return fit_trials(
+        1, [](const std::vector<double>& x) { return two_lane(chance_at(x[0]), chance_at(x[0])); },
+        o, {.trials = 16'384, .seed = 2});
+  };
+  const Fit possible = fitted();
+  EXPECT_EQ(possible.never, 0);
+  EXPECT_GT(possible.p, 0.2);
+  o.seen.endings[static_cast<std::size_t>(markov::Ending::trapped)] = 40;
+  o.seen.endings[static_cast<std::size_t>(markov::Ending::left_edge)] = 9;
+  const Fit impossible = fitted();
+  EXPECT_EQ(impossible.never, 9);
+  EXPECT_LT(impossible.p, 0.001);
+}
+
 /// Each passage takes an exponential time.
 Problem waiting_lane(double rate) {
   Problem problem = two_lane(0.8, 0.8);

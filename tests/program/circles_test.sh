@@ -75,13 +75,26 @@ holds "$within" many.json
 start=$(jq .start_state.input own.json)
 expect 0 'count each run and its mirror image' "$gatewalk" export tree.nc --gate --counts -o g.mtx
 [ "$(head -n 1 g.states.csv | grep -c ',counts_per_run$')" = 1 ] || fail "no counts_per_run in g.states.csv"
+# Matrix files of one name share the table of states, which therefore says the same for each of them.
+cp g.states.csv first.csv
+for file in g.csv g.dtrajs; do
+  "$gatewalk" export tree.nc $([ $file = g.dtrajs ] || echo --gate) -o $file --quiet >/dev/null || fail "export $file"
+  cmp -s g.states.csv first.csv || fail "$file: g.mtx lost its states"
+done
+expect 2 '^gatewalk: g.states.csv has the states of g.mtx, which are others: give -o another name$' "$gatewalk" export tree.nc -o g.npz
+cmp -s g.states.csv first.csv && [ ! -e g.npz ] || fail "a refused export wrote files"
+mkdir forced && cp g.mtx g.states.csv forced
+expect 0 'g.states.csv has the states of forced/g.mtx, which are others: they are replaced$' "$gatewalk" export tree.nc -o forced/g.npz --force
 "$gatewalk" export tree.nc -o runs.dtrajs --quiet >/dev/null
 for file in g.mtx runs.dtrajs; do
   "$gatewalk" import $file --states g.states.csv --start "$start" --set field.rows=9 --set field.columns=9 --set field.max_gates=13 -o back.nc --force >back.txt 2>&1 || fail "import $file"
   "$gatewalk" predict back.nc --json $file.json --quiet
   holds "$within" $file.json
 done
-expect 0 'intervals count each run once' "$gatewalk" import g.mtx --states g.states.csv --start "$start" -o back.nc --force
+expect 0 'intervals count each run once' "$gatewalk" import g.mtx --states g.states.csv --start "$start" -o back.nc --force --json back.json
+grep -q "^[0-9]* entries are above 0, from $(jq .gate_runs back.json) counted runs" out.txt || fail "import: runs are not named: $(cat out.txt)"
+holds '2 * .gate_runs == .counts' back.json
+expect 0 "^  counted runs  *$(jq .gate_runs back.json) (counts, with mirror images: $(jq .counts back.json))" "$gatewalk" show back.nc
 # (The states have another order, so the intervals come from other draws.)
 jq -s '[.[] | .endings.trapped, (.endings_95.trapped | .[1] - .[0]), .endings.cut_off] as [$a, $wa, $ca, $b, $wb, $cb] | (($a - $b) | fabs) < 1e-12 and (($ca - $cb) | fabs) < 1e-12 and (($wb / $wa - 1) | fabs) < 0.15' own.json g.mtx.json | grep -q true || fail "counts come back with other shares or intervals: $(jq -c '[.endings.trapped, .endings_95.trapped]' own.json g.mtx.json)"
 # Without the mirror images the result is the same within its error, with intervals about as wide.

@@ -91,8 +91,8 @@ holds '.starts[0].start_state | .input == 1 and .bin == "aside"' start.json
 printf 'state,name,move_x,move_y\n0,"fast, ahead",0,1\n1,"the ""right""",1,0\n' >quoted.csv
 printf '0 1 0 0 2\n' >quoted.dtrajs
 "$gatewalk" import quoted.dtrajs --states quoted.csv --start 0 --set field.rows=1 --set field.columns=1 --set field.max_gates=0 -o quoted.nc --quiet >/dev/null
-"$gatewalk" export quoted.nc -o q.mtx --quiet >/dev/null
-[ "$(sed -n 2p q.states.csv)" = '0,"x0_y0_fast, ahead_n0",0,0,"fast, ahead",0,' ] || fail "quotes: $(cat q.states.csv)"
+"$gatewalk" export quoted.nc -o whole.mtx --quiet >/dev/null
+[ "$(sed -n 2p whole.states.csv)" = '0,"x0_y0_fast, ahead_n0",0,0,"fast, ahead",0,' ] || fail "quotes: $(cat whole.states.csv)"
 "$gatewalk" export quoted.nc --gate --counts -o q.csv --force --quiet >/dev/null
 [ "$(sed -n 5p q.csv)" = '"the ""right""","fast, ahead",1' ] || fail "quotes: $(cat q.csv)"
 expect 0 '4 counted steps' "$gatewalk" import q.csv --states q.states.csv --start 'fast, ahead' -o requoted.nc

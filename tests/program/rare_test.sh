@@ -17,5 +17,8 @@ holds '(.rows | length) == 3 and .rows[2].probability > 0 and .rows[2].chain > 0
 "$gatewalk" rare "$scenes/mixed.toml" --set run.method=moreau --row 9 --gate-runs 40000 --trials 500 --quiet --json rare.json
 jq -s '[range(8) as $r | .[0].final_gates[$r + 1:] | flatten | add] + [.[0].endings.crossed] == [.[1].rows[].direct_entered]' lattice.json rare.json | grep -q true || fail "rare: other direct trials than lattice"
 expect 2 'mixed.toml: the terrain has 9 rows; the row to enter (--row) must be at most 9, or field.rows larger' "$gatewalk" rare "$scenes/mixed.toml" --row 10
+# More runs than the limit are said to be so.
+expect 0 '^These are more than 1000 gate runs (--gate-runs): the first 1000 trials always run.$' "$gatewalk" rare "$scenes/field.toml" --set run.method=moreau --row 4 --gate-runs 1000 --json over.json
+holds '.gate_runs > 1000 and .split_trials == 1000' over.json
 
 finish

@@ -233,7 +233,8 @@ expect 0 '300 bodies' "$gatewalk" build mixed.csv --cell mixed.toml -o mixed.nc
 if command -v python3 >/dev/null; then
   cp "$scenes/programs/pillars.toml" .
   expect 0 '^went back' "$gatewalk" predict pillars.toml --cell-program "python3 $scenes/programs/pillars.py" \
-    --accuracy 0.1 --json pillars.json --threads 2
+    --accuracy 0.1 --json pillars.json --threads 2 --details
+  grep -q '^Trapped: as the cell program says.$' out.txt || fail "predict: a cell program has no file of runs"
   holds '.reached and (.endings | add) > 0.999 and (.endings | add) < 1.001 and .endings.went_back > 0' pillars.json
   "$gatewalk" predict pillars.toml --cell-program "python3 $scenes/programs/pillars.py" --accuracy 0.1 \
     --json one.json --threads 1 --quiet >/dev/null

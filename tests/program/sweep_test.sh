@@ -29,6 +29,11 @@ expect 2 'step in' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N
 expect 0 ' 7 points' "$gatewalk" sweep "$scenes/field.toml" --trials 1 --quiet --vary start.vx_m_per_s=-0.3:0.1:0.3
 cat "$scenes/fig8.toml" | "$gatewalk" sweep /dev/stdin --trials 5 --quiet --vary forces.random_N=20 --csv - >piped.csv
 "$gatewalk" sweep "$scenes/fig8.toml" --trials 5 --quiet --vary forces.random_N=20 --csv - | cmp - piped.csv || fail "sweep of a pipe"
+# Ten points are all on the first screen, in their order; of eleven the best and the worst.
+for n in 10 11; do "$gatewalk" sweep "$scenes/single_gate.toml" --trials 5 --vary forces.propulsion_N=1:1:$n --quiet >$n.txt; done
+[ "$(grep -c '^ *[0-9]*  *[0-9.]* \[' 10.txt)" = 10 ] && ! grep -q 'points at which' 10.txt || fail "sweep: not all of ten points: $(cat 10.txt)"
+grep -q '^4 of the points at which most runs traverse' 11.txt || fail "sweep: $(cat 11.txt)"
+expect 2 'forces.propulsion_N .*a key has one value: run the command once for each value (sweep --vary' "$gatewalk" predict "$scenes/field.toml" --set forces.propulsion_N=0.5:0.1:1
 expect 2 'varied twice' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1 --vary forces.random_N=2
 expect 2 'must lie in' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=1,-1
 expect 2 'more than 100000' "$gatewalk" sweep "$scenes/field.toml" --vary forces.random_N=0:1e-9:1

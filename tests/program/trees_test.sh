@@ -24,6 +24,12 @@ expect 2 'keeps no gate runs' "$gatewalk" predict m.nc --accuracy 0.1
 "$gatewalk" walk tree.nc --walks 1000 --json walk-tree.json --quiet >/dev/null 2>&1
 holds '([.final_gates[][]] | add) == 1000' walk-tree.json
 "$gatewalk" show tree.nc --json show-tree.json --quiet
+# Starts have rows of their own, and are no states.
+rows=$(jq .inputs show-tree.json)
+expect 0 "^tree.nc: transition matrix of $((rows - 1)) states and 1 start ($rows rows, " "$gatewalk" show tree.nc
+expect 0 "^$((rows - 1)) states and 1 start of one gate, " "$gatewalk" export tree.nc --gate -o one.npz
+expect 0 "the chain has $((rows - 1)) states" "$gatewalk" predict tree.nc --details
+expect 0 "^States: $((rows - 1)), leaves of trees" "$gatewalk" show tree.nc --details
 holds '.state_space.bins == "tree" and .inputs == (.rows | length) and .gate_runs < .counts' show-tree.json
 "$gatewalk" validate "$scenes/field.toml" "${fast[@]}" --matrix tree.nc --trials 100 --start 0,0,15 --null-draws 19 --json validate-tree.json --quiet >/dev/null 2>&1
 holds '.state_space.bins == "tree" and .markov.verdict != null' validate-tree.json

@@ -39,7 +39,10 @@ many=$(peak "$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 20 
 [ $((many - few)) -lt 20000 ] || fail "validate: twenty million walks take $((many - few)) KiB more"
 
 # A start that Table IV lacks.
-"$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 200 --start 4,5,10 --json validate.json --quiet
+"$gatewalk" validate "$scenes/field.toml" --matrix m.nc --trials 200 --start 4,5,10 --json validate.json --figure gates.svg --quiet
+# The figure has the numbers of the screen, whose chance includes the matrix.
+said=$(jq -r '.starts[0].trials_and_matrix.total_variation_by_chance.mean' validate.json)
+grep -q "(chance: $(printf %.3f "$said"))" gates.svg || fail "validate: the figure has another chance than $said"
 holds '.starts | length == 1' validate.json
 holds '.starts[0].exact | .p_values.chi_squared > 0 and .rmse_per_100_floor > 0 and .total_variation >= 0' validate.json
 
