@@ -87,7 +87,7 @@ std::string row_table(const Transitions& t) {
     columns.push_back(
         {c.name + (unit.empty() ? "" : fmt::format(" ({})", unit.substr(1))), -kFit, 0, "", " "});
   }
-  columns.push_back({"runs", 6});
+  columns.push_back({"counts", 7});
   if (has_clamped) columns.push_back({"clamped", 8});
   for (const Face& face : section.faces)
     columns.push_back({face.name, std::max(5, static_cast<int>(face.name.size()) + 1), 0, "",

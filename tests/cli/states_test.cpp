@@ -62,7 +62,7 @@ TEST(StateRecord, SaysWhatSentencesAndStartsNeed) {
   EXPECT_EQ(trees.trees->gate_runs, 1008);
   EXPECT_EQ(trees.starts.at(1), (dynamics::Entry{dynamics::Boundary::right_deflect, {1.5, -2, 3}}));
   EXPECT_EQ(states_line(trees),
-            "States: 193, leaves of trees with 7 entries or more, from 1008 gate runs.\n"
+            "States: 191, leaves of trees with 7 entries or more, from 1008 gate runs.\n"
             "Starts with a state of their own: 0,0,15; RD:1.5,-2,3\n"
             "The limit of states changes the final gates by a total variation of 0.2500.\n"
             "A single row has few runs and is noisy; a prediction averages over all rows.\n");

@@ -280,6 +280,7 @@ const Malformed kMalformed[] = {
     {"OpenArray", "[forces]\nrandom_N = [1, 2\n", 2, "random_N", "an array must stand in brackets"},
     {"BareWord", "[run]\nmethod = stable\n", 2, "method = stable", "between quotation marks"},
     {"TwoOnALine", "[forces]\nrandom_N = 1 drag_Ns_per_m = 2\n", 2, "random_N", "must stand alone"},
+    {"Range", "[forces]\nrandom_N = 1:0.1:2\n", 2, "random_N", "a key has one value"},
     {"TwoPoints", "[run]\nstep_s = 0.0.4\n", 2, "step_s", "0.0.4"},
     {"Comma", "[run]\nstep_s = 0,004\n", 2, "step_s", "decimal point"},
     {"NoDigitBehindPoint", "[run]\nstep_s = 1.\n", 2, "step_s", "a digit behind its point"},
