@@ -175,7 +175,7 @@ void describe_by_ending(Fields& out, const AnalysedField& f) {
         describe(one, s, f.shown);
         one.number(
             {"probability", "1", "share of all bodies that belong to this group, by the chain"},
-            s.share);
+            ending ? a.endings[place(*ending)] : s.share);
         if (ending) describe_reasons(one, means);
         one.optional(f.direct.has_value(), [&](Fields& d) {
           const auto [distance, chance_95] = duration_distance(a, f.direct->costs, ending);

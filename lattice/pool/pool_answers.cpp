@@ -51,6 +51,15 @@ std::int64_t kernel_runs(const RunPool& pool) {
   return runs;
 }
 
+/// Whether adjoints fit into memory for chains with leaves of this many entries: the numbers that
+/// they keep (about 2 per cell and state) and need meanwhile (about 8).
+bool fits_adjoint(const RunPool& pool, const FieldParams& field, int leaf) {
+  constexpr std::int64_t kMostNumbers = 400'000'000;
+  const std::int64_t cells = std::int64_t{field.columns} * field.rows,
+                     states = 2 * 2 * kernel_runs(pool) / leaf;  // of all chains, at most
+  return 10 * cells * states <= kMostNumbers;
+}
+
 /// The shares of a walk tally as a prediction.
 FinalDistribution prediction_of(const markov::WalkTally& tally) {
   const auto n = static_cast<double>(tally.walks);
@@ -81,14 +90,16 @@ KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
 
 }  // namespace
 
-int ending_leaf(const RunPool& pool) {
+int ending_leaf(const RunPool& pool, int per_leaf) {
   constexpr std::int64_t kLeast = 2, kMostStates = 50'000;
-  return static_cast<int>(std::max(kLeast, 2 * kernel_runs(pool) / kMostStates));
+  if (per_leaf > dynamics::kEntriesPerLeaf) return per_leaf;
+  return static_cast<int>(
+      std::min<std::int64_t>(per_leaf, std::max(kLeast, 2 * kernel_runs(pool) / kMostStates)));
 }
 
 std::vector<std::optional<EndingsOf>> endings_of(const dynamics::CellMap& map,
                                                  const FieldParams& field, const RunPool& pool,
-                                                 const std::vector<FirstRow>& starts,
+                                                 const std::vector<FirstRow>& starts, int leaf,
                                                  TrialGroup group) {
   std::vector<std::optional<EndingsOf>> endings(starts.size());
   std::vector<FirstRow> asked;
@@ -98,11 +109,12 @@ std::vector<std::optional<EndingsOf>> endings_of(const dynamics::CellMap& map,
       asked.push_back(starts[i]);
       place.push_back(i);
     }
-  if (asked.empty()) return endings;
-  const Kernel kernel = kernel_of(map, pool, ending_leaf(pool), group);
+  const bool adjoint = pays_adjoint(map, field, asked.size());
+  if (asked.empty() || (adjoint && !fits_adjoint(pool, field, leaf))) return endings;
+  const Kernel kernel = kernel_of(map, pool, leaf, group);
   const markov::Counts rows =
       first_rows(kernel, map, pool, asked, map.type_of(field.start_column(), 0), {group});
-  if (!pays_adjoint(map, field, asked.size())) {
+  if (!adjoint) {
     const KernelAnswers answers = answers_of(kernel, map, rows, field, {}, 0);
     for (std::size_t i = 0; i < asked.size(); ++i) endings[place[i]] = answers.final[i].endings;
     return endings;
@@ -125,6 +137,8 @@ std::vector<std::optional<EndingsOf>> endings_of(const dynamics::CellMap& map,
 
 FinalDistribution with_endings(FinalDistribution prediction, const EndingsOf& endings) {
   EndingsOf times;
+  for (std::size_t e = 0; e < times.size(); ++e)
+    if (prediction.endings[e] == 0.0 && endings[e] > kShareRounding) return prediction;
   for (std::size_t e = 0; e < times.size(); ++e)
     times[e] = prediction.endings[e] > 0.0 ? endings[e] / prediction.endings[e] : 1.0;
   for (std::size_t e = 0; e < times.size(); ++e) prediction.endings[e] *= times[e];
@@ -152,16 +166,12 @@ PoolChains::PoolChains(const dynamics::CellMap& map, const FieldParams& field, i
                        std::size_t starts, std::uint64_t seed)
     : map_(map),
       field_(field),
+      ending_per_leaf_(per_leaf),
       per_leaf_(pays_adjoint(map, field, starts) ? 2 * per_leaf : per_leaf),
       seed_(seed) {}
 
 bool PoolChains::by_adjoint(const RunPool& pool, std::size_t starts) const {
-  // Limit of the numbers that adjoints keep (about 2 per cell and state) and need meanwhile (about
-  // 8).
-  constexpr std::int64_t kMostNumbers = 400'000'000;
-  const std::int64_t cells = std::int64_t{field_.columns} * field_.rows,
-                     states = 2 * 2 * kernel_runs(pool) / per_leaf_;  // of all chains, at most
-  return pays_adjoint(map_, field_, starts) && 10 * cells * states <= kMostNumbers;
+  return pays_adjoint(map_, field_, starts) && fits_adjoint(pool, field_, per_leaf_);
 }
 
 void PoolChains::renew(const RunPool& pool) {
@@ -239,13 +249,14 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<FirstRow>& st
   return said;
 }
 
-void PoolChains::add_endings(const RunPool& pool, const std::vector<FirstRow>& starts,
+bool PoolChains::add_endings(const RunPool& pool, const std::vector<FirstRow>& starts,
                              PoolAnswers& said) const {
-  if (said.whole.walks > 0 || ending_leaf(pool) >= per_leaf_) return;
+  const int leaf = ending_leaf(pool, ending_per_leaf_);
+  if (said.whole.walks > 0 || leaf >= ending_per_leaf_) return false;
   std::array<std::vector<std::optional<EndingsOf>>, kTrialGroups + 1> found;
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};
-    found[static_cast<std::size_t>(g + 1)] = endings_of(map_, field_, pool, starts, group);
+    found[static_cast<std::size_t>(g + 1)] = endings_of(map_, field_, pool, starts, leaf, group);
   });
   for (std::size_t i = 0; i < starts.size(); ++i) {
     std::optional<PoolEndings>& of = said.endings.emplace_back();
@@ -253,6 +264,7 @@ void PoolChains::add_endings(const RunPool& pool, const std::vector<FirstRow>& s
     of = {.whole = *found[0][i], .groups = {}};
     for (std::size_t g = 0; g < kTrialGroups; ++g) of->groups[g] = *found[g + 1][i];
   }
+  return true;
 }
 
 }  // namespace gatewalk::lattice

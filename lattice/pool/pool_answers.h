@@ -25,26 +25,29 @@ struct KernelAnswers {
                                        const markov::Counts& first_rows, const FieldParams& field,
                                        std::uint64_t seed);
 
-/// Least number of entries in a leaf of the chains that give the shares of endings. The size of
-/// leaves biases an ending, and smaller leaves halve that bias. The map of final gates keeps larger
-/// leaves, because many small ones make each gate's share noisier. Pools of very many runs, whose
-/// bias is small, get larger leaves here too, so that these chains do not take long.
-[[nodiscard]] int ending_leaf(const RunPool& pool);
+/// Least number of entries in a leaf of the chains that give the shares of endings, beside chains
+/// with leaves of `per_leaf` entries that give the map of final gates. The size of leaves biases an
+/// ending, and smaller leaves halve that bias; in the map, many small leaves would make each gate's
+/// share noisier. Pools of very many runs, whose bias is small, get larger leaves, so that these
+/// chains do not take long. Chains whose states were limited (per_leaf > kEntriesPerLeaf) keep
+/// their leaves.
+[[nodiscard]] int ending_leaf(const RunPool& pool, int per_leaf = dynamics::kEntriesPerLeaf);
 
 /// Shares of all bodies by markov::Ending.
 using EndingsOf = std::array<double, markov::kEndings>;
 
-/// Shares of endings for each start by the exact chain with leaves of ending_leaf() entries, from
-/// the runs of one group of the trials; nullopt for a start whose row is that of its leaf, because
-/// the few runs of a small leaf would make all of its first draws.
+/// Shares of endings for each start by the exact chain with leaves of `leaf` entries, from the runs
+/// of one group of the trials. nullopt for a start whose row is that of its leaf, because the few
+/// runs of a small leaf would make all of its first draws; and for all starts if they are many and
+/// the chain too large for the adjoint.
 [[nodiscard]] std::vector<std::optional<EndingsOf>> endings_of(const dynamics::CellMap& map,
                                                                const FieldParams& field,
                                                                const RunPool& pool,
                                                                const std::vector<FirstRow>& starts,
-                                                               TrialGroup group = {});
+                                                               int leaf, TrialGroup group = {});
 
 /// The prediction with the shares of endings taken from `endings`; the map of each ending keeps its
-/// shape.
+/// shape. Unchanged if `endings` has an ending of which the prediction has no map.
 [[nodiscard]] markov::FinalDistribution with_endings(markov::FinalDistribution prediction,
                                                      const EndingsOf& endings);
 
@@ -85,10 +88,11 @@ class PoolChains {
   [[nodiscard]] bool by_adjoint(const RunPool& pool, std::size_t starts) const;
 
   [[nodiscard]] PoolAnswers ask(const RunPool& pool, const std::vector<FirstRow>& starts);
-  /// Adds the endings from small leaves to answers for these starts. Their chains are made anew
-  /// with each call.
-  void add_endings(const RunPool& pool, const std::vector<FirstRow>& starts,
-                   PoolAnswers& said) const;
+  /// Adds the endings from small leaves to answers for these starts, and returns true; false if
+  /// the answers come from Monte Carlo walks, or ending_leaf() is no smaller. The chains are made
+  /// anew with each call.
+  [[nodiscard]] bool add_endings(const RunPool& pool, const std::vector<FirstRow>& starts,
+                                 PoolAnswers& said) const;
 
  private:
   struct GroupChain {
@@ -101,6 +105,7 @@ class PoolChains {
 
   dynamics::CellMap map_;
   const FieldParams& field_;
+  int ending_per_leaf_;  // as asked for; per_leaf_ is larger for many starts
   int per_leaf_;
   std::uint64_t seed_;
   std::int64_t runs_ = -1;  // number of runs behind the kernels

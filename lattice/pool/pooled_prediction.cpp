@@ -270,8 +270,7 @@ class PredictionRun {
       open_ = all();
       static_cast<void>(ask());
     }
-    chains_.add_endings(pool_, rows_asked(), said_);
-    answer();
+    if (chains_.add_endings(pool_, rows_asked(), said_)) answer();
   }
 
   /// The part of the error that comes from the first runs.
@@ -445,8 +444,9 @@ KernelAnswers whole_answers(const Kernel& kernel, const Problem& problem, const 
   const CellMap& map = problem.map();
   KernelAnswers answers = answers_of(
       kernel, map, first_rows(kernel, map, pool, rows, problem.start_type()), problem.field, seed);
-  if (answers.walks > 0 || ending_leaf(pool) >= per_leaf) return answers;
-  const auto endings = endings_of(map, problem.field, pool, rows);
+  const int leaf = ending_leaf(pool, per_leaf);
+  if (answers.walks > 0 || leaf >= per_leaf) return answers;
+  const auto endings = endings_of(map, problem.field, pool, rows, leaf);
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (endings[i]) answers.final[i] = with_endings(std::move(answers.final[i]), *endings[i]);
   return answers;
@@ -476,7 +476,7 @@ PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
   if (bodies >= kLeastBodies) {
     PoolChains chains(map, problem.field, per_leaf, starts.size(), seed);
     said = chains.ask(pool, rows);
-    chains.add_endings(pool, rows, said);
+    static_cast<void>(chains.add_endings(pool, rows, said));
   } else {
     const Kernel kernel = kernel_of(map, pool, per_leaf);
     said.whole = whole_answers(kernel, problem, pool, rows, per_leaf, seed);

@@ -265,21 +265,6 @@ namespace {
 
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
-/// The totals with these shares of endings; the mean of each ending stays.
-markov::WalkTotals with_endings(markov::WalkTotals t,
-                                const std::array<double, markov::kEndings>& endings) {
-  for (std::size_t e = 0; e < endings.size(); ++e) {
-    const double times = t.endings[e] > 0.0 ? endings[e] / t.endings[e] : 1.0;
-    const auto scale = [times](markov::Moments& m) {
-      m = {times * m.share, times * m.sum, times * m.square};
-    };
-    t.endings[e] *= times;
-    scale(t.draws[e]);
-    for (auto& by_ending : t.totals) scale(by_ending[e]);
-  }
-  return t;
-}
-
 /// After sums that were stopped: the walks still under way may add any number.
 markov::WalkTotals not_known(markov::WalkTotals t) {
   t.endings.fill(kNotKnown);
@@ -336,8 +321,6 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
                .space = space,
                .lumping = options.lumping,
                .lumped = lumped};
-
-  if (options.endings) out.totals = with_endings(std::move(out.totals), *options.endings);
 
   // Over the bodies with this ending, or over all bodies.
   const auto of_totals = [&](std::optional<std::size_t> ending, const auto& value) {
@@ -419,8 +402,14 @@ Analysis analyze(const Problem& problem, const AnalysedChain& chain, const Analy
     std::fill(out.type_trapping.begin(), out.type_trapping.end(), kNotKnown);
     for (auto& type : out.types) type.visits = type.trapped = kNotKnown;
   }
-  if (options.endings)
-    out.target_chance = (*options.endings)[static_cast<std::size_t>(options.target)];
+  out.endings = options.endings.value_or(out.totals.endings);
+  if (options.endings) {
+    out.target_chance = out.endings[static_cast<std::size_t>(options.target)];
+    constexpr auto kTrapped = static_cast<std::size_t>(markov::Ending::trapped);
+    for (Analysis::Type& type : out.types)
+      if (out.totals.endings[kTrapped] > 0.0)
+        type.trapped *= out.endings[kTrapped] / out.totals.endings[kTrapped];
+  }
   out.seconds = watch.seconds();
   return out;
 }

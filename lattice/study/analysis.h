@@ -29,8 +29,8 @@ struct AnalysisOptions {
   std::size_t paths = 5;
   LumpingParts lumping{};
   std::uint64_t seed = 1;
-  /// Shares of all bodies by ending, predicted from smaller states (pool_answers.h) than those of
-  /// the chain: the totals of each ending are scaled to its share.
+  /// Shares of all bodies by ending, if they are predicted from smaller states (pool_answers.h)
+  /// than those of the chain.
   std::optional<std::array<double, markov::kEndings>> endings{};
 };
 
@@ -56,6 +56,8 @@ struct Analysis {
     constexpr double kRounding = 1e-9;
     return !(target_chance > 0.0 && target_chance < 1.0 - kRounding);
   }
+  /// Shares of all bodies by ending: AnalysisOptions::endings, or else the chain's.
+  std::array<double, markov::kEndings> endings{};
   bool by_groups = false;       // intervals come from groups of the trials; none for bins
   markov::WalkTotals totals{};  // quantities by Section::costs
   /// The reason why visits, gates, times and costs are NaN: their sums were stopped with walks

@@ -631,9 +631,10 @@ TEST(PoolChains, EndingsScaleTheirMaps) {
   EXPECT_NEAR(scaled.final_cells(0, 1), 0.24 + 0.4, 1e-15);
   EXPECT_EQ(scaled.final_cells(0, 2), 0.0);
   EXPECT_NEAR(scaled.mixed_cells[0][Ending::far_edge], 0.4, 1e-15);
-  // An ending that no map has stays away.
+  // An ending that no map has: nothing is scaled, so that nothing is lost.
   const auto none = with_endings(d, {0.5, 0.49, 0.01, 0.0, 0.0, 0.0, 0.0});
-  EXPECT_EQ(none[Ending::left_edge], 0.0);
+  EXPECT_EQ(none.endings, d.endings);
+  EXPECT_EQ(none.final_cells(0, 1), 0.7);
 }
 
 // The shares of endings are those of the chain with leaves of two entries, from few starts and, by
