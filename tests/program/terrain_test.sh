@@ -28,4 +28,10 @@ expect 0 'has no effect here: one gate is run' "$gatewalk" gate $mixed --trials 
 "$gatewalk" trace $mixed --field --trial 3 --json trace.json --replay trace.html --quiet
 holds '(.types | length) == 3 and (.type_of_gate | length) == 81 and .types[2].propulsion_N == 8' trace.json
 
+# By type of gate, trapped bodies add up to the ending. Limited states keep their own endings.
+"$gatewalk" analyze $mixed --accuracy 0.15 --runs 0 --target trapped --json parts.json --quiet 2>/dev/null
+holds '(([.types[].trapped] | add) / .endings.trapped - 1 | fabs) < 1e-9 and .target_probability == .endings.trapped' parts.json
+"$gatewalk" build $mixed --accuracy 0.15 --states 60 -o few.nc --quiet 2>/dev/null
+for with in '--solver propagate' ''; do "$gatewalk" predict few.nc $with --json "few${with:+_matrix}.json" --quiet 2>/dev/null; done
+[ "$(jq -s 'map(.endings.trapped) | .[0] - .[1] | fabs < 1e-12' few.json few_matrix.json)" = true ] || fail "limited states, other endings: $(jq -c .endings few.json few_matrix.json)"
 finish
