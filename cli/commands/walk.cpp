@@ -22,7 +22,7 @@ int run_walk(const Arguments& arguments) {
       "they\n"
       "end. Each step draws the outcome of a gate from the matrix, as the paper does (Markov "
       "chain\n"
-      "Monte Carlo). gatewalk predict gives the limit of infinitely many walks.",
+      "Monte Carlo). gatewalk predict gives exact shares, with intervals.",
       "gatewalk walk matrix.nc scenes/field.toml --walks 1e6 --seed 1 --json walks.json");
   const TextOption matrix =
       options.positional("matrix", "matrix file written by gatewalk build", true);
@@ -61,9 +61,8 @@ int run_walk(const Arguments& arguments) {
   if (netcdf)
     options.write(netcdf.value(), netcdf_of({picture}, s.problem.map().section, result.made_by));
   options.give_out(
-      result,
-      {answer_text(result), details_text(result),
-       NextCommands(options).add("predict", "", "the limit of infinitely many walks").lines()});
+      result, {answer_text(result), details_text(result),
+               NextCommands(options).add("predict", "", "exact shares, with intervals").lines()});
   options.warn(too_few_gates(shown));
   options.warn(rest_warning(rest_of(tally)));
   options.remark(fmt::format("{} s, {} million walks a second", fixed(seconds, 3),
