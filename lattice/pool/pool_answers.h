@@ -47,7 +47,7 @@ using EndingsOf = std::array<double, markov::kEndings>;
                                                                int leaf, TrialGroup group = {});
 
 /// The prediction with the shares of endings taken from `endings`; the map of each ending keeps its
-/// shape. Unchanged if `endings` has an ending of which the prediction has no map.
+/// shape. A prediction that knows no way to one of these endings is returned as it is.
 [[nodiscard]] markov::FinalDistribution with_endings(markov::FinalDistribution prediction,
                                                      const EndingsOf& endings);
 

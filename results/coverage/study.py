@@ -31,7 +31,7 @@ SCENES = {
 LEGS = ("legs3", "legs5", "legs8")
 LEGS_START = {"d_m": 0.01, "vx_m_per_s": 0, "vy_m_per_s": 0.25, "heading_rad": 0, "turn_rad_per_s": 0, "phase": 0.5,
               "stride": 1, "load": 1}
-TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 300, 0.04
+TRUTH_TRIALS, SEEDS, ACCURACY = 1_000_000, 120, 0.04
 FIRST_SEED = 2001  # the rules were chosen on others
 LATTICE_TRIALS, LATTICE_SEEDS = 1000, 200
 UNSEEN = {"A": 10, "B": 6, "C": 10, "R": 40, "M": 6}  # chains of results/tree's scenes, 24 starts each
