@@ -73,7 +73,9 @@ StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, std:
   a.gates_95 = spread.gates_95(behind);
   std::vector<ExitShares> group_exits;
   for (const FinalDistribution& g : groups) group_exits.push_back(exit_shares(g));
-  a.exits = exits_of_groups(exit_shares(a.final), group_exits, evidence_of(a.final, behind));
+  Evidence from = evidence_of(a.final, behind);
+  from.bias_left = bias_left(said.coordinates);
+  a.exits = exits_of_groups(exit_shares(a.final), group_exits, from);
   if (a.unseen > 0.0) {  // the RMSE is largest if they all move from one gate to another
     const auto gates = static_cast<double>(a.gates_95[0].size());
     a.error.rmse_per_100 += 100.0 * a.unseen * std::sqrt(2.0 / gates);

@@ -17,21 +17,6 @@ namespace {
 
 using dynamics::Random;
 
-/// The states of a group are eight times as large as those of the whole prediction, which itself
-/// has a bias of the same kind. This factor extrapolates from the groups' offset to the whole's
-/// bias: a bias that grows with the power 0.4 of the states' size gives 1 / (8^0.4 - 1). (The power
-/// is 2/3 where outcomes vary smoothly with the entry, less where they jump.) Error bars then hold
-/// as often as they should (results/tree).
-constexpr double kBiasLeft = 0.75;
-
-/// The same for states that differ by this number of coordinates. The width of a state grows with
-/// the power 1 / coordinates of its size, and so does the bias; kBiasLeft is for three coordinates.
-/// Fewer keep that factor, on the safe side.
-double bias_left(int coordinates) {
-  if (coordinates <= 3) return kBiasLeft;
-  return 1.0 / (std::pow(1.0 + 1.0 / kBiasLeft, 3.0 / coordinates) - 1.0);
-}
-
 /// Number of draws behind a quantile; fewer for large fields.
 int draws_for(Eigen::Index numbers) {
   return static_cast<int>(
@@ -99,7 +84,7 @@ Spread spread_of(const std::vector<double>& groups) {
 }
 
 /// Half the interval of a share up to 1/2, relative to the share; 0 if no group has any.
-double relative_half_width(double whole, const std::vector<double>& groups) {
+double relative_half_width(double whole, const std::vector<double>& groups, double bias_left) {
   const Spread plain = spread_of(groups);
   if (!(plain.mean > 0.0)) return 0.0;
   std::vector<double> roots;
@@ -109,7 +94,7 @@ double relative_half_width(double whole, const std::vector<double>& groups) {
   const Spread root = spread_of(roots);
   const double error = std::max(plain.error / plain.mean, 2.0 * root.error / root.mean);
   const double bias = std::abs(plain.mean - whole) / std::max(plain.mean, whole);
-  return kQuantile * error + kBiasLeft * bias;
+  return kQuantile * error + bias_left * bias;
 }
 
 /// The effective number of independent errors among the errors of all gates. A sum of squares of
@@ -182,6 +167,15 @@ Mean95 without_interval(double whole) {
 
 }  // namespace
 
+// The states of a group are eight times as large as those of the whole prediction, which itself has
+// a bias of the same kind. The factor extrapolates from the groups' offset to the whole's bias: a
+// bias that grows with the power 0.4 of the states' size gives 1 / (8^0.4 - 1) = 0.77. (The power
+// is 2/3 where outcomes vary smoothly with the entry, less where they jump.)
+double bias_left(int coordinates) {
+  if (coordinates <= 3) return kBiasLeft;
+  return 1.0 / (std::pow(1.0 + 1.0 / kBiasLeft, 3.0 / coordinates) - 1.0);
+}
+
 Mean95 mean_95(double whole, const std::vector<double>& groups) {
   if (!groups.empty()) {
     const double half =
@@ -223,7 +217,8 @@ std::array<double, 2> share_95(double whole, const std::vector<double>& groups,
   }
   if (whole <= kShareRounding) return dynamics::interval_of_share(0.0, from.trials);
   const double error =
-      std::hypot(relative_half_width(whole, groups), besides / whole) / dynamics::kNormal95;
+      std::hypot(relative_half_width(whole, groups, from.bias_left), besides / whole) /
+      dynamics::kNormal95;
   const double like = error > 0.0 ? (1.0 - whole) / (whole * error * error) : from.trials;
   return dynamics::interval_of_share(whole, std::min(like, from.gate_runs));
 }
@@ -311,10 +306,12 @@ namespace {
 template <class Value>
 std::array<double, 2> interval_of(const markov::FinalDistribution& whole,
                                   const std::vector<markov::FinalDistribution>& groups,
-                                  std::int64_t trials, Value value) {
+                                  std::int64_t trials, double bias_left, Value value) {
   std::vector<double> values;
   for (const auto& g : groups) values.push_back(value(g));
-  return share_95(value(whole), values, evidence_of(whole, trials));
+  Evidence from = evidence_of(whole, trials);
+  from.bias_left = bias_left;
+  return share_95(value(whole), values, from);
 }
 
 }  // namespace
@@ -325,8 +322,9 @@ std::array<CellProbabilities, 2> GroupSpread::gates_95(std::int64_t trials) cons
   const auto never = dynamics::interval_of_share(0.0, static_cast<double>(trials));
   for (Eigen::Index i = 0; i < whole_.final_cells.size(); ++i) {
     const auto share = [i](const markov::FinalDistribution& d) { return d.final_cells.data()[i]; };
-    const auto interval =
-        share(whole_) <= kShareRounding ? never : interval_of(whole_, groups_, trials, share);
+    const auto interval = share(whole_) <= kShareRounding
+                              ? never
+                              : interval_of(whole_, groups_, trials, bias_left_, share);
     for (std::size_t side = 0; side < 2; ++side) range[side].data()[i] = interval[side];
   }
   return range;
@@ -335,8 +333,9 @@ std::array<CellProbabilities, 2> GroupSpread::gates_95(std::int64_t trials) cons
 EndingShares GroupSpread::endings_95(std::int64_t trials) const {
   EndingShares shares(whole_.endings);
   for (std::size_t e = 0; e < markov::kEndings; ++e)
-    shares.interval[e] = interval_of(
-        whole_, groups_, trials, [e](const markov::FinalDistribution& d) { return d.endings[e]; });
+    shares.interval[e] =
+        interval_of(whole_, groups_, trials, bias_left_,
+                    [e](const markov::FinalDistribution& d) { return d.endings[e]; });
   return shares;
 }
 

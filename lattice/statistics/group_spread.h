@@ -19,6 +19,10 @@
 namespace gatewalk::lattice {
 
 inline constexpr int kTrialGroups = 8;
+/// kBiasLeft for states that differ by this number of coordinates. The width of a state grows with
+/// the power 1 / coordinates of its size, and so does the bias; kBiasLeft is for three coordinates.
+/// Fewer keep that factor, on the safe side.
+[[nodiscard]] double bias_left(int coordinates);
 /// Fewer bodies than this give no intervals: a group of one body would stand for all.
 inline constexpr std::int64_t kLeastBodies = 2 * kTrialGroups;
 

@@ -11,12 +11,17 @@ namespace gatewalk::lattice {
 /// Shares, and differences of shares, below this are rounding errors.
 inline constexpr double kShareRounding = 1e-12;
 
+/// The part of the groups' offset from the whole prediction that counts as the whole's own bias,
+/// with up to three coordinates (bias_left()).
+inline constexpr double kBiasLeft = 0.75;
+
 /// The evidence behind a predicted share: independent trials, and all their gate runs.
 struct Evidence {
   double trials = 0.0, gate_runs = 0.0;
   /// The largest share of all walks that one row of a matrix may send elsewhere, because all runs
   /// of the row had one outcome and were too few to exclude another.
   double hidden = 0.0;
+  double bias_left = kBiasLeft;
 };
 
 /// 95 % interval of a share predicted from all trials, `whole`, and from each of kTrialGroups

@@ -248,6 +248,8 @@ TEST(GroupSpread, SamplingAndBiasByHand) {
               0.1 / (std::sqrt(7.0 / 3.0) - 1.0), 1e-12);
   EXPECT_NEAR(GroupSpread(whole, biased, 1).error(1000, 1).total_variation, 0.075, 1e-12);
   EXPECT_NEAR(GroupSpread(whole, biased, 3).endings_95(100).interval[0][0], 0.425, 0.002);
+  EXPECT_NEAR(GroupSpread(whole, biased, 6).endings_95(100'000).interval[0][0],
+              0.5 - 0.1 / (std::sqrt(7.0 / 3.0) - 1.0), 0.01);
   // +-0.1 alternating: a standard error of 0.1 / sqrt(7), estimated from eight groups of two gates
   // that vary together: Student's t with 7 degrees of freedom.
   std::vector<markov::FinalDistribution> spread;
