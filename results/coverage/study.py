@@ -314,7 +314,8 @@ def measure(own, commands):
     path = OUT / "coverage.csv"
     if path.exists() and sys.argv[3:]:
         with open(path, newline="") as file:
-            rows = {r[0]: r for r in list(csv.reader(file))[1:]} | rows
+            of_name = ["interval", "answers", *(f"{s}_percent" for s in names)]
+            rows = {r["interval"]: [r.get(name, "") for name in of_name] for r in csv.DictReader(file)} | rows
     with open(path, "w", newline="") as file:
         table = csv.writer(file)
         table.writerow(["interval", "answers", *(f"{s}_percent" for s in names)])
