@@ -163,7 +163,8 @@ std::string table_of(const std::vector<SweepAxis>& axes,
 // Points on the first screen if there are more than most_shown(); fewer below a legend.
 constexpr std::size_t kShown = 8, kBelowLegend = 6;
 
-/// Most points of which the first screen shows all: they share its lines with the legend.
+/// The largest number of points that the first screen lists one and all; a legend of the keys
+/// leaves room for fewer.
 std::size_t most_shown(const std::vector<SweepAxis>& axes) {
   return std::max(kShown, 10 - (KeyColumns(axes).legend.empty() ? 0 : axes.size()));
 }
