@@ -8,6 +8,7 @@
 #include <charconv>
 
 #include "cli/fields/text.h"
+#include "cli/render/assumptions.h"
 #include "cli/render/choice.h"
 #include "cli/render/health.h"
 #include "cli/render/matrix.h"
@@ -125,8 +126,11 @@ void fix_trials(const Options& options, const AskedAccuracy& asked, lattice::Acc
   }
 }
 
-void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>& own) {
-  if (own && own->differs())
+void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>& own,
+             const std::vector<lattice::AssumptionCheck>& assumptions) {
+  if (const std::string wrong = wrong_assumption_text(assumptions); !wrong.empty())
+    options.warn(wrong);
+  else if (own && own->differs())
     options.warn(fmt::format(
         "the chain differs from its own full trials (total variation {}, chance {}, {}): trust "
         "gatewalk lattice",
@@ -135,7 +139,7 @@ void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>&
 
 void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy,
              bool is_recorded) {
-  warn_of(options, prediction.hausman_check);
+  warn_of(options, prediction.hausman_check, prediction.assumptions);
   options.warn(not_reached(prediction, accuracy, is_recorded));
 }
 

@@ -61,7 +61,8 @@ void fix_trials(const Options& options, const AskedAccuracy& asked, lattice::Acc
                 std::int64_t starts);
 /// Warns if the chain's prediction differs significantly from the full trials that the chain was
 /// built from.
-void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>& own);
+void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>& own,
+             const std::vector<lattice::AssumptionCheck>& assumptions);
 /// Warns if the chain's prediction differs significantly from its own full trials, and if the
 /// accuracy asked for was not reached.
 void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy,

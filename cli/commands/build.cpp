@@ -174,7 +174,7 @@ int build_tree(const BuildCommand& options, const lattice::Scene& scene, const S
                 .method = settled},
                chain.transitions);
   options.remark("built in " + fixed(watch.seconds(), 2) + " s");
-  warn_of(options, chain.hausman_check);
+  warn_of(options, chain.hausman_check, chain.assumptions);
   if (how.accuracy.trials) return status;
   if (chain.prediction) warn_of(options, *chain.prediction, how.accuracy.accuracy);
   if (chain.range && !chain.range->reached)
@@ -257,7 +257,7 @@ int build_program(const BuildCommand& options) {
   const StateRecord states = record_of(chain, s.accuracy.accuracy);
   give_out_cells(options, std::move(chain.transitions), *s.cells, chain.pool, states, health,
                  "gatewalk counts of passages through cells that another program carries out");
-  warn_of(options, chain.hausman_check);
+  warn_of(options, chain.hausman_check, chain.assumptions);
   if (!how.accuracy.trials) warn_of(options, *chain.prediction, s.accuracy.accuracy);
   return status_of(options, health);
 }

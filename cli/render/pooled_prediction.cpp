@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render/pooled_prediction.h"
+#include "cli/render/assumptions.h"
 
 #include <fmt/core.h>
 
@@ -87,6 +88,7 @@ void describe(Fields& out, const RunsPrediction& runs, bool given) {
   out.flag({"reached", "whether error_95 is at most accuracy, for all starts"}, p.reached);
   out.optional(given, [&](Fields& f) { describe_error(f, worst_error(p)); });
   describe_hausman_check(out, p.hausman_check);
+  describe_assumptions(out, p.assumptions);
   out.count({"gate_runs", "1", "gate runs that this command simulated"}, p.gate_runs);
   out.count({"states", "1", "number of states of the chain"}, p.states);
   out.count({"nonzeros", "1", "transition probabilities of the chain that are not 0"}, p.nonzeros);
@@ -126,6 +128,7 @@ std::string runs_of(const RunsPrediction& runs) {
 /// empty if the chain has none, or if only the method behind both showed faults.
 std::string own_trials_text(const lattice::PooledPrediction& p) {
   const auto& own = p.hausman_check;
+  if (lattice::wrong_assumption(p.assumptions)) return "; one of its assumptions is wrong";
   if (!own) return "";
   if (own->p <= lattice::JointTest::kLevel)
     return fmt::format("; the chain differs from its own trials ({})", p_words(own->p));
@@ -164,7 +167,7 @@ std::string answer_text(const RunsPrediction& runs) {
   if (runs.recorded)
     text += beware_of_lost(runs.recorded->counts, runs.recorded->bounds, starts.front().endings);
   return text + beware_of(runs.prediction, runs.accuracy, runs.recorded.has_value()) +
-         beware_of(runs.prediction.health);
+         beware_of(runs.prediction.assumptions) + beware_of(runs.prediction.health);
 }
 
 std::string details_text(const lattice::StartAnswer& a, const ShownField& shown) {
@@ -187,8 +190,9 @@ std::string details_text(const lattice::StartAnswer& a, const ShownField& shown)
 std::string details_text(const RunsPrediction& runs) {
   const lattice::PooledPrediction& p = runs.prediction;
   std::string text = fmt::format(
-      "{}Simulated for this answer: {} gate runs; the chain has {} states. Time: {} s.\n",
-      hausman_check_text(p.hausman_check), p.gate_runs, p.states, fixed(p.seconds, 2));
+      "{}{}Simulated for this answer: {} gate runs; the chain has {} states. Time: {} s.\n",
+      hausman_check_text(p.hausman_check), assumptions_text(p.assumptions), p.gate_runs, p.states,
+      fixed(p.seconds, 2));
   if (const double direct = direct_seconds(p); std::isfinite(direct))
     text += fmt::format("Direct simulation with the same error bar would take about {} s.\n",
                         fixed(direct, 2));

@@ -10,6 +10,7 @@
 #include "cli/fields/json.h"
 #include "cli/fields/json_value.h"
 #include "cli/fields/text.h"
+#include "cli/render/assumptions.h"
 #include "cli/render/health.h"
 #include "cli/render/pooled_prediction.h"
 #include "cli/render/start.h"
@@ -149,6 +150,7 @@ std::string lines_of(const lattice::TreeInfo& trees, const StateRecord& s) {
     text += fmt::format("The limit of states changes the final gates by a total variation of {}.\n",
                         fixed(trees.states_bias, 4));
   return text + hausman_check_text(trees.hausman_check.value_or(std::nullopt)) +
+         assumptions_text(trees.assumptions) +
          "A single row has few runs and is noisy; a prediction averages over all rows.\n";
 }
 
@@ -276,6 +278,8 @@ void describe(Fields& out, const StateRecord& s) {
     f.optional(trees.hausman_check.has_value(), [&](Fields& own) {
       describe_hausman_check(own, trees.hausman_check.value_or(std::nullopt));
     });
+    f.optional(!trees.assumptions.empty(),
+               [&](Fields& all) { describe_assumptions(all, trees.assumptions); });
   });
   if (recorded) put_states(out);
   out.optional(s.are_probabilities, [&](Fields& f) {

@@ -10,6 +10,7 @@
 
 #include "cli/fields/text.h"
 #include "cli/fields/text_table.h"
+#include "cli/render/assumptions.h"
 #include "cli/render/compared_gates.h"
 #include "cli/render/exits.h"
 #include "cli/render/field_ends.h"
@@ -243,6 +244,25 @@ std::string answer_text(const lattice::Validation& v, const StartTexts& labels) 
          starts_table(v, labels);
 }
 
+std::vector<lattice::AssumptionCheck> assumptions_of(const ValidatedMatrix& matrix) {
+  if (!matrix.states || !matrix.states->trees) return {};
+  return matrix.states->trees->assumptions;
+}
+
+/// What the memory that was found does to the final gates.
+std::string memory_in_gates(const lattice::Validation& v,
+                            const std::vector<lattice::AssumptionCheck>& assumptions) {
+  if (!v.remembers()) return "";
+  const auto at = std::find_if(assumptions.begin(), assumptions.end(), [](const auto& check) {
+    return check.assumption == lattice::Assumption::face_before;
+  });
+  if (at == assumptions.end()) return "";
+  return fmt::format(
+      "With the face before in the state the final gates differ by a total variation of {}; chance "
+      "makes up\nto {}.\n",
+      fixed(at->total_variation, 3), fixed(at->chance_95, 3));
+}
+
 }  // namespace
 
 std::string chain_verdict(const lattice::StartValidation& r) {
@@ -259,14 +279,17 @@ std::string answer_text(const ValidateResult& result) {
   if (const auto& experiment = v.starts.front().observed)
     return answer_text(*experiment, v.starts.front());
   const bool is_one = v.starts.size() == 1;
+  const auto assumptions = assumptions_of(matrix);
   constexpr std::int64_t kFewTrials = 1000;
   std::string text =
       (is_one ? answer_text(v.starts.front()) : answer_text(v, labels_of(result))) +
-      sentence_of(*v.memory) +
+      sentence_of(*v.memory) + memory_in_gates(v, assumptions) +
       fmt::format("From {} of the full dynamics{} and a matrix of {} gate runs{}.\n",
                   counted(v.trials, "trial", "trials"), is_one ? "" : " per start",
                   totals_of(matrix).runs, matrix.path.empty() ? "" : " in " + matrix.path);
-  if (std::any_of(v.starts.begin(), v.starts.end(), differs))
+  if (lattice::wrong_assumption(assumptions))
+    text += beware_of(assumptions);
+  else if (std::any_of(v.starts.begin(), v.starts.end(), differs))
     text +=
         "Beware: the chain has an error of its own here. gatewalk lattice simulates the full "
         "dynamics.\n";

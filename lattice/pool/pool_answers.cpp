@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "markov/walk.h"
@@ -88,6 +89,22 @@ KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
   return answers;
 }
 
+/// One row that is the mean of these rows, each of which counts alike.
+markov::Counts mean_row(const markov::Counts& rows) {
+  if (rows.rows() == 1) return rows;
+  constexpr double kParts = 1099511627776.0;  // 2^40, so that rounding does not matter
+  std::vector<Eigen::Triplet<std::int64_t>> all;
+  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+    const auto runs = static_cast<double>(rows.row(row).sum());
+    for (markov::Counts::InnerIterator it(rows, row); it; ++it)
+      all.emplace_back(0, static_cast<int>(it.col()),
+                       std::llround(kParts * static_cast<double>(it.value()) / runs));
+  }
+  markov::Counts mean(1, rows.cols());
+  mean.setFromTriplets(all.begin(), all.end());
+  return mean;
+}
+
 }  // namespace
 
 int ending_leaf(const RunPool& pool, int per_leaf) {
@@ -97,11 +114,12 @@ int ending_leaf(const RunPool& pool, int per_leaf) {
       std::min<std::int64_t>(per_leaf, std::max(kLeast, 2 * kernel_runs(pool) / kMostStates)));
 }
 
-std::vector<std::optional<EndingsOf>> endings_of(const dynamics::CellMap& map,
-                                                 const FieldParams& field, const RunPool& pool,
-                                                 const std::vector<FirstRow>& starts, int leaf,
-                                                 TrialGroup group) {
-  std::vector<std::optional<EndingsOf>> endings(starts.size());
+std::vector<std::optional<SmallLeaves>> by_small_leaves(const dynamics::CellMap& map,
+                                                        const FieldParams& field,
+                                                        const RunPool& pool,
+                                                        const std::vector<FirstRow>& starts,
+                                                        int leaf, TrialGroup group) {
+  std::vector<std::optional<SmallLeaves>> found(starts.size());
   std::vector<FirstRow> asked;
   std::vector<std::size_t> place;
   for (std::size_t i = 0; i < starts.size(); ++i)
@@ -110,20 +128,21 @@ std::vector<std::optional<EndingsOf>> endings_of(const dynamics::CellMap& map,
       place.push_back(i);
     }
   const bool adjoint = pays_adjoint(map, field, asked.size());
-  if (asked.empty() || (adjoint && !fits_adjoint(pool, field, leaf))) return endings;
+  if (asked.empty() || (adjoint && !fits_adjoint(pool, field, leaf))) return found;
   const Kernel kernel = kernel_of(map, pool, leaf, group);
   const markov::Counts rows =
       first_rows(kernel, map, pool, asked, map.type_of(field.start_column(), 0), {group});
   if (!adjoint) {
     const KernelAnswers answers = answers_of(kernel, map, rows, field, {}, 0);
-    for (std::size_t i = 0; i < asked.size(); ++i) endings[place[i]] = answers.final[i].endings;
-    return endings;
+    for (std::size_t i = 0; i < asked.size(); ++i)
+      found[place[i]] = SmallLeaves{answers.final[i].endings, answers.final[i].final_cells};
+    return found;
   }
   const markov::EndTable chances =
       markov::ending_chances(chain_of(kernel, map, field, {}).chains().front(),
                              {field.columns, field.rows}, field.start_column(), 0, field.max_gates);
   for (std::size_t i = 0; i < asked.size(); ++i) {
-    EndingsOf& of = endings[place[i]].emplace();
+    EndingsOf& of = found[place[i]].emplace().endings;
     const auto row = static_cast<Eigen::Index>(i);
     const auto all = static_cast<double>(rows.row(row).sum());
     for (markov::Counts::InnerIterator it(rows, row); it; ++it)
@@ -132,7 +151,21 @@ std::vector<std::optional<EndingsOf>> endings_of(const dynamics::CellMap& map,
             static_cast<double>(it.value()) / all * chances(it.col(), static_cast<Eigen::Index>(e));
     if (!(all > 0.0)) of[static_cast<std::size_t>(markov::Ending::unsampled)] = 1.0;
   }
-  return endings;
+  return found;
+}
+
+GroupedMaps mean_maps(const dynamics::CellMap& map, const FieldParams& field, const RunPool& pool,
+                      const std::vector<FirstRow>& starts, int leaf) {
+  GroupedMaps maps{.whole = {}, .groups = std::vector<markov::CellProbabilities>(kTrialGroups)};
+  tbb::parallel_for(-1, kTrialGroups, [&](int g) {
+    const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};
+    const Kernel kernel = kernel_of(map, pool, leaf, group);
+    const markov::Counts rows = mean_row(
+        first_rows(kernel, map, pool, starts, map.type_of(field.start_column(), 0), {group}));
+    (g < 0 ? maps.whole : maps.groups[static_cast<std::size_t>(g)]) =
+        answers_of(kernel, map, rows, field, {}, 0).final.front().final_cells;
+  });
+  return maps;
 }
 
 FinalDistribution with_endings(FinalDistribution prediction, const EndingsOf& endings) {
@@ -160,6 +193,40 @@ KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
   const std::int64_t of_a_type = kernel.nonzeros() / std::ssize(kernel.counts);
   return answers_of(kernel, map, first_rows, field, {0, by_walks(of_a_type, field) ? kWalks : 0},
                     seed);
+}
+
+GroupedMaps PoolAnswers::mean_maps(const std::vector<std::size_t>& of) const {
+  const auto n = static_cast<double>(of.size());
+  GroupedMaps mean;
+  mean.whole = markov::CellProbabilities::Zero(whole.final[of.front()].final_cells.rows(),
+                                               whole.final[of.front()].final_cells.cols());
+  mean.groups.assign(kTrialGroups, mean.whole);
+  for (const std::size_t i : of) {
+    mean.whole += whole.final[i].final_cells / n;
+    for (std::size_t g = 0; g < mean.groups.size(); ++g)
+      mean.groups[g] += groups[i][g].final_cells / n;
+  }
+  return mean;
+}
+
+std::optional<GroupedMaps> PoolAnswers::mean_maps_of_small_leaves(
+    const std::vector<std::size_t>& of) const {
+  if (endings.empty()) return {};
+  const auto n = static_cast<double>(of.size());
+  GroupedMaps mean;
+  const auto add = [&](markov::CellProbabilities& sum, const SmallLeaves& one) {
+    if (sum.size() == 0)
+      sum = one.final_cells / n;
+    else
+      sum += one.final_cells / n;
+  };
+  mean.groups.resize(kTrialGroups);
+  for (const std::size_t i : of) {
+    if (!endings[i] || endings[i]->whole.final_cells.size() == 0) return {};
+    add(mean.whole, endings[i]->whole);
+    for (std::size_t g = 0; g < kTrialGroups; ++g) add(mean.groups[g], endings[i]->groups[g]);
+  }
+  return mean;
 }
 
 PoolChains::PoolChains(const dynamics::CellMap& map, const FieldParams& field, int per_leaf,
@@ -253,10 +320,11 @@ bool PoolChains::add_endings(const RunPool& pool, const std::vector<FirstRow>& s
                              PoolAnswers& said) const {
   const int leaf = ending_leaf(pool, ending_per_leaf_);
   if (said.whole.walks > 0 || leaf >= ending_per_leaf_) return false;
-  std::array<std::vector<std::optional<EndingsOf>>, kTrialGroups + 1> found;
+  std::array<std::vector<std::optional<SmallLeaves>>, kTrialGroups + 1> found;
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};
-    found[static_cast<std::size_t>(g + 1)] = endings_of(map_, field_, pool, starts, leaf, group);
+    found[static_cast<std::size_t>(g + 1)] =
+        by_small_leaves(map_, field_, pool, starts, leaf, group);
   });
   for (std::size_t i = 0; i < starts.size(); ++i) {
     std::optional<PoolEndings>& of = said.endings.emplace_back();

@@ -36,25 +36,34 @@ struct KernelAnswers {
 /// Shares of all bodies by markov::Ending.
 using EndingsOf = std::array<double, markov::kEndings>;
 
-/// Shares of endings for each start by the exact chain with leaves of `leaf` entries, from the runs
-/// of one group of the trials. nullopt for a start whose row is that of its leaf, because the few
+/// What a chain of small leaves says of one start.
+struct SmallLeaves {
+  EndingsOf endings{};
+  markov::CellProbabilities final_cells{};  // empty by the adjoint, which gives endings alone
+};
+/// Answers for each start by the exact chain with leaves of `leaf` entries, from the runs of one
+/// group of the trials. nullopt for a start whose row is that of its leaf, because the few
 /// runs of a small leaf would make all of its first draws; and for all starts if they are many and
 /// the chain too large for the adjoint.
-[[nodiscard]] std::vector<std::optional<EndingsOf>> endings_of(const dynamics::CellMap& map,
-                                                               const FieldParams& field,
-                                                               const RunPool& pool,
-                                                               const std::vector<FirstRow>& starts,
-                                                               int leaf, TrialGroup group = {});
+[[nodiscard]] std::vector<std::optional<SmallLeaves>> by_small_leaves(
+    const dynamics::CellMap& map, const FieldParams& field, const RunPool& pool,
+    const std::vector<FirstRow>& starts, int leaf, TrialGroup group = {});
+
+/// Final gates by the exact chain with leaves of `leaf` entries: means over the starts, by all
+/// trials and by each group of the trials.
+[[nodiscard]] GroupedMaps mean_maps(const dynamics::CellMap& map, const FieldParams& field,
+                                    const RunPool& pool, const std::vector<FirstRow>& starts,
+                                    int leaf);
 
 /// The prediction with the shares of endings taken from `endings`; the map of each ending keeps its
 /// shape. A prediction that knows no way to one of these endings is returned as it is.
 [[nodiscard]] markov::FinalDistribution with_endings(markov::FinalDistribution prediction,
                                                      const EndingsOf& endings);
 
-/// Shares of endings for one start by all trials, and by each group of the trials.
+/// These answers by all trials, and by each group of the trials.
 struct PoolEndings {
-  EndingsOf whole;
-  std::array<EndingsOf, kTrialGroups> groups;
+  SmallLeaves whole;
+  std::array<SmallLeaves, kTrialGroups> groups;
 };
 
 /// Predictions for each start by all trials, and by each group of the trials.
@@ -73,6 +82,12 @@ struct PoolAnswers {
   int states = 0;
   std::int64_t nonzeros = 0;
   int coordinates = 0;  // number of coordinates by which the states differ
+
+  /// Final gates: means over these starts; and by the chain of small leaves, nullopt if it does not
+  /// give them all.
+  [[nodiscard]] GroupedMaps mean_maps(const std::vector<std::size_t>& of) const;
+  [[nodiscard]] std::optional<GroupedMaps> mean_maps_of_small_leaves(
+      const std::vector<std::size_t>& of) const;
 };
 
 /// The chains of a pool that grows. Kernels are kept while only first runs are added.
@@ -86,6 +101,9 @@ class PoolChains {
   /// True if answers for this number of starts come by the adjoint: further starts then cost
   /// nothing.
   [[nodiscard]] bool by_adjoint(const RunPool& pool, std::size_t starts) const;
+
+  /// Least number of entries in a leaf of the chains.
+  [[nodiscard]] int per_leaf() const { return per_leaf_; }
 
   [[nodiscard]] PoolAnswers ask(const RunPool& pool, const std::vector<FirstRow>& starts);
   /// Adds the endings from small leaves to answers for these starts, and returns true; false if

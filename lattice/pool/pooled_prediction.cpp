@@ -14,6 +14,7 @@
 
 #include "dynamics/base/share.h"
 #include "lattice/field/exits.h"
+#include "lattice/pool/assumptions.h"
 #include "lattice/pool/hausman_check.h"
 #include "lattice/pool/pool_answers.h"
 #include "lattice/pool/predict_pooled.h"
@@ -64,9 +65,9 @@ StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, std:
                                                   .total_variation +
                                               a.unseen);
   if (!said.endings.empty() && said.endings[i]) {
-    a.final = with_endings(std::move(a.final), said.endings[i]->whole);
+    a.final = with_endings(std::move(a.final), said.endings[i]->whole.endings);
     for (std::size_t g = 0; g < groups.size(); ++g)
-      groups[g] = with_endings(std::move(groups[g]), said.endings[i]->groups[g]);
+      groups[g] = with_endings(std::move(groups[g]), said.endings[i]->groups[g].endings);
   }
   const GroupSpread spread(a.final, groups, said.coordinates);
   a.endings = spread.endings_95(behind);
@@ -182,6 +183,7 @@ class PredictionRun {
     result_.gate_runs = runner_.gate_runs;
     result_.run_seconds = runner_.seconds;
     result_.hausman_check = look_at_own_trials();
+    result_.assumptions = look_at_assumptions();
     result_.seconds = watch_.seconds();
     tbb::parallel_for(std::size_t{0}, result_.starts.size(), [&](std::size_t k) {
       result_.starts[k].direct_seconds = direct_seconds(result_.starts[k], runner_, options_.seed);
@@ -199,6 +201,22 @@ class PredictionRun {
       if (const StartAnswer& a = result_.starts[k]; a.trials > 0 && !a.from_trials)
         of.push_back({pool_.starts[places_[k]].full, a.final});
     return hausman_check(of, problem_.field, options_.seed);
+  }
+
+  [[nodiscard]] std::vector<AssumptionCheck> look_at_assumptions() const {
+    if (by_walks_) return {};
+    const std::vector<FirstRow> rows = rows_asked();
+    std::vector<FirstRow> by_chain;
+    std::vector<std::size_t> asked;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (!result_.starts[asked_[i]].from_trials) {
+        by_chain.push_back(rows[i]);
+        asked.push_back(i);
+      }
+    if (asked.empty()) return {};
+    return check_assumptions(problem_.map(), problem_.field, pool_, by_chain,
+                             said_.mean_maps(asked), said_.mean_maps_of_small_leaves(asked),
+                             chains_.per_leaf(), said_.coordinates, options_.seed);
   }
 
   [[nodiscard]] std::vector<std::size_t> all() const {
@@ -448,9 +466,10 @@ KernelAnswers whole_answers(const Kernel& kernel, const Problem& problem, const 
       kernel, map, first_rows(kernel, map, pool, rows, problem.start_type()), problem.field, seed);
   const int leaf = ending_leaf(pool, per_leaf);
   if (answers.walks > 0 || leaf >= per_leaf) return answers;
-  const auto endings = endings_of(map, problem.field, pool, rows, leaf);
+  const auto endings = by_small_leaves(map, problem.field, pool, rows, leaf);
   for (std::size_t i = 0; i < rows.size(); ++i)
-    if (endings[i]) answers.final[i] = with_endings(std::move(answers.final[i]), *endings[i]);
+    if (endings[i])
+      answers.final[i] = with_endings(std::move(answers.final[i]), endings[i]->endings);
   return answers;
 }
 
@@ -479,6 +498,13 @@ PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
     PoolChains chains(map, problem.field, per_leaf, starts.size(), seed);
     said = chains.ask(pool, rows);
     static_cast<void>(chains.add_endings(pool, rows, said));
+    // Of the chain as a whole: for all bodies as they were seen.
+    const std::vector<FirstRow> as_seen{std::monostate{}};
+    if (said.whole.walks == 0 && !pool.scattered.starts.empty())
+      result.assumptions =
+          check_assumptions(map, problem.field, pool, as_seen,
+                            mean_maps(map, problem.field, pool, as_seen, chains.per_leaf()), {},
+                            chains.per_leaf(), said.coordinates, seed);
   } else {
     const Kernel kernel = kernel_of(map, pool, per_leaf);
     said.whole = whole_answers(kernel, problem, pool, rows, per_leaf, seed);

@@ -76,12 +76,43 @@ struct HausmanCheck {
   [[nodiscard]] bool differs() const { return p <= kLevel; }
 };
 
+/// What a chain of pooled runs assumes.
+enum class Assumption : std::uint8_t {
+  mirror,       // in symmetric cells: the mirror image of a run is a run too
+  states,       // bodies of one state are alike
+  face_before,  // the face by which a body entered the cell before does not matter
+  rows,         // cells of one type are alike in all rows of the field
+  cells,        // and in all cells
+};
+inline constexpr std::array kAssumptions{Assumption::mirror, Assumption::states,
+                                         Assumption::face_before, Assumption::rows,
+                                         Assumption::cells};
+
+/// The final gates of the chain against those of a relaxed chain: a chain of the same runs without
+/// one assumption.
+struct AssumptionCheck {
+  static constexpr double kLevel = 0.01;
+
+  Assumption assumption = Assumption::states;
+  double total_variation = 0.0;
+  double chance_95 = 0.0;  // 95 % of the differences by chance and bias are at most this
+  double p = 1.0;
+  double p_adjusted = 1.0;  // for all assumptions together (Holm)
+
+  [[nodiscard]] bool is_wrong() const { return p_adjusted <= kLevel; }
+};
+/// The assumption that is wrong; of several, the one whose relaxed chain differs most, relative to
+/// chance: dropping one assumption also shows part of the others' errors. Null if none is wrong.
+[[nodiscard]] const AssumptionCheck* wrong_assumption(const std::vector<AssumptionCheck>& checks);
+
 struct PooledPrediction {
   std::vector<StartAnswer> starts;
   bool reached = true;  // every answer has the accuracy that was asked for
   /// Compares the chain with the full trials of all starts whose answer is the chain's; empty if
   /// Monte Carlo walks gave the answers.
   std::optional<HausmanCheck> hausman_check{};
+  /// Of the chain, in the mean over all starts whose answer is the chain's; empty as hausman_check.
+  std::vector<AssumptionCheck> assumptions{};
   std::int64_t gate_runs = 0;  // new runs
   int states = 0;
   std::int64_t nonzeros = 0;

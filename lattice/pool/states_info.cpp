@@ -23,6 +23,22 @@ PooledRange range_in(std::string_view text, const dynamics::Section& section) {
   return range;
 }
 
+constexpr std::array<std::string_view, kAssumptions.size()> kAssumptionKeys{
+    "mirror", "states", "face_before", "rows", "cells"};
+
+std::vector<AssumptionCheck> assumptions_in(const JsonObject& json) {
+  std::vector<AssumptionCheck> checks;
+  for (std::size_t i = 0; i < kAssumptions.size(); ++i) {
+    const std::string key(kAssumptionKeys[i]);
+    if (!json.has(key) || json.at(key) == "null") continue;
+    const JsonObject of(json.at(key));
+    checks.push_back({kAssumptions[i], of.number("total_variation"),
+                      of.number("chance_total_variation_95"), of.number("p"),
+                      of.number("p_adjusted")});
+  }
+  return checks;
+}
+
 TreeInfo trees_in(const JsonObject& json, const dynamics::Section& section) {
   TreeInfo trees{.entries_per_leaf = json.count<int>("entries_per_leaf"),
                  .gate_runs = json.count<std::int64_t>("gate_runs"),
@@ -38,6 +54,8 @@ TreeInfo trees_in(const JsonObject& json, const dynamics::Section& section) {
       trees.error_95->push_back(json_number(error));
   }
   if (json.at("range") != "null") trees.range = range_in(json.at("range"), section);
+  if (json.has("assumptions"))
+    trees.assumptions = assumptions_in(JsonObject(json.at("assumptions")));
   if (!json.has("own_trials")) return trees;
   trees.hausman_check.emplace();
   if (json.at("own_trials") == "null") return trees;
@@ -73,7 +91,8 @@ TreeInfo tree_info(const TreeChain& c, double accuracy) {
                  .accuracy = accuracy,
                  .range = c.range,
                  .states_bias = c.states_bias,
-                 .hausman_check = c.hausman_check};
+                 .hausman_check = c.hausman_check,
+                 .assumptions = c.assumptions};
   if (c.prediction) {
     trees.error_95.emplace();
     for (const StartAnswer& a : c.prediction->starts)

@@ -25,6 +25,7 @@ struct TreeInfo {
   double states_bias = 0.0;
   /// Outer nullopt: the file does not say, as files of version 1.0.0.
   std::optional<std::optional<HausmanCheck>> hausman_check{};
+  std::vector<AssumptionCheck> assumptions{};  // empty also in files of version 2.0.0 and older
 
   /// The accuracy that one start can expect: for trees of a range, half of what was asked for.
   [[nodiscard]] double accuracy_of_one() const;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "lattice/field/running_trial.h"
+#include "lattice/pool/assumptions.h"
 #include "lattice/pool/hausman_check.h"
 #include "lattice/pool/pool_answers.h"
 #include "lattice/statistics/compare.h"
@@ -61,9 +62,9 @@ std::vector<Transitions> transitions_with(const Problem& problem, const RunPool&
       first_rows(kernel, map, pool, {own.begin(), own.end()}, problem.start_type()));
 }
 
-/// All full trials of the pool against the final chain.
-std::optional<HausmanCheck> look_at_own_trials(const TreeChain& chain, const Problem& problem,
-                                               std::uint64_t seed) {
+/// Checks the final chain: against all full trials of the pool, and its assumptions. Checks of the
+/// prediction are those of the final chain if it is the same.
+void check(TreeChain& chain, const Problem& problem, std::uint64_t seed) {
   const RunPool& pool = chain.pool;
   std::vector<const FieldTrials*> trials;
   std::vector<FirstRow> starts;
@@ -78,10 +79,18 @@ std::optional<HausmanCheck> look_at_own_trials(const TreeChain& chain, const Pro
   const KernelAnswers said = answers_of(
       chain.kernel, map, first_rows(chain.kernel, map, pool, starts, problem.start_type()),
       problem.field, seed);
-  if (said.walks > 0) return {};
+  if (said.walks > 0) return;
   std::vector<TrialsAndChain> all;
   for (std::size_t i = 0; i < trials.size(); ++i) all.push_back({*trials[i], said.final[i]});
-  return hausman_check(all, problem.field, seed);
+  chain.hausman_check = hausman_check(all, problem.field, seed);
+  if (starts.empty()) return;
+  if (chain.prediction && !chain.range && chain.states_bias == 0.0) {
+    chain.assumptions = chain.prediction->assumptions;
+    return;
+  }
+  chain.assumptions = check_assumptions(
+      map, problem.field, pool, starts, mean_maps(map, problem.field, pool, starts, chain.per_leaf),
+      {}, chain.per_leaf, coordinates_cut(chain.kernel.space), seed);
 }
 
 }  // namespace
@@ -111,9 +120,11 @@ TreeChain make_tree_chain(const Problem& problem, const TreeOptions& options, co
                   .range = std::move(range)};
   if (options.most_states)
     limit_states(chain, problem, *options.most_states, options.accuracy.seed);
-  chain.hausman_check = look_at_own_trials(chain, problem, options.accuracy.seed);
-  if (chain.prediction)
-    chain.prediction->hausman_check = {};  // it belongs to the chain before states were limited
+  check(chain, problem, options.accuracy.seed);
+  if (chain.prediction) {  // these belong to the chain before states were limited
+    chain.prediction->hausman_check = {};
+    chain.prediction->assumptions = {};
+  }
   std::vector<const OwnRuns*> own;
   for (const OwnRuns& s : chain.pool.starts) own.push_back(&s);
   chain.transitions = transitions_with(problem, chain.pool, chain.kernel, own);

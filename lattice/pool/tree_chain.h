@@ -38,6 +38,7 @@ struct TreeChain {
   /// All full trials of the pool against this chain; nullopt if answers come from Monte Carlo
   /// walks.
   std::optional<HausmanCheck> hausman_check{};
+  std::vector<AssumptionCheck> assumptions{};  // of this chain, for the same trials
 };
 
 /// Makes a chain whose error bar is at most the accuracy for each of the starts, and half of that

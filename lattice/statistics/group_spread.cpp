@@ -66,7 +66,8 @@ void count_unseen(Error95& e, const CellProbabilities& p, std::int64_t trials) {
                    : std::nan("");
 }
 
-constexpr std::uint64_t kGroupDraws = 0x67726f7570;  // "group", second word of the streams
+// Second words of the streams: "group", "assume".
+constexpr std::uint64_t kGroupDraws = 0x67726f7570, kDifferenceDraws = 0x617373756d65;
 
 /// 97.5 % quantile of Student's t with kTrialGroups - 1 = 7 degrees of freedom.
 constexpr double kQuantile = 2.3646;
@@ -104,15 +105,15 @@ struct IndependentErrors {
   double in_groups = 1.0;  // r of the groups' covariance
   double in_truth = 1.0;   // r of the true covariance, estimated
 
-  IndependentErrors(const std::vector<markov::FinalDistribution>& groups,
-                    const CellProbabilities& mean) {
-    const double n = static_cast<double>(groups.size()) - 1.0;
+  /// `deviations`: (gates x groups), from the mean of the groups.
+  explicit IndependentErrors(const Eigen::MatrixXd& deviations) {
+    const double n = static_cast<double>(deviations.cols()) - 1.0;
     double trace = 0.0, squares = 0.0;
-    for (const auto& a : groups)
-      for (const auto& b : groups) {
-        const double product = ((a.final_cells - mean) * (b.final_cells - mean)).sum() / n;
+    for (Eigen::Index a = 0; a < deviations.cols(); ++a)
+      for (Eigen::Index b = 0; b < deviations.cols(); ++b) {
+        const double product = (deviations.col(a).array() * deviations.col(b).array()).sum() / n;
         squares += product * product;
-        if (&a == &b) trace += product;
+        if (a == b) trace += product;
       }
     if (!(trace > 0.0)) return;
     constexpr double kMost = 1000.0;  // practically infinitely many
@@ -284,7 +285,13 @@ Error95 GroupSpread::error(std::int64_t trials, std::uint64_t seed) const {
   for (const auto& g : groups_) mean += g.final_cells / n;
   const CellProbabilities biased = whole_.final_cells + bias_left_ * (mean - whole_.final_cells);
   const double scale = 1.0 / std::sqrt(n * (n - 1.0));
-  const IndependentErrors independent(groups_, mean);
+  Eigen::MatrixXd deviations(mean.size(), std::ssize(groups_));
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const CellProbabilities deviation = groups_[g].final_cells - mean;
+    deviations.col(static_cast<Eigen::Index>(g)) =
+        Eigen::Map<const Eigen::VectorXd>(deviation.data(), deviation.size());
+  }
+  const IndependentErrors independent(deviations);
   Error95 e =
       error_of_draws(draws_for(mean.size() * std::ssize(groups_)), whole_.final_cells, [&](int k) {
         Random random(dynamics::Purpose::resampling,
@@ -337,6 +344,64 @@ EndingShares GroupSpread::endings_95(std::int64_t trials) const {
         interval_of(whole_, groups_, trials, bias_left_,
                     [e](const markov::FinalDistribution& d) { return d.endings[e]; });
   return shares;
+}
+
+GroupDifference group_difference(const GroupedMaps& first, const GroupedMaps& second,
+                                 int coordinates, std::uint64_t seed, std::uint64_t number) {
+  constexpr int kDraws = 1999;
+  const auto n = std::ssize(second.groups);
+  const CellProbabilities difference = second.whole - first.whole;
+  std::vector<CellProbabilities> of_groups;
+  CellProbabilities seen = difference.abs(), bias = -second.whole;
+  for (std::size_t g = 0; g < second.groups.size(); ++g) {
+    of_groups.push_back(second.groups[g] - first.groups[g]);
+    seen += of_groups.back().abs();
+    bias += second.groups[g] / static_cast<double>(n);
+  }
+  // Most gates of a large field are out of reach.
+  std::vector<Eigen::Index> reached;
+  for (Eigen::Index i = 0; i < seen.size(); ++i)
+    if (seen.data()[i] > 0.0) reached.push_back(i);
+  Eigen::VectorXd whole(std::ssize(reached));
+  Eigen::MatrixXd deviations(std::ssize(reached), n);
+  for (Eigen::Index i = 0; i < whole.size(); ++i) {
+    const Eigen::Index gate = reached[static_cast<std::size_t>(i)];
+    whole[i] = difference.data()[gate];
+    for (Eigen::Index g = 0; g < n; ++g)
+      deviations(i, g) = of_groups[static_cast<std::size_t>(g)].data()[gate];
+  }
+  const Eigen::VectorXd mean = deviations.rowwise().mean();
+  const double more_bias = 0.5 * (mean - whole).lpNorm<1>();
+  deviations.colwise() -= mean;
+  GroupDifference d{.total_variation = 0.5 * whole.lpNorm<1>()};
+  if (!(deviations.squaredNorm() > 0.0)) {
+    d.p = d.total_variation > 0.0 ? 0.0 : 1.0;
+    return d;
+  }
+  // Both predictions have most of their bias in common: half of it remains at most. (Without any
+  // allowance, 1 % of right chains had p below 0.01 too.)
+  constexpr double kPart = 0.5;
+  const double allowed =
+      kPart * bias_left(coordinates) * std::min(0.5 * bias.abs().sum(), more_bias);
+  const Eigen::VectorXd biased =
+      whole * (allowed < d.total_variation ? allowed / d.total_variation : 1.0);
+  const IndependentErrors independent(deviations);
+  const double scale = 1.0 / std::sqrt(static_cast<double>(n) * static_cast<double>(n - 1));
+  std::vector<double> drawn;
+  int as_large = 1;
+  for (int k = 0; k < kDraws; ++k) {
+    Random random(dynamics::Purpose::resampling,
+                  {seed, kDifferenceDraws + number, static_cast<std::uint64_t>(k)});
+    const std::vector<double> weights =
+        drawn_weights(independent, static_cast<std::size_t>(n), random);
+    drawn.push_back(
+        0.5 * (biased + scale * deviations * Eigen::Map<const Eigen::VectorXd>(weights.data(), n))
+                  .lpNorm<1>());
+    as_large += drawn.back() >= d.total_variation;
+  }
+  d.chance_95 = quantile(std::move(drawn), 0.95);
+  d.p = static_cast<double>(as_large) / (kDraws + 1);
+  return d;
 }
 
 Error95 error_of_shares(const CellCounts& counts, std::uint64_t seed) {

@@ -79,6 +79,25 @@ class GroupSpread {
   double bias_left_;
 };
 
+/// Final gates (rows x columns) by all trials, and by each group of the trials.
+struct GroupedMaps {
+  CellProbabilities whole;
+  std::vector<CellProbabilities> groups;
+};
+/// A difference between two predictions from the same trials, whose errors are mostly the same.
+struct GroupDifference {
+  double total_variation = 0.0;
+  /// 95 % of differences by chance are at most this: sampling error as the groups show it, beside
+  /// the bias that the states of the second prediction have.
+  double chance_95 = 0.0;
+  double p = 1.0;  // share of such differences that are as large
+};
+/// Compares two predictions; `coordinates`: number by which the states differ. `number` tells apart
+/// the draws of several comparisons with one seed.
+[[nodiscard]] GroupDifference group_difference(const GroupedMaps& first, const GroupedMaps& second,
+                                               int coordinates, std::uint64_t seed,
+                                               std::uint64_t number);
+
 /// Error bounds of the shares of the trials themselves; `counts`: trials by final gate (rows x
 /// columns).
 [[nodiscard]] Error95 error_of_shares(const CellCounts& counts, std::uint64_t seed);

@@ -67,4 +67,19 @@ double MultipleTests::single_level(double level) const {
   return static_cast<double>(rank) / of_all;
 }
 
+std::vector<double> holm(const std::vector<double>& p) {
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
+  std::vector<double> adjusted(p.size());
+  double largest = 0.0;
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    const auto not_smaller = static_cast<double>(order.size() - rank);
+    largest = std::max(largest, p[order[rank]] * not_smaller);
+    adjusted[order[rank]] = std::min(1.0, largest);
+  }
+  return adjusted;
+}
+
 }  // namespace gatewalk::lattice

@@ -32,4 +32,7 @@ struct MultipleTests {
   std::vector<std::int64_t> least_;
 };
 
+/// p-values adjusted for all of them together (Holm, Scand. J. Statist. 6, 1979), in their order.
+[[nodiscard]] std::vector<double> holm(const std::vector<double>& p);
+
 }  // namespace gatewalk::lattice

@@ -11,6 +11,7 @@
 #include "dynamics/base/share.h"
 #include "lattice/field/running_trial.h"
 #include "lattice/pool/kernel.h"
+#include "lattice/statistics/multiple_tests.h"
 
 namespace gatewalk::lattice {
 namespace {
@@ -103,17 +104,9 @@ void add_walks(StateWalks& walks, const StateSpace& space, int first, const Fiel
 }
 
 double MemoryStudy::p_adjusted(Question q) const {
-  // Holm: the k-th smallest p times the number of those not smaller, and never below an earlier
-  // value.
-  double adjusted = 0.0;
-  for (int other = 0; other < kQuestions; ++other) {
-    const double p_other = p(static_cast<Question>(other));
-    if (p_other > p(q)) continue;
-    int not_smaller = 0;
-    for (int k = 0; k < kQuestions; ++k) not_smaller += p(static_cast<Question>(k)) >= p_other;
-    adjusted = std::max(adjusted, p_other * not_smaller);
-  }
-  return std::min(1.0, adjusted);
+  std::vector<double> all;
+  for (int k = 0; k < kQuestions; ++k) all.push_back(p(static_cast<Question>(k)));
+  return holm(all)[static_cast<std::size_t>(q)];
 }
 
 bool MemoryStudy::remembers() const {

@@ -72,7 +72,7 @@ struct MemoryStudy {
   [[nodiscard]] double p(Question q) const {
     return q == Question::gates_ahead ? ahead.p : independence(q).p;
   }
-  /// p-value adjusted for all questions (Holm, Scand. J. Statist. 6, 1979).
+  /// p-value adjusted for all questions (holm).
   [[nodiscard]] double p_adjusted(Question q) const;
   [[nodiscard]] bool remembers(Question q) const { return p_adjusted(q) <= kLevel; }
   /// True if any question finds memory: the chain then forgets something that matters.

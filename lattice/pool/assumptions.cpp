@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: MIT
+#include "lattice/pool/assumptions.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "lattice/statistics/multiple_tests.h"
+
+namespace gatewalk::lattice {
+namespace {
+
+using namespace dynamics;
+
+/// The trials with new labels: label.begin(start) gives the entry of a trial's start, then
+/// label.next(passage) each of its passages.
+template <class Label>
+FieldTrials relabelled(const FieldTrials& trials, const Section& section, Label label,
+                       const auto& start_of) {
+  FieldTrials all{.final_gates = {}, .bodies = trials.bodies, .keep_passages = true};
+  all.passages.begin(section);
+  all.passages.reserve(trials.passages.size());
+  all.passed = trials.passed;
+  for (std::size_t i = 0; i < trials.passed.size(); ++i) {
+    (void)label.begin(start_of(i));
+    for (const CellPassage passage : trials.of_trial(i))
+      all.passages.push_back(label.next(passage));
+  }
+  return all;
+}
+
+template <class Label>
+RunPool relabelled(const RunPool& pool, const Section& section, Label label) {
+  RunPool all;
+  for (const OwnRuns& s : pool.starts) {
+    const auto start = [&](std::size_t) { return s.start; };
+    all.starts.push_back({.start = label.begin(s.start),
+                          .full = relabelled(s.full, section, label, start),
+                          .first = relabelled(s.first, section, label, start)});
+  }
+  for (const Entry& start : pool.scattered.starts)
+    all.scattered.starts.push_back(label.begin(start));
+  all.scattered.each = relabelled(pool.scattered.each, section, label,
+                                  [&](std::size_t i) { return pool.scattered.starts[i]; });
+  return all;
+}
+
+/// Faces that are pairs: the face of this entry, and that of the entry before. Faces after the
+/// first `named` share a label as the face before, so that there are at most kMostFaces pairs.
+class FaceBefore {
+ public:
+  explicit FaceBefore(const Section& section)
+      : faces_(static_cast<int>(section.faces.size())),
+        named_(std::min(faces_, static_cast<int>(kMostFaces) / faces_ - 2)) {}
+
+  [[nodiscard]] Entry begin(Entry start) {
+    before_ = label_of(start.face);
+    start.face = pair(start.face, named_ + 1);
+    return start;
+  }
+  [[nodiscard]] CellPassage next(CellPassage passage) {
+    if (passage.fate != Fate::left) return passage;
+    const int face = std::exchange(passage.entry.face, pair(passage.entry.face, before_));
+    before_ = label_of(face);
+    return passage;
+  }
+  /// The section with these pairs. Pairs with the shared label have no mirror image if mirrored
+  /// faces do not share it.
+  [[nodiscard]] Section section_of(const Section& section) const {
+    Section pairs = section;
+    pairs.named.clear();
+    pairs.faces.clear();
+    for (int before = 0; before <= named_ + 1; ++before)
+      for (int f = 0; f < faces_; ++f) {
+        Face& face = pairs.faces.emplace_back(section.faces[f]);
+        face.name += " " + std::to_string(before);
+        face.usual.fill({0.0, 1.0});  // of a state that nobody was seen to enter
+        if (face.mirror != kNoMirror) face.mirror = pair(face.mirror, mirror_of(section, before));
+      }
+    return pairs;
+  }
+  /// Whether pairs fit, and mirrored faces have labels of their own.
+  [[nodiscard]] bool fits(const CellMap& map) const {
+    if (faces_ < 2 || named_ < 1) return false;
+    const bool any = std::any_of(map.types.begin(), map.types.end(),
+                                 [](const auto& type) { return type.symmetric; });
+    for (int f = 0; any && f < named_; ++f)
+      if (map.section.faces[f].mirror >= named_) return false;
+    return true;
+  }
+
+ private:
+  [[nodiscard]] int label_of(int face) const { return std::min(face, named_); }
+  [[nodiscard]] int pair(int face, int before) const { return before * faces_ + face; }
+  [[nodiscard]] int mirror_of(const Section& section, int before) const {
+    if (before >= named_) return before;
+    const int mirror = section.faces[before].mirror;
+    return mirror == kNoMirror ? before : mirror;
+  }
+
+  int faces_, named_, before_ = 0;
+};
+
+/// Types of cells by place: each type of the map in each part of the field.
+class Places {
+ public:
+  /// Parts of the field: three bands of rows with about equally many runs each; or the four cells
+  /// with most runs, each by itself, and all others together.
+  Places(bool bands, const CellMap& map, const FieldParams& field, const RunPool& pool)
+      : map_(map), field_(field) {
+    const std::vector<std::int64_t> runs = runs_by_cell(pool);
+    part_.assign(runs.size(), 0);
+    if (bands)
+      divide_rows(runs);
+    else
+      divide_cells(runs);
+  }
+
+  [[nodiscard]] Entry begin(const Entry& start) {
+    column_ = field_.start_column();
+    row_ = 0;
+    return start;
+  }
+  [[nodiscard]] CellPassage next(CellPassage passage) {
+    passage.type = static_cast<std::uint8_t>(passage.type * parts_ + part_[cell()]);
+    move(passage);
+    return passage;
+  }
+  /// Whether there are several parts, and their types fit into a passage.
+  [[nodiscard]] bool fits() const {
+    constexpr std::size_t kMostTypes = 256;
+    return map_.types.size() * static_cast<std::size_t>(parts_) <= kMostTypes &&
+           std::any_of(part_.begin(), part_.end(), [&](int p) { return p != part_.front(); });
+  }
+  [[nodiscard]] CellMap divided_map() const {
+    CellMap divided{map_.section, {}, field_.columns, {}};
+    for (const CellMap::Type& type : map_.types)
+      divided.types.insert(divided.types.end(), static_cast<std::size_t>(parts_), type);
+    for (int row = 0; row < field_.rows; ++row)
+      for (int column = 0; column < field_.columns; ++column)
+        divided.type_of_cell.push_back(
+            map_.type_of(column, row) * parts_ +
+            part_[static_cast<std::size_t>(row * field_.columns + column)]);
+    return divided;
+  }
+
+ private:
+  void move(const CellPassage& passage) {
+    if (passage.fate != Fate::left) return;
+    const Face& face = map_.section.faces[static_cast<std::size_t>(passage.entry.face)];
+    column_ += face.di_x;
+    row_ += face.di_y;
+  }
+  /// The number of the cell, row by row; of recorded trials that left the field, the nearest.
+  [[nodiscard]] std::size_t cell() const {
+    return static_cast<std::size_t>(std::clamp(row_, 0, field_.rows - 1) * field_.columns +
+                                    std::clamp(column_, 0, field_.columns - 1));
+  }
+  [[nodiscard]] std::vector<std::int64_t> runs_by_cell(const RunPool& pool) {
+    std::vector<std::int64_t> runs(
+        static_cast<std::size_t>(field_.rows) * static_cast<std::size_t>(field_.columns), 0);
+    const auto count = [&](const FieldTrials& trials) {
+      for (std::size_t i = 0; i < trials.passed.size(); ++i) {
+        (void)begin({});
+        for (const CellPassage passage : trials.of_trial(i)) {
+          ++runs[cell()];
+          move(passage);
+        }
+      }
+    };
+    for (const OwnRuns& s : pool.starts) count(s.full);
+    count(pool.scattered.each);
+    return runs;
+  }
+  void divide_rows(const std::vector<std::int64_t>& runs) {
+    parts_ = 3;
+    const auto all =
+        static_cast<double>(std::accumulate(runs.begin(), runs.end(), std::int64_t{0}));
+    double before = 0.0;
+    for (std::size_t row = 0; row < runs.size(); row += static_cast<std::size_t>(field_.columns)) {
+      const auto from = runs.begin() + static_cast<std::ptrdiff_t>(row);
+      const auto here =
+          static_cast<double>(std::accumulate(from, from + field_.columns, std::int64_t{0}));
+      const auto band = static_cast<int>(parts_ * (before + 0.5 * here) / all);
+      std::fill_n(part_.begin() + static_cast<std::ptrdiff_t>(row), field_.columns,
+                  std::min(band, parts_ - 1));
+      before += here;
+    }
+  }
+  void divide_cells(const std::vector<std::int64_t>& runs) {
+    constexpr std::size_t kSingle = 4;
+    std::vector<std::size_t> order(runs.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return runs[a] > runs[b]; });
+    for (std::size_t k = 0; k < kSingle && k < order.size(); ++k) part_[order[k]] = parts_++;
+  }
+
+  const CellMap& map_;
+  const FieldParams& field_;
+  int parts_ = 1;
+  std::vector<int> part_{};  // by cell, row by row
+  int column_ = 0, row_ = 0;
+};
+
+/// Predictions of the chain of the runs with other labels.
+template <class Label>
+GroupedMaps maps_with(const Label& label, const CellMap& labelled, const FieldParams& field,
+                      const RunPool& pool, const std::vector<FirstRow>& starts, int per_leaf) {
+  const RunPool runs = relabelled(pool, labelled.section, label);
+  std::vector<FirstRow> same;
+  for (const FirstRow& start : starts) {
+    const auto* const own = std::get_if<const OwnRuns*>(&start);
+    same.push_back(own ? &runs.starts[static_cast<std::size_t>(*own - pool.starts.data())] : start);
+  }
+  return mean_maps(labelled, field, runs, same, per_leaf);
+}
+
+/// Predictions of the relaxed chain; nullopt if the chain does not make the assumption.
+std::optional<GroupedMaps> relaxed_maps(Assumption dropped, const CellMap& map,
+                                        const FieldParams& field, const RunPool& pool,
+                                        const std::vector<FirstRow>& starts, int per_leaf) {
+  switch (dropped) {
+    case Assumption::mirror: {
+      CellMap one_sided = map;
+      bool any = false;
+      for (CellMap::Type& type : one_sided.types) any = std::exchange(type.symmetric, false) || any;
+      if (!any) return {};
+      return mean_maps(one_sided, field, pool, starts, per_leaf);
+    }
+    case Assumption::states:
+      if (per_leaf < 2) return {};
+      return mean_maps(map, field, pool, starts, per_leaf / 2);
+    case Assumption::face_before: {
+      const FaceBefore label(map.section);
+      if (!label.fits(map)) return {};
+      CellMap pairs = map;
+      pairs.section = label.section_of(map.section);
+      return maps_with(label, pairs, field, pool, starts, per_leaf);
+    }
+    case Assumption::rows:
+    case Assumption::cells: {
+      const Places label(dropped == Assumption::rows, map, field, pool);
+      if (!label.fits()) return {};
+      return maps_with(label, label.divided_map(), field, pool, starts, per_leaf);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+const AssumptionCheck* wrong_assumption(const std::vector<AssumptionCheck>& checks) {
+  const AssumptionCheck* worst = nullptr;
+  const auto times_chance = [](const AssumptionCheck& c) {
+    return c.total_variation / c.chance_95;
+  };
+  for (const AssumptionCheck& check : checks)
+    if (check.is_wrong() && (worst == nullptr || times_chance(check) > times_chance(*worst)))
+      worst = &check;
+  return worst;
+}
+
+std::vector<AssumptionCheck> check_assumptions(const CellMap& map, const FieldParams& field,
+                                               const RunPool& pool,
+                                               const std::vector<FirstRow>& starts,
+                                               const GroupedMaps& chain,
+                                               const std::optional<GroupedMaps>& small_leaves,
+                                               int per_leaf, int coordinates, std::uint64_t seed) {
+  std::vector<AssumptionCheck> checks;
+  if (field.max_gates == 1 || starts.empty()) return checks;
+  const auto add = [&](Assumption dropped, const GroupedMaps& with, const GroupedMaps& without) {
+    const GroupDifference d =
+        group_difference(with, without, coordinates, seed, static_cast<std::uint64_t>(dropped));
+    checks.push_back({dropped, d.total_variation, d.chance_95, d.p});
+  };
+  // States larger than usual can make bodies seem to remember: whether they do is asked of usual
+  // states.
+  const bool is_large = per_leaf > kEntriesPerLeaf;
+  std::optional<GroupedMaps> usual;
+  if (is_large) usual = mean_maps(map, field, pool, starts, kEntriesPerLeaf);
+  for (const Assumption dropped : kAssumptions) {
+    if (dropped == Assumption::states && (is_large || small_leaves)) {
+      add(dropped, chain, is_large ? *usual : *small_leaves);
+    } else if (const auto relaxed = relaxed_maps(dropped, map, field, pool, starts,
+                                                 is_large ? kEntriesPerLeaf : per_leaf)) {
+      add(dropped, is_large ? *usual : chain, *relaxed);
+    }
+  }
+  std::vector<double> p;
+  for (const AssumptionCheck& check : checks) p.push_back(check.p);
+  p = holm(p);
+  for (std::size_t i = 0; i < checks.size(); ++i) checks[i].p_adjusted = p[i];
+  return checks;
+}
+
+}  // namespace gatewalk::lattice

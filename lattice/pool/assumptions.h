@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// Which assumption of a chain is wrong? Each assumption is dropped in another chain of the same
+/// runs, a relaxed chain, and both predictions are compared (Hausman, Econometrica 46, 1978).
+/// Because the runs are the same, their difference has little noise: an error shows that the
+/// trials' own shares are too few to show.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "lattice/field/field_params.h"
+#include "lattice/pool/pool_answers.h"
+#include "lattice/pool/pooled_prediction.h"
+#include "lattice/pool/run_pool.h"
+
+namespace gatewalk::lattice {
+
+/// Checks every assumption that the chain of these runs makes; none for fields in which bodies pass
+/// one cell. `starts`: each with runs of its own, or all scattered trials (monostate); predictions
+/// are means over the starts. `chain`: the chain's predictions for them, by all trials and by each
+/// group. `small_leaves`: those of the chain of small leaves, if it was made. `per_leaf`: of the
+/// chain. `coordinates`: number by which its states differ.
+[[nodiscard]] std::vector<AssumptionCheck> check_assumptions(
+    const dynamics::CellMap& map, const FieldParams& field, const RunPool& pool,
+    const std::vector<FirstRow>& starts, const GroupedMaps& chain,
+    const std::optional<GroupedMaps>& small_leaves, int per_leaf, int coordinates,
+    std::uint64_t seed);
+
+}  // namespace gatewalk::lattice
