@@ -127,8 +127,8 @@ void fix_trials(const Options& options, const AskedAccuracy& asked, lattice::Acc
 }
 
 void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>& own,
-             const std::vector<lattice::AssumptionCheck>& assumptions) {
-  if (const std::string wrong = wrong_assumption_text(assumptions); !wrong.empty())
+             const std::vector<lattice::AssumptionCheck>& assumptions, bool is_recorded) {
+  if (const std::string wrong = wrong_assumption_text(assumptions, is_recorded); !wrong.empty())
     options.warn(wrong);
   else if (own && own->differs())
     options.warn(fmt::format(
@@ -139,7 +139,7 @@ void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>&
 
 void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy,
              bool is_recorded) {
-  warn_of(options, prediction.hausman_check, prediction.assumptions);
+  warn_of(options, prediction.hausman_check, prediction.assumptions, is_recorded);
   options.warn(not_reached(prediction, accuracy, is_recorded));
 }
 

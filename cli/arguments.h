@@ -59,10 +59,10 @@ AskedAccuracy add_accuracy(Options& options, const std::string& by_default = "0.
 /// without --trials: a part must know how many trials there are in all.
 void fix_trials(const Options& options, const AskedAccuracy& asked, lattice::AccuracyOptions& how,
                 std::int64_t starts);
-/// Warns if the chain's prediction differs significantly from the full trials that the chain was
-/// built from.
+/// Warns if an assumption of the chain is wrong, or else if its prediction differs significantly
+/// from the full trials that it was built from.
 void warn_of(const Options& options, const std::optional<lattice::HausmanCheck>& own,
-             const std::vector<lattice::AssumptionCheck>& assumptions);
+             const std::vector<lattice::AssumptionCheck>& assumptions, bool is_recorded = false);
 /// Warns if the chain's prediction differs significantly from its own full trials, and if the
 /// accuracy asked for was not reached.
 void warn_of(const Options& options, const lattice::PooledPrediction& prediction, double accuracy,

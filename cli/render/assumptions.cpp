@@ -10,6 +10,7 @@
 
 #include "cli/fields/text.h"
 #include "cli/fields/text_table.h"
+#include "lattice/pool/assumptions.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -20,30 +21,34 @@ using lattice::AssumptionCheck;
 /// An assumption in words.
 struct Words {
   Assumption assumption;
-  std::string_view key, name;
+  std::string_view name;
   std::string_view meaning;  // of the key
   std::string_view wrong;    // a sentence of its own
   std::string_view cure;     // what to do
+  std::string_view cure_of_recorded;
 };
 constexpr std::array<Words, lattice::kAssumptions.size()> kWords{{
-    {Assumption::mirror, "mirror", "mirror images",
+    {Assumption::mirror, "mirror images",
      "the mirror image of a run is a run too, in cells that say so; null: none do",
-     "left and right differ in cells that count as symmetric", "set symmetric = false"},
-    {Assumption::states, "states", "size of states",
+     "left and right differ in cells that count as symmetric", "set symmetric = false",
+     "set symmetric = false"},
+    {Assumption::states, "size of states",
      "bodies of one state are alike; the relaxed chain has smaller states",
      "the states are too large",
-     "ask for a smaller --accuracy; for a matrix with --states, for more states"},
-    {Assumption::face_before, "face_before", "the face before",
+     "ask for a smaller --accuracy; for a matrix with --states, for more states",
+     "only more recorded bodies make them smaller"},
+    {Assumption::face_before, "the face before",
      "the face by which a body entered the cell before does not matter",
-     "bodies remember the face by which they entered the cell before", "trust gatewalk lattice"},
-    {Assumption::rows, "rows", "rows of the field",
-     "cells of one type are alike in all rows; null: one row",
+     "bodies remember the face by which they entered the cell before", "trust gatewalk lattice",
+     "the intervals do not count this"},
+    {Assumption::rows, "rows of the field",
+     "cells of one type are alike in all rows; null also: recorded runs",
      "cells of one type differ from row to row",
-     "give them types of their own, or trust gatewalk lattice"},
-    {Assumption::cells, "cells", "places in the field",
-     "cells of one type are alike everywhere; null: one cell",
+     "give them types of their own, or trust gatewalk lattice", "give them types of their own"},
+    {Assumption::cells, "places in the field",
+     "cells of one type are alike everywhere; null also: recorded runs",
      "cells of one type differ from place to place",
-     "give them types of their own, or trust gatewalk lattice"},
+     "give them types of their own, or trust gatewalk lattice", "give them types of their own"},
 }};
 
 const AssumptionCheck* find(const std::vector<AssumptionCheck>& checks, Assumption assumption) {
@@ -69,7 +74,8 @@ void describe_assumptions(Fields& out, const std::vector<AssumptionCheck>& check
       [&](Fields& f) {
         for (const Words& words : kWords) {
           const AssumptionCheck* const check = find(checks, words.assumption);
-          f.maybe(Label(words.key, words.meaning), check ? std::optional(*check) : std::nullopt,
+          f.maybe(Label(lattice::key_of(words.assumption), words.meaning),
+                  check ? std::optional(*check) : std::nullopt,
                   [](Fields& of, const AssumptionCheck& c) {
                     of.number({"total_variation", "1",
                                "total variation between the final gates of both chains"},
@@ -90,28 +96,28 @@ std::string assumptions_text(const std::vector<AssumptionCheck>& checks) {
   if (checks.empty()) return "";
   TextTable table({{"Assumption", -kFit},
                    {"", -kFit, 0, "", "  "},
-                   {"p", kFit, 4, "", "  "},
+                   {"p, corrected", kFit, 4, "", "  "},
                    {"final gates differ without it by", kFit, 4, "", "  "},
                    {"by chance up to", kFit, 4, "", "  "}});
   for (const Words& words : kWords)
     if (const AssumptionCheck* const check = find(checks, words.assumption))
-      table.row({words.name, check->is_wrong() ? "wrong" : "fine", check->p, check->total_variation,
-                 check->chance_95});
+      table.row({words.name, check->is_wrong() ? "wrong" : "fine", check->p_adjusted,
+                 check->total_variation, check->chance_95});
   return table.text();
 }
 
-std::string wrong_assumption_text(const std::vector<AssumptionCheck>& checks) {
+std::string wrong_assumption_text(const std::vector<AssumptionCheck>& checks, bool is_recorded) {
   const AssumptionCheck* const wrong = lattice::wrong_assumption(checks);
   if (wrong == nullptr) return "";
   const auto words = std::find_if(kWords.begin(), kWords.end(), [&](const Words& w) {
     return w.assumption == wrong->assumption;
   });
   return fmt::format("{}: without this assumption {}; {}", words->wrong, difference_text(*wrong),
-                     words->cure);
+                     is_recorded ? words->cure_of_recorded : words->cure);
 }
 
-std::string beware_of(const std::vector<AssumptionCheck>& checks) {
-  const std::string text = wrong_assumption_text(checks);
+std::string beware_of(const std::vector<AssumptionCheck>& checks, bool is_recorded) {
+  const std::string text = wrong_assumption_text(checks, is_recorded);
   return text.empty() ? "" : wrapped("Beware: " + text + ".");
 }
 

@@ -16,8 +16,9 @@ void describe_assumptions(Fields& out, const std::vector<lattice::AssumptionChec
 [[nodiscard]] std::string assumptions_text(const std::vector<lattice::AssumptionCheck>& checks);
 /// A sentence on the assumption that is wrong, with what to do, without its full stop; empty if
 /// none is. And the same as a line of the first screen.
-[[nodiscard]] std::string wrong_assumption_text(
-    const std::vector<lattice::AssumptionCheck>& checks);
-[[nodiscard]] std::string beware_of(const std::vector<lattice::AssumptionCheck>& checks);
+[[nodiscard]] std::string wrong_assumption_text(const std::vector<lattice::AssumptionCheck>& checks,
+                                                bool is_recorded = false);
+[[nodiscard]] std::string beware_of(const std::vector<lattice::AssumptionCheck>& checks,
+                                    bool is_recorded = false);
 
 }  // namespace gatewalk::cli

@@ -167,7 +167,8 @@ std::string answer_text(const RunsPrediction& runs) {
   if (runs.recorded)
     text += beware_of_lost(runs.recorded->counts, runs.recorded->bounds, starts.front().endings);
   return text + beware_of(runs.prediction, runs.accuracy, runs.recorded.has_value()) +
-         beware_of(runs.prediction.assumptions) + beware_of(runs.prediction.health);
+         beware_of(runs.prediction.assumptions, runs.recorded.has_value()) +
+         beware_of(runs.prediction.health);
 }
 
 std::string details_text(const lattice::StartAnswer& a, const ShownField& shown) {

@@ -2,6 +2,7 @@
 #include "lattice/pool/assumptions.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -17,14 +18,14 @@ using namespace dynamics;
 /// The trials with new labels: label.begin(start) gives the entry of a trial's start, then
 /// label.next(passage) each of its passages.
 template <class Label>
-FieldTrials relabelled(const FieldTrials& trials, const Section& section, Label label,
+FieldTrials relabelled(const FieldTrials& trials, const Section& section, Label& label,
                        const auto& start_of) {
   FieldTrials all{.final_gates = {}, .bodies = trials.bodies, .keep_passages = true};
   all.passages.begin(section);
   all.passages.reserve(trials.passages.size());
   all.passed = trials.passed;
   for (std::size_t i = 0; i < trials.passed.size(); ++i) {
-    (void)label.begin(start_of(i));
+    static_cast<void>(label.begin(start_of(i)));  // follows the body from there
     for (const CellPassage passage : trials.of_trial(i))
       all.passages.push_back(label.next(passage));
   }
@@ -47,6 +48,11 @@ RunPool relabelled(const RunPool& pool, const Section& section, Label label) {
   return all;
 }
 
+bool any_symmetric(const CellMap& map) {
+  return std::any_of(map.types.begin(), map.types.end(),
+                     [](const CellMap::Type& type) { return type.symmetric; });
+}
+
 /// Faces that are pairs: the face of this entry, and that of the entry before. Faces after the
 /// first `named` share a label as the face before, so that there are at most kMostFaces pairs.
 class FaceBefore {
@@ -66,9 +72,8 @@ class FaceBefore {
     before_ = label_of(face);
     return passage;
   }
-  /// The section with these pairs. Pairs with the shared label have no mirror image if mirrored
-  /// faces do not share it.
-  [[nodiscard]] Section section_of(const Section& section) const {
+  /// The section with these pairs; with mirror images only for symmetric cells.
+  [[nodiscard]] Section section_of(const Section& section, bool symmetric) const {
     Section pairs = section;
     pairs.named.clear();
     pairs.faces.clear();
@@ -77,17 +82,16 @@ class FaceBefore {
         Face& face = pairs.faces.emplace_back(section.faces[f]);
         face.name += " " + std::to_string(before);
         face.usual.fill({0.0, 1.0});  // of a state that nobody was seen to enter
-        if (face.mirror != kNoMirror) face.mirror = pair(face.mirror, mirror_of(section, before));
+        if (face.mirror != kNoMirror)
+          face.mirror = symmetric ? pair(face.mirror, mirror_of(section, before)) : kNoMirror;
       }
     return pairs;
   }
-  /// Whether pairs fit, and mirrored faces have labels of their own.
-  [[nodiscard]] bool fits(const CellMap& map) const {
+  /// Whether there are labels, and mirrored faces have labels that are mirrored too.
+  [[nodiscard]] bool fits(const Section& section, bool symmetric) const {
     if (faces_ < 2 || named_ < 1) return false;
-    const bool any = std::any_of(map.types.begin(), map.types.end(),
-                                 [](const auto& type) { return type.symmetric; });
-    for (int f = 0; any && f < named_; ++f)
-      if (map.section.faces[f].mirror >= named_) return false;
+    for (int f = 0; symmetric && f < named_; ++f)
+      if (section.faces[f].mirror < 0 || section.faces[f].mirror >= named_) return false;
     return true;
   }
 
@@ -96,8 +100,7 @@ class FaceBefore {
   [[nodiscard]] int pair(int face, int before) const { return before * faces_ + face; }
   [[nodiscard]] int mirror_of(const Section& section, int before) const {
     if (before >= named_) return before;
-    const int mirror = section.faces[before].mirror;
-    return mirror == kNoMirror ? before : mirror;
+    return section.faces[before].mirror;
   }
 
   int faces_, named_, before_ = 0;
@@ -176,8 +179,8 @@ class Places {
   }
   void divide_rows(const std::vector<std::int64_t>& runs) {
     parts_ = 3;
-    const auto all =
-        static_cast<double>(std::accumulate(runs.begin(), runs.end(), std::int64_t{0}));
+    const auto all = static_cast<double>(
+        std::max<std::int64_t>(1, std::accumulate(runs.begin(), runs.end(), std::int64_t{0})));
     double before = 0.0;
     for (std::size_t row = 0; row < runs.size(); row += static_cast<std::size_t>(field_.columns)) {
       const auto from = runs.begin() + static_cast<std::ptrdiff_t>(row);
@@ -207,8 +210,9 @@ class Places {
 
 /// Predictions of the chain of the runs with other labels.
 template <class Label>
-GroupedMaps maps_with(const Label& label, const CellMap& labelled, const FieldParams& field,
-                      const RunPool& pool, const std::vector<FirstRow>& starts, int per_leaf) {
+std::optional<GroupedMaps> maps_with(const Label& label, const CellMap& labelled,
+                                     const FieldParams& field, const RunPool& pool,
+                                     const std::vector<FirstRow>& starts, int per_leaf) {
   const RunPool runs = relabelled(pool, labelled.section, label);
   std::vector<FirstRow> same;
   for (const FirstRow& start : starts) {
@@ -235,13 +239,15 @@ std::optional<GroupedMaps> relaxed_maps(Assumption dropped, const CellMap& map,
       return mean_maps(map, field, pool, starts, per_leaf / 2);
     case Assumption::face_before: {
       const FaceBefore label(map.section);
-      if (!label.fits(map)) return {};
+      if (!label.fits(map.section, any_symmetric(map))) return {};
       CellMap pairs = map;
-      pairs.section = label.section_of(map.section);
+      pairs.section = label.section_of(map.section, any_symmetric(map));
       return maps_with(label, pairs, field, pool, starts, per_leaf);
     }
     case Assumption::rows:
     case Assumption::cells: {
+      // Recorded bodies may be seen first anywhere: their rows are not those of the field.
+      if (!pool.scattered.each.bodies.empty()) return {};
       const Places label(dropped == Assumption::rows, map, field, pool);
       if (!label.fits()) return {};
       return maps_with(label, label.divided_map(), field, pool, starts, per_leaf);
@@ -251,6 +257,12 @@ std::optional<GroupedMaps> relaxed_maps(Assumption dropped, const CellMap& map,
 }
 
 }  // namespace
+
+std::string_view key_of(Assumption assumption) {
+  constexpr std::array<std::string_view, kAssumptions.size()> kKeys{"mirror", "states",
+                                                                    "face_before", "rows", "cells"};
+  return kKeys[static_cast<std::size_t>(assumption)];
+}
 
 const AssumptionCheck* wrong_assumption(const std::vector<AssumptionCheck>& checks) {
   const AssumptionCheck* worst = nullptr;
@@ -265,29 +277,30 @@ const AssumptionCheck* wrong_assumption(const std::vector<AssumptionCheck>& chec
 
 std::vector<AssumptionCheck> check_assumptions(const CellMap& map, const FieldParams& field,
                                                const RunPool& pool,
-                                               const std::vector<FirstRow>& starts,
-                                               const GroupedMaps& chain,
-                                               const std::optional<GroupedMaps>& small_leaves,
-                                               int per_leaf, int coordinates, std::uint64_t seed) {
+                                               const std::vector<FirstRow>& starts, int per_leaf,
+                                               int coordinates, std::uint64_t seed,
+                                               std::optional<GroupedMaps> chain,
+                                               const std::optional<GroupedMaps>& small_leaves) {
   std::vector<AssumptionCheck> checks;
   if (field.max_gates == 1 || starts.empty()) return checks;
-  const auto add = [&](Assumption dropped, const GroupedMaps& with, const GroupedMaps& without) {
-    const GroupDifference d =
-        group_difference(with, without, coordinates, seed, static_cast<std::uint64_t>(dropped));
-    checks.push_back({dropped, d.total_variation, d.chance_95, d.p});
-  };
+  if (!chain) chain = mean_maps(map, field, pool, starts, per_leaf);
   // States larger than usual can make bodies seem to remember: whether they do is asked of usual
   // states.
-  const bool is_large = per_leaf > kEntriesPerLeaf;
-  std::optional<GroupedMaps> usual;
-  if (is_large) usual = mean_maps(map, field, pool, starts, kEntriesPerLeaf);
+  std::optional<GroupedMaps> usual = chain;
+  if (per_leaf > kEntriesPerLeaf) usual = mean_maps(map, field, pool, starts, kEntriesPerLeaf);
+  if (!chain || !usual) return checks;
   for (const Assumption dropped : kAssumptions) {
-    if (dropped == Assumption::states && (is_large || small_leaves)) {
-      add(dropped, chain, is_large ? *usual : *small_leaves);
-    } else if (const auto relaxed = relaxed_maps(dropped, map, field, pool, starts,
-                                                 is_large ? kEntriesPerLeaf : per_leaf)) {
-      add(dropped, is_large ? *usual : chain, *relaxed);
-    }
+    const bool of_states = dropped == Assumption::states;
+    const bool is_large = of_states && per_leaf > kEntriesPerLeaf;
+    const auto relaxed =
+        is_large ? usual
+        : of_states && small_leaves
+            ? small_leaves
+            : relaxed_maps(dropped, map, field, pool, starts, std::min(per_leaf, kEntriesPerLeaf));
+    if (!relaxed) continue;
+    const GroupDifference d = group_difference(is_large ? *chain : *usual, *relaxed, coordinates,
+                                               seed, static_cast<std::uint64_t>(dropped));
+    checks.push_back({dropped, d.total_variation, d.chance_95, d.p});
   }
   std::vector<double> p;
   for (const AssumptionCheck& check : checks) p.push_back(check.p);

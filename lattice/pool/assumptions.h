@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "lattice/field/field_params.h"
@@ -16,15 +17,17 @@
 
 namespace gatewalk::lattice {
 
-/// Checks every assumption that the chain of these runs makes; none for fields in which bodies pass
-/// one cell. `starts`: each with runs of its own, or all scattered trials (monostate); predictions
-/// are means over the starts. `chain`: the chain's predictions for them, by all trials and by each
-/// group. `small_leaves`: those of the chain of small leaves, if it was made. `per_leaf`: of the
-/// chain. `coordinates`: number by which its states differ.
+/// The key of an assumption in results and files: "face_before".
+[[nodiscard]] std::string_view key_of(Assumption assumption);
+
+/// Checks every assumption that the chain of these runs makes, if exact predictions pay (none for
+/// walks); none for fields in which bodies pass one cell. `starts`: each with runs of its own, or
+/// all scattered trials (monostate); predictions are means over the starts. `per_leaf`: of the
+/// chain. `coordinates`: number by which its states differ. `chain`, `small_leaves`: predictions of
+/// the chain and of a chain with smaller leaves, if they are known already.
 [[nodiscard]] std::vector<AssumptionCheck> check_assumptions(
     const dynamics::CellMap& map, const FieldParams& field, const RunPool& pool,
-    const std::vector<FirstRow>& starts, const GroupedMaps& chain,
-    const std::optional<GroupedMaps>& small_leaves, int per_leaf, int coordinates,
-    std::uint64_t seed);
+    const std::vector<FirstRow>& starts, int per_leaf, int coordinates, std::uint64_t seed,
+    std::optional<GroupedMaps> chain = {}, const std::optional<GroupedMaps>& small_leaves = {});
 
 }  // namespace gatewalk::lattice

@@ -154,16 +154,19 @@ std::vector<std::optional<SmallLeaves>> by_small_leaves(const dynamics::CellMap&
   return found;
 }
 
-GroupedMaps mean_maps(const dynamics::CellMap& map, const FieldParams& field, const RunPool& pool,
-                      const std::vector<FirstRow>& starts, int leaf) {
+std::optional<GroupedMaps> mean_maps(const dynamics::CellMap& map, const FieldParams& field,
+                                     const RunPool& pool, const std::vector<FirstRow>& starts,
+                                     int leaf) {
+  if (by_walks(2 * kernel_runs(pool), field)) return {};
   GroupedMaps maps{.whole = {}, .groups = std::vector<markov::CellProbabilities>(kTrialGroups)};
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};
     const Kernel kernel = kernel_of(map, pool, leaf, group);
     const markov::Counts rows = mean_row(
         first_rows(kernel, map, pool, starts, map.type_of(field.start_column(), 0), {group}));
-    (g < 0 ? maps.whole : maps.groups[static_cast<std::size_t>(g)]) =
-        answers_of(kernel, map, rows, field, {}, 0).final.front().final_cells;
+    FinalDistribution found = std::move(answers_of(kernel, map, rows, field, {}, 0).final.front());
+    if (g < 0) maps.unsampled = found.unsampled();
+    (g < 0 ? maps.whole : maps.groups[static_cast<std::size_t>(g)]) = std::move(found.final_cells);
   });
   return maps;
 }
@@ -195,38 +198,20 @@ KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
                     seed);
 }
 
-GroupedMaps PoolAnswers::mean_maps(const std::vector<std::size_t>& of) const {
-  const auto n = static_cast<double>(of.size());
-  GroupedMaps mean;
-  mean.whole = markov::CellProbabilities::Zero(whole.final[of.front()].final_cells.rows(),
-                                               whole.final[of.front()].final_cells.cols());
-  mean.groups.assign(kTrialGroups, mean.whole);
-  for (const std::size_t i : of) {
-    mean.whole += whole.final[i].final_cells / n;
-    for (std::size_t g = 0; g < mean.groups.size(); ++g)
-      mean.groups[g] += groups[i][g].final_cells / n;
-  }
-  return mean;
+GroupedMaps PoolAnswers::maps_of(std::size_t start) const {
+  GroupedMaps maps{whole.final[start].final_cells, {}, whole.final[start].unsampled()};
+  for (const FinalDistribution& group : groups[start]) maps.groups.push_back(group.final_cells);
+  return maps;
 }
 
-std::optional<GroupedMaps> PoolAnswers::mean_maps_of_small_leaves(
-    const std::vector<std::size_t>& of) const {
-  if (endings.empty()) return {};
-  const auto n = static_cast<double>(of.size());
-  GroupedMaps mean;
-  const auto add = [&](markov::CellProbabilities& sum, const SmallLeaves& one) {
-    if (sum.size() == 0)
-      sum = one.final_cells / n;
-    else
-      sum += one.final_cells / n;
-  };
-  mean.groups.resize(kTrialGroups);
-  for (const std::size_t i : of) {
-    if (!endings[i] || endings[i]->whole.final_cells.size() == 0) return {};
-    add(mean.whole, endings[i]->whole);
-    for (std::size_t g = 0; g < kTrialGroups; ++g) add(mean.groups[g], endings[i]->groups[g]);
-  }
-  return mean;
+std::optional<GroupedMaps> PoolAnswers::maps_of_small_leaves(std::size_t start) const {
+  if (small_leaves.empty() || !small_leaves[start]) return {};
+  const auto& [all, of_groups] = *small_leaves[start];
+  if (all.final_cells.size() == 0) return {};
+  GroupedMaps maps{
+      all.final_cells, {}, all.endings[static_cast<std::size_t>(markov::Ending::unsampled)]};
+  for (const SmallLeaves& group : of_groups) maps.groups.push_back(group.final_cells);
+  return maps;
 }
 
 PoolChains::PoolChains(const dynamics::CellMap& map, const FieldParams& field, int per_leaf,
@@ -327,7 +312,7 @@ bool PoolChains::add_endings(const RunPool& pool, const std::vector<FirstRow>& s
         by_small_leaves(map_, field_, pool, starts, leaf, group);
   });
   for (std::size_t i = 0; i < starts.size(); ++i) {
-    std::optional<PoolEndings>& of = said.endings.emplace_back();
+    std::optional<PoolSmallLeaves>& of = said.small_leaves.emplace_back();
     if (!found[0][i]) continue;
     of = {.whole = *found[0][i], .groups = {}};
     for (std::size_t g = 0; g < kTrialGroups; ++g) of->groups[g] = *found[g + 1][i];

@@ -50,10 +50,10 @@ struct SmallLeaves {
     const std::vector<FirstRow>& starts, int leaf, TrialGroup group = {});
 
 /// Final gates by the exact chain with leaves of `leaf` entries: means over the starts, by all
-/// trials and by each group of the trials.
-[[nodiscard]] GroupedMaps mean_maps(const dynamics::CellMap& map, const FieldParams& field,
-                                    const RunPool& pool, const std::vector<FirstRow>& starts,
-                                    int leaf);
+/// trials and by each group of the trials. nullopt if an exact prediction takes too long.
+[[nodiscard]] std::optional<GroupedMaps> mean_maps(const dynamics::CellMap& map,
+                                                   const FieldParams& field, const RunPool& pool,
+                                                   const std::vector<FirstRow>& starts, int leaf);
 
 /// The prediction with the shares of endings taken from `endings`; the map of each ending keeps its
 /// shape. A prediction that knows no way to one of these endings is returned as it is.
@@ -61,7 +61,7 @@ struct SmallLeaves {
                                                      const EndingsOf& endings);
 
 /// These answers by all trials, and by each group of the trials.
-struct PoolEndings {
+struct PoolSmallLeaves {
   SmallLeaves whole;
   std::array<SmallLeaves, kTrialGroups> groups;
 };
@@ -78,16 +78,14 @@ struct PoolAnswers {
   /// (starts) Endings from small leaves, once they are asked for (PoolChains::add_endings); empty
   /// if answers come from Monte Carlo walks. Without them the endings are those of `whole` and
   /// `groups`.
-  std::vector<std::optional<PoolEndings>> endings{};
+  std::vector<std::optional<PoolSmallLeaves>> small_leaves{};
   int states = 0;
   std::int64_t nonzeros = 0;
   int coordinates = 0;  // number of coordinates by which the states differ
 
-  /// Final gates: means over these starts; and by the chain of small leaves, nullopt if it does not
-  /// give them all.
-  [[nodiscard]] GroupedMaps mean_maps(const std::vector<std::size_t>& of) const;
-  [[nodiscard]] std::optional<GroupedMaps> mean_maps_of_small_leaves(
-      const std::vector<std::size_t>& of) const;
+  /// Final gates of one start; and by the chain of small leaves, nullopt if it gives none.
+  [[nodiscard]] GroupedMaps maps_of(std::size_t start) const;
+  [[nodiscard]] std::optional<GroupedMaps> maps_of_small_leaves(std::size_t start) const;
 };
 
 /// The chains of a pool that grows. Kernels are kept while only first runs are added.

@@ -64,10 +64,10 @@ StartAnswer chain_answer(const FieldParams& field, std::int64_t first_runs, std:
                                                   .error(pooled, seed)
                                                   .total_variation +
                                               a.unseen);
-  if (!said.endings.empty() && said.endings[i]) {
-    a.final = with_endings(std::move(a.final), said.endings[i]->whole.endings);
+  if (!said.small_leaves.empty() && said.small_leaves[i]) {
+    a.final = with_endings(std::move(a.final), said.small_leaves[i]->whole.endings);
     for (std::size_t g = 0; g < groups.size(); ++g)
-      groups[g] = with_endings(std::move(groups[g]), said.endings[i]->groups[g].endings);
+      groups[g] = with_endings(std::move(groups[g]), said.small_leaves[i]->groups[g].endings);
   }
   const GroupSpread spread(a.final, groups, said.coordinates);
   a.endings = spread.endings_95(behind);
@@ -207,16 +207,16 @@ class PredictionRun {
     if (by_walks_) return {};
     const std::vector<FirstRow> rows = rows_asked();
     std::vector<FirstRow> by_chain;
-    std::vector<std::size_t> asked;
+    std::size_t last = 0;
     for (std::size_t i = 0; i < rows.size(); ++i)
-      if (!result_.starts[asked_[i]].from_trials) {
-        by_chain.push_back(rows[i]);
-        asked.push_back(i);
-      }
-    if (asked.empty()) return {};
-    return check_assumptions(problem_.map(), problem_.field, pool_, by_chain,
-                             said_.mean_maps(asked), said_.mean_maps_of_small_leaves(asked),
-                             chains_.per_leaf(), said_.coordinates, options_.seed);
+      if (!result_.starts[asked_[i]].from_trials) by_chain.push_back(rows[last = i]);
+    std::optional<GroupedMaps> chain, small_leaves;
+    if (by_chain.size() == 1) {
+      chain = said_.maps_of(last);
+      small_leaves = said_.maps_of_small_leaves(last);
+    }
+    return check_assumptions(problem_.map(), problem_.field, pool_, by_chain, chains_.per_leaf(),
+                             said_.coordinates, options_.seed, std::move(chain), small_leaves);
   }
 
   [[nodiscard]] std::vector<std::size_t> all() const {
@@ -501,10 +501,8 @@ PooledPrediction predict_recorded(const Problem& problem, const RunPool& pool,
     // Of the chain as a whole: for all bodies as they were seen.
     const std::vector<FirstRow> as_seen{std::monostate{}};
     if (said.whole.walks == 0 && !pool.scattered.starts.empty())
-      result.assumptions =
-          check_assumptions(map, problem.field, pool, as_seen,
-                            mean_maps(map, problem.field, pool, as_seen, chains.per_leaf()), {},
-                            chains.per_leaf(), said.coordinates, seed);
+      result.assumptions = check_assumptions(map, problem.field, pool, as_seen, chains.per_leaf(),
+                                             said.coordinates, seed);
   } else {
     const Kernel kernel = kernel_of(map, pool, per_leaf);
     said.whole = whole_answers(kernel, problem, pool, rows, per_leaf, seed);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "lattice/pool/assumptions.h"
 #include "lattice/text/json_text.h"
 
 namespace gatewalk::lattice {
@@ -23,16 +24,13 @@ PooledRange range_in(std::string_view text, const dynamics::Section& section) {
   return range;
 }
 
-constexpr std::array<std::string_view, kAssumptions.size()> kAssumptionKeys{
-    "mirror", "states", "face_before", "rows", "cells"};
-
 std::vector<AssumptionCheck> assumptions_in(const JsonObject& json) {
   std::vector<AssumptionCheck> checks;
-  for (std::size_t i = 0; i < kAssumptions.size(); ++i) {
-    const std::string key(kAssumptionKeys[i]);
+  for (const Assumption assumption : kAssumptions) {
+    const std::string key(key_of(assumption));
     if (!json.has(key) || json.at(key) == "null") continue;
     const JsonObject of(json.at(key));
-    checks.push_back({kAssumptions[i], of.number("total_variation"),
+    checks.push_back({assumption, of.number("total_variation"),
                       of.number("chance_total_variation_95"), of.number("p"),
                       of.number("p_adjusted")});
   }

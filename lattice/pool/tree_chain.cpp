@@ -62,8 +62,7 @@ std::vector<Transitions> transitions_with(const Problem& problem, const RunPool&
       first_rows(kernel, map, pool, {own.begin(), own.end()}, problem.start_type()));
 }
 
-/// Checks the final chain: against all full trials of the pool, and its assumptions. Checks of the
-/// prediction are those of the final chain if it is the same.
+/// Checks the final chain: against all full trials of the pool, and its assumptions.
 void check(TreeChain& chain, const Problem& problem, std::uint64_t seed) {
   const RunPool& pool = chain.pool;
   std::vector<const FieldTrials*> trials;
@@ -83,14 +82,13 @@ void check(TreeChain& chain, const Problem& problem, std::uint64_t seed) {
   std::vector<TrialsAndChain> all;
   for (std::size_t i = 0; i < trials.size(); ++i) all.push_back({*trials[i], said.final[i]});
   chain.hausman_check = hausman_check(all, problem.field, seed);
-  if (starts.empty()) return;
-  if (chain.prediction && !chain.range && chain.states_bias == 0.0) {
-    chain.assumptions = chain.prediction->assumptions;
-    return;
-  }
-  chain.assumptions = check_assumptions(
-      map, problem.field, pool, starts, mean_maps(map, problem.field, pool, starts, chain.per_leaf),
-      {}, chain.per_leaf, coordinates_cut(chain.kernel.space), seed);
+  const bool is_the_predictions = chain.prediction && !chain.range && chain.states_bias == 0.0 &&
+                                  chain.prediction->starts.size() == 1 &&
+                                  !chain.prediction->starts.front().from_trials;
+  chain.assumptions = is_the_predictions
+                          ? chain.prediction->assumptions
+                          : check_assumptions(map, problem.field, pool, starts, chain.per_leaf,
+                                              coordinates_cut(chain.kernel.space), seed);
 }
 
 }  // namespace

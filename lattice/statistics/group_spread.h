@@ -83,12 +83,15 @@ class GroupSpread {
 struct GroupedMaps {
   CellProbabilities whole;
   std::vector<CellProbabilities> groups;
+  /// Share of all bodies that end where the chain of all trials has no run; they count in that
+  /// gate.
+  double unsampled = 0.0;
 };
 /// A difference between two predictions from the same trials, whose errors are mostly the same.
 struct GroupDifference {
   double total_variation = 0.0;
   /// 95 % of differences by chance are at most this: sampling error as the groups show it, beside
-  /// the bias that the states of the second prediction have.
+  /// what the bias of states explains, or what is small beside the first prediction's own error.
   double chance_95 = 0.0;
   double p = 1.0;  // share of such differences that are as large
 };

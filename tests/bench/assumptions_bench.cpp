@@ -12,7 +12,6 @@
 /// Prints lines "how,amount,seed,error,own_p,wrong,mirror,states,face_before,rows,cells": total
 /// variation from 100 000 trials, p-value of the chain's own trials, the assumption that is said to
 /// be wrong, and all p-values (-1: not checked).
-#include <array>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -23,6 +22,7 @@
 
 #include "dynamics/base/random.h"
 #include "dynamics/cells/cell.h"
+#include "lattice/pool/assumptions.h"
 #include "lattice/pool/pool_answers.h"
 #include "lattice/pool/pooled_prediction.h"
 #include "lattice/pool/predict_pooled.h"
@@ -38,8 +38,6 @@ using dynamics::Body;
 using dynamics::Entry;
 using dynamics::Passage;
 using dynamics::Random;
-
-constexpr std::array kNames{"mirror", "states", "face_before", "rows", "cells"};
 
 /// All cells of a field as if they were of one type. What a body remembers, and where it is, stands
 /// behind the coordinates of its entry, where no chain sees it.
@@ -165,7 +163,7 @@ int study(int argc, char** argv) {
     std::printf("%s,%g,%llu,%.5f,%.4f,%s", how.c_str(), amount,
                 static_cast<unsigned long long>(seed),
                 total_variation(found.answer.final_cells, truth), found.own ? found.own->p : -1.0,
-                wrong ? kNames[static_cast<std::size_t>(wrong->assumption)] : "none");
+                wrong ? key_of(wrong->assumption).data() : "none");
     for (const Assumption a : kAssumptions) {
       double p = -1.0;
       for (const AssumptionCheck& check : found.assumptions)

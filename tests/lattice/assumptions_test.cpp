@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "dynamics/base/random.h"
@@ -174,15 +175,57 @@ TEST(Assumptions, OfRecordedRunsAreChecked) {
   EXPECT_EQ(wrong_assumption(checks)->assumption, Assumption::face_before);
 }
 
+/// A cell that bodies leave to any of its eight neighbours, each with the same chance.
+class EightWays : public Cell {
+ public:
+  EightWays() {
+    const std::array<std::array<int, 2>, 8> moves{
+        {{0, 1}, {1, 1}, {1, 0}, {1, -1}, {0, -1}, {-1, -1}, {-1, 0}, {-1, 1}}};
+    for (std::size_t i = 0; i < moves.size(); ++i)
+      section_.faces.push_back({std::string(1, static_cast<char>('A' + i)),
+                                moves[i][0],
+                                moves[i][1],
+                                static_cast<int>((8 - i) % 8),
+                                0,
+                                "before",
+                                {{{0.0, 1.0}}}});
+    section_.coordinates = {{"s", "s", "1", "place", 1.0}};
+  }
+  [[nodiscard]] const Section& section() const override { return section_; }
+  [[nodiscard]] Passage pass(Body& body) const override {
+    body.entry = {static_cast<int>(body.random.below(8)), {body.random.uniform()}};
+    return {Fate::left, body.entry, {}};
+  }
+
+ private:
+  Section section_;
+};
+
+// Pairs of faces: eight faces have labels for six faces before.
+TEST(Assumptions, OfCellsWithManyFacesAreChecked) {
+  Problem problem = squares(Secret::none);
+  problem.cells.cells = {std::make_shared<EightWays>()};
+  for (const bool symmetric : {false, true}) {
+    problem.cells.map = {problem.cells.cells.front()->section(), {{symmetric}}, 0, {}};
+    const auto checks = checks_of(problem, 1, 0.1);
+    EXPECT_NE(find(checks, Assumption::states), nullptr);
+    // Mirror images of the six faces are not all among them.
+    EXPECT_EQ(find(checks, Assumption::face_before) == nullptr, symmetric);
+    EXPECT_EQ(find(checks, Assumption::mirror) == nullptr, !symmetric);
+    EXPECT_EQ(wrong_assumption(checks), nullptr);
+  }
+}
+
 /// A prediction of four gates: 1/4 each, changed by `change`, with groups around it.
 GroupedMaps around(const std::array<double, 4>& change, double noise, std::uint64_t seed) {
-  GroupedMaps maps{CellProbabilities::Constant(1, 4, 0.25), {}};
+  GroupedMaps maps{CellProbabilities::Constant(1, 4, 0.25), {}, 0.0};
   for (Eigen::Index i = 0; i < 4; ++i) maps.whole(0, i) += change[static_cast<std::size_t>(i)];
   Random random(Purpose::comparison, {seed, 1, 0});
   CellProbabilities mean = CellProbabilities::Zero(1, 4);
   for (int g = 0; g < kTrialGroups; ++g) {
     CellProbabilities& group = maps.groups.emplace_back(CellProbabilities::Constant(1, 4, 0.25));
     for (Eigen::Index i = 0; i < 4; ++i) group(0, i) += noise * random.normal();
+    group += 0.25 - group.mean();  // shares of all bodies
     mean += group / kTrialGroups;
   }
   maps.whole += mean - 0.25;
@@ -194,7 +237,8 @@ TEST(GroupDifference, OfChanceHasUniformP) {
   int below = 0, half = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const GroupedMaps first{CellProbabilities::Constant(1, 4, 0.25),
-                            {kTrialGroups, CellProbabilities::Constant(1, 4, 0.25)}};
+                            {kTrialGroups, CellProbabilities::Constant(1, 4, 0.25)},
+                            0.0};
     const auto d = group_difference(first, around({}, 0.01, seed), 3, seed, 0);
     below += d.p <= 0.05;
     half += d.p <= 0.5;
@@ -210,6 +254,10 @@ TEST(GroupDifference, OfTwoPredictions) {
   EXPECT_NEAR(moved.total_variation, 0.1, 0.01);
   EXPECT_LT(moved.chance_95, 0.06);
   EXPECT_LE(moved.p, 0.002);
+  // Bodies that end where there is no run may end anywhere.
+  GroupedMaps unknown = around({0.1, -0.1, 0.0, 0.0}, 0.01, 1);
+  unknown.unsampled = 0.1;
+  EXPECT_GT(group_difference(first, unknown, 3, 1, 0).p, 0.05);
   EXPECT_GT(group_difference(first, around({0.002, -0.002, 0.0, 0.0}, 0.01, 1), 3, 1, 0).p, 0.05);
 }
 
