@@ -34,7 +34,7 @@ KERNELS = {
     "dynamics/disc/stable-inl.h": {"dynamics": "StableLanes.*:Stable.*"},
     "dynamics/disc/stable_lanes.cpp": {"dynamics": "StableLanes.*:Stable.*"},
     "dynamics/base/points.cpp": {"dynamics": "Points.*", "lattice": "RqmcTrials.*"},
-    "dynamics/base/work.cpp": {"dynamics": "KeptPieces.*:Pieces.*:PieceSize.*:Work.*:Ranks.*"},
+    "dynamics/base/work.cpp": {"dynamics": "KeptPieces.*:Pieces.*:PieceSize.*:Work.*:Ranks.*", "parts": ""},
     "dynamics/cells/tree_space.cpp": {"dynamics": "TreeSpace.*", "lattice": TREES},
     "markov/predict/row_elimination.cpp": {"markov": "RowElimination.*:LargeField.*:Predictor.*"},
     "markov/predict/by_rows.cpp": {"markov": "RowSweeps.*:Exact.*:Predictor.*:LargeField.*:Outcomes.*"},

@@ -59,7 +59,7 @@ const AssumptionCheck* find(const std::vector<AssumptionCheck>& checks, Assumpti
 }
 
 std::string difference_text(const AssumptionCheck& check) {
-  return fmt::format("final gates differ by a total variation of {}, by chance up to {}",
+  return fmt::format("gives other final gates (total variation {}, by chance up to {})",
                      fixed(check.total_variation, 4), fixed(check.chance_95, 4));
 }
 
@@ -80,7 +80,7 @@ void describe_assumptions(Fields& out, const std::vector<AssumptionCheck>& check
                     of.number({"total_variation", "1",
                                "total variation between the final gates of both chains"},
                               c.total_variation);
-                    of.number({"chance_total_variation_95", "1",
+                    of.number({"chance_total_variation_limit", "1",
                                "95 % of differences by chance are at most this"},
                               c.chance_95);
                     of.number({"p", "1", "p-value of the difference"}, c.p);
@@ -112,8 +112,8 @@ std::string wrong_assumption_text(const std::vector<AssumptionCheck>& checks, bo
   const auto words = std::find_if(kWords.begin(), kWords.end(), [&](const Words& w) {
     return w.assumption == wrong->assumption;
   });
-  return fmt::format("{}: without this assumption {}; {}", words->wrong, difference_text(*wrong),
-                     is_recorded ? words->cure_of_recorded : words->cure);
+  return fmt::format("{}: a chain without this assumption {}; {}", words->wrong,
+                     difference_text(*wrong), is_recorded ? words->cure_of_recorded : words->cure);
 }
 
 std::string beware_of(const std::vector<AssumptionCheck>& checks, bool is_recorded) {

@@ -31,7 +31,7 @@ std::vector<AssumptionCheck> assumptions_in(const JsonObject& json) {
     if (!json.has(key) || json.at(key) == "null") continue;
     const JsonObject of(json.at(key));
     checks.push_back({assumption, of.number("total_variation"),
-                      of.number("chance_total_variation_95"), of.number("p"),
+                      of.number("chance_total_variation_limit"), of.number("p"),
                       of.number("p_adjusted")});
   }
   return checks;

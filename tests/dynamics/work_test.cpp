@@ -22,6 +22,12 @@ TEST(PieceSize, AimsAtAThirdOfASecond) {
   EXPECT_EQ(batch.get(), 1200);  // grows fourfold at most
 }
 
+TEST(PieceSize, IsAMultipleOfTheLeast) {
+  PieceSize batch(8);
+  batch.measured(8, 8 * 1e-2);  // 0.3 s of 10 ms each: 30
+  EXPECT_EQ(batch.get(), 24);
+}
+
 TEST(PieceSize, NeverFallsBelowOneNorOverflows) {
   PieceSize batch;
   batch.measured(1, 1e6);

@@ -24,6 +24,11 @@ expect 2 'keeps no gate runs' "$gatewalk" predict m.nc --accuracy 0.1
 "$gatewalk" walk tree.nc --walks 1000 --json walk-tree.json --quiet >/dev/null 2>&1
 holds '([.final_gates[][]] | add) == 1000' walk-tree.json
 "$gatewalk" show tree.nc --json show-tree.json --quiet
+# The file keeps the checks of the chain's assumptions; predict makes the same ones anew from its runs.
+holds '[.assumptions[] | select(. != null and (.wrong | not) and .p > 0)] | length == 5' direct.json
+for kept in "$(jq -c .state_space.assumptions show-tree.json)" "$(jq -c .assumptions tree.json)"; do
+  [ "$kept" = "$(jq -c .assumptions direct.json)" ] || fail "the checks are not those of predict: $kept"
+done
 # Starts have rows of their own, and are no states.
 rows=$(jq .inputs show-tree.json)
 expect 0 "^tree.nc: transition matrix of $((rows - 1)) states and 1 start ($rows rows, " "$gatewalk" show tree.nc
@@ -34,6 +39,7 @@ holds '.state_space.bins == "tree" and .inputs == (.rows | length) and .gate_run
 "$gatewalk" validate "$scenes/field.toml" "${fast[@]}" --matrix tree.nc --trials 100 --start 0,0,15 --null-draws 19 --json validate-tree.json --quiet >/dev/null 2>&1
 holds '.state_space.bins == "tree" and .markov.verdict != null' validate-tree.json
 expect 0 'The limit of states changes the final gates' "$gatewalk" build --details "$scenes/field.toml" "${fast[@]}" --accuracy 0.05 --states 100 -o few.nc
+expect 0 'the states are too large' "$gatewalk" build "$scenes/field.toml" "${fast[@]}" --accuracy 0.02 --states 10 -o few.nc --force
 expect 0 '^Good for starts with d' "$gatewalk" build --details "$scenes/field.toml" "${fast[@]}" --accuracy 0.2 --starts=-5:5,-5:5,12:16 -o range.nc
 expect 2 'd must lie inside' "$gatewalk" build "$scenes/field.toml" --starts=-50:5,-5:5,12:16 -o x.nc
 expect 2 'three ranges' "$gatewalk" build "$scenes/field.toml" --starts 1:2 -o x.nc
