@@ -53,8 +53,9 @@ bool any_symmetric(const CellMap& map) {
                      [](const CellMap::Type& type) { return type.symmetric; });
 }
 
-/// Faces that are pairs: the face of this entry, and that of the entry before. Faces after the
-/// first `named` share a label as the face before, so that there are at most kMostFaces pairs.
+/// Makes each face a pair: the face of an entry, and a label for the face of the entry before it.
+/// The first `named_` faces have labels of their own and all others share one, so that there are at
+/// most kMostFaces pairs. The last label is for starts, which have no entry before.
 class FaceBefore {
  public:
   explicit FaceBefore(const Section& section)

@@ -2,8 +2,8 @@
 #pragma once
 /// Which assumption of a chain is wrong? Each assumption is dropped in another chain of the same
 /// runs, a relaxed chain, and both predictions are compared (Hausman, Econometrica 46, 1978).
-/// Because the runs are the same, their difference has little noise: an error shows that the
-/// trials' own shares are too few to show.
+/// The runs are the same, so the difference has little noise. It shows errors that the shares of
+/// the full trials are too noisy to show.
 
 #include <cstdint>
 #include <optional>
@@ -20,8 +20,8 @@ namespace gatewalk::lattice {
 /// The key of an assumption in results and files: "face_before".
 [[nodiscard]] std::string_view key_of(Assumption assumption);
 
-/// Checks every assumption that the chain of these runs makes, if exact predictions pay (none for
-/// walks); none for fields in which bodies pass one cell. `starts`: each with runs of its own, or
+/// Checks every assumption of the chain of these runs. There are no checks where answers come from
+/// Monte Carlo walks, or where bodies pass one cell only. `starts`: each with runs of its own, or
 /// all scattered trials (monostate); predictions are means over the starts. `per_leaf`: of the
 /// chain. `coordinates`: number by which its states differ. `chain`, `small_leaves`: predictions of
 /// the chain and of a chain with smaller leaves, if they are known already.

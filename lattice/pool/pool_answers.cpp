@@ -89,7 +89,7 @@ KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
   return answers;
 }
 
-/// One row that is the mean of these rows, each of which counts alike.
+/// The mean of these rows as one row; each of them has the same weight.
 markov::Counts mean_row(const markov::Counts& rows) {
   if (rows.rows() == 1) return rows;
   constexpr double kParts = 1099511627776.0;  // 2^40, so that rounding does not matter

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 /// Is a wrong chain found out, and is the cause named (lattice/pool/assumptions.h)?
 ///   assumptions_bench HOW AMOUNT ACCURACY FIRST CHAINS SCENE [KEY=VALUE ...]
-/// predicts with so many seeds from FIRST on, as `predict --accuracy` does, from a problem that is
-/// wrong on purpose. HOW and AMOUNT:
+/// makes CHAINS predictions with the seeds FIRST, FIRST + 1, ..., as `predict --accuracy` does, of
+/// a scene that is wrong on purpose. HOW and AMOUNT:
 ///   right 0    as it should be
 ///   mirror 0   cells count as symmetric that are not
 ///   states N   as `build --states N`
 ///   traps Q    with this probability a body that came from the side before is trapped
 ///   keeps Q    with this probability such a body does not go back to where it came from
 ///   types 0    all cells count as one type
-/// Prints lines "how,amount,seed,error,own_p,wrong,mirror,states,face_before,rows,cells": total
-/// variation from 100 000 trials, p-value of the chain's own trials, the assumption that is said to
-/// be wrong, and all p-values (-1: not checked).
+/// Prints lines "how,amount,seed,error,own_p,wrong,mirror,states,face_before,rows,cells". error:
+/// the total variation from 100 000 trials. own_p: the p-value of the chain's own trials. wrong:
+/// the assumption that is named, or none. Then the p-value of each assumption (-1: not checked).
 #include <cstdio>
 #include <memory>
 #include <optional>
