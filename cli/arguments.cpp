@@ -18,6 +18,7 @@
 #include "cli/source_options.h"
 #include "dynamics/base/work.h"
 #include "lattice/pool/pool_runner.h"
+#include "lattice/pool/remembered.h"
 #include "lattice/pool/states_info.h"
 #include "lattice/scene/scene_keys.h"
 #include "lattice/scene/units.h"
@@ -57,6 +58,22 @@ TextOption add_bins(Options& options) {
       "entries in pilot trials. Default: the scene's table [bins], else tree. If runs per state "
       "are "
       "asked for: paper, or auto where the paper's bins do not suit the gate or its bodies");
+}
+
+TextOption add_order_of(Options& options) {
+  return options.add_text(
+      "order-of", "turns|faces|states",
+      "what --order counts. turns: left, straight, right and back, where a cell has three or more "
+      "open sides, and back everywhere; faces: those by which the cells before were entered; "
+      "states: those of the chain without memory. Default: turns");
+}
+
+dynamics::LettersOf letters_of(const TextOption& order_of) {
+  using dynamics::LettersOf;
+  if (!order_of) return LettersOf::turns;
+  for (const LettersOf of : {LettersOf::turns, LettersOf::faces, LettersOf::states})
+    if (order_of.value() == lattice::name_of(of)) return of;
+  throw UsageError(fmt::format("--order-of {}: must be turns, faces or states", order_of.value()));
 }
 
 lattice::BinsChoice bins_choice(const TextOption& bins, const lattice::Scene& scene,

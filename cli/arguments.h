@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "dynamics/cells/words.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/scene/bins.h"
 #include "lattice/scene/matrix.h"
@@ -36,6 +37,10 @@ TextsOption add_starts(Options& options,
 
 /// Declares --bins, the states of the chain.
 TextOption add_bins(Options& options);
+/// Declares --order-of, which says what --order counts.
+TextOption add_order_of(Options& options);
+/// What --order counts: turns by default. Throws UsageError.
+[[nodiscard]] dynamics::LettersOf letters_of(const TextOption& order_of);
 /// The states that --bins asks for, else the scene's table [bins]. Without both: a tree, or
 /// lattice::usual_bins if the option `runs_per_state` is given. Throws UsageError for an unknown
 /// value of --bins, and for --bins beside a table [bins].

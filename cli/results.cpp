@@ -19,6 +19,7 @@
 #include "cli/render/limits.h"
 #include "cli/render/matrix.h"
 #include "cli/render/meaning.h"
+#include "cli/render/order.h"
 #include "cli/render/plan.h"
 #include "cli/render/power.h"
 #include "cli/render/prediction.h"
@@ -209,7 +210,7 @@ FidelityResult fidelity() {
   return example;
 }
 
-/// The result for a scene, or for recorded runs.
+/// The result for a scene, for recorded runs, or with --order.
 void describe_validate(Fields& out) {
   const lattice::EndingShares none{std::array<double, markov::kEndings>{}};
   ValidateResult of_scene{.shown = lattice::Scene()};
@@ -225,8 +226,16 @@ void describe_validate(Fields& out) {
   of_scene.validation.memory = std::make_shared<const lattice::MemoryStudy>(std::move(memory));
   CrossValidationResult of_runs;
   of_runs.section = dynamics::disc_section();
+  OrderResult of_order;
+  of_order.study.orders.emplace_back();
   out.either(
-      true, [&](Fields& f) { describe(f, of_scene); }, [&](Fields& f) { describe(f, of_runs); });
+      true, [&](Fields& f) { describe(f, of_scene); },
+      [&](Fields& f) {
+        f.optional(true, [&](Fields& halves) { describe_halves(halves, of_runs); });
+        f.optional(true, [&](Fields& order) { describe_order(order, of_order); });
+        describe_recorded(f, of_runs.recorded);
+        describe_made_by(f, of_runs.made_by);
+      });
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "cli/fields/text.h"
 #include "cli/render/choice.h"
 #include "cli/render/matrix.h"
+#include "lattice/recorded/recorded_pool.h"
 #include "lattice/scene/terrain.h"
 #include "lattice/text/digits.h"
 
@@ -135,6 +136,27 @@ Source open_source(const Options& options, const Asked& asked) {
   if (how.cell) options.depends_on(text_of(*s.problem.cells.cells.front()));
   take_options(options, asked, s);
   return s;
+}
+
+RecordedCells read_recorded(const Options& options, const std::string& path,
+                            const TextOption& cell_file) {
+  lattice::CellFile cells =
+      lattice::read_cell_file(options.file(cell_file.value()).toml(), options.overrides());
+  lattice::RecordedRuns runs = lattice::read_runs(path, cells);
+  for (const std::string& text : runs.remarks) options.warn(path + ": " + text);
+  const auto unknown = runs.unknown;
+  lattice::RunPool pool = lattice::pool_of(std::move(runs));
+  lattice::Problem problem = lattice::problem_of(cells, pool);
+  for (const std::string& text : lattice::doubts_of(pool, problem)) options.warn(text);
+  options.warn(lattice::faces_without_use(pool, problem));
+  if (const std::string text = lattice::far_from_faces(pool, problem); !text.empty())
+    options.warn(text);
+  const auto& costs = problem.map().section.costs;
+  for (std::size_t c = 0; c < costs.size(); ++c)
+    if (unknown[c] > 0)
+      options.warn(fmt::format("{} is blank in {} passages: analyze leaves it out", costs[c].key,
+                               unknown[c]));
+  return {std::move(cells), std::move(pool), std::move(problem)};
 }
 
 Source field_to_run(const Options& options, const Asked& asked, const std::string& made) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/arguments.h"
+#include "lattice/scene/cell_file.h"
 #include "lattice/source/source_file.h"
 
 namespace gatewalk::cli {
@@ -33,6 +34,17 @@ struct Asked {
 /// Opens the scene, matrix or cell file with --set, and warns of what its runs cannot tell. Throws
 /// UsageError and what lattice::Source::open throws.
 [[nodiscard]] lattice::Source open_source(const Options& options, const Asked& asked);
+
+/// Recorded runs with the cells that they went through.
+struct RecordedCells {
+  lattice::CellFile cells;
+  lattice::RunPool pool;
+  lattice::Problem problem;
+};
+/// Reads a table of recorded runs (runs.csv) and the file of --cell, with --set, and warns of what
+/// they cannot tell. Throws SceneError and std::invalid_argument.
+[[nodiscard]] RecordedCells read_recorded(const Options& options, const std::string& runs,
+                                          const TextOption& cell_file);
 
 /// Opens a scene of gates, or a program's cells, with one start. `made` completes the message for
 /// several starts ("a plan is made"). Throws UsageError, also for a matrix.

@@ -18,6 +18,7 @@
 #include "cli/source_options.h"
 #include "dynamics/base/work.h"
 #include "lattice/pool/predict_pooled.h"
+#include "lattice/pool/remembered.h"
 #include "lattice/source/cell_matrix.h"
 #include "lattice/text/digits.h"
 
@@ -51,9 +52,29 @@ struct BuildCommand : Options {
                "tree: make the matrix good for any start in this range, LOW:HIGH each; all: the "
                "entries from below of Table III");
   CountOption states = add_count("states", "S", "tree: at most S states besides the starts");
+  CountOption order = add_count(
+      "order", "K",
+      "recorded runs: the chain remembers the last K turns (default: 0; gatewalk validate "
+      "RUNS.csv --order 0:4 says how many it needs)");
+  TextOption order_of = add_order_of(*this);
 };
 
+/// What the chain shall remember; nullopt: nothing.
+std::optional<dynamics::LettersOf> remembered(const BuildCommand& options) {
+  if (options.order_of && !options.order)
+    throw UsageError("--order-of: says what --order counts, and there is no --order");
+  const dynamics::LettersOf of = letters_of(options.order_of);
+  if (!options.order || options.order.value(0, lattice::kMostOrder) == 0) return {};
+  if (of == dynamics::LettersOf::states)
+    throw UsageError(
+        "--order-of states: only validate --order takes it; build takes turns or faces");
+  return of;
+}
+
 using Settled = std::optional<lattice::Settled>;
+
+constexpr const char* kOnlyRecorded =
+    "for recorded runs only: gatewalk passages SCENE records simulated ones";
 
 /// Commands to propose next. Only the chain of a scene can be validated against its dynamics.
 std::vector<std::string> next_of(const BuildCommand& options, const std::string& matrix,
@@ -201,8 +222,12 @@ void give_out_cells(const BuildCommand& options, std::vector<dynamics::Transitio
       options.provenance()};
   built.made_by.cell = lattice::to_toml(cells);
   options.keep_old(path);
-  lattice::write_matrix(path,
-                        std::move(built.matrix.file));  // takes the arrays, which are not shown
+  lattice::MatrixFile& file = built.matrix.file;
+  std::vector<markov::NamedArray> shown;
+  for (const markov::NamedArray& array : file.arrays)
+    if (array.name == lattice::kRunTypes) shown.push_back(array);
+  lattice::write_matrix(path, std::move(file));  // takes the arrays, which may be large
+  file.arrays = std::move(shown);
   options.give_out(built, {summary_table(built.matrix.file, path) + table_of(pool) +
                                beware_of(health.value_or(dynamics::Health())),
                            "\n" + states_line(states), next_of(options, path, false)});
@@ -214,22 +239,20 @@ int build_recorded(const BuildCommand& options) {
           options.states, options.trials, options.first_trial, options.bins, options.strict,
           options.shard, options.part, options.checkpoint, options.resume, options.max_time},
          "for recorded runs");
-  lattice::CellFile cells =
-      lattice::read_cell_file(options.file(options.cell_file.value()).toml(), options.overrides());
-  lattice::RecordedRuns runs = lattice::read_runs(options.path.value(), cells);
-  for (const std::string& text : runs.remarks) options.warn(options.path.value() + ": " + text);
-  const auto unknown = runs.unknown;
-  const lattice::RunPool pool = lattice::pool_of(std::move(runs));
-  const lattice::Problem problem = lattice::problem_of(cells, pool);
-  for (const std::string& text : lattice::doubts_of(pool, problem)) options.warn(text);
-  options.warn(lattice::faces_without_use(pool, problem));
-  if (const std::string text = lattice::far_from_faces(pool, problem); !text.empty())
-    options.warn(text);
-  const auto& costs = problem.map().section.costs;
-  for (std::size_t c = 0; c < costs.size(); ++c)
-    if (unknown[c] > 0)
-      options.warn(fmt::format("{} is blank in {} passages: analyze leaves it out", costs[c].key,
-                               unknown[c]));
+  auto [cells, pool, problem] = read_recorded(options, options.path.value(), options.cell_file);
+  if (const std::optional<dynamics::LettersOf> of = remembered(options)) {
+    const dynamics::CellMap& map = problem.map();
+    const lattice::ChosenWords chosen = lattice::words_of(
+        lattice::letters_of(*of, map, pool), pool,
+        static_cast<int>(options.order.value(0, lattice::kMostOrder)), dynamics::kEntriesPerLeaf);
+    if (chosen.left_out > 0)
+      options.warn(
+          fmt::format("a chain has no room for {} of {} memories: the rarest are forgotten",
+                      chosen.left_out, chosen.left_out + chosen.words->size()));
+    cells.map = lattice::with_words(map, chosen.words);
+    pool = lattice::with_words(pool, cells.map);
+    problem = lattice::problem_of(cells, pool);
+  }
   auto matrices = lattice::cell_matrices(problem, pool, dynamics::kEntriesPerLeaf);
   const StateRecord states{
       {.kind = "tree", .trees = lattice::TreeInfo{.gate_runs = pool.gate_runs()}},
@@ -243,6 +266,7 @@ int build_recorded(const BuildCommand& options) {
 int build_program(const BuildCommand& options) {
   refuse({options.cell_file, options.first_trial, options.bins, options.starts},
          "for cells that another program carries out");
+  refuse({options.order, options.order_of}, kOnlyRecorded);
   const lattice::Source s = open_source(options, {.path = options.path,
                                                   .program = options.program,
                                                   .starts = options.start,
@@ -282,6 +306,7 @@ int run_build(const Arguments& arguments) {
   warn_of_ending(options);
   if (has_cell(options, options.program)) return build_program(options);
   if (options.cell_file) return build_recorded(options);
+  refuse({options.order, options.order_of}, kOnlyRecorded);
   lattice::Scene scene = options.read_scene();
   require_keepable(scene);
   const lattice::BinsChoice choice = bins_choice(options.bins, scene, options.trials);

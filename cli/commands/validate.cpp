@@ -2,6 +2,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -11,14 +15,18 @@
 #include "cli/render/final_gates.h"
 #include "cli/render/health.h"
 #include "cli/render/matrix.h"
+#include "cli/render/order.h"
 #include "cli/render/prediction.h"
 #include "cli/render/validation.h"
 #include "cli/source_options.h"
 #include "dynamics/base/work.h"
 #include "lattice/field/problem.h"
+#include "lattice/pool/remembered.h"
 #include "lattice/scene/scene.h"
 #include "lattice/source/cell_matrix.h"
 #include "lattice/study/observed.h"
+#include "lattice/study/order.h"
+#include "lattice/text/digits.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -54,6 +62,16 @@ struct ValidateCommand : Options {
       add_flag("memory",
                "also simulate the trials with the random force drawn anew at every crossing, and "
                "compare");
+  TextOption order = add_text(
+      "order", "LOW:HIGH",
+      "what must the chain remember? Compares chains that remember LOW to HIGH turns (or what "
+      "--order-of says), by how well they predict other bodies; of a scene, 1000 trials or "
+      "--trials");
+  TextOption order_of = add_order_of(*this);
+  TextOption cell_file =
+      input_file("cell",
+                 "SCENE is a table of recorded runs (runs.csv), and this file (cell.toml) "
+                 "describes the cells");
   TextsOption start = add_starts(*this);
   TextOption bins = add_bins(*this);
   AskedProgram program = add_cell_program(*this);
@@ -222,8 +240,111 @@ ChainUnderTest chain_under_test(const ValidateCommand& options) {
   return options.matrix ? read_chain(options) : build_chain(options);
 }
 
+/// Bodies that were recorded, or simulated for --order.
+struct Bodies {
+  lattice::Problem problem;
+  std::shared_ptr<const lattice::RunPool> pool;
+  ShownField shown;
+  Provenance made_by;
+  int per_leaf = dynamics::kEntriesPerLeaf;
+};
+
+/// The recorded bodies of a table or of a matrix; nullopt: nothing was recorded.
+std::optional<Bodies> recorded_bodies(const ValidateCommand& options) {
+  const std::string path = options.path.value();
+  if (options.cell_file) {
+    RecordedCells runs = read_recorded(options, path, options.cell_file);
+    Bodies bodies{std::move(runs.problem), std::make_shared<lattice::RunPool>(std::move(runs.pool)),
+                  ShownField(runs.cells), options.provenance()};
+    bodies.shown.is_simulated = false;
+    bodies.made_by.cell = lattice::to_toml(runs.cells);
+    return bodies;
+  }
+  if (const lattice::SourceFile& file = options.file(path);
+      has_cell(options, options.program) || !file.is_matrix() || !file.is_of_cells())
+    return {};
+  lattice::Source s = open_source(options, options.asked);
+  if (s.is_imported)
+    throw UsageError(path +
+                     ": holds an imported chain, without trials or bodies to test it with. Make "
+                     "the chain from recorded runs instead: gatewalk build runs.csv --cell "
+                     "cell.toml");
+  if (s.pool->scattered.each.bodies.empty())
+    throw UsageError(path + ": its runs were not recorded: --cell-program says who makes more");
+  return Bodies{s.problem, s.pool, ShownField(s), options.provenance(s), s.accuracy.per_leaf};
+}
+
+/// The orders LOW to HIGH of --order. Throws UsageError.
+std::array<int, 2> orders_of(const ValidateCommand& options) {
+  const std::string text = options.order.value();
+  std::string_view rest = text;
+  std::array<std::optional<double>, 2> ends{lattice::take_number(rest), {}};
+  if (lattice::take_mark(rest, ':')) ends[1] = lattice::take_number(rest);
+  const auto is_order = [](const std::optional<double>& x) {
+    return x && *x >= 0.0 && *x <= lattice::kMostOrder && *x == std::floor(*x);
+  };
+  if (!is_order(ends[0]) || !is_order(ends[1]) || !(*ends[0] < *ends[1]) ||
+      !lattice::behind_blanks(rest).empty())
+    throw UsageError(fmt::format(
+        "--order {}: must be two whole numbers from 0 to {}, the first one smaller, such as 0:4",
+        text, lattice::kMostOrder));
+  return {static_cast<int>(*ends[0]), static_cast<int>(*ends[1])};
+}
+
+/// Bodies simulated for --order.
+Bodies simulated_bodies(const ValidateCommand& options) {
+  constexpr std::int64_t kTrials = 1000;
+  lattice::Source s = open_source(options, options.asked);
+  if (s.starts.size() != 1)
+    throw UsageError(fmt::format("--order: takes one --start, these are {}", s.starts.size()));
+  s.problem.start = s.entries().front();
+  choose_method(options, s);
+  return {s.problem,
+          std::make_shared<lattice::RunPool>(lattice::simulated_bodies(
+              s.problem, options.trials ? options.trials.value() : kTrials, options.seed(),
+              options.work())),
+          ShownField(s), options.provenance(s)};
+}
+
+/// validate --order: what must the chain remember?
+int validate_order(const ValidateCommand& options) {
+  const auto [least, most] = orders_of(options);
+  const lattice::OrderOptions how{
+      .of = letters_of(options.order_of), .least = least, .most = most, .seed = options.seed()};
+  refuse({options.matrix, options.matrix_trials, options.walks, options.null_draws,
+          options.accuracy.accuracy, options.accuracy.gate_runs, options.bins, options.memory,
+          options.strict, options.observed, options.shard, options.part, options.checkpoint,
+          options.resume, options.max_time},
+         "beside --order");
+  std::optional<Bodies> bodies = recorded_bodies(options);
+  const bool is_recorded = bodies.has_value();
+  if (is_recorded) refuse({options.trials, options.start}, "for recorded bodies");
+  if (!bodies) bodies = simulated_bodies(options);
+  if (const dynamics::Section labelled = bodies->problem.map().section; labelled.words) {
+    bodies->pool =
+        std::make_shared<lattice::RunPool>(lattice::without_words(*bodies->pool, labelled));
+    bodies->problem.cells.map.section = dynamics::Words::plain(labelled);
+  }
+  const OrderResult result{
+      .study = lattice::study_order(bodies->problem, *bodies->pool, how, options.work()),
+      .recorded = counts_of(*bodies->pool),
+      .is_recorded = is_recorded,
+      .made_by = bodies->made_by};
+  NextCommands next(options);
+  if (const int order = result.study.answer().order; options.cell_file && order > 0)
+    next.run(
+        fmt::format("build {} --cell {} --order {}{} -o chain.nc",
+                    shell_quoted(options.path.value()), shell_quoted(options.cell_file.value()),
+                    order, options.order_of ? " --order-of " + options.order_of.value() : ""),
+        "makes that chain");
+  options.give_out(result, {answer_text(result), details_text(result), next.lines(),
+                            "the endings of both halves by order"});
+  options.draw([&] { return figure_of(result); });
+  return kFine;
+}
+
 /// Validates recorded runs: does one half of the bodies predict the other?
-int validate_recorded(const ValidateCommand& options) {
+int validate_recorded(const ValidateCommand& options, const Bodies& bodies) {
   const std::string path = options.path.value();
   if (options.observed)
     throw UsageError(fmt::format(
@@ -236,37 +357,32 @@ int validate_recorded(const ValidateCommand& options) {
           options.memory, options.strict, options.shard, options.part, options.checkpoint,
           options.resume, options.max_time},
          fmt::format("for {}: validate predicts one half of its bodies from the other half", path));
-  const lattice::Source s = open_source(options, options.asked);
-  if (s.is_imported)
-    throw UsageError(path +
-                     ": holds an imported chain, without trials or bodies to test it with. Make "
-                     "the chain from recorded runs instead: gatewalk build runs.csv --cell "
-                     "cell.toml");
-  if (s.pool->scattered.each.bodies.empty())
-    throw UsageError(path + ": its runs were not recorded: --cell-program says who makes more");
+  const auto& [problem, pool, shown, made_by, per_leaf] = bodies;
   lattice::CrossValidationOptions how{
-      .null_draws = {}, .seed = options.seed(), .per_leaf = s.accuracy.per_leaf};
+      .null_draws = {}, .seed = options.seed(), .per_leaf = per_leaf};
   if (options.null_draws) how.null_draws = options.null_draws.value(1, kMostNullDraws);
   const CrossValidationResult result{
-      .validation = lattice::cross_validate(s.problem, *s.pool, how, options.work()),
-      .memory = lattice::body_memory(s.problem, *s.pool, how.per_leaf, how.null_draws.value_or(999),
+      .validation = lattice::cross_validate(problem, *pool, how, options.work()),
+      .memory = lattice::body_memory(problem, *pool, how.per_leaf, how.null_draws.value_or(999),
                                      how.seed),
-      .section = s.problem.map().section,
-      .recorded = counts_of(*s.pool),
-      .made_by = options.provenance(s)};
-  constexpr std::int64_t kChecked = 200;  // measured in results/tracks
-  if (s.pool->bodies() < kChecked)
+      .section = problem.map().section,
+      .recorded = counts_of(*pool),
+      .made_by = made_by};
+  if (pool->bodies() < kBodiesForP)
     options.warn(fmt::format("with {} bodies p may be too small: it was checked with {} or more",
-                             s.pool->bodies(), kChecked));
+                             pool->bodies(), kBodiesForP));
+  NextCommands next(options);
+  if (options.cell_file)
+    next.run(fmt::format("build {} --cell {} -o chain.nc", shell_quoted(path),
+                         shell_quoted(options.cell_file.value())),
+             "makes the chain of all bodies");
+  else
+    next.keeping({"seed"}).add("predict", "", "what all bodies together predict");
   options.give_out(result,
-                   {answer_text(result) + unequal_sides(ShownField(s)), details_text(result),
-                    NextCommands(options)
-                        .keeping({"seed"})
-                        .add("predict", "", "what all bodies together predict")
-                        .lines(),
+                   {answer_text(result) + unequal_sides(shown), details_text(result), next.lines(),
                     "every ending of both halves, how far bodies were watched, final gates"});
   for (const std::string& rest : rest_warnings(result.validation)) options.warn(rest);
-  options.draw([&] { return figure_of(result.validation, ShownField(s)); });
+  options.draw([&] { return figure_of(result.validation, bodies.shown); });
   return kFine;
 }
 
@@ -309,7 +425,7 @@ std::vector<std::string> next_of(const ValidateCommand& options, const lattice::
 
 int run_validate(const Arguments& arguments) {
   ValidateCommand options(
-      "validate SCENE [options]",
+      "validate SCENE|RUNS.csv [options]",
       "Tests whether the chain agrees with trials of the full dynamics, and whether it is "
       "Markov.\n\n"
       "The verdict is one p-value for endings and final gates. It counts chance in the trials and "
@@ -320,16 +436,18 @@ int run_validate(const Arguments& arguments) {
       "paper's field the starts are the four of Table IV.\n"
       "With --observed, validate compares the counts of an experiment with the full dynamics and\n"
       "with the chain, and says which shifts so many trials would detect.\n"
-      "For a matrix of recorded runs (in SCENE's place), validate is a cross-validation: does one\n"
-      "half of the bodies predict the other?",
+      "For recorded runs (a table with --cell, or their matrix) validate is a cross-validation: "
+      "does\n"
+      "one half of the bodies predict the other? With --order: what must their chain remember?",
       "gatewalk validate scenes/field.toml --trials 10000 --json validation.json");
   options.reads(options.observed, [](const std::string& file) { return file; });
   options.add_details("every ending and measure by start, times, each test of memory");
   options.most_used({"observed", "matrix", "trials", "set", "json"});
   if (!options.parse(arguments)) return kFine;
-  if (const lattice::SourceFile& file = options.file(options.path.value());
-      !has_cell(options, options.program) && file.is_matrix() && file.is_of_cells())
-    return validate_recorded(options);
+  if (options.order) return validate_order(options);
+  refuse({options.order_of}, "without --order");
+  if (const std::optional<Bodies> bodies = recorded_bodies(options))
+    return validate_recorded(options, *bodies);
   lattice::ValidationOptions how{.trials = options.trials ? options.trials.value() : 100,
                                  .walks = {},
                                  .null_draws = {},

@@ -40,7 +40,7 @@ constexpr std::array<Words, lattice::kAssumptions.size()> kWords{{
     {Assumption::face_before, "the face before",
      "the face by which a body entered the cell before does not matter",
      "bodies remember the face by which they entered the cell before", "trust gatewalk lattice",
-     "the intervals do not count this"},
+     "let the chain remember turns: validate --order says how many, build --order does it"},
     {Assumption::rows, "rows of the field",
      "cells of one type are alike in all rows; null also: recorded runs",
      "cells of one type differ from row to row",

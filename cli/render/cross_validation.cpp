@@ -226,6 +226,12 @@ void describe(Fields& out, const lattice::Independence& m, const dynamics::Secti
 }  // namespace
 
 void describe(Fields& out, const CrossValidationResult& result) {
+  describe_halves(out, result);
+  describe_recorded(out, result.recorded);
+  describe_made_by(out, result.made_by);
+}
+
+void describe_halves(Fields& out, const CrossValidationResult& result) {
   const auto& [validation, memory, section, recorded, made_by] = result;
   out.list(
       {"halves",
@@ -241,8 +247,6 @@ void describe(Fields& out, const CrossValidationResult& result) {
       {"memory",
        "test: does the face of the cell before predict the outcome beyond what the state does?"},
       [&](Fields& f) { describe(f, memory, section); });
-  describe_recorded(out, recorded);
-  describe_made_by(out, made_by);
 }
 
 std::vector<std::string> rest_warnings(const CrossValidation& v) {

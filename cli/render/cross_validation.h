@@ -3,6 +3,7 @@
 /// Cross-validation of recorded bodies, one half against the other, as a result, a table and a
 /// figure.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@
 
 namespace gatewalk::cli {
 
+/// With fewer bodies than this p may be too small (measured in results/tracks).
+inline constexpr std::int64_t kBodiesForP = 200;
+
 /// The result of `validate` for recorded runs.
 struct CrossValidationResult {
   lattice::CrossValidation validation;
@@ -25,6 +29,8 @@ struct CrossValidationResult {
   Provenance made_by;
 };
 void describe(Fields& out, const CrossValidationResult& result);
+/// Its keys but `recorded` and `made_by`.
+void describe_halves(Fields& out, const CrossValidationResult& result);
 /// The rest_warning() of each half's chain whose endings leave something out.
 [[nodiscard]] std::vector<std::string> rest_warnings(const lattice::CrossValidation& v);
 /// What the screen shows first, and its details.

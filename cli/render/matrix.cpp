@@ -133,13 +133,46 @@ std::string outputs_table(const Transitions& t, int shown) {
                      table.text());
 }
 
-/// Adds a line for each further type of gate.
-void add_types(TextTable& table, const lattice::MatrixFile& file) {
-  for (const auto& [name, t] : file.types) {
-    const auto total = t.totals();
-    table.row({"type " + name, fmt::format("{} counts, {} entries above 0, {} rows without runs",
-                                           total.runs, total.nonzeros, total.empty_rows)});
+/// The types of gates of a file with several: the name and matrix of each, and its gate runs, if
+/// the file has them.
+struct TypeOfFile {
+  std::string name;
+  const Transitions& matrix;
+  std::optional<std::int64_t> gate_runs{};
+};
+std::vector<TypeOfFile> types_of(const lattice::MatrixFile& file) {
+  std::vector<TypeOfFile> types;
+  if (file.types.empty()) return types;
+  if (const auto cell = file.text.find(lattice::kCellText); cell != file.text.end()) {
+    for (const std::string& name : lattice::parse_cell_file(cell->second, "").types)
+      types.push_back({name, types.empty() ? file.transitions : file.types.at(name)});
+  } else {
+    types.push_back({"of the scene", file.transitions});
+    for (const auto& [name, t] : file.types) types.push_back({name, t});
   }
+  for (const markov::NamedArray& array : file.arrays)
+    if (array.name == lattice::kRunTypes) {
+      for (TypeOfFile& type : types) type.gate_runs = 0;
+      for (const double type : array.values) ++*types.at(static_cast<std::size_t>(type)).gate_runs;
+    }
+  return types;
+}
+
+/// A table of the types of gates, if there are several; `counted`: what gate runs are here.
+std::string types_table(const lattice::MatrixFile& file, const std::string& counted) {
+  const std::vector<TypeOfFile> types = types_of(file);
+  if (types.empty()) return "";
+  TextTable table({{"Type of gate", -kFit},
+                   {counted, kFit, 0, "", "  "},
+                   {"counts of the chain", kFit, 0, "", "  "},
+                   {"entries above 0", kFit, 0, "", "  "},
+                   {"rows without runs", kFit, 0, "", "  "}});
+  for (const TypeOfFile& type : types) {
+    const auto total = type.matrix.totals();
+    table.row({type.name, type.gate_runs ? std::to_string(*type.gate_runs) : "-", total.runs,
+               total.nonzeros, total.empty_rows});
+  }
+  return table.text();
 }
 
 // ---- Keys of results ----
@@ -152,7 +185,9 @@ void describe_size(Fields& out, const Transitions& t) {
 }
 void describe_counts(Fields& out, const Transitions::Totals& total) {
   out.count(
-      {"counts", "1", "sum of all counts: runs, with their mirror images where these count too"},
+      {"counts", "1",
+       "sum of all counts: runs, with their mirror images where these count too, and those that "
+       "rare memories share"},
       total.runs);
 }
 void describe_nonzeros(Fields& out, const Transitions::Totals& total) {
@@ -169,18 +204,23 @@ void describe_empty_rows(Fields& out, const Transitions::Totals& total) {
 
 void describe_types(Fields& out, const lattice::MatrixFile& file) {
   out.optional(!file.types.empty(), [&](Fields& f) {
-    f.object({"types", "matrices of the field's other types of gates, by type"},
-             [&](Fields& types) {
-               for (const auto& [name, t] : file.types)
-                 types.object(Label(name, "matrix of the gates of this type").varying("<type>"),
-                              [&](Fields& type) {
-                                const auto total = t.totals();
-                                describe_counts(type, total);
-                                describe_nonzeros(type, total);
-                                describe_clamped_share(type, total);
-                                describe_empty_rows(type, total);
-                              });
-             });
+    f.object(
+        {"types", "matrices of the field's other types of gates, by type"}, [&](Fields& types) {
+          for (const TypeOfFile& of : types_of(file))
+            if (&of.matrix != &file.transitions)
+              types.object(Label(of.name, "matrix of the gates of this type").varying("<type>"),
+                           [&](Fields& type) {
+                             const auto total = of.matrix.totals();
+                             type.count({"gate_runs", "1",
+                                         "gate runs through gates of this type; null: the file "
+                                         "has no runs"},
+                                        of.gate_runs);
+                             describe_counts(type, total);
+                             describe_nonzeros(type, total);
+                             describe_clamped_share(type, total);
+                             describe_empty_rows(type, total);
+                           });
+        });
   });
 }
 
@@ -353,14 +393,15 @@ std::string summary_table(const lattice::MatrixFile& file, const std::string& pa
       states && states->are_probabilities
           ? "given as probabilities"
           : fmt::format("from {} {}", gate_runs_of(file, path), counted_of(file, states));
+  std::int64_t nonzeros = total.nonzeros;
+  for (const auto& [name, of_type] : file.types) nonzeros += of_type.totals().nonzeros;
   std::string text =
-      size_line(t, path) + fmt::format("{} entries are above 0, {}.\n", total.nonzeros, runs);
+      size_line(t, path) + fmt::format("{} entries{} are above 0, {}.\n", nonzeros,
+                                       file.types.empty() ? "" : " of all types", runs);
   if (!t.space.has_trees() && !is_imported)
     text += fmt::format("{} of the crossings lie outside the bins and count in the nearest bin.\n",
                         percent(total.clamped_share(), 1.0));
-  TextTable types({{"", -20}, {}});
-  add_types(types, file);
-  return text + types.text();
+  return text + types_table(file, counted_of(file, states));
 }
 
 void describe(Fields& out, const ShownMatrix& shown) {
@@ -412,13 +453,14 @@ std::string answer_text(const ShownMatrix& matrix, const ShownRows& shown) {
   const std::int64_t cells = std::int64_t{t.space.size()} * (t.space.size() + 1);
   TextTable table({{"", -20, 0, "", "  "}, {}});
   const auto states = recorded_states(file, path);  // a file of another program may have none
+  const std::string with = t.space.section().words ? "with those that memories share"
+                           : t.space.has_trees() || counts_images(file) ? "with mirror images"
+                                                                        : "";
   table.row({counted_of(file, states),
              states && states->are_probabilities
                  ? "given in the place of counts"
-                 : fmt::format("{}{}", gate_runs_of(file, path),
-                               t.space.has_trees() || counts_images(file)
-                                   ? fmt::format(" (counts, with mirror images: {})", total.runs)
-                                   : "")});
+                 : std::to_string(gate_runs_of(file, path)) +
+                       (with.empty() ? "" : fmt::format(" (counts, {}: {})", with, total.runs))});
   table.row({"entries above 0", fmt::format("{} of {} ({})", total.nonzeros, cells,
                                             percent(static_cast<double>(total.nonzeros),
                                                     static_cast<double>(cells)))});
@@ -426,14 +468,13 @@ std::string answer_text(const ShownMatrix& matrix, const ShownRows& shown) {
     table.row({"outside the bins", fmt::format("{} of the crossings, counted in the nearest bin",
                                                percent(total.clamped_share(), 1.0))});
   table.row({"rows without runs", total.empty_rows});
-  add_types(table, file);
   const std::string faults =
       !file.text.contains("status") && file.text.contains(lattice::kCellText)
           ? std::string("none on record") + (lattice::has_runs(file) ? ": runs were recorded" : "")
           : faults_recorded(recorded_health(file));
   const std::string of_all = file.types.empty() ? "" : "in all types: ";
   std::string text =
-      size_line(t, path) + table.text() +
+      size_line(t, path) + table.text() + types_table(file, counted_of(file, states)) +
       wrapped("  numerical faults    " + (faults.empty() ? "none seen" : of_all + faults),
               std::string(22, ' '));
   if (shown.all) text += row_table(t);

@@ -22,7 +22,7 @@ class EntryTable {
   [[nodiscard]] std::size_t size() const { return faces_.size(); }
   [[nodiscard]] std::size_t coordinates() const { return coordinates_; }
   void push_back(const Entry& entry) {
-    faces_.push_back(static_cast<std::uint8_t>(entry.face));
+    faces_.push_back(static_cast<std::uint16_t>(entry.face));
     at_.insert(at_.end(), entry.at.data(), entry.at.data() + coordinates_);
   }
   [[nodiscard]] int face(std::size_t i) const { return faces_[i]; }
@@ -36,7 +36,7 @@ class EntryTable {
 
  private:
   std::size_t coordinates_;
-  std::vector<std::uint8_t> faces_;
+  std::vector<std::uint16_t> faces_;
   std::vector<double> at_;  // (entries x coordinates)
 };
 

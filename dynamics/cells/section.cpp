@@ -5,9 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
+
+#include "dynamics/cells/words.h"
 
 namespace gatewalk::dynamics {
 namespace {
@@ -39,9 +43,10 @@ void Section::validate() const {
   const auto refuse = [](const std::string& what) {
     throw std::invalid_argument("section: " + what);
   };
-  if (faces.empty() || faces.size() > kMostFaces)
+  const std::size_t most_faces = words ? Words::kMostLabels : kMostFaces;
+  if (faces.empty() || faces.size() > most_faces)
     refuse(std::to_string(faces.size()) + " faces are not permitted: must be 1 to " +
-           std::to_string(kMostFaces));
+           std::to_string(most_faces));
   if (coordinates.empty() || coordinates.size() > kMostCoordinates)
     refuse(std::to_string(coordinates.size()) + " coordinates are not permitted: must be 1 to " +
            std::to_string(kMostCoordinates));
@@ -49,10 +54,10 @@ void Section::validate() const {
     refuse(std::to_string(costs.size()) + " costs are not permitted: must be at most " +
            std::to_string(kMostCosts));
   const auto require_names = [&](const auto& all, auto name, const std::string& what) {
-    for (auto one = all.begin(); one != all.end(); ++one) {
-      if (((*one).*name).empty()) refuse("a " + what + " has no name");
-      for (auto other = all.begin(); other != one; ++other)
-        if ((*one).*name == (*other).*name) refuse("two " + what + "s are named " + (*one).*name);
+    std::set<std::string_view> before;
+    for (const auto& one : all) {
+      if ((one.*name).empty()) refuse("a " + what + " has no name");
+      if (!before.insert(one.*name).second) refuse("two " + what + "s are named " + one.*name);
     }
   };
   require_names(faces, &Face::name, "face");

@@ -7,10 +7,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace gatewalk::dynamics {
+
+class Words;
 
 /// The largest number of costs. The number is small because a chain keeps two sums of each cost for
 /// every count (CostSums).
@@ -35,6 +38,7 @@ struct CostSums {
   friend bool operator==(const CostSums&, const CostSums&) = default;
 };
 
+/// Limits of cells. Chains that remember have up to Words::kMostLabels faces.
 inline constexpr std::size_t kMostFaces = 64, kMostCoordinates = 8;
 
 /// An entry of a body into a cell: the face, and the place and velocity there.
@@ -97,6 +101,8 @@ struct Section {
   std::vector<Coordinate> coordinates;  // 1 to kMostCoordinates
   std::vector<CostInfo> costs;          // up to kMostCosts
   std::vector<NamedEntries> named{};    // sorted by face and place, none overlap; usually empty
+  /// What a chain remembers beside the face, if anything: then `faces` has its labels.
+  std::shared_ptr<const Words> words{};
 
   /// Throws std::invalid_argument unless the numbers of faces, coordinates and costs are within
   /// their limits, the names within each kind differ (of costs: the keys), every face has a move,

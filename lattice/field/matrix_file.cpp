@@ -22,11 +22,24 @@ std::string edges_array(const Face& face, const Coordinate& coordinate) {
 }
 
 // Names of the arrays of a face's tree. Axes and cuts are by node, in preorder; `seen` has low and
-// high by coordinate.
-std::string tree_array(const Face& face, const std::string& name) {
-  return face.name + "_tree_" + name;
+// high by coordinate. The many trees of a chain with words follow each other in the same arrays.
+std::string tree_array(const std::string& face, const std::string& name) {
+  return face + "_tree_" + name;
 }
 constexpr const char *kTreeAxis = "axis", *kTreeCut = "cut", *kTreeSeen = "seen";
+constexpr const char* kAllFaces = "all";
+
+/// The trees that share arrays: their name, and the number of the first one.
+struct TreeArrays {
+  std::string name;
+  std::size_t first, count;
+};
+std::vector<TreeArrays> tree_arrays(const Section& section) {
+  if (section.words) return {{kAllFaces, 0, section.faces.size()}};
+  std::vector<TreeArrays> arrays;
+  for (const Face& face : section.faces) arrays.push_back({face.name, arrays.size(), 1});
+  return arrays;
+}
 
 // Only files of an open space have kOpenBins, only those of a space with points kPointBoundary.
 constexpr const char* kOpenBins = "outermost_bins_are_open";
@@ -61,27 +74,32 @@ std::vector<Entry> points_in(const markov::CountsFile& in, const Section& sectio
   return points;
 }
 
-void add_tree(markov::CountsFile& out, const Section& section, const Face& face, const Tree& tree) {
+void add_trees(markov::CountsFile& out, const Section& section, const TreeArrays& of,
+               const std::vector<Tree>& trees) {
+  const std::string states = section.words
+                                 ? "the tree of one face after the other, numbered as state_face"
+                                 : "states are the leaves of " + names_of(section.faces);
   const auto add = [&](const std::string& name, const std::string& unit, const std::string& meaning,
                        std::vector<double> values) {
-    out.arrays.push_back({tree_array(face, name), unit,
-                          face.name + ": " + meaning +
-                              "; nodes in preorder, states are the leaves of " +
-                              names_of(section.faces),
+    out.arrays.push_back({tree_array(of.name, name), unit,
+                          of.name + ": " + meaning + "; nodes in preorder, " + states,
                           std::move(values)});
-    if (name != kTreeSeen) out.arrays.back().dimension = tree_array(face, "node");
+    if (name != kTreeSeen) out.arrays.back().dimension = tree_array(of.name, "node");
     out.arrays.back().whole = name == kTreeAxis;
   };
   std::vector<double> axis, cut, seen;
-  for (const Tree::Node& node : tree.nodes) {
-    axis.push_back(node.axis);
-    cut.push_back(node.cut);
-  }
   std::string sides;
   for (std::size_t k = 0; k < section.coordinates.size(); ++k) {
     const Coordinate& c = section.coordinates[k];
-    seen.insert(seen.end(), tree.seen[k].begin(), tree.seen[k].end());
     sides += k == 0 ? c.name + " low, " + c.name + " high" : ", " + c.name;
+  }
+  for (std::size_t t = of.first; t < of.first + of.count; ++t) {
+    for (const Tree::Node& node : trees[t].nodes) {
+      axis.push_back(node.axis);
+      cut.push_back(node.cut);
+    }
+    for (std::size_t k = 0; k < section.coordinates.size(); ++k)
+      seen.insert(seen.end(), trees[t].seen[k].begin(), trees[t].seen[k].end());
   }
   add(kTreeAxis, "1",
       "axis of each node's cut: " + numbers_of(section.coordinates) +
@@ -91,25 +109,36 @@ void add_tree(markov::CountsFile& out, const Section& section, const Face& face,
   add(kTreeSeen, "", "between what entries were seen, in their units: " + sides, std::move(seen));
 }
 
-Tree tree_in(const markov::CountsFile& in, const Section& section, const Face& face,
-             const std::string& path) {
+/// Adds the trees in these arrays to `trees`.
+void read_trees(const markov::CountsFile& in, const Section& section, const TreeArrays& of,
+                const std::string& path, std::vector<Tree>& trees) {
   const auto find = [&](const char* name) -> const std::vector<double>& {
-    if (const auto* values = find_array(in, tree_array(face, name))) return *values;
-    throw markov::BadFile(path + ": no " + tree_array(face, name));
+    if (const auto* values = find_array(in, tree_array(of.name, name))) return *values;
+    throw markov::BadFile(path + ": no " + tree_array(of.name, name));
   };
   const std::vector<double>&axis = find(kTreeAxis), &cut = find(kTreeCut), &seen = find(kTreeSeen);
-  const auto coordinates = static_cast<double>(section.coordinates.size());
-  Tree tree;
-  if (axis.size() != cut.size() || seen.size() != 2 * section.coordinates.size())
-    throw markov::BadFile(path + ": tables of the tree of " + face.name + " do not fit each other");
-  tree.nodes.clear();
-  for (std::size_t i = 0; i < axis.size(); ++i) {
-    if (!(axis[i] >= Tree::kLeaf && axis[i] < coordinates && axis[i] == std::floor(axis[i])))
-      throw markov::BadFile(path + ": " + tree_array(face, kTreeAxis) + " names no axis");
-    tree.nodes.push_back({static_cast<int>(axis[i]), cut[i]});
+  const std::size_t coordinates = section.coordinates.size();
+  const auto misfit = [&] {
+    return markov::BadFile(path + ": tables of the tree of " + of.name + " do not fit each other");
+  };
+  if (axis.size() != cut.size() || seen.size() != 2 * coordinates * of.count) throw misfit();
+  std::size_t at = 0;
+  for (std::size_t t = 0; t < of.count; ++t) {
+    Tree& tree = trees.emplace_back();
+    tree.nodes.clear();
+    // A tree ends with its last leaf: each cut opens one more part.
+    for (int open = 1; open > 0; ++at) {
+      if (at == axis.size()) throw misfit();
+      if (!(axis[at] >= Tree::kLeaf && axis[at] < static_cast<double>(coordinates) &&
+            axis[at] == std::floor(axis[at])))
+        throw markov::BadFile(path + ": " + tree_array(of.name, kTreeAxis) + " names no axis");
+      tree.nodes.push_back({static_cast<int>(axis[at]), cut[at]});
+      open += axis[at] == Tree::kLeaf ? -1 : 1;
+    }
+    for (std::size_t k = 0; k < 2 * coordinates; ++k)
+      tree.seen[k / 2][k % 2] = seen[2 * coordinates * t + k];
   }
-  for (std::size_t k = 0; k < seen.size(); ++k) tree.seen[k / 2][k % 2] = seen[k];
-  return tree;
+  if (at != axis.size()) throw misfit();
 }
 
 StateSpace bins_in(const markov::CountsFile& in, const Section& section, const std::string& path) {
@@ -128,7 +157,7 @@ StateSpace bins_in(const markov::CountsFile& in, const Section& section, const s
 
 StateSpace trees_in(const markov::CountsFile& in, const Section& section, const std::string& path) {
   std::vector<Tree> trees;
-  for (const Face& face : section.faces) trees.push_back(tree_in(in, section, face, path));
+  for (const TreeArrays& of : tree_arrays(section)) read_trees(in, section, of, path, trees);
   return {section, std::move(trees), points_in(in, section, path)};
 }
 
@@ -230,10 +259,10 @@ std::vector<markov::NamedArray> others_in(std::vector<markov::NamedArray> arrays
   std::set<std::string> own{kOpenBins, kPointBoundary, std::string(kStates) + "face"};
   for (const Coordinate& c : section.coordinates)
     own.insert({point_array(c), kStates + c.name + "_low", kStates + c.name + "_high"});
-  for (const Face& face : section.faces) {
+  for (const Face& face : section.faces)
     for (const Coordinate& c : section.coordinates) own.insert(edges_array(face, c));
-    for (const char* name : {kTreeAxis, kTreeCut, kTreeSeen}) own.insert(tree_array(face, name));
-  }
+  for (const TreeArrays& of : tree_arrays(section))
+    for (const char* name : {kTreeAxis, kTreeCut, kTreeSeen}) own.insert(tree_array(of.name, name));
   std::erase_if(arrays, [&](const markov::NamedArray& a) {
     return own.contains(a.name) || a.name.starts_with(kCountCosts);
   });
@@ -356,10 +385,10 @@ void write_matrix(const std::string& path, const MatrixFile& file,
   out.state_names = state_names(file);
   std::move(arrays.begin(), arrays.end(), std::back_inserter(out.arrays));
   const Section& section = t.space.section();
-  for (std::size_t f = 0; f < section.faces.size(); ++f)
-    if (t.space.has_trees())
-      add_tree(out, section, section.faces[f], t.space.trees()[f]);
-    else
+  if (t.space.has_trees())
+    for (const TreeArrays& of : tree_arrays(section)) add_trees(out, section, of, t.space.trees());
+  else
+    for (std::size_t f = 0; f < section.faces.size(); ++f)
       add_bins(out, section, section.faces[f], t.space.bins()[f]);
   if (t.space.open() && !t.space.has_trees())
     out.arrays.push_back(
@@ -413,7 +442,8 @@ MatrixFile read_matrix(const std::string& path, const SectionOf& section_of) {
   }();
   try {
     const Section section = section_of(in.text);
-    const bool has_trees = find_array(in, tree_array(section.faces.front(), kTreeAxis)) != nullptr;
+    const bool has_trees =
+        find_array(in, tree_array(tree_arrays(section).front().name, kTreeAxis)) != nullptr;
     const StateSpace space = has_trees ? trees_in(in, section, path) : bins_in(in, section, path);
     if (space.size() != in.counts.rows())
       throw markov::BadFile(path + ": its state space makes " + std::to_string(space.size()) +

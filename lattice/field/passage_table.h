@@ -44,7 +44,7 @@ class PassageTable {
   [[nodiscard]] bool empty() const { return kinds_.empty(); }
   void push_back(const CellPassage& passage) {
     if (coordinates_ == 0) throw std::logic_error("passages of no section");
-    kinds_.push_back({passage.fate, passage.type, static_cast<std::uint8_t>(passage.entry.face)});
+    kinds_.push_back({passage.fate, passage.type, static_cast<std::uint16_t>(passage.entry.face)});
     const double *const at = passage.entry.at.data(), *const costs = passage.costs.data();
     numbers_.insert(numbers_.end(), at, at + coordinates_);
     numbers_.insert(numbers_.end(), costs, costs + costs_);
@@ -133,7 +133,8 @@ class PassageTable {
   std::size_t coordinates_ = 0, costs_ = 0;
   struct Kind {
     dynamics::Fate fate;
-    std::uint8_t type, face;
+    std::uint8_t type;
+    std::uint16_t face;
   };
   std::vector<Kind> kinds_;
   std::vector<double> numbers_;  // (passages x (coordinates, then costs))

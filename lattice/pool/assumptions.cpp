@@ -8,45 +8,14 @@
 #include <string>
 #include <utility>
 
+#include "dynamics/cells/words.h"
+#include "lattice/pool/relabelled.h"
 #include "lattice/statistics/multiple_tests.h"
 
 namespace gatewalk::lattice {
 namespace {
 
 using namespace dynamics;
-
-/// The trials with new labels: label.begin(start) gives the entry of a trial's start, then
-/// label.next(passage) each of its passages.
-template <class Label>
-FieldTrials relabelled(const FieldTrials& trials, const Section& section, Label& label,
-                       const auto& start_of) {
-  FieldTrials all{.final_gates = {}, .bodies = trials.bodies, .keep_passages = true};
-  all.passages.begin(section);
-  all.passages.reserve(trials.passages.size());
-  all.passed = trials.passed;
-  for (std::size_t i = 0; i < trials.passed.size(); ++i) {
-    static_cast<void>(label.begin(start_of(i)));  // follows the body from there
-    for (const CellPassage passage : trials.of_trial(i))
-      all.passages.push_back(label.next(passage));
-  }
-  return all;
-}
-
-template <class Label>
-RunPool relabelled(const RunPool& pool, const Section& section, Label label) {
-  RunPool all;
-  for (const OwnRuns& s : pool.starts) {
-    const auto start = [&](std::size_t) { return s.start; };
-    all.starts.push_back({.start = label.begin(s.start),
-                          .full = relabelled(s.full, section, label, start),
-                          .first = relabelled(s.first, section, label, start)});
-  }
-  for (const Entry& start : pool.scattered.starts)
-    all.scattered.starts.push_back(label.begin(start));
-  all.scattered.each = relabelled(pool.scattered.each, section, label,
-                                  [&](std::size_t i) { return pool.scattered.starts[i]; });
-  return all;
-}
 
 bool any_symmetric(const CellMap& map) {
   return std::any_of(map.types.begin(), map.types.end(),
@@ -88,9 +57,10 @@ class FaceBefore {
       }
     return pairs;
   }
-  /// Whether there are labels, and mirrored faces have labels that are mirrored too.
+  /// Whether there are labels, and mirrored faces have labels that are mirrored too. What more a
+  /// chain with words must remember is asked by study_order().
   [[nodiscard]] bool fits(const Section& section, bool symmetric) const {
-    if (faces_ < 2 || named_ < 1) return false;
+    if (faces_ < 2 || named_ < 1 || section.words) return false;
     for (int f = 0; symmetric && f < named_; ++f)
       if (section.faces[f].mirror < 0 || section.faces[f].mirror >= named_) return false;
     return true;
@@ -140,8 +110,13 @@ class Places {
   }
   [[nodiscard]] CellMap divided_map() const {
     CellMap divided{map_.section, {}, field_.columns, {}};
-    for (const CellMap::Type& type : map_.types)
-      divided.types.insert(divided.types.end(), static_cast<std::size_t>(parts_), type);
+    std::vector<int> before;  // by divided type: the type
+    for (int type = 0; type < std::ssize(map_.types); ++type)
+      for (int part = 0; part < parts_; ++part) {
+        divided.types.push_back(map_.types[static_cast<std::size_t>(type)]);
+        before.push_back(type);
+      }
+    if (const auto& words = map_.section.words) divided.section.words = words->of_types(before);
     for (int row = 0; row < field_.rows; ++row)
       for (int column = 0; column < field_.columns; ++column)
         divided.type_of_cell.push_back(

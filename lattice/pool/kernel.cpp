@@ -139,6 +139,24 @@ markov::Counts counts_of_type(const StateSpace& space, std::vector<int> row,
   return counts;
 }
 
+/// Adds the counts of runs that further words count. `entries`, `types`, `row`, `column`: by count.
+void add_borrowed(const Kernel& kernel, const CellMap& map, const RunPool& pool, TrialGroup group,
+                  EntryTable& entries, std::vector<std::uint8_t>& types, std::vector<int>& row,
+                  std::vector<int>& column) {
+  const Section& section = map.section;
+  each_kernel_run(pool, group, [&](const Entry& entry, const CellPassage& run, const auto*) {
+    const auto add = [&](const Entry& from, const CellPassage& passage) {
+      entries.push_back(from);
+      types.push_back(run.type);
+      row.push_back(kernel.space.index_of(from).state);
+      column.push_back(output_of(kernel.space, passage, passage.entry));
+    };
+    kernel.borrowers.each(section, entry, run, add);
+    if (map.types[run.type].symmetric)
+      kernel.borrowers.each(section, mirrored(section, entry), mirrored(section, run), add);
+  });
+}
+
 }  // namespace
 
 void each_entry(const RunPool& pool, TrialGroup group,
@@ -178,6 +196,14 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
               : output_of(space, run, image == 0 ? run.entry : mirrored(section, run.entry)));
   });
   Kernel kernel{std::move(space), {}};
+  if (section.words) {
+    std::vector<std::vector<std::int64_t>> runs(map.types.size(),
+                                                std::vector<std::int64_t>(section.faces.size()));
+    for (std::size_t i = 0; i < types.size(); ++i)
+      ++runs[types[i]][static_cast<std::size_t>(entries.face(i))];
+    kernel.borrowers = Borrowers(section, runs, 2 * std::int64_t{per_leaf});
+    add_borrowed(kernel, map, pool, group, entries, types, row, column);
+  }
   const auto seen_in = [&](const EntryTable& there, const std::vector<int>& states) {
     if (group.of == 1) kernel.seen.emplace_back(kernel.space, there, states);
   };
@@ -200,6 +226,31 @@ Kernel kernel_of(const CellMap& map, const RunPool& pool, int per_leaf, TrialGro
                                            kernel.shared_by.emplace_back()));
   }
   return kernel;
+}
+
+CellPassage mirrored(const Section& section, CellPassage passage) {
+  if (passage.fate == Fate::left) passage.entry = mirrored(section, passage.entry);
+  return passage;
+}
+
+Borrowers::Borrowers(const Section& section, const std::vector<std::vector<std::int64_t>>& runs,
+                     std::int64_t least) {
+  const Words& words = *section.words;
+  const auto at = [](int i) { return static_cast<std::size_t>(i); };
+  for (const std::vector<std::int64_t>& of_type : runs) {
+    std::vector<std::int64_t> with_end = of_type;  // by label: runs of all words with this end
+    for (int w = words.size() - 1; w > 0; --w)     // shorter words come first
+      for (int face = 0; face < words.letters().faces; ++face)
+        with_end[at(words.label(face, words.shorter(w)))] += with_end[at(words.label(face, w))];
+    auto& takers = takers_.emplace_back(of_type.size());
+    for (int w = 0; w < words.size(); ++w)
+      for (int face = 0; face < words.letters().faces; ++face) {
+        if (of_type[at(words.label(face, w))] >= least) continue;
+        int end = w;
+        while (end != 0 && with_end[at(words.label(face, end))] < least) end = words.shorter(end);
+        takers[at(words.label(face, end))].push_back(w);
+      }
+  }
 }
 
 SeenEntries::SeenEntries(const StateSpace& space, const EntryTable& entries,
@@ -305,29 +356,22 @@ markov::Counts counts_between(const StateSpace& rows, const StateSpace& outputs,
 
 std::vector<std::vector<CostSums>> cost_sums(const Kernel& kernel, const CellMap& map,
                                              const RunPool& pool, TrialGroup group) {
-  const std::vector<std::size_t> images = images_of(map);
   const auto row_of = [&](std::size_t type, int leaf) {
     return kernel.shared_by.empty() ? leaf : kernel.shared_by[type][static_cast<std::size_t>(leaf)];
   };
-  const Section& section = kernel.space.section();
   std::vector<std::vector<CostSums>> sums;
   for (const markov::Counts& counts : kernel.counts)
     sums.emplace_back(static_cast<std::size_t>(counts.nonZeros()));
   each_kernel_run(pool, group, [&](const Entry& entry, const CellPassage& run, const auto*) {
     const markov::Counts& counts = kernel.counts[run.type];
-    for (std::size_t image = 0; image < images[run.type]; ++image) {
-      const bool mirror = image == 1;
-      const int leaf = kernel.space.index_of(mirror ? mirrored(section, entry) : entry).state;
-      const int row = row_of(run.type, leaf);
-      const int column =
-          output_of(kernel.space, run, mirror ? mirrored(section, run.entry) : run.entry);
+    kernel.each_count(map, entry, run, [&](int row, int column) {
       const auto *begin = counts.innerIndexPtr() + counts.outerIndexPtr()[row],
                  *end = counts.innerIndexPtr() + counts.outerIndexPtr()[row + 1];
       const auto* const at = std::lower_bound(begin, end, column);
       if (at == end || *at != column)
         throw std::invalid_argument("cost sums: a run is none of the kernel's");
       sums[run.type][static_cast<std::size_t>(at - counts.innerIndexPtr())].add(run.costs);
-    }
+    });
   });
   for (std::size_t type = 0; type < kernel.shared_by.size(); ++type) {
     const auto* const begin = kernel.counts[type].outerIndexPtr();

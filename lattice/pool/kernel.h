@@ -10,10 +10,14 @@
 
 #include "dynamics/cells/state_space.h"
 #include "dynamics/cells/tree_space.h"
+#include "dynamics/cells/words.h"
 #include "lattice/field/gate_chain.h"
 #include "lattice/pool/run_pool.h"
 
 namespace gatewalk::lattice {
+
+/// The mirror image of a passage.
+[[nodiscard]] CellPassage mirrored(const dynamics::Section& section, CellPassage passage);
 
 /// Calls use(entry, type of the gate) for all runs of the group's trials, except the starts' own
 /// first runs and runs that broke.
@@ -39,6 +43,40 @@ struct SeenEntries {
   [[nodiscard]] static std::size_t place_of(const dynamics::StateSpace& space, int state);
 };
 
+/// Which labels of a chain with words (dynamics/cells/words.h) also count the runs of other words.
+/// A label with fewer than 2 per_leaf runs in cells of a type takes those of all words with the
+/// longest end of its own word that has enough.
+class Borrowers {
+ public:
+  Borrowers() = default;  // without words: nobody borrows
+  /// `runs`: by type and label.
+  Borrowers(const dynamics::Section& section, const std::vector<std::vector<std::int64_t>>& runs,
+            std::int64_t least);
+
+  /// Calls use(from, passage) with the labels of each further word that counts this run.
+  template <class Use>
+  void each(const dynamics::Section& section, const dynamics::Entry& entry, const CellPassage& run,
+            Use use) const {
+    if (takers_.empty()) return;
+    const dynamics::Words& words = *section.words;
+    const int own = words.word_of(entry.face), face = words.face_of(entry.face);
+    for (int end = own; end != dynamics::Words::kNone; end = words.shorter(end))
+      for (const int word : takers_[run.type][static_cast<std::size_t>(words.label(face, end))]) {
+        if (word == own) continue;
+        dynamics::Entry from = entry;
+        from.face = words.label(face, word);
+        CellPassage passage = run;
+        if (run.fate == dynamics::Fate::left)
+          passage.entry.face = words.next_label(run.type, from, words.face_of(passage.entry.face));
+        use(from, passage);
+      }
+  }
+
+ private:
+  std::vector<std::vector<std::vector<int>>>
+      takers_;  // by type and label: words that take its runs
+};
+
 /// Transition counts between the leaves of trees; chain_of() adds the rows of starts. A leaf with
 /// too few runs in gates of a type shares the row of all leaves in the smallest part of the tree
 /// that has enough.
@@ -49,8 +87,28 @@ struct Kernel {
   /// By gate type, if there are several: for each leaf (n), the first of the leaves that share its
   /// row.
   std::vector<std::vector<int>> shared_by{};
+  Borrowers borrowers{};
 
   [[nodiscard]] std::int64_t nonzeros() const;  // over all types
+
+  /// Calls use(row, column) for each count that a run through a cell makes, with its mirror image.
+  template <class Use>
+  void each_count(const dynamics::CellMap& map, const dynamics::Entry& entry,
+                  const CellPassage& run, Use use) const {
+    const auto count = [&](const dynamics::Entry& from, const CellPassage& passage) {
+      const auto state = static_cast<std::size_t>(space.index_of(from).state);
+      use(shared_by.empty() ? static_cast<int>(state) : shared_by[run.type][state],
+          passage.fate == dynamics::Fate::trapped ? space.trapped()
+                                                  : space.index_of(passage.entry).state);
+    };
+    const auto count_all = [&](const dynamics::Entry& from, const CellPassage& passage) {
+      count(from, passage);
+      borrowers.each(map.section, from, passage, count);
+    };
+    count_all(entry, run);
+    if (map.types[run.type].symmetric)
+      count_all(mirrored(map.section, entry), mirrored(map.section, run));
+  }
 };
 
 /// Counts the runs of one group of the trials, except the starts' own first runs and runs that

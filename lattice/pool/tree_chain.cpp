@@ -149,7 +149,7 @@ const RunArray kTrialRuns{"trial_runs", "1",
                true,
                {"from_anywhere", "from_its_start_through_the_field", "from_its_start_one_gate"}},
     // Only if there are several types.
-    kRunType{"run_type", "1",
+    kRunType{kRunTypes, "1",
              "type of the gate of each run: 0 the scene's own, then those of its terrain that are "
              "not like one before, by name",
              true},

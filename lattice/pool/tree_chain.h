@@ -56,6 +56,8 @@ inline constexpr double kPartForOne = 0.5;
 /// arrays are inconsistent.
 [[nodiscard]] std::vector<markov::NamedArray> arrays_of(const RunPool& pool,
                                                         const dynamics::Section& section);
+/// The array with the type of gate of each run, by number; only if there are several types.
+inline constexpr const char* kRunTypes = "run_type";
 [[nodiscard]] bool has_runs(const MatrixFile& file);
 [[nodiscard]] RunPool pool_of(const MatrixFile& file, const Problem& problem,
                               const std::string& path);

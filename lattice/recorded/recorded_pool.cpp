@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "dynamics/cells/words.h"
 #include "lattice/pool/kernel.h"
 #include "lattice/pool/predict_pooled.h"
 
@@ -110,22 +111,25 @@ std::string far_from_faces(const RunPool& pool, const Problem& problem) {
 
 namespace {
 
-/// The use of a face: whether a body was seen in a cell that it had entered by this face, and the
-/// number of passages that lead to it.
+/// The use of a face, with any word: whether a body was seen in a cell that it had entered by this
+/// face, and the number of passages that lead to it.
 struct FaceUse {
   bool entered = false;
   std::int64_t led_to = 0;
 };
 
 std::vector<FaceUse> uses_of_faces(const RunPool& pool, const Problem& problem) {
-  std::vector<FaceUse> uses(problem.map().section.faces.size());
+  const dynamics::Section& section = problem.map().section;
+  const std::size_t faces = section.words ? static_cast<std::size_t>(section.words->letters().faces)
+                                          : section.faces.size();
+  std::vector<FaceUse> uses(faces);
   each_entry(pool, {}, [&](const dynamics::Entry& entry, int) {
-    uses[static_cast<std::size_t>(entry.face)].entered = true;
+    uses[static_cast<std::size_t>(entry.face) % faces].entered = true;
   });
   const PassageTable& passages = pool.scattered.each.passages;
   for (std::size_t i = 0; i < passages.size(); ++i)
     if (const CellPassage passage = passages[i]; passage.fate == Fate::left)
-      ++uses[static_cast<std::size_t>(passage.entry.face)].led_to;
+      ++uses[static_cast<std::size_t>(passage.entry.face) % faces].led_to;
   return uses;
 }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dynamics/cells/words.h"
 #include "lattice/scene/scene.h"
 #include "lattice/scene/scene_terrain.h"
 #include "lattice/scene/toml_settings.h"
@@ -611,7 +612,7 @@ CellFile parse_cell_file(std::string_view text, const std::string& name,
 }
 
 std::string to_toml(const CellFile& file) {
-  const dynamics::Section& section = file.map.section;
+  const dynamics::Section section = dynamics::Words::plain(file.map.section);
   const Names coordinates = all_names_of(section.coordinates);
   const bool named_types = file.types != Names{std::string(kOwnGate)};
   const auto truth = [](bool b) { return b ? "true" : "false"; };

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "lattice/pool/remembered.h"
 #include "lattice/pool/tree_chain.h"
 #include "lattice/scene/matrix.h"
 
@@ -11,7 +12,10 @@ namespace {
 
 CellFile cells_in(const std::map<std::string, std::string>& text, const std::string& path,
                   const std::vector<std::string>& overrides) {
-  return parse_cell_file(text.at(kCellText), path + " (its cells)", overrides);
+  CellFile cells = parse_cell_file(text.at(kCellText), path + " (its cells)", overrides);
+  if (const auto words = text.find(markov::kWordsText); words != text.end())
+    cells.map = with_words(cells.map, words_in(words->second, cells.map));
+  return cells;
 }
 
 }  // namespace
@@ -51,6 +55,7 @@ MatrixFile cell_matrix_file(std::vector<dynamics::Transitions> matrices, CellFil
   if (const std::string comment = comment_on_counts(cells.map, matrices.front().space);
       !comment.empty())
     text[kCommentText] = comment;
+  if (cells.map.section.words) text[markov::kWordsText] = text_of(*cells.map.section.words);
   MatrixFile file{std::move(matrices.front()), std::move(text), arrays_of(pool, cells.map.section)};
   for (std::size_t type = 1; type < matrices.size(); ++type)
     file.types.emplace(cells.types[type], std::move(matrices[type]));

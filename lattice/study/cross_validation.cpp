@@ -106,19 +106,11 @@ BodyCounts body_counts(const Problem& problem, const RunPool& half, const Kernel
     Entry entry = half.scattered.starts[i];
     for (const CellPassage passage : trials.of_trial(i)) {
       if (passage.fate == Fate::broken) break;
-      for (const bool mirror : {false, true}) {
-        if (mirror && !map.types[passage.type].symmetric) continue;
-        const auto state_of = [&](const Entry& e) {
-          return kernel.space.index_of(mirror ? mirrored(map.section, e) : e).state;
-        };
-        int row = state_of(entry);
-        if (!kernel.shared_by.empty())
-          row = kernel.shared_by[passage.type][static_cast<std::size_t>(row)];
+      kernel.each_count(map, entry, passage, [&](int row, int column) {
         counts.of_body[static_cast<std::size_t>(trials.bodies[i])].push_back(
-            {passage.type, row,
-             passage.fate == Fate::trapped ? kernel.space.trapped() : state_of(passage.entry)});
+            {passage.type, row, column});
         counts.runs[passage.type][row] += 1.0;
-      }
+      });
       entry = passage.entry;
     }
   }

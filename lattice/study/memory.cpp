@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dynamics/base/share.h"
+#include "dynamics/cells/words.h"
 #include "lattice/field/running_trial.h"
 #include "lattice/pool/kernel.h"
 #include "lattice/statistics/multiple_tests.h"
@@ -153,7 +154,10 @@ Independence body_memory(const Problem& problem, const RunPool& pool, int per_le
   constexpr std::uint64_t kBodySigns = 0x626f6479'00000001;  // "body"
   const StateSpace space = kernel_of(problem.map(), pool, per_leaf).space;
   const FieldTrials& trials = pool.scattered.each;
-  const int faces = static_cast<int>(problem.map().section.faces.size());
+  const dynamics::Section& section = problem.map().section;
+  const auto& words = section.words;
+  const int faces = words ? words->letters().faces : static_cast<int>(section.faces.size());
+  const auto face_of = [&](const dynamics::Entry& entry) { return entry.face % faces; };
   std::vector<LabelledRun> runs;  // without those in the trials' first cells
   for (std::size_t i = 0; i < trials.passed.size(); ++i) {
     int before = -1;
@@ -162,9 +166,9 @@ Independence body_memory(const Problem& problem, const RunPool& pool, int per_le
       if (passage.fate == dynamics::Fate::broken) break;
       if (before >= 0)
         runs.push_back({passage.type * space.size() + space.index_of(entry).state, before,
-                        passage.fate == dynamics::Fate::trapped ? faces : passage.entry.face,
+                        passage.fate == dynamics::Fate::trapped ? faces : face_of(passage.entry),
                         trials.bodies[i]});
-      before = entry.face;
+      before = face_of(entry);
       entry = passage.entry;
     }
   }

@@ -32,7 +32,7 @@ namespace {
 using namespace netcdf;
 
 constexpr const char* kFormat = "gatewalk transition counts";
-constexpr int kFormatVersion = 2, kFirstVersion = 1;
+constexpr int kVersionWithoutWords = 2, kFormatVersion = 3, kFirstVersion = 1;
 const std::set<std::string> kOwnVariables = {
     "count_row",       "count_column", "count",      "trials",      "clamped",
     "exit_next_input", "exit_di_x",    "exit_di_y",  "input_state", "nonzero",
@@ -275,8 +275,8 @@ std::vector<char> encode(const CountsFile& file) {
   nc.create();
   put_text(nc, NC_GLOBAL, "format", kFormat);
   put_conventions(nc);
-  check(nc_put_att_int(nc, NC_GLOBAL, "format_version", NC_INT, 1, &kFormatVersion),
-        "format_version");
+  const int version = file.text.contains(kWordsText) ? kFormatVersion : kVersionWithoutWords;
+  check(nc_put_att_int(nc, NC_GLOBAL, "format_version", NC_INT, 1, &version), "format_version");
   put_text(nc, NC_GLOBAL, "checksum", std::string(kChecksumMark) + std::string(kNoChecksum));
   for (const auto& [key, value] : file.text) put_text(nc, NC_GLOBAL, key, value);
 

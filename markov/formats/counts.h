@@ -7,7 +7,8 @@
 /// state_name (output_state; characters); each NamedArray under its name. Cells of another type
 /// have a group type_NAME with its own nonzero, count_row, count_column, count, trials and clamped.
 /// Global attributes: format, format_version, checksum and `text`. Files of version 1 can be read
-/// too; they have no state_name, and only arrays of numbers with a dimension each.
+/// too; they have no state_name, and only arrays of numbers with a dimension each. Files of chains
+/// with words have version 3, so that older programs refuse them.
 ///
 /// checksum = "crc64-xz:" + 16 hexadecimal digits: CRC-64/XZ of the whole file, in which these
 /// digits are read as zeros. The mark "crc64-xz:" may occur nowhere else in the file. The same
@@ -23,6 +24,9 @@
 #include "markov/chain.h"
 
 namespace gatewalk::markov {
+
+/// The text that says which words a chain remembers (dynamics/cells/words.h).
+inline constexpr const char* kWordsText = "words";
 
 /// The largest size of a text. An HDF5 attribute must be smaller than 64 KB.
 inline constexpr std::size_t kMostTextBytes = 60'000;

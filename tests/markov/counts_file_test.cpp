@@ -610,8 +610,8 @@ TEST_F(ChainIo, RefusesEveryMalformedDraft) {
     d.text.erase("format");
     d.numbers["format"] = 1;
   });
-  refused("format_version is 3, this program reads 1 to 2",
-          [](Draft& d) { d.numbers["format_version"] = 3; });
+  refused("format_version is 4, this program reads 1 to 3",
+          [](Draft& d) { d.numbers["format_version"] = 4; });
   refused("format_version", [](Draft& d) { d.numbers.clear(); });
   refused("format_version is not a number", [](Draft& d) {
     d.numbers.clear();

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+/// What must a chain remember? The least number of letters (turns, faces or states of the cells
+/// before; dynamics/cells/words.h) with which a chain predicts bodies as well as with more.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "dynamics/base/work.h"
+#include "dynamics/cells/tree_space.h"
+#include "dynamics/cells/words.h"
+#include "lattice/field/problem.h"
+#include "lattice/pool/run_pool.h"
+#include "lattice/study/cross_validation.h"
+
+namespace gatewalk::lattice {
+
+struct OrderOptions {
+  dynamics::LettersOf of = dynamics::LettersOf::turns;
+  int least = 0, most = 4;  // orders to compare
+  std::uint64_t seed = 1;   // of the parts of the bodies, and of the draws
+  int per_leaf = dynamics::kEntriesPerLeaf;
+  bool with_halves = true;  // whether to predict one half of the bodies from the other
+};
+
+/// A chain that remembers this number of letters.
+struct OrderAnswer {
+  int order = 0;
+  std::int64_t words = 0;     // of the chain of all bodies
+  std::int64_t left_out = 0;  // words that such a chain has no room for (Words::kMostLabels)
+  /// The geometric mean of the probabilities that the chain of other bodies gave to the next face
+  /// (or to being trapped) of each passage: that of order 0, times what each further letter adds.
+  double likelihood = 0.0;
+  /// By how much that of the best order is larger, as a share of it, with simultaneous 95 %
+  /// intervals.
+  double gain_to_best = 0.0;
+  std::array<double, 2> interval{};
+  /// One half of the bodies predicted by the chain of the other; empty if not asked for.
+  CrossValidation halves{};
+
+  /// Whether the best order is not known to be better.
+  [[nodiscard]] bool is_enough() const { return interval[0] <= 0.0; }
+};
+
+struct OrderStudy {
+  dynamics::LettersOf of = dynamics::LettersOf::turns;
+  std::vector<OrderAnswer> orders;
+  std::size_t best = 0;                   // index of the order with the largest likelihood
+  std::size_t chosen = 0;                 // index of the least order that is enough
+  std::int64_t bodies = 0, passages = 0;  // passages with a known outcome
+  /// The halves are compared after this number of cells: that of the field, or, where the field has
+  /// no limit, the number that nine of ten trials pass.
+  int max_gates = 0;
+
+  [[nodiscard]] const OrderAnswer& answer() const { return orders[chosen]; }
+  /// Whether the largest order that was tried may be too small.
+  [[nodiscard]] bool may_need_more() const { return chosen + 1 == orders.size() && chosen > 0; }
+};
+
+/// Compares the orders by ten-fold cross-validation over bodies. The probability of an outcome in
+/// the leaf of an order is smoothed with that of the order before (a hierarchical Dirichlet model;
+/// MacKay and Peto, Nat. Lang. Eng. 1, 1995); the weight of each order is the one that predicts the
+/// passages of the chain's own bodies best from their others (leaving one out). What a letter adds
+/// is the gain over letters that are shuffled among passages alike but for it: even without memory,
+/// a second tree of the same entries predicts better than one. The intervals
+/// of the differences to the best order are simultaneous, by draws of bodies with replacement and
+/// the spread between seven shuffles.
+/// Chosen is the least order whose interval contains 0. Throws std::invalid_argument for fewer
+/// than 2 kLeastBodies bodies, and as cross_validate.
+[[nodiscard]] OrderStudy study_order(const Problem& problem, const RunPool& pool,
+                                     const OrderOptions& options, const dynamics::Work& work = {});
+
+/// Trials of a problem that can be simulated, each by a body of its own.
+[[nodiscard]] RunPool simulated_bodies(const Problem& problem, std::int64_t trials,
+                                       std::uint64_t seed, const dynamics::Work& work = {});
+
+}  // namespace gatewalk::lattice
