@@ -247,6 +247,21 @@ TEST(GroupDifference, OfChanceHasUniformP) {
   EXPECT_NEAR(half, 0.5 * kSeeds, 35);
 }
 
+TEST(GroupDifference, CountsGatesThatOnlyOneChainReaches) {
+  const auto map = [](double there) {
+    CellProbabilities p(1, 2);
+    p << 1.0 - there, there;
+    return p;
+  };
+  // The first chain reaches the second gate, but for some of its groups; the second never does.
+  GroupedMaps first{map(0.1), {}, 0.0}, second{map(0.0), {}, 0.0};
+  for (int g = 0; g < kTrialGroups; ++g) {
+    first.groups.push_back(map(g % 2 == 0 ? 0.2 : 0.0));
+    second.groups.push_back(map(0.0));
+  }
+  EXPECT_DOUBLE_EQ(group_difference(first, second, 3, 1, 0).total_variation, 0.1);
+}
+
 TEST(GroupDifference, OfTwoPredictions) {
   const GroupedMaps first = around({}, 0.0, 1);
   EXPECT_EQ(group_difference(first, first, 3, 1, 0).p, 1.0);

@@ -99,6 +99,10 @@ TEST(HausmanCheck, TrialsThatAreTheAnswerAreNotCheckedByThemselves) {
   const auto p = predict_pooled(problem_of(scene), pool, {entry_of(scene.start)},
                                 {.accuracy = 0.1, .seed = 1});
   EXPECT_TRUE(p.starts[0].from_trials);
+  const auto& [low, high] = p.starts[0].gates_95;
+  const CellProbabilities& share = p.starts[0].final.final_cells;
+  EXPECT_TRUE((low <= share).all() && (share <= high).all());
+  EXPECT_GT(high.minCoeff(), 0.0);  // also of gates in which no trial ended
   EXPECT_FALSE(p.hausman_check.has_value());
 }
 

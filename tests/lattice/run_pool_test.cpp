@@ -776,6 +776,8 @@ TEST(TreeChain, LimitOfStatesSaysWhatItCosts) {
       {.accuracy = {.accuracy = 0.05}, .starts = {entry_of(kStart)}, .most_states = 60});
   EXPECT_GT(all.kernel.space.size(), 200);
   EXPECT_LE(few.kernel.space.size(), 60);
+  EXPECT_GT(few.kernel.space.size(),
+            30);  // no fewer than the limit asks for, but for the last step
   EXPECT_EQ(all.states_bias, 0.0);
   EXPECT_GT(few.states_bias, 0.0);
   EXPECT_THROW(
@@ -812,6 +814,8 @@ TEST(TreeChain, DamagedRunsAreRefused) {
     for (const double x : {0.5, -1.0, 1e6})
       refused(name, [x](std::vector<double>& values) { values[0] = x; });
   refused("run_boundary", [](std::vector<double>& values) { values[0] = 7.0; });
+  EXPECT_EQ(refused("run_ending", [](std::vector<double>& values) { values[0] = 0.5; }),
+            "x.nc: its gate runs do not add up: run 1");  // counted from 1
   // More runs than the file has: detected before any run is read.
   std::size_t trials = 0;
   const std::string said = refused("trial_runs", [&](std::vector<double>& values) {
@@ -819,6 +823,14 @@ TEST(TreeChain, DamagedRunsAreRefused) {
     trials = values.size();
   });
   EXPECT_EQ(said, "x.nc: its gate runs do not add up: trial " + std::to_string(trials));
+}
+
+TEST(RunPool, RowsOfStarts) {
+  RunPool pool;
+  pool.starts.emplace_back().start = {0, {0.1}};
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(pool.first_row(std::nullopt)));
+  EXPECT_EQ(std::get<const OwnRuns*>(pool.first_row(Entry{0, {0.1}})), &pool.starts[0]);
+  EXPECT_EQ(std::get<Entry>(pool.first_row(Entry{0, {0.2}})), (Entry{0, {0.2}}));
 }
 
 // Runs of a range do not replace those of other starts: bodies from this start enter as no others
