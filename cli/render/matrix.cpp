@@ -46,9 +46,12 @@ std::int64_t imported_runs_of(const lattice::MatrixFile& file) {
 /// images are counted too, and first runs of trials are rows of their own.
 std::int64_t gate_runs_of(const lattice::MatrixFile& file, const std::string& path) {
   const auto states = recorded_states(file, path);
-  return file.transitions.space.has_trees() && states && states->trees ? states->trees->gate_runs
-         : counts_images(file)                                         ? imported_runs_of(file)
-                               : file.transitions.totals().runs;
+  if (file.transitions.space.has_trees() && states && states->trees)
+    return states->trees->gate_runs;
+  if (counts_images(file)) return imported_runs_of(file);
+  std::int64_t runs = file.transitions.totals().runs;
+  for (const auto& [name, of_type] : file.types) runs += of_type.totals().runs;
+  return runs;
 }
 
 /// The shares of a row's trials that enter the next gate through each boundary, then trapped.
@@ -162,14 +165,15 @@ std::vector<TypeOfFile> types_of(const lattice::MatrixFile& file) {
 std::string types_table(const lattice::MatrixFile& file, const std::string& counted) {
   const std::vector<TypeOfFile> types = types_of(file);
   if (types.empty()) return "";
+  const bool has_runs = types.front().gate_runs.has_value();  // else counts are gate runs
   TextTable table({{"Type of gate", -kFit},
-                   {counted, kFit, 0, "", "  "},
-                   {"counts of the chain", kFit, 0, "", "  "},
+                   {has_runs ? counted : "", kFit, 0, "", "  "},
+                   {has_runs ? "counts of the chain" : "counts", kFit, 0, "", "  "},
                    {"entries above 0", kFit, 0, "", "  "},
                    {"rows without runs", kFit, 0, "", "  "}});
   for (const TypeOfFile& type : types) {
     const auto total = type.matrix.totals();
-    table.row({type.name, type.gate_runs ? std::to_string(*type.gate_runs) : "-", total.runs,
+    table.row({type.name, type.gate_runs ? std::to_string(*type.gate_runs) : "", total.runs,
                total.nonzeros, total.empty_rows});
   }
   return table.text();

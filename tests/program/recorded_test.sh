@@ -161,7 +161,7 @@ awk 'BEGIN {
     else print b ",1,hard,S," s ",trapped,,1"
   }
 }' >types.csv
-expect 0 'type hard' "$gatewalk" build types.csv --cell types.toml -o types.nc
+expect 0 '^hard  ' "$gatewalk" build types.csv --cell types.toml -o types.nc
 "$gatewalk" predict types.nc --json types.json --quiet >/dev/null
 holds '.endings.crossed > 0.999' types.json
 expect 0 '^One half of the bodies' "$gatewalk" validate types.nc --null-draws 99

@@ -13,7 +13,7 @@ holds '(.map | length == 9 and all(test("^[.su]{9}$"))) and (.map | join("") | t
 jq -s '.[0].map == .[1].map' mixed.json again.json | grep -q true || fail "scene --new: another map"
 "$gatewalk" build $mixed --bins paper --trials 3 -o mixed.nc --json mixed.json --quiet
 holds '(.types | keys) == ["s", "u"] and .types.u.counts > 200' mixed.json
-expect 0 '^  type u  ' "$gatewalk" show mixed.nc
+expect 0 '^u  ' "$gatewalk" show mixed.nc
 expect 0 '^State 12: the states that follow' "$gatewalk" show mixed.nc --type u --row 12
 expect 2 'has no such type' "$gatewalk" show mixed.nc --type x
 expect 0 '^trapped' "$gatewalk" walk mixed.nc --walks 1000
