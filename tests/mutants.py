@@ -41,10 +41,10 @@ KERNELS = {
     "markov/predict/by_steps.cpp": {"markov": "Exact.*:Predictor.*:Adjoint.*:Outcomes.*"},
     "lattice/field/rqmc_trials.cpp": {"lattice": "RqmcTrials.*:RunPool.*", "cli": "ProgramCell.*"},
     "lattice/pool/reactive_visits.cpp": {"lattice": "Analysis.*:Costs.*:Terrain.*"},
-    "lattice/pool/pooled_prediction.cpp": {"lattice": TREES},
+    "lattice/pool/pooled_prediction.cpp": {"lattice": "HausmanCheck.*:" + TREES},
     "lattice/pool/run_pool.cpp": {"lattice": TREES},
     "lattice/pool/tree_chain.cpp": {"lattice": TREES},
-    "lattice/statistics/group_spread.cpp": {"lattice": "GroupSpread.*:" + TREES},
+    "lattice/statistics/group_spread.cpp": {"lattice": "GroupSpread.*:GroupDifference.*:" + TREES},
     "lattice/study/rare.cpp": {"lattice": "Splitting.*"},
     "cli/kept/kept_run.cpp": {"parts": "", "resume": ""},
 }
