@@ -61,6 +61,15 @@ int face_after(int face, int turn) {
 /// that enters at this place of the face.
 using Law = std::function<std::array<double, 4>(const std::vector<int>& turns, double place)>;
 
+int drawn_turn(const std::array<double, 4>& chances, Random& random) {
+  const double u = random.uniform();
+  int turn = 0;
+  for (double sum = chances[0]; u > sum && turn < kBack;
+       sum += chances[static_cast<std::size_t>(turn)])
+    ++turn;
+  return turn;
+}
+
 /// Bodies that turn by the law, `passages` each, and enter anywhere within `spread` of a face.
 RunPool agents(const CellFile& cells, const Law& law, int bodies, int passages, std::uint64_t seed,
                double spread = 1.0) {
@@ -74,12 +83,7 @@ RunPool agents(const CellFile& cells, const Law& law, int bodies, int passages, 
     std::vector<int> turns;
     double place = 0.0;
     for (int k = 0; k < passages; ++k) {
-      const auto chances = law(turns, place);
-      const double u = random.uniform();
-      int turn = 0;
-      for (double sum = chances[0]; u > sum && turn < kBack;
-           sum += chances[static_cast<std::size_t>(turn)])
-        ++turn;
+      const int turn = drawn_turn(law(turns, place), random);
       face = face_after(face, turn);
       turns.push_back(turn);
       place = spread * (random.uniform() - 0.5);
@@ -209,12 +213,7 @@ CellProbabilities truth(const Law& law, const FieldParams& field, int walks) {
     int face = 0, column = field.start_column(), row = 0, at_column = column, at_row = row;
     std::vector<int> turns;
     for (int k = 0; k < field.max_gates; ++k) {
-      const auto chances = law(turns, 0.0);
-      const double u = random.uniform();
-      int turn = 0;
-      for (double sum = chances[0]; u > sum && turn < kBack;
-           sum += chances[static_cast<std::size_t>(turn)])
-        ++turn;
+      const int turn = drawn_turn(law(turns, 0.0), random);
       face = face_after(face, turn);
       turns.push_back(turn);
       at_column = column, at_row = row;
