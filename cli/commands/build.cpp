@@ -74,7 +74,8 @@ std::optional<dynamics::LettersOf> remembered(const BuildCommand& options) {
 using Settled = std::optional<lattice::Settled>;
 
 constexpr const char* kOnlyRecorded =
-    "for recorded runs only: gatewalk passages SCENE records simulated ones";
+    "for recorded runs only; simulated ones: gatewalk lattice SCENE --passages runs.csv "
+    "--cell-file cell.toml";
 
 /// Commands to propose next. Only the chain of a scene can be validated against its dynamics.
 std::vector<std::string> next_of(const BuildCommand& options, const std::string& matrix,

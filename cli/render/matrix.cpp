@@ -156,7 +156,11 @@ std::vector<TypeOfFile> types_of(const lattice::MatrixFile& file) {
   for (const markov::NamedArray& array : file.arrays)
     if (array.name == lattice::kRunTypes) {
       for (TypeOfFile& type : types) type.gate_runs = 0;
-      for (const double type : array.values) ++*types.at(static_cast<std::size_t>(type)).gate_runs;
+      for (const double type : array.values) {
+        if (!(type >= 0.0 && type < static_cast<double>(types.size())))
+          throw markov::BadFile("a gate run has a type of gate that the file does not have");
+        ++*types[static_cast<std::size_t>(type)].gate_runs;
+      }
     }
   return types;
 }

@@ -111,7 +111,7 @@ std::vector<int> open_sides(const CellMap& map, const RunPool& pool) {
   return counts;
 }
 
-/// The letters of cells whose types have so many open sides.
+/// The letters of the passages of these cells; `open`: the number of open sides, by type.
 Letters letters_with(LettersOf of, const CellMap& map, const std::vector<int>& open) {
   constexpr int kFork = 3;
   const Section& section = map.section;

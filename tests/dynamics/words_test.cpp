@@ -81,6 +81,21 @@ TEST(Words, LabelsAreFacesOfASection) {
   EXPECT_EQ(labelled.faces[static_cast<std::size_t>(words->next_label(0, {3, {}}, 1))].name, "W.a");
 }
 
+TEST(Words, FollowTheirTypesToOtherNumbers) {
+  // In type 0 as above; in type 1 nothing counts.
+  Letters letters = three_letters(false);
+  letters.table.insert(letters.table.end(), 4, kNoLetter);
+  const dynamics::Words words(letters, 1, {{0}, {1}, {2}});
+  const auto renumbered = words.of_types({1, 0, 0});
+  for (int in : {0, 1})
+    for (int out : {0, 1}) {
+      EXPECT_EQ(renumbered->next_label(0, {in, {}}, out), words.next_label(1, {in, {}}, out));
+      for (const int type : {1, 2})
+        EXPECT_EQ(renumbered->next_label(type, {in, {}}, out), words.next_label(0, {in, {}}, out));
+    }
+  EXPECT_NE(words.next_label(0, {0, {}}, 1), words.next_label(1, {0, {}}, 1));
+}
+
 TEST(Words, RefuseWhatCannotBe) {
   EXPECT_THROW(dynamics::Words(three_letters(false), 2, {{0, 1, 2}}), std::invalid_argument);
   EXPECT_THROW(dynamics::Words(three_letters(false), 2, {{3}}), std::invalid_argument);

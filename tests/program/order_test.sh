@@ -84,7 +84,15 @@ expect 0 '^The chain must remember 1 turn' "$gatewalk" validate chain.nc --order
 expect 0 . "$gatewalk" predict chain.nc --start S:0 --json from_s.json
 holds '(.starts[0].endings | add) > 0.999' from_s.json
 
-# Simulated bodies.
+# What the chain remembers is no memory that it lacks.
+expect 0 'Memory' "$gatewalk" validate chain.nc --json chain_halves.json
+holds '.memory.p == null or .memory.p > 0.01' chain_halves.json
+expect 0 '^Memory: the state alone does not say all' "$gatewalk" validate plain.nc
+
+# Simulated bodies, recorded or not.
+"$gatewalk" lattice "$scenes/walker.toml" --trials 60 --passages walker.csv --cell-file walker_cell.toml --quiet >/dev/null ||
+  fail "lattice records no passages"
+expect 0 'transition matrix' "$gatewalk" build walker.csv --cell walker_cell.toml --order 1 -o walker.nc
 expect 0 '^The chain need not remember turns' "$gatewalk" validate "$scenes/field.toml" --order 0:1
 
 expect 2 'must be two whole numbers from 0 to 8' "$gatewalk" validate runs.csv --cell cell.toml --order 4
