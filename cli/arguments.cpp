@@ -28,7 +28,8 @@
 namespace gatewalk::cli {
 TextsOption add_starts(Options& options, const std::string& by_default) {
   const std::string help = fmt::format(
-      "a start at x = D m, y = 0 with the velocity (VX, VY) in m/s; may be repeated (default: {})",
+      "a start at x = D m, y = 0 with the velocity (VX, VY) in m/s, or by another face, as in "
+      "LD:D,VX,VY; may be repeated (default: {})",
       by_default);
   return options.add_texts("start", "D,VX,VY", help);
 }
@@ -37,7 +38,7 @@ std::vector<dynamics::Entry> given_starts(const TextsOption& given) {
   std::vector<dynamics::Entry> starts;
   for (const std::string& text : given.values())
     starts.push_back(
-        *lattice::start_in(text, lattice::scene_section(), lattice::StartsBy::first_face));
+        *lattice::start_in(text, lattice::scene_section(), lattice::StartsBy::any_face));
   return starts;
 }
 

@@ -15,7 +15,7 @@ StartedChain chain_from_start(const Options& options, lattice::Source& s) {
                 kernel, s.problem.map(), s.problem.field,
                 lattice::first_rows(kernel, s.problem.map(), *s.pool,
                                     {s.pool->first_row(s.starts.front())}, s.problem.start_type())),
-            {s.problem.field.start_column(), 0, row},
+            {s.problem.field.start_column(), s.problem.field.start_row, row},
             std::nullopt,
             true,
             std::move(kernel.space)};

@@ -102,7 +102,7 @@ lattice::Scene scene_at(const NumberRanges& ranges, const lattice::Source& s,
     scene.gate.run.event_tolerance = chosen.event_tolerance;
   }
   if (s.starts_given) {
-    scene.start = lattice::body_at(*s.starts.front());
+    scene.start = dynamics::entry_state(scene.gate, *s.starts.front());
   }
   return scene;
 }

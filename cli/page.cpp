@@ -53,7 +53,7 @@ PageStates states_of_bins(const Options& options, const lattice::Source& s) {
       const std::int64_t runs = own.trials[static_cast<std::size_t>(state)];
       if (runs == 0) continue;
       out.states.of_leaf[static_cast<std::size_t>(state)] = static_cast<int>(starts.size());
-      starts.push_back({{field.start_column(), 0, state}});
+      starts.push_back({{field.start_column(), field.start_row, state}});
       out.states.states.push_back({.first_leaf = state, .runs = runs, .gates = {}, .gates_95 = {}});
     }
   auto prediction =

@@ -69,6 +69,9 @@ int run_chart_chain(const Arguments& arguments) {
   if (!options.parse(arguments)) return kFine;
   lattice::Scene scene = options.read_scene();
   const std::vector<dynamics::Entry> starts = starts_of(given, scene);
+  for (const dynamics::Entry& start : starts)
+    if (start.face != dynamics::Boundary::enter)
+      throw UsageError("chart chain: starts are entries from below, d_m of its table is their x");
   lattice::require_inside(starts, scene);
   const auto bins = lattice::usual_bins(scene).kind;
   if (bins != lattice::BinsChoice::Kind::automatic)

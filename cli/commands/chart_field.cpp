@@ -38,10 +38,10 @@ int run_chart_field(const Arguments& arguments) {
         "name a method, and give moreau's step as run.step_s");
   // The scene's own start may lie inside the gate.
   std::vector<dynamics::BodyState> starts{scene.start};
-  if (scene.start.y == 0.0 || given) {
+  if (dynamics::on_boundary(scene.gate, scene.start) || given) {
     const std::vector<dynamics::Entry> entries = starts_of(given, scene);
     lattice::require_inside(entries, scene);
-    starts = lattice::bodies_at(entries);
+    starts = lattice::bodies_at(scene, entries);
   }
   const auto variants = lattice::fidelity_variants(scene);
   const lattice::FidelityOptions how{starts, options.trials.value(), options.seed()};

@@ -90,7 +90,7 @@ int run_design(const Arguments& arguments) {
   const dynamics::Stopwatch watch;
   lattice::DesignedField design = lattice::design_field(problem, how, options.work());
   lattice::Scene changed = with_gates(*s.scene, design.type_of_cell);
-  if (s.starts_given) changed.start = lattice::body_at(problem.start);
+  if (s.starts_given) changed.start = dynamics::entry_state(changed.gate, problem.start);
   const DesignedScene designed{
       *s.scene, std::move(changed), problem.map().section, problem.start,        how,
       settled,  std::move(design),  watch.seconds(),       options.provenance(s)};

@@ -49,7 +49,7 @@ FieldRun run_gates(const LatticeCommand& options) {
   scene.settled = settle_method(options, scene.scene, lattice::RunsFrom::everywhere);
   const lattice::FieldParams& field = scene.scene.field;
   FieldRun run{ShownField(scene.scene),
-               dynamics::entry_of(scene.scene.start),
+               dynamics::entry_of(scene.scene.gate, scene.scene.start),
                options.provenance(scene.scene),
                lattice::FieldCosts(lattice::bin_of_durations(scene.scene.gate)),
                scene,
@@ -151,7 +151,7 @@ int run_lattice(const Arguments& arguments) {
                              ends_of(run.tally, run.shown.field), lattice::exits_of(run.tally),
                              run.start);
   if (options.netcdf)
-    options.write(options.netcdf.value(), netcdf_of({picture}, run.shown.map.section, run.made_by));
+    options.write(options.netcdf.value(), netcdf_of({picture}, run.shown, run.made_by));
   options.give_out(
       run, {answer_text(run) + beware_of(run.tally.health), details_text(run), next_of(options)});
   options.remark(fixed(seconds, 2) + " s");

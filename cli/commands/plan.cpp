@@ -110,11 +110,19 @@ std::vector<std::string> usual_ranges(const lattice::Scene& scene) {
           "start.vy_m_per_s=0:" + lattice::toml_float(speed)};
 }
 
-/// The ranges of a start, in the coordinates of an entry. Throws UsageError for other keys.
-std::vector<lattice::CoordinateRange> ranges_in(const lattice::RangedScene& ranged) {
+/// The ranges of a start by `face`, in the coordinates of an entry. Throws UsageError for other
+/// keys, and for starts by another face.
+std::vector<lattice::CoordinateRange> ranges_in(const lattice::RangedScene& ranged, int face) {
   const std::vector<double> none(ranged.ranges().size(), 0.0), all(ranged.ranges().size(), 1.0);
-  const dynamics::Entry low = dynamics::entry_of(ranged.at(none).start),
-                        high = dynamics::entry_of(ranged.at(all).start);
+  const auto entry_at = [&](const std::vector<double>& point) {
+    const lattice::Scene scene = ranged.at(point);
+    return dynamics::entry_of(scene.gate, scene.start);
+  };
+  const dynamics::Entry low = entry_at(none), high = entry_at(all);
+  if (low.face != face || high.face != face)
+    throw UsageError(
+        "--over: bodies start by a side of the gate: give ranges of start.vx_m_per_s and "
+        "start.vy_m_per_s alone, and the side in the scene");
   std::vector<lattice::CoordinateRange> ranges;
   for (std::size_t c = 0; c < kStartKeys.size(); ++c)
     if (low.at[c] < high.at[c]) ranges.push_back({c, low.at[c], high.at[c]});
@@ -162,9 +170,12 @@ std::vector<std::string> next_of(const Options& options, const lattice::Source& 
                                  const FoundStart& found) {
   NextCommands next(options);
   const lattice::TrialStart& best = found.found.best;
+  const dynamics::Face& by =
+      s.problem.map().section.faces[static_cast<std::size_t>(best.entry.face)];
+  const std::string face = best.entry.face == 0 ? "" : by.name + ":";
   if (s.scene && !s.starts_given && best.column == s.problem.field.start_column())
     next.add("predict",
-             fmt::format("--start={},{},{}", digits(best.entry.at[0], 4),
+             fmt::format("--start={}{},{},{}", face, digits(best.entry.at[0], 4),
                          digits(best.entry.at[1], 4), digits(best.entry.at[2], 4)),
              "predicts all endings from there");
   return next.again("figure", "starts.svg", "draws the chance to cross by start").lines();
@@ -201,7 +212,8 @@ int plan_start(const PlanCommand& options, lattice::Source s) {
   const auto given = options.over.values();
   if (s.scene)
     how.ranges = ranges_in({options.file(s.path).toml(), options.overrides(),
-                            given.empty() ? usual_ranges(*s.scene) : given, "--over"});
+                            given.empty() ? usual_ranges(*s.scene) : given, "--over"},
+                           s.problem.start.face);
   else
     how.ranges = ranges_in(given, options, s);
   if (s.starts_given && !given.empty())

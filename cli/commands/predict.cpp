@@ -141,19 +141,18 @@ template <class Answer>
 void show(const PredictCommand& options, const lattice::Source& s, const PredictResult& result,
           const std::vector<Answer>& answers, lattice::EndingShares Answer::*shares,
           std::array<markov::CellProbabilities, 2> Answer::*gates_95 = nullptr) {
-  const auto& [columns, rows, max_gates, fidelity] = result.shown.field;
+  const lattice::FieldParams& field = result.shown.field;
   std::vector<FieldPicture> pictures;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     pictures.emplace_back(
         fmt::format(
-            "prediction, {} x {} {}{}", columns, rows, s.scene ? "gates" : "cells",
+            "prediction, {} x {} {}{}", field.columns, field.rows, s.scene ? "gates" : "cells",
             s.starts_given ? ", " + lattice::title_of(s.problem.map().section, s.starts[i]) : ""),
         ends_of(answers[i].final, answers[i].*shares), answers[i].exits, s.starts[i]);
     if (gates_95 != nullptr) pictures.back().gates_95 = answers[i].*gates_95;
   }
   if (options.netcdf)
-    options.write(options.netcdf.value(),
-                  netcdf_of(pictures, s.problem.map().section, result.made_by));
+    options.write(options.netcdf.value(), netcdf_of(pictures, result.shown, result.made_by));
   options.draw([&] { return figure_of(pictures, result.shown); });
 }
 

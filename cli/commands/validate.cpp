@@ -209,7 +209,7 @@ ChainUnderTest build_chain(const ValidateCommand& options) {
     return tested;
   }
   const lattice::States states =
-      states_of(options, *tested.scene, choice, lattice::bodies_at(tested.starts));
+      states_of(options, *tested.scene, choice, lattice::bodies_at(*tested.scene, tested.starts));
   for (const std::string& text : complaints(states)) options.warn(text);
   matrix.matrices =
       lattice::build_matrices(*tested.scene, states, {0, trials}, options.seed(), options.work());

@@ -58,8 +58,7 @@ int run_walk(const Arguments& arguments) {
                           .made_by = options.provenance(s)};
   const FieldPicture picture(fmt::format("chain, {} walks", walks), ends_of(tally, shown.field), {},
                              s.starts.front());
-  if (netcdf)
-    options.write(netcdf.value(), netcdf_of({picture}, s.problem.map().section, result.made_by));
+  if (netcdf) options.write(netcdf.value(), netcdf_of({picture}, result.shown, result.made_by));
   options.give_out(
       result, {answer_text(result), details_text(result),
                NextCommands(options).add("predict", "", "exact shares, with intervals").lines()});

@@ -25,7 +25,7 @@ constexpr Array kArrays[] = {
     {"t", "s", "time since the run began, at the end of each step", [](Step s) { return s.time; }},
     {"gx", "1", "column i_x of the gate that the body is in; 0: the start's column",
      [](Step s) { return static_cast<double>(s.i_x); }},
-    {"gy", "1", "row i_y of the gate that the body is in; 0: the start's row",
+    {"gy", "1", "row i_y of the gate that the body is in; 0: the near row",
      [](Step s) { return static_cast<double>(s.i_y); }},
     {"x", "m", "sideways place of the body in its gate; 0: the middle line",
      [](Step s) { return s.body.x; }},
@@ -110,10 +110,11 @@ void describe(Fields& out, const Film& film, More more) {
           type.number({"propulsion_N", "N", "propulsion in gates of this type"},
                       of.forces.propulsion);
         });
-    f.counts({"type_of_gate", "1",
-              "index in types of each gate, row by row from the start; under a policy: its first "
-              "action"},
-             {gates.type_of_cell().begin(), gates.type_of_cell().end()});
+    f.counts(
+        {"type_of_gate", "1",
+         "index in types of each gate, row by row from the near one; under a policy: its first "
+         "action"},
+        {gates.type_of_cell().begin(), gates.type_of_cell().end()});
   });
   out.optional(!film.actions.empty(), [&](Fields& f) {
     f.texts({"actions", "under a policy: names of the actions"}, film.actions);

@@ -338,7 +338,7 @@ void describe_paths(Fields& out, const AnalysedField& f) {
               gate.count({"i_x", "1",
                           "column of the gate: 0 is the start's, columns to its left are negative"},
                          cell % field.columns - field.start_column());
-              gate.count({"i_y", "1", "row of the gate: 0 is the start's"}, cell / field.columns);
+              gate.count({"i_y", "1", "row of the gate: 0 is the near one"}, cell / field.columns);
             });
       });
   out.flag(

@@ -30,7 +30,8 @@ void add_place_of_start(Rows& rows, const AnalysedField& f, const FieldMap& map)
   const double aside = is_place ? f.start->at[0] : 0.0;
   const double x = f.shown.field.start_column() - 0.5 * face.di_x +
                    (face.di_x == 0 ? aside / f.shown.width : 0.0),
-               y = -0.5 * face.di_y + (face.di_y == 0 ? aside / f.shown.length : 0.0);
+               y = f.shown.field.start_row - 0.5 * face.di_y +
+                   (face.di_y == 0 ? aside / f.shown.length : 0.0);
   const auto on = [](const FieldMap::Span& span, double gate) {
     return (gate - static_cast<double>(span.first) + 0.5) / static_cast<double>(span.block) - 0.5;
   };
@@ -41,7 +42,7 @@ void add_place_of_start(Rows& rows, const AnalysedField& f, const FieldMap& map)
 
 /// How often gates are visited, the most frequent paths, and the starts.
 double add_visits(Panels& out, const AnalysedField& f, double top) {
-  const FieldMap map(f.analysis.totals.visits, 101, 101);
+  const FieldMap map(f.analysis.totals.visits, f.shown.field.start_column(), 101, 101);
   Rows &visits = out.data("$visits"), &paths = out.data("$paths"), &begin = out.data("$begin");
   add_shares(visits, map, f.analysis.totals.visits);
   const auto most = std::min<std::size_t>(f.analysis.paths.paths.size(), 5);

@@ -361,7 +361,8 @@ std::string details_text(const AnalysedField& f) {
         target_name(f), percents(a.target_chance)));
   text += costs_part(f);
   if (!std::isnan(a.gates.mean))
-    text += "\n" + map_of(a.totals.visits, "visits of each gate", "per 100 bodies");
+    text += "\n" + map_of(a.totals.visits, f.shown.field.start_column(), "visits of each gate",
+                          "per 100 bodies");
   text += endless_part(a) + paths_part(f);
   if (std::ssize(a.starts) > a.told_starts())
     text +=

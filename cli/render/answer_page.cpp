@@ -281,6 +281,7 @@ void describe(Fields& out, const AnswerPage& page, bool gates_95) {
   out.count({"rows", "1", "cells one behind the other"}, field.rows);
   out.count({"start_column", "1", "number of the column in which bodies start, from 0"},
             field.start_column());
+  out.count({"start_row", "1", "number of the row in which bodies start, from 0"}, field.start_row);
   out.count({"max_gates", "1", "cells after which a body is cut off; 0: never"}, field.max_gates);
   out.numbers({"cell_m", "m", "width and depth of a cell"}, {page.shown.width, page.shown.length});
   out.number({"time_limit_s", "s", "until a body in a cell is trapped; null: somebody said so"},

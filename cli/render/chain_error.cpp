@@ -18,6 +18,7 @@
 #include "cli/render/panel.h"
 #include "cli/render/quantity.h"
 #include "cli/render/start.h"
+#include "dynamics/disc/disc_section.h"
 
 namespace gatewalk::cli {
 namespace {
@@ -322,10 +323,16 @@ std::string block_of(const ChainErrorChart& chart, std::size_t s, std::size_t fi
   return "\n" + table.text();
 }
 
+/// The body of a start: chart chain takes entries from below alone.
+dynamics::BodyState from_below(const dynamics::Entry& start) {
+  return {start.at[dynamics::kEntryD], 0.0, start.at[dynamics::kEntryVx],
+          start.at[dynamics::kEntryVy]};
+}
+
 }  // namespace
 
 std::string name_of(const FieldTruth& truth) {
-  const dynamics::BodyState start = lattice::body_at(truth.start);
+  const dynamics::BodyState start = from_below(truth.start);
   const Sized speed = readable_unit("m/s", std::max(std::abs(start.vx), std::abs(start.vy)));
   return fmt::format("start d = {}, v = ({}, {}) {}", quantity(start.x, "m"),
                      digits(start.vx / speed.size), digits(start.vy / speed.size), speed.name);
@@ -377,7 +384,7 @@ std::string csv_of(const ChainErrorChart& chart) {
       "bins_total_variation,formula_total_variation,formula_corrcoef,truth_floor_total_variation,"
       "truth_floor_corrcoef,clamped_share,rows_never_sampled,never_sampled_share");
   for (std::size_t s = 0; s < chart.truths.size(); ++s) {
-    const dynamics::BodyState start = lattice::body_at(chart.truths[s].start);
+    const dynamics::BodyState start = from_below(chart.truths[s].start);
     const FinalGateError& floor = chart.truths[s].floor;
     for (const ChainPoint& p : chart.points) {
       const ChainAnswer& a = p.answers[s];

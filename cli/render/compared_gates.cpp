@@ -29,7 +29,7 @@ Figure figure_of(const std::vector<ComparedGates>& compared, const std::string& 
   std::vector<Row> rows;
   double most = 0.0, largest = 0.0, end = kMapsHead;
   for (const ComparedGates& c : compared) {
-    const FieldMap map(0.5 * (c.seen + c.chain), 60, 60);
+    const FieldMap map(0.5 * (c.seen + c.chain), shown.field.start_column(), 60, 60);
     const CellProbabilities seen = map.blocks_of(c.seen), chain = map.blocks_of(c.chain);
     const double height = std::clamp(
         kMapWidth * static_cast<double>(chain.rows()) / static_cast<double>(chain.cols()), 60.0,

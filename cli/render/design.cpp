@@ -199,7 +199,7 @@ std::string details_text(const DesignedScene& d) {
 Figure figure_of(const DesignedScene& d) {
   const std::vector<double> best = best_changes(d);
   const std::vector<int>&before = d.before.terrain->type_of_cell, &after = d.design.type_of_cell;
-  const auto [map, box] = SmallMap(by_gate(best.data(), d.before.field).abs());
+  const auto [map, box] = SmallMap(by_gate(best.data(), d.before.field).abs(), d.before.field);
   const ShownField shown(d.after);
   const TypeMarks types(shown);
   const double legend = box.bottom + 52, bars_top = legend + types.legend_height() + 30;

@@ -96,7 +96,8 @@ void describe(Fields& out, const FidelityResult& result) {
       lattice::kSmallChange);
   out.list_of({"starts", "one for each start"}, study.starts.size(), [&](Fields& f, std::size_t i) {
     const FidelityOfStart& s = study.starts[i];
-    describe_start(f, dynamics::disc_section(), dynamics::entry_of(s.start));
+    describe_start(f, dynamics::disc_section(),
+                   dynamics::entry_of(study.variants.front().scene.gate, s.start));
     const Sufficiency active = s.active_is();
     f.flag(
         {"active_is_enough",
@@ -177,7 +178,9 @@ std::string details_text(const FidelityStudy& study) {
     for (std::size_t v = 0; v < study.variants.size(); ++v) {
       const FidelityRun& run = s.runs[v];
       const FieldTally& t = run.tally;
-      const std::string at = start_text(dynamics::disc_section(), dynamics::entry_of(s.start)),
+      const std::string at = start_text(
+                            dynamics::disc_section(),
+                            dynamics::entry_of(study.variants.front().scene.gate, s.start)),
                         variant = study.variants[v].name();
       endings.row({at, variant, 1e3 * run.seconds_per_trial, 100.0 * share(t.trapped(), t),
                    100.0 * share(t.left_field(), t), 100.0 * share(t.cut_off(), t)});

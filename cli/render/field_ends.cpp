@@ -95,10 +95,12 @@ void FieldEnds<Number>::describe_still_walking(Fields& out,
 }
 
 template <class Number>
-std::string FieldEnds<Number>::maps(const std::string& unit) const {
+std::string FieldEnds<Number>::maps(const lattice::FieldParams& field,
+                                    const std::string& unit) const {
+  const int start = field.start_column();
   return fmt::format("{}{}Departed over any side: {}\n",
-                     map_of(share_of(this->final_cells), "Final gate", unit),
-                     map_of_trapped(share_of(trapped_cells(*this)), unit),
+                     map_of(share_of(this->final_cells), start, "Final gate", unit),
+                     map_of_trapped(share_of(trapped_cells(*this)), start, unit),
                      percent(static_cast<double>(departed), bodies, 2));
 }
 

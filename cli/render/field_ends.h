@@ -40,7 +40,7 @@ struct FieldEnds : markov::Ends<Number> {
   void describe_still_walking(Fields& out, const std::optional<Interval>& share = {}) const;
   /// The maps of final gates and of trapped bodies in `unit` ("% of trials"), and the share of
   /// bodies that left the field.
-  [[nodiscard]] std::string maps(const std::string& unit) const;
+  [[nodiscard]] std::string maps(const lattice::FieldParams& field, const std::string& unit) const;
 };
 
 /// The keys "trapped", "departed" and "cut_off" as shares of trials, or as predicted.

@@ -17,7 +17,8 @@ namespace gatewalk::cli {
 
 using markov::CellProbabilities;
 
-SmallMap::SmallMap(const CellProbabilities& shown) : map(shown, 101, 101) {  // gates, each way
+SmallMap::SmallMap(const CellProbabilities& shown, const lattice::FieldParams& field)
+    : map(shown, field.start_column(), 101, 101) {  // gates, each way
   constexpr double kLeft = 58, kTop = 44, kWidest = 300, kHighest = 300;
   const auto columns = static_cast<double>(map.columns.blocks()),
              rows = static_cast<double>(map.rows.blocks());
@@ -39,7 +40,7 @@ Panel& add_map(Panels& out, const FieldMap& map, const Box& box, double apart) {
     return Axis{markup(name), -0.5, static_cast<double>(blocks) - 0.5, tics_of(tics)};
   };
   Panel& panel = out.add(box);
-  panel.x = axis("column i_x", map.columns, map.middle_column, box.width(), apart);
+  panel.x = axis("column i_x", map.columns, map.start_column, box.width(), apart);
   panel.y = axis("row i_y", map.rows, 0, box.height(), 22);
   // The fewer digits the tics have, the further they are from the axis title.
   if (map.rows.first + map.rows.count <= 10) panel.y.name_look = "offset 0.2,0";
@@ -177,7 +178,7 @@ Figure figure_of(const std::vector<FieldPicture>& pictures, const ShownField& sh
   std::vector<Plan> plans;
   double height = 0.0, most = 0.0;
   for (const FieldPicture& p : pictures) {
-    maps.emplace_back(p.final_gates, kMostDrawn, kMostDrawn);
+    maps.emplace_back(p.final_gates, shown.field.start_column(), kMostDrawn, kMostDrawn);
     plans.emplace_back(maps.back(), height, types.legend_height(), p.exits.has_value(),
                        bars_of(p.endings, shown).size());
     height = plans.back().end();

@@ -53,7 +53,7 @@ struct SmallMap {
   FieldMap map;
   Box box{};
 
-  explicit SmallMap(const markov::CellProbabilities& shown);
+  SmallMap(const markov::CellProbabilities& shown, const lattice::FieldParams& field);
 };
 
 /// Adds a panel with a map's blocks of gates on its axes; the x axis has a tic every `apart`

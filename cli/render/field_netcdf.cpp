@@ -41,8 +41,9 @@ std::vector<std::int32_t> numbers_from(int first, Eigen::Index count) {
 
 }  // namespace
 
-std::string netcdf_of(const std::vector<FieldPicture>& fields, const dynamics::Section& section,
+std::string netcdf_of(const std::vector<FieldPicture>& fields, const ShownField& shown,
                       const Provenance& made_by) {
+  const dynamics::Section& section = shown.map.section;
   const Eigen::Index rows = fields.front().final_gates.rows(),
                      columns = fields.front().final_gates.cols();
   using namespace markov::netcdf;
@@ -56,7 +57,7 @@ std::string netcdf_of(const std::vector<FieldPicture>& fields, const dynamics::S
             i_y = define_dimension(nc, "i_y", static_cast<std::size_t>(rows)),
             i_x = define_dimension(nc, "i_x", static_cast<std::size_t>(columns));
   put_variable(nc, "i_y", i_y, numbers_from(0, rows), "1", "row of gates, the near one is 0");
-  put_variable(nc, "i_x", i_x, numbers_from(-static_cast<int>(columns / 2), columns), "1",
+  put_variable(nc, "i_x", i_x, numbers_from(-shown.field.start_column(), columns), "1",
                "column of gates, that of the start is 0");
   const auto of_starts = [&](const std::string& name, const char* unit, const std::string& meaning,
                              const auto& value) {

@@ -18,6 +18,6 @@ inline constexpr const char* kNetcdfHelp =
 /// final_gates_low and _high if all starts have them, the endings, the starts (NaN: drawn from
 /// first entries), and `made_by` as attributes.
 [[nodiscard]] std::string netcdf_of(const std::vector<FieldPicture>& fields,
-                                    const dynamics::Section& section, const Provenance& made_by);
+                                    const ShownField& shown, const Provenance& made_by);
 
 }  // namespace gatewalk::cli

@@ -78,7 +78,7 @@ std::string answer_text(const FieldRun& run) {
 std::string details_text(const FieldRun& run) {
   const lattice::FieldTally& tally = run.tally;
   std::string text = "\n" + limits_text(run.shown) +
-                     ends_of(tally, run.shown.field).maps("% of trials") +
+                     ends_of(tally, run.shown.field).maps(run.shown.field, "% of trials") +
                      table_of(exits_of(tally), run.shown) + table_of(run.costs, run.shown);
   if (tally.broken() > 0)
     text += fmt::format(
@@ -138,8 +138,9 @@ std::string details_text(const WalkResult& r) {
   const auto n = static_cast<double>(tally.walks);
   const std::string start =
       r.state ? "start: " + r.state->bin : lattice::title_of(r.shown.map.section, r.start);
-  std::string text = fmt::format("\n{}{}State of the chain at the {}\n", limits_text(r.shown),
-                                 ends_of(tally, r.shown.field).maps("% of walks"), start);
+  std::string text =
+      fmt::format("\n{}{}State of the chain at the {}\n", limits_text(r.shown),
+                  ends_of(tally, r.shown.field).maps(r.shown.field, "% of walks"), start);
   if (tally.unsampled() > 0)
     text += fmt::format("Walks that reach a state without any run: {}\n",
                         percent(static_cast<double>(tally.unsampled()), n, 4));

@@ -127,17 +127,17 @@ void describe_left_out(Fields& out, int columns, int rows) {
   });
 }
 
-FieldMap::FieldMap(const markov::CellProbabilities& shares, Eigen::Index most_rows,
-                   Eigen::Index most_columns)
+FieldMap::FieldMap(const markov::CellProbabilities& shares, Eigen::Index start,
+                   Eigen::Index most_rows, Eigen::Index most_columns)
     : rows(span_of(shares.rowwise().sum(), most_rows)),
       columns(span_of(shares.colwise().sum().transpose(), most_columns)),
-      middle_column(shares.cols() / 2) {
+      start_column(start) {
   if (rows.block == 1 && columns.block == 1) return;
   // The start's column is in the middle of a block, so that left and right can be compared.
   columns.block |= 1;
   const Eigen::Index end = columns.first + columns.count;
   const Eigen::Index to_left =
-      middle_column - columns.block / 2 - columns.first;  // from the middle block
+      start_column - columns.block / 2 - columns.first;  // from the middle block
   columns.first +=
       to_left - (to_left + (to_left > 0 ? columns.block - 1 : 0)) / columns.block * columns.block;
   columns.count = end - columns.first;
@@ -169,10 +169,10 @@ std::string short_percent(double share) {
   return fixed(100.0 * share, share < 0.0995 ? 1 : 0);
 }
 
-std::string map_of(const markov::CellProbabilities& shares, const std::string& what,
-                   const std::string& unit) {
+std::string map_of(const markov::CellProbabilities& shares, Eigen::Index start,
+                   const std::string& what, const std::string& unit) {
   constexpr Eigen::Index kMostRows = 40, kMostColumns = 12;  // with one more these fit into a line
-  const FieldMap map(shares, kMostRows, kMostColumns);
+  const FieldMap map(shares, start, kMostRows, kMostColumns);
   std::string text = fmt::format("{}, {} (i_y upwards, i_x to the right)\n", what, unit);
   if (map.rows.block > 1 || map.columns.block > 1)
     text += fmt::format(
@@ -190,7 +190,7 @@ std::string map_of(const markov::CellProbabilities& shares, const std::string& w
   }
   text += "  i_x ";
   for (Eigen::Index c = 0; c < blocks.cols(); ++c)
-    text += fmt::format("{:>{}}", map.columns.middle(c) - map.middle_column, width);
+    text += fmt::format("{:>{}}", map.columns.middle(c) - map.start_column, width);
   text += "\n";
   if (const std::string rest = elsewhere_text(map, shares); !rest.empty()) text += rest + "\n";
   return text;
@@ -384,10 +384,11 @@ std::string endings_text(const lattice::EndingShares& shares, const std::string&
   return text + (is_marked ? "-: impossible, because no sequence of moves leads there.\n" : "");
 }
 
-std::string map_of_trapped(const markov::CellProbabilities& shares, const std::string& unit) {
+std::string map_of_trapped(const markov::CellProbabilities& shares, Eigen::Index start,
+                           const std::string& unit) {
   constexpr Eigen::Index kMost = 15;
   if (shares.rows() > kMost || shares.cols() > kMost || shares.sum() == 0.0) return "";
-  return map_of(shares, "Trapped bodies by gate", unit);
+  return map_of(shares, start, "Trapped bodies by gate", unit);
 }
 
 }  // namespace gatewalk::cli

@@ -58,9 +58,9 @@ struct FieldMap {
     [[nodiscard]] Eigen::Index block_of(Eigen::Index gate) const { return (gate - first) / block; }
   };
   Span rows, columns;
-  Eigen::Index middle_column;  // of the field: i_x = 0
+  Eigen::Index start_column;  // i_x = 0
 
-  FieldMap(const markov::CellProbabilities& shares, Eigen::Index most_rows,
+  FieldMap(const markov::CellProbabilities& shares, Eigen::Index start, Eigen::Index most_rows,
            Eigen::Index most_columns);
   /// Shares of the same field, summed by block.
   [[nodiscard]] markov::CellProbabilities blocks_of(const markov::CellProbabilities& shares) const;
@@ -72,13 +72,14 @@ struct FieldMap {
 /// A share in %, short enough for a gate of a figure: "17", "1.2", "<.1"; empty for 0.
 [[nodiscard]] std::string short_percent(double share);
 
-/// The field seen from above in percent, farthest row on top, under the title "WHAT, UNIT". Of a
-/// field too large to print, the part that holds all but next to nothing, in blocks if necessary.
-[[nodiscard]] std::string map_of(const markov::CellProbabilities& shares, const std::string& what,
-                                 const std::string& unit);
+/// The field seen from above in percent, farthest row on top, under the title "WHAT, UNIT"; columns
+/// count from `start`. Of a field too large to print, the part that holds all but next to nothing,
+/// in blocks if necessary.
+[[nodiscard]] std::string map_of(const markov::CellProbabilities& shares, Eigen::Index start,
+                                 const std::string& what, const std::string& unit);
 /// The map of trapped bodies; empty for fields too large to print and if no body is trapped.
 [[nodiscard]] std::string map_of_trapped(const markov::CellProbabilities& shares,
-                                         const std::string& unit);
+                                         Eigen::Index start, const std::string& unit);
 
 using lattice::EndingName;
 using lattice::kAllEndingNames;

@@ -293,7 +293,7 @@ void describe(Fields& out, const PlannedField& p) {
               [&](Fields& action, std::size_t a) { describe_action(action, p, a); });
   out.text_rows(
       {"most_taken",
-       "action that the plan takes most in each gate, from the start's row on; null: no body came"},
+       "action that the plan takes most in each gate, from the near row on; null: no body came"},
       most_taken_rows(p));
   out.maybe({"by_gate", "best policy found that chooses by the gate alone; null: no body crossed"},
             plan.by_cell, [&](Fields& gates, const lattice::Plan::ByCell& by_cell) {
@@ -308,7 +308,7 @@ void describe(Fields& out, const PlannedField& p) {
                           "policy may exist"},
                          searched);
               gates.text_rows(
-                  {"action", "action that this policy takes in each gate, from the start's row on"},
+                  {"action", "action that this policy takes in each gate, from the near row on"},
                   action_rows(p, policy.decisions));
             });
   out.optional(p.thrift.has_value(), [&](Fields& f) { describe_front(f, p); });
@@ -401,22 +401,23 @@ std::string entries_text(const dynamics::Section& section, const dynamics::State
 std::string regions_text(const PlannedField& p) {
   const lattice::Policy& policy = p.plan.policy;
   if (policy.always || !policy.space.has_trees()) return "";
-  const int columns = p.shown.field.columns, middle = p.shown.field.start_column();
+  const int columns = p.shown.field.columns, start_column = p.shown.field.start_column(),
+            start_row = p.shown.field.start_row;
   const std::vector<MostTaken> most = most_taken(p);
   std::optional<std::size_t> gate;
   for (std::size_t k = 0; k < most.size(); ++k)
-    if (k != static_cast<std::size_t>(middle) && most[k].shown &&
+    if (k != static_cast<std::size_t>(start_row * columns + start_column) && most[k].shown &&
         (!gate || most[k].visits > most[*gate].visits))
       gate = k;
   if (!gate) return "";
   const int column = static_cast<int>(*gate) % columns, row = static_cast<int>(*gate) / columns,
-            passed = row + std::abs(column - middle);
+            passed = std::abs(row - start_row) + std::abs(column - start_column);
   const std::vector<Region> regions =
       regions_of(policy, {.column = column, .row = row, .passed = passed});
   constexpr std::size_t kMost = 8;
   std::string text = fmt::format(
       "Actions in gate {},{}, the most visited after the start's, by how a body enters{}:\n",
-      column - middle, row,
+      column - start_column, row,
       p.shown.field.max_gates > 0 ? fmt::format(" after {}", counted(passed, "gate", "gates"))
                                   : "");
   for (const Region& region : regions | std::views::take(kMost))
@@ -460,7 +461,7 @@ Figure figure_of(const PlannedField& p) {
   const std::vector<MostTaken> most = most_taken(p);
   markov::CellProbabilities visits(p.shown.field.rows, p.shown.field.columns);
   for (std::size_t i = 0; i < most.size(); ++i) visits.data()[i] = most[i].visits;
-  const auto [map, box] = SmallMap(visits);
+  const auto [map, box] = SmallMap(visits, p.shown.field);
   const TypeMarks types(p.shown);
   const double legend = box.bottom + 52, bars_top = legend + types.legend_height() + 30;
 

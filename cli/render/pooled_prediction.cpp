@@ -172,7 +172,7 @@ std::string answer_text(const RunsPrediction& runs) {
 }
 
 std::string details_text(const lattice::StartAnswer& a, const ShownField& shown) {
-  std::string text = ends_of(a.final, a.endings).maps("% of all bodies") +
+  std::string text = ends_of(a.final, a.endings).maps(shown.field, "% of all bodies") +
                      table_of(shown_exits(a.exits, a.final), shown);
   if (has_error_bar(a))
     text += fmt::format(

@@ -75,7 +75,8 @@ std::string answer_text(const MatrixPrediction& of) {
 std::string details_text(const lattice::StartPrediction& s, const std::string& bin,
                          const ShownField& shown) {
   const markov::FinalDistribution& f = s.final;
-  return ends_of(f, s.shares).maps("% of all bodies") + table_of(shown_exits(s.exits, f), shown) +
+  return ends_of(f, s.shares).maps(shown.field, "% of all bodies") +
+         table_of(shown_exits(s.exits, f), shown) +
          fmt::format(
              "State of the chain at the start: {}\n{}"
              "Rounding and unfinished walks change all shares together by at most {}.\n",

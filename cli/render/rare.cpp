@@ -15,6 +15,11 @@
 namespace gatewalk::cli {
 namespace {
 
+/// The row whose chance is s.rows[r].
+std::int64_t row_of(const lattice::Splitting& s, std::size_t r) {
+  return s.first_row + static_cast<std::int64_t>(r);
+}
+
 /// "1.23e-12"
 std::string chance(double x) { return digits(x, 3); }
 
@@ -55,7 +60,8 @@ void describe(Fields& out, const RareResult& result) {
   const lattice::Splitting& s = event.splitting;
   const lattice::RowChance last = s.rows.empty() ? lattice::RowChance() : s.rows.back();
   describe(out, last);
-  out.count({"row", "1", "row to enter, i_y; bodies start in row 0"}, s.rows.size());
+  out.count({"row", "1", "row to enter, i_y; bodies start in a row before"},
+            s.rows.empty() ? 0 : row_of(s, s.rows.size() - 1));
   out.number({"chain", "1", "chance to enter the row by the Markov chain alone"},
              event.chain.empty() ? kUnknown : event.chain.back());
   out.number({"direct_trials_needed", "1",
@@ -71,9 +77,10 @@ void describe(Fields& out, const RareResult& result) {
              event.chain_seconds);
   out.number({"seconds", "s", "wall-clock time of chain and split trials"}, event.seconds);
   out.list_of(
-      {"rows", "each row from 1 to the target"}, s.rows.size(), [&](Fields& row, std::size_t r) {
+      {"rows", "each row ahead of the start's, up to the target"}, s.rows.size(),
+      [&](Fields& row, std::size_t r) {
         describe(row, s.rows[r]);
-        row.count({"row", "1", "row of gates, i_y; bodies start in row 0"}, r + 1);
+        row.count({"row", "1", "row of gates, i_y; bodies start in a row before"}, row_of(s, r));
         row.number({"chain", "1", "chance to enter the row by the Markov chain alone"},
                    event.chain[r]);
         row.optional(direct.trials > 0, [&](Fields& f) {
@@ -98,7 +105,7 @@ std::string answer_text(const RareResult& result) {
   const auto& [event, direct, method, made_by] = result;
   const lattice::Splitting& s = event.splitting;
   const lattice::RowChance& last = s.rows.back();
-  std::string text = fmt::format("Chance to enter row {}: ", s.rows.size());
+  std::string text = fmt::format("Chance to enter row {}: ", row_of(s, s.rows.size() - 1));
   text += last.probability > 0.0
               ? fmt::format("{}, 95 % interval {} (relative standard error {} %).\n",
                             chance(last.probability), interval_text(last.interval_95()),
@@ -131,8 +138,8 @@ std::string details_text(const RareResult& result, const lattice::FieldParams& f
   TextTable table(std::move(columns));
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const lattice::RowChance& c = s.rows[r];
-    std::vector<TextCell> cells = {r + 1, chance(c.probability), interval_text(c.interval_95()),
-                                   chance(event.chain[r])};
+    std::vector<TextCell> cells = {row_of(s, r), chance(c.probability),
+                                   interval_text(c.interval_95()), chance(event.chain[r])};
     if (direct.trials > 0) {
       cells.emplace_back(
           chance(static_cast<double>(direct.entered[r]) / static_cast<double>(direct.trials)));
@@ -154,20 +161,21 @@ Figure figure_of(const RareResult& result) {
   double least = 1.0;
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     if (event.chain[r] > 0.0) {
-      chain.add(r + 1, event.chain[r]);
+      chain.add(row_of(s, r), event.chain[r]);
       least = std::min(least, event.chain[r]);
     }
     if (const lattice::RowChance& c = s.rows[r]; c.probability > 0.0) {
-      split.add(r + 1, c.probability, c.interval_95());
+      split.add(row_of(s, r), c.probability, c.interval_95());
       least = std::min(least, c.probability);
     }
     if (const std::int64_t n = direct.trials; n > 0 && direct.entered[r] > 0)
-      trials.add(r + 1, static_cast<double>(direct.entered[r]) / static_cast<double>(n),
+      trials.add(row_of(s, r), static_cast<double>(direct.entered[r]) / static_cast<double>(n),
                  dynamics::share_interval(direct.entered[r], n));
   }
   Panel& p = out.add({84, 490, 44, 272});
   p.say("How likely a body gets so far", 8, 18);
-  p.x = {"row entered", 0, static_cast<double>(s.rows.size()) + 1.0};
+  p.x = {"row entered", static_cast<double>(s.first_row) - 1.0,
+         static_cast<double>(row_of(s, s.rows.size()))};
   p.y = {"chance", std::pow(10.0, std::floor(std::log10(least)) - 0.2), 2, "", "10^{%T}"};
   p.y.logarithmic = true;
   p.key = {"on bottom left Left reverse samplen 1.5 width -4"};

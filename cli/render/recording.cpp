@@ -252,12 +252,14 @@ std::array<double, 2> place(const Scene& scene, const lattice::Moment& m) {
 
 struct Window {
   double left, right, bottom, top;  // m
+  int first_row;                    // that of the start
 };
 
 /// The smallest window of whole gates that holds all tracks.
 Window window_of(const Scene& scene, const std::vector<const Recording*>& runs) {
   const double half = scene.gate.beams.joint_x, deep = scene.gate.run.traverse_y;
-  Window w{-half, half, 0.0, deep};
+  const int first = runs.empty() ? 0 : runs.front()->moments.front().i_y;
+  Window w{-half, half, first * deep, (first + 1) * deep, first};
   for (const Recording* run : runs)
     for (const lattice::Moment& m : run->moments) {
       w.left = std::min(w.left, (2 * m.i_x - 1) * half);
@@ -275,7 +277,7 @@ void add_beams(Rows& beams, const Scene& scene, const lattice::FieldGates& gates
   const auto columns = std::lround((w.right - w.left) / (2.0 * b.joint_x)),
              rows = std::lround(w.top / scene.gate.run.traverse_y);
   const long first = std::lround(w.left / (2.0 * b.joint_x) + 0.5);  // i_x
-  for (long r = 0; r < rows; ++r)
+  for (long r = w.first_row; r < rows; ++r)
     for (long c = 0; c < columns; ++c) {
       const double beam =
           gates.at(static_cast<int>(first + c) + scene.field.start_column(), static_cast<int>(r))

@@ -70,7 +70,7 @@ std::vector<markov::Ending> impossible_endings(const ShownField& shown) {
   if (most * cells * std::ssize(faces) > kMostMoves) return {};
   std::array<bool, markov::kEndings> possible{};
   std::vector<bool> here(static_cast<std::size_t>(cells));
-  here[static_cast<std::size_t>(field.start_column())] = true;
+  here[static_cast<std::size_t>(field.start_row * field.columns + field.start_column())] = true;
   bool goes_on = true;
   for (std::int64_t gate = 0; gate < most && goes_on; ++gate) {
     std::vector<bool> next(here.size());
@@ -101,11 +101,12 @@ std::vector<markov::Ending> impossible_endings(const ShownField& shown) {
 
 std::string too_few_gates(const ShownField& shown) {
   const lattice::FieldParams& field = shown.field;
-  int longest = 1;  // rows that a body can advance in a move
+  const int ahead = field.rows - field.start_row;  // moves of one row until the field is crossed
+  int longest = 1;                                 // rows that a body can advance in a move
   for (const dynamics::Face& face : shown.map.section.faces) longest = std::max(longest, face.di_y);
-  if (field.max_gates == 0 || field.max_gates >= (field.rows + longest - 1) / longest) return "";
-  return fmt::format("nobody can cross: field.max_gates = {} is less than field.rows = {}",
-                     field.max_gates, field.rows);
+  if (field.max_gates == 0 || field.max_gates >= (ahead + longest - 1) / longest) return "";
+  return fmt::format("nobody can cross: field.max_gates = {} is less than field.rows{} = {}",
+                     field.max_gates, field.start_row > 0 ? " - field.start_row" : "", ahead);
 }
 
 std::string scene_line(const lattice::Scene& scene, const std::vector<std::string>& actions) {

@@ -86,7 +86,7 @@ class Answer {
     this.cellWord = data.gate ? 'gate' : 'cell';
     this.start = {face: data.starts[0].face, at: [...(data.starts[0].at ?? this.axes.map(() => 0))]};
     this.seenStart = !data.starts[0].at;  // "as seen": drawn from first entries
-    this.cell = data.start_column;
+    this.cell = this.startCell = data.start_row * data.columns + data.start_column;
     this.shows = 'start';
     this.target = data.analysis.target ?? 'crossed';
     this.ranges = this.rangesOfFields();
@@ -164,7 +164,7 @@ class Answer {
 
   /** The largest distance of a disc's start from the middle of its gate. */
   wall(axis) {
-    return this.data.gate && axis === 0 ? this.data.cell_m[0] / 2 : Infinity;
+    return this.data.gate && axis === 0 && this.start.face === 0 ? this.data.cell_m[0] / 2 : Infinity;
   }
 
   /** The step of an input, about a hundredth of its range. */
@@ -203,7 +203,7 @@ class Answer {
   }
 
   startWord(at, face) {
-    const first = this.data.gate || face === 0 ? '' : `${this.data.section.faces[face].name}:`;
+    const first = face === 0 ? '' : `${this.data.section.faces[face].name}:`;
     return first + at.map((x) => String(x)).join(',');
   }
 
@@ -216,7 +216,7 @@ class Answer {
       'Where do bodies end that enter so? Change the start; choose a cell of the map.';
     $('where-title').textContent = `Where bodies end: their last ${this.cellWord}`;
     this.buildKnown();
-    if (data.gate) this.drawing = new Drawing(this, $('drawing'));
+    if (data.gate && this.start.face === 0) this.drawing = new Drawing(this, $('drawing'));
     this.buildFields();
     this.shareRows = shareRows($('endings'), data.endings, this.target);
     const barsOf = data.chain.kind === 'trees' ?
@@ -321,7 +321,7 @@ class Answer {
       for (let column = 0; column < columns; ++column) {
         const cell = row * columns + column;
         const tile = element('button', {type: 'button', role: 'gridcell', tabindex: '-1', 'data-cell': cell,
-          class: row === 0 && column === middle ? 'first' : null, onclick: () => this.choose(cell)},
+          class: cell === this.startCell ? 'first' : null, onclick: () => this.choose(cell)},
         element('span', {class: 'number'}), element('span', {class: 'mark', 'aria-hidden': 'true'}, this.data.types
             ? kMarks[this.data.type_of_gate[cell] % kMarks.length] : ''));
         tile.style.aspectRatio = `${width} / ${length}`;
@@ -623,7 +623,7 @@ function fillShares(rows, shares) {
 class Drawing {
   constructor(answer, place) {
     this.answer = answer;
-    const {gate, cell_m: [width, length], types, type_of_gate, start_column} = answer.data;
+    const {gate, cell_m: [width, length], types, type_of_gate} = answer.data;
     Object.assign(this, {width, length, radius: gate.radius_m});
     const margin = 0.12 * length, below = gate.radius_m + margin;
     this.scale = 400 / (width + 2 * margin);
@@ -634,7 +634,7 @@ class Drawing {
     const seconds = 0.4 * length / speed, power = 10 ** Math.floor(Math.log10(seconds));
     this.seconds = [1, 2, 5].map((k) => k * power).filter((t) => t <= seconds).pop();
     const w = 400, h = (this.y1 + below) * this.scale;
-    const beam = gate.beam_m[types ? type_of_gate[start_column] : 0];
+    const beam = gate.beam_m[types ? type_of_gate[answer.startCell] : 0];
     const svg = element('svg:svg', {viewBox: `0 0 ${w} ${h.toFixed(1)}`, role: 'group',
         'aria-label': 'The first gate from above, to scale; bodies enter from below'});
     const line = (cls, x0, y0, x1, y1) => element('svg:line',

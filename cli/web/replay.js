@@ -99,6 +99,8 @@ const gatewalkReplay = (() => {
       number(name, film[name], 1);
       if (!Number.isInteger(film[name])) faults.push(`${name} is not a whole number`);
     }
+    if (!Number.isInteger(film.start_column) || film.start_column < 0 || film.start_column >= film.columns)
+      faults.push('start_column is no column of the field');
     for (const name of Object.keys(film)) if (![...kFilmKeys, ...kOptionalFilmKeys].includes(name)) remarks.push(name);
     if (film.types !== undefined) {
       if (!Array.isArray(film.types) || film.types.length === 0) faults.push('types is not a list');
@@ -142,7 +144,7 @@ const gatewalkReplay = (() => {
       const bad = run[name].findIndex((value, i) => !fine(value, i));
       if (bad >= 0) faults.push(`${where}${name}, entry ${bad}: ${run[name][bad]} ${what}`);
     };
-    const first = -Math.floor(film.columns / 2);
+    const first = -film.start_column;
     expect('t', (t, i) => i === 0 || t >= run.t[i - 1], 's goes back in time');
     expect('gx', (i) => Number.isInteger(i) && i >= first && i < first + film.columns, 'is no column of the field');
     expect('gy', (i) => Number.isInteger(i) && i >= 0 && i < film.rows, 'is no row of the field');
@@ -245,7 +247,7 @@ const gatewalkReplay = (() => {
   function boundsOf(film, runs) {
     const [width, depth] = film.gate_m, margin = 3 * film.scale.length_m;
     if (film.columns * film.rows > 1) {
-      const first = -Math.floor(film.columns / 2);
+      const first = -film.start_column;
       return {x0: (first - 0.5) * width - margin, x1: (first + film.columns - 0.5) * width + margin,
         y0: -film.radius_m - margin, y1: film.rows * depth + film.radius_m + margin};
     }
@@ -369,7 +371,7 @@ const gatewalkReplay = (() => {
     ctx.lineCap = 'round'; ctx.lineJoin = 'round';
 
     // Borders of the gates in sight, and their beams at rest. A single gate has only side borders.
-    const first = -Math.floor(film.columns / 2);
+    const first = -film.start_column;
     const x0 = cx - 0.5 * w / scale, x1 = cx + 0.5 * w / scale, y0 = cy - 0.5 * h / scale, y1 = cy + 0.5 * h / scale;
     const columns = [Math.max(first, Math.floor(x0 / width - 0.5)), Math.min(first + film.columns - 1, Math.ceil(x1 / width + 0.5))];
     const rows = [Math.max(0, Math.floor(y0 / depth - 1)), Math.min(film.rows - 1, Math.ceil(y1 / depth))];

@@ -85,6 +85,15 @@ Entry crossing_of(const GateParams& p, Outcome outcome, const BodyState& exit) {
   throw std::logic_error("this run did not leave its gate");
 }
 
+bool on_boundary(const GateParams& p, const BodyState& b) {
+  return b.y == 0.0 || std::abs(b.x) == p.beams.joint_x;
+}
+
+Entry entry_of(const GateParams& p, const BodyState& b) {
+  if (std::abs(b.x) != p.beams.joint_x) return entry_of(b);
+  return crossing_of(p, b.x < 0.0 ? Outcome::exited_right : Outcome::exited_left, b);
+}
+
 BodyState entry_state(const GateParams& p, const Entry& entry) {
   const double d = entry.at[kEntryD];
   BodyState b{0.0, 0.0, entry.at[kEntryVx], entry.at[kEntryVy]};

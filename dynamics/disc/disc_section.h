@@ -40,6 +40,12 @@ inline constexpr std::size_t kEntryD = 0, kEntryVx = 1, kEntryVy = 2;
   return {Boundary::enter, {b.x, b.vx, b.vy}};
 }
 
+/// True if a body stands on a boundary that it can enter by: the lower edge, or a side of the gate.
+[[nodiscard]] bool on_boundary(const GateParams& p, const BodyState& b);
+/// The entry of a body on a boundary of its gate; inside the gate, that of a body below it on the
+/// lower edge.
+[[nodiscard]] Entry entry_of(const GateParams& p, const BodyState& b);
+
 /// The state of a body on the boundary of its new gate, in that gate's frame.
 [[nodiscard]] BodyState entry_state(const GateParams& p, const Entry& entry);
 

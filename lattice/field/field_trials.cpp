@@ -216,9 +216,9 @@ FieldTally run_field(const CellField& cells, const FieldParams& field, const Beg
   };
   for (std::int64_t i = 0; i < range.count; ++i) {
     const std::int32_t column = start_of(i).column;
-    if (!field.contains(column, 0))
-      throw std::invalid_argument("field: a trial is to begin in a column that there is not");
-    trials.emplace_back(column);
+    if (!field.contains(column, field.start_row))
+      throw std::invalid_argument("field: a trial is to begin in a cell that there is not");
+    trials.emplace_back(column, field.start_row);
   }
 
   const auto type_at = [&](std::int64_t i, const Entry& entry) {
@@ -289,7 +289,8 @@ FieldTally run_field(const CellField& cells, const FieldParams& field, const Ent
   return run_field(
       cells, field,
       [&](std::int64_t i, Body& body) {
-        begin_trial(cells.at(field.start_column(), 0), start, seed, range.first + i, body);
+        begin_trial(cells.at(field.start_column(), field.start_row), start, seed, range.first + i,
+                    body);
       },
       range, each, space, memory);
 }

@@ -89,7 +89,7 @@ struct Place {
 };
 /// Returns the index of the cell type that a body meets when it enters at `place` by `entry`.
 using CellChoice = std::function<int(const Place& place, const dynamics::Entry& entry)>;
-/// The column and the entry by which a trial begins in the first row.
+/// The column and the entry by which a trial begins in the field's start row.
 struct TrialStart {
   std::int32_t column = 0;
   dynamics::Entry entry{};
@@ -99,7 +99,7 @@ using StartOfTrial = std::function<TrialStart(std::int64_t trial)>;
 struct TypeChoice {
   dynamics::Entry start{};
   CellChoice type{};    // empty: the map's types
-  StartOfTrial from{};  // empty: all trials begin by `start`, in the field's start column
+  StartOfTrial from{};  // empty: all trials begin by `start`, in the field's start cell
 };
 
 /// Prepares `body` for trial number i of a range, counted from 0, as it enters its first cell.

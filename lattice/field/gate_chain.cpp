@@ -57,7 +57,7 @@ CountedField counted_field(const dynamics::Transitions& matrix) {
 
 ChainStart chain_start(const StateSpace& space, const FieldParams& field, const Entry& entry) {
   const auto index = space.index_of(entry);
-  return {{field.start_column(), 0, index.state}, index.clamped, index.beyond};
+  return {{field.start_column(), field.start_row, index.state}, index.clamped, index.beyond};
 }
 
 }  // namespace gatewalk::lattice

@@ -30,7 +30,9 @@ struct Problem {
   [[nodiscard]] const dynamics::CellMap& map() const { return cells.map; }
   /// True if the runs were recorded, so that no new ones can be made.
   [[nodiscard]] bool is_recorded() const { return cells.cells.empty(); }
-  [[nodiscard]] int start_type() const { return map().type_of(field.start_column(), 0); }
+  [[nodiscard]] int start_type() const {
+    return map().type_of(field.start_column(), field.start_row);
+  }
 };
 
 }  // namespace gatewalk::lattice

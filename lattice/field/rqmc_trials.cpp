@@ -88,9 +88,9 @@ class Arrays {
          std::uint64_t seed)
       : cells_(cells), field_(field), trials_(trials) {
     const auto count = static_cast<std::size_t>(trials.count());
-    for (std::size_t place = 0; place < count; ++place) running_.emplace_back(field.start_column());
+    for (std::size_t place = 0; place < count; ++place) running_.emplace_back(field);
     bodies_.assign(count, Body{.entry = {}, .random = Random(Purpose::field, {})});
-    const Cell& first = cells.at(field.start_column(), 0);
+    const Cell& first = cells.at(field.start_column(), field.start_row);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t place) {
       const std::int64_t i = number(place);
       begin_trial(first, trials.start(i), seed, trials.numbers + i, bodies_[place]);

@@ -60,7 +60,9 @@ void require_cells(const dynamics::CellField& cells);
 /// One trial on its way through the field, independent of what carries its body.
 class RunningTrial {
  public:
-  explicit RunningTrial(std::int32_t start_column) : column_(start_column) {}
+  RunningTrial(std::int32_t column, std::int32_t row) : column_(column), row_(row) {}
+  explicit RunningTrial(const FieldParams& field)
+      : RunningTrial(field.start_column(), field.start_row) {}
 
   /// Adds a passage through the trial's current cell, which is of type `type`. Returns the entry
   /// into the next cell, or nullopt if the trial ends here. `keep_passages` keeps the passage.
@@ -86,7 +88,7 @@ class RunningTrial {
 
  private:
   std::optional<markov::Ending> ending_;  // none: a passage broke, or the trial goes on
-  std::int32_t column_, row_ = 0;
+  std::int32_t column_, row_;
   int cells_ = 0;  // cells visited
   dynamics::Costs costs_{};
   PassageTable passages_;

@@ -31,7 +31,7 @@ FieldTally run_with_beams(const GateParams& p, const FieldParams& field, const C
                           FieldTrials* each, const StateSpace* space, Memory memory) {
   (void)make_method(p);  // throws for parameters that cannot be run
   std::vector<RunningTrial> trials;
-  for (std::int64_t i = 0; i < range.count; ++i) trials.emplace_back(field.start_column());
+  for (std::int64_t i = 0; i < range.count; ++i) trials.emplace_back(field);
   struct Seen {
     Health health;
     std::vector<Entry> entries;
@@ -78,11 +78,11 @@ FieldTally run_field(const FieldGates& gates, const FieldParams& field, const Bo
     return run_with_beams(gates.types().front(), field, cells.map, start, seed, range, each, space,
                           memory);
   }
-  const auto& first = static_cast<const DiscCell&>(cells.at(field.start_column(), 0));
+  const auto& first = static_cast<const DiscCell&>(cells.at(field.start_column(), field.start_row));
   return run_field(
       cells, field,
       [&](std::int64_t i, Body& body) {
-        body.entry = entry_of(start);
+        body.entry = entry_of(first.params(), start);
         body.random = field_random(first.params(), start, seed, range.first + i);
         first.begin_at(body, start);
       },
@@ -97,12 +97,12 @@ FieldTrace trace_field(const FieldGates& gates, const FieldParams& field, const 
   for (const GateParams& p : gates.types()) validate(p, field);
   const CellMap map = gates.map();
   map.require_fits(field.columns, field.rows);
-  RunningTrial t(field.start_column());
+  RunningTrial t(field);
   const auto type_at = [&](const Entry& entry) {
     return choice ? choice({t.column(), t.row(), t.passed(), trial}, entry)
                   : gates.type_of(t.column(), t.row());
   };
-  int type = type_at(entry_of(start));
+  int type = type_at(entry_of(gates.types().front(), start));
   const GateParams& first = gates.types().at(static_cast<std::size_t>(type));
   RandomForce force(first.forces, field_random(first, start, seed, trial));
   FieldTrace trace;

@@ -19,7 +19,7 @@ double width_of_gate(const GateParams& p) { return p.gate_width(); }
 
 FieldStepper::FieldStepper(const GateParams& p, const FieldParams& field, const BodyState& start)
     : p_(p), field_(field), usual_(p, p.run.step), body_(start) {
-  current_ = last_ = find(field.start_column(), 0);
+  current_ = last_ = find(field.start_column(), field.start_row);
   awake_.push_back(current_);
   lowest_ = energy();
 }

@@ -94,7 +94,7 @@ class Places {
 
   [[nodiscard]] Entry begin(const Entry& start) {
     column_ = field_.start_column();
-    row_ = 0;
+    row_ = field_.start_row;
     return start;
   }
   [[nodiscard]] CellPassage next(CellPassage passage) {

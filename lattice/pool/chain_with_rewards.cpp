@@ -35,7 +35,7 @@ std::vector<markov::Reward> rewards_of(const std::vector<std::int64_t>& counts,
 ChainWithRewards chain_with_rewards(const Kernel& kernel, const CellMap& map,
                                     const FieldParams& field, const RunPool& pool,
                                     const FirstRow& start, TrialGroup group) {
-  const int start_type = map.type_of(field.start_column(), 0);
+  const int start_type = map.type_of(field.start_column(), field.start_row);
   const auto sums = cost_sums(kernel, map, pool, group);
   const markov::Counts first = first_rows(kernel, map, pool, {start}, start_type, {group});
   const auto first_sums = first_cost_sums(kernel, sums, map, pool, start, start_type, group);
@@ -52,7 +52,7 @@ ChainWithRewards chain_with_rewards(const Kernel& kernel, const CellMap& map,
   }
   return {chain_of(kernel, map, field, first),
           std::move(rewards),
-          {field.start_column(), 0, kernel.space.size()}};
+          {field.start_column(), field.start_row, kernel.space.size()}};
 }
 
 namespace {

@@ -301,9 +301,9 @@ double missing_mass(const Kernel& kernel, const CellMap& map, const FieldParams&
       if (passages.size() > 1 || passage.fate != Fate::left)
         continue;  // the kernel has this entry, or there is none
       const Face& move = kernel.space.section().faces[passage.entry.face];
-      const int column = field.start_column() + move.di_x;
-      if (!field.contains(column, move.di_y)) continue;
-      const auto type = static_cast<std::size_t>(map.type_of(column, move.di_y));
+      const int column = field.start_column() + move.di_x, row = field.start_row + move.di_y;
+      if (!field.contains(column, row)) continue;
+      const auto type = static_cast<std::size_t>(map.type_of(column, row));
       const std::size_t at =
           SeenEntries::place_of(kernel.space, kernel.space.index_of(passage.entry).state);
       ++here[type][at];
@@ -482,7 +482,7 @@ std::vector<CostSums> first_cost_sums(const Kernel& kernel,
 
 markov::FieldChain chain_of(const Kernel& kernel, const CellMap& map, const FieldParams& field,
                             const markov::Counts& first_rows) {
-  const int start_type = map.type_of(field.start_column(), 0);
+  const int start_type = map.type_of(field.start_column(), field.start_row);
   std::vector<markov::Chain> chains;
   for (const markov::Counts& counts : kernel.counts)
     chains.push_back(markov::Chain::from_counts(
@@ -496,7 +496,7 @@ std::vector<Transitions> transitions_of(const Kernel& kernel, const CellMap& map
                                         const FieldParams& field, const std::vector<Entry>& starts,
                                         const markov::Counts& first_rows) {
   std::vector<Transitions> all;
-  const int start_type = map.type_of(field.start_column(), 0);
+  const int start_type = map.type_of(field.start_column(), field.start_row);
   for (const markov::Counts& counts : kernel.counts) {
     const bool has_first = std::ssize(all) == start_type;
     Transitions& t =

@@ -77,7 +77,7 @@ KernelAnswers answers_of(const Kernel& kernel, const dynamics::CellMap& map,
                          markov::WalkRange walks, std::uint64_t seed) {
   std::vector<markov::Start> places;
   for (int i = 0; i < first_rows.rows(); ++i)
-    places.push_back({field.start_column(), 0, kernel.space.size() + i});
+    places.push_back({field.start_column(), field.start_row, kernel.space.size() + i});
   const markov::Field cells{field.columns, field.rows};
   const markov::FieldChain chain = chain_of(kernel, map, field, first_rows);
   if (walks.count == 0)
@@ -130,17 +130,17 @@ std::vector<std::optional<SmallLeaves>> by_small_leaves(const dynamics::CellMap&
   const bool adjoint = pays_adjoint(map, field, asked.size());
   if (asked.empty() || (adjoint && !fits_adjoint(pool, field, leaf))) return found;
   const Kernel kernel = kernel_of(map, pool, leaf, group);
-  const markov::Counts rows =
-      first_rows(kernel, map, pool, asked, map.type_of(field.start_column(), 0), {group});
+  const markov::Counts rows = first_rows(
+      kernel, map, pool, asked, map.type_of(field.start_column(), field.start_row), {group});
   if (!adjoint) {
     const KernelAnswers answers = answers_of(kernel, map, rows, field, {}, 0);
     for (std::size_t i = 0; i < asked.size(); ++i)
       found[place[i]] = SmallLeaves{answers.final[i].endings, answers.final[i].final_cells};
     return found;
   }
-  const markov::EndTable chances =
-      markov::ending_chances(chain_of(kernel, map, field, {}).chains().front(),
-                             {field.columns, field.rows}, field.start_column(), 0, field.max_gates);
+  const markov::EndTable chances = markov::ending_chances(
+      chain_of(kernel, map, field, {}).chains().front(), {field.columns, field.rows},
+      field.start_column(), field.start_row, field.max_gates);
   for (std::size_t i = 0; i < asked.size(); ++i) {
     EndingsOf& of = found[place[i]].emplace().endings;
     const auto row = static_cast<Eigen::Index>(i);
@@ -162,8 +162,8 @@ std::optional<GroupedMaps> mean_maps(const dynamics::CellMap& map, const FieldPa
   tbb::parallel_for(-1, kTrialGroups, [&](int g) {
     const TrialGroup group = g < 0 ? TrialGroup{} : TrialGroup{g, kTrialGroups};
     const Kernel kernel = kernel_of(map, pool, leaf, group);
-    const markov::Counts rows = mean_row(
-        first_rows(kernel, map, pool, starts, map.type_of(field.start_column(), 0), {group}));
+    const markov::Counts rows = mean_row(first_rows(
+        kernel, map, pool, starts, map.type_of(field.start_column(), field.start_row), {group}));
     FinalDistribution found = std::move(answers_of(kernel, map, rows, field, {}, 0).final.front());
     if (g < 0) maps.unsampled = found.unsampled();
     (g < 0 ? maps.whole : maps.groups[static_cast<std::size_t>(g)]) = std::move(found.final_cells);
@@ -263,8 +263,8 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<FirstRow>& st
     tbb::parallel_for(std::size_t{0}, chains_.size(), [&](std::size_t g) {
       GroupChain& c = chains_[g];
       c.adjoint.emplace(chain_of(c.kernel, map_, field_, {}).chains().front(),
-                        markov::Field{field_.columns, field_.rows}, field_.start_column(), 0,
-                        field_.max_gates);
+                        markov::Field{field_.columns, field_.rows}, field_.start_column(),
+                        field_.start_row, field_.max_gates);
     });
   const std::size_t n = starts.size();
   PoolAnswers said{.whole = {},
@@ -285,9 +285,10 @@ PoolAnswers PoolChains::ask(const RunPool& pool, const std::vector<FirstRow>& st
     std::vector<TrialGroup> groups;
     if (g >= 0) groups.push_back({g, kTrialGroups});
     if (g < 0 || with_kernels) groups.emplace_back();
-    KernelAnswers found = answers(chain, g,
-                                  first_rows(chain.kernel, map_, pool, starts,
-                                             map_.type_of(field_.start_column(), 0), groups));
+    KernelAnswers found =
+        answers(chain, g,
+                first_rows(chain.kernel, map_, pool, starts,
+                           map_.type_of(field_.start_column(), field_.start_row), groups));
     if (g < 0) {
       said.whole = std::move(found);
       return;

@@ -64,7 +64,7 @@ void PoolRunner::finish() {
 
 std::optional<FirstPoints> PoolRunner::points_of(const Begun& begun) const {
   if (!lays_noise_ || !begun.alike) return {};
-  const Cell& cell = problem_.cells.at(problem_.field.start_column(), 0);
+  const Cell& cell = problem_.cells.at(problem_.field.start_column(), problem_.field.start_row);
   return FirstPoints(seed_, cell.stream_of(begun.start(0)), begun.numbers);
 }
 
@@ -90,7 +90,7 @@ void PoolRunner::run_plain(const Begun& begun, std::int64_t count, FieldTrials& 
   FieldParams field = problem_.field;
   if (!begun.through_field) field.max_gates = 1;
   const auto points = points_of(begun);
-  const Cell& cell = problem_.cells.at(field.start_column(), 0);
+  const Cell& cell = problem_.cells.at(field.start_column(), field.start_row);
   const std::int64_t done = std::ssize(all.passed);
   in_kept_pieces(
       work_, {begun.what, {0, count}},

@@ -434,7 +434,7 @@ class RunReader {
 void find_endings(const CellMap& map, const FieldParams& field, FieldTrials& trials) {
   FieldTrials ended;
   for (std::size_t i = 0; i < trials.passed.size(); ++i) {
-    RunningTrial trial(field.start_column());
+    RunningTrial trial(field);
     bool goes_on = true;
     for (const CellPassage p : trials.of_trial(i)) {
       if (!goes_on || p.fate == Fate::broken || p.type != map.type_of(trial.column(), trial.row()))

@@ -59,8 +59,8 @@ Pilot run_pilot(const Scene& scene, const std::vector<BodyState>& starts, std::i
   field.max_gates = field.max_gates == 0 ? kPilotGates : std::min(field.max_gates, kPilotGates);
   const FieldGates gates = gates_of(scene);
   for (const BodyState& start : starts) {
-    const Entry entry = entry_of(start);
-    if (start.y == 0.0 &&
+    const Entry entry = entry_of(scene.gate, start);
+    if (on_boundary(scene.gate, start) &&
         std::find(pilot.starts.begin(), pilot.starts.end(), entry) == pilot.starts.end())
       pilot.starts.push_back(entry);
     work.in_pieces("pilot", trials, [&](TrialRange range) {

@@ -33,7 +33,7 @@ constexpr const char* kNameRule =
     "be letters, digits and _, at most 60, and begin with a letter, such as ";
 const Names kTables{"cell", "field", "start", std::string(kTerrainTable),
                     std::string(kActionsTable)};
-const Names kFieldKeys{"columns", "rows", "max_gates"};
+const Names kFieldKeys{"columns", "rows", "max_gates", "start_column", "start_row"};
 const Names kCellKeys{"width_m", "length_m",    "symmetric", "trapped_after_s",
                       "faces",   "coordinates", "costs",     "types"};
 
@@ -465,13 +465,15 @@ void read_numbers(CellFile& file, const Settings& settings, const std::string& c
       throw SceneError(cell_line + ": [cell] has no key " + std::string(key).substr(5) +
                        ": it must be the size of a cell, a number > 0");
   if (double limit = 0.0; number("cell.trapped_after_s", limit)) file.trapped_after = limit;
-  const auto whole = [&](const std::string& key, const Interval& permitted, int& value) {
+  const auto whole = [&](const std::string& key, const Interval& permitted, auto& value) {
     if (const Setting* const given = found(settings, key))
       value = whole_number_of(*given, permitted, key);
   };
   whole("field.columns", kFieldSizes, file.field.columns);
   whole("field.rows", kFieldSizes, file.field.rows);
   whole("field.max_gates", kGateLimits, file.field.max_gates);
+  whole("field.start_column", below(file.field.columns), file.field.own_start_column);
+  whole("field.start_row", below(file.field.rows), file.field.start_row);
   file.has_field = found(settings, "field.columns") && found(settings, "field.rows");
 }
 
@@ -654,6 +656,10 @@ std::string to_toml(const CellFile& file) {
   text += "\n[field]\ncolumns = " + std::to_string(file.field.columns) +
           "\nrows = " + std::to_string(file.field.rows) +
           "\nmax_gates = " + std::to_string(file.field.max_gates) + "\n";
+  if (file.field.own_start_column)
+    text += "start_column = " + std::to_string(*file.field.own_start_column) + "\n";
+  if (file.field.start_row > 0)
+    text += "start_row = " + std::to_string(file.field.start_row) + "\n";
   if (file.start) {
     text += "\n[start]\nface = \"" +
             section.faces[static_cast<std::size_t>(file.start->face)].name + "\"\n";

@@ -35,9 +35,10 @@ constexpr std::size_t kLongestCompared = 100;  // bytes of an unknown key
 
 constexpr std::string_view kMethodKey = "run.method";
 constexpr const char* kFidelityKey = "field.fidelity";
+constexpr std::string_view kStartColumnKey = "field.start_column", kStartRowKey = "field.start_row";
 constexpr std::string_view kSweepTable = "sweep";
 
-using Slot = std::variant<double*, int*, std::string*, Fidelity*>;
+using Slot = std::variant<double*, int*, std::optional<int>*, std::string*, Fidelity*>;
 
 struct SceneKey {
   std::string_view key;
@@ -88,14 +89,22 @@ const std::vector<SceneKey>& scene_keys() {
         "field.max_gates", [](Scene& s) { return &s.field.max_gates; }, fixed(kGateLimits),
         "gates that a body may visit before it is cut off; 0: no limit");
     add(
+        kStartColumnKey, [](Scene& s) { return &s.field.own_start_column; },
+        [](const Scene& s) { return below(s.field.columns); },
+        "column that bodies start in, from 0 at the left; default: the middle one");
+    add(
+        kStartRowKey, [](Scene& s) { return &s.field.start_row; },
+        [](const Scene& s) { return below(s.field.rows); },
+        "row that bodies start in, from 0, the near one");
+    add(
         kFidelityKey, [](Scene& s) { return &s.field.fidelity; }, {},
         "beams that act: active (the body's gate), remember (also the last), all");
     add(
         "start.x_m", [](Scene& s) { return &s.start.x; },
         [](const Scene& s) {
-          return Interval{-s.gate.beams.joint_x, s.gate.beams.joint_x, true, true};
+          return Interval{-s.gate.beams.joint_x, s.gate.beams.joint_x};
         },
-        "x of the start, from the gate's middle line");
+        "x of the start, from the gate's middle line; at a side: the body enters by the side");
     add(
         "start.y_m", [](Scene& s) { return &s.start.y; },
         [](const Scene& s) {
@@ -320,6 +329,8 @@ void assign(const SceneKey& key, const Setting& setting, Scene& scene, std::stri
     **fidelity = static_cast<Fidelity>(name - names.begin());
   } else if (auto* const* integer = std::get_if<int*>(&slot)) {
     **integer = whole_number_of(setting, key.permitted(scene), shown);
+  } else if (auto* const* own = std::get_if<std::optional<int>*>(&slot)) {
+    **own = whole_number_of(setting, key.permitted(scene), shown);
   } else {
     *std::get<double*>(slot) = number_of(setting, key.key, key.permitted(scene), shown);
   }
@@ -331,7 +342,8 @@ void assign(const SceneKey& key, const Setting& setting, Scene& scene) {
 
 /// Distance from the start to the nearest point of the two beams at rest (both on y = joint_y), m.
 double distance_to_beams(const Scene& scene) {
-  const dynamics::Beams beams = gates_of(scene).at(scene.field.start_column(), 0).beams;
+  const dynamics::Beams beams =
+      gates_of(scene).at(scene.field.start_column(), scene.field.start_row).beams;
   const auto to_beam = [&](double joint_x, double tip_x) {
     const double nearest_x =
         std::clamp(scene.start.x, std::min(joint_x, tip_x), std::max(joint_x, tip_x));
@@ -437,6 +449,19 @@ void check_start(const Scene& scene, const Settings& settings) {
                             std::string(name_of(scene.field.fidelity)) +
                             "\" is not permitted with [terrain]: gates of several types are only "
                             "run with \"active\"");
+    const auto& [x, y, vx, vy] = scene.start;
+    if (std::abs(x) == scene.gate.beams.joint_x) {
+      const std::string at_a_side =
+          ": start.x_m = " + shortest(x) + " is a side of the gate, which bodies enter by with ";
+      if (y < 0.0)
+        throw dynamics::InvalidParameter(
+            "start.y_m",
+            "start.y_m = " + shortest(y) + " is not permitted" + at_a_side + "start.y_m >= 0");
+      if (!(x * vx < 0.0))
+        throw dynamics::InvalidParameter(
+            "start.vx_m_per_s", "start.vx_m_per_s = " + shortest(vx) + " is not permitted" +
+                                    at_a_side + "start.vx_m_per_s " + (x < 0.0 ? "> 0" : "< 0"));
+    }
     if (const double distance = distance_to_beams(scene); distance < scene.gate.body.radius) {
       throw dynamics::InvalidParameter(
           "start.y_m", "start.y_m = " + shortest(scene.start.y) +
@@ -563,6 +588,8 @@ std::string value_text(const SceneKey& key, Scene& scene) {
   const Slot slot = key.slot(scene);
   if (auto* const* string = std::get_if<std::string*>(&slot)) return "\"" + **string + "\"";
   if (auto* const* integer = std::get_if<int*>(&slot)) return std::to_string(**integer);
+  if (auto* const* own = std::get_if<std::optional<int>*>(&slot))
+    return std::to_string((*own)->value_or(scene.field.middle_column()));
   if (auto* const* fidelity = std::get_if<Fidelity*>(&slot))
     return "\"" + std::string(name_of(**fidelity)) + "\"";
   return toml_float(*std::get<double*>(slot));
@@ -571,6 +598,12 @@ std::string value_text(const SceneKey& key, Scene& scene) {
 }  // namespace
 
 namespace {
+
+/// True for the start's cell where it is the usual one, which the text of a scene leaves out.
+bool is_usual_cell(const FieldParams& field, std::string_view key) {
+  return (key == kStartColumnKey && !field.own_start_column) ||
+         (key == kStartRowKey && field.start_row == 0);
+}
 
 /// The keys of the scene for which is_written(key) is true, as TOML.
 template <class IsWritten>
@@ -583,7 +616,7 @@ std::string toml_of(const Scene& scene, IsWritten is_written) {
       table = table_of(key.key);
       text += (text.empty() ? "[" : "\n[") + std::string(table) + "]\n";
     }
-    if (is_written(key.key))
+    if (is_written(key.key) && !is_usual_cell(scene.field, key.key))
       text += std::string(leaf_of(key.key)) + " = " + value_text(key, copy) + "\n";
   }
   if (scene.bins) text += "\n" + bins_toml(*scene.bins);

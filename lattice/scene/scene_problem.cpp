@@ -66,10 +66,8 @@ Problem problem_with_all_types(const Scene& scene) {
 }
 
 Scene up_to_row(const Scene& scene, int row) {
-  if (row < 1) throw std::invalid_argument("the row to enter must be 1 or more");
   Scene deep = scene;
-  deep.field.rows = row;
-  deep.field.max_gates = 0;
+  deep.field = up_to_row(scene.field, row);
   if (!scene.terrain) return deep;
   if (row > scene.field.rows)
     throw std::invalid_argument(

@@ -23,7 +23,7 @@ void put_cells(Problem& problem, const Scene& scene, RunsFrom from = RunsFrom::e
 [[nodiscard]] Problem problem_with_all_types(const Scene& scene);
 
 /// The scene cut to the rows of gates before `row`, without a limit of gates. Throws
-/// std::invalid_argument if its terrain has fewer rows, and for a row below 1.
+/// std::invalid_argument if its terrain has fewer rows, and for a row not ahead of the start's.
 [[nodiscard]] Scene up_to_row(const Scene& scene, int row);
 
 }  // namespace gatewalk::lattice

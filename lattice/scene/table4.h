@@ -17,14 +17,14 @@ struct PaperStart {
 /// The four starts of Table IV, in the scene's own units, if field and start are the paper's; else
 /// empty.
 [[nodiscard]] std::vector<PaperStart> table_iv_starts(const Scene& scene);
-/// The scene's start as an entry. Throws std::invalid_argument for a start inside the gate, because
-/// a chain's states are entries.
+/// The scene's start as an entry, from below or by a side. Throws std::invalid_argument for a start
+/// inside the gate, because a chain's states are entries.
 [[nodiscard]] dynamics::Entry own_start(const Scene& scene);
-/// The body that enters the first gate from below by this entry.
-[[nodiscard]] dynamics::BodyState body_at(const dynamics::Entry& entry);
+/// The bodies that enter the scene's first gate by these entries.
 [[nodiscard]] std::vector<dynamics::BodyState> bodies_at(
-    const std::vector<dynamics::Entry>& entries);
-/// Throws std::invalid_argument unless all starts lie between the sides of the scene's gates.
+    const Scene& scene, const std::vector<dynamics::Entry>& entries);
+/// Throws std::invalid_argument unless all starts lie on their face, clear of the beams at rest,
+/// and those by a side move into the gate.
 void require_inside(const std::vector<dynamics::Entry>& starts, const Scene& scene);
 
 /// True if body, beams, drag and field are those of the paper's Table IV, whatever the forces,

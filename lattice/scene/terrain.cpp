@@ -120,9 +120,9 @@ std::vector<int> drawn_map(const Terrain& terrain, const FieldParams& field) {
   std::vector<int> types;
   for (int row = 0; row < field.rows; ++row)
     for (int column = 0; column < field.columns; ++column) {
-      // Two's complement counts columns from the start's in both directions.
+      // Two's complement counts columns from the middle one in both directions.
       const auto i_x =
-          static_cast<std::uint64_t>(std::int64_t{column} - std::int64_t{field.start_column()});
+          static_cast<std::uint64_t>(std::int64_t{column} - std::int64_t{field.middle_column()});
       dynamics::Random random(dynamics::Purpose::terrain,
                               {terrain.seed, static_cast<std::uint64_t>(row), i_x});
       double left = random.uniform();

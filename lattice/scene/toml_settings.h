@@ -46,6 +46,8 @@ struct Interval {
 
 /// Permitted numbers of rows and columns of a field, and of gates that a body may visit.
 inline constexpr Interval kFieldSizes{1, 10001}, kGateLimits{0, 1e9};
+/// Permitted numbers of one of `count` rows or columns, counted from 0.
+[[nodiscard]] constexpr Interval below(int count) { return {0, count - 1.0}; }
 
 /// One key that a file or an override gives.
 struct Setting {

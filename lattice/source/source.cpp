@@ -268,9 +268,7 @@ Source Source::open(const SourceFile& file, const SourceOptions& options) {
 }
 
 std::vector<std::string> Source::start_from(const std::vector<std::string>& texts) {
-  const StartsBy by = scene           ? StartsBy::first_face
-                      : is_recorded() ? StartsBy::any_face_or_seen
-                                      : StartsBy::any_face;
+  const StartsBy by = is_recorded() ? StartsBy::any_face_or_seen : StartsBy::any_face;
   starts_given = !texts.empty();
   if (starts_given) starts.clear();
   for (const std::string& text : texts)

@@ -14,22 +14,21 @@ namespace gatewalk::lattice {
 
 std::optional<dynamics::Entry> start_in(const std::string& text, const dynamics::Section& section,
                                         StartsBy by) {
-  const bool seen = by == StartsBy::any_face_or_seen, faces = by != StartsBy::first_face;
+  const bool seen = by == StartsBy::any_face_or_seen;
   if (seen && text == "seen") return {};
   const auto wrong = [&] {
     std::string units;
     for (const dynamics::Coordinate& c : section.coordinates)
       units += (units.empty() ? "" : ", ") + (c.unit == "m s-1" ? "m/s" : c.unit);
     return std::invalid_argument(
-        fmt::format("--start {}: must be {}{} numbers {} ({}){}", text, seen ? "seen, or " : "",
-                    section.coordinates.size(), names_of(section.coordinates, ","), units,
-                    faces ? fmt::format(", behind a face {} and a colon unless it is the first",
-                                        names_of(section.faces, " or "))
-                          : ""));
+        fmt::format("--start {}: must be {}{} numbers {} ({}), behind a face {} and a colon unless "
+                    "it is the first",
+                    text, seen ? "seen, or " : "", section.coordinates.size(),
+                    names_of(section.coordinates, ","), units, names_of(section.faces, " or ")));
   };
   dynamics::Entry entry;
   std::string_view rest = text;
-  if (const std::size_t colon = faces ? text.find(':') : text.npos; colon != text.npos) {
+  if (const std::size_t colon = text.find(':'); colon != text.npos) {
     while (entry.face < std::ssize(section.faces) &&
            section.faces[static_cast<std::size_t>(entry.face)].name != rest.substr(0, colon))
       ++entry.face;

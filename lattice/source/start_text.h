@@ -9,9 +9,8 @@
 
 namespace gatewalk::lattice {
 
-/// Which starts are permitted: by the first face, by any face, or by any face and also "seen" (as
-/// recorded bodies entered).
-enum class StartsBy { first_face, any_face, any_face_or_seen };
+/// Which starts are permitted: by any face, or also "seen" (as recorded bodies entered).
+enum class StartsBy { any_face, any_face_or_seen };
 
 /// The start in a text such as "0.01,0,0.2" or "W:0.01,0,0.2"; nullopt for "seen", the observed
 /// first entries. Throws std::invalid_argument.

@@ -25,8 +25,8 @@ namespace {
 
 using namespace dynamics;
 
-/// The largest number of pairs of a draw and a cell that walks from the first row can reach, from
-/// the lengths of moves.
+/// The largest number of pairs of a draw and a cell that walks can reach, from the lengths of
+/// moves.
 double places_reached(const Section& section, const FieldParams& field) {
   std::int64_t side = 0, up = 0;
   bool chequered = true;

@@ -106,7 +106,7 @@ class Starter {
                                                {field.columns, field.rows}, gain_of_crossing(),
                                                {.max_cells = field.max_gates});
     chances.action.clear();  // there is only one action
-    return {std::move(kernel.space), std::move(chances)};
+    return {std::move(kernel.space), std::move(chances), field.start_row};
   }
 
   /// The best column, with the mean of the drawn starts in the best leaf that has any.
@@ -163,7 +163,7 @@ class Starter {
 }  // namespace
 
 double StartChances::chance(const TrialStart& start) const {
-  return chances.value[chances.at(start.column, 0, space.index_of(start.entry).state)];
+  return chances.value[chances.at(start.column, row, space.index_of(start.entry).state)];
 }
 
 BestStart best_start(const Problem& problem, const BestStartOptions& options, const Work& work) {
@@ -182,7 +182,7 @@ BestStart best_start(const Problem& problem, const BestStartOptions& options, co
                 std::isfinite(range.low) && std::isfinite(range.high) && range.low < range.high,
             "a range is of a number of an entry, and has a low end below its high one");
   for (const int column : options.columns)
-    require(problem.field.contains(column, 0), "there is no such column");
+    require(problem.field.contains(column, problem.field.start_row), "there is no such column");
   BestStart best = Starter(problem, options, work).carry_out();
   if (problem.check) problem.check(best.gate_runs / 10, options.seed, best.health, work);
   return best;

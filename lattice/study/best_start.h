@@ -25,7 +25,7 @@ struct CoordinateRange {
 struct BestStartOptions {
   std::vector<CoordinateRange>
       ranges{};                // at least one; other coordinates stay as in the problem's start
-  std::vector<int> columns{};  // columns of the first row; empty: that of the field's start
+  std::vector<int> columns{};  // columns of the start's row; empty: that of the field's start
   double accuracy = 0.02;      // half of the widest interval of a probability to cross
   std::int64_t most_runs = 20'000'000;  // gate runs to choose with, about
   int per_leaf = dynamics::kEntriesPerLeaf;
@@ -36,6 +36,7 @@ struct BestStartOptions {
 struct StartChances {
   dynamics::StateSpace space;
   markov::Decisions chances;
+  int row = 0;  // the start's
 
   /// The probability to cross from this start.
   [[nodiscard]] double chance(const TrialStart& start) const;

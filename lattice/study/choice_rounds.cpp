@@ -21,9 +21,10 @@ FieldTally chosen_trials(const CellField& cells, const Problem& first, const Typ
         const std::int64_t trial = range.first + i;
         const TrialStart start =
             choice.from ? choice.from(trial) : TrialStart{first.field.start_column(), choice.start};
-        const Cell& cell = choice.type ? *cells.cells[static_cast<std::size_t>(
-                                             choice.type({start.column, 0, 0, trial}, start.entry))]
-                                       : cells.at(start.column, 0);
+        const Cell& cell = choice.type
+                               ? *cells.cells[static_cast<std::size_t>(choice.type(
+                                     {start.column, first.field.start_row, 0, trial}, start.entry))]
+                               : cells.at(start.column, first.field.start_row);
         begin_trial(cell, start.entry, seed, trial, body);
       },
       range, &each, nullptr, Memory::kept, choice);

@@ -58,7 +58,7 @@ std::vector<SeenTrial> seen_trials(const Problem& problem, const RunPool& half, 
   const FieldTrials& trials = half.scattered.each;
   std::vector<SeenTrial> all;
   for (std::size_t i = 0; i < trials.passed.size(); ++i) {
-    RunningTrial trial(field.start_column());
+    RunningTrial trial(field);
     const auto place = [&](const Entry& entry) {
       return Entering{std::int64_t{trial.row()} * field.columns + trial.column(), entry,
                       trial.passed()};

@@ -40,14 +40,14 @@ struct Labelled {
   std::vector<LabelledRun> gate_before, visit, row;
 };
 
-Labelled labelled(const StateWalks& w, const StateSpace& space) {
+Labelled labelled(const StateWalks& w, const StateSpace& space, int start_row) {
   const std::vector<std::string> all_origins = origins_of(space.section());
   std::vector<int> origins;
   for (int s = 0; s < std::ssize(w.way); ++s)
     origins.push_back(origin_of(space, s % space.size(), all_origins));
   Labelled all;
   for (std::int64_t walk = 0; walk < w.walks(); ++walk) {
-    int row = 0;
+    int row = start_row;
     for (std::int64_t i = w.begin(walk); i < w.passed[walk]; ++i) {
       const std::int32_t state = w.state[i], next = w.next[i];
       const std::int32_t outcome = next == StateWalks::kTrapped ? w.ways : w.way[next];
@@ -124,7 +124,7 @@ MemoryStudy study_memory(const StateWalks& walks, const StateSpace& space,
   const std::int64_t draws =
       options.null_draws.value_or(std::clamp<std::int64_t>(100'000'000 / runs, 399, 999));
   const auto begin = [&](Question q) { work.tell("memory", static_cast<int>(q), kQuestions); };
-  const Labelled runs_with = labelled(walks, space);
+  const Labelled runs_with = labelled(walks, space, options.start_row);
   const auto independence = [&](Question q, const std::vector<LabelledRun>& labelled_runs) {
     begin(q);
     return test_independence(labelled_runs, {.level = MemoryStudy::kLevel / kQuestions,

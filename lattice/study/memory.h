@@ -83,6 +83,7 @@ struct MemoryOptions {
   /// Behind each p-value; 399 to 999, by the number of runs.
   std::optional<std::int64_t> null_draws = {};
   std::uint64_t seed = 1;
+  int start_row = 0;  // the row of the field that walks start in
 };
 
 /// Asks all questions about walks in this space. Throws std::invalid_argument if there are no

@@ -272,7 +272,8 @@ class Planner {
   }
 
   [[nodiscard]] double at_start(const markov::Decisions& d, const StateSpace& space) const {
-    return d.value[d.at(first_.field.start_column(), 0, space.index_of(first_.start).state)];
+    return d.value[d.at(first_.field.start_column(), first_.field.start_row,
+                        space.index_of(first_.start).state)];
   }
 
   [[nodiscard]] markov::Decisions decide_among(const std::vector<std::size_t>& actions,
@@ -457,7 +458,7 @@ class Planner {
         static_cast<std::size_t>(field.columns) * static_cast<std::size_t>(field.rows);
     std::vector<double> usage(actions_.size() * cells, 0.0);
     for (std::size_t i = 0; i < trials.passed.size(); ++i) {
-      int column = field.start_column(), row = 0;
+      int column = field.start_column(), row = field.start_row;
       for (const CellPassage& passage : trials.of_trial(i)) {
         usage[static_cast<std::size_t>(passage.type % actions()) * cells +
               static_cast<std::size_t>(row * field.columns + column)] +=

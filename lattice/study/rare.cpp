@@ -42,7 +42,7 @@ struct Weighted {
 /// What all trials of a call share.
 struct Aim {
   const CellField& cells;
-  int columns, target;
+  int columns, start_row, target;
   double start_value;
   const EntryValue& value;
   std::uint64_t seed, row;  // of the streams
@@ -55,12 +55,12 @@ class SplitTrial {
       : aim_(aim),
         number_(static_cast<std::uint64_t>(number)),
         chance_(random()),
-        entered_(static_cast<std::size_t>(aim.target), 0.0) {}
+        entered_(static_cast<std::size_t>(aim.target - aim.start_row), 0.0) {}
 
   [[nodiscard]] Random random() {
     return {Purpose::rare, {aim_.seed, aim_.row, number_ * kMostOfTrial + streams_++}};
   }
-  /// Weight that entered rows 1, 2, ..., (target).
+  /// Weight that entered each row from the first one ahead of the start's to the target.
   [[nodiscard]] const std::vector<double>& entered() const { return entered_; }
 
   /// Takes a body's passage, and adds to `next` the bodies that continue from it.
@@ -70,7 +70,8 @@ class SplitTrial {
     const Face& move = aim_.cells.map.section.faces[static_cast<std::size_t>(entry.face)];
     const int column = before.column + move.di_x, row = before.row + move.di_y;
     if (column < 0 || column >= aim_.columns) return;
-    if (move.di_y > 0) entered_[static_cast<std::size_t>(row) - 1] += before.weight;
+    if (move.di_y > 0)
+      entered_[static_cast<std::size_t>(row - aim_.start_row) - 1] += before.weight;
     if (row == aim_.target) return;
     Weighted body = before;
     body.column = column;
@@ -104,7 +105,7 @@ class SplitTrial {
 
 /// The results of some trials, one trial after the other.
 struct SplitPiece {
-  std::vector<double> entered{};  // (trials x rows) weight that entered rows 1, 2, ...
+  std::vector<double> entered{};  // (trials x rows) weight that entered each row
   Health health{};
 };
 template <class Archive>
@@ -117,8 +118,7 @@ struct Sums {
   std::vector<double> sum, squares;
   std::int64_t trials = 0;
 
-  explicit Sums(int rows)
-      : sum(static_cast<std::size_t>(rows), 0.0), squares(static_cast<std::size_t>(rows), 0.0) {}
+  explicit Sums(std::size_t rows) : sum(rows, 0.0), squares(rows, 0.0) {}
   void add(const std::vector<double>& entered) {
     ++trials;
     for (std::size_t r = 0; r < entered.size(); ++r) {
@@ -168,10 +168,8 @@ std::array<double, 2> RowChance::interval_95() const {
 }
 
 Problem up_to_row(const Problem& problem, int row) {
-  if (row < 1) throw std::invalid_argument("the row to enter must be 1 or more");
   Problem deep = problem;
-  deep.field.rows = row;
-  deep.field.max_gates = 0;
+  deep.field = up_to_row(problem.field, row);
   std::vector<int>& types = deep.cells.map.type_of_cell;
   if (types.empty()) return deep;
   if (row > problem.field.rows)
@@ -204,11 +202,14 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
   const Problem deep = up_to_row(problem, options.row);
   const CellField& cells = deep.cells;
   if (!(start_value > 0.0)) throw std::invalid_argument("splitting: a value is not positive");
-  const Cell& first = cells.at(deep.field.start_column(), 0);
-  Splitting result;
-  Sums sums(options.row);
-  const Aim aim{cells,        deep.field.columns,         options.row, start_value, value,
-                options.seed, first.stream_of(deep.start)};
+  const Cell& first = cells.at(deep.field.start_column(), deep.field.start_row);
+  const int start_row = deep.field.start_row;
+  const auto rows = static_cast<std::size_t>(options.row - start_row);
+  Splitting result{.rows = {}, .first_row = start_row + 1, .health = {}};
+  Sums sums(rows);
+  const Aim aim{
+      cells,        deep.field.columns,         start_row, options.row, start_value, value,
+      options.seed, first.stream_of(deep.start)};
   /// Runs each body's passage through its cell, those in cells of one type together.
   const auto run_all = [&](std::vector<Weighted>& bodies, Health& health) {
     std::vector<Passage> passages(bodies.size());
@@ -246,7 +247,7 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
       SplitTrial& t = trials.emplace_back(aim, range.first + i);
       Body body{.entry = deep.start, .random = t.random()};
       first.begin(body);
-      bodies.push_back({i, deep.field.start_column(), 0, 1.0, body});
+      bodies.push_back({i, deep.field.start_column(), start_row, 1.0, body});
     }
     while (!bodies.empty()) {
       work.tell(stage.what, range.first - stage.items.first, stage.items.count);
@@ -259,7 +260,6 @@ Splitting split(const Problem& problem, double start_value, const EntryValue& va
       piece.entered.insert(piece.entered.end(), t.entered().begin(), t.entered().end());
     return piece;
   };
-  const auto rows = static_cast<std::size_t>(options.row);
   const auto take = [&](const SplitPiece& piece) {
     if (piece.entered.size() % rows != 0)
       throw std::runtime_error("a kept piece has trials to other rows");
@@ -327,7 +327,8 @@ class Pool {
         Problem plain = problem;
         std::vector<int>& cells = plain.cells.map.type_of_cell;
         std::fill(cells.begin(), cells.end(), type);
-        const auto start = static_cast<std::size_t>(problem.field.start_column());
+        const auto start = static_cast<std::size_t>(
+            problem.field.start_row * problem.field.columns + problem.field.start_column());
         cells[start] = map[start];
         run_in(plain, kPoolTrials / parts, most_runs / parts);
       }
@@ -399,8 +400,9 @@ RareEvent rare_event(const Problem& problem, const SplittingOptions& options, co
   work.tell("chain", 0, 2);
   {
     const markov::FieldChain chain = pool.chain(pool.kernel(map, kEntriesPerLeaf), deep);
-    event.chain = markov::row_chances(chain, {deep.field.columns, deep.field.rows},
-                                      {deep.field.start_column(), 0, chain.inputs() - 1});
+    event.chain =
+        markov::row_chances(chain, {deep.field.columns, deep.field.rows},
+                            {deep.field.start_column(), deep.field.start_row, chain.inputs() - 1});
   }
   event.chain_seconds = watch.seconds();
   work.tell("chain", 1, 2);
@@ -408,8 +410,9 @@ RareEvent rare_event(const Problem& problem, const SplittingOptions& options, co
   // The values of entries come from a chain with larger leaves, which reaches every row that the
   // fine chain reaches. Entries into rows beyond all have the same value.
   const Kernel kernel = pool.kernel(map, kPerLeafOfValues);
-  const auto known = static_cast<int>(std::find(event.chain.begin(), event.chain.end(), 0.0) -
-                                      event.chain.begin());
+  const auto first_unknown = std::find(event.chain.begin(), event.chain.end(), 0.0);
+  const auto ahead = static_cast<int>(first_unknown - event.chain.begin());
+  const int known = ahead > 0 ? deep.field.start_row + ahead : 0;  // rows whose values are known
   markov::Committor values;
   std::vector<double> least;  // by row
   if (known > 0) {
@@ -424,7 +427,7 @@ RareEvent rare_event(const Problem& problem, const SplittingOptions& options, co
                        : 1.0;
   };
   event.splitting = split(
-      deep, worth(deep.field.start_column(), 0, values.inputs - 1),
+      deep, worth(deep.field.start_column(), deep.field.start_row, values.inputs - 1),
       [&](int column, int row, const Entry& entry) {
         return worth(column, row, kernel.space.index_of(entry).state);
       },
@@ -439,14 +442,14 @@ DirectRows direct_rows(const Problem& problem, std::int64_t trials, std::uint64_
   const dynamics::Stopwatch watch;
   const FieldTally tally = field_trials(problem, {0, trials}, seed, work);
   DirectRows direct{.trials = trials, .entered = {}, .seconds = watch.seconds()};
-  const int rows = problem.field.rows;
-  direct.entered.assign(static_cast<std::size_t>(rows),
+  const int rows = problem.field.rows, first = problem.field.start_row + 1;
+  direct.entered.assign(static_cast<std::size_t>(rows - first + 1),
                         tally.endings[static_cast<std::size_t>(markov::Ending::far_edge)]);
   // Final gates in later rows, including those of bodies that left over the far edge.
   std::int64_t behind = 0;
-  for (int row = rows - 1; row > 0; --row) {
+  for (int row = rows - 1; row >= first; --row) {
     behind += tally.final_cells.row(row).sum();
-    direct.entered[static_cast<std::size_t>(row) - 1] = behind;
+    direct.entered[static_cast<std::size_t>(row - first)] = behind;
   }
   return direct;
 }

@@ -46,7 +46,8 @@ struct RowChance {
 
 /// The results of split().
 struct Splitting {
-  std::vector<RowChance> rows;  // (options.row) for rows 1, 2, ... up to the target
+  std::vector<RowChance> rows;  // of the rows ahead of the start's, up to the target
+  int first_row = 1;            // the row of rows.front()
   std::int64_t trials = 0;      // independent trials, each of which becomes many bodies or none
   std::int64_t gate_runs = 0;
   bool reached = false;  // the accuracy asked for is reached
@@ -54,7 +55,7 @@ struct Splitting {
 };
 
 /// The problem cut to the rows of cells before `row`, without a limit of cells. Throws
-/// std::invalid_argument if its map has fewer rows, and for a row below 1.
+/// std::invalid_argument if its map has fewer rows, and for a row not ahead of the start's.
 [[nodiscard]] Problem up_to_row(const Problem& problem, int row);
 
 /// Runs full trials from the start, without a limit of gates, with splitting. A body that enters a
@@ -71,7 +72,7 @@ struct Splitting {
 /// Splitting, with the chain that gave the values of entries.
 struct RareEvent {
   Splitting splitting;
-  std::vector<double> chain;  // (options.row) the chain's own probabilities for rows 1, 2, ...
+  std::vector<double> chain;  // the chain's own probabilities, by splitting.rows
   std::int64_t pool_runs = 0;
   double chain_seconds = 0.0;  // pool and chain
   double seconds = 0.0;        // everything
@@ -84,10 +85,10 @@ struct RareEvent {
 [[nodiscard]] RareEvent rare_event(const Problem& problem, const SplittingOptions& options,
                                    const dynamics::Work& work = {});
 
-/// Direct simulation: number of trials that entered rows 1, 2, ...
+/// Direct simulation: number of trials that entered each row ahead of the start's.
 struct DirectRows {
   std::int64_t trials = 0;
-  std::vector<std::int64_t> entered;  // (field.rows) the last one: crossed the field
+  std::vector<std::int64_t> entered;  // the last one: crossed the field
   double seconds = 0.0;
 };
 /// Runs direct simulation; bodies must not move back to a row before. Throws as field_trials.

@@ -342,8 +342,12 @@ Validation validate_chain(const Problem& problem,
       v.entries_by[f] += d.entries[f];
     }
   }
-  v.memory = std::make_shared<const MemoryStudy>(study_memory(
-      remembered, space, {.null_draws = options.null_draws, .seed = options.seed}, work));
+  v.memory =
+      std::make_shared<const MemoryStudy>(study_memory(remembered, space,
+                                                       {.null_draws = options.null_draws,
+                                                        .seed = options.seed,
+                                                        .start_row = problem.field.start_row},
+                                                       work));
   v.threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   return v;
 }

@@ -109,8 +109,8 @@ void begin_truths(ChainErrorChart& chart, const Scene& scene, const Work& work) 
     FieldTruth t{start, FieldTally(scene.field)};
     t.seconds_per_trial =
         seconds_per_item(work, chart.options.truth_trials, 10, [&](TrialRange range) {
-          t.tally += run_field(scene.gate, scene.field, body_at(start), chart.options.seed, range,
-                               nullptr, &space);
+          t.tally += run_field(scene.gate, scene.field, entry_state(scene.gate, start),
+                               chart.options.seed, range, nullptr, &space);
         });
     chart.truths.push_back(std::move(t));
   }
@@ -128,7 +128,7 @@ void see_entries(ChainErrorChart& chart, const Scene& scene, const Work& work) {
     work.in_pieces("pilot", chart.pilot_trials, [&](TrialRange range) {
       FieldTrials each{.final_gates = {}, .keep_passages = true};
       chart.health +=
-          run_field(scene.gate, scene.field, body_at(start), chart.options.seed,
+          run_field(scene.gate, scene.field, entry_state(scene.gate, start), chart.options.seed,
                     {chart.options.truth_trials + range.first, range.count}, &each, &space)
               .health;
       const auto entries = each.entries();
@@ -176,8 +176,9 @@ void finish_truths(ChainErrorChart& chart, const Scene& scene, TimedWork& work) 
     const std::int64_t done = t.tally.trials;
     work.in_pieces(
         1e3 * t.seconds_per_trial, chart.options.truth_trials - done, [&](TrialRange range) {
-          t.tally += run_field(scene.gate, scene.field, body_at(t.start), chart.options.seed,
-                               {done + range.first, range.count}, nullptr, &space);
+          t.tally +=
+              run_field(scene.gate, scene.field, entry_state(scene.gate, t.start),
+                        chart.options.seed, {done + range.first, range.count}, nullptr, &space);
         });
     t = field_truth(t.start, std::move(t.tally), t.seconds_per_trial);
     chart.health += t.tally.health;
@@ -321,7 +322,7 @@ ChainErrorPlan plan_chain_error(const Scene& scene, const ChainErrorOptions& opt
                                 const Work& work) {
   require_no_terrain(scene, "a chart of the chain's error");
   ChainErrorPlan plan{options, usual_bins(scene)};
-  const std::vector<dynamics::BodyState> bodies = bodies_at(options.starts);
+  const std::vector<dynamics::BodyState> bodies = bodies_at(scene, options.starts);
   const bool from_pilot = plan.bins.kind == BinsChoice::Kind::automatic;
   plan.pilot_trials = options.visited.value_or(from_pilot ? kPilotTrials : 0);
   if (from_pilot) {
