@@ -183,7 +183,7 @@ class Matrix:
         Parameters
         ----------
         target : str, tuple or int
-            What bodies must reach: an ending ("crossed"), a gate (i_x, i_y) (bodies start in (0, 0)), a state in any gate (its
+            What bodies must reach: an ending ("crossed"), a gate (i_x, i_y) (i_x = 0 is the start's column), a state in any gate (its
             name or number), or a state of one gate (i_x, i_y, state).
         **more
             Options of ``gatewalk analyze``: ``set={"field.max_gates": 0}``, ``start``.

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import collections.abc
+import re
 import typing as t
 
 import numpy as np
@@ -34,9 +35,11 @@ def _same(a: t.Any, b: t.Any) -> bool:
     return bool(a == b) or (isinstance(a, float) and isinstance(b, float) and a != a and b != b)
 
 
-def _first_column(columns: int) -> int:
-    """i_x of the leftmost column. Bodies start in the column i_x = 0, as in the program."""
-    return -(columns // 2)
+def _first_column(result: collections.abc.Mapping[str, t.Any], columns: int) -> int:
+    """i_x of the leftmost column. Bodies start in the column i_x = 0: that of the scene or cell file, else the middle one."""
+    made_by = result.get("made_by", {})
+    own = re.search(r"^start_column = (\d+)$", made_by.get("scene") or made_by.get("cell") or "", re.MULTILINE)
+    return -(int(own.group(1)) if own else columns // 2)
 
 
 class Result(collections.abc.Mapping):  # type: ignore[type-arg]
@@ -156,8 +159,8 @@ class Prediction(Result):
         data["endings"] = (("ending",), np.array(list(ends.values()), dtype=float), unit)
         if "endings_95" in first:
             data["endings_95"] = (("ending", "bound"), np.array(list(self._limits(first).values()), dtype=float), unit)
-        coordinates = {"i_y": ("i_y", np.arange(rows), {"long_name": "row of gates, from the start's side"}),
-                       "i_x": ("i_x", np.arange(columns) + _first_column(columns), {"long_name": "column of gates, that of the start is 0"}),
+        coordinates = {"i_y": ("i_y", np.arange(rows), {"long_name": "row of gates, the near one is 0"}),
+                       "i_x": ("i_x", np.arange(columns) + _first_column(self._data, columns), {"long_name": "column of gates, that of the start is 0"}),
                        "ending": list(ends)}
         if gate_limits is not None or "endings_95" in first:
             coordinates["bound"] = ["low", "high"]
@@ -184,7 +187,7 @@ class Prediction(Result):
         total = float(self._data.get("trials", 1))
         gates = np.asarray(first["final_gates"], dtype=float) / total
         columns = gates.shape[1]
-        left = _first_column(columns) - 0.5
+        left = _first_column(self._data, columns) - 0.5
         shown = np.ma.masked_where(gates <= 0.0, 100 * gates)  # type: ignore[no-untyped-call]
         image = axes[0].imshow(shown, origin="lower", cmap="viridis", extent=(left, left + columns, -0.5, gates.shape[0] - 0.5))
         axes[0].set_xlabel("$i_x$")
@@ -235,7 +238,7 @@ class FirstPassage(Result):
         Values for bodies that enter each gate in each state and may still visit ``field.max_gates`` gates. ``probability`` is
         the committor. ``never_sampled`` is the share that reaches a state whose row was never sampled. ``mean_gates`` and
         ``mean_time_s`` are mean first passage times, NaN where no body reaches the target. In the target itself the probability
-        is 1 and the means are 0. Bodies enter the field in row 0.
+        is 1 and the means are 0.
     """
 
     def to_frame(self) -> t.Any:
@@ -246,7 +249,7 @@ class FirstPassage(Result):
         if tables is None:
             raise _core.UsageError("the field has too many gates and states for tables")
         rows, columns, _ = tables["probability"].shape
-        index = pandas.MultiIndex.from_product([range(rows), np.arange(columns) + _first_column(columns), self._data["states"]],
+        index = pandas.MultiIndex.from_product([range(rows), np.arange(columns) + _first_column(self._data, columns), self._data["states"]],
                                                names=["i_y", "i_x", "state"])
         return pandas.DataFrame({k: v.ravel() for k, v in tables.items() if v is not None}, index=index)
 
