@@ -58,9 +58,13 @@ std::vector<KeyInfo> keys_of_scene(const Settings& settings) {
   return lattice::describe(lattice::parse_scene(text, "scene"));
 }
 
-/// Settings of a scene with its own body, from which all other keys follow.
+/// Settings of a scene with its own body and field, from which all other keys follow.
 Settings own_body() {
-  return {{"body.mass_kg", "1.0"}, {"body.radius_m", "1.0"}, {"forces.propulsion_N", "1.0"}};
+  return {{"body.mass_kg", "1.0"},
+          {"body.radius_m", "1.0"},
+          {"forces.propulsion_N", "1.0"},
+          {"field.columns", "5"},
+          {"field.rows", "5"}};
 }
 
 /// For each key that follows from others, these other keys.

@@ -26,7 +26,7 @@ struct Printed {
 
 Printed printed(const CellProbabilities& shares) {
   Printed p;
-  std::istringstream text(map_of(shares, "final gate", "% of trials"));
+  std::istringstream text(map_of(shares, shares.cols() / 2, "final gate", "% of trials"));
   std::getline(text, p.head);
   for (std::string line; std::getline(text, line);) {
     std::istringstream words(line);
@@ -94,11 +94,13 @@ TEST(MapOf, SmallFieldsAreShownWhole) {
   CellProbabilities shares = CellProbabilities::Zero(2, 3);
   shares(0, 1) = 0.25;
   shares(1, 2) = 0.75;
-  EXPECT_EQ(map_of(shares, "final gate", "% of trials"),
+  EXPECT_EQ(map_of(shares, 1, "final gate", "% of trials"),
             "final gate, % of trials (i_y upwards, i_x to the right)\n"
             "   1 |      .      .  75.00\n"
             "   0 |      .  25.00      .\n"
             "  i_x      -1      0      1\n");
+  const std::string from_left = map_of(shares, 0, "final gate", "% of trials");
+  EXPECT_TRUE(from_left.ends_with("  i_x       0      1      2\n")) << from_left;
 }
 
 // Visits per 100 bodies by walks that circle for long: a blank stands before each number.
@@ -107,7 +109,7 @@ TEST(MapOf, LargeNumbersStandApart) {
   visits(0, 1) = 25000.5;
   visits(0, 2) = 123456.25;
   visits(1, 0) = 0.25;
-  EXPECT_EQ(map_of(visits, "visits of each gate", "per 100 bodies"),
+  EXPECT_EQ(map_of(visits, 1, "visits of each gate", "per 100 bodies"),
             "visits of each gate, per 100 bodies (i_y upwards, i_x to the right)\n"
             "   1 |       25.00           .           .\n"
             "   0 |           .  2500050.00 12345625.00\n"

@@ -614,6 +614,10 @@ TEST(Crossing, RoundTrips) {
     EXPECT_EQ(entry.vx, exit.vx);
     EXPECT_EQ(entry.vy, exit.vy);
     EXPECT_FALSE(outside(p, entry));
+    EXPECT_TRUE(on_boundary(p, entry));
+    const Entry again = entry_of(p, entry);
+    EXPECT_EQ(again.face, crossing.face);
+    EXPECT_NEAR(again.at[kEntryD], crossing.at[kEntryD], 1e-13);
 
     const BodyState next = shifted_into_next(p, outcome, exit);
     EXPECT_NEAR(next.x + 50 * move.di_x, exit.x, 1e-13);

@@ -252,7 +252,17 @@ TEST(CellFile, OverridesSetSingleKeys) {
             "--set field.rows=0: field.rows = 0 is not permitted: must lie in [1, 10001]");
   EXPECT_EQ(refused_as(kTracks, {"field.row=1"}),
             "--set field.row=1: unknown key field.row (did you mean rows?); [field] has columns, "
-            "rows and max_gates");
+            "rows, max_gates, start_column and start_row");
+  const CellFile own = parse(kTracks, {"field.start_row=1", "field.start_column=0"});
+  EXPECT_EQ(own.field.start_row, 1);
+  EXPECT_EQ(own.field.start_column(), 0);
+  EXPECT_EQ(parse(to_toml(own), {"field.columns=9"}).field.start_column(), 0);
+  EXPECT_EQ(parse(to_toml(file), {"field.columns=9"}).field.start_column(), 4);
+  EXPECT_EQ(to_toml(parse(to_toml(own))), to_toml(own));
+  EXPECT_EQ(to_toml(file).find("start_"), std::string::npos);
+  EXPECT_EQ(refused_as(kTracks, {"field.start_column=3"}),
+            "--set field.start_column=3: field.start_column = 3 is not permitted: must lie in [0, "
+            "2]");
 }
 
 const std::string kActions =
@@ -496,7 +506,8 @@ TEST(CellFile, RefusesByFileLineAndKey) {
       {"rows = 2", "rows = 0",
        "x.toml:36: field.rows = 0 is not permitted: must lie in [1, 10001]"},
       {"max_gates = 0", "fidelity = \"all\"",
-       "x.toml:37: unknown key field.fidelity; [field] has columns, rows and max_gates"},
+       "x.toml:37: unknown key field.fidelity; [field] has columns, rows, max_gates, start_column "
+       "and start_row"},
       {"max_gates = 0", "max_gates = 0\n[start]\nface = \"N\"",
        "x.toml:39: start.face = \"N\" is not permitted: must be one of S, W and E"},
       {"max_gates = 0", "max_gates = 0\n[start]\nface = \"S\"\ns_m = inf",

@@ -35,7 +35,7 @@ struct Ran : FieldTally {
 Ran run(const FieldGates& gates, const FieldParams& field, TrialRange range, std::uint64_t seed = 1,
         const BodyState& start = kStart) {
   Ran ran(field);
-  const StateSpace space = table3_space(gates.at(field.start_column(), 0));
+  const StateSpace space = table3_space(gates.at(field.start_column(), field.start_row));
   static_cast<FieldTally&>(ran) = run_field(gates, field, start, seed, range, &ran.each, &space);
   return ran;
 }
@@ -110,6 +110,42 @@ TEST(Field, StartsInTheMiddleOfTheFirstRow) {
   const FieldParams f;
   EXPECT_TRUE(f.contains(0, 0) && f.contains(8, 8));
   EXPECT_FALSE(f.contains(-1, 0) || f.contains(9, 0) || f.contains(0, -1) || f.contains(0, 9));
+}
+
+// Discs do not move back a row, so rows behind the start change nothing but the numbers of rows.
+TEST(RunField, StartsInAnyCell) {
+  GateParams stiff;
+  stiff.beams.stiffness_right = 600.0;
+  constexpr int kBehind = 2, kColumns = 4, kRows = 3;
+  const auto gates_with = [&](int rows_behind) {  // the types ahead of the start are the same
+    std::vector<int> types(static_cast<std::size_t>(kColumns * rows_behind), 1);
+    for (int cell = 0; cell < kColumns * kRows; ++cell) types.push_back(cell % 3 == 0 ? 1 : 0);
+    return FieldGates::by_cell({GateParams(), stiff}, kColumns, types);
+  };
+  for (const Fidelity fidelity : {Fidelity::active, Fidelity::remember}) {
+    FieldParams field{.columns = kColumns, .rows = kRows, .fidelity = fidelity};
+    field.own_start_column = 3;
+    FieldParams further = field;
+    further.rows += kBehind;
+    further.start_row = kBehind;
+    GateParams plain;
+    plain.run.method = "moreau";
+    const bool one_type = fidelity != Fidelity::active;
+    const BodyState side{-25.0, 10.0, 6.0, 12.0};
+    const Ran a = run(one_type ? FieldGates(plain) : gates_with(0), field, {0, 300}, 1, side);
+    const Ran b =
+        run(one_type ? FieldGates(plain) : gates_with(kBehind), further, {0, 300}, 1, side);
+    EXPECT_EQ(a.endings, b.endings);
+    EXPECT_EQ(a.entries, b.entries);
+    EXPECT_EQ(a.health.runs, b.health.runs);
+    EXPECT_EQ(b.final_cells.topRows(kBehind).sum(), 0);
+    EXPECT_TRUE((a.final_cells == b.final_cells.bottomRows(kRows)).all());
+    EXPECT_GT(a[markov::Ending::right_edge], 0);
+  }
+  FieldParams one{.columns = 9, .rows = 9, .max_gates = 1};
+  one.own_start_column = 7;
+  one.start_row = 5;
+  EXPECT_EQ(run(GateParams(), one, {0, 50}).final_cells(5, 7), 50);
 }
 
 TEST(RunField, TalliesAddUp) {

@@ -201,6 +201,9 @@ TEST(ChainStart, IsTheStateOfTheBody) {
   EXPECT_EQ(chain_start(space, field, {0, {-20, 10, 12}}).start.input, 0 * 5 + 3);
   const FieldParams narrow{.columns = 5, .rows = 1, .max_gates = 0};
   EXPECT_EQ(chain_start(space, narrow, {0, {0, 0, 15}}).start.column, 2);
+  const FieldParams own{.own_start_column = 7, .start_row = 5};
+  EXPECT_EQ(chain_start(space, own, {0, {0, 0, 15}}).start.column, 7);
+  EXPECT_EQ(chain_start(space, own, {0, {0, 0, 15}}).start.row, 5);
 }
 
 TEST(ChainStart, SaysWhenItWasClamped) {

@@ -158,6 +158,30 @@ TEST(Splitting, IsUnbiasedWhateverTheValues) {
   expect_agree(s.rows[2], fast_truth(3), 4.0);
 }
 
+TEST(Splitting, CountsTheRowsAheadOfTheStart) {
+  Scene scene = mixed_scene();
+  scene.field.start_row = 2;
+  scene.field.own_start_column = 1;
+  const Problem problem = problem_of(up_to_row(scene, 5));
+  const RareEvent e = rare_event(problem, {.row = 5, .accuracy = 0.1});
+  EXPECT_EQ(e.splitting.first_row, 3);
+  ASSERT_EQ(e.splitting.rows.size(), 3u);
+  ASSERT_EQ(e.chain.size(), 3u);
+  const DirectRows direct = direct_rows(problem, 20'000, 77);
+  ASSERT_EQ(direct.entered.size(), 3u);
+  for (std::size_t r = 0; r < 3; ++r) {
+    const auto n = static_cast<double>(direct.trials);
+    const double p = static_cast<double>(direct.entered[r]) / n;
+    expect_agree(e.splitting.rows[r],
+                 {.probability = p,
+                  .relative_standard_error = std::sqrt((1.0 - p) / p / n),
+                  .trials = direct.trials},
+                 4.0);
+  }
+  for (const int row : {0, 1, 2})
+    EXPECT_THROW((void)up_to_row(problem, row), std::invalid_argument) << row;
+}
+
 TEST(Splitting, IsUnbiasedInAMixedFieldWhateverTheValues) {
   const Scene scene = mixed_scene();
   const Splitting s = split(problem_of(scene), 1.0, wrong_worth,

@@ -2,6 +2,7 @@
 #include "lattice/scene/scene.h"
 #include "dynamics/disc/disc_section.h"
 #include "lattice/scene/scene_keys.h"
+#include "lattice/scene/table4.h"
 #include "tests/support/refusal.h"
 
 #include <gtest/gtest.h>
@@ -189,6 +190,49 @@ vy_m_per_s = 26
   EXPECT_EQ(scene.start.vy, 26);
 }
 
+TEST(Scene, StartsInTheCellThatItNames) {
+  const Scene usual = parse_scene("", "x.toml");
+  EXPECT_EQ(usual.field.start_column(), 4);
+  EXPECT_EQ(usual.field.start_row, 0);
+  // Without the key the column follows the size of the field; with it the text keeps the key.
+  EXPECT_EQ(parse_scene("", "x.toml", {"field.columns=5"}).field.start_column(), 2);
+  const Scene own = parse_scene("[field]\nstart_column = 0\nstart_row = 8\n", "x.toml");
+  EXPECT_EQ(own.field.start_column(), 0);
+  EXPECT_EQ(own.field.start_row, 8);
+  const Scene back = parse_scene(to_toml(own), "back.toml", {"field.columns=5"});
+  EXPECT_EQ(back.field.start_column(), 0);
+  EXPECT_EQ(back.field.start_row, 8);
+  EXPECT_EQ(to_toml(parse_scene(to_toml(own), "back.toml")), to_toml(own));
+  for (const KeyInfo& key : describe(usual)) {
+    if (key.key == "field.start_column") {
+      EXPECT_EQ(key.value + " " + key.range, "4 [0, 8]");
+    }
+  }
+  EXPECT_EQ(scene_refusal("[field]\nrows = 3\nstart_row = 3\n"),
+            "bad.toml:3: field.start_row = 3 is not permitted: must lie in [0, 2]");
+  EXPECT_EQ(scene_refusal("[field]\nstart_column = -1\n"),
+            "bad.toml:2: field.start_column = -1 is not permitted: must lie in [0, 8]");
+  EXPECT_EQ(
+      scene_refusal("[field]\nstart_column = 1.5\n"),
+      "bad.toml:2: field.start_column = 1.5 is not permitted: must be a whole number in [0, 8]");
+}
+
+TEST(Scene, ADiscMayEnterByASide) {
+  const Scene left =
+      parse_scene("[start]\nx_m = -25\ny_m = 12\nvx_m_per_s = 8\nvy_m_per_s = -2\n", "x.toml");
+  EXPECT_EQ(own_start(left), (dynamics::Entry{dynamics::left_deflect, {18, 8, -2}}));
+  const Scene right =
+      parse_scene("[start]\nx_m = 25\ny_m = 45\nvx_m_per_s = -8\nvy_m_per_s = 2\n", "x.toml");
+  EXPECT_EQ(own_start(right), (dynamics::Entry{dynamics::right_traverse, {15, -8, 2}}));
+  const std::string at_side = "[start]\nx_m = 25\n";
+  EXPECT_EQ(
+      scene_refusal(at_side),
+      "bad.toml:2: start.vx_m_per_s = 0 is not permitted: start.x_m = 25 is a side of the gate, "
+      "which bodies enter by with start.vx_m_per_s < 0");
+  EXPECT_TRUE(contains(scene_refusal(at_side + "vx_m_per_s = -1\ny_m = -1\n"), "start.y_m >= 0"));
+  EXPECT_TRUE(contains(scene_refusal(at_side + "vx_m_per_s = -1\ny_m = 20.1\n"), "overlap a beam"));
+}
+
 TEST(Scene, FidelityIsOneOfThree) {
   for (std::size_t i = 0; i < kFidelityNames.size(); ++i) {
     const std::string name(kFidelityNames[i]);
@@ -329,7 +373,7 @@ const Malformed kMalformed[] = {
 
     // Several keys at once
     {"StartBesideNarrowGate", "[start]\nx_m = 15\n[beams]\njoint_x_m = 14\n", 2, "start.x_m = 15 ",
-     "(-14, 14) m"},
+     "[-14, 14] m"},
     {"StartInBeam", "[start]\ny_m = 20.5\n", 2, "start.y_m = 20.5 ", "9.5 m from"},
     {"StartInBeamFromAbove", "[start]\ny_m = 39\n", 2, "start.y_m = 39 ", "9 m from"},
     {"StartOnTip", "[beams]\nlength_m = 10\n[start]\ny_m = 30\nx_m = 6\n", 4, "start.y_m = 30",

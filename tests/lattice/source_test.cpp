@@ -59,9 +59,14 @@ TEST(Source, StartsAreReadFromTextAndRefusedByIt) {
   EXPECT_EQ(s.entries()[1], (dynamics::Entry{0, {-17, 13, 12}}));
   EXPECT_EQ(s.problem.start, s.entries()[0]);
   EXPECT_EQ(s.name_of(0), "start d 4 m, vx 5 m/s, vy 10 m/s");
-  for (const char* text : {"", "1,2", "1,2,3,4", "EN:1,2,3", "seen", "1,2,nan", "1;2;3"})
+  for (const char* text : {"", "1,2", "1,2,3,4", "SE:1,2,3", "seen", "1,2,nan", "1;2;3"})
     EXPECT_EQ(refusal([&] { (void)s.start_from({text}); }),
-              "--start " + std::string(text) + ": must be 3 numbers d,vx,vy (m, m/s, m/s)");
+              "--start " + std::string(text) +
+                  ": must be 3 numbers d,vx,vy (m, m/s, m/s), behind a face EN or RD or LD or RT "
+                  "or LT and a colon unless it is the first");
+  EXPECT_TRUE(s.start_from({"EN:1,2,3", "LD:18,8,10"}).empty());
+  EXPECT_EQ(s.starts[0], (dynamics::Entry{0, {1, 2, 3}}));
+  EXPECT_EQ(s.starts[1], (dynamics::Entry{dynamics::left_deflect, {18, 8, 10}}));
   EXPECT_NE(refusal([&] { (void)s.start_from({"99,0,1"}); }).find("must lie inside the gate"),
             std::string::npos);
 }

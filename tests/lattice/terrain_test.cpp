@@ -258,6 +258,11 @@ TEST(Terrain, DrawsAMapByShares) {
     for (int i_x = -4; i_x <= 4; ++i_x)
       EXPECT_EQ(small[static_cast<std::size_t>(row * 9 + i_x + 4)],
                 large[static_cast<std::size_t>(row * 101 + i_x + 50)]);
+  // The map is the same wherever bodies start.
+  const Scene elsewhere =
+      with_map("random = { s = 0.3, t = 0.2 }\nseed = 5", kTypes,
+               "field = { columns = 9, rows = 4, start_column = 1, start_row = 2 }\n");
+  EXPECT_EQ(elsewhere.terrain->type_of_cell, small);
 }
 
 TEST(Terrain, OverridesChangeSingleKeys) {
