@@ -116,11 +116,19 @@ lattice::Policy policy_of(const Json& json, const PolicyField& made_for) {
   return {std::move(space), std::move(decisions)};
 }
 
+/// The field without the cell that bodies start in: a policy serves every start.
+lattice::FieldParams for_any_start(lattice::FieldParams field) {
+  field.own_start_column = {};
+  field.start_row = 0;
+  return field;
+}
+
 }  // namespace
 
 PolicyField policy_field(const lattice::Scene& scene) {
   lattice::Scene own = scene;
   own.start = {};
+  own.field = for_any_start(scene.field);
   return {"scene",     lattice::to_toml(own), dynamics::disc_section(scene.gate),
           scene.field, scene.actions.size(),  scene.source};
 }
@@ -128,6 +136,7 @@ PolicyField policy_field(const lattice::Scene& scene) {
 PolicyField policy_field(const lattice::CellFile& cells, const std::string& told) {
   lattice::CellFile own = cells;
   own.start.reset();
+  own.field = for_any_start(cells.field);
   return {"cell",      lattice::to_toml(own) + told, cells.map.section,
           cells.field, cells.actions.size(),         cells.source};
 }

@@ -68,6 +68,11 @@ holds '.made_by.scene | contains("max_gates = 13\nstart_column = 1\nstart_row = 
 holds '.endings.left_side < 0.2' middle.json
 expect 2 'bins.nc (its scene):.*: field.start_row = 2 is not permitted: must lie in \[0, 1\]' "$gatewalk" predict bins.nc --set field.rows=2
 
+# A policy is for every start.
+printf '[actions.slow]\n[actions.fast]\nforces.propulsion_N = 12\n' | cat "$field" - >actions.toml
+"$gatewalk" plan actions.toml --set field.start_row=2 --accuracy 0.2 --policy policy.json --quiet >/dev/null 2>&1
+expect 0 '^crossed' "$gatewalk" lattice actions.toml --set field.start_row=3 --set field.start_column=1 --policy policy.json --trials 100
+
 # Kept work of another start is refused, as for other keys of the field.
 expect 75 'with --resume goes on' "$gatewalk" lattice "$field" --trials 4000000 --max-time 0.3s --checkpoint kept
 for key in start_row=1 start_column=3; do
