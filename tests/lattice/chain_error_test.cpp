@@ -213,7 +213,8 @@ TEST(ChainErrorChart, ChartsMatricesOfTheSameTrials) {
   EXPECT_EQ(chart.points[1].runs, 460);
   const StateSpace fixed = fixed_space(scene);
   const FieldTally truth =
-      run_field(scene.gate, scene.field, dynamics::entry_state(scene.gate, kStarts[0]), 5, {0, 100}, nullptr, &fixed);
+      run_field(scene.gate, scene.field, dynamics::entry_state(scene.gate, kStarts[0]), 5, {0, 100},
+                nullptr, &fixed);
   EXPECT_TRUE((chart.truths[0].tally.final_cells == truth.final_cells).all());
   // 20 trials at once give the same matrix as the pieces that matrices of 10 trials need.
   Transitions whole(space);

@@ -133,8 +133,8 @@ TEST(Units, ErrorsSpeakTheUserSpelling) {
             "bad.toml:2: unknown key body.raduis_cm; the closest known key is body.radius_m");
   EXPECT_EQ(scene_refusal("[forces]\nrandom_mN = -3\n"),
             "bad.toml:2: forces.random_mN = -3 is not permitted: must lie in [0, 1e+103] mN");
-  EXPECT_EQ(scene_refusal("[start]\nx_cm = 2500\n"),
-            "bad.toml:2: start.x_cm = 2500 is not permitted: must lie in (-2500, 2500) cm");
+  EXPECT_EQ(scene_refusal("[start]\nx_cm = 2501\n"),
+            "bad.toml:2: start.x_cm = 2501 is not permitted: must lie in [-2500, 2500] cm");
   EXPECT_EQ(scene_refusal("[body]\nradius_cm = 4000\n[beams]\njoint_y_m = 30\n"),
             "bad.toml:2 (radius_cm = 4000): body.radius_m = 40 is not permitted: must be less than "
             "beams.joint_y_m = 30, or a body that enters at y = 0 is already in the beams");

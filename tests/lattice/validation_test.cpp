@@ -127,7 +127,8 @@ TEST(ValidateChain, IsTheSameForAnyPieces) {
       validate_chain(problem_of(scene), {matrix}, {kStart}, options).starts.front();
   FieldTrials each;
   const FieldTally dynamics =
-      run_field(scene.gate, scene.field, dynamics::entry_state(scene.gate, kStart), 5, {0, 120}, &each, &matrix.space);
+      run_field(scene.gate, scene.field, dynamics::entry_state(scene.gate, kStart), 5, {0, 120},
+                &each, &matrix.space);
   EXPECT_TRUE((s.dynamics.final_cells == dynamics.final_cells).all());
   EXPECT_EQ(s.dynamics.endings, dynamics.endings);
   markov::CellCounts first = markov::CellCounts::Zero(3, 3);

@@ -712,9 +712,9 @@ class Results(unittest.TestCase):
         matplotlib.use("Agg")
         # One state, which is entered ahead: all bodies stay in the column in which they start.
         ahead = gw.from_counts(np.array([[10, 0]]), {"state": [0], "move_x": [0], "move_y": [1]}, start=0, set={"field.rows": 3})
-        for columns, first in ((1, 0), (2, -1), (3, -1), (4, -2), (5, -2)):
-            with self.subTest(columns=columns), tempfile.TemporaryDirectory() as folder:
-                there = {"field.columns": columns}
+        for columns, start, first in ((1, {}, 0), (2, {}, -1), (3, {}, -1), (4, {}, -2), (5, {}, -2), (5, {"field.start_column": 1}, -1)):
+            with self.subTest(columns=columns, start=start), tempfile.TemporaryDirectory() as folder:
+                there = {"field.columns": columns, **start}
                 p = ahead.predict(set=there, netcdf=str(Path(folder) / "p.nc"))
                 data = p.to_xarray()
                 with netCDF4.Dataset(Path(folder) / "p.nc") as file:

@@ -211,7 +211,8 @@ class Matrix:
         if target is None:
             refuse("target", _OTHERS["first-passage"], target)
         more = {"runs": 0, "paths": 0, **more}
-        return FirstPassage(analyze(self, first_passage=target, **more)["first_passage"])
+        answer = analyze(self, first_passage=target, **more)
+        return FirstPassage({**answer["first_passage"], "made_by": answer["made_by"]})
 
     def walk(self, **more: t.Any) -> Result:
         """Random walks through a field of these cells: `gatewalk.walk`."""
