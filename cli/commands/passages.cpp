@@ -43,9 +43,6 @@ struct PassagesCommand : Options {
   TextOption cells =
       add_text("lattice", "COLUMNS,ROWS",
                "number of cells from the origin on; all: no limit (default: those of the field)");
-  TextOption window =
-      add_text("window", "N|Xs",
-               "length of local fits, in frames or seconds (default: the length of least error)");
   CountOption bridge = add_count("bridge", "N", "bridge gaps of up to N missing frames", "0");
   TextOption figure = add_figure("all tracks over the cells, and where they were cut");
 };
@@ -85,7 +82,6 @@ lattice::CutOptions cut_options(const PassagesCommand& options) {
     throw UsageError(
         "missing --fastest M/S: how fast bodies can be; a faster step counts as a jump");
   lattice::CutOptions cut{.fastest = options.fastest.value(),
-                          .window = options.window.value(),
                           .bridge = static_cast<int>(options.bridge.value(0, 1000))};
   const std::string text = options.cells.value();
   cut.endless = text == "all";
@@ -120,7 +116,7 @@ int run_passages(const Arguments& arguments) {
       "  gatewalk sample cell -o cell.toml\n"
       "  gatewalk passages tracks.csv --cell cell.toml -o runs.csv --fastest 0.4 --fps 10 \\\n"
       "    --metres-per-unit 0.001 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=POSITION_Y");
-  options.add_details("how the file was understood, gaps, jumps, noise, and the local fits");
+  options.add_details("how the file was understood, gaps, jumps, and noise");
   options.most_used({"cell", "output", "fastest", "columns", "fps"});
   if (!options.parse(arguments)) return kFine;
   if (!options.cell_file)

@@ -79,16 +79,15 @@ std::string lines_of_cut(const CutResult& result) {
                     counted(cut.bodies_outside, "body is", "bodies are"),
                     counted(cut.came_back, "trial begins", "trials begin")),
         "    ");
-  const lattice::TrackNoise& noise = cut.noise;
-  return text +
-         fmt::format(
-             "local fits of {} frames ({}), which smooth away {} of velocity\n"
-             "noise: {} in places, {} in velocities at borders\n"
-             "A crossing counts only if the path then goes {} beyond the border; {} did not.\n",
-             noise.window, quantity(noise.window * file.interval, "s", 3),
-             quantity(noise.velocity_bias, "m/s", 3), quantity(noise.place, "m", 3),
-             quantity(cut.crossing_velocity_noise, "m/s", 3), quantity(cut.hysteresis, "m", 3),
-             counted(cut.uncounted, "crossing", "crossings"));
+  if (cell.has_walls())
+    text += fmt::format("  {} beyond walls, put back\n",
+                        counted(cut.places_put_back, "place lies", "places lie"));
+  return text + fmt::format(
+                    "noise: {} in places; the path is known to {}, its velocity at borders to {}\n"
+                    "{} of {} turned back within the noise, and may be none.\n",
+                    quantity(cut.noise.place, "m", 3), quantity(cut.path_noise, "m", 3),
+                    quantity(cut.velocity_noise, "m/s", 3), cut.unsure_crossings,
+                    counted(cut.crossings, "crossing", "crossings"));
 }
 
 void describe(Fields& out, const lattice::TrackFile& file) {
@@ -152,6 +151,8 @@ void describe(Fields& out, const CutResult& result) {
              [&](Fields& f) {
                f.count({"gap", "1", "a gap in the track"}, cut.lost(lattice::LostBy::gap));
                f.count({"jump", "1", "a jump in the track"}, cut.lost(lattice::LostBy::jump));
+               f.count(Field("wall", "1", "a track that stays beyond walls").at_least(0),
+                       cut.lost(lattice::LostBy::wall));
                f.count({"end", "1", "the end of the track"}, cut.lost(lattice::LostBy::end));
              });
   out.object({"tracks", "what was read from the file of tracks"},
@@ -185,30 +186,26 @@ void describe(Fields& out, const CutResult& result) {
   out.count({"trials_that_came_back", "1",
              "trials that begin where a body comes back into the lattice that it had left"},
             cut.came_back);
-  out.count({"window_frames", "1", "number of frames in each local fit of a track"},
-            cut.noise.window);
-  out.number({"window_s", "s", "duration of each local fit of a track"},
-             cut.noise.window * file.interval);
-  out.number(
-      {"noise_m", "m",
-       "standard deviation of each coordinate of a measured place, from the residuals of the fits"},
-      cut.noise.place);
+  out.number({"noise_m", "m", "standard deviation of each coordinate of a measured place"},
+             cut.noise.place);
+  out.number({"path_noise_m", "m",
+              "standard deviation of each coordinate of the path, given all measured places"},
+             cut.path_noise);
   out.number({"velocity_noise_m_per_s", "m/s",
-              "root mean square error of fitted velocities at crossings, from the noise of places"},
-             cut.crossing_velocity_noise);
-  out.number({"velocity_bias_m_per_s", "m/s",
-              "root mean square error of fitted velocities, from smoothing"},
-             cut.noise.velocity_bias);
-  out.number(
-      {"hysteresis_m", "m", "how far beyond a border a body must get for its crossing to count"},
-      cut.hysteresis);
-  out.count({"crossings", "1", "crossings of borders that count"}, cut.crossings);
-  out.count({"crossings_not_counted", "1",
-             "crossings to and fro within hysteresis_m, which do not count"},
-            cut.uncounted);
-  out.count({"places_moved_to_face_end", "1",
-             "entries beyond the end of their face by at most hysteresis_m, moved to that end"},
-            cut.moved_ends);
+              "standard deviation of each velocity at crossings, given all measured places"},
+             cut.velocity_noise);
+  out.count({"crossings", "1", "crossings of borders"}, cut.crossings);
+  out.count(
+      {"crossings_unsure", "1",
+       "crossings after which the path turns back within 5 path_noise_m of the border: each is "
+       "drawn by its probability"},
+      cut.unsure_crossings);
+  out.count(
+      Field("places_put_back", "1", "places beyond walls, put back into the cell").at_least(0),
+      cut.places_put_back);
+  out.count(
+      {"places_moved_to_face_end", "1", "entries beyond the end of their face, moved to that end"},
+      cut.moved_ends);
   describe_made_by(out, made_by);
 }
 

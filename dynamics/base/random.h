@@ -42,7 +42,8 @@ enum class Purpose : std::uint64_t {
   plan = 12,
   indices = 13,
   design = 14,
-  fit = 15
+  fit = 15,
+  track = 16
 };
 
 /// A uniform number in (0, 1), both ends excluded: (n + 1/2) 2^-53. The largest n would round to 1

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "lattice/recorded/crossings.h"
 #include "lattice/text/digits.h"
 #include "lattice/text/toml_text.h"
 
@@ -44,86 +45,12 @@ std::int64_t places_of(const CutTracks& cut) {
   return places;
 }
 
-/// A crossing of a border by the smooth path.
-struct Crossing {
-  double time, x, y, vx, vy, velocity_gain;
-  int di_x, di_y;
-};
-
-/// The path between frames i - 1 and i: places by the cubic through the places and velocities of
-/// both frames, velocities by linear interpolation.
-class Between {
- public:
-  Between(const SmoothPath& path, std::size_t i)
-      : path_(path), i_(i), step_(path.time[i] - path.time[i - 1]) {}
-
-  [[nodiscard]] double place(const std::vector<double>& x, const std::vector<double>& v,
-                             double u) const {
-    const double a = x[i_ - 1], b = x[i_], at_a = step_ * v[i_ - 1], at_b = step_ * v[i_];
-    return a +
-           u * (at_a + u * (3.0 * (b - a) - 2.0 * at_a - at_b + u * (2.0 * (a - b) + at_a + at_b)));
-  }
-  /// Where the border is crossed, in [0, 1]; the two frames are on opposite sides of the border, or
-  /// on it.
-  [[nodiscard]] double reaches(const std::vector<double>& x, const std::vector<double>& v,
-                               double border) const {
-    double low = 0.0, high = 1.0;
-    const bool is_below = x[i_ - 1] < border;
-    for (int halved = 0; halved < 52; ++halved) {
-      const double u = 0.5 * (low + high);
-      ((place(x, v, u) < border) == is_below ? low : high) = u;
-    }
-    return high;
-  }
-  [[nodiscard]] Crossing at(double u, int di_x, int di_y) const {
-    const auto mixed = [&](const std::vector<double>& v) {
-      return (1.0 - u) * v[i_ - 1] + u * v[i_];
-    };
-    return {path_.time[i_ - 1] + u * step_,
-            place(path_.x, path_.vx, u),
-            place(path_.y, path_.vy, u),
-            mixed(path_.vx),
-            mixed(path_.vy),
-            mixed(path_.velocity_gain),
-            di_x,
-            di_y};
-  }
-
- private:
-  const SmoothPath& path_;
-  std::size_t i_;
-  double step_;
-};
-
-int cell_at(double place, double size) { return static_cast<int>(std::floor(place / size)); }
-
 /// Limits in cells: distance from the origin, and distance from frame to frame.
 constexpr double kMostCells = 1e9, kMostCellsAtOnce = 1000.0;
 
-/// Adds the crossings of the borders k size of one axis. A crossing counts if the path then goes
-/// further than `margin` beyond the border, at its last crossing of that border. Returns the number
-/// of all crossings.
-std::int64_t add_crossings(const SmoothPath& path, bool is_x, double size, double margin,
-                           std::vector<Crossing>& crossings) {
-  const std::vector<double>&place = is_x ? path.x : path.y, &speed = is_x ? path.vx : path.vy;
-  std::int64_t all = 0;
-  int cell = cell_at(place[0], size);
-  for (std::size_t i = 1; i < place.size(); ++i) {
-    all += std::abs(cell_at(place[i], size) - cell_at(place[i - 1], size));
-    const auto step = [&](int way) {
-      const double border = size * (way > 0 ? cell + 1 : cell);
-      std::size_t j = i;
-      while (j > 1 && (place[j - 1] < border) == (way < 0)) --j;
-      const Between between(path, j);
-      crossings.push_back(
-          between.at(between.reaches(place, speed, border), is_x ? way : 0, is_x ? 0 : way));
-      cell += way;
-    };
-    while (place[i] > size * (cell + 1) + margin) step(+1);
-    while (place[i] < size * cell - margin) step(-1);
-  }
-  return all;
-}
+/// Standard deviations of a place beyond which noise hardly ever carries it; the most frames in a
+/// row that may be bridged without a remark.
+constexpr double kSure = 5.0, kMostBridged = 100.0;
 
 class Cutter {
  public:
@@ -142,27 +69,25 @@ class Cutter {
     if (options_.bridge < 0) throw std::invalid_argument("--bridge: must be 0 or more frames");
     cut_at_gaps_and_jumps();
     try {
-      cut_.noise = noise_of(cut_.pieces, file_.interval, window());
+      cut_.noise = noise_of(cut_.pieces);
     } catch (const std::invalid_argument& e) {
       const std::string words = words_of_steps();
       throw std::invalid_argument(file_.source + ": " + e.what() +
                                   (words.empty() ? "" : ": " + words));
     }
     for (const TrackPiece& piece : cut_.pieces) require_near(piece);
-    // Five standard deviations of a place of the path: noise alone seldom goes that far.
-    cut_.hysteresis = 5.0 * cut_.noise.place * std::sqrt(place_gain(cut_.noise.window));
-    if (cut_.hysteresis > 0.25 * std::min(cell_.width, cell_.length))
-      throw std::invalid_argument(
-          file_.source + ": cells of " + rounded(cell_.width) + " m x " + rounded(cell_.length) +
-          " m are too small for tracks with a noise of " + rounded(cut_.noise.place) +
-          " m: a body that noise alone does not carry over a border has to be " +
-          rounded(cut_.hysteresis) + " m over it (is --metres-per-unit right?)");
     trials_.assign(file_.tracks.size(), 0);
     for (std::size_t i = 0; i < cut_.pieces.size(); ++i) cut_piece(cut_.pieces[i], ends_[i]);
     count_outside();
+    cut_.path_noise = std::sqrt(place_variances_ / static_cast<double>(places_of(cut_)));
+    if (kSure * cut_.path_noise > 0.25 * std::min(cell_.width, cell_.length))
+      throw std::invalid_argument(
+          file_.source + ": cells of " + rounded(cell_.width) + " m x " + rounded(cell_.length) +
+          " m are too small for tracks with a noise of " + rounded(cut_.noise.place) +
+          " m: a body is only sure to have crossed a border where it is seen " +
+          rounded(kSure * cut_.path_noise) + " m beyond it (is --metres-per-unit right?)");
     if (cut_.crossings == 0) refuse_nothing();
-    cut_.crossing_velocity_noise =
-        cut_.noise.place * std::sqrt(gains_ / static_cast<double>(cut_.crossings));
+    cut_.velocity_noise = std::sqrt(velocity_variances_ / static_cast<double>(cut_.crossings));
     add_doubts();
     return std::move(cut_);
   }
@@ -201,7 +126,7 @@ class Cutter {
           (*gaps == *most ? rounded(*most - 1.0)
                           : rounded(*gaps - 1.0) + " to " + rounded(*most - 1.0)) +
           " at a time: " +
-          (*most > kMostWindow
+          (*most > kMostBridged
                ? "too long to be bridged"
                : bridge(*most) + " bridges " + (*most == frames.back() ? "them" : "most of them")));
     }
@@ -229,6 +154,21 @@ class Cutter {
                             (file_.y_down ? "which with --y-down is 0,HEIGHT of the picture"
                                           : "the lower left corner of the first row, --y-down") +
                             ", and --metres-per-unit");
+    const auto percent = [](std::int64_t part, std::int64_t whole) {
+      return rounded(std::round(1000.0 * static_cast<double>(part) / static_cast<double>(whole)) /
+                     10.0) +
+             " %";
+    };
+    if (10 * cut_.places_put_back > places_of(cut_))
+      cut_.doubts.push_back(percent(cut_.places_put_back, places_of(cut_)) +
+                            " of the places lie beyond walls: do the map and --origin fit?");
+    if (10 * cut_.unsure_crossings > cut_.crossings)
+      cut_.doubts.push_back(
+          "the cells are small for these tracks: " +
+          percent(cut_.unsure_crossings, cut_.crossings) + " of the crossings turn back within " +
+          rounded(kSure * cut_.path_noise) +
+          " m of the border, where noise hides some; counts of bodies that turn back may be too "
+          "small");
     std::int64_t ahead = 0, back = 0;
     for (const CutPassage& p : cut_.passages) {
       const int way = cell_.map.section.faces[static_cast<std::size_t>(p.in.face)].di_y;
@@ -290,7 +230,7 @@ class Cutter {
           }
         }
         if (!ends) continue;
-        if (i - begin >= kLeastWindow) {
+        if (i - begin >= kLeastFrames) {
           cut_.pieces.push_back({&track, begin, i});
           ends_.push_back(*ends);
         } else {
@@ -322,27 +262,6 @@ class Cutter {
       }
   }
 
-  /// The window of --window, in frames.
-  std::optional<int> window() const {
-    std::string text = options_.window;
-    if (text.empty()) return {};
-    const auto refuse = [&](const std::string& what) {
-      throw std::invalid_argument("--window " + printable(options_.window) + ": " + what);
-    };
-    const bool in_seconds = text.ends_with('s');
-    if (in_seconds) text.pop_back();
-    double value = 0.0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value))
-      refuse("must be a number of frames (15) or a time (0.125s)");
-    if (in_seconds) value = 2.0 * std::round(0.5 * (value / file_.interval - 1.0)) + 1.0;
-    if (value != std::floor(value) || std::fmod(value, 2.0) != 1.0 || value < kLeastWindow ||
-        value > 100'001.0)
-      refuse((in_seconds ? "is " + rounded(value) + " frames: " : std::string()) +
-             "must be an odd number of frames from " + std::to_string(kLeastWindow) + " on");
-    return static_cast<int>(value);
-  }
-
   [[nodiscard]] bool is_inside(int column, int row) const {
     return cut_.columns == 0 ||
            (column >= 0 && column < cut_.columns && row >= 0 && row < cut_.rows);
@@ -363,25 +282,64 @@ class Cutter {
       cut_.bodies_outside += has_pieces[i] && !is_in[i];
   }
 
+  /// Whether bodies cross a border of a cell: neither of the two cells has a wall there.
+  [[nodiscard]] bool is_open(int column, int row, int di_x, int di_y) const {
+    const auto has_wall = [&](int at_column, int at_row, int move_x, int move_y) {
+      if (!is_inside(at_column, at_row)) return false;
+      const auto& faces = cell_.map.section.faces;
+      const std::uint64_t walls =
+          cell_.walls[static_cast<std::size_t>(cell_.map.type_of(at_column, at_row))];
+      for (std::size_t f = 0; f < faces.size(); ++f)
+        if ((walls >> f & 1) != 0 && faces[f].di_x == move_x && faces[f].di_y == move_y)
+          return true;
+      return false;
+    };
+    return !has_wall(column + di_x, row + di_y, di_x, di_y) && !has_wall(column, row, -di_x, -di_y);
+  }
+
+  /// A path by its probability given the places; the same in each call.
+  SmoothPath path_of(const TrackPiece& piece, std::size_t track) {
+    const SmoothPath expected = smoothed(piece, cut_.noise);
+    double variances = 0.0;
+    for (const double v : expected.place_variance) variances += v;
+    place_variances_ += variances;
+    dynamics::Random random(dynamics::Purpose::track, {1, track, piece.begin});
+    const SmoothPath path = drawn_path(piece, cut_.noise, expected, random);
+    const double sure = kSure * std::sqrt(variances / static_cast<double>(piece.size()));
+    const Grid open{cell_.width, cell_.length};
+    cut_.unsure_crossings += crossings_beyond(path, open, 0.0) - crossings_beyond(path, open, sure);
+    return path;
+  }
+
   void cut_piece(const TrackPiece& piece, LostBy ends) {
     const std::size_t track = static_cast<std::size_t>(piece.track - file_.tracks.data());
-    const SmoothPath path = smoothed(piece, cut_.noise.window);
-    std::vector<Crossing> crossings;
-    const std::int64_t all = add_crossings(path, true, cell_.width, cut_.hysteresis, crossings) +
-                             add_crossings(path, false, cell_.length, cut_.hysteresis, crossings);
-    std::stable_sort(crossings.begin(), crossings.end(),
-                     [](const Crossing& a, const Crossing& b) { return a.time < b.time; });
-    cut_.uncounted += std::max<std::int64_t>(0, all - std::ssize(crossings));
-    int column = cell_at(path.x[0], cell_.width), row = cell_at(path.y[0], cell_.length);
+    const SmoothPath path = path_of(piece, track);
+    Grid grid{cell_.width, cell_.length};
+    if (cell_.has_walls())
+      grid.is_open = [this](int column, int row, int di_x, int di_y) {
+        return is_open(column, row, di_x, di_y);
+      };
+    const WayThroughCells way = way_through(path, grid);
+    cut_.places_put_back += way.places_put_back;
+    int column = way.column, row = way.row;
     cut_.first_stays += is_inside(column, row) ? 1 : 0;
     std::optional<CutPassage> now;  // the passage under way
     double since = 0.0;
     bool was_inside = false;
-    for (const Crossing& c : crossings) {
+    for (const Crossing& c : way.crossings) {
       const bool is_in = is_inside(column, row);
-      column += c.di_x;
-      row += c.di_y;
+      column = c.column;
+      row = c.row;
       const bool goes_on = is_inside(column, row);
+      if (c.is_loss()) {
+        if (now) {
+          now->lost_by = LostBy::wall;
+          (void)finish(*now, c.time - since, CutEnd::lost, {c.x, c.y}, {});
+        }
+        now.reset();
+        cut_.first_stays += goes_on ? 1 : 0;
+        continue;
+      }
       cut_.came_back += !is_in && goes_on && (was_inside || trials_[track] > 0) ? 1 : 0;
       was_inside = was_inside || is_in;
       if (!now && !goes_on) continue;
@@ -423,7 +381,7 @@ class Cutter {
   /// The entry into a cell by a crossing.
   Entry entry_of(const Crossing& c, int column, int row, const Track& track) {
     ++cut_.crossings;
-    gains_ += c.velocity_gain;
+    velocity_variances_ += c.velocity_variance;
     const auto& faces = cell_.map.section.faces;
     const auto face = std::find_if(faces.begin(), faces.end(), [&](const dynamics::Face& f) {
       return f.di_x == c.di_x && f.di_y == c.di_y;
@@ -488,7 +446,8 @@ class Cutter {
   std::vector<std::ptrdiff_t> measured_;  // by coordinate: index into kMeasured
   std::vector<LostBy> ends_;              // by piece
   std::vector<int> trials_;               // number of trials, by track
-  double gains_ = 0.0;                    // sum over all crossings
+  /// Sums over all frames, and over all crossings.
+  double place_variances_ = 0.0, velocity_variances_ = 0.0;
   CutTracks cut_;
 };
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lattice/recorded/local_fit.h"
+#include "lattice/recorded/smooth_path.h"
 #include "lattice/recorded/track_source.h"
 
 namespace gatewalk::lattice {
@@ -63,7 +63,7 @@ double longest_by_chance(const TrackFile& file) {
   if (!(same < 1.0)) return HUGE_VAL;
   const double by_chance =
       1.0 + std::log(kSeldom / static_cast<double>(places)) / std::log(std::max(same, 1e-300));
-  return std::max<double>(kLeastWindow - 1, by_chance);  // shorter runs do not fill a fit
+  return std::max<double>(kLeastFrames - 1, by_chance);  // shorter runs do not fill a fit
 }
 
 /// The 90 % quantile of the steps of moving bodies, m.

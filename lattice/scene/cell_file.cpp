@@ -274,22 +274,21 @@ std::array<int, 2> move_in(const GivenTable& given) {
   return move;
 }
 
-std::uint8_t odd_in(const GivenTable& given, const Names& coordinates) {
-  if (!given.has("odd")) return 0;
-  const std::string allowed =
-      "be an array of coordinates that change their sign in the mirror, of " + listed(coordinates) +
-      "; [] for none";
-  const toml::array* const array = given.table.get("odd")->as_array();
-  if (!array) given.refuse("odd", allowed);
-  std::uint8_t odd = 0;
+/// The numbers of the names listed under `key`, as bits.
+std::uint64_t names_in(const GivenTable& given, const std::string& key, const Names& names,
+                       const std::string& what) {
+  const std::string allowed = "be an array of " + what + ", of " + listed(names) + "; [] for none";
+  const toml::array* const array = given.table.get(key)->as_array();
+  if (!array) given.refuse(key, allowed);
+  std::uint64_t found = 0;
   for (const toml::node& node : *array) {
-    const int place = node.is_string() ? place_in(coordinates, node.as_string()->get()) : -1;
+    const int place = node.is_string() ? place_in(names, node.as_string()->get()) : -1;
     if (place < 0)
-      throw SceneError(given.at(node) + "cell.faces.odd" + shown_value(node) +
+      throw SceneError(given.at(node) + given.name + "." + key + shown_value(node) +
                        " is not permitted: must " + allowed);
-    odd = static_cast<std::uint8_t>(odd | 1 << place);
+    found |= std::uint64_t{1} << place;
   }
-  return odd;
+  return found;
 }
 
 void read_usual(const GivenTable& given, const Names& coordinates, Face& face) {
@@ -365,7 +364,9 @@ std::vector<Face> faces_in(const GivenTable& cell, const Names& coordinates, boo
       given.require("odd",
                     "say which coordinates change their sign in the mirror, [] for none, as a type "
                     "of cell is symmetric");
-    face.odd = odd_in(given, coordinates);
+    if (given.has("odd"))
+      face.odd = static_cast<std::uint8_t>(
+          names_in(given, "odd", coordinates, "coordinates that change their sign in the mirror"));
     read_usual(given, coordinates, face);
     faces.push_back(std::move(face));
   }
@@ -381,7 +382,7 @@ std::vector<Face> faces_in(const GivenTable& cell, const Names& coordinates, boo
 
 void read_types(CellFile& file, const GivenTable& cell, bool symmetric) {
   for (const GivenTable& given : cell.tables("types")) {
-    given.require_keys({"name", "symmetric"});
+    given.require_keys({"name", "symmetric", "walls"});
     if (file.types.size() == kMostCellTypes)
       throw SceneError(given.at(given.table) + "[[cell.types]]: more than " +
                        std::to_string(kMostCellTypes) + " are not permitted");
@@ -394,6 +395,23 @@ void read_types(CellFile& file, const GivenTable& cell, bool symmetric) {
   if (!file.types.empty()) return;
   file.types = {std::string(kOwnGate)};
   file.map.types = {{symmetric}};
+}
+
+/// Reads the walls of each type, when the faces are known.
+void read_walls(CellFile& file, const GivenTable& cell) {
+  file.walls.assign(file.types.size(), 0);
+  const std::vector<Face>& faces = file.map.section.faces;
+  const Names names = all_names_of(faces);
+  std::size_t type = 0;
+  for (const GivenTable& given : cell.tables("types")) {
+    std::uint64_t& walls = file.walls[type++];
+    if (!given.has("walls")) continue;
+    walls = names_in(given, "walls", names, "faces at which nothing crosses the border");
+    if (!file.map.types[type - 1].symmetric) continue;
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      if ((walls >> f & 1) != (walls >> faces[f].mirror & 1))
+        given.refuse("walls", "have the mirror images of its faces too, as the type is symmetric");
+  }
 }
 
 // ---- Single keys, of the file and of overrides
@@ -525,6 +543,16 @@ std::string quoted_toml(const std::string& text) {
   return out.str();
 }
 
+/// The walls of a type; nothing if it has none.
+std::string walls_toml(const CellFile& file, std::size_t type) {
+  std::string names;
+  const std::vector<Face>& faces = file.map.section.faces;
+  for (std::size_t f = 0; type < file.walls.size() && f < faces.size(); ++f)
+    if ((file.walls[type] >> f & 1) != 0)
+      names += (names.empty() ? "\"" : ", \"") + faces[f].name + "\"";
+  return names.empty() ? "" : "walls = [" + names + "]\n";
+}
+
 CellFile cell_file_of(const TomlFile& toml, const std::vector<std::string>& overrides) {
   const std::string& name = toml.name();
   const Origin origin = [&name](std::size_t line) { return name + ":" + std::to_string(line); };
@@ -573,6 +601,7 @@ CellFile cell_file_of(const TomlFile& toml, const std::vector<std::string>& over
   section.faces = faces_in(cell, all_names_of(section.coordinates),
                            std::any_of(file.map.types.begin(), file.map.types.end(),
                                        [](const auto& type) { return type.symmetric; }));
+  read_walls(file, cell);
   read_numbers(file, settings, origin(cell_table->source().begin.line));
   read_start(file, settings);
   if (!map_settings.empty()) {
@@ -606,6 +635,10 @@ CellFile read_cell_file(const TomlFile& file, const std::vector<std::string>& ov
         ": is a table, and no file of cells, which is TOML (cli/site/reference/files.md); "
         "with --cell CELL.toml the table stands before it");
   return cell_file_of(file, overrides);
+}
+
+bool CellFile::has_walls() const {
+  return std::any_of(walls.begin(), walls.end(), [](std::uint64_t w) { return w != 0; });
 }
 
 CellFile parse_cell_file(std::string_view text, const std::string& name,
@@ -652,7 +685,7 @@ std::string to_toml(const CellFile& file) {
             "\nwords = " + quoted_toml(section.costs[c].words) + "\n";
   for (std::size_t t = 0; named_types && t < file.types.size(); ++t)
     text += "\n[[cell.types]]\nname = \"" + file.types[t] +
-            "\"\nsymmetric = " + truth(file.map.types[t].symmetric) + "\n";
+            "\"\nsymmetric = " + truth(file.map.types[t].symmetric) + "\n" + walls_toml(file, t);
   text += "\n[field]\ncolumns = " + std::to_string(file.field.columns) +
           "\nrows = " + std::to_string(file.field.rows) +
           "\nmax_gates = " + std::to_string(file.field.max_gates) + "\n";

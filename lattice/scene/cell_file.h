@@ -3,6 +3,7 @@
 /// cell.toml: cells that are not gates, recorded or simulated by another program. The file has
 /// their section, their types, and the field to predict.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +23,8 @@ struct CellFile {
   dynamics::CellMap map;  // section, types, and which type stands where
   /// Names, by map.types; without a map the first one stands everywhere.
   std::vector<std::string> types;
+  /// By type: bit f is set if nothing crosses the border at face f, neither way.
+  std::vector<std::uint64_t> walls;
   /// By coordinate: true if the file gives a scale. Other coordinates get the scale of the entries
   /// seen (1 until then).
   std::vector<bool> has_scale;
@@ -33,6 +36,8 @@ struct CellFile {
   /// Table [actions]: each action of a body, as the program's numbers ("parameters.KEY") that
   /// differ during the action; in the order of their names.
   std::vector<Terrain::Type> actions{};
+
+  [[nodiscard]] bool has_walls() const;
 };
 
 /// Reads the file `path` and applies `overrides` ("field.rows=5"), as for a scene. Throws

@@ -4,7 +4,8 @@
 //   tracks_study film CELL.toml TRACKS.csv   one film, as a table of places in millimetres
 //   tracks_study truth CELL.toml TRUTH.json  how 100 000 bodies end, without camera
 //   tracks_study many CELL.toml OUT.csv FIRST FILMS   a line a film: its bars, its halves
-// See results/tracks/README.md.
+// With NOISE_MM TURNING behind, the camera's noise, and bodies that turn (1/s) without a pull
+// ahead. See results/tracks/README.md.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,22 +34,26 @@ using dynamics::Random;
 
 namespace {
 
-constexpr double kSpeed = 0.06;                   // m/s
-constexpr double kTurning = 0.4, kUpwards = 0.6;  // 1/s: diffusion of the heading, pull ahead
-constexpr double kPatch = 0.012, kSticky = 0.8;   // m; 1/s, how soon it holds who is on it
-constexpr double kFrame = 1.0 / 120.0;            // s
-constexpr int kSteps = 2;                         // a frame
-constexpr double kNoise = 0.001;                  // m, of each place
-constexpr double kMargin = 0.015;                 // m, what the camera sees beyond its cells
+constexpr double kSpeed = 0.06;  // m/s
+/// What main may set.
+struct Habits {
+  double turning = 0.4, upwards = 0.6;  // 1/s: diffusion of the heading, pull ahead
+  double noise = 0.001;                 // m, of each place
+} habits;
+constexpr double kPatch = 0.012, kSticky = 0.8;  // m; 1/s, how soon it holds who is on it
+constexpr double kFrame = 1.0 / 120.0;           // s
+constexpr int kSteps = 2;                        // a frame
+constexpr double kMargin = 0.015;                // m, what the camera sees beyond its cells
 constexpr int kViewColumns = 5, kViewRows = 3;
 constexpr double kGapsPerSecond = 0.02;
 constexpr int kLongestGap = 30;         // frames
-constexpr int kBridge = 15, kAway = 1;  // frames that may be missing; between trials
+constexpr int kBridge = 15, kAway = kBridge + 1;  // frames that may be missing; between trials
 constexpr int kBodies = 200, kTrialsOfOne = 8, kTrialsOfMany = 3;  // of a body in a film
 
 constexpr double kStartWidth = 0.7,
                  kStartHeading = 0.3;  // of a cell, rad: where and how they are put
-constexpr double kFastest = 2.0;       // m/s
+/// m/s, of a step that is no jump: noise hardly ever makes a faster one.
+double fastest() { return std::max(2.0, 8.0 * std::sqrt(2.0) * habits.noise / kFrame); }
 
 /// A body on its way; cells begin at multiples of their width.
 struct Walker {
@@ -58,8 +63,8 @@ struct Walker {
   void step(double width, Random& random) {
     if (stuck) return;
     constexpr double kStep = kFrame / kSteps;
-    heading +=
-        -kUpwards * std::sin(heading) * kStep + std::sqrt(2.0 * kTurning * kStep) * random.normal();
+    heading += -habits.upwards * std::sin(heading) * kStep +
+               std::sqrt(2.0 * habits.turning * kStep) * random.normal();
     x += kSpeed * std::sin(heading) * kStep;
     y += kSpeed * std::cos(heading) * kStep;
     const double off_x = x - width * (std::floor(x / width) + 0.5),
@@ -167,7 +172,7 @@ lattice::Track film_of(const lattice::CellFile& cells, int body, int trials, std
   lattice::Track track{std::to_string(body + 1), {}, {}, {}};
   std::int64_t frame = random.below(600);
   show(cells, trials, random, [&](const Walker& w, bool seen) {
-    const double noise_x = kNoise * random.normal(), noise_y = kNoise * random.normal();
+    const double noise_x = habits.noise * random.normal(), noise_y = habits.noise * random.normal();
     if (seen) {
       track.time.push_back(static_cast<double>(frame) * kFrame);
       track.x.push_back(w.x + noise_x);
@@ -258,7 +263,7 @@ void many_films(const std::string& cell_path, const std::string& path, int first
     const auto seed = static_cast<std::uint64_t>(k) + 1000;
     const lattice::TrackFile file = film(cells, kTrialsOfMany, seed);
     lattice::CutOptions how;
-    how.fastest = kFastest;
+    how.fastest = fastest();
     how.bridge = kBridge;
     how.columns = kViewColumns;
     how.rows = kViewRows;
@@ -296,8 +301,11 @@ void many_films(const std::string& cell_path, const std::string& path, int first
 int main(int count, char** words) {
   try {
     const bool has_range = count > 1 && words[1] == std::string("many");
-    if (count != (has_range ? 6 : 4))
-      throw std::runtime_error("film|truth CELL.toml OUT, or many CELL.toml OUT.csv FIRST FILMS");
+    const int usual = has_range ? 6 : 4;
+    if (count != usual && count != usual + 2)
+      throw std::runtime_error(
+          "film|truth CELL.toml OUT, or many CELL.toml OUT.csv FIRST FILMS; [NOISE_MM TURNING]");
+    if (count > usual) habits = {std::stod(words[usual + 1]), 0.0, 1e-3 * std::stod(words[usual])};
     const std::string what = words[1], cell = words[2], path = words[3];
     const lattice::CellFile cells = lattice::read_cell_file(cell);
     if (what == "film")

@@ -60,7 +60,6 @@ void tracks(std::string_view bytes) {
   static const lattice::CellFile cell = lattice::parse_cell_file(kCell, "x.toml");
   lattice::CutOptions how;
   how.fastest = 1.0;
-  how.window = "5";
   how.endless = true;
   const auto cut = accepted([&] { return lattice::cut_tracks(*file, cell, how); });
   if (!cut) return;

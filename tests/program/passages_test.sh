@@ -73,11 +73,11 @@ table=(spots.csv --fps 100 --columns body=TRACK_ID,frame=FRAME,x=POSITION_X,y=PO
 "$gatewalk" passages movement.nc "${shared[@]}" -o nc_runs.csv --json nc.json || fail "passages: movement"
 # Bodies stand in the file's order, which is reversed here.
 for file in dlc nc; do sort "${file}_runs.csv" | cmp -s - <(sort runs.csv) || fail "passages: $file has other runs"; done
-holds '.endings == {left: 9, trapped: 0, lost: 6} and .lost_by == {gap: 2, jump: 2, end: 2}' runs.json
+holds '.endings == {left: 9, trapped: 0, lost: 6} and .lost_by == {gap: 2, jump: 2, wall: 0, end: 2}' runs.json
 holds '.trials == 6 and .passages == 15 and .left_by == {S: 7, W: 1, E: 1}' runs.json
 holds '.tracks.bodies == 2 and .tracks.places == 240 and .tracks.places_without_number == 1 and .tracks.places_unsure == 1' runs.json
 holds '.tracks.unit_rows_left_out == 3 and .tracks.lines_of_no_body == 1 and .gaps == 2 and .jumps == 2' runs.json
-holds '.noise_m < 1e-6 and .hysteresis_m < 1e-5 and (.made_by.scene | test("width_m"))' runs.json
+holds '.noise_m < 1e-6 and .path_noise_m < 1e-6 and (.made_by.scene | test("width_m"))' runs.json
 holds '.tracks.kind == "DeepLabCut" and (.tracks.remarks | any(test("key point, nose")))' dlc.json
 holds '.tracks.kind == "movement" and .tracks.frame_interval_s == 0.01' nc.json
 head -n 1 runs.csv | grep -qx 'body,trial,in,s,vx,vy,out,out_s,out_vx,out_vy,time_s' || fail "passages: $(head -n 1 runs.csv)"
@@ -91,8 +91,8 @@ for words in '3 rows of descriptions and units' 'y grows upwards' 'local fits of
 done
 # Seen from above, the other direction is up, and it lacks a face.
 expect 2 'by a move of (0, -1).*: no face of cell.toml has that move' "$gatewalk" passages "${table[@]}" -o x.csv --y-down
-"$gatewalk" passages "${table[@]}" -o x.csv --lattice 5,9 --origin=0,-30 --window 0.07s --bridge 1 --json x.json || fail "passages: options"
-holds '.window_frames == 7 and .lost_by == {gap: 0, jump: 2, end: 2}' x.json
+"$gatewalk" passages "${table[@]}" -o x.csv --lattice 5,9 --origin=0,-30 --bridge 1 --json x.json || fail "passages: options"
+holds '.lost_by == {gap: 0, jump: 2, wall: 0, end: 2}' x.json
 [ "$(grep -c , runs.csv)" = 16 ] || fail "passages: $(wc -l <runs.csv) lines"
 
 # Cells are those of [field], from the origin on: rows 0 to 2, columns 0 to 2, until y = 0.3 m after 0.56 s. Before,
@@ -123,7 +123,7 @@ awk 'BEGIN {
     for (f = 0; f < 45; f++) { y = -15 + 2 * f; print b "," 100 * f ",5," (y < stays ? y : stays) }
   }
 }' >law.csv
-"$gatewalk" passages law.csv --cell law.toml -o law_runs.csv --fastest 1 --window 5 --columns body=body,time=t_ms,x=x_cm,y=y_cm --details --json law.json >law.txt ||
+"$gatewalk" passages law.csv --cell law.toml -o law_runs.csv --fastest 1 --columns body=body,time=t_ms,x=x_cm,y=y_cm --details --json law.json >law.txt ||
   fail "passages: a known law"
 holds '.passages == 1845 and .trials == 625 and .endings == {left: 1476, trapped: 369, lost: 0}' law.json
 grep -q 'column t_ms is in ms, by its name: converted to s' law.txt && grep -q 'places are in cm, by its name' law.txt ||
@@ -145,7 +145,6 @@ expect 2 'are the same file' "$gatewalk" passages "${table[@]}" -o spots.csv
 expect 2 'are the same file' "$gatewalk" passages "${table[@]}" -o cell.toml
 expect 2 'origin 1: must be two numbers' "$gatewalk" passages "${table[@]}" -o x.csv --origin 1
 for lattice in 0,3 2.5,3 x 3; do expect 2 'lattice .*: must be two' "$gatewalk" passages "${table[@]}" -o x.csv --lattice $lattice; done
-expect 2 'window 4: must be an odd number' "$gatewalk" passages "${table[@]}" -o x.csv --window 4
 expect 2 'fastest -1: must be above 0' "$gatewalk" passages "${table[@]}" -o x.csv --fastest -1
 expect 2 'no body is seen to enter a cell.*are --metres-per-unit, --origin, --fps and --fastest right' "$gatewalk" passages "${own[@]}" -o x.csv --origin 5000,0
 expect 0 'spots.csv: column POSITION_X is in (mm), in the row of units, which is 0.001 m; --metres-per-unit 0.002 is used. Leave the option out to use' "$gatewalk" passages "${table[@]}" -o x.csv --force --fastest 5 --metres-per-unit 0.002
