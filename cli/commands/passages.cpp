@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/render/cut_tracks.h"
 #include "lattice/recorded/cut_tracks.h"
+#include "lattice/recorded/visits.h"
 #include "lattice/source/source.h"
 #include "lattice/source/source_file.h"
 #include "lattice/text/digits.h"
@@ -44,6 +45,11 @@ struct PassagesCommand : Options {
       add_text("lattice", "COLUMNS,ROWS",
                "number of cells from the origin on; all: no limit (default: those of the field)");
   CountOption bridge = add_count("bridge", "N", "bridge gaps of up to N missing frames", "0");
+  TextOption visits = output_file(
+      "visits", "FILE.csv", "write when each body entered and left which cell, and by which faces");
+  TextOption transitions =
+      output_file("transitions", "FILE.csv",
+                  "write how often bodies went from one cell to another, and after what mean time");
   TextOption figure = add_figure("all tracks over the cells, and where they were cut");
 };
 
@@ -138,6 +144,11 @@ int run_passages(const Arguments& arguments) {
   options.keep_old(path);
   lattice::write_runs(path, result.cell,
                       lattice::recorded_runs(result.cut, result.file, result.cell));
+  if (options.visits)
+    options.write(options.visits.value(),
+                  lattice::visits_csv(result.cut, result.file, result.cell));
+  if (options.transitions)
+    options.write(options.transitions.value(), lattice::transitions_csv(result.cut, result.cell));
   options.give_out(result, {answer_text(result), details_text(result),
                             next_of(result, path, options.cell_file.value())});
   options.draw([&] { return figure_of(result.cut, result.cell); });

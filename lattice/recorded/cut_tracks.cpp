@@ -324,7 +324,6 @@ class Cutter {
     int column = way.column, row = way.row;
     cut_.first_stays += is_inside(column, row) ? 1 : 0;
     std::optional<CutPassage> now;  // the passage under way
-    double since = 0.0;
     bool was_inside = false;
     for (const Crossing& c : way.crossings) {
       const bool is_in = is_inside(column, row);
@@ -334,7 +333,7 @@ class Cutter {
       if (c.is_loss()) {
         if (now) {
           now->lost_by = LostBy::wall;
-          (void)finish(*now, c.time - since, CutEnd::lost, {c.x, c.y}, {});
+          (void)finish(*now, c.time - now->entered, CutEnd::lost, {c.x, c.y}, {});
         }
         now.reset();
         cut_.first_stays += goes_on ? 1 : 0;
@@ -346,7 +345,7 @@ class Cutter {
       const Entry entry = entry_of(c, column, row, *piece.track);
       bool is_new = !now;
       if (now) {
-        is_new = finish(*now, c.time - since, CutEnd::left, {c.x, c.y}, entry);
+        is_new = finish(*now, c.time - now->entered, CutEnd::left, {c.x, c.y}, entry);
         if (!goes_on) now.reset();
       }
       if (!goes_on) continue;
@@ -354,13 +353,19 @@ class Cutter {
         ++trials_[track];
         ++cut_.trials;
       }
-      now = CutPassage{.track = track, .trial = trials_[track], .in = entry, .from = {c.x, c.y}};
+      now = CutPassage{.track = track,
+                       .trial = trials_[track],
+                       .in = entry,
+                       .column = column,
+                       .row = row,
+                       .entered = c.time,
+                       .from = {c.x, c.y}};
       if (!cell_.map.type_of_cell.empty()) now->type = cell_.map.type_of(column, row);
-      since = c.time;
     }
     if (!now) return;
     now->lost_by = ends;
-    (void)finish(*now, path.time.back() - since, CutEnd::lost, {path.x.back(), path.y.back()}, {});
+    (void)finish(*now, path.time.back() - now->entered, CutEnd::lost,
+                 {path.x.back(), path.y.back()}, {});
   }
 
   /// Ends a passage; it counts as trapped if it took as long as trapped_after. Returns true if

@@ -39,8 +39,9 @@ struct CutPassage {
   int type = 0;   // of cell
   CutEnd end = CutEnd::lost;
   LostBy lost_by = LostBy::end;
-  dynamics::Entry in{}, out{};         // `out`: entry into the next cell, if the body left
-  double time = 0.0;                   // s
+  dynamics::Entry in{}, out{};  // `out`: entry into the next cell, if the body left
+  int column = 0, row = 0;
+  double entered = 0.0, time = 0.0;    // s, of the track when the body entered; how long it stayed
   std::array<double, 2> from{}, to{};  // m, where the body entered, and its last place in the cell
 };
 

@@ -197,6 +197,7 @@ class RunsReader {
     else
       require_goes_on(entry);
     const CellPassage passage = passage_in();
+    require_open(entry, passage);
     runs_.trapped += passage.fate == Fate::trapped;
     runs_.lost += passage.fate == Fate::broken;
     runs_.passages.push_back(passage);
@@ -220,6 +221,21 @@ class RunsReader {
     for (std::size_t c = 0; c < section_.coordinates.size(); ++c)
       entry.at[c] = number(columns_.in_at[c]);
     return entry;
+  }
+
+  /// Refuses passages through walls of their cell's type.
+  void require_open(const Entry& entry, const CellPassage& passage) const {
+    if (passage.type >= cells_.walls.size()) return;
+    for (std::size_t f = 0; f < section_.faces.size(); ++f) {
+      if ((cells_.walls[passage.type] >> f & 1) == 0) continue;
+      const dynamics::Face &wall = section_.faces[f],
+                           &out = section_.faces[static_cast<std::size_t>(passage.entry.face)];
+      const std::string other = "no wall of type " + cells_.types[passage.type] + " of " +
+                                cells_.source + ", which has one at " + wall.name;
+      if (static_cast<std::size_t>(entry.face) == f) refuse_value(columns_.in, other);
+      if (passage.fate == Fate::left && out.di_x == -wall.di_x && out.di_y == -wall.di_y)
+        refuse_value(columns_.out, "a way through " + other);
+    }
   }
 
   [[nodiscard]] bool begins_trial() const {
@@ -397,18 +413,6 @@ void set_scales(CellFile& cells, const RecordedRuns& runs) {
 
 // ---- Writing
 
-std::string csv_field(const std::string& text) {
-  if (says_nothing(text) || text.find_first_of("\r\n") != text.npos)
-    throw std::invalid_argument("write_runs: a body must have a name without line ends, not \"" +
-                                printable(text) + "\"");
-  const bool plain = text.find_first_of(",\"") == text.npos && text.front() != '#' &&
-                     trimmed(text).size() == text.size();
-  if (plain) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 class RunsWriter {
  public:
   RunsWriter(const CellFile& cells, const markov::WriteBytes& write)
@@ -487,6 +491,18 @@ class RunsWriter {
 
 }  // namespace
 
+std::string body_field(const std::string& text) {
+  if (says_nothing(text) || text.find_first_of("\r\n") != text.npos)
+    throw std::invalid_argument("write_runs: a body must have a name without line ends, not \"" +
+                                printable(text) + "\"");
+  const bool plain = text.find_first_of(",\"") == text.npos && text.front() != '#' &&
+                     trimmed(text).size() == text.size();
+  if (plain) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
 std::vector<EnteredPassage> entered_passages(const RecordedRuns& runs) {
   std::vector<EnteredPassage> all;
   for (const RecordedTrial& trial : runs.trials) {
@@ -522,7 +538,7 @@ RecordedRuns read_runs(const std::string& path, CellFile& cells, CostColumns cos
 
 void write_runs(const std::string& path, const CellFile& cells, const RecordedRuns& runs) {
   std::vector<std::string> names;
-  for (const std::string& body : runs.bodies) names.push_back(csv_field(body));
+  for (const std::string& body : runs.bodies) names.push_back(body_field(body));
   std::vector<std::int64_t> trials(runs.bodies.size());
   markov::replace_file(path, [&](const markov::WriteBytes& write) {
     RunsWriter writer(cells, write);

@@ -56,6 +56,10 @@ enum class CostColumns : std::uint8_t { all, as_there_are };
 [[nodiscard]] RecordedRuns read_runs(const std::string& path, CellFile& cells,
                                      CostColumns costs = CostColumns::all);
 
+/// The name of a body as a field of a table, in quotes where it needs them. Throws
+/// std::invalid_argument for a name without letters or with line ends.
+[[nodiscard]] std::string body_field(const std::string& text);
+
 /// Writes a table that read_runs reads back the same; each body's trials are numbered from 1.
 /// Throws std::invalid_argument for passages that read_runs would refuse, std::runtime_error if
 /// `path` cannot be written (markov::replace_file).

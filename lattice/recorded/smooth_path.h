@@ -43,7 +43,7 @@ struct SmoothPath {
   std::vector<double> place_variance, velocity_variance;
   std::vector<double> acceleration;  // m^2/s^3, as TrackNoise, in the step to each frame
   double square_speed = 0.0;         // m^2/s^2, as TrackNoise
-  double rate = 0.0;  // 1/s, at which velocities are forgotten
+  double rate = 0.0;                 // 1/s, at which velocities are forgotten
 };
 /// The expected path of a piece. Accelerations are estimated anew along the piece, by the
 /// expectation-maximisation algorithm with steps that are averaged over neighbours, so that a body

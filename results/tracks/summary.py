@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Says how often bars held: python3 summary.py DIR, with truth.json, many.csv, predict.json and validate.json in it.
+"""Says how often bars held: python3 summary.py DIR, with the files of run.sh in it.
 Writes coverage.csv and prints the page's table."""
 import csv, json, math, sys
 from pathlib import Path
@@ -53,3 +53,16 @@ tv = sum(f[f"tv{h}"] <= f[f"tv{h}_95"] for f in films for h in (1, 2))
 print(f"| total variation of final gates | | {share(tv, 2 * n)} | |")
 print(f"\nFalse alarms at 5 %: the halves {share(sum(f['p_halves'] <= 0.05 for f in films), n)} %, memory "
       f"{share(sum(f['p_memory'] <= 0.05 for f in films), n)} %.")
+
+turning = json.loads((DIR / "turning_truth.json").read_text())
+by_noise = {mm: [{k: float(v) for k, v in row.items()} for row in csv.DictReader((DIR / f"turning_{mm}.csv").open())]
+            for mm in (1, 2, 3, 4)}
+print(f"\nBodies that turn round at borders, {len(by_noise[1])} films for each noise; went back in truth: "
+      f"{100 * turning['went_back']:.1f} %\n")
+print("| noise of places, mm | went back, mean prediction less truth, points | intervals that hold, % | of all endings, % |"
+      "\n|---|---|---|---|")
+for mm, films in by_noise.items():
+    holds = {e: sum(f[e + "_low"] <= turning[e] <= f[e + "_high"] for f in films) for e in NAMES}
+    mean = sum(f["went_back"] for f in films) / len(films)
+    print(f"| {mm} | {100 * (mean - turning['went_back']):+.1f} | {share(holds['went_back'], len(films))} "
+          f"| {share(sum(holds.values()), len(NAMES) * len(films))} |")
