@@ -100,7 +100,7 @@ using NumberRows = std::vector<std::vector<double>>;
 using GateLimits = std::array<markov::CellProbabilities, 2>;  // 95 % limits: lower, upper
 
 /// Several numbers for each gate, the same number of them for every gate. Gates stand one after the
-/// other, row by row from the start's side on.
+/// other, row by row from the near row on.
 struct GateNumbers {
   std::size_t rows, columns;
   std::vector<double> numbers;
@@ -198,7 +198,7 @@ class Fields {
   void texts(const Label& l, const Texts& t) {
     leaf(l, ValueKind::texts, true, t ? Value(&*t) : Value());
   }
-  /// A text for each gate, row by row from the start's side on.
+  /// A text for each gate, row by row from the near row on.
   void text_rows(const Label& l, const TextRows& rows) {
     leaf(l, ValueKind::text_rows, false, &rows);
   }
@@ -213,7 +213,7 @@ class Fields {
   void points(const Field& f, const std::vector<std::array<double, 2>>& places) {
     leaf(f, ValueKind::points, false, &places);
   }
-  /// A number for each gate, row by row from the start's side on.
+  /// A number for each gate, row by row from the near row on.
   void grid(const Field& f, const markov::CellProbabilities& x) {
     leaf(f, ValueKind::grid, true, &x);
   }

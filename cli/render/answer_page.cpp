@@ -306,7 +306,7 @@ void describe(Fields& out, const AnswerPage& page, bool gates_95) {
   out.optional(!page.shown.types.empty(), [&](Fields& f) {
     f.texts({"types", "names of types of cells"}, page.shown.types);
     const std::vector<int>& types = page.shown.map.type_of_cell;
-    f.counts({"type_of_gate", "1", "type of each cell, row by row from the start's side on"},
+    f.counts({"type_of_gate", "1", "type of each cell, row by row from the near row on"},
              {types.begin(), types.end()});
   });
   out.optional(!gates_95, [](Fields& f) {

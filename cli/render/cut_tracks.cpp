@@ -177,7 +177,7 @@ void describe(Fields& out, const CutResult& result) {
             cut.columns > 0 ? std::optional(Size{cut.columns, cut.rows}) : std::nullopt,
             [](Fields& f, const Size& size) {
               f.count({"columns", "1", "number of columns, from left to right"}, size.columns);
-              f.count({"rows", "1", "number of rows, from the start's side on"}, size.rows);
+              f.count({"rows", "1", "number of rows, from the near row on"}, size.rows);
             });
   out.count({"places_outside", "1", "places of tracks outside the lattice, where there is no cell"},
             cut.places_outside);

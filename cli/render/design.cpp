@@ -49,7 +49,7 @@ void describe_changes(Fields& out, const DesignedScene& d, std::string_view mean
     gate.count(
         {"gate_x", "1", "column of the gate: 0 is the start's, columns to its left are negative"},
         c.x);
-    gate.count({"gate_y", "1", "row of the gate: 0 is the start's"}, c.y);
+    gate.count({"gate_y", "1", "row of the gate: 0 is the near row"}, c.y);
     gate.text({"from", "type of the gate before the change"}, name_of(d.before, c.from));
     gate.text({"to", "type of the gate after the change"}, name_of(d.before, c.to));
   });

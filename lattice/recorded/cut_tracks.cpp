@@ -48,6 +48,13 @@ std::int64_t places_of(const CutTracks& cut) {
 /// Limits in cells: distance from the origin, and distance from frame to frame.
 constexpr double kMostCells = 1e9, kMostCellsAtOnce = 1000.0;
 
+/// A number of 56 bits for a name, different for nearly all names (FNV-1a).
+std::uint64_t number_of_name(const std::string& name) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return hash >> 8;
+}
+
 /// Standard deviations of a place beyond which noise hardly ever carries it; the most frames in a
 /// row that may be bridged without a remark.
 constexpr double kSure = 5.0, kMostBridged = 100.0;
@@ -297,13 +304,15 @@ class Cutter {
     return !has_wall(column + di_x, row + di_y, di_x, di_y) && !has_wall(column, row, -di_x, -di_y);
   }
 
-  /// A path by its probability given the places; the same in each call.
-  SmoothPath path_of(const TrackPiece& piece, std::size_t track) {
+  /// A path by its probability given the places; the same in each call, and whatever other bodies
+  /// stand before it in the file.
+  SmoothPath path_of(const TrackPiece& piece) {
     const SmoothPath expected = smoothed(piece, cut_.noise);
     double variances = 0.0;
     for (const double v : expected.place_variance) variances += v;
     place_variances_ += variances;
-    dynamics::Random random(dynamics::Purpose::track, {1, track, piece.begin});
+    dynamics::Random random(dynamics::Purpose::track,
+                            {1, number_of_name(piece.track->body), piece.begin});
     const SmoothPath path = drawn_path(piece, cut_.noise, expected, random);
     const double sure = kSure * std::sqrt(variances / static_cast<double>(piece.size()));
     const Grid open{cell_.width, cell_.length};
@@ -313,7 +322,7 @@ class Cutter {
 
   void cut_piece(const TrackPiece& piece, LostBy ends) {
     const std::size_t track = static_cast<std::size_t>(piece.track - file_.tracks.data());
-    const SmoothPath path = path_of(piece, track);
+    const SmoothPath path = path_of(piece);
     Grid grid{cell_.width, cell_.length};
     if (cell_.has_walls())
       grid.is_open = [this](int column, int row, int di_x, int di_y) {

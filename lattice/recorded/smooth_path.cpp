@@ -121,9 +121,28 @@ bool is_one_place(const Track& track, std::size_t begin, std::size_t count) {
 struct Weighted {
   double value, weight;
 };
+/// Sorted, so that sums do not depend on the order of bodies.
+std::vector<Weighted> sorted(std::vector<Weighted> all) {
+  std::sort(all.begin(), all.end(), [](const Weighted& a, const Weighted& b) {
+    return a.value != b.value ? a.value < b.value : a.weight < b.weight;
+  });
+  return all;
+}
+/// The mean of the lower part of all weights.
+double mean(std::vector<Weighted> all, double part = 1.0) {
+  all = sorted(std::move(all));
+  double left = 0.0, sum = 0.0, weights = 0.0;
+  for (const Weighted& w : all) left += part * w.weight;
+  for (const Weighted& w : all) {
+    const double weight = std::clamp(w.weight, 0.0, left);
+    sum += weight * w.value;
+    weights += weight;
+    left -= weight;
+  }
+  return weights > 0.0 ? sum / weights : 0.0;
+}
 double median(std::vector<Weighted> all) {
-  std::sort(all.begin(), all.end(),
-            [](const Weighted& a, const Weighted& b) { return a.value < b.value; });
+  all = sorted(std::move(all));
   double half = 0.0;
   for (const Weighted& w : all) half += 0.5 * w.weight;
   for (const Weighted& w : all)
@@ -231,8 +250,10 @@ double variance_of(const TrackPiece& piece, const TrackNoise& noise) {
 
 /// The process along a piece.
 Process process_of(const TrackPiece& piece, const TrackNoise& noise) {
-  constexpr int kRounds = 40;
-  constexpr double kLeast = 1e-6;  // of all tracks' acceleration
+  constexpr int kRounds = 20;
+  // Of all tracks' acceleration. Where less is assumed, the smoother looks so far ahead that a
+  // velocity tells of a stop to come.
+  constexpr double kLeast = 0.1;
   const std::size_t n = piece.size();
   const double *const time = &piece.track->time[piece.begin],
                       *const x = &piece.track->x[piece.begin],
@@ -320,8 +341,7 @@ TrackNoise noise_of(const std::vector<TrackPiece>& pieces) {
     throw std::invalid_argument("no body was seen in " + std::to_string(kLeastFrames) +
                                 " frames in a row, without a gap or a jump");
   const std::size_t stride = (all + kEnough - 1) / kEnough;
-  std::vector<Weighted> places, accelerations;
-  double squares = 0.0, sizes = 0.0;
+  std::vector<Weighted> places, accelerations, speeds;
   std::size_t number = 0;
   for (const TrackPiece& p : pieces) {
     const Track& t = *p.track;
@@ -330,14 +350,12 @@ TrackNoise noise_of(const std::vector<TrackPiece>& pieces) {
       if (number++ % stride != 0 || size < kLeastFrames || is_one_place(t, at, size)) continue;
       const TrackNoise found =
           most_likely({&t.time[at], &t.x[at], size}, {&t.time[at], &t.y[at], size});
-      squares += static_cast<double>(size) * square_speed_of({&t, at, at + size}, found);
-      sizes += static_cast<double>(size);
+      speeds.push_back({square_speed_of({&t, at, at + size}, found), static_cast<double>(size)});
       places.push_back({found.place, static_cast<double>(size)});
       accelerations.push_back({found.acceleration, static_cast<double>(size)});
     }
   }
-  return {median(places), median(accelerations),
-          sizes > 0.0 ? std::max(0.0, squares / sizes) : 0.0};
+  return {median(places), mean(accelerations, 0.95), std::max(0.0, mean(speeds))};
 }
 
 SmoothPath smoothed(const TrackPiece& piece, const TrackNoise& noise) {

@@ -31,8 +31,9 @@ struct TrackNoise {
   double square_speed = 0.0;  // m^2/s^2, variance of the velocity along each axis
 };
 /// Estimates noise and accelerations by maximum likelihood from stretches of tracks: the median of
-/// the stretches, so that rests and outliers of a tracker do not count for much. The variance of
-/// velocities is the mean over these stretches. Throws std::invalid_argument without pieces.
+/// the noise, and the mean of the accelerations without the largest twentieth, so that outliers of
+/// a tracker do not count. The variance of velocities is the mean over these stretches. Throws
+/// std::invalid_argument without pieces.
 [[nodiscard]] TrackNoise noise_of(const std::vector<TrackPiece>& pieces);
 
 /// A path by frame.

@@ -53,13 +53,15 @@ void require_memory(const Problem& problem, int states) {
         " gates take more than 8 GiB; ask for fewer states (--accuracy, build --states) or gates");
 }
 
-/// True if the field is its own mirror image.
-bool same_in_mirror(const CellMap& map, const FieldParams& field) {
+/// True if field and start are their own mirror image: the start cell is in the middle column, and
+/// bodies enter it by a face that is its own image.
+bool same_in_mirror(const CellMap& map, const FieldParams& field, int start_face) {
+  const auto& face = map.section.faces[static_cast<std::size_t>(start_face)];
+  if (face.mirror != start_face || 2 * field.start_column() + 1 != field.columns) return false;
   for (int row = 0; row < field.rows; ++row)
     for (int column = 0; column < field.columns; ++column)
       if (map.type_of(column, row) != map.type_of(field.columns - 1 - column, row)) return false;
-  return field.columns % 2 == 1 &&
-         std::all_of(map.types.begin(), map.types.end(),
+  return std::all_of(map.types.begin(), map.types.end(),
                      [](const CellMap::Type& type) { return type.symmetric; });
 }
 
@@ -144,9 +146,9 @@ class StatesMeeting {
   std::vector<std::size_t> above_;
 };
 
-/// The probability of the target by start. In a field that is its own mirror image, a start ends in
-/// the target as often as its mirror image ends in the target's: the mean of both, where their
-/// states overlap.
+/// The probability of the target by start. If field and start cell are their own mirror image, a
+/// start ends in the target as often as its mirror image ends in the target's: the mean of both,
+/// where their states overlap.
 std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const CellMap& map,
                                            const FieldParams& field, int start_face,
                                            const ReactiveVisits& passages,
@@ -154,7 +156,7 @@ std::vector<StartChance> chances_of_starts(const AnalysedChain& chain, const Cel
   const ChainWithRewards& c = chain.chain;
   const StateSpace& space = chain.space;
   const markov::Ending target = passages.chance().ending(), image = mirrored(target);
-  const bool in_mirror = same_in_mirror(map, field);
+  const bool in_mirror = same_in_mirror(map, field, start_face);
   const markov::Field cells{field.columns, field.rows};
   const std::int64_t first_cell = std::int64_t{c.start.row} * field.columns + c.start.column;
   const markov::Chain& first = c.chain.at(c.start.column, c.start.row);

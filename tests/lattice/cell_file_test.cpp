@@ -205,6 +205,28 @@ TEST(CellFile, TypesStandWhereTheMapSays) {
             "[[cell.types]]");
 }
 
+TEST(CellFile, WallsAreFacesOfATypeAndReadBack) {
+  const auto with_walls = [](const std::string& of_a, const std::string& of_b) {
+    return kTracks + "[[cell.types]]\nname = \"a\"\nwalls = " + of_a +
+           "\n[[cell.types]]\nname = \"b\"\nsymmetric = false\nwalls = " + of_b + "\n";
+  };
+  const CellFile file = parse(with_walls("[\"W\", \"E\"]", "[\"W\"]"));
+  EXPECT_EQ(file.walls, (std::vector<std::uint64_t>{0b110, 0b010}));
+  EXPECT_TRUE(file.has_walls());
+  const CellFile again = parse(to_toml(file));
+  EXPECT_EQ(again.walls, file.walls);
+  EXPECT_EQ(to_toml(again), to_toml(file));
+  EXPECT_FALSE(parse(kTracks).has_walls());
+  EXPECT_FALSE(parse(with_walls("[]", "[]")).has_walls());
+  // What is a wall in the mirror must be one in a symmetric type.
+  EXPECT_NE(
+      refused_as(with_walls("[\"W\"]", "[]")).find("must have the mirror images of its faces"),
+      std::string::npos);
+  EXPECT_NE(refused_as(with_walls("\"W\"", "[]")).find("must be an array of faces"),
+            std::string::npos);
+  EXPECT_NE(refused_as(with_walls("[\"up\"]", "[]")).find("of S, W and E"), std::string::npos);
+}
+
 TEST(CellFile, ReadsBackTheSame) {
   const std::string costs =
       "[[cell.costs]]\nkey = \"work_J\"\nunit = \"J\"\nwords = \"a \\\\ and a \\\"\"\n";

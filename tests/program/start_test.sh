@@ -79,6 +79,16 @@ for key in start_row=1 start_column=3; do
   expect 2 'is of another run, the scene is another one' "$gatewalk" lattice "$field" --trials 4000000 --max-time 0.3s --checkpoint kept --resume --set field.$key
 done
 
+# Off the middle, left is no mirror image of right: from the left column bodies that go left leave there, and the mean
+# over the starts that were told is the whole chance. A start by a side has its ranges too.
+"$gatewalk" analyze "$field" --set field.start_column=0 --set field.start_row=2 --set field.columns=5 --set field.rows=4 \
+  --set forces.propulsion_N=9 --accuracy 0.05 --runs 0 --target left_side --json ranges.json --quiet
+holds '[.starts[] | {p: .probability, vx: (.vx_m_per_s | add / 2)}] | ([.[] | select(.vx < -20) | .p] | add / length) > 0.7
+  and ([.[] | select(.vx > 20) | .p] | add / length) < 0.35' ranges.json
+"$gatewalk" analyze "$field" --set field.columns=5 --set field.rows=4 --set forces.propulsion_N=9 --set start.x_m=-25 \
+  --set start.y_m=12 --set start.vx_m_per_s=8 --set start.vy_m_per_s=10 --accuracy 0.05 --runs 0 --json ranges.json --force --quiet
+holds '.starts_in_all > 0' ranges.json
+
 # Refusals name the key and what is allowed.
 for wrong in 9 -1; do
   expect 2 "field.start_column = $wrong is not permitted: must lie in \[0, 8\]" "$gatewalk" scene "$field" --set field.start_column=$wrong
