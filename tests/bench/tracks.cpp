@@ -46,7 +46,7 @@ constexpr int kSteps = 2;                        // a frame
 constexpr double kMargin = 0.015;                // m, what the camera sees beyond its cells
 constexpr int kViewColumns = 5, kViewRows = 3;
 constexpr double kGapsPerSecond = 0.02;
-constexpr int kLongestGap = 30;         // frames
+constexpr int kLongestGap = 30;                   // frames
 constexpr int kBridge = 15, kAway = kBridge + 1;  // frames that may be missing; between trials
 constexpr int kBodies = 200, kTrialsOfOne = 8, kTrialsOfMany = 3;  // of a body in a film
 
