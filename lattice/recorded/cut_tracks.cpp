@@ -48,13 +48,6 @@ std::int64_t places_of(const CutTracks& cut) {
 /// Limits in cells: distance from the origin, and distance from frame to frame.
 constexpr double kMostCells = 1e9, kMostCellsAtOnce = 1000.0;
 
-/// A number of 56 bits for a name, different for nearly all names (FNV-1a).
-std::uint64_t number_of_name(const std::string& name) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  return hash >> 8;
-}
-
 /// Standard deviations of a place beyond which noise hardly ever carries it; the most frames in a
 /// row that may be bridged without a remark.
 constexpr double kSure = 5.0, kMostBridged = 100.0;
@@ -314,10 +307,34 @@ class Cutter {
     dynamics::Random random(dynamics::Purpose::track,
                             {1, number_of_name(piece.track->body), piece.begin});
     const SmoothPath path = drawn_path(piece, cut_.noise, expected, random);
-    const double sure = kSure * std::sqrt(variances / static_cast<double>(piece.size()));
-    const Grid open{cell_.width, cell_.length};
-    cut_.unsure_crossings += crossings_beyond(path, open, 0.0) - crossings_beyond(path, open, sure);
+    for (std::size_t i = 0; i < path.time.size(); ++i)
+      if (!std::isfinite(path.x[i] + path.y[i] + path.vx[i] + path.vy[i]))
+        throw std::invalid_argument(file_.source + ": body " + printable(piece.track->body) +
+                                    " has no finite path at " + rounded(path.time[i]) +
+                                    " s: are its times and places right?");
     return path;
+  }
+
+  /// By crossing: true if the path turns back before it is surely beyond the border, or has just
+  /// come back so.
+  static std::vector<bool> unsure_crossings(const SmoothPath& path, const WayThroughCells& way) {
+    std::vector<bool> is_unsure(way.crossings.size(), false);
+    for (std::size_t k = 1; k < way.crossings.size(); ++k) {
+      const Crossing &there = way.crossings[k - 1], &back = way.crossings[k];
+      if (there.is_loss() || back.is_loss() || there.di_x != -back.di_x || there.di_y != -back.di_y)
+        continue;
+      const auto& places = there.di_x != 0 ? path.x : path.y;
+      const double border = there.di_x != 0 ? there.x : there.y;
+      bool is_sure = false;
+      for (auto i = static_cast<std::size_t>(
+               std::upper_bound(path.time.begin(), path.time.end(), there.time) -
+               path.time.begin());
+           i < path.time.size() && path.time[i] < back.time; ++i)
+        is_sure =
+            is_sure || std::abs(places[i] - border) > kSure * std::sqrt(path.place_variance[i]);
+      if (!is_sure) is_unsure[k - 1] = is_unsure[k] = true;
+    }
+    return is_unsure;
   }
 
   void cut_piece(const TrackPiece& piece, LostBy ends) {
@@ -329,12 +346,14 @@ class Cutter {
         return is_open(column, row, di_x, di_y);
       };
     const WayThroughCells way = way_through(path, grid);
+    const std::vector<bool> is_unsure = unsure_crossings(path, way);
     cut_.places_put_back += way.places_put_back;
     int column = way.column, row = way.row;
     cut_.first_stays += is_inside(column, row) ? 1 : 0;
     std::optional<CutPassage> now;  // the passage under way
     bool was_inside = false;
-    for (const Crossing& c : way.crossings) {
+    for (std::size_t i = 0; i < way.crossings.size(); ++i) {
+      const Crossing& c = way.crossings[i];
       const bool is_in = is_inside(column, row);
       column = c.column;
       row = c.row;
@@ -352,6 +371,7 @@ class Cutter {
       was_inside = was_inside || is_in;
       if (!now && !goes_on) continue;
       const Entry entry = entry_of(c, column, row, *piece.track);
+      cut_.unsure_crossings += is_unsure[i];
       bool is_new = !now;
       if (now) {
         is_new = finish(*now, c.time - now->entered, CutEnd::left, {c.x, c.y}, entry);
@@ -447,6 +467,7 @@ class Cutter {
         (cut_.columns > 0 ? ", " + std::to_string(cut_.columns) + " x " +
                                 std::to_string(cut_.rows) + " of them from (0, 0) on"
                           : "") +
+        (cell_.has_walls() ? ", and no way leads through the walls of " + cell_.source : "") +
         words_of_ways(ends[3]) + " (are --metres-per-unit, --origin, --fps and --fastest right? " +
         std::to_string(cut_.jumps) + " steps were faster than --fastest, " +
         std::to_string(cut_.gaps) + " went over a gap)" +

@@ -230,11 +230,14 @@ class RunsReader {
       if ((cells_.walls[passage.type] >> f & 1) == 0) continue;
       const dynamics::Face &wall = section_.faces[f],
                            &out = section_.faces[static_cast<std::size_t>(passage.entry.face)];
-      const std::string other = "no wall of type " + cells_.types[passage.type] + " of " +
-                                cells_.source + ", which has one at " + wall.name;
-      if (static_cast<std::size_t>(entry.face) == f) refuse_value(columns_.in, other);
-      if (passage.fate == Fate::left && out.di_x == -wall.di_x && out.di_y == -wall.di_y)
-        refuse_value(columns_.out, "a way through " + other);
+      const bool enters = static_cast<std::size_t>(entry.face) == f;
+      const bool leaves =
+          passage.fate == Fate::left && out.di_x == -wall.di_x && out.di_y == -wall.di_y;
+      if (enters || leaves)
+        refuse(enters ? columns_.in : columns_.out,
+               "a body cannot " + std::string(enters ? "enter" : "leave") + " by face " +
+                   (enters ? wall.name : out.name) + ": type " + cells_.types[passage.type] +
+                   " of " + cells_.source + " has a wall at " + wall.name);
     }
   }
 

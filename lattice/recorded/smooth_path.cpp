@@ -154,6 +154,7 @@ double median(std::vector<Weighted> all) {
 /// step to it.
 struct Process {
   double noise, square_speed, rate;
+  bool is_exact;  // places have no noise: the path is where the body was measured
   std::vector<double> acceleration;
 
   [[nodiscard]] Step step(std::size_t i, double dt) const { return {dt, acceleration[i], rate}; }
@@ -208,10 +209,15 @@ class Smoother {
   std::vector<Belief> known_, ahead_;  // by frame: with and without the frame's own place
 };
 
-/// Adds the accelerations that the expected squares of the changes of velocity show, in the step to
-/// each frame.
-void add_accelerations(const Smoother& smoother, const Process& process,
-                       std::vector<double>& accelerations) {
+/// What the expected squares of velocities and of their changes show of the step to a frame.
+struct Change {
+  double acceleration = 0.0;  // m^2/s^3
+  double square_speed = 0.0;  // m^2/s^2
+};
+using Changes = std::vector<Change>;
+
+/// Adds the changes along one axis.
+void add_changes(const Smoother& smoother, const Process& process, Changes& changes) {
   Belief next = smoother.last();
   for (std::size_t i = smoother.size() - 1; i > 0; --i) {
     double shared = 0.0;
@@ -220,7 +226,8 @@ void add_accelerations(const Smoother& smoother, const Process& process,
     const double change = next.v - s.kept * own.v;
     const double square =
         change * change + next.vv + s.kept * s.kept * own.vv - 2.0 * s.kept * shared;
-    accelerations[i] += process.acceleration[i] * square / s.vv;
+    changes[i].acceleration += process.acceleration[i] * square / s.vv;
+    changes[i].square_speed += next.v * next.v;
     next = own;
   }
 }
@@ -241,24 +248,28 @@ double interval_of(const TrackPiece& piece) {
   return (t.time[piece.end - 1] - t.time[piece.begin]) / static_cast<double>(piece.size() - 1);
 }
 
-/// The variance of places. Of places without noise, that of a millionth of a step, which numbers of
-/// double precision still hold.
-double variance_of(const TrackPiece& piece, const TrackNoise& noise) {
-  const double least = 1e-6 * interval_of(piece);
-  return std::max({noise.place * noise.place, least * least * square_of_steps(piece), 1e-200});
+/// The process of a piece with this noise, if nothing is known of velocities and accelerations.
+/// Places without noise get that of a millionth of a step, which numbers of double precision still
+/// hold.
+Process process_with(const TrackPiece& piece, const TrackNoise& noise) {
+  const double step = interval_of(piece) * std::sqrt(square_of_steps(piece));
+  const double least = 1e-6 * step;
+  return {std::pow(std::max(noise.place, least), 2), 0.0, 0.0, noise.place <= least, {}};
 }
 
-/// The process along a piece.
+/// The process along a piece; without accelerations for a body that stays at one place.
 Process process_of(const TrackPiece& piece, const TrackNoise& noise) {
   constexpr int kRounds = 20;
-  // Of all tracks' acceleration. Where less is assumed, the smoother looks so far ahead that a
-  // velocity tells of a stop to come.
-  constexpr double kLeast = 0.1;
+  // The least acceleration, as a part of that of all tracks. Where a moving body had less, the
+  // smoother would look so far ahead that its velocity tells of a stop to come. A body rests if its
+  // mean square speed is less than this part of that of all tracks.
+  constexpr double kLeastOfMoving = 0.1, kLeastOfResting = 1e-6, kResting = 0.1;
   const std::size_t n = piece.size();
   const double *const time = &piece.track->time[piece.begin],
                       *const x = &piece.track->x[piece.begin],
                       *const y = &piece.track->y[piece.begin];
-  Process process{variance_of(piece, noise), 0.0, 0.0, {}};
+  Process process = process_with(piece, noise);
+  if (square_of_steps(piece) == 0.0) return process;
   const double interval = interval_of(piece);
   // Of a body that hardly moves: as if noise moved it, from the piece's first frame to its last.
   process.square_speed =
@@ -271,23 +282,33 @@ Process process_of(const TrackPiece& piece, const TrackNoise& noise) {
   const auto reach =
       static_cast<std::size_t>(std::clamp(2.0 * memory / interval, 6.0, static_cast<double>(n)));
   process.acceleration.assign(n, usual);
-  std::vector<double> found(n), sums(n + 1);
+  Changes found(n), sums(n + 1);
   for (int round = 0; round < kRounds; ++round) {
-    std::fill(found.begin(), found.end(), 0.0);
+    std::fill(found.begin(), found.end(), Change{});
     for (const double* places : {x, y})
-      add_accelerations(Smoother(time, places, process), process, found);
-    for (std::size_t i = 0; i < n; ++i) sums[i + 1] = sums[i] + 0.5 * found[i];
+      add_changes(Smoother(time, places, process), process, found);
+    for (std::size_t i = 0; i < n; ++i)
+      sums[i + 1] = {sums[i].acceleration + 0.5 * found[i].acceleration,
+                     sums[i].square_speed + 0.5 * found[i].square_speed};
     for (std::size_t i = 1; i < n; ++i) {
       const std::size_t from = std::max<std::size_t>(1, i - std::min(i, reach)),
                         to = std::min(n, i + reach + 1);
-      process.acceleration[i] =
-          std::max(kLeast * usual, (sums[to] - sums[from]) / static_cast<double>(to - from));
+      const auto mean = [&](double Change::*of) {
+        return (sums[to].*of - sums[from].*of) / static_cast<double>(to - from);
+      };
+      const double moving =
+          std::min(1.0, mean(&Change::square_speed) / (kResting * process.square_speed));
+      double& q = process.acceleration[i];
+      const double factor = mean(&Change::acceleration) / q;
+      // The algorithm is slow where a body rests, so there it takes four steps at once.
+      const double more = moving < 1.0 ? std::pow(std::min(factor, 1.0), 3) : 1.0;
+      q = std::max(std::max(kLeastOfMoving * moving, kLeastOfResting) * usual, q * factor * more);
     }
   }
   return process;
 }
 
-/// A path by the smoother; drawn if there are random numbers.
+/// A path by the smoother; drawn if there are random numbers and noise.
 SmoothPath path_of(const TrackPiece& piece, Process process, dynamics::Random* random) {
   const std::size_t n = piece.size();
   const double* const time = &piece.track->time[piece.begin];
@@ -298,14 +319,18 @@ SmoothPath path_of(const TrackPiece& piece, Process process, dynamics::Random* r
     values->resize(n);
   const auto fill = [&](const double* places, std::vector<double>& place,
                         std::vector<double>& velocity) {
+    if (process.acceleration.empty()) {  // at one place
+      std::copy(places, places + n, place.begin());
+      return;
+    }
     const Smoother smoother(time, places, process);
     Belief belief = smoother.last();
     for (std::size_t i = n; i-- > 0;) {
       if (i + 1 < n) belief = smoother.before(i + 1, belief);
       path.place_variance[i] = std::max(0.0, belief.xx);
       path.velocity_variance[i] = std::max(0.0, belief.vv);
-      if (random) belief = belief.drawn(*random);
-      place[i] = belief.x;
+      if (random && !process.is_exact) belief = belief.drawn(*random);
+      place[i] = process.is_exact ? places[i] : belief.x;
       velocity[i] = belief.v;
     }
   };
@@ -319,11 +344,11 @@ SmoothPath path_of(const TrackPiece& piece, Process process, dynamics::Random* r
 
 /// The mean square of the velocity along an axis in the middle half of a stretch.
 double square_speed_of(const TrackPiece& stretch, const TrackNoise& found) {
-  constexpr double kWide = 100.0;  // nothing is known of the first velocity
-  const SmoothPath path = path_of(stretch,
-                                  {variance_of(stretch, found), kWide * square_of_steps(stretch),
-                                   0.0, std::vector<double>(stretch.size(), found.acceleration)},
-                                  nullptr);
+  constexpr double kUnknown = 100.0;  // nothing is known of the first velocity
+  Process process = process_with(stretch, found);
+  process.square_speed = kUnknown * square_of_steps(stretch);
+  process.acceleration.assign(stretch.size(), found.acceleration);
+  const SmoothPath path = path_of(stretch, std::move(process), nullptr);
   const std::size_t from = stretch.size() / 4, to = stretch.size() - from;
   double sum = 0.0;
   for (std::size_t i = from; i < to; ++i)
@@ -342,17 +367,19 @@ TrackNoise noise_of(const std::vector<TrackPiece>& pieces) {
                                 " frames in a row, without a gap or a jump");
   const std::size_t stride = (all + kEnough - 1) / kEnough;
   std::vector<Weighted> places, accelerations, speeds;
-  std::size_t number = 0;
   for (const TrackPiece& p : pieces) {
     const Track& t = *p.track;
     for (std::size_t at = p.begin; at < p.end; at += kLength) {
       const std::size_t size = std::min(kLength, p.end - at);
-      if (number++ % stride != 0 || size < kLeastFrames || is_one_place(t, at, size)) continue;
+      // Which stretches are taken does not depend on the order of bodies.
+      const bool is_taken = (number_of_name(t.body) + at / kLength) % stride == 0;
+      if (!is_taken || size < kLeastFrames || is_one_place(t, at, size)) continue;
       const TrackNoise found =
           most_likely({&t.time[at], &t.x[at], size}, {&t.time[at], &t.y[at], size});
-      speeds.push_back({square_speed_of({&t, at, at + size}, found), static_cast<double>(size)});
-      places.push_back({found.place, static_cast<double>(size)});
-      accelerations.push_back({found.acceleration, static_cast<double>(size)});
+      const double weight = static_cast<double>(size);
+      places.push_back({found.place, weight});
+      accelerations.push_back({found.acceleration, weight});
+      speeds.push_back({square_speed_of({&t, at, at + size}, found), weight});
     }
   }
   return {median(places), mean(accelerations, 0.95), std::max(0.0, mean(speeds))};
@@ -364,10 +391,11 @@ SmoothPath smoothed(const TrackPiece& piece, const TrackNoise& noise) {
 
 SmoothPath drawn_path(const TrackPiece& piece, const TrackNoise& noise, const SmoothPath& expected,
                       dynamics::Random& random) {
-  return path_of(
-      piece,
-      {variance_of(piece, noise), expected.square_speed, expected.rate, expected.acceleration},
-      &random);
+  Process process = process_with(piece, noise);
+  process.square_speed = expected.square_speed;
+  process.rate = expected.rate;
+  process.acceleration = expected.acceleration;
+  return path_of(piece, std::move(process), &random);
 }
 
 }  // namespace gatewalk::lattice

@@ -221,4 +221,10 @@ TrackFile read_tracks(const std::vector<std::string>& paths, const TrackOptions&
   return all;
 }
 
+std::uint64_t number_of_name(const std::string& name) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return hash >> 8;
+}
+
 }  // namespace gatewalk::lattice

@@ -34,6 +34,10 @@ struct Track {
   std::vector<double> x, y;  // m, from the lattice's origin
 };
 
+/// A number of 56 bits for the name of a body, different for nearly all names (FNV-1a): random
+/// numbers and samples that it keys do not depend on the order of bodies in a file.
+[[nodiscard]] std::uint64_t number_of_name(const std::string& name);
+
 /// A file of tracks in SI units, with counts of what was left out.
 struct TrackFile {
   std::string source, kind;          // the file's name; "a table", "DeepLabCut" or "movement"

@@ -410,7 +410,9 @@ void read_walls(CellFile& file, const GivenTable& cell) {
     if (!file.map.types[type - 1].symmetric) continue;
     for (std::size_t f = 0; f < faces.size(); ++f)
       if ((walls >> f & 1) != (walls >> faces[f].mirror & 1))
-        given.refuse("walls", "have the mirror images of its faces too, as the type is symmetric");
+        given.refuse("walls", "have both " + faces[f].name + " and its mirror image " +
+                                  names[static_cast<std::size_t>(faces[f].mirror)] +
+                                  ", or none, as the type is symmetric");
   }
 }
 

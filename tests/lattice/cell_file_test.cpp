@@ -219,9 +219,8 @@ TEST(CellFile, WallsAreFacesOfATypeAndReadBack) {
   EXPECT_FALSE(parse(kTracks).has_walls());
   EXPECT_FALSE(parse(with_walls("[]", "[]")).has_walls());
   // What is a wall in the mirror must be one in a symmetric type.
-  EXPECT_NE(
-      refused_as(with_walls("[\"W\"]", "[]")).find("must have the mirror images of its faces"),
-      std::string::npos);
+  EXPECT_NE(refused_as(with_walls("[\"W\"]", "[]")).find("must have both W and its mirror image E"),
+            std::string::npos);
   EXPECT_NE(refused_as(with_walls("\"W\"", "[]")).find("must be an array of faces"),
             std::string::npos);
   EXPECT_NE(refused_as(with_walls("[\"up\"]", "[]")).find("of S, W and E"), std::string::npos);

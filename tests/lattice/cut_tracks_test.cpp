@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -602,6 +603,97 @@ TEST(CutTracks, WhoStaysBeyondWallsIsLost) {
   EXPECT_EQ(ways_of(cut, cell), (std::vector<std::string>{"open S"}));
   EXPECT_EQ(cut.first_stays, 1);
   EXPECT_NE(cut.doubts.at(0).find("of the places lie beyond walls"), std::string::npos);
+}
+
+// A corridor of four cells, up on the left and down on the right. The body leans over the wall
+// between the lower cells for half a second; the way round would be through all others.
+TEST(CutTracks, WhoLeansOverAWallStaysInItsCell) {
+  CellFile cell = horseshoe();
+  const auto face = [](int f) { return std::uint64_t{1} << f; };
+  cell.types = {"open", "lower left"};
+  cell.walls = {0, face(kFaceE)};
+  cell.map.columns = 2;
+  cell.map.type_of_cell = {1, 0, 0, 0};
+  for (const double lean : {0.005, 0.01, 0.02, 0.03}) {
+    const auto way = [&](double t) {
+      const double over = 0.03 + lean;  // from x = 0.07
+      const double x = t < 0.75   ? 0.07
+                       : t < 1.0  ? 0.07 + over * (t - 0.75) / 0.25
+                       : t < 1.5  ? 0.07 + over
+                       : t < 1.75 ? 0.07 + over * (1.75 - t) / 0.25
+                                  : 0.07;
+      const double y = t < 0.75   ? -0.05 + 0.1 * t / 0.75
+                       : t < 1.75 ? 0.05
+                                  : 0.05 + 0.2 * (t - 1.75);
+      return Place{x, y};
+    };
+    const CutTracks cut = cut_tracks(file_of({way}, 270, 1e-4), cell, {.fastest = 100.0});
+    EXPECT_EQ(ways_of(cut, cell), (std::vector<std::string>{"lower left S", "open S"})) << lean;
+    EXPECT_GT(cut.places_put_back, 50) << lean;
+  }
+}
+
+// Parked for long beside a border, with noise or in whole pixels: it enters its cell once, and is
+// trapped there.
+TEST(CutTracks, WhoRestsAtABorderDoesNotCrossItAgain) {
+  CellFile cell = squares();
+  cell.trapped_after = 2.0;
+  for (const double noise : {0.0, 0.0003})
+    for (const double behind : {0.001, 0.002}) {
+      const auto parks = [&](double t) {
+        return Place{0.05, std::min(0.05 + 0.1 * t, 0.1 + behind)};
+      };
+      const CutTracks cut =
+          cut_tracks(file_of({parks, straight({0.03, 0.0}, 0.01, 0.1)}, 1200, noise), cell, fast());
+      EXPECT_EQ(std::count_if(cut.passages.begin(), cut.passages.end(),
+                              [](const CutPassage& p) { return p.track == 0; }),
+                1)
+          << noise << " " << behind;
+      EXPECT_EQ(cut.passages[0].end, CutEnd::trapped) << noise << " " << behind;
+    }
+  // On the border itself, in whole pixels.
+  const auto on_it = [](double t) { return Place{0.05, std::min(0.05 + 0.1 * t, 0.1)}; };
+  const CutTracks cut =
+      cut_tracks(file_of({on_it, straight({0.03, 0.0}, 0.01, 0.1)}, 1200), cell, fast());
+  EXPECT_LE(std::count_if(cut.passages.begin(), cut.passages.end(),
+                          [](const CutPassage& p) { return p.track == 0; }),
+            2);
+}
+
+// A body that stays at one place, beside one that moves without noise.
+TEST(CutTracks, WhoNeverMovesIsInOneCell) {
+  const CutTracks cut =
+      cut_tracks(file_of({straight({0.25, 0.25}, 0.0, 0.0), straight({0.05, 0.05}, 0.0, 0.4)}, 121),
+                 squares(), fast());
+  EXPECT_EQ(cut.first_stays, 2);
+  for (const CutPassage& p : cut.passages) EXPECT_EQ(p.track, 1U);
+  EXPECT_EQ(cut.passages.size(), 4U);
+  EXPECT_REFUSED("no body is seen to enter a cell", file_of({straight({0.25, 0.25}, 0.0, 0.0)}, 50),
+                 squares(), fast());
+}
+
+// 60 bodies have more stretches than are needed to find the noise; in the other order the same
+// bodies have the same passages.
+TEST(CutTracks, TheOrderOfBodiesChangesNothing) {
+  std::vector<Way> ways;
+  for (int b = 0; b < 60; ++b)
+    ways.push_back(
+        circle({0.013 * b, 0.3 - 0.007 * b}, 0.12 + 0.002 * b, 0.3 + 0.002 * b, 0.3 * b));
+  TrackFile file = file_of(ways, 900, 0.001);
+  const CutTracks there = cut_tracks(file, squares(), fast());
+  TrackFile turned = file;
+  std::reverse(turned.tracks.begin(), turned.tracks.end());
+  const CutTracks back = cut_tracks(turned, squares(), fast());
+  EXPECT_EQ(there.noise.place, back.noise.place);
+  ASSERT_EQ(there.passages.size(), back.passages.size());
+  const auto of_first = [](const CutTracks& cut, std::size_t track) {
+    std::vector<double> times;
+    for (const CutPassage& p : cut.passages)
+      if (p.track == track) times.push_back(p.time);
+    return times;
+  };
+  EXPECT_EQ(of_first(there, 0), of_first(back, 59));
+  EXPECT_LE(there.unsure_crossings, there.crossings);
 }
 
 // Walls that a path never meets change nothing, to the last bit.

@@ -173,7 +173,7 @@ holds '.passages == 4 and .lost_by.wall == 0 and .places_put_back > 3 and .left_
 awk -F, 'NR > 1 { t += $7; if ($9 <= 0) exit 1 } END { exit !(t > 0) }' visits.csv || fail "passages: times of visits"
 "$gatewalk" build maze_runs.csv --cell maze.toml -o maze.nc --quiet || fail "build: a maze"
 sed '2s/,left,S,/,left,E,/' maze_runs.csv >through.csv
-expect 2 'through.csv:2: column in: "E" is not permitted: must be no wall of type left of maze.toml' "$gatewalk" build through.csv --cell maze.toml -o x.nc
+expect 2 'through.csv:2: column in: a body cannot enter by face E: type left of maze.toml has a wall at E' "$gatewalk" build through.csv --cell maze.toml -o x.nc
 expect 2 'cell.types.walls = .* is not permitted: must be an array of faces at which nothing crosses the border' "$gatewalk" build maze_runs.csv --cell <(sed 's/walls = \["E"\]/walls = ["B"]/' maze.toml) -o x.nc
 # Without walls the body visits the cell on the right.
 sed '/walls/d' maze.toml >no_walls.toml
