@@ -132,14 +132,14 @@ class OpenWay {
   };
   /// A body is lost, to come back in the cell that its path is in, rather than follow it by a way
   /// that is further off than this many frames at the distance of a cell.
-  static constexpr double kLoss = 5.0;
+  static constexpr double kLoss = 200.0;
   /// The column of a body that is lost while its path is in a cell that is closed to all sides.
   static constexpr int kNowhere = std::numeric_limits<int>::min();
   /// Decides between ways that are equally near: the one with fewer crossings.
   static constexpr double kCrossing = 1e-9;
   /// A crossing of a border that the path is not at counts as this many frames at the same
   /// distance: a body that leans over a wall is not sent round through other cells.
-  static constexpr double kFarCrossing = 20.0;
+  static constexpr double kFarCrossing = 1000.0;
   /// The weight of a place on a border beside that of a frame: enough to tell which border it is.
   static constexpr double kOnBorder = 1e-3;
 
