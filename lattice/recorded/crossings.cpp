@@ -101,8 +101,8 @@ WayThroughCells own_way(const SmoothPath& path, const Grid& grid) {
 }
 
 /// The nearest way through open borders, by dynamic programming over the instants of a path: its
-/// frames, and its own crossings of borders, which have little weight. At each instant a
-/// body may cross one border.
+/// frames, and its own crossings of borders, which have little weight. At each instant a body may
+/// cross one border.
 class OpenWay {
  public:
   OpenWay(const SmoothPath& path, const Grid& grid)

@@ -279,8 +279,8 @@ Process process_of(const TrackPiece& piece, const TrackNoise& noise) {
   // The smoother sees the path over this time to each side; accelerations are averages over twice
   // that.
   const double memory = std::pow(process.noise * interval / usual, 0.25);
-  const auto reach =
-      static_cast<std::size_t>(std::clamp(2.0 * memory / interval, 6.0, static_cast<double>(n)));
+  const auto reach = static_cast<std::size_t>(
+      std::max(6.0, std::min(2.0 * memory / interval, static_cast<double>(n))));
   process.acceleration.assign(n, usual);
   Changes found(n), sums(n + 1);
   for (int round = 0; round < kRounds; ++round) {
