@@ -58,21 +58,20 @@ class Between {
 };
 
 /// Calls found(frame, border, way) for each border k size along one axis that the path crosses
-/// between a frame and the one before; `way`: +1 or -1. A crossing counts if the path then goes
-/// further than `margin` beyond the border, at its last crossing of that border.
+/// between a frame and the one before; `way`: +1 or -1.
 template <class Found>
-void for_crossings(const std::vector<double>& place, double size, double margin, Found found) {
+void for_crossings(const std::vector<double>& place, double size, Found found) {
   int cell = cell_at(place[0], size);
   for (std::size_t i = 1; i < place.size(); ++i) {
     const auto step = [&](int way) {
       const double border = size * (way > 0 ? cell + 1 : cell);
-      std::size_t j = i;
+      std::size_t j = i;  // after frames on the border itself, it was crossed before them
       while (j > 1 && (place[j - 1] < border) == (way < 0)) --j;
       found(j, border, way);
       cell += way;
     };
-    while (place[i] > size * (cell + 1) + margin) step(+1);
-    while (place[i] < size * cell - margin) step(-1);
+    while (place[i] > size * (cell + 1)) step(+1);
+    while (place[i] < size * cell) step(-1);
   }
 }
 
@@ -81,12 +80,12 @@ WayThroughCells own_way(const SmoothPath& path, const Grid& grid) {
   WayThroughCells way{cell_at(path.x[0], grid.width), cell_at(path.y[0], grid.length), {}};
   const auto add = [&](bool is_x) {
     const auto &place = is_x ? path.x : path.y, &speed = is_x ? path.vx : path.vy;
-    for_crossings(place, is_x ? grid.width : grid.length, 0.0,
-                  [&](std::size_t frame, double border, int step) {
-                    const Between between(path, frame);
-                    way.crossings.push_back(between.at(between.reaches(place, speed, border),
-                                                       is_x ? step : 0, is_x ? 0 : step));
-                  });
+    for_crossings(
+        place, is_x ? grid.width : grid.length, [&](std::size_t frame, double border, int step) {
+          const Between between(path, frame);
+          way.crossings.push_back(
+              between.at(between.reaches(place, speed, border), is_x ? step : 0, is_x ? 0 : step));
+        });
   };
   add(true);
   add(false);
@@ -296,16 +295,6 @@ int cell_at(double place, double size) { return static_cast<int>(std::floor(plac
 
 WayThroughCells way_through(const SmoothPath& path, const Grid& grid) {
   return grid.is_open ? OpenWay(path, grid).find() : own_way(path, grid);
-}
-
-std::int64_t crossings_beyond(const SmoothPath& path, const Grid& grid, double margin) {
-  std::int64_t count = 0;
-  const auto add = [&](const std::vector<double>& place, double size) {
-    for_crossings(place, size, margin, [&](std::size_t, double, int) { ++count; });
-  };
-  add(path.x, grid.width);
-  add(path.y, grid.length);
-  return count;
 }
 
 }  // namespace gatewalk::lattice

@@ -41,8 +41,4 @@ struct WayThroughCells {
 /// the cell that the body is in. A body whose path stays beyond walls for long is lost.
 [[nodiscard]] WayThroughCells way_through(const SmoothPath& path, const Grid& grid);
 
-/// The number of crossings after which the path goes further than `margin` beyond the border.
-[[nodiscard]] std::int64_t crossings_beyond(const SmoothPath& path, const Grid& grid,
-                                            double margin);
-
 }  // namespace gatewalk::lattice
